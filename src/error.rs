@@ -1,0 +1,88 @@
+//! One error for the whole crate, with a kind that decides what a caller can do about it.
+//!
+//! ```
+//! use kickdrift::error::{Error, Kind};
+//! let error = Error::input("h1", "0", "a step must be positive");
+//! assert_eq!(error.kind(), Kind::Input);
+//! assert_eq!(error.to_string(), "h1 = 0: a step must be positive");
+//! ```
+
+use std::fmt;
+
+/// What went wrong, as far as the caller's next move is concerned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The input is not meaningful; the message names field, value and remedy.
+    Input,
+    /// A file or stream could not be read or written.
+    Io,
+    /// The work exceeds the stated budget; the message tells the cost and the flag that allows it.
+    Budget,
+}
+
+/// An error of any floor: a [`Kind`] and one line for a person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    kind: Kind,
+    message: String,
+}
+
+/// The crate's result type.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// The longest value that a message quotes; longer ones are cut in the middle.
+const QUOTED: usize = 60;
+
+impl Error {
+    /// Bad input: the field, its value as it was given, and what to do instead.
+    pub fn input(field: &str, value: impl fmt::Display, remedy: impl fmt::Display) -> Self {
+        let message = format!("{field} = {}: {remedy}", shortened(&value.to_string()));
+        Error { kind: Kind::Input, message }
+    }
+
+    /// A file or stream that could not be read or written.
+    pub fn io(path: impl fmt::Display, cause: impl fmt::Display) -> Self {
+        Error { kind: Kind::Io, message: format!("{path}: {cause}") }
+    }
+
+    /// More work than the budget allows: what it would cost, and how to allow it.
+    pub fn budget(message: impl fmt::Display) -> Self {
+        Error { kind: Kind::Budget, message: message.to_string() }
+    }
+
+    /// The kind, for callers that react.
+    pub fn kind(&self) -> Kind {
+        self.kind
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// `text` on one line, its middle left out where it is long.
+fn shortened(text: &str) -> String {
+    let line: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if line.len() <= QUOTED {
+        return line.into_iter().collect();
+    }
+    let (head, tail) = (&line[..QUOTED / 2], &line[line.len() - QUOTED / 4..]);
+    let text = |part: &[char]| part.iter().collect::<String>();
+    format!("{}...{} ({} characters)", text(head), text(tail), line.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_and_multiline_values_stay_on_one_short_line() {
+        let message = Error::input("h1", format!("1\n{}", "0".repeat(100_000)), "too long").to_string();
+        assert!(message.len() < 200 && !message.contains('\n'), "{message}");
+        assert!(message.contains("100002 characters"), "{message}");
+    }
+}

@@ -1,0 +1,3 @@
+//! kickdrift: exact, certified linear stability of multiple-time-step integrators.
+
+pub mod error;
