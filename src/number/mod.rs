@@ -1,0 +1,20 @@
+//! What a quantity can be.
+//!
+//! | type | set | sign by |
+//! |---|---|---|
+//! | [`Rational`] | ℚ | inspection |
+//! | [`Ball`] | an interval that contains a real number | inspection; may be unable to tell |
+//! | `f64` | doubles | not at all: a [`Ring`] only |
+
+pub mod ball;
+mod float;
+pub mod rational;
+mod ring;
+mod sign;
+
+pub use ball::Ball;
+pub use ring::{ExactSign, Real, Ring};
+pub use sign::Sign;
+
+/// The rationals, always in lowest terms with a positive denominator.
+pub type Rational = num_rational::BigRational;
