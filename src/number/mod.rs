@@ -3,16 +3,21 @@
 //! | type | set | sign by |
 //! |---|---|---|
 //! | [`Rational`] | ℚ | inspection |
+//! | [`Laurent`] | ℚ[π, 1/π] | coefficients if all vanish (π is transcendental), else balls of growing precision |
 //! | [`Ball`] | an interval that contains a real number | inspection; may be unable to tell |
 //! | `f64` | doubles | not at all: a [`Ring`] only |
 
 pub mod ball;
 mod float;
+pub mod laurent;
+mod operators;
+pub mod parse;
 pub mod rational;
 mod ring;
 mod sign;
 
 pub use ball::Ball;
+pub use laurent::Laurent;
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;
 

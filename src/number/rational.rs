@@ -46,7 +46,7 @@ impl ExactSign for Rational {
 
 impl Real for Rational {
     fn enclosure(&self, bits: u32) -> Ball {
-        Ball::from_rational(self, bits)
+        Ball::from_rational(self, bits + 2)
     }
 }
 
