@@ -9,9 +9,12 @@ use crate::number::{Laurent, Rational};
 /// The deepest nesting of parentheses.
 const MAX_DEPTH: u32 = 100;
 
-/// Bounds the time: each operation costs the square of its operands' bits (the cost of reducing a
-/// fraction), and the largest single value passes with room to spare. About a second.
-const MAX_EFFORT: u64 = 200_000_000_000;
+/// Bounds the time, to a few seconds at worst. The unit is a bit operation of reducing a fraction, which
+/// costs the square of its length; [`OVERHEAD`] units are charged for each product of two coefficients.
+const MAX_EFFORT: u64 = 100_000_000_000;
+
+/// See [`MAX_EFFORT`].
+const OVERHEAD: u64 = 100_000;
 
 /// What to do about a text that is not a number.
 type Remedy = String;
@@ -189,7 +192,7 @@ impl Parser<'_> {
             return Err(too_large());
         }
         let power = BigInt::from(10).pow(scale.unsigned_abs() as u32);
-        self.spend(mantissa.bits() + power.bits())?;
+        self.spend(1, mantissa.bits() + power.bits())?;
         let value =
             if scale < 0 { Rational::new(mantissa, power) } else { Rational::from_integer(mantissa * power) };
         checked(Laurent::from_rational(value))
@@ -223,7 +226,7 @@ impl Parser<'_> {
             let exponent = u64::from(k.unsigned_abs()) * u64::from(n.unsigned_abs());
             let unit = c.denom().is_one() && c.numer().magnitude().is_one();
             let bits = if unit { 1 } else { base.size() * u64::from(n.unsigned_abs()) };
-            // A power of b bits has at least (b − 1) n: refusing b n > 4 MAX_BITS refuses nothing that fits.
+            // The power has more than a quarter of these bits (the worst base is 2: 3 n against n + 2).
             if exponent > u64::from(MAX_PI_EXPONENT) || bits > 4 * MAX_BITS {
                 return Err(too_large());
             }
@@ -231,6 +234,10 @@ impl Parser<'_> {
         }
         if base.is_zero() {
             return Ok(if n == 0 { Laurent::one() } else { Laurent::zero() });
+        }
+        let widest = base.terms().iter().map(|(k, _)| k.unsigned_abs()).max().unwrap_or(0);
+        if u64::from(widest) * u64::from(n.unsigned_abs()) > u64::from(MAX_PI_EXPONENT) {
+            return Err(too_large());
         }
         let mut power = Laurent::one();
         for bit in (0..32 - n.leading_zeros()).rev() {
@@ -249,12 +256,13 @@ impl Parser<'_> {
         b: &Laurent,
         operate: fn(&Laurent, &Laurent) -> Laurent,
     ) -> Parsed<Laurent> {
-        self.spend(a.size() + b.size())?;
+        self.spend(pairs(a, b), mean_size(a) + mean_size(b))?;
         checked(operate(a, b))
     }
 
-    fn spend(&mut self, bits: u64) -> Parsed<()> {
-        self.effort += bits * bits;
+    /// Charges for `products` of two coefficients with `bits` bits together.
+    fn spend(&mut self, products: u64, bits: u64) -> Parsed<()> {
+        self.effort = self.effort.saturating_add(products.saturating_mul(bits * bits + OVERHEAD));
         if self.effort > MAX_EFFORT {
             Err("takes too long to evaluate; write the number shorter".into())
         } else {
@@ -279,6 +287,16 @@ impl Parser<'_> {
             None => format!("ends too early; {FORM}"),
         }
     }
+}
+
+/// The number of products of coefficients in a · b.
+fn pairs(a: &Laurent, b: &Laurent) -> u64 {
+    (a.terms().len() * b.terms().len()).max(1) as u64
+}
+
+/// The bits of a typical coefficient.
+fn mean_size(x: &Laurent) -> u64 {
+    x.size() / x.terms().len().max(1) as u64
 }
 
 fn check_divisor(divisor: &Laurent) -> Parsed<()> {
