@@ -9,26 +9,25 @@
     long the orbit has become: a sign is certified although the orbit grows.
 
     - [perturbed_orbit]   the bound;
-    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>;
-    - [sign_of_zero]      the converse use: what <n, uh_k> = 0 would still allow.                   *)
+    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>. 
 
-From Kickdrift Require Import Vocabulary Algebra.
+From Kickdrift Require Import Vocabulary Algebra Stability.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
 
 (** ** Plane vectors *)
 
-Definition dot (u w : vec) := pos u * pos w + vel u * vel w.
-Definition cross (u w : vec) := pos u * vel w - vel u * pos w.          (* det (u, w) *)
+Definition dot (u w : vec) := position u * position w + velocity u * velocity w.
+Definition cross (u w : vec) := position u * velocity w - velocity u * position w.          (* det (u, w) *)
 Definition len (u : vec) := sqrt (dot u u).
-Definition J (u : vec) := Vec (- vel u) (pos u).                         (* a quarter turn *)
-Definition add (u w : vec) := Vec (pos u + pos w) (vel u + vel w).
-Definition smul (x : R) (u : vec) := Vec (x * pos u) (x * vel u).
+Definition J (u : vec) := Vec (- velocity u) (position u).                         (* a quarter turn *)
+Definition add (u w : vec) := Vec (position u + position w) (velocity u + velocity w).
+Definition smul (x : R) (u : vec) := Vec (x * position u) (x * velocity u).
 Definition zero := Vec 0 0.
 
 Ltac coordinates := unfold dot, cross, J, add, smul, act, det, zero in *; simpl in *.
 
-Lemma vec_ext u w : pos u = pos w -> vel u = vel w -> u = w.
+Lemma vec_ext u w : position u = position w -> velocity u = velocity w -> u = w.
 Proof. destruct u, w; simpl; congruence. Qed.
 
 Lemma len_nonneg u : 0 <= len u.
@@ -39,15 +38,12 @@ Proof. apply sqrt_sqrt; coordinates; nra. Qed.
 
 Lemma len_pos u : u <> zero -> 0 < len u.
 Proof.
-  intros N; apply sqrt_lt_R0; destruct (Req_dec (pos u) 0) as [A|A], (Req_dec (vel u) 0) as [B|B];
+  intros N; apply sqrt_lt_R0; destruct (Req_dec (position u) 0) as [A|A], (Req_dec (velocity u) 0) as [B|B];
     [exfalso; apply N; now apply vec_ext | coordinates; nra ..].
 Qed.
 
 Lemma len_J u : len (J u) = len u.
 Proof. unfold len; f_equal; coordinates; ring. Qed.
-
-Lemma abs_le_sqr x b : 0 <= b -> x * x <= b * b -> Rabs x <= b.
-Proof. intros; apply Rabs_le; split; nra. Qed.
 
 (** Lagrange's identity gives both inequalities of Cauchy and Schwarz. *)
 Lemma lagrange u w : dot u w * dot u w + cross u w * cross u w = dot u u * dot w w.
@@ -56,7 +52,7 @@ Proof. coordinates; ring. Qed.
 Lemma dot_le u w : Rabs (dot u w) <= len u * len w.
 Proof.
   pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply abs_le_sqr; [nra|].
+  apply sqr_le_abs; [nra|].
   replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
   rewrite <- lagrange; nra.
 Qed.
@@ -64,7 +60,7 @@ Qed.
 Lemma cross_le u w : Rabs (cross u w) <= len u * len w.
 Proof.
   pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply abs_le_sqr; [nra|].
+  apply sqr_le_abs; [nra|].
   replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
   rewrite <- lagrange; nra.
 Qed.
@@ -76,7 +72,8 @@ Proof.
   intros X; induction n as [|n IH]; [simpl; lra|].
   rewrite S_INR; simpl; pose proof (pos_INR n).
   assert (0 <= (1 - x) ^ n) by (apply pow_le; lra).
-  destruct (Rle_lt_dec 0 (1 - INR n * x)); nra.
+  apply Rle_trans with ((1 - x) * (1 - INR n * x)); [|apply Rmult_le_compat_l; lra].
+  assert (0 <= INR n * (x * x)) by (apply Rmult_le_pos; nra). nra.
 Qed.
 
 Lemma bernoulli_inv x n : 0 <= x <= 1 -> (1 + x) ^ n * (1 - INR n * x) <= 1.
@@ -85,7 +82,16 @@ Proof.
   assert (P : 0 < (1 + x) ^ n) by (apply pow_lt; lra).
   apply Rle_trans with ((1 + x) ^ n * (1 - x) ^ n); [nra|].
   rewrite <- Rpow_mult_distr; replace ((1 + x) * (1 - x)) with (1 - x * x) by ring.
-  rewrite <- (pow1 n); apply pow_incr; nra.
+  apply Rle_trans with (1 ^ n); [apply pow_incr; split; nra | rewrite pow1; lra].
+Qed.
+
+(** Coordinates in the orthogonal frame (w, J w). *)
+Lemma frame w v : w <> zero ->
+  v = add (smul (dot w v / (len w * len w)) w) (smul (cross w v / (len w * len w)) (J w)).
+Proof.
+  intros Z; pose proof (len_pos w Z) as P; pose proof (len_sqr w) as S.
+  assert (0 < dot w w) by nra; rewrite S.
+  apply vec_ext; coordinates; field; lra.
 Qed.
 
 (** ** One step *)
@@ -111,21 +117,13 @@ Proof. unfold z; rewrite <- (len_J uh); apply K. Qed.
 Lemma y_split : y = add (add uh' (smul (-1) r)) (smul (t / (len uh * len uh)) z).
 Proof. unfold y, uh', z; generalize (t / (len uh * len uh)); intros c; apply vec_ext; coordinates; ring. Qed.
 
-Lemma frame v : uh' <> zero ->
-  v = add (smul (dot uh' v / (len uh' * len uh')) uh') (smul (cross uh' v / (len uh' * len uh')) (J uh')).
-Proof.
-  intros Z; pose proof (len_pos _ Z) as P; pose proof (len_sqr uh') as S.
-  assert (0 < len uh' * len uh') by nra.
-  rewrite S in *; clear S P; generalize dependent uh'; intros w _ _ _ P.
-  apply vec_ext; coordinates; field; lra.
-Qed.
-
 Lemma alpha_near : Rabs (alpha - 1) <= omega.
 Proof.
   pose proof (len_pos _ N) as P; pose proof (len_pos _ N') as P'; pose proof z_len as Z.
+  pose proof R as R0; pose proof G as G0; pose proof T as T0; pose proof (len_nonneg r) as Pr.
   set (l := len uh) in *; set (l' := len uh') in *.
   assert (E : alpha - 1 = - (dot uh' r / (l' * l')) + t / (l * l) * (dot uh' z / (l' * l'))).
-  { unfold alpha; rewrite y_split.
+  { unfold alpha; rewrite y_split; fold l.
     replace (dot uh' (add (add uh' (smul (-1) r)) (smul (t / (l * l)) z)))
       with (dot uh' uh' - dot uh' r + t / (l * l) * dot uh' z) by (coordinates; ring).
     rewrite <- (len_sqr uh'); fold l'; field; lra. }
@@ -134,11 +132,12 @@ Proof.
   - unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l' * l'))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
     apply Rmult_le_reg_r with (l' * l'); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
     eapply Rle_trans; [apply dot_le|]; fold l'.
-    assert (0 <= eps) by (pose proof (len_nonneg r); nra). nra.
+    assert (0 <= eps) by nra.
+    assert (eps * l <= eps * (g * l')) by (apply Rmult_le_compat_l; assumption). nra.
   - apply Rle_trans with (tau * (kappa * g)); [|nra].
     apply Rmult_le_compat; try apply Rabs_pos.
     + unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l * l))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
-      apply Rmult_le_reg_r with (l * l); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; exact T.
+      apply Rmult_le_reg_r with (l * l); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; exact T0.
     + unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l' * l'))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
       apply Rmult_le_reg_r with (l' * l'); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
       eapply Rle_trans; [apply dot_le|]; fold l'.
@@ -155,7 +154,7 @@ Qed.
 Lemma step_frame : y = smul alpha (add uh' (smul (t' / (len uh' * len uh')) (J uh'))).
 Proof.
   pose proof alpha_bounds as A; pose proof (len_pos _ N') as P'.
-  rewrite (frame y N') at 1; fold alpha.
+  rewrite (frame uh' y N') at 1; fold alpha.
   unfold t'; apply vec_ext; simpl; field; split; nra.
 Qed.
 
@@ -225,8 +224,8 @@ Let rho := (1 + kappa * eps) / (1 - omega).
 
 Lemma rho_pow k : (k <= n)%nat -> rho ^ k <= 2.
 Proof.
-  intros L; destruct n as [|n'] eqn:En; [replace k with O by lia; simpl; lra|].
-  destruct signs as (E & K & W & KE); [lia|]; rewrite <- En in *.
+  intros L; destruct (PeanoNat.Nat.eq_dec n 0); [replace k with O by lia; simpl; lra|].
+  destruct signs as (E & K & W & KE); [lia|].
   assert (I : INR k <= INR n) by (apply le_INR; lia).
   assert (I1 : 1 <= INR n) by (apply (le_INR 1); lia).
   pose proof (pos_INR k) as Ik.

@@ -24,7 +24,7 @@ Open Scope R_scope.
 
 (** ** States and matrices *)
 
-Record vec := Vec { pos : R; vel : R }.
+Record vec := Vec { position : R; velocity : R }.
 Record mat := Mat { mA : R; mB : R; mC : R; mD : R }.
 
 Definition one := Mat 1 0 0 1.
@@ -36,7 +36,7 @@ Definition mul (M N : mat) :=
 Infix "**" := mul (at level 40, left associativity).
 
 Definition act (M : mat) (u : vec) :=
-  Vec (mA M * pos u + mB M * vel u) (mC M * pos u + mD M * vel u).
+  Vec (mA M * position u + mB M * velocity u) (mC M * position u + mD M * velocity u).
 Infix "@" := act (at level 35, right associativity).
 
 Fixpoint power (M : mat) (n : nat) : mat :=
