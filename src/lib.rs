@@ -1,3 +1,6 @@
 //! kickdrift: exact, certified linear stability of multiple-time-step integrators.
 
 pub mod error;
+pub mod number;
+pub mod propagator;
+pub mod verdict;
