@@ -34,9 +34,13 @@ use magnitude::Magnitude;
 /// The length of a radius after rounding: what one more rounding adds is below 2^-29 of it.
 const RADIUS_BITS: i64 = 30;
 
+/// The largest |exp| of a ball.
+const MAX_EXPONENT: u64 = 1 << 60;
+
 /// The set [mid − rad, mid + rad] · 2^exp.
 ///
-/// Invariant: rad ≤ 2^30 + 1; exp = 0 in the exact ball 0.
+/// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (an operation
+/// that would leave this range **panics**); exp = 0 in the exact ball 0.
 #[derive(Clone, Debug)]
 pub struct Ball {
     mid: BigInt,
@@ -86,7 +90,7 @@ impl Ball {
             return Ball { rad: error.units(exp), mid, exp }.normalized();
         }
         let inexact = mid.trailing_zeros().is_some_and(|zeros| zeros < shift as u64);
-        let exp = exp.checked_add(shift).expect("exponent of a ball");
+        let exp = exp + shift;
         // Rounding down loses less than one unit.
         Ball { mid: mid >> shift, rad: error.units(exp) + u64::from(inexact), exp }.normalized()
     }
@@ -100,6 +104,7 @@ impl Ball {
         if self.rad == 0 && self.mid.is_zero() {
             self.exp = 0;
         }
+        assert!(self.exp.unsigned_abs() <= MAX_EXPONENT, "exponent of a ball");
         self
     }
 

@@ -75,9 +75,12 @@ impl Laurent {
     }
 
     /// self / divisor in ℚ[π, 1/π], for divisors c π^k; `None` for 0 and for sums of several powers of π.
+    ///
+    /// **Panics** if an exponent of π leaves the range of `i32`.
     pub fn checked_div(&self, divisor: &Laurent) -> Option<Laurent> {
         let (k, c) = divisor.as_monomial()?;
-        let terms = self.terms.iter().map(|(j, d)| (j - k, d / c)).collect();
+        let lowered = |j: i32| j.checked_sub(k).expect("exponent of π");
+        let terms = self.terms.iter().map(|(j, d)| (lowered(*j), d / c)).collect();
         Some(Laurent { terms })
     }
 

@@ -8,6 +8,21 @@
 //! | [`Ball`] | an interval that contains a real number | inspection; may be unable to tell |
 //! | [`Polynomial`] | R\[x\] over any ring R | not at all: a [`Ring`] only; real roots by Sturm chains |
 //! | `f64` | doubles | not at all: a [`Ring`] only |
+//!
+//! Exact types know their sign ([`ExactSign`]) and can be enclosed ([`Real`]); a [`Ball`] answers `None` where
+//! it cannot tell; no exact type converts from a double silently ([`rational::from_f64_exact`] is loud).
+//!
+//! ```
+//! use kickdrift::number::{ExactSign, Laurent, Real, Sign, parse};
+//! // h² Λ − 4, the margin of velocity Verlet, at Λ = π² and h = 2/π: exactly on its stability limit.
+//! let lambda = parse::parse("lambda", "pi^2").unwrap();
+//! let h = parse::parse("h", "2/pi").unwrap();
+//! let margin = &(&(&h * &h) * &lambda) - &Laurent::from_integer(4);
+//! assert_eq!(margin.sign(), Sign::Zero);
+//! // The doubles next to h are not on it, and a ball of few bits cannot tell.
+//! let ball = h.enclosure(53).square(53).mul(&lambda.enclosure(53), 53);
+//! assert_eq!(ball.sub(&Laurent::from_integer(4).enclosure(53), 53).sign(), None);
+//! ```
 
 pub mod ball;
 pub mod cyclotomic;

@@ -69,13 +69,13 @@ impl Ball {
 
     /// x 2^k, exactly.
     pub fn scale2(&self, k: i64) -> Ball {
-        let exp = self.exp.checked_add(k).expect("exponent of a ball");
+        let exp = self.exp.saturating_add(k);
         Ball { mid: self.mid.clone(), rad: self.rad, exp }.normalized()
     }
 
     /// x y.
     pub fn mul(&self, other: &Ball, bits: u32) -> Ball {
-        let exp = self.exp.checked_add(other.exp).expect("exponent of a ball");
+        let exp = self.exp + other.exp;
         // |x y − a b| ≤ |a| s + |b| r + r s for x = a ± r, y = b ± s.
         let mut error = Magnitude::ZERO;
         if other.rad > 0 {

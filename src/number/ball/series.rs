@@ -29,7 +29,7 @@ pub(super) fn sum(y: &Ball, fraction: u32, divisor: fn(u64) -> u64, weight: fn(u
         }
         if weight(terms) > 1 { total += &power / weight(terms) } else { total += &power }
     }
-    debug_assert!(step.abs().bits() <= u64::from(fraction) + 1);
+    debug_assert!(step.abs().bits() <= u64::from(fraction), "|y| < 1");
     let error = Magnitude::new(5 * terms + 9, exp).plus(y.radius().scale2(2));
     Ball::rounded(total, exp, error, fraction + 2)
 }

@@ -1,7 +1,5 @@
 //! Polynomials as text: `s^2 - 3*s + 1`, nested ones as `(1/2 + rho)*s - 4`.
 
-use num_traits::{One, Signed, Zero};
-
 use super::Polynomial;
 use crate::number::{Rational, Ring};
 
@@ -54,35 +52,5 @@ fn term(c: &str, name: &str, k: usize) -> String {
         "-1" => format!("-{power}"),
         _ if simple => format!("{c}*{power}"),
         _ => format!("({c})*{power}"),
-    }
-}
-
-impl Polynomial<Rational> {
-    /// The polynomial divided by its content: integer coefficients without a common factor, the sign kept.
-    pub fn primitive(&self) -> Self {
-        if self.is_zero() {
-            return Self::zero();
-        }
-        let integers = super::sturm::integers(self);
-        Polynomial::new(integers.into_iter().map(Rational::from_integer).collect())
-    }
-
-    /// The polynomial divided by its leading coefficient (0 stays 0).
-    pub fn monic(&self) -> Self {
-        match self.leading() {
-            Some(leading) if !leading.is_one() => {
-                let inverse = leading.recip();
-                self.scale(&inverse)
-            }
-            _ => self.clone(),
-        }
-    }
-
-    /// An upper bound, a power of 2, of |x| over all roots, the complex ones too: 1 + max |c_k / c_n| (Cauchy).
-    pub fn root_bound(&self) -> Rational {
-        let monic = self.monic();
-        let largest = monic.coefficients.iter().map(Signed::abs).max().unwrap_or_else(Rational::zero);
-        let bound = (largest + Rational::one()).ceil().to_integer();
-        Rational::from_integer(num_bigint::BigInt::one() << bound.bits())
     }
 }

@@ -1,6 +1,6 @@
 //! Division: with remainder over a field, exactly over a domain; greatest common divisors and resultants.
 
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
 use super::{Polynomial, sturm};
 use crate::number::{Rational, Ring};
@@ -65,6 +65,19 @@ impl<R: Ring> Polynomial<R> {
 }
 
 impl Polynomial<Rational> {
+    /// The polynomial divided by its leading coefficient (0 stays 0).
+    pub fn monic(&self) -> Self {
+        match self.leading() {
+            Some(leading) if !leading.is_one() => self.scale(&leading.recip()),
+            _ => self.clone(),
+        }
+    }
+
+    /// A positive multiple with integer coefficients that have no common factor (0 stays 0).
+    pub fn primitive(&self) -> Self {
+        Polynomial::new(sturm::integers(self).into_iter().map(Rational::from_integer).collect())
+    }
+
     /// (q, r) with self = q divisor + r and deg r < deg divisor; `None` if divisor = 0.
     pub fn div_rem(&self, divisor: &Self) -> Option<(Self, Self)> {
         let inverse = divisor.leading()?.recip();
@@ -102,8 +115,8 @@ impl Polynomial<Rational> {
     }
 }
 
-/// The resultant of a and b: 0 iff they share a root (in an algebraic closure) or both degrees are
-/// formal zeros; for a = α Π (x − α_i) of degree m, b of degree n it is α^n Π b(α_i). 0 if a or b is 0.
+/// The resultant of a and b: for a = α Π (x − α_i) and b of degree n it is α^n Π b(α_i), so it is 0 iff
+/// a and b share a root in an algebraic closure; also 0 if a = 0 or b = 0.
 ///
 /// By the subresultant sequence (Collins, Brown), whose divisions are exact in the ring.
 pub fn resultant<R: ExactDivision>(a: &Polynomial<R>, b: &Polynomial<R>) -> R {

@@ -124,6 +124,14 @@ impl Sturm {
 }
 
 impl Polynomial<Rational> {
+    /// A power of 2 above |x| for all roots x, the complex ones too: 1 + max |c_k / c_n| < 2^t (Cauchy).
+    pub fn root_bound(&self) -> Rational {
+        let monic = self.monic();
+        let largest = monic.coefficients.iter().map(Signed::abs).max().unwrap_or_else(Rational::zero);
+        let bound = (largest + Rational::one()).ceil().to_integer();
+        Rational::from_integer(BigInt::one() << bound.bits())
+    }
+
     /// The number of distinct real roots in the closed interval [lo, hi] (Sturm).
     ///
     /// **Panics** for the polynomial 0.
