@@ -9,7 +9,7 @@
     long the orbit has become: a sign is certified although the orbit grows.
 
     - [perturbed_orbit]   the bound;
-    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>. 
+    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>.   *)
 
 From Kickdrift Require Import Vocabulary Algebra Stability.
 From Coq Require Import Reals Lra Lia Psatz.

@@ -7,9 +7,11 @@
     - [four_signs]         the seven rows of the four-sign table, as equivalences;
     - [row_total], [behaves_unique]
                            each half period lies in exactly one row;
+    - [two_clocks_verdict] hence the verdict on two clocks is a row of the half period;
+    - [staggered_bounded]  the event loop (Algorithm 1) and the symmetric form are stable together;
     - [verlet]             velocity Verlet: bounded iff 0 < h^2 L < 4 (h <> 0).    *)
 
-From Kickdrift Require Import Vocabulary Algebra.
+From Kickdrift Require Import Vocabulary Algebra TwoClocks.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
 
@@ -382,6 +384,31 @@ Qed.
 
 Theorem row_unique k k' H : det H = 1 -> row k H -> row k' H -> k = k'.
 Proof. intros D R R'; apply (behaves_unique k k' (mirror H ** H)); now apply row_behaves. Qed.
+
+(** ** Two clocks *)
+
+Theorem two_clocks_verdict k p q h1 L1 h2 L2 :
+  (1 <= p)%nat -> (1 <= q)%nat ->
+  behaves k (full_period p q h1 L1 h2 L2) <-> row k (half_period p q h1 L1 h2 L2).
+Proof.
+  intros P Q; destruct (full_period_mirror p q h1 L1 h2 L2 P Q) as (D & -> & _).
+  symmetry; now apply four_signs.
+Qed.
+
+(** The event loop's product and the symmetric one are stable together. *)
+Theorem staggered_bounded f d n :
+  f n = f O -> bounded_powers (propagator (staggered f d n)) <-> bounded_powers (propagator (schedule f d n)).
+Proof.
+  intros E; rewrite !bounded_iff, (staggered_trace f d n E) by apply det_propagator.
+  pose proof (staggered_conjugate f d n) as C; rewrite E in C; set (h := f O / 2) in *.
+  assert (I : forall M N X, kick h ** M = N ** kick h -> kick h ** X = X ** kick h -> (M = X <-> N = X)).
+  { intros M N X MN XX; split; intros ->.
+    - transitivity (N ** kick h ** kick (- h)); [rewrite <- mul_assoc, kick_add, Rplus_opp_r, kick_zero; now rewrite mul_one_r|].
+      now rewrite <- MN, XX, <- mul_assoc, kick_add, Rplus_opp_r, kick_zero, mul_one_r.
+    - transitivity (kick (- h) ** (kick h ** M)); [rewrite mul_assoc, kick_add, Rplus_opp_l, kick_zero; now rewrite mul_one_l|].
+      now rewrite MN, <- XX, mul_assoc, kick_add, Rplus_opp_l, kick_zero, mul_one_l. }
+  rewrite (I _ _ one C), (I _ _ (opp one) C) by matrix_ring; reflexivity.
+Qed.
 
 (** ** Velocity Verlet, eq. (1) of the paper *)
 

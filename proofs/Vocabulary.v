@@ -16,7 +16,9 @@
     norm, bounded_powers, exponential_growth, linear_growth
                       == sum of absolute entries, and the three ways in which powers can behave
     kind, row, behaves
-                      == the seven verdicts; their row in the four-sign table; what they promise    *)
+                      == the seven verdicts; their row in the four-sign table; what they promise
+    verdict k p q h1 L1 h2 L2
+                      == two clocks with h2/h1 = p/q in lowest terms behave as k says               *)
 
 From Coq Require Import Reals List Arith Bool.
 Import ListNotations.
@@ -127,3 +129,10 @@ Definition behaves (k : kind) (Q : mat) : Prop :=
   | Coexistence Plus  => Q = one /\ bounded_powers Q
   | Coexistence Minus => Q = opp one /\ bounded_powers Q
   end.
+
+(** The verdict on two clocks whose steps have the ratio h2/h1 = p/q in lowest terms. *)
+Record verdict (k : kind) (p q : nat) (h1 L1 h2 L2 : R) : Prop := {
+  lowest_terms : (1 <= p /\ 1 <= q /\ Nat.gcd p q = 1)%nat;
+  steps        : 0 < h1 /\ 0 < h2 /\ INR p * h1 = INR q * h2;
+  behaviour    : behaves k (full_period p q h1 L1 h2 L2)
+}.
