@@ -3,4 +3,5 @@
 pub mod error;
 pub mod number;
 pub mod propagator;
+pub mod resonance;
 pub mod verdict;

@@ -19,7 +19,7 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 
 use super::kind::HalfSigns;
-use crate::number::{ExactSign, Laurent, Rational, Real, Sign};
+use crate::number::{Cyclotomic, ExactSign, Laurent, Rational, Real, Sign};
 use crate::propagator::{Event, Schedule, TwoClocks, Weight, half_period};
 
 /// Exact real numbers over which the four signs of the half period are decided.
@@ -44,6 +44,8 @@ impl Decidable for Laurent {
         HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
     }
 }
+
+impl Decidable for Cyclotomic {}
 
 impl Decidable for Rational {
     /// By a product tree of integer matrices, about (p + q)/2 leaves.

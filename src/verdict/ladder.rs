@@ -6,6 +6,7 @@ use super::floquet::Floquet;
 use super::kind::Verdict;
 use super::refine;
 use crate::error::{Error, Result};
+use crate::number::Real;
 use crate::propagator::{Schedule, TwoClocks};
 
 /// Which tier decided.
@@ -94,6 +95,11 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
         }
     }
     unreachable!("the exact tier decides every pair")
+}
+
+/// The verdict where doubles in Floquet coordinates certify it, for routes that have their own exact form.
+pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
+    filter::run(&Floquet::new(clocks)?)?.signs().verdict()
 }
 
 fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {

@@ -31,4 +31,5 @@ mod winding;
 pub use exact::Decidable;
 pub use growth::{Growth, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
+pub(crate) use ladder::filter_only;
 pub use ladder::{Decision, Limits, Tier, decide, decide_from};
