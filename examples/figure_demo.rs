@@ -86,7 +86,7 @@ fn precision() -> Panel {
             .titled("(c) Work and precision");
     for (i, (shape, name)) in shapes.into_iter().zip(names).enumerate() {
         let line: Vec<[f64; 2]> = (0..6)
-            .map(|k| f64::from(k))
+            .map(f64::from)
             .map(|k| {
                 [10f64.powf(-6.5 + 0.6 * k + 0.3 * i as f64), 10f64.powf(-2.0 - 2.4 * i as f64 + 0.5 * k)]
             })

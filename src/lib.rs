@@ -1,4 +1,8 @@
 //! kickdrift: exact, certified linear stability of multiple-time-step integrators.
 
 pub mod error;
+pub mod number;
+pub mod propagator;
 pub mod report;
+pub mod resonance;
+pub mod verdict;

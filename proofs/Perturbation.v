@@ -1,0 +1,345 @@
+(** * The a-posteriori error bound of a computed orbit
+
+    An exact orbit u_k = M_k u_(k-1) with det M_k = 1, and a computed one uh_k = M_k uh_(k-1) + r_k
+    that starts at the same vector. In the moving frame (uh_k, J uh_k) the exact orbit is
+
+        u_k = a_k (uh_k + (t_k / |uh_k|^2) J uh_k),     |t_k| <= 2 b_k,     b_k >= sum_(j<=k) |r_j| |uh_j|
+
+    so the error along the orbit is a factor a_k > 0 near 1, and the error across it is small however
+    long the orbit has become: a sign is certified although the orbit grows.
+
+    - [perturbed_orbit]   the bound;
+    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>.   *)
+
+From Kickdrift Require Import Vocabulary Algebra Stability.
+From Coq Require Import Reals Lra Lia Psatz.
+Open Scope R_scope.
+
+(** ** Plane vectors *)
+
+Definition dot (u w : vec) := position u * position w + velocity u * velocity w.
+Definition cross (u w : vec) := position u * velocity w - velocity u * position w.          (* det (u, w) *)
+Definition len (u : vec) := sqrt (dot u u).
+Definition J (u : vec) := Vec (- velocity u) (position u).                         (* a quarter turn *)
+Definition add (u w : vec) := Vec (position u + position w) (velocity u + velocity w).
+Definition smul (x : R) (u : vec) := Vec (x * position u) (x * velocity u).
+Definition zero := Vec 0 0.
+
+Ltac coordinates := unfold dot, cross, J, add, smul, act, det, zero in *; simpl in *.
+
+Lemma vec_ext u w : position u = position w -> velocity u = velocity w -> u = w.
+Proof. destruct u, w; simpl; congruence. Qed.
+
+Lemma len_nonneg u : 0 <= len u.
+Proof. apply sqrt_pos. Qed.
+
+Lemma len_sqr u : len u * len u = dot u u.
+Proof. apply sqrt_sqrt; coordinates; nra. Qed.
+
+Lemma len_pos u : u <> zero -> 0 < len u.
+Proof.
+  intros N; apply sqrt_lt_R0; destruct (Req_dec (position u) 0) as [A|A], (Req_dec (velocity u) 0) as [B|B];
+    [exfalso; apply N; now apply vec_ext | coordinates; nra ..].
+Qed.
+
+Lemma len_J u : len (J u) = len u.
+Proof. unfold len; f_equal; coordinates; ring. Qed.
+
+(** Lagrange's identity gives both inequalities of Cauchy and Schwarz. *)
+Lemma lagrange u w : dot u w * dot u w + cross u w * cross u w = dot u u * dot w w.
+Proof. coordinates; ring. Qed.
+
+Lemma dot_le u w : Rabs (dot u w) <= len u * len w.
+Proof.
+  pose proof (len_nonneg u); pose proof (len_nonneg w).
+  apply sqr_le_abs; [nra|].
+  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
+  rewrite <- lagrange; nra.
+Qed.
+
+Lemma cross_le u w : Rabs (cross u w) <= len u * len w.
+Proof.
+  pose proof (len_nonneg u); pose proof (len_nonneg w).
+  apply sqr_le_abs; [nra|].
+  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
+  rewrite <- lagrange; nra.
+Qed.
+
+(** ** Bernoulli's inequality, both ways *)
+
+Lemma bernoulli x n : 0 <= x <= 1 -> 1 - INR n * x <= (1 - x) ^ n.
+Proof.
+  intros X; induction n as [|n IH]; [simpl; lra|].
+  rewrite S_INR; simpl; pose proof (pos_INR n).
+  assert (0 <= (1 - x) ^ n) by (apply pow_le; lra).
+  apply Rle_trans with ((1 - x) * (1 - INR n * x)); [|apply Rmult_le_compat_l; lra].
+  assert (0 <= INR n * (x * x)) by (apply Rmult_le_pos; nra). nra.
+Qed.
+
+Lemma bernoulli_inv x n : 0 <= x <= 1 -> (1 + x) ^ n * (1 - INR n * x) <= 1.
+Proof.
+  intros X; pose proof (bernoulli x n X) as B.
+  assert (P : 0 < (1 + x) ^ n) by (apply pow_lt; lra).
+  apply Rle_trans with ((1 + x) ^ n * (1 - x) ^ n); [nra|].
+  rewrite <- Rpow_mult_distr; replace ((1 + x) * (1 - x)) with (1 - x * x) by ring.
+  apply Rle_trans with (1 ^ n); [apply pow_incr; split; nra | rewrite pow1; lra].
+Qed.
+
+(** Coordinates in the orthogonal frame (w, J w). *)
+Lemma frame w v : w <> zero ->
+  v = add (smul (dot w v / (len w * len w)) w) (smul (cross w v / (len w * len w)) (J w)).
+Proof.
+  intros Z; pose proof (len_pos w Z) as P; pose proof (len_sqr w) as S.
+  assert (0 < dot w w) by nra; rewrite S.
+  apply vec_ext; coordinates; field; lra.
+Qed.
+
+(** ** One step *)
+
+Section OneStep.
+Variables (M : mat) (uh r : vec) (kappa eps g tau t : R).
+Let uh' := add (M @ uh) r.
+Hypotheses (D : det M = 1) (K : forall y, len (M @ y) <= kappa * len y).
+Hypotheses (N : uh <> zero) (N' : uh' <> zero).
+Hypotheses (R : len r <= eps * len uh) (G : len uh <= g * len uh').
+Hypotheses (T : Rabs t <= tau * (len uh * len uh)).
+Let omega := g * eps + g * kappa * tau.
+Hypothesis O : omega < 1.
+
+Let z := M @ J uh.
+Let y := M @ add uh (smul (t / (len uh * len uh)) (J uh)).
+Let alpha := dot uh' y / (len uh' * len uh').
+Let t' := cross uh' y / alpha.
+
+Lemma z_len : len z <= kappa * len uh.
+Proof. unfold z; rewrite <- (len_J uh); apply K. Qed.
+
+Lemma y_split : y = add (add uh' (smul (-1) r)) (smul (t / (len uh * len uh)) z).
+Proof. unfold y, uh', z; generalize (t / (len uh * len uh)); intros c; apply vec_ext; coordinates; ring. Qed.
+
+Lemma alpha_near : Rabs (alpha - 1) <= omega.
+Proof.
+  pose proof (len_pos _ N) as P; pose proof (len_pos _ N') as P'; pose proof z_len as Z.
+  pose proof R as R0; pose proof G as G0; pose proof T as T0; pose proof (len_nonneg r) as Pr.
+  set (l := len uh) in *; set (l' := len uh') in *.
+  assert (E : alpha - 1 = - (dot uh' r / (l' * l')) + t / (l * l) * (dot uh' z / (l' * l'))).
+  { unfold alpha; rewrite y_split; fold l.
+    replace (dot uh' (add (add uh' (smul (-1) r)) (smul (t / (l * l)) z)))
+      with (dot uh' uh' - dot uh' r + t / (l * l) * dot uh' z) by (coordinates; ring).
+    rewrite <- (len_sqr uh'); fold l'; field; lra. }
+  rewrite E; eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_Ropp, Rabs_mult.
+  unfold omega; apply Rplus_le_compat.
+  - unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l' * l'))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
+    apply Rmult_le_reg_r with (l' * l'); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
+    eapply Rle_trans; [apply dot_le|]; fold l'.
+    assert (0 <= eps) by nra.
+    assert (eps * l <= eps * (g * l')) by (apply Rmult_le_compat_l; assumption). nra.
+  - apply Rle_trans with (tau * (kappa * g)); [|nra].
+    apply Rmult_le_compat; try apply Rabs_pos.
+    + unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l * l))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
+      apply Rmult_le_reg_r with (l * l); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; exact T0.
+    + unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l' * l'))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
+      apply Rmult_le_reg_r with (l' * l'); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
+      eapply Rle_trans; [apply dot_le|]; fold l'.
+      assert (0 <= kappa) by (pose proof (len_nonneg z); nra).
+      assert (kappa * l <= kappa * (g * l')) by (apply Rmult_le_compat_l; lra). nra.
+Qed.
+
+Lemma alpha_bounds : 1 - omega <= alpha <= 1 + omega.
+Proof.
+  pose proof alpha_near as A; apply Rabs_def2 in A || idtac.
+  unfold Rabs in A; destruct Rcase_abs; lra.
+Qed.
+
+Lemma step_frame : y = smul alpha (add uh' (smul (t' / (len uh' * len uh')) (J uh'))).
+Proof.
+  pose proof alpha_bounds as A; pose proof (len_pos _ N') as P'.
+  rewrite (frame uh' y N') at 1; fold alpha.
+  unfold t'; apply vec_ext; simpl; field; split; nra.
+Qed.
+
+Lemma step_cross : Rabs t' <= (Rabs t * (1 + kappa * eps) + len uh' * len r) / (1 - omega).
+Proof.
+  pose proof alpha_bounds as A; pose proof (len_pos _ N) as P; pose proof z_len as Z.
+  assert (E : cross uh' y = - cross uh' r + t * (1 + cross r z / (len uh * len uh))).
+  { assert (W : cross uh' z = len uh * len uh + cross r z).
+    { rewrite len_sqr; replace (dot uh uh) with (det M * dot uh uh) by (rewrite D; ring).
+      unfold uh', z; coordinates; ring. }
+    rewrite y_split.
+    replace (cross uh' (add (add uh' (smul (-1) r)) (smul (t / (len uh * len uh)) z)))
+      with (- cross uh' r + t / (len uh * len uh) * cross uh' z) by (coordinates; ring).
+    rewrite W; field; lra. }
+  assert (B : Rabs (cross uh' y) <= Rabs t * (1 + kappa * eps) + len uh' * len r).
+  { rewrite E; eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_Ropp, Rabs_mult, Rplus_comm.
+    apply Rplus_le_compat; [|apply cross_le].
+    apply Rmult_le_compat_l; [apply Rabs_pos|].
+    eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_R1; apply Rplus_le_compat_l.
+    unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (len uh * len uh))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
+    apply Rmult_le_reg_r with (len uh * len uh); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
+    eapply Rle_trans; [apply cross_le|].
+    apply Rle_trans with (eps * len uh * (kappa * len uh)); [|right; ring].
+    apply Rmult_le_compat; try apply len_nonneg; assumption. }
+  unfold t', Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ alpha)) by (apply Rlt_le, Rinv_0_lt_compat; lra).
+  apply Rmult_le_compat; [apply Rabs_pos | apply Rlt_le, Rinv_0_lt_compat; lra | exact B |].
+  apply Rinv_le_contravar; lra.
+Qed.
+End OneStep.
+
+(** ** The orbit *)
+
+Section Orbit.
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b : nat -> R) (n : nat) (kappa eps g tau : R).
+Let omega := g * eps + g * kappa * tau.
+
+(** The steps: k = 0 ... n - 1 leads from the k-th to the (k+1)-st vector. *)
+Hypothesis start : u O = uh O.
+Hypothesis exact : forall k, (k < n)%nat -> u (S k) = M k @ u k.
+Hypothesis computed : forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k).
+Hypothesis unimodular : forall k, (k < n)%nat -> det (M k) = 1.
+Hypothesis contained : forall k y, (k < n)%nat -> len (M k @ y) <= kappa * len y.
+Hypothesis nonzero : forall k, (k <= n)%nat -> uh k <> zero.
+Hypothesis residual : forall k, (k < n)%nat -> len (r k) <= eps * len (uh k).
+Hypothesis shrink : forall k, (k < n)%nat -> len (uh k) <= g * len (uh (S k)).
+
+(** The running bound, and how large it may be beside the orbit (the last vector is exempt). *)
+Hypothesis b_start : 0 <= b O.
+Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
+Hypothesis b_small : forall k, (k < n)%nat -> 2 * b k <= tau * (len (uh k) * len (uh k)).
+
+Hypotheses (g_nonneg : 0 <= g) (tau_nonneg : 0 <= tau).
+Hypothesis budget : INR n * (kappa * eps + omega) <= 1 / 2.
+
+Lemma signs : (0 < n)%nat -> 0 <= eps /\ 0 <= kappa /\ 0 <= omega /\ 0 <= kappa * eps.
+Proof.
+  intros P.
+  assert (L : 0 < len (uh O)) by (apply len_pos, nonzero; lia).
+  assert (E : 0 <= eps) by (pose proof (residual O P); pose proof (len_nonneg (r O)); nra).
+  assert (K : 0 <= kappa) by (pose proof (contained O (uh O) P); pose proof (len_nonneg (M O @ uh O)); nra).
+  unfold omega; repeat split; try assumption; [|nra].
+  assert (0 <= g * kappa) by nra; nra.
+Qed.
+
+(** The factor by which the cross error can have been magnified after k steps. *)
+Let rho := (1 + kappa * eps) / (1 - omega).
+
+Lemma rho_pow k : (k <= n)%nat -> rho ^ k <= 2.
+Proof.
+  intros L; destruct (PeanoNat.Nat.eq_dec n 0); [replace k with O by lia; simpl; lra|].
+  destruct signs as (E & K & W & KE); [lia|].
+  assert (I : INR k <= INR n) by (apply le_INR; lia).
+  assert (I1 : 1 <= INR n) by (apply (le_INR 1); lia).
+  pose proof (pos_INR k) as Ik.
+  set (x := kappa * eps) in *.
+  assert (XW : x + omega <= 1 / 2) by nra.
+  assert (C : INR k * x + INR k * omega <= 1 / 2) by nra.
+  assert (0 <= INR k * x) by nra. assert (0 <= INR k * omega) by nra.
+  pose proof (bernoulli_inv x k ltac:(lra)) as B1; pose proof (bernoulli omega k ltac:(lra)) as B2.
+  assert (P1 : 0 < (1 - omega) ^ k) by (apply pow_lt; lra).
+  assert (P2 : 0 < (1 + x) ^ k) by (apply pow_lt; lra).
+  unfold rho, Rdiv; rewrite Rpow_mult_distr, pow_inv.
+  apply Rmult_le_reg_r with ((1 - omega) ^ k); [assumption|].
+  rewrite Rmult_assoc, Rinv_l, Rmult_1_r by lra.
+  apply Rle_trans with (2 * (1 - INR k * omega)); [|lra].
+  apply Rmult_le_reg_r with (1 - INR k * x); [lra|]. nra.
+Qed.
+
+(** One step's bound, multiplied out, for the running sum (without powers). *)
+Theorem perturbed_orbit k :
+  (k <= n)%nat ->
+  exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t <= 2 * b k /\
+    (1 - omega) ^ k <= a <= (1 + omega) ^ k /\
+    0 < a /\ 1 - INR k * omega <= a <= / (1 - INR k * omega).
+Proof.
+  intros L.
+  enough (H : exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t <= rho ^ k * b k /\ 0 <= b k /\ (1 - omega) ^ k <= a <= (1 + omega) ^ k).
+  { destruct H as (a & t & E & T & B & A); exists a, t.
+    assert (T2 : Rabs t <= 2 * b k) by (pose proof (rho_pow k L); nra).
+    split; [exact E|]; split; [exact T2|]; split; [exact A|].
+    destruct k as [|k]; [simpl in *; rewrite Rmult_0_l, Rminus_0_r, Rinv_1; lra|].
+    destruct signs as (_ & _ & W & KE); [lia|].
+    assert (I : INR (S k) <= INR n) by (apply le_INR; lia).
+    assert (I1 : 1 <= INR (S k)) by (apply (le_INR 1); lia).
+    assert (C : INR (S k) * omega <= 1 / 2) by nra.
+    assert (O : omega <= 1 / 2) by nra.
+    pose proof (bernoulli omega (S k) ltac:(lra)) as B1; pose proof (bernoulli_inv omega (S k) ltac:(lra)) as B2.
+    repeat split; [lra..|].
+    apply Rle_trans with ((1 + omega) ^ S k); [lra|].
+    apply Rmult_le_reg_r with (1 - INR (S k) * omega); [lra|]; rewrite Rinv_l; lra. }
+  induction k as [|k IH].
+  - exists 1, 0; rewrite start; simpl; rewrite Rabs_R0; repeat split; try lra.
+    apply vec_ext; simpl; unfold Rdiv; ring.
+  - destruct IH as (a & t & E & T & B & A); [lia|].
+    assert (Lk : (k < n)%nat) by lia.
+    destruct signs as (Pe & Pk & W & KE); [lia|].
+    assert (I1 : 1 <= INR n) by (apply (le_INR 1); lia).
+    assert (O : omega <= 1 / 2) by nra.
+    assert (T2 : Rabs t <= tau * (len (uh k) * len (uh k))).
+    { pose proof (rho_pow k ltac:(lia)); pose proof (b_small k Lk); nra. }
+    pose proof (nonzero (S k) ltac:(lia)) as N'; pose proof (shrink k Lk) as G.
+    rewrite (computed k Lk) in N', G.
+    pose proof (nonzero k ltac:(lia)) as N.
+    pose proof (alpha_bounds (M k) (uh k) (r k) kappa eps g tau t (fun y => contained k y Lk) N N'
+      (residual k Lk) G T2) as AB.
+    pose proof (step_frame (M k) (uh k) (r k) kappa eps g tau t (fun y => contained k y Lk) N N'
+      (residual k Lk) G T2 ltac:(fold omega; lra)) as SF.
+    pose proof (step_cross (M k) (uh k) (r k) kappa eps g tau t (unimodular k Lk) (fun y => contained k y Lk) N N'
+      (residual k Lk) G T2 ltac:(fold omega; lra)) as SC.
+    rewrite <- (computed k Lk) in AB, SF, SC; fold omega in AB, SC.
+    set (al := dot (uh (S k)) (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /
+        (len (uh (S k)) * len (uh (S k)))) in *.
+    set (t' := cross (uh (S k)) (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) / al) in *.
+    exists (al * a), t'; split; [|split; [|split]].
+    + rewrite (exact k Lk), E.
+      transitivity (smul a (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))));
+        [apply vec_ext; simpl; ring|].
+      rewrite SF; apply vec_ext; simpl; ring.
+    + eapply Rle_trans; [exact SC|].
+      assert (Q : 1 <= (1 + kappa * eps) / (1 - omega)).
+      { apply Rmult_le_reg_r with (1 - omega); [lra|]; unfold Rdiv; rewrite Rmult_assoc, Rinv_l by lra; lra. }
+      fold rho in Q.
+      assert (Qk : 1 <= rho ^ k) by (apply pow_R1_Rle; exact Q).
+      pose proof (b_step k Lk) as BS; pose proof (len_nonneg (r k)); pose proof (len_nonneg (uh (S k))).
+      assert (X : 0 <= len (r k) * len (uh (S k))) by nra.
+      apply Rle_trans with (rho * (Rabs t + len (uh (S k)) * len (r k))).
+      { replace (rho * (Rabs t + len (uh (S k)) * len (r k)))
+          with ((Rabs t * (1 + kappa * eps) + len (uh (S k)) * len (r k) * (1 + kappa * eps)) / (1 - omega))
+          by (unfold rho; field; lra).
+        apply Rmult_le_compat_r; [apply Rlt_le, Rinv_0_lt_compat; lra|]; nra. }
+      simpl; rewrite Rmult_assoc; apply Rmult_le_compat_l; [lra|].
+      apply Rle_trans with (rho ^ k * (b k + len (r k) * len (uh (S k)))); [nra|].
+      apply Rmult_le_compat_l; [lra | exact BS].
+    + pose proof (b_step k Lk); pose proof (len_nonneg (r k)); pose proof (len_nonneg (uh (S k))).
+      assert (0 <= len (r k) * len (uh (S k))) by nra; lra.
+    + assert (0 < (1 - omega) ^ k) by (apply pow_lt; lra).
+      simpl; split; apply Rmult_le_compat; lra.
+Qed.
+
+(** A linear form whose computed value stands clear of the error has the right sign. *)
+Theorem sign_certificate k v :
+  (k <= n)%nat ->
+  2 * b k * len v < Rabs (dot v (uh k)) * len (uh k) ->
+  0 < dot v (u k) * dot v (uh k).
+Proof.
+  intros L S; destruct (perturbed_orbit k L) as (a & t & E & T & _ & A & _).
+  pose proof (len_pos _ (nonzero k L)) as P; pose proof (len_nonneg v) as V.
+  set (l := len (uh k)) in *; set (d := dot v (uh k)) in *.
+  assert (X : dot v (u k) = a * (d + t / (l * l) * dot v (J (uh k)))) by (rewrite E; unfold d; coordinates; ring).
+  assert (Y : Rabs (t / (l * l) * dot v (J (uh k))) < Rabs d).
+  { pose proof (dot_le v (J (uh k))) as C; rewrite len_J in C; fold l in C.
+    rewrite Rabs_mult; unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (l * l)))
+      by (apply Rlt_le, Rinv_0_lt_compat; nra).
+    apply Rmult_lt_reg_r with (l * l); [nra|].
+    replace (Rabs t * / (l * l) * Rabs (dot v (J (uh k))) * (l * l))
+      with (Rabs t * Rabs (dot v (J (uh k)))) by (field; lra).
+    apply Rle_lt_trans with (2 * b k * (len v * l)).
+    - apply Rmult_le_compat; try apply Rabs_pos; assumption.
+    - nra. }
+  rewrite X; set (e := t / (l * l) * dot v (J (uh k))) in *.
+  assert (0 < (d + e) * d) by (unfold Rabs in Y; destruct (Rcase_abs e), (Rcase_abs d); nra).
+  nra.
+Qed.
+End Orbit.

@@ -1,0 +1,159 @@
+//! The field ℚ(2cos(π/n)): its generator and minimal polynomial.
+
+use std::sync::Arc;
+
+use num_bigint::BigInt;
+use num_traits::{One, Zero};
+
+use super::Cyclotomic;
+use crate::number::{Ball, Polynomial, Rational};
+
+/// The field ℚ(c), c = 2cos(π/n); cheap to clone.
+#[derive(Clone, Debug)]
+pub struct CyclotomicField {
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    n: u32,
+    /// ψ, monic, lowest coefficient first.
+    minimal: Vec<BigInt>,
+}
+
+impl CyclotomicField {
+    /// ℚ(2cos(π/n)), of degree φ(2n)/2 for n ≥ 2 and 1 for n = 1.
+    ///
+    /// **Panics** if n = 0.
+    pub fn new(n: u32) -> CyclotomicField {
+        assert!(n > 0, "2cos(π/0)");
+        CyclotomicField { shared: Arc::new(Shared { n, minimal: minimal_polynomial(n) }) }
+    }
+
+    /// The n of 2cos(π/n).
+    pub fn n(&self) -> u32 {
+        self.shared.n
+    }
+
+    /// The degree of the field over ℚ.
+    pub fn degree(&self) -> usize {
+        self.shared.minimal.len() - 1
+    }
+
+    /// The minimal polynomial of 2cos(π/n): monic, with integer coefficients.
+    pub fn minimal_polynomial(&self) -> Polynomial<Rational> {
+        Polynomial::new(self.shared.minimal.iter().cloned().map(Rational::from_integer).collect())
+    }
+
+    /// The number f(2cos(π/n)).
+    pub fn element(&self, f: Polynomial<Rational>) -> Cyclotomic {
+        let (mut rest, degree) = (f.coefficients().to_vec(), self.degree());
+        while rest.len() > degree {
+            let top = rest.pop().expect("not empty");
+            if top.is_zero() {
+                continue;
+            }
+            // c^k = −Σ ψ_j c^(k − degree + j), ψ being monic.
+            let at = rest.len() - degree;
+            for (own, c) in rest[at..].iter_mut().zip(&self.shared.minimal).filter(|(_, c)| !c.is_zero()) {
+                *own -= &top * c;
+            }
+        }
+        Cyclotomic::made(Some(self.clone()), Polynomial::new(rest))
+    }
+
+    /// 2cos(m π/n), exactly: T_m(c), by T_2k = T_k² − 2 and T_{2k+1} = T_k T_{k+1} − c.
+    pub fn two_cos(&self, m: i64) -> Cyclotomic {
+        let period = 2 * i64::from(self.n());
+        let m = m.rem_euclid(period).min((-m).rem_euclid(period));
+        let integer = |n: i64| Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(n.into())));
+        let (two, c) = (integer(2), self.element(Polynomial::variable()));
+        let (mut low, mut high) = (two.clone(), c.clone()); // T_k, T_{k+1}
+        for bit in (0..64 - m.leading_zeros()).rev() {
+            let middle = &(&low * &high) - &c;
+            if m >> bit & 1 == 1 {
+                (low, high) = (middle, &(&high * &high) - &two);
+            } else {
+                (low, high) = (&(&low * &low) - &two, middle);
+            }
+        }
+        low
+    }
+
+    /// s = 2 − 2cos(m π/n) = 4 sin²(m π/(2n)): the dimensionless stiffness at which n θ = m π.
+    pub fn resonant_s(&self, m: i64) -> Cyclotomic {
+        let two = Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(2.into())));
+        &two - &self.two_cos(m)
+    }
+
+    /// A ball about 2cos(π/n).
+    pub(super) fn generator(&self, bits: u32) -> Ball {
+        let n = Ball::from_integer(&self.n().into());
+        let angle = Ball::pi(bits + 8).div(&n, bits + 8).expect("n > 0");
+        angle.cos(bits).scale2(1)
+    }
+}
+
+/// ψ_n, the minimal polynomial of 2cos(π/n), from Φ_2n (see the module's head).
+fn minimal_polynomial(n: u32) -> Vec<BigInt> {
+    if n == 1 {
+        return vec![BigInt::from(2), BigInt::one()]; // 2cos π = −2
+    }
+    let phi = cyclotomic_polynomial(2 * n as usize);
+    let d = phi.len() / 2;
+    let mut psi = vec![BigInt::zero(); d + 1];
+    psi[0] = phi[d].clone();
+    let (mut before, mut t) = (vec![BigInt::from(2)], vec![BigInt::zero(), BigInt::one()]);
+    for k in 1..=d {
+        for (own, c) in psi.iter_mut().zip(&t) {
+            *own += &phi[d - k] * c;
+        }
+        // T_{k+1} = c T_k − T_{k−1}.
+        let mut next: Vec<BigInt> = std::iter::once(BigInt::zero()).chain(t.iter().cloned()).collect();
+        next.iter_mut().zip(&before).for_each(|(own, c)| *own -= c);
+        (before, t) = (t, next);
+    }
+    psi
+}
+
+/// Φ_m = Π_{d | m} (x^d − 1)^μ(m/d), lowest coefficient first.
+fn cyclotomic_polynomial(m: usize) -> Vec<BigInt> {
+    let divisors: Vec<(usize, i8)> =
+        (1..=m).filter(|d| m.is_multiple_of(*d)).map(|d| (d, moebius(m / d))).collect();
+    let mut product = vec![BigInt::one()];
+    for &(d, _) in divisors.iter().filter(|(_, mu)| *mu == 1) {
+        // times x^d − 1
+        let mut next = vec![BigInt::zero(); product.len() + d];
+        for (k, c) in product.iter().enumerate() {
+            next[k + d] += c;
+            next[k] -= c;
+        }
+        product = next;
+    }
+    for &(d, _) in divisors.iter().filter(|(_, mu)| *mu == -1) {
+        // by x^d − 1, exactly: q_k = q_{k−d} − p_k
+        let mut quotient: Vec<BigInt> = Vec::with_capacity(product.len() - d);
+        for k in 0..product.len() - d {
+            let carried = if k >= d { quotient[k - d].clone() } else { BigInt::zero() };
+            quotient.push(carried - &product[k]);
+        }
+        product = quotient;
+    }
+    product
+}
+
+/// The Möbius function μ.
+fn moebius(mut n: usize) -> i8 {
+    let (mut mu, mut prime) = (1, 2);
+    while n > 1 {
+        if n.is_multiple_of(prime) {
+            n /= prime;
+            if n.is_multiple_of(prime) {
+                return 0;
+            }
+            mu = -mu;
+        }
+        prime += 1;
+    }
+    mu
+}

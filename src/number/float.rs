@@ -1,0 +1,102 @@
+//! Rounding of exact numbers to doubles: down, up, or to the nearest.
+//!
+//! A positive number enters as its leading 64 bits and a sticky flag; everything below is integer
+//! arithmetic on the layout of IEEE 754 binary64, so subnormals and overflow need no special care
+//! beyond the exponent range.
+
+use num_bigint::{BigInt, BigUint, Sign as IntSign};
+use num_integer::Integer;
+use num_traits::{ToPrimitive, Zero};
+
+/// A positive number x with `lead 2^exp <= x < (lead + 1) 2^exp`, where lead has 64 significant bits.
+struct Leading {
+    lead: u64,
+    exp: i64,
+    /// x is larger than lead 2^exp.
+    sticky: bool,
+}
+
+/// The two doubles around a positive number, and which one is nearer.
+struct Around {
+    down: f64,
+    up: f64,
+    nearest: f64,
+}
+
+impl Leading {
+    /// The leading bits of `(integer + something in [0, 1)) 2^exp`, the something being 0 iff not sticky.
+    fn of(integer: &BigUint, exp: i64, sticky: bool) -> Leading {
+        let bits = integer.bits() as i64;
+        if bits <= 64 {
+            let lead = integer.to_u64().expect("64 bits") << (64 - bits);
+            return Leading { lead, exp: exp + bits - 64, sticky };
+        }
+        let drop = (bits - 64) as u64;
+        let lead = (integer >> drop).to_u64().expect("64 bits");
+        let dropped = integer.trailing_zeros().is_some_and(|zeros| zeros < drop);
+        Leading { lead, exp: exp + bits - 64, sticky: sticky || dropped }
+    }
+
+    fn around(&self) -> Around {
+        let top = self.exp.saturating_add(63); // x in [2^top, 2^(top + 1))
+        if top > 1023 {
+            return Around { down: f64::MAX, up: f64::INFINITY, nearest: f64::INFINITY };
+        }
+        // The last place of a double in this binade; subnormals share 2^-1074.
+        let last = (top - 52).max(-1074);
+        let shift = last - self.exp; // >= 11
+        if shift > 64 {
+            return Around { down: 0.0, up: f64::from_bits(1), nearest: 0.0 };
+        }
+        let kept = self.lead.checked_shr(shift as u32).unwrap_or(0);
+        let rest = u128::from(self.lead) & ((1u128 << shift) - 1);
+        let half = 1u128 << (shift - 1);
+        // `kept` carries the implicit bit 52 of a normal number, which adds one to the exponent field.
+        let bits = kept + (((top.max(-1023) + 1022).max(0) as u64) << 52);
+        let (down, next) = (f64::from_bits(bits), f64::from_bits(bits + 1));
+        let up = if rest == 0 && !self.sticky { down } else { next };
+        let above_half = rest > half || (rest == half && (self.sticky || kept.is_odd()));
+        Around { down, up, nearest: if above_half { next } else { down } }
+    }
+}
+
+/// The doubles around `numerator / denominator`, denominator > 0.
+fn around_quotient(numerator: &BigUint, denominator: &BigUint) -> Around {
+    let shift = denominator.bits() as i64 - numerator.bits() as i64 + 66;
+    let (quotient, remainder) = if shift >= 0 {
+        (numerator << shift as u64).div_rem(denominator)
+    } else {
+        numerator.div_rem(&(denominator << (-shift) as u64))
+    };
+    Leading::of(&quotient, -shift, !remainder.is_zero()).around()
+}
+
+/// The double nearest to `numerator / denominator` (denominator > 0), ties to even.
+pub(super) fn nearest_quotient(numerator: &BigInt, denominator: &BigInt) -> f64 {
+    let nearest = || around_quotient(numerator.magnitude(), denominator.magnitude()).nearest;
+    match numerator.sign() {
+        IntSign::NoSign => 0.0,
+        IntSign::Plus => nearest(),
+        IntSign::Minus => -nearest(),
+    }
+}
+
+/// The largest double <= and the smallest double >= `numerator / denominator` (denominator > 0).
+pub(super) fn enclose_quotient(numerator: &BigInt, denominator: &BigInt) -> (f64, f64) {
+    if numerator.is_zero() {
+        return (0.0, 0.0);
+    }
+    signed(numerator.sign(), around_quotient(numerator.magnitude(), denominator.magnitude()))
+}
+
+/// The largest double <= and the smallest double >= `integer 2^exp`.
+pub(super) fn enclose_dyadic(integer: &BigInt, exp: i64) -> (f64, f64) {
+    if integer.is_zero() {
+        return (0.0, 0.0);
+    }
+    signed(integer.sign(), Leading::of(integer.magnitude(), exp, false).around())
+}
+
+fn signed(sign: IntSign, around: Around) -> (f64, f64) {
+    if sign == IntSign::Minus { (-around.up, -around.down) } else { (around.down, around.up) }
+}

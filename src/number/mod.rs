@@ -1,0 +1,46 @@
+//! What a quantity can be.
+//!
+//! | type | set | sign by |
+//! |---|---|---|
+//! | [`Rational`] | ℚ | inspection |
+//! | [`Laurent`] | ℚ[π, 1/π] | coefficients if all vanish (π is transcendental), else balls of growing precision |
+//! | [`Cyclotomic`] | ℚ(2cos(π/n)) | reduced polynomial if it vanishes, else balls of growing precision |
+//! | [`Ball`] | an interval that contains a real number | inspection; may be unable to tell |
+//! | [`Polynomial`] | R\[x\] over any ring R | not at all: a [`Ring`] only; real roots by Sturm chains |
+//! | `f64` | doubles | not at all: a [`Ring`] only |
+//!
+//! Exact types know their sign ([`ExactSign`]) and can be enclosed ([`Real`]); a [`Ball`] answers `None` where
+//! it cannot tell; no exact type converts from a double silently ([`rational::from_f64_exact`] is loud).
+//!
+//! ```
+//! use kickdrift::number::{ExactSign, Laurent, Real, Sign, parse};
+//! // h² Λ − 4, the margin of velocity Verlet, at Λ = π² and h = 2/π: exactly on its stability limit.
+//! let lambda = parse::parse("lambda", "pi^2").unwrap();
+//! let h = parse::parse("h", "2/pi").unwrap();
+//! let margin = &(&(&h * &h) * &lambda) - &Laurent::from_integer(4);
+//! assert_eq!(margin.sign(), Sign::Zero);
+//! // The doubles next to h are not on it, and a ball of few bits cannot tell.
+//! let ball = h.enclosure(53).square(53).mul(&lambda.enclosure(53), 53);
+//! assert_eq!(ball.sub(&Laurent::from_integer(4).enclosure(53), 53).sign(), None);
+//! ```
+
+pub mod ball;
+pub mod cyclotomic;
+mod float;
+pub mod laurent;
+mod operators;
+pub mod parse;
+pub mod polynomial;
+pub mod rational;
+mod ring;
+mod sign;
+
+pub use ball::Ball;
+pub use cyclotomic::{Cyclotomic, CyclotomicField};
+pub use laurent::Laurent;
+pub use polynomial::Polynomial;
+pub use ring::{ExactSign, Real, Ring};
+pub use sign::Sign;
+
+/// The rationals, always in lowest terms with a positive denominator.
+pub type Rational = num_rational::BigRational;

@@ -1,0 +1,86 @@
+//! What a person types, exactly: `0.3` is 3/10, and `pi^2/25` stays what it is.
+//!
+//! The grammar: sums, differences, products `*`, quotients `/` and integer powers `^` of decimals
+//! (`3`, `0.3`, `.5`, `1e-3`), of `pi` (or `π`) and of parentheses. A product needs its `*`. The sign binds
+//! weaker than the power: `-2^2` is −4. Every quotient must stay in ℚ[π, 1/π], so a divisor is c π^k.
+//!
+//! ```
+//! use kickdrift::number::parse;
+//! assert_eq!(parse::parse("lambda2", "pi^2 / 25").unwrap().to_string(), "pi^2/25");
+//! assert_eq!(parse::parse("h1", "0.30").unwrap().to_string(), "3/10");
+//! let error = parse::parse("h1", "1/(1 + pi)").unwrap_err().to_string();
+//! assert!(error.starts_with("h1 = 1/(1 + pi): a divisor"), "{error}");
+//! assert_eq!(parse::parse_ratio("ratio", "14/4").unwrap(), (7, 2));
+//! ```
+
+mod grammar;
+#[cfg(test)]
+mod tests;
+
+use num_traits::{Signed, ToPrimitive};
+
+use super::{Laurent, Rational};
+use crate::error::{Error, Result};
+
+/// The longest text that is read, in characters.
+pub const MAX_CHARACTERS: usize = 20_000;
+
+/// The largest value that is held: bits of all numerators and denominators together.
+pub const MAX_BITS: u64 = 200_000;
+
+/// The largest |k| in π^k.
+pub const MAX_PI_EXPONENT: u32 = 1000;
+
+/// The element of ℚ[π, 1/π] that `text` denotes, exactly.
+///
+/// **Errors** (naming `field`, the text and the remedy) on anything else, and beyond [`MAX_CHARACTERS`],
+/// [`MAX_BITS`] and [`MAX_PI_EXPONENT`].
+pub fn parse(field: &str, text: &str) -> Result<Laurent> {
+    grammar::evaluate(text).map_err(|remedy| Error::input(field, text.trim(), remedy))
+}
+
+/// The rational that `text` denotes: like [`parse`], and an error if π remains.
+pub fn parse_rational(field: &str, text: &str) -> Result<Rational> {
+    parse(field, text)?
+        .as_rational()
+        .ok_or_else(|| Error::input(field, text.trim(), "must be rational; write it without pi"))
+}
+
+/// The integer that `text` denotes.
+pub fn parse_integer(field: &str, text: &str) -> Result<i64> {
+    let x = parse_rational(field, text)?;
+    let integer = x.is_integer().then(|| x.numer().to_i64()).flatten();
+    integer.ok_or_else(|| Error::input(field, text.trim(), "must be an integer of at most 63 bits"))
+}
+
+/// A positive ratio in lowest terms, as (p, q): `14/4` is (7, 2), `3` is (3, 1).
+pub fn parse_ratio(field: &str, text: &str) -> Result<(u64, u64)> {
+    let x = parse_rational(field, text)?;
+    let parts = || Some((x.numer().to_u64()?, x.denom().to_u64()?));
+    parts().filter(|_| x.is_positive()).ok_or_else(|| {
+        Error::input(field, text.trim(), "must be p/q with positive integers of at most 64 bits")
+    })
+}
+
+/// The closed range `LO..HI`, LO ≤ HI.
+pub fn parse_range(field: &str, text: &str) -> Result<(Laurent, Laurent)> {
+    let (lo, hi) = split_range(field, text)?;
+    let (lo, hi) = (parse(field, lo)?, parse(field, hi)?);
+    if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
+}
+
+/// The closed range `LO..HI` of integers, LO ≤ HI.
+pub fn parse_integer_range(field: &str, text: &str) -> Result<(i64, i64)> {
+    let (lo, hi) = split_range(field, text)?;
+    let (lo, hi) = (parse_integer(field, lo)?, parse_integer(field, hi)?);
+    if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
+}
+
+fn split_range<'a>(field: &str, text: &'a str) -> Result<(&'a str, &'a str)> {
+    text.split_once("..")
+        .ok_or_else(|| Error::input(field, text, "must be a range LO..HI, such as 1/100..7/2"))
+}
+
+fn reversed(field: &str, text: &str) -> Error {
+    Error::input(field, text, "the range is empty: write the smaller number first")
+}

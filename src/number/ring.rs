@@ -1,0 +1,70 @@
+//! What a quantity can do: compute ([`Ring`]), tell its sign ([`ExactSign`]), be enclosed ([`Real`]).
+//!
+//! `f64` is a [`Ring`] and nothing more: it can compute but not certify, so no code that decides a
+//! verdict accepts it.
+
+use std::fmt::Debug;
+use std::ops::{AddAssign, MulAssign, Neg, SubAssign};
+
+use num_traits::{One, Zero};
+
+use super::{Ball, Rational, Sign};
+
+/// A commutative ring that contains the rationals (for `f64`: their nearest doubles).
+///
+/// The bounds are those of nalgebra's scalars, so `Matrix2<R>` works for every ring.
+pub trait Ring:
+    Clone + Debug + PartialEq + Zero + One + Neg<Output = Self> + AddAssign + SubAssign + MulAssign + 'static
+{
+    /// The rational x as an element of the ring.
+    fn from_rational(x: &Rational) -> Self;
+
+    /// `self += a b`.
+    fn add_product(&mut self, a: &Self, b: &Self) {
+        let mut product = a.clone();
+        product *= b.clone();
+        *self += product;
+    }
+
+    /// `self -= a b`.
+    fn sub_product(&mut self, a: &Self, b: &Self) {
+        let mut product = a.clone();
+        product *= b.clone();
+        *self -= product;
+    }
+
+    /// `a b`.
+    fn product(a: &Self, b: &Self) -> Self {
+        let mut product = Self::zero();
+        product.add_product(a, b);
+        product
+    }
+}
+
+/// A ring of real numbers whose signs are decided, zero included.
+pub trait ExactSign: Ring {
+    /// The exact sign.
+    fn sign(&self) -> Sign;
+}
+
+/// An exact real number that can be enclosed as tightly as asked.
+pub trait Real: ExactSign {
+    /// A ball that contains the number, with about `bits` correct bits (relative to its size,
+    /// the exact zero being the ball 0).
+    fn enclosure(&self, bits: u32) -> Ball;
+}
+
+impl Ring for f64 {
+    /// The double nearest to x (ties to even); infinite beyond the largest double.
+    fn from_rational(x: &Rational) -> f64 {
+        super::rational::to_f64(x)
+    }
+
+    fn add_product(&mut self, a: &f64, b: &f64) {
+        *self += a * b;
+    }
+
+    fn sub_product(&mut self, a: &f64, b: &f64) {
+        *self -= a * b;
+    }
+}

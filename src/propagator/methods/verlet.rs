@@ -1,0 +1,51 @@
+//! Velocity Verlet for x'' + L x = 0, in velocity form (paper eq. (1)) and staggered form (eqs. (2)-(3)).
+//!
+//! ```
+//! use kickdrift::propagator::methods::verlet;
+//! let (h, l) = (0.5, 3.0);
+//! assert_eq!(verlet::velocity_form(h, l).trace(), verlet::staggered_form(h, l).trace());
+//! ```
+
+use nalgebra::Matrix2;
+
+use crate::number::{Rational, Ring};
+use crate::propagator::{drift, kick};
+
+/// Q_VV = K(hL/2) D(h) K(hL/2) = [[1 − h²L/2, h], [−hL(1 − h²L/4), 1 − h²L/2]].
+///
+/// Its powers are bounded iff 0 < h²L < 4 (theorem `verlet_bounded_iff` in proofs/); at h²L = 4 it is a
+/// Jordan block and grows linearly, which the paper's "|eigenvalue| ≤ 1 iff h √L ≤ 2" does not see.
+pub fn velocity_form<S: Ring>(h: S, stiffness: S) -> Matrix2<S> {
+    let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
+    let half_kick = S::product(&h, &stiffness) * one_half;
+    kick(half_kick.clone()) * drift(h) * kick(half_kick)
+}
+
+/// One full kick, then one drift: D(h) K(hL). Conjugate to the velocity form, so the trace is the same.
+pub fn staggered_form<S: Ring>(h: S, stiffness: S) -> Matrix2<S> {
+    drift(h.clone()) * kick(S::product(&h, &stiffness))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn velocity_form_is_the_closed_form_and_the_staggered_form_its_conjugate(
+            n in 1i64..1000, d in 1i64..1000, l in -1000i64..1000, e in 1i64..1000,
+        ) {
+            let r = |n: i64, d: i64| Rational::new(n.into(), d.into());
+            let (h, l) = (r(n, d), r(l, e));
+            let s = &h * &h * &l;
+            let diagonal = r(1, 1) - &s / r(2, 1);
+            let corner = -&h * &l * (r(1, 1) - &s / r(4, 1));
+            let velocity = velocity_form(h.clone(), l.clone());
+            prop_assert_eq!(&velocity, &Matrix2::new(diagonal.clone(), h.clone(), corner, diagonal));
+            let half_kick = kick(&h * &l / r(2, 1));
+            let staggered = staggered_form(h.clone(), l.clone());
+            prop_assert_eq!(&half_kick * staggered, velocity * half_kick);
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The last tier: exact arithmetic, where zero is decided.
+//!
+//! Only signs are wanted, so positive factors may be dropped: over the rationals every matrix is scaled to
+//! integers and no fraction is ever reduced. A balanced product tree keeps the factors of each
+//! multiplication of equal length, so that fast multiplication pays. Over Q\[π\] and the cyclotomic fields
+//! the generic half period does.
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::propagator::TwoClocks;
+//! use kickdrift::verdict::Decidable;
+//! // th = pi/3 and 3 | p: the upper edge of the tongue sits exactly on the resonance.
+//! let signs = Decidable::half_signs(&TwoClocks::new(3, 1, ratio(1, 1), ratio(1, 10)));
+//! assert_eq!((signs.verdict().kind().name(), signs.verdict().side()), ("parabolic", -1));
+//! ```
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::{One, Zero};
+
+use super::kind::HalfSigns;
+use crate::number::{Cyclotomic, ExactSign, Laurent, Rational, Real, Sign};
+use crate::propagator::{Event, Schedule, TwoClocks, Weight, half_period};
+
+/// Exact real numbers over which the four signs of the half period are decided.
+pub trait Decidable: Real {
+    /// The signs of A, B, C, D, exactly.
+    ///
+    /// # Panics
+    /// Where the period has 2^62 ticks and more.
+    fn half_signs(clocks: &TwoClocks<Self>) -> HalfSigns {
+        let half = half_period(clocks);
+        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+    }
+}
+
+impl Decidable for Laurent {
+    /// Over the rationals where both strengths are rational; otherwise generically.
+    fn half_signs(clocks: &TwoClocks<Laurent>) -> HalfSigns {
+        if let Some(rational) = clocks.as_rational() {
+            return Decidable::half_signs(&rational);
+        }
+        let half = half_period(clocks);
+        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+    }
+}
+
+impl Decidable for Cyclotomic {}
+
+impl Decidable for Rational {
+    /// By a product tree of integer matrices, about (p + q)/2 leaves.
+    fn half_signs(clocks: &TwoClocks<Rational>) -> HalfSigns {
+        let schedule =
+            Schedule::two_clocks(clocks.p(), clocks.q()).expect("a period short enough to compose");
+        let [[a, b], [c, d]] = product(&Steps::new(clocks, &schedule), &schedule).0;
+        let sign = |n: &BigInt| Sign::from_ordering(n.cmp(&BigInt::zero()));
+        HalfSigns::new(sign(&a), sign(&b), sign(&c), sign(&d))
+    }
+}
+
+/// A positive multiple of a matrix of determinant 1.
+struct Matrix([[BigInt; 2]; 2]);
+
+impl Matrix {
+    fn identity() -> Self {
+        Matrix([[BigInt::one(), BigInt::zero()], [BigInt::zero(), BigInt::one()]])
+    }
+
+    /// `self · earlier`.
+    fn times(&self, earlier: &Matrix) -> Matrix {
+        let ([[a, b], [c, d]], [[e, f], [g, h]]) = (&self.0, &earlier.0);
+        Matrix([[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]])
+    }
+}
+
+/// The events' strengths as integers over one denominator, in the unit of time one tick.
+struct Steps {
+    denominator: BigInt,
+    /// By set of clocks; whole and halved.
+    full: [BigInt; 4],
+    half: [BigInt; 4],
+}
+
+impl Steps {
+    fn new(clocks: &TwoClocks<Rational>, schedule: &Schedule) -> Self {
+        // In ticks a kick of strength k (unit h1) has strength k/ticks; halves make the denominator even.
+        let halved = |k: &Rational| k / BigInt::from(2 * schedule.clocks()[0].step());
+        let (fast, slow) = (halved(clocks.fast()), halved(clocks.slow()));
+        let denominator = fast.denom().lcm(slow.denom());
+        let numerator = |k: &Rational| k.numer() * (&denominator / k.denom());
+        let (fast, slow) = (numerator(&fast), numerator(&slow));
+        let half = [BigInt::zero(), fast.clone(), slow.clone(), fast + slow];
+        let full = half.each_ref().map(|k| k * 2);
+        Steps { denominator, full, half }
+    }
+
+    /// `m ← (drift, then kick) m`, times the denominator where there is a kick.
+    fn apply(&self, event: Event, m: &mut Matrix) {
+        let strength = match event.weight {
+            Weight::Full => &self.full[event.kicks as usize],
+            Weight::Half => &self.half[event.kicks as usize],
+        };
+        let [xs, vs] = &mut m.0;
+        for (x, v) in xs.iter_mut().zip(vs) {
+            *x += &*v * event.drift;
+            if event.kicks != 0 {
+                *v *= &self.denominator;
+                *v -= strength * &*x;
+                *x *= &self.denominator;
+            }
+        }
+    }
+}
+
+/// Events composed one by one before the tree takes over: below this the matrices are short.
+const LEAF: usize = 16;
+
+/// The product over the half period by binary counting: equally long partial products are joined.
+fn product(steps: &Steps, schedule: &Schedule) -> Matrix {
+    let mut events = schedule.half_period().peekable();
+    let mut joined: Vec<(u32, Matrix)> = Vec::new();
+    while events.peek().is_some() {
+        let mut leaf = Matrix::identity();
+        events.by_ref().take(LEAF).for_each(|event| steps.apply(event, &mut leaf));
+        let mut node = (0, leaf);
+        while joined.last().is_some_and(|(level, _)| *level == node.0) {
+            let (level, earlier) = joined.pop().expect("just seen");
+            node = (level + 1, node.1.times(&earlier));
+        }
+        joined.push(node);
+    }
+    joined
+        .into_iter()
+        .rev()
+        .map(|(_, m)| m)
+        .reduce(|later, earlier| later.times(&earlier))
+        .unwrap_or_else(Matrix::identity)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn the_tree_and_the_plain_half_period_agree(
+            p in 1u64..90, q in 1u64..90, s in -50i64..500, slow in -300i64..300, d in 1i64..120,
+        ) {
+            let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
+            let clocks = TwoClocks::new(p, q, ratio(s, d), ratio(slow, 2 * d + 1));
+            let half = half_period(&clocks);
+            let plain = HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign());
+            prop_assert_eq!(Decidable::half_signs(&clocks), plain);
+        }
+    }
+}

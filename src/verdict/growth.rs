@@ -1,0 +1,142 @@
+//! Trace, growth and label of a pair, as enclosures.
+//!
+//! Inside a tongue the multiplier is μ = (|Tr| + √(Tr² − 4))/2. From the half period, without cancellation at
+//! |Tr| = 2,
+//!
+//! ```text
+//!     ln μ = 2 asinh √(BC)   for Tr > 2,        ln μ = 2 asinh √(-AD)   for Tr < -2,
+//! ```
+//!
+//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2).
+
+use super::exact::Decidable;
+use super::filter;
+use super::floquet::Floquet;
+use super::kind::{Kind, Verdict};
+use super::ladder::Limits;
+use super::refine;
+use super::winding;
+use crate::error::Result;
+use crate::number::{Ball, Rational};
+use crate::propagator::{Schedule, TwoClocks};
+
+/// How a pair moves over one synchronization period.
+#[derive(Clone, Debug)]
+pub struct Growth {
+    /// Tr Q.
+    pub trace: Ball,
+    /// ln μ, the growth over one period T; divide by T for the rate per unit time. `None` unless hyperbolic.
+    pub ln_multiplier: Option<Ball>,
+    /// m, the tongue's label: half turns of the growing solution over one period. `None` unless hyperbolic.
+    pub label: Option<u64>,
+}
+
+/// Above this many kicks the enclosures come from the filter and are as tight as doubles allow.
+const WORTH_REFINING: u64 = 2_000_000;
+
+/// Bits of relative accuracy asked of the trace's distance from ±2: more than a double shows.
+const ACCURACY: i64 = 60;
+
+/// The enclosures of a pair whose verdict is known.
+///
+/// # Errors
+/// A budget error where more kicks would have to be composed than `limits` allows.
+pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
+    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let floquet = Floquet::new(clocks);
+    let quick = floquet.as_ref().filter(|_| schedule.strikes() > WORTH_REFINING);
+    if let Some(ends) = quick.and_then(filter::run) {
+        let label = winding::label(quick.expect("just used"), verdict);
+        return Ok(from_products(products(&ends), verdict, label));
+    }
+    limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
+    let (ends, bits) = refined(clocks, &schedule, verdict);
+    let label = floquet.and_then(|f| winding::label(&f, verdict)).or_else(|| from_nodes(&ends, verdict));
+    Ok(from_products(ends.products(bits), verdict, label))
+}
+
+/// BC and AD, as enclosures; AD − BC = 1.
+#[derive(Clone, Debug)]
+pub(super) struct Products {
+    pub bc: Ball,
+    pub ad: Ball,
+}
+
+fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Growth {
+    const BITS: u32 = 128;
+    let two = Ball::from_integer(&2.into());
+    let (above, below) = (products.bc.scale2(2), products.ad.scale2(2));
+    // The smaller product knows its distance from ±2 better.
+    let near_two = above.mid_f64().abs() <= below.mid_f64().abs();
+    let mut trace = if near_two { two.add(&above, BITS) } else { below.sub(&two, BITS) };
+    if verdict.kind() != Kind::Hyperbolic {
+        if verdict.side() != 0 {
+            trace = Ball::from_integer(&(2 * i64::from(verdict.side())).into());
+        }
+        return Growth { trace, ln_multiplier: None, label: None };
+    }
+    let excess = if verdict.side() > 0 { products.bc } else { products.ad.neg() };
+    let ln_multiplier = excess.sqrt_clipped(BITS).map(|root| root.asinh(BITS).scale2(1));
+    Growth { trace, ln_multiplier, label }
+}
+
+/// Refines until the distance from ±2 is known to [`ACCURACY`] bits, or, on an edge, once.
+fn refined<S: Decidable>(
+    clocks: &TwoClocks<S>,
+    schedule: &Schedule,
+    verdict: Verdict,
+) -> (refine::Ends, u32) {
+    let mut bits = 128;
+    loop {
+        let ends = refine::run(clocks, schedule, bits);
+        bits *= 2;
+        let Some(ends) = ends else { continue };
+        let products = ends.products(bits);
+        let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
+        let on_edge = matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence);
+        if on_edge || accuracy >= ACCURACY {
+            return (ends, bits);
+        }
+    }
+}
+
+impl refine::Ends {
+    fn products(&self, bits: u32) -> Products {
+        Products { bc: self.odd.x.mul(&self.even.v, bits), ad: self.even.x.mul(&self.odd.v, bits) }
+    }
+}
+
+/// m from the sign changes n of the even solution over the half period. Where Tr > 2 the even solution has
+/// turned by less than a quarter from n half turns, so m = 2n. Where Tr < −2 it has turned by (m/2) half turns
+/// give or take a quarter: past n of them if x v < 0 at T/2 (it turns clockwise), before n if x v > 0.
+fn from_nodes(ends: &refine::Ends, verdict: Verdict) -> Option<u64> {
+    use crate::number::Sign::Negative;
+    if verdict.kind() != Kind::Hyperbolic {
+        return None;
+    }
+    let nodes = ends.even.nodes?;
+    if verdict.side() > 0 {
+        return Some(2 * nodes);
+    }
+    let (x, v) = ends.even.signs;
+    if x? * v? == Negative { Some(2 * nodes + 1) } else { (2 * nodes).checked_sub(1) }
+}
+
+/// The filter's products: exact vector = a 2^e ((x, v) + t J(x, v)/|(x, v)|²), |t| ≤ across.
+fn products(ends: &filter::Ends) -> Products {
+    let product = |(x, one): (f64, &filter::End), (v, other): (f64, &filter::End)| {
+        component(x, one).mul(&component(v, other), 128)
+    };
+    let (even, odd) = (&ends.even, &ends.odd);
+    Products { bc: product((odd.x, odd), (even.v, even)), ad: product((even.x, even), (odd.v, odd)) }
+}
+
+fn component(value: f64, end: &filter::End) -> Ball {
+    let exact = |x: f64| Rational::from_float(x).map(|x| Ball::from_rational(&x, 128));
+    let slack = 1.001 * end.across / end.x.hypot(end.v);
+    let between = |lo: f64, hi: f64| Some(exact(lo)?.union(&exact(hi)?, 128));
+    let range = between((value - slack).next_down(), (value + slack).next_up());
+    let length = between(1.0 - 1.4 * end.stretch, 1.0 + 1.4 * end.stretch);
+    let (range, length) = (range.expect("finite"), length.expect("finite"));
+    range.mul(&length, 128).scale2(end.exponent)
+}

@@ -1,0 +1,122 @@
+//! filter → refine → exact.
+
+use super::exact::Decidable;
+use super::filter;
+use super::floquet::Floquet;
+use super::kind::Verdict;
+use super::refine;
+use crate::error::{Error, Result};
+use crate::number::Real;
+use crate::propagator::{Schedule, TwoClocks};
+
+/// Which tier decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Tier {
+    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound.
+    Filter,
+    /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
+    Refine,
+    /// Exact arithmetic.
+    Exact,
+}
+
+impl Tier {
+    /// The tier's name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Tier::Filter => "filter",
+            Tier::Refine => "refine",
+            Tier::Exact => "exact",
+        }
+    }
+}
+
+/// A proven answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Decision {
+    pub verdict: Verdict,
+    pub decided_by: Tier,
+}
+
+/// How much work one verdict may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The most kicks that one tier may compose: min(p, q)/2 in the filter, (p + q)/2 in the other two.
+    pub kicks: u64,
+}
+
+impl Default for Limits {
+    /// 10^8 kicks: about a second in the filter, minutes in the other tiers.
+    fn default() -> Self {
+        Limits { kicks: 100_000_000 }
+    }
+}
+
+impl Limits {
+    /// # Errors
+    /// A budget error that tells the cost where `kicks` exceeds the limit.
+    pub(super) fn allow(&self, kicks: u64, tier: Tier) -> Result<()> {
+        if kicks <= self.kicks {
+            return Ok(());
+        }
+        Err(Error::budget(format!(
+            "the {} tier would compose {kicks} kicks, the budget is {}: allow it with --budget {kicks}, or choose \
+             steps with a simpler ratio",
+            tier.name(),
+            self.kicks
+        )))
+    }
+}
+
+/// The precisions of the refine tier, in bits: as long as the exact tier costs more.
+const PRECISIONS: [u32; 3] = [128, 256, 512];
+
+/// Decides the pair, with the cheapest tier that can.
+///
+/// # Errors
+/// A budget error, before the work begins, where a tier would need more than `limits` allows.
+pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Decision> {
+    decide_from(Tier::Filter, clocks, limits)
+}
+
+/// Decides the pair without the tiers below `first`: for cross-checks by another route.
+///
+/// # Errors
+/// As [`decide`].
+pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Decision> {
+    for decided_by in [Tier::Filter, Tier::Refine, Tier::Exact].into_iter().filter(|&tier| tier >= first) {
+        let verdict = match decided_by {
+            Tier::Filter => by_filter(clocks, limits)?,
+            Tier::Refine => by_refine(clocks, limits)?,
+            Tier::Exact => Some(by_exact(clocks, limits)?),
+        };
+        if let Some(verdict) = verdict {
+            return Ok(Decision { verdict, decided_by });
+        }
+    }
+    unreachable!("the exact tier decides every pair")
+}
+
+/// The verdict where doubles in Floquet coordinates certify it, for routes that have their own exact form.
+pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
+    filter::run(&Floquet::new(clocks)?)?.signs().verdict()
+}
+
+fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
+    let Some(floquet) = Floquet::new(clocks) else { return Ok(None) };
+    limits.allow(floquet.updates(), Tier::Filter)?;
+    Ok(filter::run(&floquet).and_then(|ends| ends.signs().verdict()))
+}
+
+fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
+    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    limits.allow(schedule.strikes() / 2, Tier::Refine)?;
+    let verdict = |&bits: &u32| refine::run(clocks, &schedule, bits)?.signs().verdict();
+    Ok(PRECISIONS.iter().find_map(verdict))
+}
+
+fn by_exact<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
+    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    limits.allow(schedule.strikes() / 2, Tier::Exact)?;
+    Ok(S::half_signs(clocks).verdict())
+}

@@ -1,0 +1,35 @@
+//! The verdict: four signs → stable or not, and the ladder of arithmetic that finds the signs.
+//!
+//! [`filter`](Tier::Filter) → [`refine`](Tier::Refine) → [`exact`](Tier::Exact): a certified answer in
+//! doubles first, more bits where they do not suffice, exact arithmetic for what is left. Every answer is
+//! proven: by the rounding bound of the `bound` module or by exact arithmetic. A verdict is never a guess,
+//! and there is no tolerance anywhere.
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::propagator::TwoClocks;
+//! use kickdrift::verdict::{decide, Kind, Limits, Tier};
+//! // r-RESPA, h2 = 3 h1 at s = 1: the resonance 3 th = pi. A step below it is stable ...
+//! let verdict_at = |s| decide(&TwoClocks::with_rho(3, 1, s, ratio(1, 25)), &Limits::default()).unwrap();
+//! assert_eq!(verdict_at(ratio(8, 10)).verdict.kind(), Kind::Elliptic);
+//! // ... close below the resonance is not, and on it sits the edge of the tongue.
+//! assert_eq!(verdict_at(ratio(99, 100)).verdict.kind(), Kind::Hyperbolic);
+//! let edge = verdict_at(ratio(1, 1));
+//! assert_eq!((edge.verdict.kind(), edge.decided_by), (Kind::Parabolic, Tier::Exact));
+//! ```
+
+mod bound;
+mod exact;
+mod filter;
+mod floquet;
+mod growth;
+mod kind;
+mod ladder;
+mod refine;
+mod winding;
+
+pub use exact::Decidable;
+pub use growth::{Growth, growth};
+pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
+pub(crate) use ladder::filter_only;
+pub use ladder::{Decision, Limits, Tier, decide, decide_from};

@@ -1,0 +1,65 @@
+//! The algebra's identities, in exact arithmetic.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::ratio;
+use kickdrift::propagator::methods::{avi, respa};
+use kickdrift::propagator::{HalfPeriod, TwoClocks, full_period, half_period};
+use nalgebra::Matrix2;
+use num_integer::Integer;
+use proptest::prelude::*;
+
+fn pair() -> impl Strategy<Value = TwoClocks<Rational>> {
+    (1u64..30, 1u64..30, 1i64..900, 1i64..200, -400i64..400, 1i64..100)
+        .prop_map(|(p, q, s, d, k, e)| TwoClocks::new(p / p.gcd(&q), q / p.gcd(&q), ratio(s, d), ratio(k, e)))
+}
+
+fn trace(m: &Matrix2<Rational>) -> Rational {
+    &m[(0, 0)] + &m[(1, 1)]
+}
+
+fn determinant(m: &Matrix2<Rational>) -> Rational {
+    &m[(0, 0)] * &m[(1, 1)] - &m[(0, 1)] * &m[(1, 0)]
+}
+
+proptest! {
+    #[test]
+    fn determinants_are_one(clocks in pair()) {
+        prop_assert_eq!(determinant(&full_period(&clocks)), ratio(1, 1));
+        prop_assert_eq!(determinant(half_period(&clocks).matrix()), ratio(1, 1));
+        prop_assert_eq!(determinant(&avi::staggered(&clocks)), ratio(1, 1));
+    }
+
+    #[test]
+    fn the_full_period_is_the_reversed_half_times_the_half(clocks in pair()) {
+        prop_assert_eq!(half_period(&clocks).full(), full_period(&clocks));
+    }
+
+    #[test]
+    fn the_trace_is_two_plus_4bc_and_4ad_minus_two(clocks in pair()) {
+        let half: HalfPeriod<Rational> = half_period(&clocks);
+        let full = trace(&full_period(&clocks));
+        prop_assert_eq!(&full - ratio(2, 1), half.b() * half.c() * ratio(4, 1));
+        prop_assert_eq!(&full + ratio(2, 1), half.a() * half.d() * ratio(4, 1));
+        prop_assert_eq!(full, half.trace());
+    }
+
+    #[test]
+    fn staggered_and_symmetric_avi_have_one_trace(clocks in pair()) {
+        prop_assert_eq!(trace(&avi::staggered(&clocks)), trace(&avi::symmetric(&clocks)));
+    }
+
+    #[test]
+    fn q_equal_1_is_respa(p in 1u64..40, s in 1i64..400, k in -100i64..100) {
+        let clocks = TwoClocks::new(p, 1, ratio(s, 100), ratio(k, 30));
+        // In the time unit h1 = 1: lambda1 = s and lambda2 = slow/p.
+        let lambda2 = clocks.slow() / ratio(p as i64, 1);
+        let closed_form = respa::propagator(ratio(1, 1), p, clocks.fast().clone(), lambda2);
+        prop_assert_eq!(full_period(&clocks), closed_form);
+    }
+
+    #[test]
+    fn swapping_the_clocks_changes_no_trace(clocks in pair()) {
+        prop_assert_eq!(half_period(&clocks).trace(), half_period(&clocks.swapped()).trace());
+        prop_assert_eq!(clocks.swapped().swapped(), clocks);
+    }
+}

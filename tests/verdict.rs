@@ -1,0 +1,147 @@
+//! The ladder: every tier right, every tier's certificate honest.
+
+use kickdrift::number::rational::ratio;
+use kickdrift::number::{Rational, Sign, parse};
+use kickdrift::propagator::{Oscillator, TwoClocks, full_period, half_period};
+use kickdrift::verdict::{Decidable, Kind, Limits, Tier, decide, decide_from, growth};
+use num_integer::Integer;
+use num_traits::{One, Signed};
+use proptest::prelude::*;
+
+fn lowest(p: u64, q: u64) -> (u64, u64) {
+    (p / p.gcd(&q), q / p.gcd(&q))
+}
+
+/// Pairs weak and strong, p below and above q, negative slow stiffness included.
+fn pair() -> impl Strategy<Value = TwoClocks<Rational>> {
+    let stiffness = prop_oneof![1i64..100, 100i64..3999, 3999i64..9000];
+    (1u64..80, 1u64..80, stiffness, prop_oneof![-20i64..20, -3000i64..3000]).prop_map(|(p, q, s, k)| {
+        let (p, q) = lowest(p, q);
+        TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000))
+    })
+}
+
+fn kind_at(p: u64, q: u64, s: Rational, rho: Rational) -> (Kind, i8) {
+    let decision = decide(&TwoClocks::with_rho(p, q, s, rho), &Limits::default()).unwrap();
+    (decision.verdict.kind(), decision.verdict.side())
+}
+
+/// ± 10^-40.
+fn hair() -> Rational {
+    Rational::new(One::one(), num_bigint::BigInt::from(10).pow(40))
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn all_tiers_agree_with_the_full_product(clocks in pair()) {
+        let trace = full_period(&clocks).trace();
+        let distance = trace.abs() - ratio(2, 1);
+        for tier in [Tier::Filter, Tier::Refine, Tier::Exact] {
+            let decision = decide_from(tier, &clocks, &Limits::default()).unwrap();
+            prop_assert!(decision.decided_by >= tier);
+            match Sign::from_ordering(distance.cmp(&ratio(0, 1))) {
+                Sign::Negative => prop_assert_eq!(decision.verdict.kind(), Kind::Elliptic),
+                Sign::Positive => prop_assert_eq!(decision.verdict.kind(), Kind::Hyperbolic),
+                Sign::Zero => prop_assert!(matches!(decision.verdict.kind(), Kind::Parabolic | Kind::Coexistence)),
+            }
+            let side = if distance.is_negative() { 0 } else { trace.signum().to_integer().try_into().unwrap() };
+            prop_assert_eq!(decision.verdict.side(), side);
+        }
+    }
+
+    #[test]
+    fn the_trace_enclosure_holds_the_exact_trace(clocks in pair()) {
+        let verdict = Decidable::half_signs(&clocks).verdict();
+        let growth = growth(&clocks, verdict, &Limits::default()).unwrap();
+        let trace = half_period(&clocks).trace();
+        prop_assert!(growth.trace.contains(&trace));
+        if let Some(ln) = growth.ln_multiplier {
+            // |Tr| = 2 cosh(ln mu); compare by exp in many bits.
+            let mu = ln.exp(256);
+            let back = mu.add(&kickdrift::number::Ball::one().div(&mu, 256).unwrap(), 256);
+            prop_assert!(back.contains(&trace.abs()));
+        }
+    }
+
+    #[test]
+    fn scaling_time_changes_nothing(h1 in 1i64..50, h2 in 1i64..50, l1 in 1i64..40, l2 in -10i64..40, c in 1i64..9) {
+        let decide_at = |c: Rational| {
+            let laurent = |x: Rational| kickdrift::number::Laurent::from_rational(x);
+            let square = &c * &c;
+            let oscillator = Oscillator::new(
+                laurent(ratio(l1, 3) / &square), laurent(ratio(l2, 7) / &square),
+                laurent(ratio(h1, 29) * &c), laurent(ratio(h2, 29) * &c),
+            ).unwrap();
+            decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict
+        };
+        prop_assert_eq!(decide_at(ratio(1, 1)), decide_at(ratio(c, 5)));
+    }
+}
+
+#[test]
+fn rational_edges_are_parabolic_and_a_hair_off_they_are_not() {
+    // th = pi/3, pi/2, 2 pi/3 with q = 1 and p th = m pi: the upper edge of tongue m is exactly there.
+    for (s, p) in [(1, 3), (1, 6), (2, 2), (2, 4), (3, 3), (3, 6), (1, 300), (2, 1000)] {
+        let rho = ratio(1, 50);
+        let (kind, side) = kind_at(p, 1, ratio(s, 1), rho.clone());
+        assert_eq!(kind, Kind::Parabolic, "s = {s}, p = {p}");
+        assert_eq!(kind_at(p, 1, ratio(s, 1) - hair(), rho.clone()), (Kind::Hyperbolic, side));
+        assert_eq!(kind_at(p, 1, ratio(s, 1) + hair(), rho), (Kind::Elliptic, 0));
+        // Without the slow force the tongue is closed.
+        assert_eq!(kind_at(p, 1, ratio(s, 1), ratio(0, 1)), (Kind::Coexistence, side));
+        assert_eq!(kind_at(p, 1, ratio(s, 1) + hair(), ratio(0, 1)), (Kind::Elliptic, 0));
+    }
+}
+
+#[test]
+fn velocity_verlet_ends_at_s_equal_4() {
+    let at = |s: Rational| kind_at(1, 1, s, ratio(0, 1));
+    assert_eq!(at(ratio(4, 1) - hair()), (Kind::Elliptic, 0));
+    assert_eq!(at(ratio(4, 1)), (Kind::Parabolic, -1));
+    assert_eq!(at(ratio(4, 1) + hair()), (Kind::Hyperbolic, -1));
+}
+
+#[test]
+fn the_closing_of_5_3_is_the_identity_and_a_hair_off_it_is_not() {
+    let (s, rho) = (ratio(11, 4), ratio(114, 55));
+    assert_eq!(kind_at(5, 3, s.clone(), rho.clone()), (Kind::Coexistence, 1));
+    let half = half_period(&TwoClocks::with_rho(5, 3, s.clone(), rho.clone()));
+    assert_eq!((half.a(), half.d()), (&ratio(9, 4), &ratio(4, 9)));
+    assert_eq!(kind_at(5, 3, s + hair(), rho).0, Kind::Elliptic);
+}
+
+#[test]
+fn exact_ties_over_q_pi_are_decided() {
+    // One kick a period of strength s + slow = pi + (4 - pi) = 4: parabolic, and only exactly so.
+    let x = |text| parse::parse("x", text).unwrap();
+    let at = |lambda2| {
+        let oscillator = Oscillator::new(x("pi"), x(lambda2), x("1"), x("1")).unwrap();
+        decide(&oscillator.clocks(), &Limits::default()).unwrap()
+    };
+    assert_eq!((at("4 - pi").verdict.kind(), at("4 - pi").decided_by), (Kind::Parabolic, Tier::Exact));
+    assert_eq!(at("4 - pi - 1e-40").verdict.kind(), Kind::Elliptic);
+    assert_eq!(at("4 - pi + 1e-40").verdict.kind(), Kind::Hyperbolic);
+    // s = h1^2 lambda1 can be rational though neither factor is.
+    let verlet = Oscillator::new(x("4/pi^2"), x("0"), x("pi"), x("2*pi")).unwrap();
+    assert_eq!(decide(&verlet.clocks(), &Limits::default()).unwrap().verdict.kind(), Kind::Parabolic);
+}
+
+#[test]
+fn labels_count_half_turns() {
+    // r-RESPA below its m-th resonance p th = m pi.
+    for (p, m, s) in [(3, 1, 0.99), (3, 2, 2.99), (2, 1, 1.98)] {
+        let s = Rational::from_float(s).unwrap();
+        let clocks = TwoClocks::with_rho(p, 1, s, ratio(1, 10));
+        let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
+        assert_eq!(growth(&clocks, verdict, &Limits::default()).unwrap().label, Some(m));
+    }
+}
+
+#[test]
+fn a_period_beyond_the_budget_is_refused_before_it_begins() {
+    let clocks = TwoClocks::with_rho(1_000_000_001, 1_000_000_000, ratio(1, 7), ratio(1, 25));
+    let error = decide(&clocks, &Limits::default()).unwrap_err();
+    assert!(error.to_string().contains("--budget 500000001"), "{error}");
+}
