@@ -174,7 +174,7 @@ mod tests {
             Column::new("note").left(),
         ];
         let mut table = Table::new("edges", "Edges of R&D", columns);
-        let edge = Cell::Enclosure { lo: 2.71828, hi: 2.71829 };
+        let edge = Cell::Enclosure { lo: 2.31828, hi: 2.31829 };
         table.push(vec![Cell::Exact("pi^2/25".into()), edge, Cell::Text("a_b".into())]);
         let expected = r"\begin{table}
   \centering
@@ -184,7 +184,7 @@ mod tests {
     \toprule
     $\Lambda_2$ & $s$ & note \\
     \midrule
-    $\pi^{2}/25$ & $2.718285(6)$ & a\_b \\
+    $\pi^{2}/25$ & $2.318285(6)$ & a\_b \\
     \bottomrule
   \end{tabular}
 \end{table}

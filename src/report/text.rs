@@ -80,7 +80,7 @@ mod tests {
         table.push(vec![
             Cell::Integer(7),
             Cell::Text("hyperbolic".into()),
-            Cell::Enclosure { lo: 2.71828, hi: 2.71829 },
+            Cell::Enclosure { lo: 2.31828, hi: 2.31829 },
         ]);
         table.push(vec![Cell::Integer(-12), Cell::Missing, Cell::Exact("1/3".into())]);
         let expected = "\
@@ -88,7 +88,7 @@ Two rows.
 
   m  kind             h₁ (s)
 ---  ----------  -----------
-  7  hyperbolic  2.718285(6)
+  7  hyperbolic  2.318285(6)
 -12  -                   1/3
 ";
         assert_eq!(document(&table), expected);

@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn numbers_never_touch() {
         for length in [15.0, 40.0, 90.0, 300.0] {
-            let axis = Axis::linear("", 0.636610, 0.636625);
+            let axis = Axis::linear("", 0.731610, 0.731625);
             let at: Vec<(f64, f64)> = ticks(&axis, 0, length)
                 .iter()
                 .filter(|tick| tick.label.is_some())
