@@ -18,18 +18,18 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The stiffness of the fast force (with a grid).
-    #[arg(long, value_name = "X", requires = "lambda2", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
     lambda1: Option<String>,
     /// The stiffness of the slow force (with a grid).
-    #[arg(long, value_name = "Y", requires = "lambda1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     lambda2: Option<String>,
     #[command(flatten)]
-    grid: Option<Grid>,
+    grid: Grid,
     /// Instead of a grid: all coprime p + q up to this number.
-    #[arg(long, value_name = "N", requires = "rho", conflicts_with = "lambda1")]
+    #[arg(long, value_name = "N")]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
-    #[arg(long, value_name = "R", requires = "max_sum", allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
     rho: Option<String>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
     #[arg(long, value_name = "K", default_value_t = 99)]
@@ -44,17 +44,17 @@ impl Args {
         let tolerance = parse_rational("tolerance", &self.tolerance)?;
         check(&tolerance)?;
         let limits = common.limits();
-        let document = match (&self.grid, &self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
-            (Some(grid), Some(lambda1), Some(lambda2), None, None) => {
+        let document = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
+            (Some(lambda1), Some(lambda2), None, None) => {
                 let (lambda1, lambda2) = (parse("lambda1", lambda1)?, parse("lambda2", lambda2)?);
-                over_grid(&lambda1, &lambda2, &grid.range()?, &tolerance, &limits)?
+                over_grid(&lambda1, &lambda2, &self.grid.range()?, &tolerance, &limits)?
             }
-            (None, None, None, Some(max_sum), Some(rho)) => {
+            (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
                 over_ratios(max_sum, &parse_rational("rho", rho)?, self.samples, &tolerance, &limits)?
             }
             _ => {
                 let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
-                return Err(Error::input("compare", "incomplete", remedy));
+                return Err(Error::input("compare", "what?", remedy));
             }
         };
         common.write(&document, Format::Text)

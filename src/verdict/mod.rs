@@ -28,7 +28,7 @@ mod ladder;
 mod refine;
 mod winding;
 
-pub use exact::Decidable;
+pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
 pub(crate) use ladder::filter_only;
