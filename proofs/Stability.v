@@ -7,7 +7,10 @@
     - [four_signs]         the seven rows of the four-sign table, as equivalences;
     - [row_total], [behaves_unique]
                            each half period lies in exactly one row;
-    - [two_clocks_verdict] hence the verdict on two clocks is a row of the half period;
+    - [multiplier_plus], [multiplier_minus]
+                           ln mu = 2 arcsinh sqrt (BC), or 2 arcsinh sqrt (-AD): growth without cancellation;
+    - [symmetric_verdict]  the verdict on any time-symmetric kicks is a row of the half period;
+    - [two_clocks_verdict] ... for example of two clocks;
     - [staggered_bounded]  the event loop (Algorithm 1) and the symmetric form are stable together;
     - [verlet]             velocity Verlet: bounded iff 0 < h^2 L < 4 (h <> 0).    *)
 
@@ -385,7 +388,48 @@ Qed.
 Theorem row_unique k k' H : det H = 1 -> row k H -> row k' H -> k = k'.
 Proof. intros D R R'; apply (behaves_unique k k' (mirror H ** H)); now apply row_behaves. Qed.
 
+(** ** The multiplier from the half period *)
+
+Lemma ln_multiplier z : 0 < z -> ln ((2 + 4 * z + sqrt ((2 + 4 * z) * (2 + 4 * z) - 4)) / 2) = 2 * arcsinh (sqrt z).
+Proof.
+  intros Z; pose proof (sqrt_pos z); pose proof (sqrt_pos (1 + z)).
+  pose proof (sqrt_sqrt z ltac:(lra)) as S; pose proof (sqrt_sqrt (1 + z) ltac:(lra)) as S1.
+  assert (E : sqrt ((2 + 4 * z) * (2 + 4 * z) - 4) = 4 * (sqrt z * sqrt (1 + z))).
+  { apply sqrt_lem_1; [nra | nra |].
+    transitivity (16 * (sqrt z * sqrt z) * (sqrt (1 + z) * sqrt (1 + z))); [ring | rewrite S, S1; ring]. }
+  unfold arcsinh; replace (sqrt z ^ 2 + 1) with (1 + z) by (simpl; rewrite Rmult_1_r, S; ring).
+  assert (P : 0 < sqrt (1 + z)) by (apply sqrt_lt_R0; lra).
+  replace (2 * ln (sqrt z + sqrt (1 + z))) with (ln (sqrt z + sqrt (1 + z)) + ln (sqrt z + sqrt (1 + z))) by ring.
+  rewrite <- ln_mult by lra; f_equal; rewrite E; nra.
+Qed.
+
+Theorem multiplier_plus H :
+  det H = 1 -> 0 < mB H * mC H -> ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (mB H * mC H)).
+Proof.
+  intros D P; rewrite <- ln_multiplier by exact P; unfold multiplier.
+  replace (tr (mirror H ** H)) with (2 + 4 * (mB H * mC H)) by (unfold tr, det in *; simpl; lra).
+  rewrite Rabs_pos_eq by lra; reflexivity.
+Qed.
+
+Theorem multiplier_minus H :
+  det H = 1 -> mA H * mD H < 0 -> ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (- (mA H * mD H))).
+Proof.
+  intros D P; rewrite <- ln_multiplier by lra; unfold multiplier.
+  replace (tr (mirror H ** H)) with (- (2 + 4 * - (mA H * mD H))) by (unfold tr, det in *; simpl; lra).
+  rewrite Rabs_Ropp, Rmult_opp_opp, Rabs_pos_eq by lra; reflexivity.
+Qed.
+
 (** ** Two clocks *)
+
+(** Any kicks that are symmetric in time: several clocks, phases 0 and 1/2, ... *)
+Theorem symmetric_verdict k f d n :
+  (forall j, (j <= 2 * n)%nat -> f (2 * n - j)%nat = f j) ->
+  behaves k (propagator (schedule f d (2 * n))) <-> row k (propagator (schedule f d n)).
+Proof.
+  intros S; rewrite palindrome_schedule by exact S.
+  destruct (palindrome (schedule f d n)) as [-> _].
+  symmetry; apply four_signs, det_propagator.
+Qed.
 
 Theorem two_clocks_verdict k p q h1 L1 h2 L2 :
   (1 <= p)%nat -> (1 <= q)%nat ->
