@@ -1,7 +1,7 @@
 (** What every theorem of Main.v says and rests on; this output is kept in Assumptions.golden. *)
 
 From Coq Require Import Reals.
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa Proposition Perturbation Cone.
+From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa Proposition Plane Cone.
 From Kickdrift Require Main.
 Open Scope R_scope.
 Set Printing Width 110.

@@ -6,7 +6,8 @@
 
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
-  Vocabulary Algebra TwoClocks Stability Floquet TanCriterion Respa Proposition Perturbation Cone Certificate.
+  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Proposition Plane Perturbation
+  Cone Certificate.
 Open Scope R_scope.
 
 (** ** 1. Algebra *)
@@ -68,7 +69,7 @@ Proof. exact Algebra.staggered_trace. Qed.
 
 Theorem staggered_bounded : forall f d n, f n = f O ->
   bounded_powers (propagator (staggered f d n)) <-> bounded_powers (propagator (schedule f d n)).
-Proof. exact Stability.staggered_bounded. Qed.
+Proof. exact SignTable.staggered_bounded. Qed.
 
 (** ** 2. Stability *)
 
@@ -78,30 +79,30 @@ Proof. exact Stability.bounded_iff. Qed.
 
 (** The seven rows of the four-sign table; each half period lies in exactly one. *)
 Theorem four_signs : forall k H, det H = 1 -> row k H <-> behaves k (mirror H ** H).
-Proof. exact Stability.four_signs. Qed.
+Proof. exact SignTable.four_signs. Qed.
 
 Theorem row_total : forall H, exists k, row k H.
-Proof. exact Stability.row_total. Qed.
+Proof. exact SignTable.row_total. Qed.
 
 Theorem row_unique : forall k k' H, det H = 1 -> row k H -> row k' H -> k = k'.
-Proof. exact Stability.row_unique. Qed.
+Proof. exact SignTable.row_unique. Qed.
 
 Theorem symmetric_verdict : forall k f d n, (forall j, (j <= 2 * n)%nat -> f (2 * n - j)%nat = f j) ->
   behaves k (propagator (schedule f d (2 * n))) <-> row k (propagator (schedule f d n)).
-Proof. exact Stability.symmetric_verdict. Qed.
+Proof. exact SignTable.symmetric_verdict. Qed.
 
 Theorem two_clocks_verdict : forall k p q h1 L1 h2 L2, (1 <= p)%nat -> (1 <= q)%nat ->
   behaves k (full_period p q h1 L1 h2 L2) <-> row k (half_period p q h1 L1 h2 L2).
-Proof. exact Stability.two_clocks_verdict. Qed.
+Proof. exact SignTable.two_clocks_verdict. Qed.
 
 (** The growth of one period, without cancellation near |Tr| = 2. *)
 Theorem multiplier_plus : forall H, det H = 1 -> 0 < mB H * mC H ->
   ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (mB H * mC H)).
-Proof. exact Stability.multiplier_plus. Qed.
+Proof. exact SignTable.multiplier_plus. Qed.
 
 Theorem multiplier_minus : forall H, det H = 1 -> mA H * mD H < 0 ->
   ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (- (mA H * mD H))).
-Proof. exact Stability.multiplier_minus. Qed.
+Proof. exact SignTable.multiplier_minus. Qed.
 
 (** Velocity Verlet, eq. (1), sharper than |eigenvalues| <= 1. *)
 Theorem verlet : forall h L, h <> 0 ->

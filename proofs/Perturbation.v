@@ -16,59 +16,9 @@
                           |M y| <= kappa |y| bounds the inverse too, so g = kappa / (1 - kappa eps) will do;
     - [update_contained]  a Floquet update has kappa = 1 + |k| (E^2 + O^2).                         *)
 
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet.
+From Kickdrift Require Import Vocabulary Algebra Floquet Plane.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
-
-(** ** Plane vectors *)
-
-Definition dot (u w : vec) := position u * position w + velocity u * velocity w.
-Definition cross (u w : vec) := position u * velocity w - velocity u * position w.          (* det (u, w) *)
-Definition len (u : vec) := sqrt (dot u u).
-Definition J (u : vec) := Vec (- velocity u) (position u).                         (* a quarter turn *)
-Definition add (u w : vec) := Vec (position u + position w) (velocity u + velocity w).
-Definition smul (x : R) (u : vec) := Vec (x * position u) (x * velocity u).
-Definition zero := Vec 0 0.
-
-Ltac coordinates := unfold dot, cross, J, add, smul, act, det, zero in *; simpl in *.
-
-Lemma vec_ext u w : position u = position w -> velocity u = velocity w -> u = w.
-Proof. destruct u, w; simpl; congruence. Qed.
-
-Lemma len_nonneg u : 0 <= len u.
-Proof. apply sqrt_pos. Qed.
-
-Lemma len_sqr u : len u * len u = dot u u.
-Proof. apply sqrt_sqrt; coordinates; nra. Qed.
-
-Lemma len_pos u : u <> zero -> 0 < len u.
-Proof.
-  intros N; apply sqrt_lt_R0; destruct (Req_dec (position u) 0) as [A|A], (Req_dec (velocity u) 0) as [B|B];
-    [exfalso; apply N; now apply vec_ext | coordinates; nra ..].
-Qed.
-
-Lemma len_J u : len (J u) = len u.
-Proof. unfold len; f_equal; coordinates; ring. Qed.
-
-(** Lagrange's identity gives both inequalities of Cauchy and Schwarz. *)
-Lemma lagrange u w : dot u w * dot u w + cross u w * cross u w = dot u u * dot w w.
-Proof. coordinates; ring. Qed.
-
-Lemma dot_le u w : Rabs (dot u w) <= len u * len w.
-Proof.
-  pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply sqr_le_abs; [nra|].
-  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
-  rewrite <- lagrange; nra.
-Qed.
-
-Lemma cross_le u w : Rabs (cross u w) <= len u * len w.
-Proof.
-  pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply sqr_le_abs; [nra|].
-  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
-  rewrite <- lagrange; nra.
-Qed.
 
 (** ** Bernoulli's inequality, both ways *)
 
@@ -88,15 +38,6 @@ Proof.
   apply Rle_trans with ((1 + x) ^ n * (1 - x) ^ n); [nra|].
   rewrite <- Rpow_mult_distr; replace ((1 + x) * (1 - x)) with (1 - x * x) by ring.
   apply Rle_trans with (1 ^ n); [apply pow_incr; split; nra | rewrite pow1; lra].
-Qed.
-
-(** Coordinates in the orthogonal frame (w, J w). *)
-Lemma frame w v : w <> zero ->
-  v = add (smul (dot w v / (len w * len w)) w) (smul (cross w v / (len w * len w)) (J w)).
-Proof.
-  intros Z; pose proof (len_pos w Z) as P; pose proof (len_sqr w) as S.
-  assert (0 < dot w w) by nra; rewrite S.
-  apply vec_ext; coordinates; field; lra.
 Qed.
 
 (** ** One step *)
@@ -152,7 +93,7 @@ Qed.
 
 Lemma alpha_bounds : 1 - omega <= alpha <= 1 + omega.
 Proof.
-  pose proof alpha_near as A; apply Rabs_def2 in A || idtac.
+  pose proof alpha_near as A.
   unfold Rabs in A; destruct Rcase_abs; lra.
 Qed.
 
@@ -248,7 +189,7 @@ Proof.
   apply Rmult_le_reg_r with (1 - INR k * x); [lra|]. nra.
 Qed.
 
-(** One step's bound, multiplied out, for the running sum (without powers). *)
+(** The exact orbit in the frame of the computed one. *)
 Theorem perturbed_orbit k :
   (k <= n)%nat ->
   exists a t,
@@ -400,21 +341,6 @@ Proof.
     pose proof (K (J y)) as Kj; rewrite len_J in Kj; pose proof (len_nonneg (M @ y)); nra.
   - pose proof (len_nonneg (M @ y)); rewrite <- P in Ky.
     replace (len (M @ y)) with 0 by lra; lra.
-Qed.
-
-Lemma len_triangle u w : len (add u w) <= len u + len w.
-Proof.
-  pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply Rsqr_incr_0_var; [|lra]; unfold Rsqr; rewrite len_sqr.
-  pose proof (dot_le u w) as C; pose proof (len_sqr u); pose proof (len_sqr w); pose proof (Rle_abs (dot u w)).
-  replace (dot (add u w) (add u w)) with (dot u u + 2 * dot u w + dot w w) by (coordinates; ring); nra.
-Qed.
-
-Lemma len_smul x u : len (smul x u) = Rabs x * len u.
-Proof.
-  apply Rsqr_inj; [apply len_nonneg | apply Rmult_le_pos; [apply Rabs_pos | apply len_nonneg] |]; unfold Rsqr.
-  transitivity (Rabs x * Rabs x * (len u * len u)); [|ring].
-  rewrite !len_sqr, <- Rabs_mult, (Rabs_pos_eq (x * x)) by nra; coordinates; ring.
 Qed.
 
 Theorem shrink_bound M uh r kappa eps :
