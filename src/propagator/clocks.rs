@@ -133,7 +133,7 @@ impl<S: Ring> TwoClocks<S> {
     }
 
     /// The same system with the clocks' roles exchanged, in the time unit h2: s' = h2² L2 and so on.
-    /// No verdict changes.
+    /// No verdict changes (theorem `swap_clocks` in proofs/).
     pub fn swapped(&self) -> Self {
         let ratio = S::from_rational(&Rational::new(self.p.into(), self.q.into()));
         let (fast, slow) = (S::product(&self.slow, &ratio), S::product(&self.fast, &ratio));

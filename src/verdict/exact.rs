@@ -19,6 +19,7 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 
 use super::kind::HalfSigns;
+use super::residue;
 use crate::number::{Cyclotomic, ExactSign, Laurent, Rational, Real, Sign};
 use crate::propagator::{Event, Schedule, TwoClocks, Weight, half_period};
 
@@ -32,6 +33,12 @@ pub trait Decidable: Real {
         let half = half_period(clocks);
         HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
     }
+
+    /// Whether a cheap test shows that none of A, B, C, D is zero, so that more bits must end with their
+    /// signs. `false` says nothing.
+    fn surely_nonzero(_clocks: &TwoClocks<Self>) -> bool {
+        false
+    }
 }
 
 impl Decidable for Laurent {
@@ -42,6 +49,11 @@ impl Decidable for Laurent {
         }
         let half = half_period(clocks);
         HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+    }
+
+    /// By residues: exact arithmetic over Q\[π\] is dear, and its only zeros are polynomial identities.
+    fn surely_nonzero(clocks: &TwoClocks<Laurent>) -> bool {
+        residue::nonzero_entries(clocks)
     }
 }
 

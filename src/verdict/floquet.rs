@@ -4,7 +4,7 @@
 //! cos θ = 1 − s/2. Alone it moves x along U(t) = P(σ) e^{inθ}, t = n + σ, with P(σ) = 1 − σ + σ e^{iθ}:
 //! straight between kicks. Write x(t) = Re(g P(σ)), g a complex number that turns by e^{iθ} with each base
 //! step. A kick of strength k of the other clock adds i β x P̄ to g, β = k / sin θ
-//! (theorem `floquet_update` in proofs/Floquet.v). So the half period costs min(p, q)/2 updates
+//! (theorem `foreign_ticks` in proofs/). So the half period costs min(p, q)/2 updates
 //!
 //! ```text
 //!     g ← g e^{i Δn θ},   x = Re(g P),   g ← g + i β x P̄        Δn = ⌊p/q⌋ or ⌊p/q⌋ + 1,

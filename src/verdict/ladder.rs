@@ -71,7 +71,7 @@ impl Limits {
     }
 }
 
-/// The precisions of the refine tier, in bits: as long as the exact tier costs more.
+/// The precisions of the refine tier in bits, as far as the exact tier is expected to cost more.
 const PRECISIONS: [u32; 3] = [128, 256, 512];
 
 /// Decides the pair, with the cheapest tier that can.
@@ -114,8 +114,13 @@ fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Opt
 fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
     let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
     limits.allow(schedule.strikes() / 2, Tier::Refine)?;
-    let verdict = |&bits: &u32| refine::run(clocks, &schedule, bits)?.signs().verdict();
-    Ok(PRECISIONS.iter().find_map(verdict))
+    let verdict = |bits: u32| refine::run(clocks, &schedule, bits)?.signs().verdict();
+    let found = PRECISIONS.into_iter().find_map(verdict);
+    if found.is_some() || !S::surely_nonzero(clocks) {
+        return Ok(found);
+    }
+    // No entry is zero: some precision tells all four signs.
+    Ok((10..31).map(|log2| 1 << log2).find_map(verdict))
 }
 
 fn by_exact<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {

@@ -26,6 +26,7 @@ mod growth;
 mod kind;
 mod ladder;
 mod refine;
+mod residue;
 mod winding;
 
 pub use exact::{Decidable, exact_trace};
