@@ -23,6 +23,7 @@ mod exact;
 mod filter;
 mod floquet;
 mod growth;
+mod kernel;
 mod kind;
 mod ladder;
 mod refine;
