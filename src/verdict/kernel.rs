@@ -65,7 +65,7 @@ pub(super) struct Lanes<const L: usize> {
 }
 
 /// What a run does beside the updates.
-pub(super) trait Watch {
+pub(crate) trait Watch {
     /// Measure `worst`, not only whether it is within bounds.
     const MEASURE: bool;
     /// Count the even solution's quarter turns.

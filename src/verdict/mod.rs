@@ -20,14 +20,14 @@
 
 mod bound;
 mod exact;
-mod filter;
-mod floquet;
+pub(crate) mod filter;
+pub(crate) mod floquet;
 mod growth;
-mod kernel;
+pub(crate) mod kernel;
 mod kind;
 mod ladder;
 mod refine;
-mod winding;
+pub(crate) mod winding;
 
 pub use exact::Decidable;
 pub use growth::{Growth, growth};
