@@ -52,12 +52,12 @@ impl Certificate {
         // Blocks in which |g| at most doubles.
         let growth = step.growth();
         let block = ((2f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
-        // Every step is within (block + 1)/2 of a block's end, and so at most block + 1 steps share one: with
-        // the inequality of the means Σ |r_j| |g_j| ≤ u (before + after) (block + 1) growth^(block + 1) squares.
-        // 1.01 for the rounding of the sum itself (at most 10^13 terms) and of these constants.
-        let b = 1.01 * U * (before + after) * f64::from(block + 1) * growth.powi(block + 1);
-        // Within a block |g|² falls below its value at the end by growth^(2 block) at most.
-        let ratio = 2.0 * b * growth.powi(2 * block);
+        // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
+        // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
+        // rounding of the sum itself (at most 10^13 terms) and of these constants.
+        let b = 1.01 * U * (before + after) * f64::from(block) * growth.powi(2 * (block / 2));
+        // Before a block's end |g|² was smaller than there by growth^(2 (block - 1)) at most.
+        let ratio = 2.0 * b * growth.powi(2 * (block - 1));
         let across = 2.0 * b + 1.01 * U * (7.0 + 5.0 * slope);
         let certificate =
             Certificate { step, steps, block: block as u64, ratio, worst: 0.99 * tau / ratio, across };

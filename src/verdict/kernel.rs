@@ -84,9 +84,9 @@ fn each<const L: usize>(f: impl Fn(usize) -> f64) -> [f64; L] {
 }
 
 impl<const L: usize> Orbits<L> {
-    fn new(re: f64, w: [f64; L]) -> Self {
+    fn new(re: f64, w: [f64; L], squares: [f64; L]) -> Self {
         let quarters = each(|i| if w[i] < 0.0 { -1.0 } else { 0.0 });
-        Orbits { re: [re; L], w, squares: [0.0; L], worst: [1.0; L], exponent: [0.0; L], quarters }
+        Orbits { re: [re; L], w, squares, worst: [1.0; L], exponent: [0.0; L], quarters }
     }
 
     /// re += a w: counterclockwise across the w axis where re and w had the same sign.
@@ -152,8 +152,8 @@ impl<const L: usize> Orbits<L> {
 impl<const L: usize> Lanes<L> {
     /// The pairs after the half kick at t = 0. Lane i holds `pairs[i]`, lanes to spare the last pair.
     ///
-    /// Even start (1, cos sin(θ/2) + B/2), odd start (0, −1), in (re, im) and in the scale of cos(θ/2) and its
-    /// inverse: products of the two solutions are exact.
+    /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
+    /// which are |g| before the half kick; products of the two solutions have the right scale.
     pub fn new(pairs: &[Pair]) -> Self {
         let pair = |i: usize| &pairs[i.min(pairs.len() - 1)];
         let turns: [_; L] =
@@ -161,11 +161,12 @@ impl<const L: usize> Lanes<L> {
         let slope: [f64; L] = each(|i| pair(i).base.slope);
         let scale: [f64; L] = each(|i| pair(i).kick / (2.0 * slope[i]));
         let inverse: [f64; L] = each(|i| 1.0 / scale[i]);
+        let secant2: [f64; L] = each(|i| slope[i].mul_add(slope[i], 1.0));
         let modulus: [f64; L] = each(|i| pair(i).modulus as f64);
         let step: [f64; L] = each(|i| (2 * pair(i).rest) as f64);
         Lanes {
-            even: Orbits::new(1.0, each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0))),
-            odd: Orbits::new(0.0, each(|i| -inverse[i])),
+            even: Orbits::new(1.0, each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0)), each(|i| 1.0 / secant2[i])),
+            odd: Orbits::new(0.0, each(|i| -inverse[i]), secant2),
             place: each(|i| -modulus[i]),
             step,
             limit: each(|i| modulus[i] - step[i]),
