@@ -64,6 +64,11 @@ impl Certificate {
         (steps < 1 << 43 && ratio.is_finite()).then_some(certificate)
     }
 
+    /// Whether |g|² may pass 2^300, from 2^100 at most at the start.
+    fn strong(&self) -> bool {
+        self.steps as f64 * self.step.growth().log2() > 100.0
+    }
+
     /// The signs of the two components of a solution at T/2.
     fn signs(&self, [x, v]: [f64; 2], squares: f64) -> (Option<Sign>, Option<Sign>) {
         let across = self.across * squares;
@@ -141,7 +146,7 @@ pub(crate) fn together<W: Watch, const L: usize>(pairs: &[Pair], instructions: I
         ends.fill(None);
         return;
     };
-    lanes.worst = certificate.worst;
+    (lanes.worst, lanes.strong) = (certificate.worst, certificate.strong());
     lanes.run::<W>(instructions, certificate.block);
     for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
         *end = finish::<W, L>(&lanes, &certificate, pair, i);

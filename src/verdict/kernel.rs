@@ -62,6 +62,8 @@ pub(super) struct Lanes<const L: usize> {
     last_kick: [f64; L],
     /// What `worst` must not exceed.
     pub worst: f64,
+    /// Whether an orbit may grow so long that it must be scaled down on the way.
+    pub strong: bool,
 }
 
 /// What a run does beside the updates.
@@ -117,7 +119,12 @@ impl<const L: usize> Orbits<L> {
 
     /// Adds |g|² to the sum and compares them, in the active lanes.
     #[inline(always)]
-    fn look<W: Watch>(&mut self, tilt: &[f64; L], scale: &[f64; L], worst: f64, active: impl Fn(usize) -> bool) {
+    fn look<W: Watch>(
+        &mut self,
+        (tilt, scale): (&[f64; L], &[f64; L]),
+        (worst, strong): (f64, bool),
+        active: impl Fn(usize) -> bool,
+    ) {
         let norm: [f64; L] = each(|i| {
             let (re, im) = (tilt[i].mul_add(self.w[i], self.re[i]), scale[i] * self.w[i]);
             re.mul_add(re, im * im)
@@ -132,19 +139,14 @@ impl<const L: usize> Orbits<L> {
             let within = |i: usize| self.squares[i] <= worst * norm[i] || !active(i);
             self.worst = each(|i| if within(i) { self.worst[i] } else { f64::INFINITY });
         }
-        if norm.iter().fold(0.0, |large: f64, &n| if n > large { n } else { large }) > LARGE {
-            self.shrink(&norm);
-        }
-    }
-
-    /// Scales by powers of two, exactly.
-    #[inline(never)]
-    fn shrink(&mut self, norm: &[f64; L]) {
-        for i in (0..L).filter(|&i| norm[i] > LARGE) {
-            self.re[i] *= power_of_two(-150);
-            self.w[i] *= power_of_two(-150);
-            self.squares[i] *= power_of_two(-300);
-            self.exponent[i] += 150.0;
+        if strong {
+            // Powers of two: exact.
+            let shrink = |by: f64| -> [f64; L] { each(|i| if norm[i] > LARGE { by } else { 1.0 }) };
+            let (once, twice) = (shrink(power_of_two(-150)), shrink(power_of_two(-300)));
+            self.re = each(|i| self.re[i] * once[i]);
+            self.w = each(|i| self.w[i] * once[i]);
+            self.squares = each(|i| self.squares[i] * twice[i]);
+            self.exponent = each(|i| self.exponent[i] + if norm[i] > LARGE { 150.0 } else { 0.0 });
         }
     }
 }
@@ -178,6 +180,7 @@ impl<const L: usize> Lanes<L> {
             updates: each(|i| pair(i).updates as f64),
             last_kick: each(|i| if pair(i).q_even { 0.5 } else { 1.0 }),
             worst: f64::INFINITY,
+            strong: true,
         }
     }
 
@@ -210,10 +213,7 @@ impl<const L: usize> Lanes<L> {
         let mut done = 0;
         while done < together {
             let end = together.min(done + block);
-            for _ in done..end {
-                lanes.travel::<W>(&mut tilt);
-                lanes.strike::<W>(&[1.0; L]);
-            }
+            lanes.block::<W>(&mut tilt, end - done);
             lanes.look::<W>(&tilt, |_| true);
             done = end;
         }
@@ -221,6 +221,17 @@ impl<const L: usize> Lanes<L> {
             lanes.last_updates::<W>(k as f64, &mut tilt);
         }
         *self = lanes;
+    }
+
+    /// `count` whole updates in every lane.
+    #[inline(always)]
+    fn block<W: Watch>(&mut self, tilt: &mut [f64; L], count: u64) {
+        let (mut lanes, mut now) = (*self, *tilt);
+        for _ in 0..count {
+            lanes.travel::<W>(&mut now);
+            lanes.strike::<W>(&[1.0; L]);
+        }
+        (self.even, self.odd, self.place, *tilt) = (lanes.even, lanes.odd, lanes.place, now);
     }
 
     /// The k-th update in the lanes that have one.
@@ -232,11 +243,11 @@ impl<const L: usize> Lanes<L> {
         let active = |i: usize| k <= updates[i];
         let keep = |new: &mut [f64; L], old: &[f64; L]| *new = each(|i| if active(i) { new[i] } else { old[i] });
         keep(&mut self.place, &before.place);
-        for (new, old) in [(&mut self.even, &before.even), (&mut self.odd, &before.odd)] {
-            keep(&mut new.re, &old.re);
-            keep(&mut new.w, &old.w);
-            keep(&mut new.quarters, &old.quarters);
-        }
+        keep(&mut self.even.re, &before.even.re);
+        keep(&mut self.even.w, &before.even.w);
+        keep(&mut self.even.quarters, &before.even.quarters);
+        keep(&mut self.odd.re, &before.odd.re);
+        keep(&mut self.odd.w, &before.odd.w);
         *tilt = each(|i| self.place[i] * self.tilt[i]);
         self.look::<W>(tilt, active);
     }
@@ -255,11 +266,12 @@ impl<const L: usize> Lanes<L> {
         self.place = each(|i| place[i] + step[i]);
         *tilt = each(|i| self.place[i] * self.tilt[i]);
         let second: [f64; L] = each(|i| -(tilt[i] + drift[i]));
-        for orbits in [&mut self.even, &mut self.odd] {
-            orbits.drift::<W>(&first);
-            orbits.kick::<W>(&kick);
-            orbits.drift::<W>(&second);
-        }
+        self.even.drift::<W>(&first);
+        self.odd.drift::<W>(&first);
+        self.even.kick::<W>(&kick);
+        self.odd.kick::<W>(&kick);
+        self.even.drift::<W>(&second);
+        self.odd.drift::<W>(&second);
     }
 
     #[inline(always)]
@@ -271,8 +283,8 @@ impl<const L: usize> Lanes<L> {
     #[inline(always)]
     fn look<W: Watch>(&mut self, tilt: &[f64; L], active: impl Fn(usize) -> bool + Copy) {
         if W::CERTIFY {
-            self.even.look::<W>(tilt, &self.scale, self.worst, active);
-            self.odd.look::<W>(tilt, &self.scale, self.worst, active);
+            self.even.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
+            self.odd.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
         }
     }
 
