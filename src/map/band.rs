@@ -5,13 +5,13 @@ use super::gcd;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
-use crate::verdict::filter::{self, Ends, SignsOnly};
-use crate::verdict::floquet::Base;
-use crate::verdict::kernel::{Instructions, Watch};
+use crate::verdict::filter;
+use crate::verdict::floquet::{Base, Pair};
+use crate::verdict::kernel::Instructions;
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
 
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.
-const LANES: usize = 16;
+pub(super) const LANES: usize = 16;
 
 /// About as many pairs make a band: enough to find company for each number of updates.
 const PAIRS: usize = 1 << 15;
@@ -131,18 +131,19 @@ impl<'a> Work<'a> {
             first: self.first,
             columns: pairs / rows,
             rows,
-            verdicts: vec![0; pairs],
+            verdicts: vec![filter::UNDECIDED; pairs],
             tiers: vec![0; pairs],
             growing: Vec::new(),
             counters: Counters { pairs: pairs as u64, ..Counters::default() },
         };
-        let mut rest = Vec::new();
-        band.counters.kicks = self.filter::<SignsOnly>(&self.order, |n, ends| {
-            match ends.and_then(|ends| ends.signs().verdict()) {
-                Some(verdict) => band.verdicts[n] = verdict.index(),
-                None => rest.push(n),
+        band.counters.kicks = self.side_by_side(&self.order, |pairs, positions| {
+            let verdicts = filter::verdicts::<LANES>(pairs, Instructions::best());
+            for (&n, &verdict) in positions.iter().zip(&verdicts) {
+                band.verdicts[n] = verdict;
             }
         })?;
+        let undecided = |&n: &usize| band.verdicts[n] == filter::UNDECIDED;
+        let rest: Vec<usize> = (0..pairs).filter(undecided).collect();
         band.counters.escalated = rest.len() as u64;
         for n in rest {
             let (i, j) = self.multipliers(n);
@@ -155,33 +156,25 @@ impl<'a> Work<'a> {
         Ok(band)
     }
 
-    /// Runs the filter over the pairs at the given positions and counts the kicks composed.
-    pub(super) fn filter<W: Watch>(&self, order: &[u32], mut see: impl FnMut(usize, Option<&Ends>)) -> Result<u64> {
-        let instructions = Instructions::best();
+    /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,
+    /// and counts the kicks they compose.
+    pub(super) fn side_by_side(&self, order: &[u32], mut run: impl FnMut(&[Pair], &[usize])) -> Result<u64> {
         let mut kicks = 0;
-        let mut ends = [None; LANES];
+        let (mut pairs, mut positions) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
         for group in order.chunks(LANES) {
-            let mut lanes = Vec::with_capacity(LANES);
-            let mut positions = [0; LANES];
-            for &n in group {
-                let n = n as usize;
+            pairs.clear();
+            positions.clear();
+            for n in group.iter().map(|&n| n as usize) {
                 let first = self.firsts[n / self.grid.shape().1].as_ref();
-                match self.bases.pair(first, self.multipliers(n), u64::from(self.gcds[n])) {
-                    Some(pair) => {
-                        positions[lanes.len()] = n;
-                        kicks += pair.updates + 1;
-                        self.allow(pair.updates + 1)?;
-                        lanes.push(pair);
-                    }
-                    None => see(n, None),
+                if let Some(pair) = self.bases.pair(first, self.multipliers(n), u64::from(self.gcds[n])) {
+                    self.allow(pair.updates + 1)?;
+                    kicks += pair.updates + 1;
+                    pairs.push(pair);
+                    positions.push(n);
                 }
             }
-            if lanes.is_empty() {
-                continue;
-            }
-            filter::together::<W, LANES>(&lanes, instructions, &mut ends[..lanes.len()]);
-            for (&n, ends) in positions.iter().zip(&ends[..lanes.len()]) {
-                see(n, ends.as_ref());
+            if !pairs.is_empty() {
+                run(&pairs, &positions);
             }
         }
         Ok(kicks)

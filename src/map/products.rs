@@ -1,9 +1,10 @@
 //! What a map may tell beside the verdicts, of the pairs that grow.
 
-use super::band::{Band, Work};
+use super::band::{Band, LANES, Work};
 use crate::error::Result;
-use crate::verdict::filter::{Ends, Everything};
-use crate::verdict::{Kind, Verdict, growth, winding};
+use crate::verdict::filter::{self, Ends};
+use crate::verdict::kernel::Instructions;
+use crate::verdict::{Kind, Tier, Verdict, growth, winding};
 
 /// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -50,14 +51,20 @@ impl Work<'_> {
         let verdict = |n: usize| Verdict::ALL[usize::from(band.verdicts[n])];
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
         let order: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
-        let (mut growing, mut rest) = (Vec::with_capacity(order.len()), Vec::new());
-        let kicks = self.filter::<Everything>(&order, |n, ends| {
-            let found = ends.filter(|_| band.tiers[n] == 0).map(|ends| quick(n, ends, verdict(n), products));
-            match found {
-                Some(found) if found.label.is_some() == products.label => growing.push(found),
-                _ => rest.push(n),
+        let mut growing = Vec::with_capacity(order.len());
+        let mut ends = [None; LANES];
+        let mut seen = vec![false; band.verdicts.len()];
+        let kicks = self.side_by_side(&order, |pairs, positions| {
+            filter::everything::<LANES>(pairs, Instructions::best(), &mut ends[..pairs.len()]);
+            for (&n, ends) in positions.iter().zip(&ends) {
+                let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
+                let found = ends.map(|ends| quick(n, ends, verdict(n), products));
+                let found = found.filter(|found| found.label.is_some() == products.label);
+                seen[n] = found.is_some();
+                growing.extend(found);
             }
         })?;
+        let rest = order.iter().map(|&n| n as usize).filter(|&n| !seen[n]);
         for n in rest {
             let (i, j) = self.multipliers(n);
             let grown = growth(&self.grid().clocks(i, j)?, verdict(n), self.limits())?;

@@ -9,9 +9,11 @@
 //!
 //! is what one update (four shears) adds to the error.
 
+use std::marker::PhantomData;
+
 use super::bound::StepBound;
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Instructions, Lanes, Watch};
+use super::kernel::{Instructions, Lanes, Orbits, Task, Watch, each};
 use super::kind::PartialSigns;
 use super::winding;
 use crate::number::Sign;
@@ -20,7 +22,7 @@ use crate::number::Sign;
 const U: f64 = f64::EPSILON / 2.0;
 
 /// The most updates between two looks at |g|.
-const BLOCK: i32 = 8;
+const BLOCK: i32 = 16;
 
 /// The constants of the certification, all dimensionless.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +43,8 @@ pub(super) struct Certificate {
 impl Certificate {
     /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these; `None` where the theorem's
     /// conditions cannot be met.
-    pub fn new(beta: f64, slope: f64, steps: u64) -> Option<Certificate> {
+    #[inline(always)]
+    fn new(beta: f64, slope: f64, steps: u64) -> Option<Certificate> {
         // 1 + 64u covers the roundings of β and of this line.
         let beta = beta * (1.0 + 64.0 * U);
         let kappa = (beta / 2.0 + (1.0 + beta * beta / 4.0).sqrt()) * (1.0 + 8.0 * U);
@@ -49,9 +52,9 @@ impl Certificate {
         let after = 1.0 + slope;
         let step = StepBound { kappa, epsilon: 1.01 * U * (before + 1.01 * kappa * after) };
         let tau = step.tau(steps)?;
-        // Blocks in which |g| at most doubles.
+        // Blocks in which |g| grows fourfold at most.
         let growth = step.growth();
-        let block = ((2f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
+        let block = ((4f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
         // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
         // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
         // rounding of the sum itself (at most 10^13 terms) and of these constants.
@@ -65,19 +68,17 @@ impl Certificate {
     }
 
     /// Whether |g|² may pass 2^300, from 2^100 at most at the start.
+    #[inline(always)]
     fn strong(&self) -> bool {
         self.steps as f64 * self.step.growth().log2() > 100.0
     }
 
-    /// The signs of the two components of a solution at T/2.
-    fn signs(&self, [x, v]: [f64; 2], squares: f64) -> (Option<Sign>, Option<Sign>) {
+    /// The sign of a component of a solution at T/2 whose length² is given, 0 where it is not certain.
+    #[inline(always)]
+    fn sign(&self, form: f64, length2: f64, squares: f64) -> f64 {
         let across = self.across * squares;
-        let length2 = x * x + v * v;
-        let certain = |form: f64| {
-            let beyond = form * form * length2 > across * across;
-            beyond.then_some(if form > 0.0 { Sign::Positive } else { Sign::Negative })
-        };
-        (certain(x), certain(v))
+        let certain = form * form * length2 > across * across;
+        if certain { form.signum() } else { 0.0 }
     }
 }
 
@@ -113,7 +114,7 @@ impl Ends {
 }
 
 /// Signs, bounds and turns: all that one pair can tell.
-pub(crate) struct Everything;
+struct Everything;
 
 impl Watch for Everything {
     const MEASURE: bool = true;
@@ -121,7 +122,7 @@ impl Watch for Everything {
 }
 
 /// Signs and whether the bounds hold.
-pub(crate) struct SignsOnly;
+struct SignsOnly;
 
 impl Watch for SignsOnly {
     const MEASURE: bool = false;
@@ -131,48 +132,141 @@ impl Watch for SignsOnly {
 /// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
 pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
     let mut ends = [None];
-    together::<Everything, 1>(&[floquet.pair()], Instructions::best(), &mut ends);
+    everything::<1>(&[floquet.pair()], Instructions::best(), &mut ends);
     ends[0]
 }
 
 /// Runs the half periods of at most L pairs side by side, and tells of each what [`run`] tells of one.
-///
-/// One certificate serves all: that of the strongest kick, the steepest slope and the most updates.
-pub(crate) fn together<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instructions, ends: &mut [Option<Ends>]) {
-    let mut lanes = Lanes::<L>::new(pairs);
-    let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
-    let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-    let Some(certificate) = Certificate::new(lanes.strongest(pairs), slope, steps) else {
-        ends.fill(None);
-        return;
-    };
-    (lanes.worst, lanes.strong) = (certificate.worst, certificate.strong());
-    lanes.run::<W>(instructions, certificate.block);
+pub(crate) fn everything<const L: usize>(pairs: &[Pair], instructions: Instructions, ends: &mut [Option<Ends>]) {
+    let halves = side_by_side::<Everything, L>(pairs, instructions);
     for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
-        *end = finish::<W, L>(&lanes, &certificate, pair, i);
+        *end = halves.as_ref().and_then(|halves| halves.ends(pair, i));
     }
 }
 
-/// At T/2; `None` where the theorem's conditions did not hold all the way. (NaN fails.)
-fn finish<W: Watch, const L: usize>(lanes: &Lanes<L>, certificate: &Certificate, pair: &Pair, i: usize) -> Option<Ends> {
-    let [cos, sin] = match pair.left() {
-        0 => [1.0, 0.0],
-        n => pair.base.turn(n).half,
-    };
-    let [even, odd] = lanes.end(i);
-    let end = |[re, im]: [f64; 2], orbits: &super::kernel::Orbits<L>| {
-        let (x, v) = (re.mul_add(cos, -(im * sin)), -re.mul_add(sin, im * cos));
-        let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
-        let end = End {
-            x,
-            v,
-            exponent: orbits.exponent[i] as i64,
-            across: certificate.across * squares,
-            stretch: certificate.step.length_uncertainty(certificate.steps, certificate.ratio * worst) + 2.0 * U,
-            signs: certificate.signs([x, v], squares),
+/// Runs the half periods of at most L pairs side by side for their verdicts: positions in [`Verdict::ALL`], or
+/// [`UNDECIDED`].
+pub(crate) fn verdicts<const L: usize>(pairs: &[Pair], instructions: Instructions) -> [u8; L] {
+    let halves = side_by_side::<SignsOnly, L>(pairs, instructions);
+    halves.map_or([UNDECIDED; L], |halves| halves.verdicts)
+}
+
+/// The filter could not tell.
+pub(crate) const UNDECIDED: u8 = u8::MAX;
+
+/// The half periods of a group.
+struct Halves<const L: usize> {
+    certificate: Certificate,
+    lanes: Lanes<L>,
+    /// Cosine and sine of the base's last turn.
+    left: [[f64; L]; 2],
+    /// (re, im) before the last turn of the even and the odd solution.
+    states: [[[f64; L]; 2]; 2],
+    /// (x, v) of the even and the odd solution, and their signs, 0 where uncertain.
+    ends: [[[f64; L]; 2]; 2],
+    signs: [[[f64; L]; 2]; 2],
+    verdicts: [u8; L],
+}
+
+/// Runs at most L pairs side by side. One certificate serves all: that of the strongest kick, the steepest slope
+/// and the most updates.
+fn side_by_side<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instructions) -> Option<Halves<L>> {
+    let mut lanes = instructions.perform(Start::<L>(pairs));
+    let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
+    let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
+    let certificate = Certificate::new(lanes.strongest(pairs), slope, steps)?;
+    (lanes.worst, lanes.strong) = (certificate.worst, certificate.strong());
+    instructions.perform(Advance::<W, L>(&mut lanes, certificate.block, PhantomData));
+    let mut left = [[1.0; L], [0.0; L]];
+    for (i, pair) in pairs.iter().enumerate() {
+        let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
+        (left[0][i], left[1][i]) = (cos, sin);
+    }
+    Some(instructions.perform(Finish(certificate, lanes, left)))
+}
+
+/// What is compiled for each instruction set.
+struct Start<'a, const L: usize>(&'a [Pair<'a>]);
+struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
+struct Finish<const L: usize>(Certificate, Lanes<L>, [[f64; L]; 2]);
+
+impl<const L: usize> Task for Start<'_, L> {
+    type Output = Lanes<L>;
+
+    #[inline(always)]
+    fn run(self) -> Lanes<L> {
+        Lanes::new(self.0)
+    }
+}
+
+impl<W: Watch, const L: usize> Task for Advance<'_, W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.0.advance::<W>(self.1);
+    }
+}
+
+impl<const L: usize> Task for Finish<L> {
+    type Output = Halves<L>;
+
+    #[inline(always)]
+    fn run(self) -> Halves<L> {
+        Halves::new(self.0, self.1, self.2)
+    }
+}
+
+impl<const L: usize> Halves<L> {
+    #[inline(always)]
+    fn new(certificate: Certificate, lanes: Lanes<L>, left: [[f64; L]; 2]) -> Self {
+        let ([cos, sin], states) = (left, lanes.ends());
+        let end = |[re, im]: [[f64; L]; 2]| {
+            [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
         };
-        (worst <= certificate.worst).then_some(end)
-    };
-    let quarters = if W::WIND { winding::at_end(pair, lanes.even_quarter(i), even, [cos, sin]) } else { 0 };
-    Some(Ends { even: end(even, &lanes.even)?, odd: end(odd, &lanes.odd)?, quarters })
+        let ends = [end(states[0]), end(states[1])];
+        let sign = |[x, v]: [[f64; L]; 2], orbits: &Orbits<L>| {
+            let length2: [f64; L] = each(|i| x[i] * x[i] + v[i] * v[i]);
+            // Where a condition of the theorem failed on the way nothing is certain. (NaN fails.)
+            let squares: [f64; L] = each(|i| {
+                if orbits.worst[i] <= certificate.worst { orbits.squares[i] } else { f64::INFINITY }
+            });
+            let certain = |form: [f64; L]| each(|i| certificate.sign(form[i], length2[i], squares[i]));
+            [certain(x), certain(v)]
+        };
+        let signs = [sign(ends[0], &lanes.even), sign(ends[1], &lanes.odd)];
+        let [[a, c], [b, d]] = signs;
+        // Positions in `Verdict::ALL`: BC > 0, AD < 0, BC < 0 < AD.
+        let mut verdicts = [UNDECIDED; L];
+        for (i, verdict) in verdicts.iter_mut().enumerate() {
+            let (bc, ad) = (b[i] * c[i], a[i] * d[i]);
+            *verdict = if bc < 0.0 && ad > 0.0 { 0 } else { *verdict };
+            *verdict = if ad < 0.0 { 2 } else { *verdict };
+            *verdict = if bc > 0.0 { 1 } else { *verdict };
+        }
+        Halves { certificate, lanes, left, states, ends, signs, verdicts }
+    }
+
+    /// All about lane i; `None` where the theorem's conditions did not hold all the way.
+    fn ends(&self, pair: &Pair, i: usize) -> Option<Ends> {
+        let certificate = &self.certificate;
+        let end = |n: usize, orbits: &Orbits<L>| {
+            let sign = |x: f64| Sign::from_ordering(x.total_cmp(&0.0));
+            let certain = |x: f64| (x != 0.0).then(|| sign(x));
+            let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
+            let stretch = certificate.step.length_uncertainty(certificate.steps, certificate.ratio * worst);
+            let end = End {
+                x: self.ends[n][0][i],
+                v: self.ends[n][1][i],
+                exponent: orbits.exponent[i] as i64,
+                across: certificate.across * squares,
+                stretch: stretch + 2.0 * U,
+                signs: (certain(self.signs[n][0][i]), certain(self.signs[n][1][i])),
+            };
+            (worst <= certificate.worst).then_some(end)
+        };
+        let lane = |pair: &[[f64; L]; 2]| [pair[0][i], pair[1][i]];
+        let quarters = winding::at_end(pair, self.lanes.even_quarter(i), lane(&self.states[0]), lane(&self.left));
+        Some(Ends { even: end(0, &self.lanes.even)?, odd: end(1, &self.lanes.odd)?, quarters })
+    }
 }

@@ -149,14 +149,15 @@ pub(crate) struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// The n of the turn by nθ/2 that is left after the last update: at T/2 the base has turned by pθ/2, of
+    /// The n of the turn by nθ/2 that is left after the last update, if any: at T/2 the base has turned by pθ/2, of
     /// which θ/2 is in P and ⌊⌊q/2⌋ p/q⌋ θ is in the updates.
-    pub fn left(&self) -> u64 {
+    #[inline]
+    pub fn left(&self) -> Option<u64> {
         match (self.q_even, self.updates) {
-            (true, _) => 0,
-            (false, 0) => self.whole - 1,
+            (true, _) => None,
+            (false, 0) => Some(self.whole - 1),
             // The integer of p's parity in (p/q, p/q + 2), less one.
-            (false, _) => self.whole + u64::from((self.whole + 1).is_multiple_of(2) == self.p_odd),
+            (false, _) => Some(self.whole + u64::from((self.whole + 1).is_multiple_of(2) == self.p_odd)),
         }
     }
 }

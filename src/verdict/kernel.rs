@@ -77,7 +77,7 @@ pub(crate) trait Watch {
 }
 
 #[inline(always)]
-fn each<const L: usize>(f: impl Fn(usize) -> f64) -> [f64; L] {
+pub(super) fn each<const L: usize>(f: impl Fn(usize) -> f64) -> [f64; L] {
     let mut lanes = [0.0; L];
     for (i, lane) in lanes.iter_mut().enumerate() {
         *lane = f(i);
@@ -86,6 +86,7 @@ fn each<const L: usize>(f: impl Fn(usize) -> f64) -> [f64; L] {
 }
 
 impl<const L: usize> Orbits<L> {
+    #[inline(always)]
     fn new(re: f64, w: [f64; L], squares: [f64; L]) -> Self {
         let quarters = each(|i| if w[i] < 0.0 { -1.0 } else { 0.0 });
         Orbits { re: [re; L], w, squares, worst: [1.0; L], exponent: [0.0; L], quarters }
@@ -156,10 +157,10 @@ impl<const L: usize> Lanes<L> {
     ///
     /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
     /// which are |g| before the half kick; products of the two solutions have the right scale.
+    #[inline(always)]
     pub fn new(pairs: &[Pair]) -> Self {
         let pair = |i: usize| &pairs[i.min(pairs.len() - 1)];
-        let turns: [_; L] =
-            std::array::from_fn(|i| [0, 1].map(|carry| *pair(i).base.turn(pair(i).whole + carry)));
+        let turn = |i: usize, carry: u64| pair(i).base.turn(pair(i).whole + carry);
         let slope: [f64; L] = each(|i| pair(i).base.slope);
         let scale: [f64; L] = each(|i| pair(i).kick / (2.0 * slope[i]));
         let inverse: [f64; L] = each(|i| 1.0 / scale[i]);
@@ -174,8 +175,8 @@ impl<const L: usize> Lanes<L> {
             limit: each(|i| modulus[i] - step[i]),
             wrap: each(|i| step[i] - 2.0 * modulus[i]),
             tilt: each(|i| scale[i] * slope[i] / modulus[i]),
-            drift: [0, 1].map(|carry| each(|i| scale[i] * turns[i][carry].tan)),
-            kick: [0, 1].map(|carry| each(|i| inverse[i] * turns[i][carry].sin)),
+            drift: [each(|i| scale[i] * turn(i, 0).tan), each(|i| scale[i] * turn(i, 1).tan)],
+            kick: [each(|i| inverse[i] * turn(i, 0).sin), each(|i| inverse[i] * turn(i, 1).sin)],
             scale,
             updates: each(|i| pair(i).updates as f64),
             last_kick: each(|i| if pair(i).q_even { 0.5 } else { 1.0 }),
@@ -185,25 +186,15 @@ impl<const L: usize> Lanes<L> {
     }
 
     /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u.
+    #[inline(always)]
     pub fn strongest(&self, pairs: &[Pair]) -> f64 {
         let beta = |(pair, b): (&Pair, &f64)| b.abs() * (1.0 + pair.base.slope * pair.base.slope);
         pairs.iter().zip(&self.scale).map(beta).fold(0.0, f64::max)
     }
 
-    /// The updates of all lanes, looking at |g| every `block` of them, compiled for the given instructions.
-    pub fn run<W: Watch>(&mut self, instructions: Instructions, block: u64) {
-        match instructions {
-            // Safety: `Instructions` of these names are only made where the processor has them.
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => unsafe { avx512::<W, L>(self, block) },
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => unsafe { avx2::<W, L>(self, block) },
-            Instructions::Portable => self.advance::<W>(block),
-        }
-    }
-
+    /// The updates of all lanes, looking at |g| every `block` of them.
     #[inline(always)]
-    fn advance<W: Watch>(&mut self, block: u64) {
+    pub fn advance<W: Watch>(&mut self, block: u64) {
         let (shortest, longest) = self.updates.iter().fold((f64::INFINITY, 0.0), min_max);
         let mut lanes = *self;
         let mut tilt: [f64; L] = each(|i| lanes.place[i] * lanes.tilt[i]);
@@ -295,10 +286,14 @@ impl<const L: usize> Lanes<L> {
         if self.scale[i] < 0.0 { -1 - counted } else { counted }
     }
 
-    /// The state at T/2 in lane i, before the base's last turn: (re, im) of the even and of the odd solution.
-    pub fn end(&self, i: usize) -> [[f64; 2]; 2] {
-        let tilt = self.place[i] * self.tilt[i];
-        [&self.even, &self.odd].map(|o| [tilt.mul_add(o.w[i], o.re[i]), self.scale[i] * o.w[i]])
+    /// The states at T/2 before the base's last turn: (re, im) of the even and of the odd solution.
+    #[inline(always)]
+    pub fn ends(&self) -> [[[f64; L]; 2]; 2] {
+        let tilt: [f64; L] = each(|i| self.place[i] * self.tilt[i]);
+        let end = |o: &Orbits<L>| {
+            [each(|i| tilt[i].mul_add(o.w[i], o.re[i])), each(|i| self.scale[i] * o.w[i])]
+        };
+        [end(&self.even), end(&self.odd)]
     }
 }
 
@@ -332,20 +327,38 @@ impl Instructions {
         found.chain([Instructions::Portable])
     }
 
+    /// The task, compiled for these instructions: the same result to the bit.
+    pub(super) fn perform<T: Task>(self, task: T) -> T::Output {
+        match self {
+            // Safety: the two are private to `available`, which has seen the features.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => unsafe { avx512(task) },
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => unsafe { avx2(task) },
+            Instructions::Portable => task.run(),
+        }
+    }
+
     /// The best that this processor has.
     pub fn best() -> Instructions {
         Instructions::available().next().unwrap_or(Instructions::Portable)
     }
 }
 
+/// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.
+pub(super) trait Task {
+    type Output;
+    fn run(self) -> Self::Output;
+}
+
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-fn avx512<W: Watch, const L: usize>(lanes: &mut Lanes<L>, block: u64) {
-    lanes.advance::<W>(block);
+fn avx512<T: Task>(task: T) -> T::Output {
+    task.run()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn avx2<W: Watch, const L: usize>(lanes: &mut Lanes<L>, block: u64) {
-    lanes.advance::<W>(block);
+fn avx2<T: Task>(task: T) -> T::Output {
+    task.run()
 }
