@@ -138,43 +138,30 @@ pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
 
 /// Runs the half periods of at most L pairs side by side, and tells of each what [`run`] tells of one.
 pub(crate) fn everything<const L: usize>(pairs: &[Pair], instructions: Instructions, ends: &mut [Option<Ends>]) {
-    let halves = side_by_side::<Everything, L>(pairs, instructions);
+    let Some(run) = side_by_side::<Everything, L>(pairs, instructions) else { return ends.fill(None) };
+    let halves = instructions.perform(Finish(&run));
     for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
-        *end = halves.as_ref().and_then(|halves| halves.ends(pair, i));
+        *end = halves.ends(&run, pair, i);
     }
 }
 
 /// Runs the half periods of at most L pairs side by side for their verdicts: positions in [`Verdict::ALL`], or
 /// [`UNDECIDED`].
 pub(crate) fn verdicts<const L: usize>(pairs: &[Pair], instructions: Instructions) -> [u8; L] {
-    let halves = side_by_side::<SignsOnly, L>(pairs, instructions);
-    halves.map_or([UNDECIDED; L], |halves| halves.verdicts)
+    let run = side_by_side::<SignsOnly, L>(pairs, instructions);
+    run.map_or([UNDECIDED; L], |run| instructions.perform(Verdicts(&run)))
 }
 
 /// The filter could not tell.
 pub(crate) const UNDECIDED: u8 = u8::MAX;
 
-/// The half periods of a group.
-struct Halves<const L: usize> {
-    certificate: Certificate,
-    lanes: Lanes<L>,
-    /// Cosine and sine of the base's last turn.
-    left: [[f64; L]; 2],
-    /// (re, im) before the last turn of the even and the odd solution.
-    states: [[[f64; L]; 2]; 2],
-    /// (x, v) of the even and the odd solution, and their signs, 0 where uncertain.
-    ends: [[[f64; L]; 2]; 2],
-    signs: [[[f64; L]; 2]; 2],
-    verdicts: [u8; L],
-}
-
 /// Runs at most L pairs side by side. One certificate serves all: that of the strongest kick, the steepest slope
 /// and the most updates.
-fn side_by_side<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instructions) -> Option<Halves<L>> {
-    let mut lanes = instructions.perform(Start::<L>(pairs));
+fn side_by_side<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instructions) -> Option<Run<L>> {
+    let (mut lanes, strongest) = instructions.perform(Start::<L>(pairs));
     let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
     let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-    let certificate = Certificate::new(lanes.strongest(pairs), slope, steps)?;
+    let certificate = Certificate::new(strongest, slope, steps)?;
     (lanes.worst, lanes.strong) = (certificate.worst, certificate.strong());
     instructions.perform(Advance::<W, L>(&mut lanes, certificate.block, PhantomData));
     let mut left = [[1.0; L], [0.0; L]];
@@ -182,20 +169,22 @@ fn side_by_side<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instruct
         let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
         (left[0][i], left[1][i]) = (cos, sin);
     }
-    Some(instructions.perform(Finish(certificate, lanes, left)))
+    Some(Run { certificate, lanes, left })
 }
 
 /// What is compiled for each instruction set.
 struct Start<'a, const L: usize>(&'a [Pair<'a>]);
 struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
-struct Finish<const L: usize>(Certificate, Lanes<L>, [[f64; L]; 2]);
+struct Finish<'a, const L: usize>(&'a Run<L>);
+struct Verdicts<'a, const L: usize>(&'a Run<L>);
 
 impl<const L: usize> Task for Start<'_, L> {
-    type Output = Lanes<L>;
+    type Output = (Lanes<L>, f64);
 
     #[inline(always)]
-    fn run(self) -> Lanes<L> {
-        Lanes::new(self.0)
+    fn run(self) -> (Lanes<L>, f64) {
+        let lanes = Lanes::new(self.0);
+        (lanes, lanes.strongest())
     }
 }
 
@@ -208,35 +197,54 @@ impl<W: Watch, const L: usize> Task for Advance<'_, W, L> {
     }
 }
 
-impl<const L: usize> Task for Finish<L> {
+impl<const L: usize> Task for Finish<'_, L> {
     type Output = Halves<L>;
 
     #[inline(always)]
     fn run(self) -> Halves<L> {
-        Halves::new(self.0, self.1, self.2)
+        Halves::new(self.0)
     }
+}
+
+impl<const L: usize> Task for Verdicts<'_, L> {
+    type Output = [u8; L];
+
+    #[inline(always)]
+    fn run(self) -> [u8; L] {
+        Halves::new(self.0).verdicts()
+    }
+}
+
+/// A group after its last update.
+struct Run<const L: usize> {
+    certificate: Certificate,
+    lanes: Lanes<L>,
+    /// Cosine and sine of the base's last turn.
+    left: [[f64; L]; 2],
+}
+
+/// The half periods of a group.
+struct Halves<const L: usize> {
+    /// (re, im) of the even solution before the base's last turn.
+    even: [[f64; L]; 2],
+    /// (x, v) of the even and the odd solution, and their signs, 0 where uncertain.
+    ends: [[[f64; L]; 2]; 2],
+    signs: [[[f64; L]; 2]; 2],
 }
 
 impl<const L: usize> Halves<L> {
     #[inline(always)]
-    fn new(certificate: Certificate, lanes: Lanes<L>, left: [[f64; L]; 2]) -> Self {
-        let ([cos, sin], states) = (left, lanes.ends());
-        let end = |[re, im]: [[f64; L]; 2]| {
-            [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
-        };
-        let ends = [end(states[0]), end(states[1])];
-        let sign = |[x, v]: [[f64; L]; 2], orbits: &Orbits<L>| {
-            let length2: [f64; L] = each(|i| x[i] * x[i] + v[i] * v[i]);
-            // Where a condition of the theorem failed on the way nothing is certain. (NaN fails.)
-            let squares: [f64; L] = each(|i| {
-                if orbits.worst[i] <= certificate.worst { orbits.squares[i] } else { f64::INFINITY }
-            });
-            let certain = |form: [f64; L]| each(|i| certificate.sign(form[i], length2[i], squares[i]));
-            [certain(x), certain(v)]
-        };
-        let signs = [sign(ends[0], &lanes.even), sign(ends[1], &lanes.odd)];
-        let [[a, c], [b, d]] = signs;
-        // Positions in `Verdict::ALL`: BC > 0, AD < 0, BC < 0 < AD.
+    fn new(run: &Run<L>) -> Self {
+        let [even, odd] = run.lanes.ends();
+        let ends = [run.turned(&even), run.turned(&odd)];
+        let signs = [run.signs(&ends[0], &run.lanes.even), run.signs(&ends[1], &run.lanes.odd)];
+        Halves { even, ends, signs }
+    }
+
+    /// Positions in `Verdict::ALL`: BC > 0, AD < 0, BC < 0 < AD.
+    #[inline(always)]
+    fn verdicts(&self) -> [u8; L] {
+        let [[a, c], [b, d]] = &self.signs;
         let mut verdicts = [UNDECIDED; L];
         for (i, verdict) in verdicts.iter_mut().enumerate() {
             let (bc, ad) = (b[i] * c[i], a[i] * d[i]);
@@ -244,15 +252,14 @@ impl<const L: usize> Halves<L> {
             *verdict = if ad < 0.0 { 2 } else { *verdict };
             *verdict = if bc > 0.0 { 1 } else { *verdict };
         }
-        Halves { certificate, lanes, left, states, ends, signs, verdicts }
+        verdicts
     }
 
     /// All about lane i; `None` where the theorem's conditions did not hold all the way.
-    fn ends(&self, pair: &Pair, i: usize) -> Option<Ends> {
-        let certificate = &self.certificate;
+    fn ends(&self, run: &Run<L>, pair: &Pair, i: usize) -> Option<Ends> {
+        let certificate = &run.certificate;
         let end = |n: usize, orbits: &Orbits<L>| {
-            let sign = |x: f64| Sign::from_ordering(x.total_cmp(&0.0));
-            let certain = |x: f64| (x != 0.0).then(|| sign(x));
+            let certain = |x: f64| (x != 0.0).then(|| Sign::from_ordering(x.total_cmp(&0.0)));
             let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
             let stretch = certificate.step.length_uncertainty(certificate.steps, certificate.ratio * worst);
             let end = End {
@@ -266,7 +273,30 @@ impl<const L: usize> Halves<L> {
             (worst <= certificate.worst).then_some(end)
         };
         let lane = |pair: &[[f64; L]; 2]| [pair[0][i], pair[1][i]];
-        let quarters = winding::at_end(pair, self.lanes.even_quarter(i), lane(&self.states[0]), lane(&self.left));
-        Some(Ends { even: end(0, &self.lanes.even)?, odd: end(1, &self.lanes.odd)?, quarters })
+        let quarters = winding::at_end(pair, run.lanes.even_quarter(i), lane(&self.even), lane(&run.left));
+        Some(Ends { even: end(0, &run.lanes.even)?, odd: end(1, &run.lanes.odd)?, quarters })
+    }
+}
+
+impl<const L: usize> Run<L> {
+    /// (x, v) = (Re, −Im) of g e^{iω}, ω the turn left.
+    #[inline(always)]
+    fn turned(&self, [re, im]: &[[f64; L]; 2]) -> [[f64; L]; 2] {
+        let [cos, sin] = &self.left;
+        [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
+    }
+
+    /// The signs of x and v: 0 where they are not certain, everywhere where a condition of the theorem failed on
+    /// the way. (NaN fails.)
+    #[inline(always)]
+    fn signs(&self, [x, v]: &[[f64; L]; 2], orbits: &Orbits<L>) -> [[f64; L]; 2] {
+        let certificate = &self.certificate;
+        let length2: [f64; L] = each(|i| x[i] * x[i] + v[i] * v[i]);
+        let held = |i: usize| orbits.worst[i] <= certificate.worst;
+        let squares: [f64; L] = each(|i| if held(i) { orbits.squares[i] } else { f64::INFINITY });
+        [
+            each(|i| certificate.sign(x[i], length2[i], squares[i])),
+            each(|i| certificate.sign(v[i], length2[i], squares[i])),
+        ]
     }
 }

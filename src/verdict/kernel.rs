@@ -187,9 +187,10 @@ impl<const L: usize> Lanes<L> {
 
     /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u.
     #[inline(always)]
-    pub fn strongest(&self, pairs: &[Pair]) -> f64 {
-        let beta = |(pair, b): (&Pair, &f64)| b.abs() * (1.0 + pair.base.slope * pair.base.slope);
-        pairs.iter().zip(&self.scale).map(beta).fold(0.0, f64::max)
+    pub fn strongest(&self) -> f64 {
+        // The odd start's |g|² is 1 + tan²(θ/2) still.
+        let beta: [f64; L] = each(|i| self.scale[i].abs() * self.odd.squares[i]);
+        beta.iter().fold(0.0, |most, &beta| if beta > most { beta } else { most })
     }
 
     /// The updates of all lanes, looking at |g| every `block` of them.
