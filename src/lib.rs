@@ -70,6 +70,7 @@
 
 pub mod cli;
 pub mod error;
+pub mod map;
 pub mod number;
 pub mod propagator;
 pub mod report;

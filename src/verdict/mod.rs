@@ -20,14 +20,15 @@
 
 mod bound;
 mod exact;
-mod filter;
-mod floquet;
+pub(crate) mod filter;
+pub(crate) mod floquet;
 mod growth;
+pub(crate) mod kernel;
 mod kind;
 mod ladder;
 mod refine;
 mod residue;
-mod winding;
+pub(crate) mod winding;
 
 pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, growth};
