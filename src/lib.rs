@@ -61,6 +61,7 @@
 //! | 1 | [`propagator`] | clocks, schedule, kick, drift, full and half period, the methods |
 //! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
 //! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
+//! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
 //! | 5 | [`scene`] | input documents → library types |
 //! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, SVG, PNG |
 //! | 6 | [`cli`] | arguments → a scene → the library → a report |

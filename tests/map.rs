@@ -12,14 +12,21 @@ fn figure1(d: &str) -> Grid {
 fn unstable(grid: &Grid) -> (u64, u64, u64) {
     let mut count = 0;
     let t = std::time::Instant::now();
-    let counters = for_each_band(grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
-        let beyond = band.tiers.iter().filter(|&&t| t != 0).count();
-        if beyond > 0 { println!("beyond {beyond} in {}", band.first);
-            let all: Vec<_> = (0..band.tiers.len()).filter(|&n| band.tiers[n] != 0).map(|n| band.multipliers(grid, n)).collect();
-            println!("{:?}", &all[..20]); println!("{:?}", &all[all.len()-20..]); }
-        count += band.verdicts.iter().filter(|&&v| v != 0).count() as u64;
-        Ok(())
-    });
+    let counters =
+        for_each_band(grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
+            let beyond = band.tiers.iter().filter(|&&t| t != 0).count();
+            if beyond > 0 {
+                println!("beyond {beyond} in {}", band.first);
+                let all: Vec<_> = (0..band.tiers.len())
+                    .filter(|&n| band.tiers[n] != 0)
+                    .map(|n| band.multipliers(grid, n))
+                    .collect();
+                println!("{:?}", &all[..20]);
+                println!("{:?}", &all[all.len() - 20..]);
+            }
+            count += band.verdicts.iter().filter(|&&v| v != 0).count() as u64;
+            Ok(())
+        });
     println!("{:?} {counters:?}", t.elapsed());
     (counters.as_ref().unwrap().pairs, count, counters.unwrap().escalated)
 }

@@ -64,6 +64,11 @@ impl Common {
         self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
     }
 
+    /// The number of threads asked for; 0 means one a core.
+    pub fn threads(&self) -> usize {
+        self.threads.unwrap_or(0)
+    }
+
     /// Sets the number of threads, once.
     pub fn set_threads(&self) -> Result<()> {
         let Some(threads) = self.threads else { return Ok(()) };
@@ -134,18 +139,16 @@ impl Grid {
         let range = |flag: &str, text: &Option<String>, example: &str| {
             parse_range(flag, &given(flag, text.as_ref(), example)?)
         };
-        GridRange::from_quantities(
-            step("--step1", &self.step1)?,
-            step("--step2", &self.step2)?,
-            range("--h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?,
-            range("--h2-range", &self.h2_range, "--h2-range 1/100..7/2")?,
-        )
+        let steps = [step("--step1", &self.step1)?, step("--step2", &self.step2)?];
+        let h1 = range("--h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?;
+        let h2 = range("--h2-range", &self.h2_range, "--h2-range 1/100..7/2")?;
+        Ok(GridRange::new(steps, [h1, h2]))
     }
 }
 
 /// Echoes a grid into a document.
 pub fn echo_grid(document: Document, grid: &GridRange) -> Document {
-    let ((step1, step2), [h1, h2]) = (grid.steps(), grid.ranges());
+    let ([step1, step2], [h1, h2]) = (grid.steps(), grid.ranges());
     let range = |(lo, hi): &(Laurent, Laurent)| format!("{lo}..{hi}");
     document
         .input("step1", step1)

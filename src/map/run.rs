@@ -40,7 +40,8 @@ pub fn for_each_band(
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.map_err(|cause| Error::io("threads", cause))?;
     let bases = Bases::new(grid);
-    let mine: Vec<(u64, (u64, usize))> = (0..).zip(bands(grid)).filter(|(n, _)| n % shard.n == shard.k - 1).collect();
+    let mine: Vec<(u64, (u64, usize))> =
+        (0..).zip(bands(grid)).filter(|(n, _)| n % shard.n == shard.k - 1).collect();
     let mut counters = Counters::default();
     for group in mine.chunks(AHEAD * pool.current_num_threads()) {
         let work = |&(n, columns): &(u64, (u64, usize))| {

@@ -137,7 +137,11 @@ pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
 }
 
 /// Runs the half periods of at most L pairs side by side, and tells of each what [`run`] tells of one.
-pub(crate) fn everything<const L: usize>(pairs: &[Pair], instructions: Instructions, ends: &mut [Option<Ends>]) {
+pub(crate) fn everything<const L: usize>(
+    pairs: &[Pair],
+    instructions: Instructions,
+    ends: &mut [Option<Ends>],
+) {
     let Some(run) = side_by_side::<Everything, L>(pairs, instructions) else { return ends.fill(None) };
     let halves = instructions.perform(Finish(&run));
     for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
