@@ -157,6 +157,15 @@ impl<'a> Work<'a> {
         Ok(band)
     }
 
+    pub(super) fn uncertified_unstable(&self) -> Result<u64> {
+        let (mut group, mut unstable) = (Group::<LANES>::new(Instructions::best()), 0);
+        self.side_by_side(&self.order, |pairs, _| {
+            let verdicts = group.uncertified(pairs);
+            unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
+        })?;
+        Ok(unstable)
+    }
+
     /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,
     /// and counts the kicks they compose.
     pub(super) fn side_by_side(&self, order: &[u32], mut run: impl FnMut(&[Pair], &[usize])) -> Result<u64> {

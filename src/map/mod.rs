@@ -10,4 +10,4 @@ mod run;
 pub use band::{Band, Counters};
 pub use grid::Grid;
 pub use products::{Growing, Products};
-pub use run::{Shard, for_each_band};
+pub use run::{Shard, for_each_band, uncertified_unstable};

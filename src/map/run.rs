@@ -54,3 +54,15 @@ pub fn for_each_band(
     }
     Ok(counters)
 }
+
+/// The unstable pairs by the same kernel without its certificate: wrong where rounding says so, and of no use but
+/// to tell what certification costs.
+#[doc(hidden)]
+pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|cause| Error::io("threads", cause))?;
+    let (bases, limits) = (Bases::new(grid), Limits::default());
+    let all: Vec<(u64, usize)> = bands(grid).collect();
+    let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &limits, columns).uncertified_unstable();
+    pool.install(|| all.par_iter().map(count).sum())
+}

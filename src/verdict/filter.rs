@@ -133,6 +133,15 @@ impl Watch for SignsOnly {
     const WIND: bool = false;
 }
 
+/// No certificate: what the kernel costs alone, for the benchmark.
+struct Bare;
+
+impl Watch for Bare {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+    const CERTIFY: bool = false;
+}
+
 /// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
 pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
     let mut ends = [None];
@@ -170,6 +179,12 @@ impl<const L: usize> Group<L> {
     /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
     pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
         let certificate = self.run::<SignsOnly>(pairs);
+        certificate.map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    /// The signs as they come out, certified or not: for the benchmark alone.
+    pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate = self.run::<Bare>(pairs).map(|certificate| Certificate { across: 0.0, ..certificate });
         certificate.map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }
 
@@ -294,5 +309,72 @@ impl<const L: usize> Group<L> {
     fn turned(&self, [re, im]: &[[f64; L]; 2]) -> [[f64; L]; 2] {
         let [cos, sin] = &self.left;
         [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rational;
+    use crate::number::rational::ratio;
+    use crate::propagator::{TwoClocks, half_period};
+    use num_integer::Integer;
+    use proptest::prelude::*;
+
+    fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
+        let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
+            let g = p.gcd(&q);
+            Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
+        });
+        prop::collection::vec(pair, 1..9).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    proptest! {
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let results: Vec<String> = Instructions::available().map(|instructions| {
+                let (mut group, mut ends) = (Group::<8>::new(instructions), vec![None; pairs.len()]);
+                group.everything(&pairs, &mut ends);
+                // Debug output of doubles is their shortest exact name.
+                format!("{ends:?} {:?}", group.verdicts(&pairs))
+            }).collect();
+            prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
+        }
+
+        #[test]
+        fn side_by_side_and_alone_agree(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let verdicts = Group::<8>::new(Instructions::best()).verdicts(&pairs);
+            for (floquet, verdict) in floquets.iter().zip(verdicts) {
+                let alone = run(floquet).and_then(|ends| ends.signs().verdict());
+                prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));
+            }
+        }
+
+        #[test]
+        fn the_exact_end_lies_within_the_bound(
+            p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
+        ) {
+            let g = p.gcd(&q);
+            let clocks = TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
+            let half = half_period(&clocks);
+            let exact = |x: f64| Rational::from_float(x).unwrap();
+            // Products do not depend on the scale; two errors across, two of length.
+            let check = |value: Rational, x: f64, one: &End, v: f64, other: &End| {
+                let slack = |end: &End| end.across / end.x.hypot(end.v);
+                let error = x.abs() * slack(other) + v.abs() * slack(one) + slack(one) * slack(other)
+                    + 3.0 * (one.stretch + other.stretch) * (x * v).abs();
+                let distance = value - exact(x) * exact(v);
+                (exact(2.0 * error) >= distance.clone()) && (exact(-2.0 * error) <= distance)
+            };
+            let (even, odd) = (&ends.even, &ends.odd);
+            prop_assume!(even.exponent == 0 && odd.exponent == 0);
+            prop_assert!(check(half.b() * half.c(), odd.x, odd, even.v, even));
+            prop_assert!(check(half.a() * half.d(), even.x, even, odd.v, odd));
+        }
     }
 }
