@@ -1,7 +1,7 @@
 //! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Band, Counters, Grid, Products, Shard, for_each_band};
+use kickdrift::map::{Band, Counters, Grid, Products, Shard, Store, for_each_band, merge, resume};
 use kickdrift::number::parse::parse;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
 
@@ -132,10 +132,41 @@ fn threads_and_shards_change_nothing() {
     let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 1);
     assert!(whole.len() > 1);
     assert_eq!(bands(&grid, BOTH, Shard::WHOLE, 3).0, whole);
-    let mut parts: Vec<_> = (1..=3).flat_map(|k| bands(&grid, BOTH, Shard { k, n: 3 }, 2).0).collect();
+    let mut parts: Vec<_> = (1..=3).flat_map(|k| bands(&grid, BOTH, Shard::new(k, 3).unwrap(), 2).0).collect();
     parts.sort_by_key(|(n, _)| *n);
     assert_eq!(parts, whole);
     assert_eq!(counters.pairs, grid.pairs());
+}
+
+#[test]
+fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
+    let (grid, limits) = (figure_1("1/150"), Limits::default());
+    let directory = std::env::temp_dir().join(format!("kickdrift-map-{}", std::process::id()));
+    let store = Store::open(&directory, &grid, BOTH).unwrap();
+    let shard = |k| Shard::new(k, 2).unwrap();
+    // Stopped after the first band of the first shard; the second is missing.
+    let stop = |_, _| Err(kickdrift::error::Error::io("output", "stopped"));
+    resume(&grid, BOTH, shard(1), 1, &limits, &store, stop).unwrap_err();
+    assert!(merge(&grid, &[store.clone()], |_, _| Ok(())).unwrap_err().to_string().contains("is in no part"));
+    for k in [1, 2] {
+        resume(&grid, BOTH, shard(k), 2, &limits, &store, |_, _| Ok(())).unwrap();
+    }
+    // A damaged file is not there, nor is that of another map.
+    let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 0);
+    let file = directory.join("band-00000001");
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes[300] ^= 1;
+    std::fs::write(&file, bytes).unwrap();
+    assert!(store.load(1).is_none() && store.load(0).is_some());
+    assert!(Store::open(&directory, &grid, Products::default()).unwrap().load(0).is_none());
+    resume(&grid, BOTH, Shard::WHOLE, 2, &limits, &store, |_, _| Ok(())).unwrap();
+    let mut joined = Vec::new();
+    let sums = merge(&grid, &[store], |n, band| {
+        joined.push((n, band));
+        Ok(())
+    });
+    assert_eq!((joined, sums.unwrap()), (whole, counters));
+    std::fs::remove_dir_all(directory).unwrap();
 }
 
 #[test]
@@ -154,7 +185,7 @@ fn impossible_grids_are_refused_by_name() {
     let grid = |l1, d1, d2, hi| Grid::new(x(l1), x("1"), [x(d1), x(d2)], (x("1"), x(hi)), (x("1"), x("2"))).unwrap_err();
     assert!(grid("0", "1", "1", "2").to_string().starts_with("lambda1 = 0"));
     assert!(grid("1", "-1", "1", "2").to_string().starts_with("step1 = -1"));
-    assert!(grid("1", "1", "pi", "2").to_string().starts_with("step2/step1 = (pi)/(1)"));
+    assert!(grid("1", "1", "pi/9", "2").to_string().starts_with("step2/step1 = (pi/9)/(1)"));
     assert!(grid("1", "3", "3", "2").to_string().starts_with("h1-range = 1..2"));
     assert_eq!(grid("1", "10^-9", "1", "2").kind(), ErrorKind::Budget);
 }

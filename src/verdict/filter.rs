@@ -22,7 +22,7 @@ use crate::number::Sign;
 const U: f64 = f64::EPSILON / 2.0;
 
 /// The most updates between two looks at |g|.
-const BLOCK: i32 = 16;
+const BLOCK: i32 = 32;
 
 /// The constants of the certification, all dimensionless.
 #[derive(Clone, Copy, Debug)]
@@ -52,9 +52,9 @@ impl Certificate {
         let after = 1.0 + slope;
         let step = StepBound { kappa, epsilon: 1.01 * U * (before + 1.01 * kappa * after) };
         let tau = step.tau(steps)?;
-        // Blocks in which |g| grows fourfold at most.
+        // Blocks in which |g| grows sixteenfold at most: the bound has digits to spare, a look costs an update.
         let growth = step.growth();
-        let block = ((4f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
+        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
         // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
         // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
         // rounding of the sum itself (at most 10^13 terms) and of these constants.
