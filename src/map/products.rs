@@ -2,7 +2,7 @@
 
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
-use crate::verdict::filter::{self, Ends};
+use crate::verdict::filter::{Ends, Group};
 use crate::verdict::kernel::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, winding};
 
@@ -52,10 +52,11 @@ impl Work<'_> {
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
         let order: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
         let mut growing = Vec::with_capacity(order.len());
+        let mut group = Group::<LANES>::new(Instructions::best());
         let mut ends = [None; LANES];
         let mut seen = vec![false; band.verdicts.len()];
         let kicks = self.side_by_side(&order, |pairs, positions| {
-            filter::everything::<LANES>(pairs, Instructions::best(), &mut ends[..pairs.len()]);
+            group.everything(pairs, &mut ends[..pairs.len()]);
             for (&n, ends) in positions.iter().zip(&ends) {
                 let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
                 let found = ends.map(|ends| quick(n, ends, verdict(n), products));

@@ -40,7 +40,9 @@ fn main() {
     let (filter, refine, exact) = (tier(Tier::Filter), tier(Tier::Refine), tier(Tier::Exact));
     let trace = least(5, || drop(exact_trace(&clocks)));
     let plain = least(1, || drop(full_period(&clocks).trace()));
-    println!("p/q = 3499/631, lambda1 = 10, lambda2 = 2/5, h1 = 0.631: seconds, and ratios to the exact tier");
+    println!(
+        "p/q = 3499/631, lambda1 = 10, lambda2 = 2/5, h1 = 0.631: seconds, and ratios to the exact tier"
+    );
     for (name, seconds) in [
         ("filter (certified doubles)", filter),
         ("refine (128 bits)", refine),
