@@ -30,7 +30,8 @@ fn bands(grid: &Grid, products: Products, shard: Shard, threads: usize) -> (Vec<
 fn count(d: &str) -> (u64, usize, usize) {
     let (bands, counters) = bands(&figure_1(d), Products::default(), Shard::WHOLE, 0);
     let sum = |f: &dyn Fn(&Band) -> usize| bands.iter().map(|(_, band)| f(band)).sum();
-    let unstable = sum(&|band| (0..band.verdicts.len()).filter(|&n| !band.decision(n).verdict.is_stable()).count());
+    let unstable =
+        sum(&|band| (0..band.verdicts.len()).filter(|&n| !band.decision(n).verdict.is_stable()).count());
     (counters.pairs, unstable, sum(&|band| band.tiers.iter().filter(|&&tier| tier > 0).count()))
 }
 
@@ -87,7 +88,9 @@ fn exact_ties_are_found_and_named() {
     let grid = grid("100", "4", "1/20", (("1/20", "1/4"), ("1/20", "3/2")));
     let (bands, _) = bands(&grid, Products::default(), Shard::WHOLE, 0);
     let ties = |kind| {
-        let in_band = |band: &Band| (0..band.verdicts.len()).filter(|&n| band.decision(n).verdict.kind() == kind).count();
+        let in_band = |band: &Band| {
+            (0..band.verdicts.len()).filter(|&n| band.decision(n).verdict.kind() == kind).count()
+        };
         bands.iter().map(|(_, band)| in_band(band)).sum::<usize>()
     };
     // h1 = 1/10: th = pi/3, so that h2 = 3/10, 6/10, ... sit on the edge of a tongue.
@@ -100,7 +103,8 @@ fn windows_with_steps_of_their_own_agree() {
     let x = |text: &str| parse("x", text).unwrap();
     for (d1, d2) in [("1/7", "3/35"), ("pi/90", "7*pi/300"), ("1/1000", "1/10")] {
         let range = |lo, hi| (x(lo), x(hi));
-        let grid = Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("0.2", "0.66"), range("0.1", "2.2")).unwrap();
+        let grid =
+            Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("0.2", "0.66"), range("0.1", "2.2")).unwrap();
         agrees(&grid, Tier::Refine, 1 + grid.pairs() as usize / 300);
     }
 }
@@ -115,7 +119,8 @@ fn labels_and_growth_are_those_of_the_single_pair() {
         for found in band.growing.iter().step_by(5) {
             let n = found.position as usize;
             let (i, j) = band.multipliers(&grid, n);
-            let single = growth(&grid.clocks(i, j).unwrap(), band.decision(n).verdict, &Limits::default()).unwrap();
+            let single =
+                growth(&grid.clocks(i, j).unwrap(), band.decision(n).verdict, &Limits::default()).unwrap();
             assert_eq!(found.label, single.label);
             let (ours, exact) = (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().mid_f64());
             // The enclosure is tight to 60 bits; ours loses digits only where |Tr| - 2 is tiny.
@@ -132,7 +137,8 @@ fn threads_and_shards_change_nothing() {
     let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 1);
     assert!(whole.len() > 1);
     assert_eq!(bands(&grid, BOTH, Shard::WHOLE, 3).0, whole);
-    let mut parts: Vec<_> = (1..=3).flat_map(|k| bands(&grid, BOTH, Shard::new(k, 3).unwrap(), 2).0).collect();
+    let mut parts: Vec<_> =
+        (1..=3).flat_map(|k| bands(&grid, BOTH, Shard::new(k, 3).unwrap(), 2).0).collect();
     parts.sort_by_key(|(n, _)| *n);
     assert_eq!(parts, whole);
     assert_eq!(counters.pairs, grid.pairs());
@@ -147,7 +153,12 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
     // Stopped after the first band of the first shard; the second is missing.
     let stop = |_, _| Err(kickdrift::error::Error::io("output", "stopped"));
     resume(&grid, BOTH, shard(1), 1, &limits, &store, stop).unwrap_err();
-    assert!(merge(&grid, &[store.clone()], |_, _| Ok(())).unwrap_err().to_string().contains("is in no part"));
+    assert!(
+        merge(&grid, std::slice::from_ref(&store), |_, _| Ok(()))
+            .unwrap_err()
+            .to_string()
+            .contains("is in no part")
+    );
     for k in [1, 2] {
         resume(&grid, BOTH, shard(k), 2, &limits, &store, |_, _| Ok(())).unwrap();
     }
@@ -172,7 +183,8 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
 #[test]
 fn wanting_less_does_less() {
     let grid = figure_1("1/100");
-    let (bare, full) = (bands(&grid, Products::default(), Shard::WHOLE, 0), bands(&grid, BOTH, Shard::WHOLE, 0));
+    let (bare, full) =
+        (bands(&grid, Products::default(), Shard::WHOLE, 0), bands(&grid, BOTH, Shard::WHOLE, 0));
     assert_eq!((bare.1.kicks_again, bare.1.kicks), (0, full.1.kicks));
     assert!(bare.0.iter().all(|(_, band)| band.growing.is_empty()));
     // Only pairs in tongues are run again.
@@ -182,7 +194,9 @@ fn wanting_less_does_less() {
 #[test]
 fn impossible_grids_are_refused_by_name() {
     let x = |text: &str| parse("x", text).unwrap();
-    let grid = |l1, d1, d2, hi| Grid::new(x(l1), x("1"), [x(d1), x(d2)], (x("1"), x(hi)), (x("1"), x("2"))).unwrap_err();
+    let grid = |l1, d1, d2, hi| {
+        Grid::new(x(l1), x("1"), [x(d1), x(d2)], (x("1"), x(hi)), (x("1"), x("2"))).unwrap_err()
+    };
     assert!(grid("0", "1", "1", "2").to_string().starts_with("lambda1 = 0"));
     assert!(grid("1", "-1", "1", "2").to_string().starts_with("step1 = -1"));
     assert!(grid("1", "1", "pi/9", "2").to_string().starts_with("step2/step1 = (pi/9)/(1)"));

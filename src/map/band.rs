@@ -92,7 +92,12 @@ pub(super) struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    pub fn new(grid: &'a Grid, bases: &'a Bases<'a>, limits: &'a Limits, (first, columns): (u64, usize)) -> Self {
+    pub fn new(
+        grid: &'a Grid,
+        bases: &'a Bases<'a>,
+        limits: &'a Limits,
+        (first, columns): (u64, usize),
+    ) -> Self {
         let (rows, first_row) = (grid.shape().1, grid.rows().0);
         let (a, b) = grid.ratio();
         let mut gcds = vec![0; columns * rows];
@@ -120,7 +125,8 @@ impl<'a> Work<'a> {
             let (i, j) = self.multipliers(n);
             (i * b).min(j * a) / u64::from(self.gcds[n]) / 2
         };
-        let keys: Vec<u32> = (0..self.gcds.len()).map(|n| updates(n).min(u64::from(u32::MAX)) as u32).collect();
+        let keys: Vec<u32> =
+            (0..self.gcds.len()).map(|n| updates(n).min(u64::from(u32::MAX)) as u32).collect();
         by_counting(&keys)
     }
 

@@ -45,12 +45,18 @@ impl<'a> Bases<'a> {
     }
 
     fn strength(&self, clock: usize, multiple: u64) -> Ball {
-        self.units[clock].mul(&Ball::from_integer(&BigInt::from(u128::from(multiple) * u128::from(multiple))), BITS)
+        self.units[clock]
+            .mul(&Ball::from_integer(&BigInt::from(u128::from(multiple) * u128::from(multiple))), BITS)
     }
 
     /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves.
     /// `gcd` is that of the two steps in their common unit.
-    pub fn pair<'b>(&'b self, first: Option<&'b Base>, (column, row): (u64, u64), gcd: u64) -> Option<Pair<'b>> {
+    pub fn pair<'b>(
+        &'b self,
+        first: Option<&'b Base>,
+        (column, row): (u64, u64),
+        gcd: u64,
+    ) -> Option<Pair<'b>> {
         let (a, b) = self.grid.ratio();
         let (steps, product) = ((column * b, row * a), (column * row) as f64);
         let on_first = || Some(pair(first?, self.kicks[0]? * product, (steps.1, steps.0), gcd));

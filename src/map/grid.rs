@@ -103,7 +103,9 @@ impl Grid {
     /// The grid as one line of exact strings: equal iff the grids are.
     pub fn fingerprint(&self) -> String {
         let Grid { lambda1, lambda2, step1, step2, columns: (i, k), rows: (j, l), .. } = self;
-        format!("lambda1 = {lambda1}; lambda2 = {lambda2}; h1 = ({step1})*({i}..{k}); h2 = ({step2})*({j}..{l})")
+        format!(
+            "lambda1 = {lambda1}; lambda2 = {lambda2}; h1 = ({step1})*({i}..{k}); h2 = ({step2})*({j}..{l})"
+        )
     }
 }
 
@@ -118,7 +120,11 @@ fn positive(field: &str, x: &Laurent, remedy: &str) -> Result<()> {
 /// The first and the last n ≥ 1 with lo ≤ n step ≤ hi.
 fn multiples(field: &str, step: &Laurent, (lo, hi): (Laurent, Laurent)) -> Result<(u64, u64)> {
     let range = format!("{lo}..{hi}");
-    let too_many = || Error::budget(format!("{field} = {range} holds 2^26 multiples of {step} and more: choose a larger step"));
+    let too_many = || {
+        Error::budget(format!(
+            "{field} = {range} holds 2^26 multiples of {step} and more: choose a larger step"
+        ))
+    };
     let last = floor(&hi, step).ok_or_else(too_many)?;
     // The first n with n step ≥ lo is one more than the last with n step < lo.
     let below = if lo.sign() == Sign::Positive { floor(&lo, step).ok_or_else(too_many)? } else { 0 };
@@ -148,6 +154,8 @@ fn terms(step1: &Laurent, step2: &Laurent) -> Result<(u64, u64)> {
     let small = |n: &num_bigint::BigInt| n.to_u64().filter(|&n| n < 1 << 24);
     match (small(ratio.numer()), small(ratio.denom())) {
         (Some(a), Some(b)) => Ok((a, b)),
-        _ => Err(Error::input(field, value(), "has more than 24 bits above or below: choose a simpler ratio")),
+        _ => {
+            Err(Error::input(field, value(), "has more than 24 bits above or below: choose a simpler ratio"))
+        }
     }
 }

@@ -117,10 +117,20 @@ pub fn resume(
 ///
 /// # Errors
 /// An input error that names the first band which no store holds.
-pub fn merge(grid: &Grid, stores: &[Store], mut see: impl FnMut(u64, Band) -> Result<()>) -> Result<Counters> {
+pub fn merge(
+    grid: &Grid,
+    stores: &[Store],
+    mut see: impl FnMut(u64, Band) -> Result<()>,
+) -> Result<Counters> {
     let mut counters = Counters::default();
     for (n, (first, _)) in (0..).zip(bands(grid)) {
-        let missing = || Error::input("parts", format!("band {n} from h1 = {}", grid.h1(first)), "is in no part: run its shard");
+        let missing = || {
+            Error::input(
+                "parts",
+                format!("band {n} from h1 = {}", grid.h1(first)),
+                "is in no part: run its shard",
+            )
+        };
         let band = stores.iter().find_map(|store| store.load(n)).ok_or_else(missing)?;
         counters.add(&band.counters);
         see(n, band)?;

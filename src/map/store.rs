@@ -51,7 +51,8 @@ impl Store {
     /// # Errors
     /// An I/O error that names the file.
     pub fn save(&self, n: u64, band: &Band) -> Result<()> {
-        let (path, draft) = (self.path(n), self.directory.join(format!("draft-{n:08}-{}", std::process::id())));
+        let (path, draft) =
+            (self.path(n), self.directory.join(format!("draft-{n:08}-{}", std::process::id())));
         let mut bytes = self.header.clone().into_bytes();
         encode(band, &mut bytes);
         bytes.extend(hash(&bytes).to_le_bytes());
@@ -62,7 +63,9 @@ impl Store {
 
 /// FNV-1a.
 fn hash(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
+    bytes
+        .iter()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3))
 }
 
 fn encode(band: &Band, bytes: &mut Vec<u8>) {

@@ -189,7 +189,11 @@ impl<const L: usize> Lanes<L> {
         let modulus: [f64; L] = each(|i| pair(i).modulus as f64);
         let step: [f64; L] = each(|i| (2 * pair(i).rest) as f64);
         *self = Lanes {
-            even: Orbits::new(1.0, each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0)), each(|i| 1.0 / secant2[i])),
+            even: Orbits::new(
+                1.0,
+                each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0)),
+                each(|i| 1.0 / secant2[i]),
+            ),
             odd: Orbits::new(0.0, each(|i| -inverse[i]), secant2),
             place: each(|i| -modulus[i]),
             step,
@@ -254,7 +258,8 @@ impl<const L: usize> Lanes<L> {
         self.travel::<W>(tilt);
         self.strike::<W>(&each(|i| if k == updates[i] { self.last_kick[i] } else { 1.0 }));
         let active = |i: usize| k <= updates[i];
-        let keep = |new: &mut [f64; L], old: &[f64; L]| *new = each(|i| if active(i) { new[i] } else { old[i] });
+        let keep =
+            |new: &mut [f64; L], old: &[f64; L]| *new = each(|i| if active(i) { new[i] } else { old[i] });
         keep(&mut self.place, &before.place);
         keep(&mut self.even.re, &before.even.re);
         keep(&mut self.even.w, &before.even.w);
@@ -312,9 +317,8 @@ impl<const L: usize> Lanes<L> {
     #[inline(always)]
     pub fn ends(&self) -> [[[f64; L]; 2]; 2] {
         let tilt: [f64; L] = each(|i| self.place[i] * self.tilt[i]);
-        let end = |o: &Orbits<L>| {
-            [each(|i| tilt[i].mul_add(o.w[i], o.re[i])), each(|i| self.scale[i] * o.w[i])]
-        };
+        let end =
+            |o: &Orbits<L>| [each(|i| tilt[i].mul_add(o.w[i], o.re[i])), each(|i| self.scale[i] * o.w[i])];
         [end(&self.even), end(&self.odd)]
     }
 }
@@ -340,7 +344,10 @@ impl Instructions {
     pub fn available() -> impl Iterator<Item = Instructions> {
         #[cfg(target_arch = "x86_64")]
         let vector = [
-            (Instructions::Avx512, is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")),
+            (
+                Instructions::Avx512,
+                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
+            ),
             (Instructions::Avx2, is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")),
         ];
         #[cfg(not(target_arch = "x86_64"))]

@@ -37,7 +37,8 @@ pub(super) fn at_end(pair: &Pair, counted: i64, [re, im]: [f64; 2], [cos, sin]: 
     let carries = u128::from(pair.updates) * u128::from(pair.rest) / u128::from(pair.modulus);
     let [without, with] = [0, 1].map(|carry| pair.base.turn(pair.whole + carry).half_turns as f64);
     let half_turns = (pair.updates as f64 - carries as f64) * without + carries as f64 * with;
-    let turn = before + 2.0 * FRAC_PI_2 * half_turns + pair.left().unwrap_or(0) as f64 * pair.base.theta / 2.0;
+    let turn =
+        before + 2.0 * FRAC_PI_2 * half_turns + pair.left().unwrap_or(0) as f64 * pair.base.theta / 2.0;
     // The end's own direction knows the quarter; the sum, which of the whole turns. Odd half turns reverse it.
     let sign = if half_turns.rem_euclid(2.0) == 1.0 { -1.0 } else { 1.0 };
     let (x, y) = (sign * (re * cos - im * sin), sign * (re * sin + im * cos));

@@ -12,7 +12,8 @@ use kickdrift::number::parse::parse;
 use kickdrift::verdict::Limits;
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
+    let arguments: Vec<String> =
+        std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     if arguments.iter().any(|argument| argument == "curve") {
         return curve();
     }
@@ -27,10 +28,11 @@ fn figure_1(n: u64) -> Grid {
 
 fn certified(grid: &Grid) -> (u64, Counters) {
     let mut unstable = 0;
-    let counters = for_each_band(grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
-        unstable += band.verdicts.iter().filter(|&&verdict| verdict != 0).count() as u64;
-        Ok(())
-    });
+    let counters =
+        for_each_band(grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
+            unstable += band.verdicts.iter().filter(|&&verdict| verdict != 0).count() as u64;
+            Ok(())
+        });
     (unstable, counters.expect("within the budget"))
 }
 
@@ -59,12 +61,19 @@ fn side_by_side(n: u64) {
     }
     let kicks = certified(&grid).1.kicks as f64;
     let threads = std::thread::available_parallelism().map_or(1, usize::from) as f64;
-    println!("certified          {:8.1} ms, {:.3} ns a kick and thread", ours * 1e3, ours * threads / kicks * 1e9);
+    println!(
+        "certified          {:8.1} ms, {:.3} ns a kick and thread",
+        ours * 1e3,
+        ours * threads / kicks * 1e9
+    );
     println!("uncertified kernel {:8.1} ms, certification costs a factor {:.2}", bare * 1e3, ours / bare);
     println!("full period in C   {:8.1} ms, a factor {:.1}", loops * 1e3, loops / ours);
     let limit = fused_operations_a_second();
     // An update needs 6 fused operations, 1 product and 1 comparison where fused operations are done.
-    println!("fused operations at their limit: {:.1} ms for 8 an update", kicks * 8.0 / limit / threads * 1e3);
+    println!(
+        "fused operations at their limit: {:.1} ms for 8 an update",
+        kicks * 8.0 / limit / threads * 1e3
+    );
 }
 
 fn curve() {
@@ -82,7 +91,12 @@ fn curve() {
 fn build_peer() -> Option<PathBuf> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/bench/peers/full_period.c");
     let program = std::env::temp_dir().join(format!("full_period_{}", std::process::id()));
-    let built = Command::new("gcc").args(["-O3", "-march=native", "-fopenmp", "-o"]).arg(&program).arg(source).arg("-lm").status();
+    let built = Command::new("gcc")
+        .args(["-O3", "-march=native", "-fopenmp", "-o"])
+        .arg(&program)
+        .arg(source)
+        .arg("-lm")
+        .status();
     built.is_ok_and(|status| status.success()).then_some(program)
 }
 
