@@ -91,6 +91,13 @@ impl Grid {
         self.ratio
     }
 
+    /// p and q of h2/h1 = p/q in lowest terms at (i, j).
+    pub fn terms(&self, column: u64, row: u64) -> (u64, u64) {
+        let (p, q) = (self.ratio.0 * row, self.ratio.1 * column);
+        let common = num_integer::gcd(p, q);
+        (p / common, q / common)
+    }
+
     /// The pair of clocks at (i, j).
     ///
     /// # Errors

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! straight between kicks. A kick of strength k of the other clock adds i β x P̄ to g, β = k / sin θ (theorem
-//! `floquet_update` in proofs/). With g = re + i·im and B = β cos²(θ/2) = k / (2 tan(θ/2)) that is three shears,
+//! `foreign_ticks` in proofs/). With g = re + i·im and B = β cos²(θ/2) = k / (2 tan(θ/2)) that is three shears,
 //!
 //! ```text
 //!     re ← re - T im,      im ← im + B re,      re ← re + T im,

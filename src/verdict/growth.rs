@@ -7,7 +7,7 @@
 //!     ln μ = 2 asinh √(BC)   for Tr > 2,        ln μ = 2 asinh √(-AD)   for Tr < -2,
 //! ```
 //!
-//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2).
+//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in proofs/).
 
 use super::exact::Decidable;
 use super::filter;

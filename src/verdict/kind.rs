@@ -10,7 +10,7 @@
 //! | B = C = 0 | coexistence, Q = I | 2 | yes |
 //! | A = D = 0 | coexistence, Q = −I | −2 | yes |
 //!
-//! (theorem `four_sign_table` in proofs/). Since AD − BC = 1, either product's sign is enough where it
+//! (theorem `four_signs` in proofs/). Since AD − BC = 1, either product's sign is enough where it
 //! already says "hyperbolic".
 //!
 //! ```
@@ -92,7 +92,7 @@ impl Verdict {
         self.side
     }
 
-    /// Whether the powers of Q are bounded (theorem `powers_bounded_iff` in proofs/).
+    /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
     pub fn is_stable(self) -> bool {
         matches!(self.kind, Kind::Elliptic | Kind::Coexistence)
     }

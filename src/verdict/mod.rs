@@ -27,9 +27,11 @@ pub(crate) mod kernel;
 mod kind;
 mod ladder;
 mod refine;
+mod residue;
 pub(crate) mod winding;
 
-pub use exact::Decidable;
+pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
+pub(crate) use ladder::filter_only;
 pub use ladder::{Decision, Limits, Tier, decide, decide_from};

@@ -1,0 +1,29 @@
+//! Where the paper predicts instability: effective periods, the tan criterion, resonant points and the
+//! (a, b) curves on which they lie.
+//!
+//! With cos θ = 1 − s/2, s = h1² L1, the fast clock alone turns by θ each step, so its effective half period
+//! is T½ = π h1/θ. The paper predicts instability where q h2 is near an integer multiple of T½, that is
+//! p θ near m π (eq. (9)); all these points lie on the curves 1/T½ = a/h1 + b/h2 (eq. (10)), m = a p + b q.
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::propagator::TwoClocks;
+//! use kickdrift::resonance::{dominant_family, tan};
+//! // 7/3 just below p th = 4 pi, weak slow force: unstable, tongue m = 4 = 1·7 − 1·3.
+//! let clocks = TwoClocks::with_rho(7, 3, ratio(2385, 1000), ratio(1, 25));
+//! assert!(tan::criterion(&clocks).is_unstable());
+//! assert_eq!(dominant_family(7, 3, 4), (1, -1));
+//! ```
+
+mod angle;
+pub mod compare;
+mod curve;
+mod family;
+pub mod proposition;
+mod strength;
+pub mod tan;
+
+pub use angle::{Angle, Nearest};
+pub use curve::{Curve, CurvePoint, Window, curve};
+pub use family::{dominant_family, families};
+pub use strength::{FirstOrder, first_order, strength};

@@ -1,0 +1,229 @@
+//! The tan criterion: the paper's for r-RESPA (q = 1), and its form for every q.
+//!
+//! Let φ = p θ/2 = π q h2/T_eff. The paper: with q = 1 the pair is unstable iff tan φ > 1/alpha > 0 or
+//! 0 > tan φ > −alpha. For every q the half period in Floquet coordinates gives four forms linear in t = tan φ,
+//!
+//! ```text
+//!     A ∝ cE + cO t,  C ∝ cO - cE t    (even start),      B, D likewise    (odd start),
+//! ```
+//!
+//! so the pair is unstable iff t lies between the critical values −cE/cO of A and D (Tr < −2) or between the
+//! values cO/cE of B and C (Tr > 2). (Theorems `tan_criterion_q1`, `tan_criterion` in proofs/.)
+//!
+//! None of this composes a kick of the fast clock: it is a route of its own to the verdict. Angles drop
+//! out of the exact form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s (Chebyshev's), and with
+//! d = cO sin θ the update of a slow kick of strength k at t = n + σ is
+//!
+//! ```text
+//!     E = (1-σ) C_n + σ C_{n+1},  O = (1-σ) S_n + σ S_{n+1},   x = cE E + d O,   cE += k x O,  d -= k x E.
+//! ```
+
+use nalgebra::Matrix2;
+use num_traits::{One, Signed, Zero};
+
+use crate::number::{ExactSign, Rational, Ring, Sign};
+use crate::propagator::TwoClocks;
+use crate::propagator::methods::respa::power;
+use crate::verdict::{Decidable, HalfSigns, Kind, Verdict, filter_only};
+
+/// What the tan criterion says of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Criterion(Verdict);
+
+impl Criterion {
+    /// t strictly between two critical values: |Tr Q| > 2.
+    pub fn is_unstable(self) -> bool {
+        self.0.kind() == Kind::Hyperbolic
+    }
+
+    /// The whole verdict: t on a critical value is parabolic, or coexistence where two of them meet.
+    pub fn verdict(self) -> Verdict {
+        self.0
+    }
+}
+
+/// The tan criterion for any q: in certified doubles (the filter works in these coordinates), else exactly.
+///
+/// # Panics
+/// Where p + q is too large to compose (the exact form has p + q terms).
+pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>) -> Criterion {
+    Criterion(filter_only(clocks).unwrap_or_else(|| exact_forms(clocks).verdict()))
+}
+
+/// The tan criterion for any q by exact arithmetic in the ring of s and the slow kick.
+pub fn exact_criterion<S: ExactSign>(clocks: &TwoClocks<S>) -> Criterion {
+    Criterion(exact_forms(clocks).verdict())
+}
+
+/// The signs of the four forms at T/2, each times a positive factor.
+fn exact_forms<S: ExactSign>(clocks: &TwoClocks<S>) -> HalfSigns {
+    let (even, odd) = coefficients(clocks);
+    let half_turn = HalfTurn::new(clocks.p(), clocks.fast());
+    let ((a, c), (b, d)) = (half_turn.forms(&even), half_turn.forms(&odd));
+    HalfSigns::new(a.sign(), b.sign(), c.sign(), d.sign())
+}
+
+/// (cE, d) after the slow kicks of the half period, for the even and the odd start.
+fn coefficients<S: Ring>(clocks: &TwoClocks<S>) -> ([S; 2], [S; 2]) {
+    let (p, q) = (u128::from(clocks.p()), u128::from(clocks.q()));
+    let (mut even, mut odd) = ([S::one(), S::zero()], [S::zero(), S::one()]);
+    let mut chebyshev = Chebyshev::new(clocks.fast());
+    for k in 0..=q / 2 {
+        let (n, r) = (k * p / q, k * p % q);
+        chebyshev.advance_to(n);
+        let sigma = S::from_rational(&Rational::new(r.into(), q.into()));
+        let (e, o) = chebyshev.between(&sigma);
+        let whole = k > 0 && 2 * k != q;
+        let weight = S::from_rational(&Rational::new(1.into(), if whole { 1 } else { 2 }.into()));
+        let strength = S::product(clocks.slow(), &weight);
+        for solution in [&mut even, &mut odd] {
+            kick(solution, &strength, &e, &o);
+        }
+    }
+    (even, odd)
+}
+
+fn kick<S: Ring>([c, d]: &mut [S; 2], strength: &S, e: &S, o: &S) {
+    let mut x = S::product(c, e);
+    x.add_product(d, o);
+    let y = S::product(strength, &x);
+    c.add_product(&y, o);
+    d.sub_product(&y, e);
+}
+
+/// C_n, S_n and C_{n+1}, S_{n+1} by X_{n+1} = (2 − s) X_n − X_{n−1}.
+struct Chebyshev<S> {
+    n: u128,
+    now: [S; 2],
+    next: [S; 2],
+    two_cos: S,
+}
+
+impl<S: Ring> Chebyshev<S> {
+    fn new(s: &S) -> Self {
+        let half = S::from_rational(&Rational::new(1.into(), 2.into()));
+        let two_cos = S::from_rational(&Rational::from_integer(2.into())) + -s.clone();
+        let next = [S::product(&two_cos, &half), S::one()];
+        Chebyshev { n: 0, now: [S::one(), S::zero()], next, two_cos }
+    }
+
+    fn advance_to(&mut self, n: u128) {
+        while self.n < n {
+            let after = [0, 1].map(|i| S::product(&self.two_cos, &self.next[i]) + -self.now[i].clone());
+            self.now = std::mem::replace(&mut self.next, after);
+            self.n += 1;
+        }
+    }
+
+    /// E and O at n + σ.
+    fn between(&self, sigma: &S) -> (S, S) {
+        let [e, o] = [0, 1].map(|i| {
+            let mut x = self.now[i].clone();
+            x.add_product(sigma, &self.next[i]);
+            x.sub_product(sigma, &self.now[i]);
+            x
+        });
+        (e, o)
+    }
+}
+
+/// cos φ and sin φ, φ = p θ/2, up to factors that are positive for 0 < θ < π and that only signs may ignore.
+enum HalfTurn<S> {
+    /// p even: cos φ = C_{p/2}, sin φ = sin θ S_{p/2}; with sin²θ.
+    Even { cos: S, sin: S, sin2: S },
+    /// p odd: cos φ = cos(θ/2) V, sin φ = sin(θ/2) W; with 2 cos²(θ/2) and 2 sin²(θ/2).
+    Odd { cos: S, sin: S, twice_cos2: S, twice_sin2: S },
+}
+
+impl<S: Ring> HalfTurn<S> {
+    fn new(p: u64, s: &S) -> Self {
+        let mut chebyshev = Chebyshev::new(s);
+        chebyshev.advance_to(u128::from(p / 2));
+        let [cos, sin] = chebyshev.now.clone();
+        let constant = |n: i64, d: i64| S::from_rational(&Rational::new(n.into(), d.into()));
+        let half_s = S::product(s, &constant(1, 2));
+        if p.is_multiple_of(2) {
+            // sin²θ = s − s²/4.
+            let sin2 = s.clone() + -S::product(&half_s, &half_s);
+            return HalfTurn::Even { cos, sin, sin2 };
+        }
+        // cos(nθ + θ/2) = cos(θ/2) (C_n − 2 sin²(θ/2) S_n), sin(nθ + θ/2) = sin(θ/2) (C_n + 2 cos²(θ/2) S_n).
+        let twice_cos2 = constant(2, 1) + -half_s.clone();
+        let (mut v, mut w) = (cos.clone(), cos);
+        v.sub_product(&half_s, &sin);
+        w.add_product(&twice_cos2, &sin);
+        HalfTurn::Odd { cos: v, sin: w, twice_cos2, twice_sin2: half_s }
+    }
+
+    /// cE cos φ + cO sin φ and cO cos φ − cE sin φ, each times a positive factor; cO = d/ sin θ.
+    fn forms(&self, [c, d]: &[S; 2]) -> (S, S) {
+        let form = |x: S, y: S| {
+            let mut sum = S::product(c, &x);
+            sum.add_product(d, &y);
+            sum
+        };
+        match self {
+            HalfTurn::Even { cos, sin, sin2 } => {
+                (form(cos.clone(), sin.clone()), form(-S::product(sin2, sin), cos.clone()))
+            }
+            HalfTurn::Odd { cos, sin, twice_cos2, twice_sin2 } => (
+                form(S::product(twice_cos2, cos), sin.clone()),
+                form(-S::product(twice_sin2, sin), cos.clone()),
+            ),
+        }
+    }
+}
+
+/// The paper's criterion for r-RESPA, exactly: for q = 1 and rational s, 0 < s < 4, is
+/// tan φ > 1/alpha > 0 or 0 > tan φ > −alpha?
+///
+/// With τ = tan(θ/2), τ² = s/(4 − s), both tan φ/τ = Y/X, from (1 + iτ)^p = X + iτY, and alpha τ = h1 h2 L2
+/// (1 + τ²)/4 are rational: no root is taken. For alpha < 0 (L2 < 0) the inequalities are mirrored:
+/// tan φ < 1/alpha < 0 or 0 < tan φ < −alpha.
+///
+/// `None` unless q = 1 and 0 < s < 4.
+pub fn papers_criterion(clocks: &TwoClocks<Rational>) -> Option<bool> {
+    let (four, s) = (Rational::from_integer(4.into()), clocks.fast());
+    if clocks.q() != 1 || !s.is_positive() || *s >= four {
+        return None;
+    }
+    let tau2 = s / (&four - s);
+    // The matrix [[1, −τ²], [1, 1]] acts on (X, Y) as multiplication by 1 + iτ.
+    let one = Rational::one;
+    let turned = power(Matrix2::new(one(), -tau2.clone(), one(), one()), clocks.p());
+    let (x, y) = (&turned[(0, 0)], &turned[(1, 0)]);
+    let alpha_tau = clocks.slow() * (one() + &tau2) / &four;
+    // alpha tan φ > 1 is alpha τ Y/X > 1; tan φ/alpha in (−1, 0) is τ² Y/X / (alpha τ) in (−1, 0).
+    if x.is_zero() || alpha_tau.is_zero() {
+        // At a pole of tan, cos φ = 0 and Tr = −2 exactly: an edge. Without a slow force nothing is unstable.
+        return Some(false);
+    }
+    let tan = y / x;
+    let share = &tau2 * &tan / &alpha_tau;
+    Some(&alpha_tau * &tan > one() || (share.is_negative() && share > -one()))
+}
+
+/// Theorem `tan_criterion_q2` in proofs/, for q = 2: with t = tan φ and c2 = cos²(θ/2), Tr < −2 iff
+/// (1 − alpha t)(1 − alpha c2 t) < 0, and Tr > 2 iff t [t (1 − alpha² c2) + alpha (1 + c2)] < 0.
+///
+/// The side of the instability as a sign (zero: none), for rational 0 < s < 4; `None` unless q = 2 and there.
+/// (p is odd, so t/τ = Y/X with τ = tan(θ/2), as in [`papers_criterion`].)
+pub fn two_slow_kicks(clocks: &TwoClocks<Rational>) -> Option<Sign> {
+    let (one, four, s) = (Rational::one(), Rational::from_integer(4.into()), clocks.fast());
+    if clocks.q() != 2 || !s.is_positive() || *s >= four {
+        return None;
+    }
+    let tau2 = s / (&four - s);
+    let turned = power(Matrix2::new(one.clone(), -tau2.clone(), one.clone(), one.clone()), clocks.p());
+    let (x, y) = (&turned[(0, 0)], &turned[(1, 0)]);
+    let c2 = &one / (&one + &tau2);
+    let alpha_tau = clocks.slow() * (&one + &tau2) / &four;
+    // Everything is multiplied by X²: alpha t = alpha τ Y/X, t² = τ² Y²/X², alpha² = (alpha τ)²/τ².
+    let below = (x - &alpha_tau * y) * (x - &alpha_tau * &c2 * y);
+    let above = y * (y * (&tau2 - &alpha_tau * &alpha_tau * &c2) + &alpha_tau * (&one + &c2) * x);
+    Some(match (below.is_negative(), above.is_negative()) {
+        (true, _) => Sign::Negative,
+        (_, true) => Sign::Positive,
+        _ => Sign::Zero,
+    })
+}

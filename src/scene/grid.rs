@@ -1,0 +1,57 @@
+//! The grid of step pairs as a scene or a command line gives it.
+
+use super::document;
+use crate::error::{Error, Result};
+use crate::map::Grid;
+use crate::number::Laurent;
+use crate::number::parse::{parse, parse_range};
+
+/// Spacings and closed ranges of h1 and h2, not yet applied to an oscillator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GridRange {
+    steps: [Laurent; 2],
+    ranges: [(Laurent, Laurent); 2],
+}
+
+impl GridRange {
+    /// Spacings and closed ranges `lo ≤ hi`, as parsed.
+    pub fn new(steps: [Laurent; 2], ranges: [(Laurent, Laurent); 2]) -> Self {
+        GridRange { steps, ranges }
+    }
+
+    /// From the texts of a scene.
+    ///
+    /// # Errors
+    /// A missing spacing, or a text that does not parse.
+    pub(super) fn read(grid: &document::Grid) -> Result<Self> {
+        let step = |field, own: &Option<String>| match own.as_ref().or(grid.step.as_ref()) {
+            Some(text) => parse(field, text),
+            None => Err(Error::input(
+                field,
+                "missing",
+                "give the spacing as \"step\", or as \"step1\" and \"step2\"",
+            )),
+        };
+        let steps = [step("grid.step1", &grid.step1)?, step("grid.step2", &grid.step2)?];
+        Ok(GridRange::new(steps, [parse_range("grid.h1", &grid.h1)?, parse_range("grid.h2", &grid.h2)?]))
+    }
+
+    /// All pairs of multiples of the spacings in the ranges, for one oscillator.
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn of(&self, lambda1: Laurent, lambda2: Laurent) -> Result<Grid> {
+        let [h1, h2] = self.ranges.clone();
+        Grid::new(lambda1, lambda2, self.steps.clone(), h1, h2)
+    }
+
+    /// The spacings of h1 and h2.
+    pub fn steps(&self) -> &[Laurent; 2] {
+        &self.steps
+    }
+
+    /// The ranges of h1 and h2.
+    pub fn ranges(&self) -> &[(Laurent, Laurent); 2] {
+        &self.ranges
+    }
+}
