@@ -5,7 +5,7 @@ use super::gcd;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
-use crate::verdict::filter;
+use crate::verdict::filter::{self, Group};
 use crate::verdict::floquet::{Base, Pair};
 use crate::verdict::kernel::Instructions;
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
@@ -142,8 +142,9 @@ impl<'a> Work<'a> {
             growing: Vec::new(),
             counters: Counters { pairs: pairs as u64, ..Counters::default() },
         };
+        let mut group = Group::<LANES>::new(Instructions::best());
         band.counters.kicks = self.side_by_side(&self.order, |pairs, positions| {
-            let verdicts = filter::verdicts::<LANES>(pairs, Instructions::best());
+            let verdicts = group.verdicts(pairs);
             for (&n, &verdict) in positions.iter().zip(&verdicts) {
                 band.verdicts[n] = verdict;
             }
@@ -160,6 +161,15 @@ impl<'a> Work<'a> {
             self.grow(&mut band, products)?;
         }
         Ok(band)
+    }
+
+    pub(super) fn uncertified_unstable(&self) -> Result<u64> {
+        let (mut group, mut unstable) = (Group::<LANES>::new(Instructions::best()), 0);
+        self.side_by_side(&self.order, |pairs, _| {
+            let verdicts = group.uncertified(pairs);
+            unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
+        })?;
+        Ok(unstable)
     }
 
     /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,

@@ -2,7 +2,8 @@
 
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
-use crate::verdict::filter::{self, Ends};
+use crate::resonance::dominant_family;
+use crate::verdict::filter::{Ends, Group};
 use crate::verdict::kernel::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, winding};
 
@@ -34,6 +35,11 @@ pub struct Growing {
 }
 
 impl Growing {
+    /// (a, b), the dominant family of the tongue, where the label was asked for; p/q in lowest terms.
+    pub fn family(&self, (p, q): (u64, u64)) -> Option<(i64, i64)> {
+        self.label.map(|m| dominant_family(p, q, m))
+    }
+
     /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period.
     pub fn rate(&self, period: f64) -> Option<f64> {
         Some(self.ln_multiplier? / period)
@@ -52,10 +58,11 @@ impl Work<'_> {
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
         let order: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
         let mut growing = Vec::with_capacity(order.len());
+        let mut group = Group::<LANES>::new(Instructions::best());
         let mut ends = [None; LANES];
         let mut seen = vec![false; band.verdicts.len()];
         let kicks = self.side_by_side(&order, |pairs, positions| {
-            filter::everything::<LANES>(pairs, Instructions::best(), &mut ends[..pairs.len()]);
+            group.everything(pairs, &mut ends[..pairs.len()]);
             for (&n, ends) in positions.iter().zip(&ends) {
                 let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
                 let found = ends.map(|ends| quick(n, ends, verdict(n), products));

@@ -21,8 +21,9 @@ use crate::number::Sign;
 /// Half the distance from 1 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// The most updates between two looks at |g|.
-const BLOCK: i32 = 16;
+/// The most updates between two looks at |g| in a group; alone, a pair is watched at every update, which gives the
+/// sharpest bound.
+const BLOCK: i32 = 32;
 
 /// The constants of the certification, all dimensionless.
 #[derive(Clone, Copy, Debug)]
@@ -41,10 +42,11 @@ pub(super) struct Certificate {
 }
 
 impl Certificate {
-    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these; `None` where the theorem's
+    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these, in blocks of `most` updates at most;
+    /// `None` where the theorem's
     /// conditions cannot be met.
     #[inline(always)]
-    fn new(beta: f64, slope: f64, steps: u64) -> Option<Certificate> {
+    fn new(beta: f64, slope: f64, steps: u64, most: i32) -> Option<Certificate> {
         // 1 + 64u covers the roundings of β and of this line.
         let beta = beta * (1.0 + 64.0 * U);
         let kappa = (beta / 2.0 + (1.0 + beta * beta / 4.0).sqrt()) * (1.0 + 8.0 * U);
@@ -52,9 +54,9 @@ impl Certificate {
         let after = 1.0 + slope;
         let step = StepBound { kappa, epsilon: 1.01 * U * (before + 1.01 * kappa * after) };
         let tau = step.tau(steps)?;
-        // Blocks in which |g| grows fourfold at most.
+        // Blocks in which |g| grows sixteenfold at most: the bound has digits to spare, a look costs an update.
         let growth = step.growth();
-        let block = ((4f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
+        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, most);
         // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
         // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
         // rounding of the sum itself (at most 10^13 terms) and of these constants.
@@ -67,18 +69,23 @@ impl Certificate {
         (steps < 1 << 43 && ratio.is_finite()).then_some(certificate)
     }
 
-    /// Whether |g|² may pass 2^300, from 2^100 at most at the start.
-    #[inline(always)]
+    /// Whether |g|² may pass 2^900, from 2^100 at most at the start.
     fn strong(&self) -> bool {
-        self.steps as f64 * self.step.growth().log2() > 100.0
+        self.steps as f64 * self.step.growth().log2() > 400.0
     }
 
-    /// The sign of a component of a solution at T/2 whose length² is given, 0 where it is not certain.
+    /// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem
+    /// failed on the way. (NaN fails.)
     #[inline(always)]
-    fn sign(&self, form: f64, length2: f64, squares: f64) -> f64 {
-        let across = self.across * squares;
-        let certain = form * form * length2 > across * across;
-        if certain { form.signum() } else { 0.0 }
+    fn signs<const L: usize>(&self, [x, v]: &[[f64; L]; 2], orbits: &Orbits<L>) -> [[f64; L]; 2] {
+        let length: [f64; L] = each(|i| (x[i] * x[i] + v[i] * v[i]).sqrt());
+        let held = |i: usize| orbits.worst[i] <= self.worst;
+        let across: [f64; L] =
+            each(|i| if held(i) { self.across * orbits.squares[i] } else { f64::INFINITY });
+        let sign = |form: f64, i: usize| {
+            if form.abs() * length[i] > across[i] { 1f64.copysign(form) } else { 0.0 }
+        };
+        [each(|i| sign(x[i], i)), each(|i| sign(v[i], i))]
     }
 }
 
@@ -129,66 +136,93 @@ impl Watch for SignsOnly {
     const WIND: bool = false;
 }
 
+/// No certificate: what the kernel costs alone, for the benchmark.
+struct Bare;
+
+impl Watch for Bare {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+    const CERTIFY: bool = false;
+}
+
 /// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
 pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
     let mut ends = [None];
-    everything::<1>(&[floquet.pair()], Instructions::best(), &mut ends);
+    Group::<1>::new(Instructions::best()).everything(&[floquet.pair()], &mut ends);
     ends[0]
-}
-
-/// Runs the half periods of at most L pairs side by side, and tells of each what [`run`] tells of one.
-pub(crate) fn everything<const L: usize>(
-    pairs: &[Pair],
-    instructions: Instructions,
-    ends: &mut [Option<Ends>],
-) {
-    let Some(run) = side_by_side::<Everything, L>(pairs, instructions) else { return ends.fill(None) };
-    let halves = instructions.perform(Finish(&run));
-    for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
-        *end = halves.ends(&run, pair, i);
-    }
-}
-
-/// Runs the half periods of at most L pairs side by side for their verdicts: positions in [`Verdict::ALL`], or
-/// [`UNDECIDED`].
-pub(crate) fn verdicts<const L: usize>(pairs: &[Pair], instructions: Instructions) -> [u8; L] {
-    let run = side_by_side::<SignsOnly, L>(pairs, instructions);
-    run.map_or([UNDECIDED; L], |run| instructions.perform(Verdicts(&run)))
 }
 
 /// The filter could not tell.
 pub(crate) const UNDECIDED: u8 = u8::MAX;
 
-/// Runs at most L pairs side by side. One certificate serves all: that of the strongest kick, the steepest slope
-/// and the most updates.
-fn side_by_side<W: Watch, const L: usize>(pairs: &[Pair], instructions: Instructions) -> Option<Run<L>> {
-    let (mut lanes, strongest) = instructions.perform(Start::<L>(pairs));
-    let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
-    let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-    let certificate = Certificate::new(strongest, slope, steps)?;
-    (lanes.worst, lanes.strong) = (certificate.worst, certificate.strong());
-    instructions.perform(Advance::<W, L>(&mut lanes, certificate.block, PhantomData));
-    let mut left = [[1.0; L], [0.0; L]];
-    for (i, pair) in pairs.iter().enumerate() {
-        let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
-        (left[0][i], left[1][i]) = (cos, sin);
+/// At most L pairs that run side by side. One certificate serves all: that of the strongest kick, the steepest
+/// slope and the most updates.
+pub(crate) struct Group<const L: usize> {
+    instructions: Instructions,
+    lanes: Lanes<L>,
+    /// Cosine and sine of the base's last turn.
+    left: [[f64; L]; 2],
+}
+
+impl<const L: usize> Group<L> {
+    /// Room for L pairs.
+    pub fn new(instructions: Instructions) -> Self {
+        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2] }
     }
-    Some(Run { certificate, lanes, left })
+
+    /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
+    pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
+        let Some(certificate) = self.run::<Everything>(pairs) else { return ends.fill(None) };
+        let halves = self.instructions.perform(Finish(self, &certificate));
+        for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
+            *end = halves.ends(self, &certificate, pair, i);
+        }
+    }
+
+    /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
+    pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate = self.run::<SignsOnly>(pairs);
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    /// The signs as they come out, certified or not: for the benchmark alone.
+    pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate =
+            self.run::<Bare>(pairs).map(|certificate| Certificate { across: 0.0, ..certificate });
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
+        let strongest = self.instructions.perform(Start(pairs, &mut self.lanes));
+        let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
+        let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
+        let certificate = Certificate::new(strongest, slope, steps, if L == 1 { 1 } else { BLOCK })?;
+        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
+        self.instructions.perform(Advance::<W, L>(&mut self.lanes, certificate.block, PhantomData));
+        for (i, pair) in pairs.iter().enumerate() {
+            let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
+            (self.left[0][i], self.left[1][i]) = (cos, sin);
+        }
+        Some(certificate)
+    }
 }
 
 /// What is compiled for each instruction set.
-struct Start<'a, const L: usize>(&'a [Pair<'a>]);
+struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
 struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
-struct Finish<'a, const L: usize>(&'a Run<L>);
-struct Verdicts<'a, const L: usize>(&'a Run<L>);
+struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 
 impl<const L: usize> Task for Start<'_, L> {
-    type Output = (Lanes<L>, f64);
+    type Output = f64;
 
+    /// The strongest kick.
     #[inline(always)]
-    fn run(self) -> (Lanes<L>, f64) {
-        let lanes = Lanes::new(self.0);
-        (lanes, lanes.strongest())
+    fn run(self) -> f64 {
+        self.1.start(self.0);
+        self.1.strongest()
     }
 }
 
@@ -206,7 +240,7 @@ impl<const L: usize> Task for Finish<'_, L> {
 
     #[inline(always)]
     fn run(self) -> Halves<L> {
-        Halves::new(self.0)
+        Halves::new(self.0, self.1)
     }
 }
 
@@ -215,16 +249,8 @@ impl<const L: usize> Task for Verdicts<'_, L> {
 
     #[inline(always)]
     fn run(self) -> [u8; L] {
-        Halves::new(self.0).verdicts()
+        Halves::new(self.0, self.1).verdicts()
     }
-}
-
-/// A group after its last update.
-struct Run<const L: usize> {
-    certificate: Certificate,
-    lanes: Lanes<L>,
-    /// Cosine and sine of the base's last turn.
-    left: [[f64; L]; 2],
 }
 
 /// The half periods of a group.
@@ -238,10 +264,11 @@ struct Halves<const L: usize> {
 
 impl<const L: usize> Halves<L> {
     #[inline(always)]
-    fn new(run: &Run<L>) -> Self {
-        let [even, odd] = run.lanes.ends();
-        let ends = [run.turned(&even), run.turned(&odd)];
-        let signs = [run.signs(&ends[0], &run.lanes.even), run.signs(&ends[1], &run.lanes.odd)];
+    fn new(group: &Group<L>, certificate: &Certificate) -> Self {
+        let [even, odd] = group.lanes.ends();
+        let ends = [group.turned(&even), group.turned(&odd)];
+        let (lanes, [e, o]) = (&group.lanes, &ends);
+        let signs = [certificate.signs(e, &lanes.even), certificate.signs(o, &lanes.odd)];
         Halves { even, ends, signs }
     }
 
@@ -260,8 +287,8 @@ impl<const L: usize> Halves<L> {
     }
 
     /// All about lane i; `None` where the theorem's conditions did not hold all the way.
-    fn ends(&self, run: &Run<L>, pair: &Pair, i: usize) -> Option<Ends> {
-        let certificate = &run.certificate;
+    fn ends(&self, group: &Group<L>, certificate: &Certificate, pair: &Pair, i: usize) -> Option<Ends> {
+        let lanes = &group.lanes;
         let end = |n: usize, orbits: &Orbits<L>| {
             let certain = |x: f64| (x != 0.0).then(|| Sign::from_ordering(x.total_cmp(&0.0)));
             let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
@@ -277,30 +304,83 @@ impl<const L: usize> Halves<L> {
             (worst <= certificate.worst).then_some(end)
         };
         let lane = |pair: &[[f64; L]; 2]| [pair[0][i], pair[1][i]];
-        let quarters = winding::at_end(pair, run.lanes.even_quarter(i), lane(&self.even), lane(&run.left));
-        Some(Ends { even: end(0, &run.lanes.even)?, odd: end(1, &run.lanes.odd)?, quarters })
+        let quarters = winding::at_end(pair, lanes.even_quarter(i), lane(&self.even), lane(&group.left));
+        Some(Ends { even: end(0, &lanes.even)?, odd: end(1, &lanes.odd)?, quarters })
     }
 }
 
-impl<const L: usize> Run<L> {
+impl<const L: usize> Group<L> {
     /// (x, v) = (Re, −Im) of g e^{iω}, ω the turn left.
     #[inline(always)]
     fn turned(&self, [re, im]: &[[f64; L]; 2]) -> [[f64; L]; 2] {
         let [cos, sin] = &self.left;
         [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
     }
+}
 
-    /// The signs of x and v: 0 where they are not certain, everywhere where a condition of the theorem failed on
-    /// the way. (NaN fails.)
-    #[inline(always)]
-    fn signs(&self, [x, v]: &[[f64; L]; 2], orbits: &Orbits<L>) -> [[f64; L]; 2] {
-        let certificate = &self.certificate;
-        let length2: [f64; L] = each(|i| x[i] * x[i] + v[i] * v[i]);
-        let held = |i: usize| orbits.worst[i] <= certificate.worst;
-        let squares: [f64; L] = each(|i| if held(i) { orbits.squares[i] } else { f64::INFINITY });
-        [
-            each(|i| certificate.sign(x[i], length2[i], squares[i])),
-            each(|i| certificate.sign(v[i], length2[i], squares[i])),
-        ]
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rational;
+    use crate::number::rational::ratio;
+    use crate::propagator::{TwoClocks, half_period};
+    use num_integer::Integer;
+    use proptest::prelude::*;
+
+    fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
+        let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
+            let g = p.gcd(&q);
+            Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
+        });
+        prop::collection::vec(pair, 1..9).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    proptest! {
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let results: Vec<String> = Instructions::available().map(|instructions| {
+                let (mut group, mut ends) = (Group::<8>::new(instructions), vec![None; pairs.len()]);
+                group.everything(&pairs, &mut ends);
+                // Debug output of doubles is their shortest exact name.
+                format!("{ends:?} {:?}", group.verdicts(&pairs))
+            }).collect();
+            prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
+        }
+
+        #[test]
+        fn side_by_side_and_alone_agree(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let verdicts = Group::<8>::new(Instructions::best()).verdicts(&pairs);
+            for (floquet, verdict) in floquets.iter().zip(verdicts) {
+                let alone = run(floquet).and_then(|ends| ends.signs().verdict());
+                prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));
+            }
+        }
+
+        #[test]
+        fn the_exact_end_lies_within_the_bound(
+            p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
+        ) {
+            let g = p.gcd(&q);
+            let clocks = TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
+            let half = half_period(&clocks);
+            let exact = |x: f64| Rational::from_float(x).unwrap();
+            // Products do not depend on the scale; two errors across, two of length.
+            let check = |value: Rational, x: f64, one: &End, v: f64, other: &End| {
+                let slack = |end: &End| end.across / end.x.hypot(end.v);
+                let error = x.abs() * slack(other) + v.abs() * slack(one) + slack(one) * slack(other)
+                    + 3.0 * (one.stretch + other.stretch) * (x * v).abs();
+                let distance = value - exact(x) * exact(v);
+                (exact(2.0 * error) >= distance.clone()) && (exact(-2.0 * error) <= distance)
+            };
+            let (even, odd) = (&ends.even, &ends.odd);
+            prop_assume!(even.exponent == 0 && odd.exponent == 0);
+            prop_assert!(check(half.b() * half.c(), odd.x, odd, even.v, even));
+            prop_assert!(check(half.a() * half.d(), even.x, even, odd.v, odd));
+        }
     }
 }

@@ -153,12 +153,33 @@ impl<const L: usize> Orbits<L> {
 }
 
 impl<const L: usize> Lanes<L> {
+    /// No pair yet.
+    pub fn empty() -> Self {
+        let (zero, orbits) = ([0.0; L], Orbits::new(0.0, [0.0; L], [0.0; L]));
+        Lanes {
+            even: orbits,
+            odd: orbits,
+            place: zero,
+            step: zero,
+            limit: zero,
+            wrap: zero,
+            tilt: zero,
+            drift: [zero; 2],
+            kick: [zero; 2],
+            scale: zero,
+            updates: zero,
+            last_kick: zero,
+            worst: 0.0,
+            strong: false,
+        }
+    }
+
     /// The pairs after the half kick at t = 0. Lane i holds `pairs[i]`, lanes to spare the last pair.
     ///
     /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
     /// which are |g| before the half kick; products of the two solutions have the right scale.
     #[inline(always)]
-    pub fn new(pairs: &[Pair]) -> Self {
+    pub fn start(&mut self, pairs: &[Pair]) {
         let pair = |i: usize| &pairs[i.min(pairs.len() - 1)];
         let turn = |i: usize, carry: u64| pair(i).base.turn(pair(i).whole + carry);
         let slope: [f64; L] = each(|i| pair(i).base.slope);
@@ -167,7 +188,7 @@ impl<const L: usize> Lanes<L> {
         let secant2: [f64; L] = each(|i| slope[i].mul_add(slope[i], 1.0));
         let modulus: [f64; L] = each(|i| pair(i).modulus as f64);
         let step: [f64; L] = each(|i| (2 * pair(i).rest) as f64);
-        Lanes {
+        *self = Lanes {
             even: Orbits::new(
                 1.0,
                 each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0)),
@@ -186,7 +207,7 @@ impl<const L: usize> Lanes<L> {
             last_kick: each(|i| if pair(i).q_even { 0.5 } else { 1.0 }),
             worst: f64::INFINITY,
             strong: true,
-        }
+        };
     }
 
     /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u.

@@ -64,7 +64,8 @@ pub(super) fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bit
         for event in schedule.half_period() {
             let drift = Ball::from_rational(&Rational::new(event.drift.into(), ticks.clone()), bits);
             x = x.add(&v.mul(&drift, bits), bits);
-            nodes.see(x.sign());
+            // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
+            nodes.see(x.sign().filter(|&sign| sign != Sign::Zero));
             let halvings = i64::from(event.weight == Weight::Half);
             v = v.sub(&strengths[event.kicks as usize].scale2(-halvings).mul(&x, bits), bits);
         }
