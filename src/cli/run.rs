@@ -1,18 +1,19 @@
 //! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
 
 use std::cell::OnceCell;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format as DocumentFormat};
+use super::args::{Common, Format as DocumentFormat, echo_grid};
 use super::plane::Verdicts;
 use super::{compare, curves, map, polynomial, proposition};
 use crate::error::{Error, Result};
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
-use crate::report::file::write_output;
+use crate::report::file::{Folder, write_output};
 use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
-use crate::scene::{Format, Product, Scene, Want};
+use crate::scene::{self, Format, Product, Scene, Want};
 use crate::verdict::Limits;
 
 /// Flags of `run`.
@@ -28,26 +29,35 @@ const DPI: f64 = 300.0;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let text = std::fs::read_to_string(&self.scene)
-            .map_err(|cause| Error::io(self.scene.display(), format!("cannot read the scene: {cause}")))?;
-        let scene = Scene::read(&text)?;
-        let folder = common.output.clone().unwrap_or_else(|| self.default_folder());
-        std::fs::create_dir_all(&folder).map_err(|cause| {
-            Error::io(
-                folder.display(),
-                format!("cannot make the output folder: {cause}; choose one with --output"),
-            )
-        })?;
+        let scene = Scene::read(&self.text()?)?;
+        let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
         let work = Work::new(&scene, common);
+        // All products before the first file: an error leaves nothing behind.
+        let contents = scene.want().iter().map(|want| work.bytes(*want)).collect::<Result<Vec<_>>>()?;
         let mut summary = Summary::default();
-        for want in scene.want() {
-            let path = folder.join(want.file_name());
-            write_output(Some(&path), &work.bytes(*want)?)?;
+        for (want, bytes) in scene.want().iter().zip(contents) {
+            let path = folder.path().join(want.file_name());
+            write_output(Some(&path), &bytes)?;
             summary.add(*want, &path, &work);
         }
-        let document = summary.document(&scene);
+        folder.keep();
+        let document = echo(summary.document(&scene), &scene)?;
         let format = common.format.unwrap_or(DocumentFormat::Text).into();
         write_output(None, document.render(format)?.as_bytes())
+    }
+
+    /// The text of the scene file; no more of it than a scene may have.
+    fn text(&self) -> Result<String> {
+        let read = || {
+            let mut text = String::new();
+            let file = std::fs::File::open(&self.scene)?;
+            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
+            Ok(text)
+        };
+        read().map_err(|cause: std::io::Error| {
+            let remedy = "name a scene file, such as data/scenes/figure1.json";
+            Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
+        })
     }
 
     /// `out/` and the scene's name.
@@ -190,4 +200,33 @@ impl Summary {
         let lines: Vec<String> = heading.into_iter().chain(self.lines).collect();
         Document::new("run").input("title", scene.title()).entry("products", self.products).summary(&lines)
     }
+}
+
+/// Echoes what the scene gives, exactly.
+fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
+    let given = scene.document();
+    if given.lambda1.is_some() {
+        document = document.input("lambda1", scene.lambda1()?);
+    }
+    if given.lambda2.is_some() {
+        document = document.input("lambda2", scene.lambda2()?);
+    }
+    if let Ok(range) = scene.range() {
+        document = echo_grid(document, range);
+    }
+    if given.families.is_some() {
+        document = curves::echo(document, &scene.families()?);
+    }
+    if given.tolerance.is_some() {
+        document = document.input("tolerance", scene.tolerance()?);
+    }
+    if given.ratio.is_some() {
+        let (p, q) = scene.ratio()?;
+        document = document.input("ratio", format!("{p}/{q}"));
+    }
+    if let Some(max) = given.max {
+        document = document.input("max", max);
+    }
+    let want: Vec<String> = scene.want().iter().map(Want::file_name).collect();
+    Ok(document.input("want", want.join(", ")))
 }

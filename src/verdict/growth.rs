@@ -17,8 +17,8 @@ use super::ladder::Limits;
 use super::refine;
 use super::winding;
 use crate::error::Result;
-use crate::number::{Ball, Rational, Sign};
-use crate::propagator::{Schedule, TwoClocks, Weight, half_period};
+use crate::number::{Ball, Rational};
+use crate::propagator::{Schedule, TwoClocks};
 
 /// How a pair moves over one synchronization period.
 #[derive(Clone, Debug)]
@@ -50,11 +50,9 @@ pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Li
         return Ok(from_products(products(&ends), verdict, label));
     }
     limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
-    let (products, counted) = match refined(clocks, &schedule, verdict) {
-        Some((ends, bits)) => (ends.products(bits), from_nodes(ends.even.nodes, ends.even.signs, verdict)),
-        None => exactly(clocks, &schedule, verdict),
-    };
-    Ok(from_products(products, verdict, label.or(counted)))
+    let (ends, bits) = refined(clocks, &schedule, verdict);
+    let label = label.or_else(|| from_nodes(&ends, verdict));
+    Ok(from_products(ends.products(bits), verdict, label))
 }
 
 /// BC and AD, as enclosures; AD − BC = 1.
@@ -82,56 +80,33 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
     Growth { trace, ln_multiplier, label }
 }
 
-/// Refines until the distance from ±2 is known to [`ACCURACY`] bits, or, on an edge, once. `None` where kicks are
-/// so strong or so weak that exact arithmetic is the shorter way.
+/// The bound's constants are doubles, which cannot tell a precision beyond 1000 bits from that one: strengths of
+/// 10^90 and more, say, leave them no room however many bits there are. Then balls take over, which lose some
+/// bits of the strongest kick every step but ask for nothing else.
+const MOST_BOUNDED: u32 = 4096;
+
+/// Refines until the distance from ±2 is known to [`ACCURACY`] bits, or, on an edge, once.
 fn refined<S: Decidable>(
     clocks: &TwoClocks<S>,
     schedule: &Schedule,
     verdict: Verdict,
-) -> Option<(refine::Ends, u32)> {
-    let on_edge = matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence);
-    let enough = |products: &Products| {
-        on_edge || products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits()) >= ACCURACY
-    };
-    let at = |bits: u32| refine::run(clocks, schedule, bits).map(|ends| (ends, bits));
-    (7..14).map(|log2| 1 << log2).filter_map(at).find(|(ends, bits)| enough(&ends.products(*bits)))
-}
-
-/// The products and the label by exact arithmetic.
-fn exactly<S: Decidable>(
-    clocks: &TwoClocks<S>,
-    schedule: &Schedule,
-    verdict: Verdict,
-) -> (Products, Option<u64>) {
-    const BITS: u32 = 192;
-    let half = half_period(clocks);
-    let product = |x: &S, y: &S| S::product(x, y).enclosure(BITS);
-    let products = Products { bc: product(half.b(), half.c()), ad: product(half.a(), half.d()) };
-    let signs = (Some(half.a().sign()), Some(half.c().sign()));
-    (products, from_nodes(Some(exact_nodes(clocks, schedule)), signs, verdict))
-}
-
-/// The sign changes of the even solution from kick to kick over the half period.
-fn exact_nodes<S: Decidable>(clocks: &TwoClocks<S>, schedule: &Schedule) -> u64 {
-    let fraction = |n: u64, d: u64| S::from_rational(&Rational::new(n.into(), d.into()));
-    let strengths = [
-        S::zero(),
-        clocks.fast().clone(),
-        clocks.slow().clone(),
-        clocks.fast().clone() + clocks.slow().clone(),
-    ];
-    let (mut x, mut v, mut last, mut nodes) = (S::one(), S::zero(), Sign::Positive, 0);
-    for event in schedule.half_period() {
-        x.add_product(&fraction(event.drift, schedule.clocks()[0].step()), &v);
-        let halves = if event.weight == Weight::Full { 2 } else { 1 };
-        v.sub_product(&S::product(&fraction(halves, 2), &strengths[event.kicks as usize]), &x);
-        let sign = x.sign();
-        if sign != Sign::Zero {
-            nodes += u64::from(sign != last);
-            last = sign;
+) -> (refine::Ends, u32) {
+    let mut bits = 128;
+    loop {
+        let ends = if bits <= MOST_BOUNDED {
+            refine::run(clocks, schedule, bits)
+        } else {
+            Some(refine::run_balls(clocks, schedule, bits))
+        };
+        bits *= 2;
+        let Some(ends) = ends else { continue };
+        let products = ends.products(bits);
+        let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
+        let on_edge = matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence);
+        if on_edge || accuracy >= ACCURACY {
+            return (ends, bits);
         }
     }
-    nodes
 }
 
 impl refine::Ends {
@@ -143,15 +118,17 @@ impl refine::Ends {
 /// m from the sign changes n of the even solution over the half period. Where Tr > 2 the even solution has
 /// turned by less than a quarter from n half turns, so m = 2n. Where Tr < −2 it has turned by (m/2) half turns
 /// give or take a quarter: past n of them if x v < 0 at T/2 (it turns clockwise), before n if x v > 0.
-fn from_nodes(nodes: Option<u64>, (x, v): (Option<Sign>, Option<Sign>), verdict: Verdict) -> Option<u64> {
+fn from_nodes(ends: &refine::Ends, verdict: Verdict) -> Option<u64> {
+    use crate::number::Sign::Negative;
     if verdict.kind() != Kind::Hyperbolic {
         return None;
     }
-    let nodes = nodes?;
+    let nodes = ends.even.nodes?;
     if verdict.side() > 0 {
         return Some(2 * nodes);
     }
-    if x? * v? == Sign::Negative { Some(2 * nodes + 1) } else { (2 * nodes).checked_sub(1) }
+    let (x, v) = ends.even.signs;
+    if x? * v? == Negative { Some(2 * nodes + 1) } else { (2 * nodes).checked_sub(1) }
 }
 
 /// The filter's products: exact vector = a 2^e ((x, v) + t J(x, v)/|(x, v)|²), |t| ≤ across.
