@@ -8,7 +8,7 @@ use crate::number::parse::{parse, parse_integer_range, parse_range};
 use crate::number::{ExactSign, Laurent, Sign};
 use crate::report::curves;
 use crate::report::document::Document;
-use crate::resonance::{Curve, Window, curve};
+use crate::resonance::{Curve, Window, curve, curve_within};
 use crate::scene::{Families, GridRange};
 
 /// Flags of `curves`.
@@ -78,6 +78,15 @@ const MOST_POINTS: i128 = 20_000_000;
 
 /// All curves of the families that pass through the window.
 pub fn sample(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
+    each(families, |a, b| curve(a, b, lambda1, window, families.samples))
+}
+
+/// The same, all samples in the window.
+pub fn sample_within(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
+    each(families, |a, b| curve_within(a, b, lambda1, window, families.samples))
+}
+
+fn each(families: &Families, sample: impl Fn(i64, i64) -> Result<Curve> + Sync) -> Result<Vec<Curve>> {
     let count = |(lo, hi): (i64, i64)| i128::from(hi) - i128::from(lo) + 1;
     let curves = count(families.a) * count(families.b);
     if curves > MOST_CURVES {
@@ -95,8 +104,7 @@ pub fn sample(lambda1: &Laurent, families: &Families, window: &Window) -> Result
     let pairs: Vec<(i64, i64)> = (families.a.0..=families.a.1)
         .flat_map(|a| (families.b.0..=families.b.1).map(move |b| (a, b)))
         .collect();
-    let curves: Result<Vec<Curve>> =
-        pairs.into_par_iter().map(|(a, b)| curve(a, b, lambda1, window, families.samples)).collect();
+    let curves: Result<Vec<Curve>> = pairs.into_par_iter().map(|(a, b)| sample(a, b)).collect();
     Ok(curves?.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
 }
 

@@ -6,6 +6,7 @@ mod args;
 mod compare;
 mod curves;
 mod map;
+mod merge;
 mod plane;
 mod polynomial;
 mod proposition;
@@ -48,6 +49,8 @@ enum Command {
     Polynomial(polynomial::Args),
     /// The verdicts of a grid of step pairs: counts, and the unstable pairs as a table.
     Map(map::Args),
+    /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
+    Merge(merge::Args),
     /// Reads a scene file and computes the products that it wants.
     Run(run::Args),
 }
@@ -79,6 +82,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Proposition(args) => args.run(common)?,
         Command::Polynomial(args) => args.run(common)?,
         Command::Map(args) => args.run(common)?,
+        Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
     }
     Ok(ExitCode::SUCCESS)

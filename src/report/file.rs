@@ -69,18 +69,18 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 }
 
 /// A temporary file that is removed again unless it takes its final name.
-struct Temporary(Option<PathBuf>);
+pub(super) struct Temporary(Option<PathBuf>);
 
 impl Temporary {
     /// A new file in the directory of `target`, under a name that nobody else has.
-    fn beside(target: &Path) -> io::Result<(Self, File)> {
+    pub(super) fn beside(target: &Path) -> io::Result<(Self, File)> {
         let name = target.file_name().ok_or(ErrorKind::IsADirectory)?;
         for attempt in 0..1000 {
             let mut hidden = OsString::from(".");
             hidden.push(name);
             hidden.push(format!(".{}-{attempt}.part", std::process::id()));
             let path = target.with_file_name(hidden);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
+            match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
                 Err(cause) if cause.kind() == ErrorKind::AlreadyExists => continue,
                 file => return Ok((Temporary(Some(path)), file?)),
             }
@@ -149,7 +149,7 @@ impl Drop for Folder {
 }
 
 /// The cause with a remedy beside it.
-fn explained(path: &Path, cause: &io::Error) -> Error {
+pub(super) fn explained(path: &Path, cause: &io::Error) -> Error {
     let remedy = match cause.kind() {
         ErrorKind::NotFound => "create the directory first, or name another file",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
