@@ -7,4 +7,5 @@ pub mod propagator;
 pub mod report;
 pub mod resonance;
 pub mod scene;
+pub mod system;
 pub mod verdict;
