@@ -1,5 +1,6 @@
 //! kickdrift: exact, certified linear stability of multiple-time-step integrators.
 
+pub mod avi;
 pub mod cli;
 pub mod error;
 pub mod number;

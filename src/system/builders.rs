@@ -32,8 +32,11 @@ pub fn periodic_chain(n: usize, stiffness: &[Rational], steps: &[Rational]) -> R
     let mut kinds = vec![Symmetric::zero(n); stiffness.len()];
     for spring in 0..=n {
         let kind = spring % stiffness.len();
-        let (left, right) = (spring.checked_sub(1), (spring < n).then_some(spring));
-        let (i, j) = left.map_or((right.expect("spring 0"), None), |left| (left, right));
+        // Mass i lies between the springs i and i + 1.
+        let (i, j) = match spring {
+            0 => (0, None),
+            _ => (spring - 1, (spring < n).then_some(spring)),
+        };
         kinds[kind].add_spring(i, j, &stiffness[kind]);
     }
     System::new(unit_masses(n), kinds.into_iter().zip(steps).map(|(k, h)| potential(k, h)).collect())
