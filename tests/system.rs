@@ -279,6 +279,8 @@ fn large_chains_and_bars_are_proven_quickly() {
     assert_eq!(bar.clocks().len(), 10);
     let analysis2 = decide_system(&bar, &Limits::default()).unwrap();
     println!("bar {:?} {:?} {:?} {}", start.elapsed(), analysis2.kind, analysis2.parts[0].evidence, bar.schedule().strikes());
+    let mu: Vec<_> = analysis2.parts[0].multipliers.iter().map(|m| m.mu).collect();
+    println!("bar radius {:?} gap {:?} ends {:?} {:?} im {:?}", analysis2.parts[0].multipliers[0].radius, mu.windows(2).map(|w| (w[1] - w[0]).norm()).fold(1.0, f64::min), mu[0], mu[99], mu.iter().map(|m| m.im).fold(0.0, f64::max));
     println!("growth {:?} {:?}", analysis.growth_rate(), analysis2.growth_rate());
     println!("{:?} {:?}", analysis.warnings, analysis2.warnings);
     assert!(analysis.is_proof() && analysis2.is_proof());

@@ -15,11 +15,12 @@ pub trait Force<S> {
     fn energy(&self, x: &[S]) -> S;
 }
 
-/// V = xᵀ K x/2 over any ring, K given by rows.
+/// V = xᵀ K x/2 over any ring.
 #[derive(Clone, Debug)]
 pub struct Linear<S> {
     particles: Vec<usize>,
-    rows: Vec<Vec<S>>,
+    /// K by rows, end to end.
+    entries: Vec<S>,
 }
 
 impl<S: Ring> Linear<S> {
@@ -32,18 +33,18 @@ impl<S: Ring> Linear<S> {
         if rows.len() != n || rows.iter().any(|row| row.len() != n) {
             return Err(Error::input("stiffness", format!("{} rows", rows.len()), format!("give {n} x {n} entries")));
         }
-        Ok(Linear { particles, rows })
+        Ok(Linear { particles, entries: rows.concat() })
     }
 
     /// A spring to a wall, V = k x²/2.
     pub fn tether(particle: usize, k: S) -> Self {
-        Linear { particles: vec![particle], rows: vec![vec![k]] }
+        Linear { particles: vec![particle], entries: vec![k] }
     }
 
     /// A spring between two particles, V = k (x_i − x_j)²/2.
     pub fn spring(i: usize, j: usize, k: S) -> Self {
         let minus = -k.clone();
-        Linear { particles: vec![i, j], rows: vec![vec![k.clone(), minus.clone()], vec![minus, k]] }
+        Linear { particles: vec![i, j], entries: vec![k.clone(), minus.clone(), minus, k] }
     }
 }
 
@@ -53,7 +54,7 @@ impl<S: Ring> Force<S> for Linear<S> {
     }
 
     fn force(&self, x: &[S], force: &mut [S]) {
-        for (row, f) in self.rows.iter().zip(force) {
+        for (row, f) in self.entries.chunks_exact(x.len()).zip(force) {
             *f = S::zero();
             row.iter().zip(x).for_each(|(k, x)| f.sub_product(k, x));
         }
@@ -61,7 +62,7 @@ impl<S: Ring> Force<S> for Linear<S> {
 
     fn energy(&self, x: &[S]) -> S {
         let mut twice = S::zero();
-        for (row, xi) in self.rows.iter().zip(x) {
+        for (row, xi) in self.entries.chunks_exact(x.len()).zip(x) {
             row.iter().zip(x).for_each(|(k, xj)| twice.add_product(&S::product(k, xj), xi));
         }
         let half = crate::number::Rational::new(1.into(), 2.into());

@@ -281,10 +281,9 @@ impl Piece {
 
     /// The multipliers, and what the unstable ones are.
     fn explain(&self, spectrum: &Spectrum, blocks: &FloatBlocks, kind: Kind) -> (Vec<Multiplier>, Vec<Instability>) {
-        let radius = |i: usize| spectrum.radii.as_ref().map(|radii| radii[i]);
         let mut order: Vec<usize> = (0..spectrum.mu.len()).collect();
         order.sort_by(|&i, &j| spectrum.mu[i].re.total_cmp(&spectrum.mu[j].re));
-        let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], radius(i));
+        let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], spectrum.radius);
         let multipliers = order.iter().map(multiplier).collect();
         if kind != Kind::Hyperbolic {
             return (multipliers, Vec::new());
@@ -296,7 +295,7 @@ impl Piece {
         let farthest = order.iter().filter(upper).max_by(|a, b| {
             from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b]))
         });
-        let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > radius(**i).unwrap_or(ROUGH);
+        let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > spectrum.radius.unwrap_or(ROUGH);
         let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
         let instability = |&i: &usize| {
             let z = exponent(spectrum.mu[i]);

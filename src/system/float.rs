@@ -1,19 +1,26 @@
 //! The half period in doubles, with a proven bound on what rounding did to it.
 //!
-//! Every row update is a symplectic shear: H_k = M_k H_(k−1) exactly, Ĥ_k = M_k Ĥ_(k−1) + r_k computed, r_k in one
-//! row. The error is E_k = Σ_j H_k H_j⁻¹ r_j, and a symplectic matrix has the norm of its inverse, so
-//! ‖E_k‖ ≤ (G + e) Σ ‖H_j‖ ‖r_j‖ where G = max ‖Ĥ_k‖ and e = max ‖E_k‖. With ρ = Σ ‖r_j‖ this gives
+//! Every row update is a symplectic shear: H_k = M_k H_(k−1) exactly, Ĥ_k = M_k Ĥ_(k−1) + e_i r_kᵀ computed, the error
+//! r_k in the one row i. So the error is E_k = Σ_j H_k H_j⁻¹ e_i r_jᵀ. The inverse of a symplectic matrix is its
+//! transpose up to signs and order: |H_j⁻¹ e_i| = |row i' of H_j|, where i' is the momentum of the position i and the
+//! other way round, a row that the shear leaves alone. With σ = Σ |row i' of Ĥ_j| |r_j|, ρ = Σ |r_j|,
+//! G = max ‖Ĥ_k‖ and e a bound on all earlier errors,
 //!
 //! ```text
-//!     ‖E_k‖ ≤ (G + ‖E_k‖) (G + e) ρ;     if 8 G ρ ≤ 1, by induction ‖E_k‖ ≤ 2 G² ρ for all k
+//!     ‖E_k‖ ≤ (‖Ĥ_k‖ + ‖E_k‖) s,   s = σ + e ρ:      ‖E_k‖ ≤ ‖Ĥ_k‖ s/(1 − s).
 //! ```
 //!
-//! (with e = 2G²ρ ≤ G/4 the right-hand side is at most 1.25 G²ρ/(1 − 1.25/8) < 1.5 G²ρ). Norms are Frobenius's,
-//! kept row by row. Positions and momenta are scaled by powers of two, exactly, so that both are of one size.
+//! If 8 G ρ ≤ 1 then e = 2Gσ does: σ ≤ Gρ ≤ 1/8, s ≤ 1.25 σ < 0.16, and 1.25/0.84 < 2. At the end ‖Ĥ‖ is the
+//! spectral norm and the bound on ‖E‖ is Frobenius's. Positions and momenta are scaled by powers of two, exactly, so
+//! that both are of one size.
+
+use faer::Mat;
 
 use super::compose::{Program, Row, State};
 use super::frame::Frame;
 use super::model::System;
+use super::modes::frequencies;
+use super::norm;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, Ring};
 use crate::propagator::Weight;
@@ -46,8 +53,10 @@ struct Rows {
     /// The sum of all squared norms and the largest it has been.
     total: f64,
     largest: f64,
-    /// Σ ‖r_j‖.
+    /// Σ |r_j|.
     rho: f64,
+    /// Σ |row i'| |r_j|.
+    sigma: f64,
 }
 
 impl Rows {
@@ -67,14 +76,17 @@ impl Rows {
             total,
             largest: total,
             rho: 0.0,
+            sigma: 0.0,
         }
     }
 
-    /// Accounts for a row that had the squared norm `before` and was computed with an error of at most `error`.
-    fn account(&mut self, before: f64, after: f64, error: f64) {
+    /// Accounts for a row that had the squared norm `before` and was computed with an error of at most `error`, the
+    /// conjugate row having the squared norm `conjugate`.
+    fn account(&mut self, before: f64, after: f64, error: f64, conjugate: f64) {
         self.total += after - before;
         self.largest = self.largest.max(self.total);
         self.rho += error;
+        self.sigma += error * conjugate.sqrt();
     }
 }
 
@@ -97,7 +109,7 @@ impl State<f64> for Rows {
             self.x_norms[i] = after;
             // Each of the k terms: the factor's three roundings (t, a, product), the product's, at most k sums.
             let terms = program.inverse_mass[i].len() as f64;
-            self.account(before, after, 1.01 * U * (terms + 4.0) * size);
+            self.account(before, after, 1.01 * U * (terms + 4.0) * size, self.p_norms[i]);
         }
     }
 
@@ -114,7 +126,7 @@ impl State<f64> for Rows {
         }
         let after = norm2(target);
         self.p_norms[i] = after;
-        self.account(before, after, 1.01 * U * (row.len() as f64 + 3.0) * size);
+        self.account(before, after, 1.01 * U * (row.len() as f64 + 3.0) * size, self.x_norms[i]);
     }
 }
 
@@ -137,7 +149,7 @@ fn norm2(row: &[f64]) -> f64 {
 /// Runs the half period in doubles.
 pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
     let mut program = Program::new(system).map(f64::from_rational);
-    let scales = scales(&program);
+    let scales = scales(&program, middle_frequency(system, frame));
     rescale(&mut program, &scales);
     let mut rows = Rows::identity(system.size());
     program.run(system.schedule().half_period(), &mut rows);
@@ -174,30 +186,47 @@ impl Rows {
     fn error(&self, r: usize, stretch: f64) -> Option<f64> {
         // 1.01: the roundings of norms and of their running sums (fewer than 10^12 updates).
         let largest = 1.01 * (self.largest + self.total.abs()).sqrt();
-        let rho = 1.01 * self.rho;
-        let valid = 8.0 * largest * rho <= 1.0;
+        let (rho, sigma) = (1.01 * self.rho, 1.01 * self.sigma);
+        if rho.is_nan() || 8.0 * largest * rho > 1.0 {
+            return None;
+        }
+        let s = sigma + 2.0 * largest * sigma * rho;
+        let end = self.spectral_norm();
         let absolute = (1.0 + stretch.sqrt()).powi(2);
         let projection = if r == 0 { 0.0 } else { 4.0 * (r as f64 + 2.0) * U * absolute * largest };
-        valid.then(|| 1.01 * (2.0 * largest * largest * rho * (1.0 + stretch) + projection))
+        Some(1.01 * (end * s / (1.0 - s) * (1.0 + stretch) + projection))
+    }
+
+    /// More than ‖Ĥ‖₂: block by block, ‖Ĥ‖² ≤ ‖A‖² + ‖B‖² + ‖C‖² + ‖D‖².
+    fn spectral_norm(&self) -> f64 {
+        let n = self.columns / 2;
+        let block = |rows: &[f64], first: usize| {
+            norm::spectral(&Mat::from_fn(n, n, |i, j| rows[i * self.columns + first + j])).powi(2)
+        };
+        1.01 * (block(&self.x, 0) + block(&self.x, n) + block(&self.p, 0) + block(&self.p, n)).sqrt()
     }
 }
 
 /// For each degree of freedom a power of two a_i near √(m_i ω): positions are taken times a_i, momenta divided by
-/// it, ω a mean of the frequencies in the unit of time one tick.
-fn scales(program: &Program<f64>) -> Vec<f64> {
-    let n = program.size();
-    let diagonal = |row: &Row<f64>, i: usize| row.iter().find(|(j, _)| *j == i).map_or(0.0, |(_, x)| x.abs());
-    // F_k holds the step in ticks; the mean force over time is F_k/ticks, but only an order of size is wanted.
-    let mut stiffness = vec![0.0; n];
-    for (i, row) in program.kicks.iter().flat_map(|kick| &kick.rows) {
-        stiffness[*i] += diagonal(row, *i);
-    }
-    let scale = |i: usize| {
-        let inverse_mass = diagonal(&program.inverse_mass[i], i);
-        let ratio = (stiffness[i] / inverse_mass).sqrt().sqrt();
+/// it. With ω between the lowest and the highest frequency (their geometric mean, per tick) a mode of frequency w
+/// enters the propagator with entries up to max(ω/w, w/ω).
+fn scales(program: &Program<f64>, omega: f64) -> Vec<f64> {
+    let scale = |(i, row): (usize, &Row<f64>)| {
+        let inverse_mass = row.iter().find(|(j, _)| *j == i).map_or(1.0, |(_, x)| x.abs());
+        let ratio = (omega / inverse_mass).sqrt();
         if ratio.is_normal() { ratio.log2().round().clamp(-300.0, 300.0).exp2() } else { 1.0 }
     };
-    (0..n).map(scale).collect()
+    program.inverse_mass.iter().enumerate().map(scale).collect()
+}
+
+/// The geometric mean of the lowest and the highest frequency per tick; 1 where there is none.
+fn middle_frequency(system: &System, frame: &Frame) -> f64 {
+    let frequencies = frequencies(system, frame).unwrap_or_default();
+    let highest = frequencies.iter().copied().fold(0.0, f64::max);
+    // Modes softer than roundoff can tell are no guide.
+    let lowest = frequencies.into_iter().filter(|w| *w > 1e-7 * highest).fold(highest, f64::min);
+    let omega = (lowest * highest).sqrt() * to_f64(system.tick());
+    if omega > 0.0 { omega } else { 1.0 }
 }
 
 fn rescale(program: &mut Program<f64>, a: &[f64]) {

@@ -40,6 +40,7 @@ mod integers;
 mod model;
 mod modes;
 mod modular;
+mod norm;
 mod roots;
 mod scalar;
 pub mod scan;

@@ -47,33 +47,45 @@ pub(super) struct NormalModes {
     inverse: Mat<f64>,
 }
 
+/// The frequencies of the normal modes per unit time, imaginary ones (of an indefinite stiffness) as 0, rounded;
+/// `None` where an iteration of the eigenvalue solver fails.
+pub(super) fn frequencies(system: &System, frame: &Frame) -> Option<Vec<f64>> {
+    let (_, symmetric) = symmetric_form(system, frame)?;
+    let squares = symmetric.self_adjoint_eigenvalues(Side::Lower).ok()?;
+    Some(squares.into_iter().map(|w2: f64| w2.max(0.0).sqrt()).collect())
+}
+
+/// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G u.
+fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)> {
+    let (n, m) = (system.size(), frame.kept.len());
+    let mut inverse_mass = Mat::<f64>::zeros(n, n);
+    for (i, row) in Program::new(system).inverse_mass.iter().enumerate() {
+        row.iter().for_each(|(j, x)| inverse_mass[(i, *j)] = to_f64(x));
+    }
+    let mut projection = Mat::<f64>::zeros(m, n);
+    for (a, &i) in frame.kept.iter().enumerate() {
+        projection[(a, i)] = 1.0;
+        frame.rigid.iter().for_each(|(own, n)| projection[(a, *own)] = -to_f64(&n[i]));
+    }
+    let reduced = &projection * &inverse_mass * projection.transpose();
+    let total = system.total_stiffness();
+    let mut stiffness = Mat::<f64>::zeros(m, m);
+    for (a, i) in frame.kept.iter().enumerate() {
+        for (b, j) in frame.kept.iter().enumerate() {
+            stiffness[(a, b)] = total.row(*i).get(j).map_or(0.0, to_f64);
+        }
+    }
+    let g = reduced.llt(Side::Lower).ok()?.L().to_owned();
+    let symmetric = g.transpose() * &stiffness * &g;
+    Some((g, symmetric))
+}
+
 impl NormalModes {
     /// In the frame's coordinates; `None` where an iteration of the eigenvalue solver fails.
     pub fn new(system: &System, frame: &Frame) -> Option<NormalModes> {
-        // With P = (I, −N): y'' = −P M⁻¹ Pᵀ K y. Let P M⁻¹ Pᵀ = G Gᵀ, y = G u: u'' = −Gᵀ K G u.
-        let (n, m) = (system.size(), frame.kept.len());
-        let mut inverse_mass = Mat::<f64>::zeros(n, n);
-        for (i, row) in Program::new(system).inverse_mass.iter().enumerate() {
-            row.iter().for_each(|(j, x)| inverse_mass[(i, *j)] = to_f64(x));
-        }
-        let mut projection = Mat::<f64>::zeros(m, n);
-        for (a, &i) in frame.kept.iter().enumerate() {
-            projection[(a, i)] = 1.0;
-            frame.rigid.iter().for_each(|(own, n)| projection[(a, *own)] = -to_f64(&n[i]));
-        }
-        let reduced = &projection * &inverse_mass * projection.transpose();
-        let total = system.total_stiffness();
-        let mut stiffness = Mat::<f64>::zeros(m, m);
-        for (a, &i) in frame.kept.iter().enumerate() {
-            for (b, &j) in frame.kept.iter().enumerate() {
-                stiffness[(a, b)] = total.row(i).get(&j).map_or(0.0, to_f64);
-            }
-        }
-        let llt = reduced.llt(Side::Lower).ok()?;
-        let g = llt.L().to_owned();
-        let symmetric = g.transpose() * &stiffness * &g;
+        let (g, symmetric) = symmetric_form(system, frame)?;
         let eigen = symmetric.self_adjoint_eigen(Side::Lower).ok()?;
-        let frequencies = (0..m).map(|i| eigen.S()[i].max(0.0).sqrt()).collect();
+        let frequencies = (0..symmetric.nrows()).map(|i| eigen.S()[i].max(0.0).sqrt()).collect();
         let inverse_g = g.partial_piv_lu().inverse();
         Some(NormalModes { frequencies, inverse: eigen.U().transpose() * inverse_g })
     }
