@@ -1,12 +1,13 @@
 (** * The theorems that kickdrift relies on, on one page
 
-    The words are defined in Vocabulary.v (and in Proposition.v, Cone.v, Floquet.v, Respa.v where they are
-    first needed); the proofs are in the files named. Equation numbers are those of Fong, Darve, Lew,
-    "Stability of Asynchronous Variational Integrators". Assumptions.v prints what each one rests on.  *)
+    The words are defined in Vocabulary.v (a few at the head of the file that first needs them); the proofs
+    are in the files named. Equation numbers are those of Fong, Darve, Lew, "Stability of Asynchronous
+    Variational Integrators". Assumptions.v prints what each theorem rests on.                         *)
 
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
-  Vocabulary Algebra TwoClocks Stability Floquet TanCriterion Respa Proposition Perturbation Cone Certificate.
+  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Proposition Plane Perturbation
+  Cone Certificate.
 Open Scope R_scope.
 
 (** ** 1. Algebra *)
@@ -43,6 +44,16 @@ Theorem two_clocks_palindrome : forall p q late1 late2 k1 k2 d, (1 <= p)%nat -> 
   schedule f d (2 * (p * q)) = h ++ rev h.
 Proof. exact TwoClocks.two_clocks_palindrome. Qed.
 
+Theorem many_clocks_palindrome : forall clocks d n,
+  (forall m late k, In (m, late, k) clocks -> (1 <= m)%nat /\ exists c, n = (c * m)%nat) ->
+  let f := many_clocks clocks in
+  schedule f d (2 * n) = schedule f d n ++ rev (schedule f d n).
+Proof. exact TwoClocks.many_clocks_palindrome. Qed.
+
+Theorem swap_clocks : forall p q h1 L1 h2 L2, (1 <= p)%nat -> (1 <= q)%nat -> INR p * h1 = INR q * h2 ->
+  full_period q p h2 L2 h1 L1 = full_period p q h1 L1 h2 L2.
+Proof. exact TwoClocks.swap_clocks. Qed.
+
 (** A full kick of the fast (slow) clock stands at T/2 iff p (q) is even. *)
 Theorem strikes_middle : forall m n, (1 <= m)%nat -> strikes m false (n * m) = Nat.even n.
 Proof. exact TwoClocks.strikes_middle. Qed.
@@ -58,7 +69,7 @@ Proof. exact Algebra.staggered_trace. Qed.
 
 Theorem staggered_bounded : forall f d n, f n = f O ->
   bounded_powers (propagator (staggered f d n)) <-> bounded_powers (propagator (schedule f d n)).
-Proof. exact Stability.staggered_bounded. Qed.
+Proof. exact SignTable.staggered_bounded. Qed.
 
 (** ** 2. Stability *)
 
@@ -68,17 +79,30 @@ Proof. exact Stability.bounded_iff. Qed.
 
 (** The seven rows of the four-sign table; each half period lies in exactly one. *)
 Theorem four_signs : forall k H, det H = 1 -> row k H <-> behaves k (mirror H ** H).
-Proof. exact Stability.four_signs. Qed.
+Proof. exact SignTable.four_signs. Qed.
 
 Theorem row_total : forall H, exists k, row k H.
-Proof. exact Stability.row_total. Qed.
+Proof. exact SignTable.row_total. Qed.
 
 Theorem row_unique : forall k k' H, det H = 1 -> row k H -> row k' H -> k = k'.
-Proof. exact Stability.row_unique. Qed.
+Proof. exact SignTable.row_unique. Qed.
+
+Theorem symmetric_verdict : forall k f d n, (forall j, (j <= 2 * n)%nat -> f (2 * n - j)%nat = f j) ->
+  behaves k (propagator (schedule f d (2 * n))) <-> row k (propagator (schedule f d n)).
+Proof. exact SignTable.symmetric_verdict. Qed.
 
 Theorem two_clocks_verdict : forall k p q h1 L1 h2 L2, (1 <= p)%nat -> (1 <= q)%nat ->
   behaves k (full_period p q h1 L1 h2 L2) <-> row k (half_period p q h1 L1 h2 L2).
-Proof. exact Stability.two_clocks_verdict. Qed.
+Proof. exact SignTable.two_clocks_verdict. Qed.
+
+(** The growth of one period, without cancellation near |Tr| = 2. *)
+Theorem multiplier_plus : forall H, det H = 1 -> 0 < mB H * mC H ->
+  ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (mB H * mC H)).
+Proof. exact SignTable.multiplier_plus. Qed.
+
+Theorem multiplier_minus : forall H, det H = 1 -> mA H * mD H < 0 ->
+  ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (- (mA H * mD H))).
+Proof. exact SignTable.multiplier_minus. Qed.
 
 (** Velocity Verlet, eq. (1), sharper than |eigenvalues| <= 1. *)
 Theorem verlet : forall h L, h <> 0 ->
@@ -243,47 +267,58 @@ Proof. exact TanCriterion.tan_criterion_q2. Qed.
 
 (** ** 6. Rounding and cones *)
 
-Theorem perturbed_orbit : forall M u uh r b n kappa eps g tau,
-  let omega := g * eps + g * kappa * tau in
-  u O = uh O ->
-  (forall k, (k < n)%nat -> u (S k) = M k @ u k) ->
-  (forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k)) ->
-  (forall k, (k < n)%nat -> det (M k) = 1) ->
-  (forall k y, (k < n)%nat -> len (M k @ y) <= kappa * len y) ->
-  (forall k, (k <= n)%nat -> uh k <> zero) ->
-  (forall k, (k < n)%nat -> len (r k) <= eps * len (uh k)) ->
-  (forall k, (k < n)%nat -> len (uh k) <= g * len (uh (S k))) ->
-  0 <= b O ->
-  (forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k)) ->
-  (forall k, (k < n)%nat -> 2 * b k <= tau * (len (uh k) * len (uh k))) ->
-  0 <= g -> 0 <= tau -> INR n * (kappa * eps + omega) <= 1 / 2 ->
-  forall k, (k <= n)%nat ->
+(** Vectors of the plane with the Euclidean length; J is the quarter turn. Steps k = 0 ... n - 1. *)
+Section Orbit.
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b : nat -> R) (n : nat) (kappa eps g tau : R).
+Let omega := g * eps + g * kappa * tau.
+Hypothesis start : u O = uh O.
+Hypothesis exact_steps : forall k, (k < n)%nat -> u (S k) = M k @ u k.
+Hypothesis computed_steps : forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k).
+Hypothesis unimodular : forall k, (k < n)%nat -> det (M k) = 1.
+Hypothesis contained : forall k y, (k < n)%nat -> len (M k @ y) <= kappa * len y.
+Hypothesis nonzero : forall k, (k <= n)%nat -> uh k <> zero.
+Hypothesis residual : forall k, (k < n)%nat -> len (r k) <= eps * len (uh k).
+Hypothesis shrink : forall k, (k < n)%nat -> len (uh k) <= g * len (uh (S k)).
+Hypothesis b_start : 0 <= b O.
+Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
+Hypothesis b_small : forall k, (k < n)%nat -> 2 * b k <= tau * (len (uh k) * len (uh k)).
+Hypotheses (g_nonneg : 0 <= g) (tau_nonneg : 0 <= tau).
+Hypothesis budget : INR n * (kappa * eps + omega) <= 1 / 2.
+
+Theorem perturbed_orbit : forall k, (k <= n)%nat ->
   exists a t,
-    u k = smul a (add (uh k)
-            (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
     Rabs t <= 2 * b k /\
     (1 - omega) ^ k <= a <= (1 + omega) ^ k /\
     0 < a /\ 1 - INR k * omega <= a <= / (1 - INR k * omega).
-Proof. exact Perturbation.perturbed_orbit. Qed.
+Proof. eapply Perturbation.perturbed_orbit; eassumption. Qed.
 
-Theorem sign_certificate : forall M u uh r b n kappa eps g tau,
-  let omega := g * eps + g * kappa * tau in
-  u O = uh O ->
-  (forall k, (k < n)%nat -> u (S k) = M k @ u k) ->
-  (forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k)) ->
-  (forall k, (k < n)%nat -> det (M k) = 1) ->
-  (forall k y, (k < n)%nat -> len (M k @ y) <= kappa * len y) ->
-  (forall k, (k <= n)%nat -> uh k <> zero) ->
-  (forall k, (k < n)%nat -> len (r k) <= eps * len (uh k)) ->
-  (forall k, (k < n)%nat -> len (uh k) <= g * len (uh (S k))) ->
-  0 <= b O ->
-  (forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k)) ->
-  (forall k, (k < n)%nat -> 2 * b k <= tau * (len (uh k) * len (uh k))) ->
-  0 <= g -> 0 <= tau -> INR n * (kappa * eps + omega) <= 1 / 2 ->
-  forall k v, (k <= n)%nat ->
+Theorem sign_certificate : forall k v, (k <= n)%nat ->
   2 * b k * len v < Rabs (dot v (uh k)) * len (uh k) ->
   0 < dot v (u k) * dot v (uh k).
-Proof. exact Perturbation.sign_certificate. Qed.
+Proof. eapply Perturbation.sign_certificate; eassumption. Qed.
+
+(** The form v is meant, vh is at hand. *)
+Theorem sign_certificate_rounded : forall k v vh delta, (k <= n)%nat ->
+  len (add v (smul (-1) vh)) <= delta ->
+  2 * b k * (len vh + delta) + delta * (len (uh k) * len (uh k)) < Rabs (dot vh (uh k)) * len (uh k) ->
+  0 < dot v (u k) * dot vh (uh k).
+Proof. eapply Perturbation.sign_certificate_rounded; eassumption. Qed.
+End Orbit.
+
+(** Where kappa and g come from. *)
+Theorem update_contained : forall k e o y,
+  det (update k e o) = 1 /\ len (update k e o @ y) <= (1 + Rabs k * (e * e + o * o)) * len y.
+Proof. exact Perturbation.update_contained. Qed.
+
+Theorem contained_inverse : forall M kappa, det M = 1 ->
+  (forall y, len (M @ y) <= kappa * len y) -> forall y, len y <= kappa * len (M @ y).
+Proof. exact Perturbation.contained_inverse. Qed.
+
+Theorem shrink_bound : forall M uh r kappa eps, det M = 1 ->
+  (forall y, len (M @ y) <= kappa * len y) -> 0 <= kappa -> kappa * eps < 1 -> len r <= eps * len uh ->
+  len uh <= kappa / (1 - kappa * eps) * len (add (M @ uh) r).
+Proof. exact Perturbation.shrink_bound. Qed.
 
 Theorem cone_chain : forall M u w n,
   (forall k, (k < n)%nat ->

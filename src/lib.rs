@@ -1,8 +1,78 @@
-//! kickdrift: exact, certified linear stability of multiple-time-step integrators.
+//! kickdrift decides, exactly, whether a multiple-time-step integrator is linearly stable.
+//!
+//! # The mathematics on one page
+//!
+//! One oscillator x'' + (L1 + L2) x = 0 is integrated by *kicks* and *drifts*: the force of L1 kicks at the
+//! multiples of h1, that of L2 at the multiples of h2, and between two kicks the state drifts,
+//!
+//! ```text
+//!     K(k) = [[1, 0], [-k, 1]],  k = h L        D(t) = [[1, t], [0, 1]].
+//! ```
+//!
+//! With one clock this is velocity Verlet, with h2 = p h1 r-RESPA, and with any h2/h1 = p/q an asynchronous
+//! variational integrator (AVI). After T = q h2 = p h1 the clocks meet again; the product Q over that
+//! *synchronization period* has determinant 1, so its powers are bounded iff |Tr Q| < 2 or Q = ±I. Where they are
+//! not, the steps *resonate*. The dimensionless data are p/q, s = h1² L1 and rho = L2/L1.
+//!
+//! **The half period.** The pattern of kicks is a palindrome. With H = \[\[A, B\], \[C, D\]\] the
+//! [propagator](propagator::half_period) over T/2 (half of each kick at both ends),
+//!
+//! ```text
+//!     Tr Q - 2 = 4 BC,      Tr Q + 2 = 4 AD,      AD - BC = 1.
+//! ```
+//!
+//! So **four [signs](verdict::HalfSigns) are the verdict**: BC > 0 or AD < 0 is unstable with exponential growth,
+//! BC < 0 < AD stable, one zero an edge with linear growth, two zeros (B = C = 0 or A = D = 0) Q = ±I.
+//!
+//! **The ladder.** The signs are certified in doubles by an a-posteriori [bound](verdict): det 1 keeps the error
+//! *across* a computed orbit from growing, so it turns into an angle that shrinks where the orbit grows. What
+//! doubles cannot certify goes to more bits, and at last to exact arithmetic over ℚ, ℚ\[π\] or a real cyclotomic
+//! field, where zero is [decided](number). A verdict is never guessed and no tolerance is involved.
+//!
+//! **The prediction.** The fast clock alone turns by θ each step, cos θ = 1 − s/2, so its effective half period is
+//! T½ = π h1/θ. Instability is predicted where q h2 is near m T½, that is p θ near m π. These points lie on the
+//! curves 1/T½ = a/h1 + b/h2 with m = a p + b q ([`resonance::proposition`]); the [tan criterion](resonance::tan) is
+//! exact for every q; how wide a tongue opens about each point is told to first order by
+//! [`resonance::first_order`].
+//!
+//! The method and the conjecture are those of W. Fong, E. Darve and A. Lew, *Stability of Asynchronous Variational
+//! Integrators*; equation numbers in this documentation refer to that paper, theorem names to the machine-checked
+//! proofs in `proofs/`.
+//!
+//! ```
+//! use kickdrift::number::parse::parse;
+//! use kickdrift::propagator::Oscillator;
+//! use kickdrift::verdict::{decide, Kind, Limits};
+//! let x = |text| parse("quantity", text).unwrap();
+//! // Just below h2 = T½ = 1: resonant.
+//! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("1/100"), x("0.98")).unwrap();
+//! let decision = decide(&oscillator.clocks(), &Limits::default()).unwrap();
+//! assert_eq!(decision.verdict.kind(), Kind::Hyperbolic);
+//! ```
+//!
+//! # The floors of the house
+//!
+//! Imports go down only, and siblings on one floor do not import each other (a test keeps it so).
+//!
+//! | floor | module | what is there |
+//! |---|---|---|
+//! | – | [`error`] | one error with a kind |
+//! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
+//! | 1 | [`propagator`] | clocks, schedule, kick, drift, full and half period, the methods |
+//! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
+//! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
+//! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
+//! | 5 | [`scene`] | input documents → library types |
+//! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, SVG, PNG |
+//! | 6 | [`cli`] | arguments → a scene → the library → a report |
+//!
+//! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
+//! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
 
 pub mod avi;
 pub mod cli;
 pub mod error;
+pub mod map;
 pub mod number;
 pub mod propagator;
 pub mod report;

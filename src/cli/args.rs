@@ -64,6 +64,11 @@ impl Common {
         self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
     }
 
+    /// The number of threads asked for; 0 means one a core.
+    pub fn threads(&self) -> usize {
+        self.threads.unwrap_or(0)
+    }
+
     /// Sets the number of threads, once.
     pub fn set_threads(&self) -> Result<()> {
         let Some(threads) = self.threads else { return Ok(()) };
@@ -97,7 +102,7 @@ impl Stiffness {
 #[derive(Clone, Debug, clap::Args)]
 pub struct Grid {
     /// The spacing of both steps.
-    #[arg(long, value_name = "D", allow_hyphen_values = true, required_unless_present_all = ["step1", "step2"])]
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
     step: Option<String>,
     /// The spacing of h1, where it differs.
     #[arg(long, value_name = "D1", allow_hyphen_values = true)]
@@ -107,28 +112,43 @@ pub struct Grid {
     step2: Option<String>,
     /// The closed range of h1, as 1/100..2/pi.
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h1_range: String,
+    h1_range: Option<String>,
     /// The closed range of h2.
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h2_range: String,
+    h2_range: Option<String>,
 }
 
 impl Grid {
+    /// Whether no flag of the grid was given.
+    pub fn is_absent(&self) -> bool {
+        [&self.step, &self.step1, &self.step2, &self.h1_range, &self.h2_range]
+            .iter()
+            .all(|flag| flag.is_none())
+    }
+
     /// The grid as a library type.
     pub fn range(&self) -> Result<GridRange> {
-        let step = |field: &str, own: &Option<String>| {
-            let text = own.as_ref().or(self.step.as_ref()).map(String::as_str);
-            parse(field, text.unwrap_or_default())
+        let given = |flag: &str, text: Option<&String>, example: &str| {
+            text.cloned()
+                .ok_or_else(|| Error::input(flag, "missing", format!("a grid needs it, as {example}")))
         };
-        let steps = (step("step1", &self.step1)?, step("step2", &self.step2)?);
-        let ranges = (parse_range("h1-range", &self.h1_range)?, parse_range("h2-range", &self.h2_range)?);
-        GridRange::from_quantities(steps.0, steps.1, ranges.0, ranges.1)
+        let step = |flag: &str, own: &Option<String>| {
+            let text = given("--step", own.as_ref().or(self.step.as_ref()), "--step 1/100")?;
+            parse(flag, &text)
+        };
+        let range = |flag: &str, text: &Option<String>, example: &str| {
+            parse_range(flag, &given(flag, text.as_ref(), example)?)
+        };
+        let steps = [step("--step1", &self.step1)?, step("--step2", &self.step2)?];
+        let h1 = range("--h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?;
+        let h2 = range("--h2-range", &self.h2_range, "--h2-range 1/100..7/2")?;
+        Ok(GridRange::new(steps, [h1, h2]))
     }
 }
 
 /// Echoes a grid into a document.
 pub fn echo_grid(document: Document, grid: &GridRange) -> Document {
-    let ((step1, step2), [h1, h2]) = (grid.steps(), grid.ranges());
+    let ([step1, step2], [h1, h2]) = (grid.steps(), grid.ranges());
     let range = |(lo, hi): &(Laurent, Laurent)| format!("{lo}..{hi}");
     document
         .input("step1", step1)

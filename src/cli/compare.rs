@@ -3,11 +3,12 @@
 use num_integer::Integer;
 use rayon::prelude::*;
 
-use super::args::{Common, Format, Grid, echo_grid};
+use super::args::{self, Common, Format, echo_grid};
 use crate::error::{Error, Result};
+use crate::map::Grid;
+use crate::number::Rational;
 use crate::number::parse::{parse, parse_rational};
-use crate::number::{Laurent, Rational};
-use crate::propagator::{Oscillator, TwoClocks};
+use crate::propagator::TwoClocks;
 use crate::report::compare::{self, Offender};
 use crate::report::document::Document;
 use crate::resonance::compare::{Comparison, Tally, compare};
@@ -18,18 +19,18 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The stiffness of the fast force (with a grid).
-    #[arg(long, value_name = "X", requires = "lambda2", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
     lambda1: Option<String>,
     /// The stiffness of the slow force (with a grid).
-    #[arg(long, value_name = "Y", requires = "lambda1", allow_hyphen_values = true)]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
     lambda2: Option<String>,
     #[command(flatten)]
-    grid: Option<Grid>,
+    grid: args::Grid,
     /// Instead of a grid: all coprime p + q up to this number.
-    #[arg(long, value_name = "N", requires = "rho", conflicts_with = "lambda1")]
+    #[arg(long, value_name = "N")]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
-    #[arg(long, value_name = "R", requires = "max_sum", allow_hyphen_values = true)]
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
     rho: Option<String>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
     #[arg(long, value_name = "K", default_value_t = 99)]
@@ -44,17 +45,18 @@ impl Args {
         let tolerance = parse_rational("tolerance", &self.tolerance)?;
         check(&tolerance)?;
         let limits = common.limits();
-        let document = match (&self.grid, &self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
-            (Some(grid), Some(lambda1), Some(lambda2), None, None) => {
+        let document = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
+            (Some(lambda1), Some(lambda2), None, None) => {
                 let (lambda1, lambda2) = (parse("lambda1", lambda1)?, parse("lambda2", lambda2)?);
-                over_grid(&lambda1, &lambda2, &grid.range()?, &tolerance, &limits)?
+                let range = self.grid.range()?;
+                over_grid(&range.of(lambda1, lambda2)?, &range, &tolerance, &limits)?
             }
-            (None, None, None, Some(max_sum), Some(rho)) => {
+            (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
                 over_ratios(max_sum, &parse_rational("rho", rho)?, self.samples, &tolerance, &limits)?
             }
             _ => {
                 let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
-                return Err(Error::input("compare", "incomplete", remedy));
+                return Err(Error::input("compare", "what?", remedy));
             }
         };
         common.write(&document, Format::Text)
@@ -70,25 +72,17 @@ fn check(tolerance: &Rational) -> Result<()> {
 }
 
 /// The comparison over all pairs of a grid.
-pub fn over_grid(
-    lambda1: &Laurent,
-    lambda2: &Laurent,
-    grid: &GridRange,
-    tolerance: &Rational,
-    limits: &Limits,
-) -> Result<Document> {
+pub fn over_grid(grid: &Grid, range: &GridRange, tolerance: &Rational, limits: &Limits) -> Result<Document> {
     check(tolerance)?;
     let column = |i: u64| {
         let mut part = Part::default();
         for j in grid.rows().0..=grid.rows().1 {
-            let (h1, h2) = (grid.h1(i), grid.h2(j));
-            let oscillator = Oscillator::new(lambda1.clone(), lambda2.clone(), h1, h2)?;
-            let clocks = oscillator.clocks();
+            let clocks = grid.clocks(i, j)?;
             let comparison = match clocks.as_rational() {
                 Some(rational) => compare(&rational, tolerance, limits)?,
                 None => compare(&clocks, tolerance, limits)?,
             };
-            let place = || [oscillator.h1().to_string(), oscillator.h2().to_string()];
+            let place = || [grid.h1(i).to_string(), grid.h2(j).to_string()];
             part.add(clocks.p(), clocks.q(), comparison, place);
         }
         Ok(part)
@@ -96,7 +90,8 @@ pub fn over_grid(
     let columns: Vec<u64> = (grid.columns().0..=grid.columns().1).collect();
     let all = gather(columns, column)?;
     let document = compare::document(&all.tally, tolerance, ["h1", "h2"], &all.offenders);
-    Ok(echo_grid(document.input("lambda1", lambda1).input("lambda2", lambda2), grid))
+    let (lambda1, lambda2) = grid.lambdas();
+    Ok(echo_grid(document.input("lambda1", lambda1).input("lambda2", lambda2), range))
 }
 
 /// The comparison over all coprime p + q ≤ max_sum at s = 4k/(samples + 1).

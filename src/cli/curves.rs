@@ -50,9 +50,9 @@ impl Args {
 }
 
 /// The curves of a grid's window as a document.
-pub fn document(lambda1: &Laurent, grid: &GridRange, families: &Families, curves: &[Curve]) -> Document {
+pub fn document(lambda1: &Laurent, range: &GridRange, families: &Families, curves: &[Curve]) -> Document {
     let document = curves::document(curves).input("lambda1", lambda1);
-    echo(echo_grid(document, grid), families)
+    echo(echo_grid(document, range), families)
 }
 
 fn echo(document: Document, families: &Families) -> Document {

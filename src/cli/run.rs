@@ -38,7 +38,7 @@ impl Args {
                 format!("cannot make the output folder: {cause}; choose one with --output"),
             )
         })?;
-        let work = Work::new(&scene, common.limits());
+        let work = Work::new(&scene, common);
         let mut summary = Summary::default();
         for want in scene.want() {
             let path = folder.join(want.file_name());
@@ -60,6 +60,7 @@ impl Args {
 struct Work<'a> {
     scene: &'a Scene,
     limits: Limits,
+    threads: usize,
     verdicts: OnceCell<Verdicts>,
     curves: OnceCell<Vec<Curve>>,
     documents: [OnceCell<Document>; 5],
@@ -67,9 +68,17 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(scene: &'a Scene, limits: Limits) -> Self {
-        let (verdicts, curves) = (OnceCell::new(), OnceCell::new());
-        Work { scene, limits, verdicts, curves, documents: Default::default(), figures: Default::default() }
+    fn new(scene: &'a Scene, common: &Common) -> Self {
+        let (limits, threads) = (common.limits(), common.threads());
+        Work {
+            scene,
+            limits,
+            threads,
+            verdicts: OnceCell::new(),
+            curves: OnceCell::new(),
+            documents: Default::default(),
+            figures: Default::default(),
+        }
     }
 
     /// The bytes of one product's file.
@@ -100,15 +109,12 @@ impl<'a> Work<'a> {
     fn make_document(&self, product: Product) -> Result<Document> {
         let scene = self.scene;
         match product {
-            Product::Map => {
-                Ok(map::document(&scene.lambda1()?, &scene.lambda2()?, scene.grid()?, self.verdicts()?))
-            }
+            Product::Map => Ok(map::document(&scene.grid()?, scene.range()?, self.verdicts()?)),
             Product::Curves => {
-                Ok(curves::document(&scene.lambda1()?, scene.grid()?, &scene.families()?, self.curves()?))
+                Ok(curves::document(&scene.lambda1()?, scene.range()?, &scene.families()?, self.curves()?))
             }
             Product::Compare => {
-                let (lambda1, lambda2, grid) = (scene.lambda1()?, scene.lambda2()?, scene.grid()?);
-                compare::over_grid(&lambda1, &lambda2, grid, &scene.tolerance()?, &self.limits)
+                compare::over_grid(&scene.grid()?, scene.range()?, &scene.tolerance()?, &self.limits)
             }
             Product::Proposition => proposition::document(scene.max()),
             Product::Polynomial => {
@@ -124,7 +130,7 @@ impl<'a> Work<'a> {
     fn figure(&self, product: Product) -> Result<&String> {
         let slot = &self.figures[usize::from(product == Product::Overlay)];
         once(slot, || {
-            let (window, cloud) = (self.window()?, self.verdicts()?.cloud(self.scene.grid()?));
+            let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
             Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
@@ -132,10 +138,7 @@ impl<'a> Work<'a> {
     }
 
     fn verdicts(&self) -> Result<&Verdicts> {
-        once(&self.verdicts, || {
-            let scene = self.scene;
-            Verdicts::compute(&scene.lambda1()?, &scene.lambda2()?, scene.grid()?, &self.limits)
-        })
+        once(&self.verdicts, || Verdicts::compute(&self.scene.grid()?, self.threads, &self.limits))
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
@@ -145,7 +148,7 @@ impl<'a> Work<'a> {
     }
 
     fn window(&self) -> Result<Window> {
-        let [h1, h2] = self.scene.grid()?.ranges();
+        let [h1, h2] = self.scene.range()?.ranges();
         Ok(curves::window(h1, h2))
     }
 }

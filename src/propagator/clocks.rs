@@ -50,7 +50,8 @@ impl Oscillator {
         positive("h1", &h1, "a step must be positive")?;
         positive("h2", &h2, "a step must be positive")?;
         let irrational = || {
-            let remedy = "is not rational: the clocks never meet again; choose commensurable steps";
+            let remedy =
+                "the ratio is irrational, so the clocks never meet again; choose commensurable steps";
             Error::input("h2/h1", format!("({h2})/({h1})"), remedy)
         };
         let ratio = Laurent::ratio(&h2, &h1).ok_or_else(irrational)?;
@@ -132,7 +133,7 @@ impl<S: Ring> TwoClocks<S> {
     }
 
     /// The same system with the clocks' roles exchanged, in the time unit h2: s' = h2² L2 and so on.
-    /// No verdict changes.
+    /// No verdict changes (theorem `swap_clocks` in proofs/).
     pub fn swapped(&self) -> Self {
         let ratio = S::from_rational(&Rational::new(self.p.into(), self.q.into()));
         let (fast, slow) = (S::product(&self.slow, &ratio), S::product(&self.fast, &ratio));

@@ -4,12 +4,12 @@ use nalgebra::Matrix2;
 
 use crate::number::Ring;
 
-/// K(k) = [[1, 0], [−k, 1]]: the velocity drops by k x. Determinant 1 (`kick_det` in proofs/).
+/// K(k) = [[1, 0], [−k, 1]]: the velocity drops by k x. Determinant 1 (theorem `det_propagator` in proofs/).
 pub fn kick<S: Ring>(strength: S) -> Matrix2<S> {
     Matrix2::new(S::one(), S::zero(), -strength, S::one())
 }
 
-/// D(t) = [[1, t], [0, 1]]: the position advances by t v. Determinant 1 (`drift_det` in proofs/).
+/// D(t) = [[1, t], [0, 1]]: the position advances by t v. Determinant 1 (theorem `det_propagator` in proofs/).
 pub fn drift<S: Ring>(time: S) -> Matrix2<S> {
     Matrix2::new(S::one(), time, S::zero(), S::one())
 }

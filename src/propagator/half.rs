@@ -7,7 +7,7 @@
 //!     Tr Q = 2 (AD + BC),     Tr Q - 2 = 4 BC,     Tr Q + 2 = 4 AD
 //! ```
 //!
-//! (theorems `half_period_trace_minus`, `half_period_trace_plus` in proofs/). So the four signs of H decide
+//! (theorem `palindrome` in proofs/). So the four signs of H decide
 //! stability, at half the cost and without cancellation at |Tr| = 2.
 
 use nalgebra::Matrix2;

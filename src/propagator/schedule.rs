@@ -106,7 +106,7 @@ impl Schedule {
         self.clocks.iter().map(|clock| self.period / clock.step).fold(0, u64::saturating_add)
     }
 
-    /// Whether kicks(T − t) = kicks(t): each phase is 0 or 1/2 (theorem `two_clocks_palindrome` in proofs/).
+    /// Whether kicks(T − t) = kicks(t): each phase is 0 or 1/2 (theorem `many_clocks_palindrome` in proofs/).
     pub fn is_palindrome(&self) -> bool {
         self.clocks.iter().all(|clock| clock.offset == 0 || 2 * clock.offset == clock.step)
     }

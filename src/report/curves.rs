@@ -35,7 +35,7 @@ fn table(curves: &[&Curve]) -> Table {
         Column::new("h2").titled("h2", "$h_2$"),
         Column::new("theta_over_pi").titled("theta/pi", "$\\theta/\\pi$"),
     ];
-    let caption = "Resonance curves $1/T_{1/2} = a/h_1 + b/h_2$";
+    let caption = "Points of the resonance curves (a, b)";
     let mut table = Table::new("curves", caption, columns);
     for curve in curves {
         for p in curve.pieces.iter().flatten() {

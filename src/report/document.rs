@@ -28,6 +28,7 @@ pub struct Document {
     body: Map<String, Value>,
     table: Option<Table>,
     summary: String,
+    all_told: bool,
 }
 
 /// Rows beyond this number are left out of the text form, which says so.
@@ -36,7 +37,14 @@ const ROWS_FOR_PEOPLE: usize = 60;
 impl Document {
     /// A document without content, `name` as in `kickdrift/NAME/1`.
     pub fn new(name: &'static str) -> Self {
-        Document { name, input: Map::new(), body: Map::new(), table: None, summary: String::new() }
+        Document {
+            name,
+            input: Map::new(),
+            body: Map::new(),
+            table: None,
+            summary: String::new(),
+            all_told: false,
+        }
     }
 
     /// Echoes one input, as an exact string.
@@ -75,6 +83,13 @@ impl Document {
     pub fn summary(mut self, lines: &[String]) -> Self {
         self.summary = lines.join("\n");
         self
+    }
+
+    /// A summary that says all: the text form leaves the rows out.
+    #[must_use]
+    pub fn told(mut self, lines: &[String]) -> Self {
+        self.all_told = true;
+        self.summary(lines)
     }
 
     /// The summary alone.
@@ -118,12 +133,12 @@ impl Document {
     fn text(&self) -> String {
         let mut out = self.summary.clone();
         out.push('\n');
-        if let Some(table) = &self.table {
+        if let Some(table) = self.table.as_ref().filter(|_| !self.all_told) {
             let rows = table.rows().len();
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: use --format csv, json or latex to see them\n");
             } else if rows > 0 {
-                out += &format!("\n{}", text::document(table));
+                out += &format!("\n{}\n", text::document(table).trim_end());
             }
         }
         out

@@ -6,6 +6,7 @@
 //! not at all. On it stand a [`document::Document`] for every kind of result, one file each, and the drawings
 //! of the (h1, h2) [`plane`].
 
+pub mod certificate;
 pub mod compare;
 pub mod csv;
 pub mod curves;

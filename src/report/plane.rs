@@ -19,8 +19,8 @@ const PALE: Colour = Colour(214, 96, 77);
 
 /// The paper's Figure 1: the unstable pairs on the left, the curves (a, b) on the right.
 pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &str) -> Figure {
-    let left = panel(window).titled("Unstable pairs").with(cells(cloud, UNSTABLE));
-    let right = lines(panel(window).titled("1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2"), curves);
+    let left = panel(window).titled("(a) Unstable pairs").with(cells(cloud, UNSTABLE));
+    let right = lines(panel(window).titled("(b) Curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2"), curves);
     Figure::double_column(110.0).named(title).with(left).with(right)
 }
 
@@ -31,7 +31,7 @@ pub fn overlay(window: &Window, cloud: &Cloud, curves: &[Curve], title: &str) ->
 }
 
 fn panel(window: &Window) -> Panel {
-    Panel::new(Axis::linear("*h*_1", 0.0, window.h1.1), Axis::linear("*h*_2", 0.0, window.h2.1))
+    Panel::new(Axis::linear("*h*_1 (time)", 0.0, window.h1.1), Axis::linear("*h*_2 (time)", 0.0, window.h2.1))
 }
 
 fn cells(cloud: &Cloud, colour: Colour) -> Layer {

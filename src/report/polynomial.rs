@@ -33,7 +33,7 @@ pub fn document(p: u64, q: u64) -> Document {
         .entry("q", q)
         .entry("polynomials", Value::Object(values))
         .rows(table(&polynomials))
-        .summary(&lines)
+        .told(&lines)
 }
 
 fn table(polynomials: &[(&'static str, Bivariate)]) -> Table {
@@ -43,7 +43,7 @@ fn table(polynomials: &[(&'static str, Bivariate)]) -> Table {
         Column::new("rho").titled("power of rho", "power of $\\rho$"),
         Column::new("coefficient"),
     ];
-    let mut table = Table::new("terms", "Half period and trace as polynomials in $s$ and $\\rho$", columns);
+    let mut table = Table::new("terms", "Half period and trace as polynomials in s and rho", columns);
     for (name, f) in polynomials {
         for (i, in_rho) in f.coefficients().iter().enumerate() {
             for (j, c) in in_rho.coefficients().iter().enumerate().filter(|(_, c)| **c != Rational::default())

@@ -30,7 +30,7 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
 
 fn table(witnesses: &[Witness]) -> Table {
     let columns = ["p", "q", "m", "a", "b"].map(|key| Column::new(key).titled(key, &format!("${key}$")));
-    let caption = "Resonant points $h_2/h_1 = p/q$, $q h_2 = m T_{1/2}$ and a curve $(a, b)$ through each";
+    let caption = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
     let mut table = Table::new("witnesses", caption, columns.to_vec());
     for w in witnesses {
         let cells = [w.p as i64, w.q as i64, w.m as i64, w.a, w.b];

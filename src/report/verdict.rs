@@ -2,12 +2,13 @@
 
 use serde_json::{Map, Value};
 
+use super::decimal;
 use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
 use crate::number::{Ball, Laurent, Rational, Real};
-use crate::propagator::{Oscillator, TwoClocks, half_period};
+use crate::propagator::{Oscillator, TwoClocks};
 use crate::resonance::dominant_family;
-use crate::verdict::{Decision, Growth, Kind};
+use crate::verdict::{Decision, Growth, Kind, exact_trace};
 
 /// A decided pair, with all that the document tells.
 #[derive(Clone, Debug)]
@@ -32,7 +33,7 @@ impl Answer {
         if !wanted && clocks.p() + clocks.q() > SHORT_PERIOD {
             return None;
         }
-        let trace = half_period(&clocks).trace();
+        let trace = exact_trace(&clocks);
         (wanted || trace.to_string().len() <= SHORT_TEXT).then_some(trace)
     }
 
@@ -71,7 +72,7 @@ impl Answer {
             .entry("resonance", self.resonance_value())
             .entry("decided_by", self.decision.decided_by.name())
             .long_rows(self.table())
-            .summary(&self.lines())
+            .told(&self.lines())
     }
 
     fn trace(&self) -> Value {
@@ -180,9 +181,9 @@ impl Answer {
     }
 }
 
-/// An enclosure as the digits that both ends share, or both ends where that is few.
+/// An enclosure as the digits that are certain.
 fn shown((lo, hi): (f64, f64)) -> String {
-    if lo == hi { lo.to_string() } else { format!("in [{lo}, {hi}]") }
+    decimal::enclosure(lo, hi).to_string()
 }
 
 /// Three significant digits.

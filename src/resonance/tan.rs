@@ -8,7 +8,7 @@
 //! ```
 //!
 //! so the pair is unstable iff t lies between the critical values −cE/cO of A and D (Tr < −2) or between the
-//! values cO/cE of B and C (Tr > 2). (Theorems `tan_criterion_respa`, `tan_criterion_general` in proofs/.)
+//! values cO/cE of B and C (Tr > 2). (Theorems `tan_criterion_q1`, `tan_criterion` in proofs/.)
 //!
 //! None of this composes a kick of the fast clock: it is a route of its own to the verdict. Angles drop
 //! out of the exact form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s (Chebyshev's), and with

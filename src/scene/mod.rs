@@ -13,7 +13,7 @@
 //!     "want": ["map.csv"]
 //! }"#;
 //! let scene = Scene::read(text).unwrap();
-//! assert_eq!(scene.grid().unwrap().len(), 63 * 350);
+//! assert_eq!(scene.grid().unwrap().pairs(), 63 * 350);
 //! assert!(matches!(scene.want()[0].product, Product::Map));
 //! ```
 
@@ -22,6 +22,7 @@ mod grid;
 mod want;
 
 use crate::error::{Error, Result};
+use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_ratio, parse_rational};
 use crate::number::{Laurent, Rational};
 
@@ -33,7 +34,7 @@ pub use want::{Format, Product, Want};
 #[derive(Clone, Debug)]
 pub struct Scene {
     document: Document,
-    grid: Option<GridRange>,
+    range: Option<GridRange>,
     want: Vec<Want>,
 }
 
@@ -71,9 +72,9 @@ impl Scene {
     /// As [`Scene::read`].
     pub fn new(document: Document) -> Result<Scene> {
         document.check_schema()?;
-        let grid = document.grid.as_ref().map(GridRange::new).transpose()?;
+        let range = document.grid.as_ref().map(GridRange::read).transpose()?;
         let want = document.want.iter().map(|text| Want::new(text)).collect::<Result<Vec<_>>>()?;
-        let scene = Scene { document, grid, want };
+        let scene = Scene { document, range, want };
         scene.want.iter().try_for_each(|want| scene.supports(want.product))?;
         Ok(scene)
     }
@@ -109,12 +110,20 @@ impl Scene {
         quantity("lambda2", self.document.lambda2.as_deref())
     }
 
-    /// The grid of step pairs.
+    /// The grid of step pairs on the scene's oscillator.
+    ///
+    /// # Errors
+    /// Where the scene lacks it or a stiffness, or holds no pair.
+    pub fn grid(&self) -> Result<Grid> {
+        self.range()?.of(self.lambda1()?, self.lambda2()?)
+    }
+
+    /// The spacings and ranges of the steps.
     ///
     /// # Errors
     /// Where the scene has none.
-    pub fn grid(&self) -> Result<&GridRange> {
-        self.grid
+    pub fn range(&self) -> Result<&GridRange> {
+        self.range
             .as_ref()
             .ok_or_else(|| missing("grid", "{\"step\": \"1/100\", \"h1\": \"LO..HI\", \"h2\": \"LO..HI\"}"))
     }
@@ -161,17 +170,13 @@ impl Scene {
     /// The fields that a product needs are there and parse.
     fn supports(&self, product: Product) -> Result<()> {
         match product {
-            Product::Map | Product::Compare => self.plane(),
-            Product::Figure | Product::Overlay => self.plane().and(self.families().map(drop)),
-            Product::Curves => self.lambda1().and(self.grid().map(drop)).and(self.families().map(drop)),
+            Product::Map | Product::Compare => self.grid().map(drop),
+            Product::Figure | Product::Overlay => self.grid().map(drop).and(self.families().map(drop)),
+            Product::Curves => self.lambda1().and(self.range().map(drop)).and(self.families().map(drop)),
             Product::Polynomial => self.ratio().map(drop),
             Product::Proposition => Ok(()),
         }?;
         if product == Product::Compare { self.tolerance().map(drop) } else { Ok(()) }
-    }
-
-    fn plane(&self) -> Result<()> {
-        self.lambda1().and(self.lambda2()).and(self.grid().map(drop))
     }
 }
 

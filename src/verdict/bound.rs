@@ -4,7 +4,7 @@
 //! û_0 = u_0. Since det(u, e) is preserved by every M_k, the error *across* the orbit does not grow with
 //! the orbit: it is the sum of what each step adds, and turns into an angle on division by |û_k|².
 //!
-//! **Theorem** (`computed_orbit_direction` in proofs/Perturbation.v). Suppose for k = 1..n that
+//! **Theorem** (theorems `perturbed_orbit`, `sign_certificate` in proofs/). Suppose for k = 1..n that
 //! |r_k| ≤ ε |û_{k−1}|, that |û_k| and |û_{k−1}| differ by a factor of at most g, that
 //! b_k ≥ Σ_{j≤k} |r_j| |û_j|, and that 2 b_k ≤ τ |û_k|². Put ω = g ε + g κ τ. If n (κ ε + ω) ≤ 1/4, then
 //!

@@ -1,181 +1,384 @@
 //! The first tier: the half period in Floquet coordinates and doubles, with a proven error bound.
 //!
-//! Rounding, u = 2^-53, |P| ≤ 1 and every constant of [`Floquet`] as accurate as it says:
+//! proofs/FILTER.md derives every constant; in short, with u = 2^-53 and g in the coordinates of
+//! [`super::floquet`], where a kick has the norm κ ≤ |β|/2 + √(1 + β²/4) and a turn the norm 1,
 //!
-//! * σ = r · (1/q): 2u; P: real part 5u · (σ s/2 ≤ 2) + u ≤ 11u, imaginary part 5u, so |δP| ≤ 13u.
-//! * x = Re(g P): two products and a difference 2u |g|, P 13u |g|: 15u |g|.
-//! * y = β x: β 2u, product u: |δy| ≤ 18u |β| |g|. Adding i y P̄: P 13u, product u: 32u |β| |g|, and the sum
-//!   itself u |g'|.
-//! * the turn: its own error √2 u and √5 u for the complex product (Brent, Percival, Zimmermann 2007):
-//!   3.7u |g|.
+//! ```text
+//!     |r_k| ≤ u (κ (28 + 13 tan(θ/2)) + 6.1 |β|) |g_(k-1)| + u (1 + tan(θ/2)) |g_k|
+//! ```
 //!
-//! Together |r_k| ≤ u (6 |û_k| + 34 |β| |û_{k−1}|), with room for terms in u² and for underflow (2^-1074 beside
-//! |û| ≥ 2^-100, which the check of τ enforces). The shear g ↦ g + iβ Re(gP) P̄ has the norm
-//! κ = |β|/2 + √(1 + β²/4) at most.
+//! is what one update (four shears) adds to the error.
+
+use std::marker::PhantomData;
 
 use super::bound::StepBound;
-use super::floquet::{Floquet, Step};
+use super::floquet::{Floquet, Pair};
+use super::kernel::{Instructions, Lanes, Orbits, Task, Watch, each};
 use super::kind::PartialSigns;
+use super::winding;
 use crate::number::Sign;
 
 /// Half the distance from 1 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// Updates between two looks at |g| where kicks are weak. Within a block |û| is bounded by its value at the
-/// block's end, so that the bound costs one squared norm in four.
-const BLOCK: u64 = 4;
-
-/// Above this squared norm an orbit is scaled down, so that no square overflows.
-const LARGE: f64 = 1.3407807929942597e154 / 4.0; // 2^510
-const SHRINK: f64 = 1.0 / 1.157920892373162e77; // 2^-256
-
-/// One solution on its way through the half period.
-#[derive(Clone, Copy, Debug)]
-struct Orbit {
-    re: f64,
-    im: f64,
-    /// Σ |û|² over the block ends, from the start on, in the scale of the latest rescaling.
-    squares: f64,
-    /// The largest `squares/|û|²` at a block's end.
-    worst: f64,
-    /// The true orbit is 2^exponent times this one.
-    exponent: i64,
-}
-
-impl Orbit {
-    fn new(re: f64, im: f64) -> Self {
-        let squares = re * re + im * im;
-        Orbit { re, im, squares, worst: 1.0, exponent: 0 }
-    }
-
-    fn update(&mut self, step: Step) {
-        self.turn(step.turn);
-        let [p_re, p_im] = step.p;
-        let y = step.beta * (self.re * p_re - self.im * p_im);
-        (self.re, self.im) = (self.re + y * p_im, self.im + y * p_re);
-    }
-
-    fn turn(&mut self, [c, s]: [f64; 2]) {
-        (self.re, self.im) = (self.re * c - self.im * s, self.re * s + self.im * c);
-    }
-
-    /// Adds to the sum of squares and compares it with |û|².
-    fn end_block(&mut self) {
-        let norm2 = self.re * self.re + self.im * self.im;
-        self.squares += norm2;
-        self.worst = self.worst.max(self.squares / norm2);
-        if norm2 > LARGE {
-            self.re *= SHRINK;
-            self.im *= SHRINK;
-            self.squares *= SHRINK * SHRINK;
-            self.exponent += 256;
-        }
-    }
-
-    /// At T/2; `None` where the theorem's conditions did not hold all the way. (NaN fails.)
-    fn finish(mut self, floquet: &Floquet, certificate: &Certificate) -> Option<End> {
-        let tau = certificate.ratio * self.worst;
-        self.turn(floquet.last_turn);
-        let end = End {
-            x: self.re,
-            v: -self.im,
-            exponent: self.exponent,
-            across: certificate.across * self.squares,
-            stretch: certificate.step.length_uncertainty(certificate.steps, tau),
-        };
-        (tau <= certificate.tau).then_some(end)
-    }
-}
+/// The most updates between two looks at |g|.
+const BLOCK: i32 = 32;
 
 /// The constants of the certification, all dimensionless.
 #[derive(Clone, Copy, Debug)]
-struct Certificate {
+pub(super) struct Certificate {
     step: StepBound,
+    /// Updates, the half kick at t = 0 included.
     steps: u64,
     /// Updates between two looks at |g|.
-    block: u64,
-    /// The theorem's τ.
-    tau: f64,
-    /// 2b ≤ `ratio` · `squares/|û_end|²` · |û|² anywhere in a block.
+    pub block: u64,
+    /// 2b ≤ `ratio` · `squares/|g|²` · |g|² anywhere in a block.
     ratio: f64,
-    /// 2b and the error of evaluating a linear form of û are together at most this times `squares`.
+    /// The largest `squares/|g|²` that the theorem's condition on τ admits.
+    pub worst: f64,
+    /// 2b and the error of evaluating a linear form of g are together at most this times `squares`.
     across: f64,
 }
 
 impl Certificate {
-    fn new(beta: f64, steps: u64) -> Option<Certificate> {
-        let beta = beta.abs() * (1.0 + 4.0 * U);
+    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these; `None` where the theorem's
+    /// conditions cannot be met.
+    #[inline(always)]
+    fn new(beta: f64, slope: f64, steps: u64) -> Option<Certificate> {
+        // 1 + 64u covers the roundings of β and of this line.
+        let beta = beta * (1.0 + 64.0 * U);
         let kappa = (beta / 2.0 + (1.0 + beta * beta / 4.0).sqrt()) * (1.0 + 8.0 * U);
-        let step = StepBound { kappa, epsilon: U * (6.0 * 1.01 * kappa + 34.0 * beta) };
+        let before = kappa * (28.0 + 13.0 * slope) + 6.1 * beta;
+        let after = 1.0 + slope;
+        let step = StepBound { kappa, epsilon: 1.01 * U * (before + 1.01 * kappa * after) };
         let tau = step.tau(steps)?;
-        // In a block |û_k|² ≤ g^(2 block - 2) |û_end|², and the other way round: a strong kick wants a look
-        // after every update.
-        let block = if beta < 0.5 { BLOCK } else { 1 };
-        let spread = step.growth().powi(2 * (block as i32 - 1));
-        // b_k ≤ u (6 + 34 β) Σ |û_j|² (arithmetic and geometric mean), 1.01 for the rounding of the sum
-        // itself (at most 10^13 terms) and of these constants.
-        let b = 1.01 * U * (6.0 + 34.0 * beta) * block as f64 * spread;
-        // |⟨n, û⟩| evaluated with an error of 5u |û|, the turn's own error included.
-        let across = 2.0 * b + 5.1 * U;
-        let certificate = Certificate { step, steps, block, tau, ratio: 2.0 * b * spread, across };
-        (steps < 1 << 43 && spread.is_finite()).then_some(certificate)
+        // Blocks in which |g| grows sixteenfold at most: the bound has digits to spare, a look costs an update.
+        let growth = step.growth();
+        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
+        // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
+        // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
+        // rounding of the sum itself (at most 10^13 terms) and of these constants.
+        let b = 1.01 * U * (before + after) * f64::from(block) * growth.powi(2 * (block / 2));
+        // Before a block's end |g|² was smaller than there by growth^(2 (block - 1)) at most.
+        let ratio = 2.0 * b * growth.powi(2 * (block - 1));
+        let across = 2.0 * b + 1.01 * U * (7.0 + 5.0 * slope);
+        let certificate =
+            Certificate { step, steps, block: block as u64, ratio, worst: 0.99 * tau / ratio, across };
+        (steps < 1 << 43 && ratio.is_finite()).then_some(certificate)
+    }
+
+    /// Whether |g|² may pass 2^900, from 2^100 at most at the start.
+    fn strong(&self) -> bool {
+        self.steps as f64 * self.step.growth().log2() > 400.0
+    }
+
+    /// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem
+    /// failed on the way. (NaN fails.)
+    #[inline(always)]
+    fn signs<const L: usize>(&self, [x, v]: &[[f64; L]; 2], orbits: &Orbits<L>) -> [[f64; L]; 2] {
+        let length: [f64; L] = each(|i| (x[i] * x[i] + v[i] * v[i]).sqrt());
+        let held = |i: usize| orbits.worst[i] <= self.worst;
+        let across: [f64; L] =
+            each(|i| if held(i) { self.across * orbits.squares[i] } else { f64::INFINITY });
+        let sign = |form: f64, i: usize| {
+            if form.abs() * length[i] > across[i] { 1f64.copysign(form) } else { 0.0 }
+        };
+        [each(|i| sign(x[i], i)), each(|i| sign(v[i], i))]
     }
 }
 
 /// Where the even and the odd solution stand at T/2, with proven bounds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ends {
+pub(crate) struct Ends {
     pub even: End,
     pub odd: End,
+    /// ⌊Θ/(π/2)⌋, Θ the even solution's turn over the half period; counted on request.
+    pub quarters: i64,
 }
 
 /// One solution at T/2 in Floquet coordinates: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
 /// with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct End {
-    /// Re(g e^{iψ}): the sign of A or B.
+pub(crate) struct End {
+    /// A or B, in the scale that leaves the products AD and BC as they are.
     pub x: f64,
-    /// −Im(g e^{iψ}): the sign of C or D.
+    /// C or D.
     pub v: f64,
     pub exponent: i64,
     pub across: f64,
     pub stretch: f64,
-}
-
-impl End {
-    /// The certified signs of x and v.
-    fn signs(&self) -> (Option<Sign>, Option<Sign>) {
-        let length = (self.x * self.x + self.v * self.v).sqrt();
-        let certain = |form: f64| {
-            let beyond = form.abs() * length > self.across;
-            beyond.then_some(if form > 0.0 { Sign::Positive } else { Sign::Negative })
-        };
-        (certain(self.x), certain(self.v))
-    }
+    signs: (Option<Sign>, Option<Sign>),
 }
 
 impl Ends {
     /// The signs as far as the bounds certify them.
     pub fn signs(&self) -> PartialSigns {
-        let ((a, c), (b, d)) = (self.even.signs(), self.odd.signs());
+        let ((a, c), (b, d)) = (self.even.signs, self.odd.signs);
         PartialSigns { a, b, c, d }
     }
 }
 
+/// Signs, bounds and turns: all that one pair can tell.
+struct Everything;
+
+impl Watch for Everything {
+    const MEASURE: bool = true;
+    const WIND: bool = true;
+}
+
+/// Signs and whether the bounds hold.
+struct SignsOnly;
+
+impl Watch for SignsOnly {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+}
+
+/// No certificate: what the kernel costs alone, for the benchmark.
+struct Bare;
+
+impl Watch for Bare {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+    const CERTIFY: bool = false;
+}
+
 /// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
 pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
-    let certificate = Certificate::new(floquet.beta, floquet.updates())?;
-    // Even: x = 1, v = 0. Odd: x = 0, v = 1.
-    let mut orbits = [Orbit::new(1.0, 0.0), Orbit::new(0.0, -1.0)];
-    let last = floquet.updates() - 1;
-    for (k, step) in (0..).zip(floquet.steps()) {
-        for orbit in &mut orbits {
-            orbit.update(step);
-            if k % certificate.block == 0 || k == last {
-                orbit.end_block();
-            }
+    let mut ends = [None];
+    Group::<1>::new(Instructions::best()).everything(&[floquet.pair()], &mut ends);
+    ends[0]
+}
+
+/// The filter could not tell.
+pub(crate) const UNDECIDED: u8 = u8::MAX;
+
+/// At most L pairs that run side by side. One certificate serves all: that of the strongest kick, the steepest
+/// slope and the most updates.
+pub(crate) struct Group<const L: usize> {
+    instructions: Instructions,
+    lanes: Lanes<L>,
+    /// Cosine and sine of the base's last turn.
+    left: [[f64; L]; 2],
+}
+
+impl<const L: usize> Group<L> {
+    /// Room for L pairs.
+    pub fn new(instructions: Instructions) -> Self {
+        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2] }
+    }
+
+    /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
+    pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
+        let Some(certificate) = self.run::<Everything>(pairs) else { return ends.fill(None) };
+        let halves = self.instructions.perform(Finish(self, &certificate));
+        for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
+            *end = halves.ends(self, &certificate, pair, i);
         }
     }
-    let [even, odd] = orbits.map(|orbit| orbit.finish(floquet, &certificate));
-    Some(Ends { even: even?, odd: odd? })
+
+    /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
+    pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate = self.run::<SignsOnly>(pairs);
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    /// The signs as they come out, certified or not: for the benchmark alone.
+    pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate =
+            self.run::<Bare>(pairs).map(|certificate| Certificate { across: 0.0, ..certificate });
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
+        let strongest = self.instructions.perform(Start(pairs, &mut self.lanes));
+        let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
+        let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
+        let certificate = Certificate::new(strongest, slope, steps)?;
+        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
+        self.instructions.perform(Advance::<W, L>(&mut self.lanes, certificate.block, PhantomData));
+        for (i, pair) in pairs.iter().enumerate() {
+            let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
+            (self.left[0][i], self.left[1][i]) = (cos, sin);
+        }
+        Some(certificate)
+    }
+}
+
+/// What is compiled for each instruction set.
+struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
+struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
+struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+
+impl<const L: usize> Task for Start<'_, L> {
+    type Output = f64;
+
+    /// The strongest kick.
+    #[inline(always)]
+    fn run(self) -> f64 {
+        self.1.start(self.0);
+        self.1.strongest()
+    }
+}
+
+impl<W: Watch, const L: usize> Task for Advance<'_, W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.0.advance::<W>(self.1);
+    }
+}
+
+impl<const L: usize> Task for Finish<'_, L> {
+    type Output = Halves<L>;
+
+    #[inline(always)]
+    fn run(self) -> Halves<L> {
+        Halves::new(self.0, self.1)
+    }
+}
+
+impl<const L: usize> Task for Verdicts<'_, L> {
+    type Output = [u8; L];
+
+    #[inline(always)]
+    fn run(self) -> [u8; L] {
+        Halves::new(self.0, self.1).verdicts()
+    }
+}
+
+/// The half periods of a group.
+struct Halves<const L: usize> {
+    /// (re, im) of the even solution before the base's last turn.
+    even: [[f64; L]; 2],
+    /// (x, v) of the even and the odd solution, and their signs, 0 where uncertain.
+    ends: [[[f64; L]; 2]; 2],
+    signs: [[[f64; L]; 2]; 2],
+}
+
+impl<const L: usize> Halves<L> {
+    #[inline(always)]
+    fn new(group: &Group<L>, certificate: &Certificate) -> Self {
+        let [even, odd] = group.lanes.ends();
+        let ends = [group.turned(&even), group.turned(&odd)];
+        let (lanes, [e, o]) = (&group.lanes, &ends);
+        let signs = [certificate.signs(e, &lanes.even), certificate.signs(o, &lanes.odd)];
+        Halves { even, ends, signs }
+    }
+
+    /// Positions in `Verdict::ALL`: BC > 0, AD < 0, BC < 0 < AD.
+    #[inline(always)]
+    fn verdicts(&self) -> [u8; L] {
+        let [[a, c], [b, d]] = &self.signs;
+        let mut verdicts = [UNDECIDED; L];
+        for (i, verdict) in verdicts.iter_mut().enumerate() {
+            let (bc, ad) = (b[i] * c[i], a[i] * d[i]);
+            *verdict = if bc < 0.0 && ad > 0.0 { 0 } else { *verdict };
+            *verdict = if ad < 0.0 { 2 } else { *verdict };
+            *verdict = if bc > 0.0 { 1 } else { *verdict };
+        }
+        verdicts
+    }
+
+    /// All about lane i; `None` where the theorem's conditions did not hold all the way.
+    fn ends(&self, group: &Group<L>, certificate: &Certificate, pair: &Pair, i: usize) -> Option<Ends> {
+        let lanes = &group.lanes;
+        let end = |n: usize, orbits: &Orbits<L>| {
+            let certain = |x: f64| (x != 0.0).then(|| Sign::from_ordering(x.total_cmp(&0.0)));
+            let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
+            let stretch = certificate.step.length_uncertainty(certificate.steps, certificate.ratio * worst);
+            let end = End {
+                x: self.ends[n][0][i],
+                v: self.ends[n][1][i],
+                exponent: orbits.exponent[i] as i64,
+                across: certificate.across * squares,
+                stretch: stretch + 2.0 * U,
+                signs: (certain(self.signs[n][0][i]), certain(self.signs[n][1][i])),
+            };
+            (worst <= certificate.worst).then_some(end)
+        };
+        let lane = |pair: &[[f64; L]; 2]| [pair[0][i], pair[1][i]];
+        let quarters = winding::at_end(pair, lanes.even_quarter(i), lane(&self.even), lane(&group.left));
+        Some(Ends { even: end(0, &lanes.even)?, odd: end(1, &lanes.odd)?, quarters })
+    }
+}
+
+impl<const L: usize> Group<L> {
+    /// (x, v) = (Re, −Im) of g e^{iω}, ω the turn left.
+    #[inline(always)]
+    fn turned(&self, [re, im]: &[[f64; L]; 2]) -> [[f64; L]; 2] {
+        let [cos, sin] = &self.left;
+        [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rational;
+    use crate::number::rational::ratio;
+    use crate::propagator::{TwoClocks, half_period};
+    use num_integer::Integer;
+    use proptest::prelude::*;
+
+    fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
+        let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
+            let g = p.gcd(&q);
+            Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
+        });
+        prop::collection::vec(pair, 1..9).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    proptest! {
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let results: Vec<String> = Instructions::available().map(|instructions| {
+                let (mut group, mut ends) = (Group::<8>::new(instructions), vec![None; pairs.len()]);
+                group.everything(&pairs, &mut ends);
+                // Debug output of doubles is their shortest exact name.
+                format!("{ends:?} {:?}", group.verdicts(&pairs))
+            }).collect();
+            prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
+        }
+
+        #[test]
+        fn side_by_side_and_alone_agree(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let verdicts = Group::<8>::new(Instructions::best()).verdicts(&pairs);
+            for (floquet, verdict) in floquets.iter().zip(verdicts) {
+                let alone = run(floquet).and_then(|ends| ends.signs().verdict());
+                prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));
+            }
+        }
+
+        #[test]
+        fn the_exact_end_lies_within_the_bound(
+            p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
+        ) {
+            let g = p.gcd(&q);
+            let clocks = TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
+            let half = half_period(&clocks);
+            let exact = |x: f64| Rational::from_float(x).unwrap();
+            // Products do not depend on the scale; two errors across, two of length.
+            let check = |value: Rational, x: f64, one: &End, v: f64, other: &End| {
+                let slack = |end: &End| end.across / end.x.hypot(end.v);
+                let error = x.abs() * slack(other) + v.abs() * slack(one) + slack(one) * slack(other)
+                    + 3.0 * (one.stretch + other.stretch) * (x * v).abs();
+                let distance = value - exact(x) * exact(v);
+                (exact(2.0 * error) >= distance.clone()) && (exact(-2.0 * error) <= distance)
+            };
+            let (even, odd) = (&ends.even, &ends.odd);
+            prop_assume!(even.exponent == 0 && odd.exponent == 0);
+            prop_assert!(check(half.b() * half.c(), odd.x, odd, even.v, even));
+            prop_assert!(check(half.a() * half.d(), even.x, even, odd.v, odd));
+        }
+    }
 }

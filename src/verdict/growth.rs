@@ -7,7 +7,7 @@
 //!     ln μ = 2 asinh √(BC)   for Tr > 2,        ln μ = 2 asinh √(-AD)   for Tr < -2,
 //! ```
 //!
-//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2).
+//! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in proofs/).
 
 use super::exact::Decidable;
 use super::filter;
@@ -44,14 +44,14 @@ const ACCURACY: i64 = 60;
 pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
     let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
     let floquet = Floquet::new(clocks);
-    let quick = floquet.as_ref().filter(|_| schedule.strikes() > WORTH_REFINING);
-    if let Some(ends) = quick.and_then(filter::run) {
-        let label = winding::label(quick.expect("just used"), verdict);
+    let filtered = floquet.as_ref().and_then(filter::run);
+    let label = filtered.as_ref().and_then(|ends| winding::label(ends, verdict));
+    if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
         return Ok(from_products(products(&ends), verdict, label));
     }
     limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
     let (ends, bits) = refined(clocks, &schedule, verdict);
-    let label = floquet.and_then(|f| winding::label(&f, verdict)).or_else(|| from_nodes(&ends, verdict));
+    let label = label.or_else(|| from_nodes(&ends, verdict));
     Ok(from_products(ends.products(bits), verdict, label))
 }
 

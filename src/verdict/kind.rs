@@ -10,7 +10,7 @@
 //! | B = C = 0 | coexistence, Q = I | 2 | yes |
 //! | A = D = 0 | coexistence, Q = −I | −2 | yes |
 //!
-//! (theorem `four_sign_table` in proofs/). Since AD − BC = 1, either product's sign is enough where it
+//! (theorem `four_signs` in proofs/). Since AD − BC = 1, either product's sign is enough where it
 //! already says "hyperbolic".
 //!
 //! ```
@@ -55,7 +55,33 @@ pub struct Verdict {
     side: i8,
 }
 
+const fn verdict(kind: Kind, side: i8) -> Verdict {
+    Verdict { kind, side }
+}
+
 impl Verdict {
+    /// The seven verdicts, the rows of the table above: tables of many verdicts store indices into this one.
+    pub const ALL: [Verdict; 7] = [
+        verdict(Kind::Elliptic, 0),
+        verdict(Kind::Hyperbolic, 1),
+        verdict(Kind::Hyperbolic, -1),
+        verdict(Kind::Parabolic, 1),
+        verdict(Kind::Parabolic, -1),
+        verdict(Kind::Coexistence, 1),
+        verdict(Kind::Coexistence, -1),
+    ];
+
+    /// The position in [`Verdict::ALL`].
+    pub fn index(self) -> u8 {
+        let minus = u8::from(self.side < 0);
+        match self.kind {
+            Kind::Elliptic => 0,
+            Kind::Hyperbolic => 1 + minus,
+            Kind::Parabolic => 3 + minus,
+            Kind::Coexistence => 5 + minus,
+        }
+    }
+
     /// What the powers of Q do.
     pub fn kind(self) -> Kind {
         self.kind
@@ -66,7 +92,7 @@ impl Verdict {
         self.side
     }
 
-    /// Whether the powers of Q are bounded (theorem `powers_bounded_iff` in proofs/).
+    /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
     pub fn is_stable(self) -> bool {
         matches!(self.kind, Kind::Elliptic | Kind::Coexistence)
     }
@@ -180,6 +206,11 @@ mod tests {
             rows.insert((verdict.kind(), verdict.side()));
         }
         assert_eq!(rows.len(), 7);
+    }
+
+    #[test]
+    fn every_verdict_is_where_its_index_says() {
+        assert!(Verdict::ALL.iter().zip(0..).all(|(verdict, index)| verdict.index() == index));
     }
 
     #[test]

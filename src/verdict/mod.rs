@@ -20,15 +20,17 @@
 
 mod bound;
 mod exact;
-mod filter;
-mod floquet;
+pub(crate) mod filter;
+pub(crate) mod floquet;
 mod growth;
+pub(crate) mod kernel;
 mod kind;
 mod ladder;
 mod refine;
-mod winding;
+mod residue;
+pub(crate) mod winding;
 
-pub use exact::Decidable;
+pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
 pub(crate) use ladder::filter_only;

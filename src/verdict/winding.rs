@@ -1,47 +1,57 @@
 //! The label of a tongue: how many half turns the growing solution makes in one period.
 //!
-//! In Floquet coordinates the point g P turns by the base's angle between kicks, φ = p θ/2 in all, and a kick
-//! moves it by i β x |P|²: up or down, never across the line x = 0. So the turn of the even solution over the
-//! half period is φ + Σ δ, δ the change of arg(g P) in each kick, |δ| < π. Inside a tongue m half turns of the
-//! growing solution over the period are m/2 over its half, give or take less than one quarter turn; the signs
-//! of x and v at T/2 leave one m for it.
+//! The kernel's shears move the even solution through the plane, never across the axis they keep, so counting
+//! the axes crossed counts its quarter turns: those of the exact solution, whose angle to the computed one stays
+//! small all the way. Inside a tongue m half turns of the growing solution over the period are m/2 over its half,
+//! give or take less than one quarter turn; the signs of x and v at T/2 leave one m for it.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
-use num_complex::Complex64;
-
-use super::floquet::Floquet;
+use super::filter::Ends;
+use super::floquet::Pair;
 use super::kind::{Kind, Verdict};
 
-/// m, or `None` where the pair is not hyperbolic or the turn is too uncertain to tell.
-pub(super) fn label(floquet: &Floquet, verdict: Verdict) -> Option<u64> {
-    if verdict.kind() != Kind::Hyperbolic {
+/// m, or `None` where the pair is not hyperbolic or the even solution's quarter at T/2 is not certain.
+pub(crate) fn label(ends: &Ends, verdict: Verdict) -> Option<u64> {
+    let signs = ends.signs();
+    if verdict.kind() != Kind::Hyperbolic || signs.a.is_none() || signs.c.is_none() {
         return None;
     }
-    let (turn, (x, v)) = even_turn(floquet);
-    // The end point's own angle knows the turn up to whole turns; the sum tells their number.
-    let own = (-v).atan2(x);
-    let whole = (turn - own) / (2.0 * PI);
-    let off = (whole - whole.round()).abs();
-    let half_turns = 2.0 * whole.round() + own / PI;
-    let m = if verdict.side() > 0 { 2.0 * half_turns.round() } else { 2.0 * half_turns.ceil() - 1.0 };
-    (off < 0.25 && m >= 0.0).then_some(m as u64)
+    // The turn Θ lies in the quarter turn after `quarters`. Tr > 2: the nearest number of half turns to Θ/π is
+    // m/2. Tr < -2: m/2 is the middle of the half turn in which Θ lies.
+    let m = if verdict.side() > 0 {
+        2 * (ends.quarters + 1).div_euclid(2)
+    } else {
+        2 * ends.quarters.div_euclid(2) + 1
+    };
+    u64::try_from(m).ok()
 }
 
-/// The even solution's turn over the half period in radians, and where it ends as (x, v).
-fn even_turn(floquet: &Floquet) -> (f64, (f64, f64)) {
-    let (mut turn, mut g) = (floquet.phi, Complex64::ONE);
-    for step in floquet.steps() {
-        let [turn_by, p] = [step.turn, step.p].map(|[re, im]| Complex64::new(re, im));
-        g *= turn_by;
-        let before = g * p;
-        g += Complex64::I * p.conj() * (step.beta * before.re);
-        turn += (before.conj() * g * p).arg();
-        // Only directions matter; a power of two keeps growing orbits in range.
-        if g.re.abs().max(g.im.abs()) > 2f64.powi(500) {
-            g *= 2f64.powi(-500);
-        }
-    }
-    let end = g * Complex64::new(floquet.last_turn[0], floquet.last_turn[1]);
-    (turn, (end.re, -end.im))
+/// ⌊Θ/(π/2)⌋ at T/2, Θ the even solution's turn: from the quarters counted up to the last update, the state
+/// (re, im) there, and the turn left with its cosine and sine.
+pub(super) fn at_end(pair: &Pair, counted: i64, [re, im]: [f64; 2], [cos, sin]: [f64; 2]) -> i64 {
+    // The last shear may have crossed the axis re = 0 once more: the quarter of the same half plane.
+    let angle = im.atan2(re);
+    let before = nearest_turn(counted as f64 * FRAC_PI_2 + FRAC_PI_2 / 2.0, angle);
+    // Half turns left out of the updates, and the turn left.
+    let carries = u128::from(pair.updates) * u128::from(pair.rest) / u128::from(pair.modulus);
+    let [without, with] = [0, 1].map(|carry| pair.base.turn(pair.whole + carry).half_turns as f64);
+    let half_turns = (pair.updates as f64 - carries as f64) * without + carries as f64 * with;
+    let turn =
+        before + 2.0 * FRAC_PI_2 * half_turns + pair.left().unwrap_or(0) as f64 * pair.base.theta / 2.0;
+    // The end's own direction knows the quarter; the sum, which of the whole turns. Odd half turns reverse it.
+    let sign = if half_turns.rem_euclid(2.0) == 1.0 { -1.0 } else { 1.0 };
+    let (x, y) = (sign * (re * cos - im * sin), sign * (re * sin + im * cos));
+    let quarter = match (x < 0.0, y < 0.0) {
+        (false, false) => 0,
+        (true, false) => 1,
+        (true, true) => 2,
+        (false, true) => 3,
+    };
+    quarter + 4 * ((turn - quarter as f64 * FRAC_PI_2 - FRAC_PI_2 / 2.0) / TAU).round() as i64
+}
+
+/// The angle equal to `angle` up to whole turns that is nearest to `to`.
+fn nearest_turn(to: f64, angle: f64) -> f64 {
+    angle + TAU * ((to - angle) / TAU).round()
 }

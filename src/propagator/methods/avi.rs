@@ -25,7 +25,7 @@ pub fn staggered<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
 }
 
 /// The time-symmetric form: the kicks at t = 0 split in two halves, one moved to T. Conjugate to the
-/// staggered form by half a kick, so the trace is the same.
+/// staggered form by half a kick, so the trace is the same (theorem `staggered_trace` in proofs/).
 ///
 /// # Panics
 /// As [`staggered`].

@@ -13,7 +13,7 @@ use crate::propagator::{drift, kick};
 
 /// Q_VV = K(hL/2) D(h) K(hL/2) = [[1 − h²L/2, h], [−hL(1 − h²L/4), 1 − h²L/2]].
 ///
-/// Its powers are bounded iff 0 < h²L < 4 (theorem `verlet_bounded_iff` in proofs/); at h²L = 4 it is a
+/// Its powers are bounded iff 0 < h²L < 4 (theorem `verlet` in proofs/); at h²L = 4 it is a
 /// Jordan block and grows linearly, which the paper's "|eigenvalue| ≤ 1 iff h √L ≤ 2" does not see.
 pub fn velocity_form<S: Ring>(h: S, stiffness: S) -> Matrix2<S> {
     let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));

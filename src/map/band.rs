@@ -1,0 +1,241 @@
+//! A band of columns: its pairs sorted by their number of updates, run side by side, the rest sent up the ladder.
+
+use super::bases::Bases;
+use super::gcd;
+use super::grid::Grid;
+use super::products::{Growing, Products};
+use crate::error::{Error, Result};
+use crate::verdict::filter::{self, Group};
+use crate::verdict::floquet::{Base, Pair};
+use crate::verdict::kernel::Instructions;
+use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
+
+/// Pairs that run side by side: two AVX-512 registers hide each other's latency.
+pub(super) const LANES: usize = 16;
+
+/// About as many pairs make a band: enough to find company for each number of updates.
+const PAIRS: usize = 1 << 15;
+
+/// What the map tells about a band of columns, column by column, in each by increasing row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// The multiplier i of the first column.
+    pub first: u64,
+    /// The number of columns and of rows.
+    pub columns: usize,
+    pub rows: usize,
+    /// Positions in [`Verdict::ALL`].
+    pub verdicts: Vec<u8>,
+    /// The deciding tiers: 0 filter, 1 refine, 2 exact.
+    pub tiers: Vec<u8>,
+    /// Of the pairs whose powers grow exponentially, in the same order, what was asked for.
+    pub growing: Vec<Growing>,
+    pub counters: Counters,
+}
+
+/// What the work was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    pub pairs: u64,
+    /// Kicks composed by the first tier for the verdicts.
+    pub kicks: u64,
+    /// Kicks composed again for labels and growth.
+    pub kicks_again: u64,
+    /// Pairs that the kernel sent up the ladder.
+    pub escalated: u64,
+}
+
+impl Counters {
+    /// The sums.
+    pub fn add(&mut self, other: &Counters) {
+        self.pairs += other.pairs;
+        self.kicks += other.kicks;
+        self.kicks_again += other.kicks_again;
+        self.escalated += other.escalated;
+    }
+}
+
+impl Band {
+    /// The verdict and its tier at position n.
+    pub fn decision(&self, n: usize) -> Decision {
+        let decided_by = [Tier::Filter, Tier::Refine, Tier::Exact][usize::from(self.tiers[n])];
+        Decision { verdict: Verdict::ALL[usize::from(self.verdicts[n])], decided_by }
+    }
+
+    /// (i, j) of position n in a band of this grid.
+    pub fn multipliers(&self, grid: &Grid, n: usize) -> (u64, u64) {
+        (self.first + (n / self.rows) as u64, grid.rows().0 + (n % self.rows) as u64)
+    }
+}
+
+/// The columns of each band of a grid: (first, count). Depends on the grid alone.
+pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> + use<> {
+    let (columns, rows) = grid.shape();
+    let width = (PAIRS / rows).clamp(1, columns);
+    let first = grid.columns().0;
+    (0..columns.div_ceil(width)).map(move |n| {
+        let start = n * width;
+        (first + start as u64, width.min(columns - start))
+    })
+}
+
+/// A band at work.
+pub(super) struct Work<'a> {
+    grid: &'a Grid,
+    bases: &'a Bases<'a>,
+    limits: &'a Limits,
+    first: u64,
+    firsts: Vec<Option<Base>>,
+    gcds: Vec<u32>,
+    /// Positions in the order of the number of updates.
+    order: Vec<u32>,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(
+        grid: &'a Grid,
+        bases: &'a Bases<'a>,
+        limits: &'a Limits,
+        (first, columns): (u64, usize),
+    ) -> Self {
+        let (rows, first_row) = (grid.shape().1, grid.rows().0);
+        let (a, b) = grid.ratio();
+        let mut gcds = vec![0; columns * rows];
+        for (i, gcds) in (first..).zip(gcds.chunks_mut(rows)) {
+            // gcd(ib, ja) = gcd(i, a) gcd(i b / gcd(i, a), j), a and b being coprime.
+            let common = num_integer::gcd(i, a);
+            gcd::with_run(&[i / common, b], first_row, gcds);
+            gcds.iter_mut().for_each(|g| *g *= common as u32);
+        }
+        let firsts = (first..).take(columns).map(|i| bases.column(i)).collect();
+        let mut work = Work { grid, bases, limits, first, firsts, gcds, order: Vec::new() };
+        work.order = work.sorted();
+        work
+    }
+
+    pub(super) fn multipliers(&self, n: usize) -> (u64, u64) {
+        let rows = self.grid.shape().1;
+        (self.first + (n / rows) as u64, self.grid.rows().0 + (n % rows) as u64)
+    }
+
+    /// Positions by min(p, q)/2: equal numbers run together.
+    fn sorted(&self) -> Vec<u32> {
+        let (a, b) = self.grid.ratio();
+        let updates = |n: usize| {
+            let (i, j) = self.multipliers(n);
+            (i * b).min(j * a) / u64::from(self.gcds[n]) / 2
+        };
+        let keys: Vec<u32> =
+            (0..self.gcds.len()).map(|n| updates(n).min(u64::from(u32::MAX)) as u32).collect();
+        by_counting(&keys)
+    }
+
+    /// The band's verdicts, and what else is asked for.
+    pub fn run(&self, products: Products) -> Result<Band> {
+        let (pairs, rows) = (self.gcds.len(), self.grid.shape().1);
+        let mut band = Band {
+            first: self.first,
+            columns: pairs / rows,
+            rows,
+            verdicts: vec![filter::UNDECIDED; pairs],
+            tiers: vec![0; pairs],
+            growing: Vec::new(),
+            counters: Counters { pairs: pairs as u64, ..Counters::default() },
+        };
+        let mut group = Group::<LANES>::new(Instructions::best());
+        band.counters.kicks = self.side_by_side(&self.order, |pairs, positions| {
+            let verdicts = group.verdicts(pairs);
+            for (&n, &verdict) in positions.iter().zip(&verdicts) {
+                band.verdicts[n] = verdict;
+            }
+        })?;
+        let undecided = |&n: &usize| band.verdicts[n] == filter::UNDECIDED;
+        let rest: Vec<usize> = (0..pairs).filter(undecided).collect();
+        band.counters.escalated = rest.len() as u64;
+        for n in rest {
+            let (i, j) = self.multipliers(n);
+            let decision = decide(&self.grid.clocks(i, j)?, self.limits)?;
+            (band.verdicts[n], band.tiers[n]) = (decision.verdict.index(), decision.decided_by as u8);
+        }
+        if products.growing() {
+            self.grow(&mut band, products)?;
+        }
+        Ok(band)
+    }
+
+    pub(super) fn uncertified_unstable(&self) -> Result<u64> {
+        let (mut group, mut unstable) = (Group::<LANES>::new(Instructions::best()), 0);
+        self.side_by_side(&self.order, |pairs, _| {
+            let verdicts = group.uncertified(pairs);
+            unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
+        })?;
+        Ok(unstable)
+    }
+
+    /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,
+    /// and counts the kicks they compose.
+    pub(super) fn side_by_side(&self, order: &[u32], mut run: impl FnMut(&[Pair], &[usize])) -> Result<u64> {
+        let mut kicks = 0;
+        let (mut pairs, mut positions) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
+        for group in order.chunks(LANES) {
+            pairs.clear();
+            positions.clear();
+            for n in group.iter().map(|&n| n as usize) {
+                let first = self.firsts[n / self.grid.shape().1].as_ref();
+                if let Some(pair) = self.bases.pair(first, self.multipliers(n), u64::from(self.gcds[n])) {
+                    self.allow(pair.updates + 1)?;
+                    kicks += pair.updates + 1;
+                    pairs.push(pair);
+                    positions.push(n);
+                }
+            }
+            if !pairs.is_empty() {
+                run(&pairs, &positions);
+            }
+        }
+        Ok(kicks)
+    }
+
+    fn allow(&self, kicks: u64) -> Result<()> {
+        if kicks <= self.limits.kicks {
+            return Ok(());
+        }
+        Err(Error::budget(format!(
+            "a pair of the map composes {kicks} kicks, the budget is {}: allow it with --budget {kicks}, or choose \
+             steps with a simpler ratio",
+            self.limits.kicks
+        )))
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        self.grid
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        self.limits
+    }
+
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+}
+
+/// The positions of the keys in increasing order, equal keys in order of position.
+fn by_counting(keys: &[u32]) -> Vec<u32> {
+    let largest = keys.iter().copied().max().unwrap_or(0) as usize;
+    if largest > 8 * keys.len() + 1024 {
+        let mut order: Vec<u32> = (0..keys.len() as u32).collect();
+        order.sort_by_key(|&n| keys[n as usize]);
+        return order;
+    }
+    let mut starts = vec![0u32; largest + 2];
+    keys.iter().for_each(|&key| starts[key as usize + 1] += 1);
+    (1..starts.len()).for_each(|key| starts[key] += starts[key - 1]);
+    let mut order = vec![0; keys.len()];
+    for (n, &key) in (0..).zip(keys) {
+        let place = &mut starts[key as usize];
+        order[*place as usize] = n;
+        *place += 1;
+    }
+    order
+}

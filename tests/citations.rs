@@ -1,0 +1,54 @@
+//! Every theorem that the documentation cites exists in proofs/Main.v.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] }).collect()
+}
+
+/// The names in backquotes that follow the word "theorem" or "theorems", up to " in proofs/".
+fn cited(text: &str) -> Vec<String> {
+    let joined: Vec<&str> = text
+        .lines()
+        .map(|line| line.trim().trim_start_matches("//!").trim_start_matches("///").trim())
+        .collect();
+    let joined = joined.join(" ").replace("Theorem", "theorem");
+    let mut names = Vec::new();
+    for rest in joined.split("theorem").skip(1) {
+        let Some((list, _)) = rest.split_once(" in proofs/") else { continue };
+        // A citation is short: "theorems" must not reach for the next "in proofs/" of another sentence.
+        if list.len() < 120 {
+            names.extend(list.split('`').skip(1).step_by(2).map(str::to_string));
+        }
+    }
+    names
+}
+
+#[test]
+fn every_cited_theorem_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let main = fs::read_to_string(root.join("proofs/Main.v")).unwrap();
+    let theorem = |line: &str| line.strip_prefix("Theorem ")?.split([' ', ':']).next().map(str::to_string);
+    let proven: BTreeSet<String> = main.lines().filter_map(theorem).collect();
+    let mut all = BTreeSet::new();
+    for path in sources(&root.join("src")) {
+        for name in cited(&fs::read_to_string(&path).unwrap()) {
+            assert!(
+                proven.contains(&name),
+                "{} cites `{name}`, which proofs/Main.v does not have",
+                path.display()
+            );
+            all.insert(name);
+        }
+    }
+    assert!(all.len() >= 15, "only {} citations found: is the test reading the sources? {all:?}", all.len());
+}
+
+#[test]
+fn citations_are_read_across_lines() {
+    let text = "/// bounded (theorem `a_b` in proofs/), and\n/// (theorems `c`,\n/// `d` in proofs/).";
+    assert_eq!(cited(text), ["a_b", "c", "d"]);
+}

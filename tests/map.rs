@@ -1,0 +1,205 @@
+//! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
+
+use kickdrift::error::Kind as ErrorKind;
+use kickdrift::map::{Band, Counters, Grid, Products, Shard, Store, for_each_band, merge, resume};
+use kickdrift::number::parse::parse;
+use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
+
+const BOTH: Products = Products { label: true, growth: true };
+
+fn grid(lambda1: &str, lambda2: &str, d: &str, (h1, h2): ((&str, &str), (&str, &str))) -> Grid {
+    let x = |text: &str| parse("x", text).unwrap();
+    let range = |(lo, hi): (&str, &str)| (x(lo), x(hi));
+    Grid::new(x(lambda1), x(lambda2), [x(d), x(d)], range(h1), range(h2)).unwrap()
+}
+
+fn figure_1(d: &str) -> Grid {
+    grid("pi^2", "pi^2/25", d, ((d, "2/pi"), (d, "7/2")))
+}
+
+fn bands(grid: &Grid, products: Products, shard: Shard, threads: usize) -> (Vec<(u64, Band)>, Counters) {
+    let mut bands = Vec::new();
+    let counters = for_each_band(grid, products, shard, threads, &Limits::default(), |n, band| {
+        bands.push((n, band));
+        Ok(())
+    });
+    (bands, counters.unwrap())
+}
+
+/// Pairs, unstable pairs, pairs beyond the filter.
+fn count(d: &str) -> (u64, usize, usize) {
+    let (bands, counters) = bands(&figure_1(d), Products::default(), Shard::WHOLE, 0);
+    let sum = |f: &dyn Fn(&Band) -> usize| bands.iter().map(|(_, band)| f(band)).sum();
+    let unstable =
+        sum(&|band| (0..band.verdicts.len()).filter(|&n| !band.decision(n).verdict.is_stable()).count());
+    (counters.pairs, unstable, sum(&|band| band.tiers.iter().filter(|&&tier| tier > 0).count()))
+}
+
+/// Every `stride`-th verdict of the grid against the ladder from `tier` up.
+fn agrees(grid: &Grid, tier: Tier, stride: usize) {
+    for (_, band) in bands(grid, Products::default(), Shard::WHOLE, 0).0 {
+        for n in (0..band.verdicts.len()).step_by(stride) {
+            let (i, j) = band.multipliers(grid, n);
+            let clocks = grid.clocks(i, j).unwrap();
+            let other = decide_from(tier, &clocks, &Limits::default()).unwrap();
+            assert_eq!(band.decision(n).verdict, other.verdict, "i = {i}, j = {j} of {}", grid.fingerprint());
+        }
+    }
+}
+
+#[test]
+fn figure_1_at_a_hundredth() {
+    assert_eq!(count("1/100"), (22_050, 2_075, 0));
+}
+
+#[test]
+#[ignore = "long in unoptimized builds"]
+fn figure_1_at_a_five_hundredth_and_a_thousandth() {
+    assert_eq!(count("1/500"), (556_500, 55_092, 0));
+    assert_eq!(count("1/1000"), (2_226_000, 218_848, 0));
+}
+
+#[test]
+fn kicks_and_drifts_one_by_one_agree() {
+    agrees(&figure_1("1/100"), Tier::Refine, 41);
+}
+
+#[test]
+#[ignore = "long"]
+fn kicks_and_drifts_one_by_one_agree_everywhere() {
+    agrees(&figure_1("1/100"), Tier::Refine, 1);
+    agrees(&figure_1("1/1000"), Tier::Refine, 223);
+}
+
+#[test]
+fn exact_arithmetic_agrees_where_stiffnesses_are_rational() {
+    // lambda1 = 100, d = 1/20: s = i²/4 meets s = 1 and s = 4 exactly, and goes beyond Verlet's limit.
+    for lambda2 in ["1/10", "50", "100", "400", "4", "-4", "-120"] {
+        let grid = grid("100", lambda2, "1/20", (("1/20", "1/4"), ("1/20", "3/2")));
+        agrees(&grid, Tier::Exact, 1);
+    }
+    // Kicks too strong for the filter, and a force that is not there.
+    agrees(&grid("10^6", "10^9", "1/20", (("1/20", "1/4"), ("1/20", "1/2"))), Tier::Exact, 1);
+    agrees(&grid("100", "0", "1/20", (("1/20", "1/4"), ("1/20", "1"))), Tier::Exact, 1);
+}
+
+#[test]
+fn exact_ties_are_found_and_named() {
+    let grid = grid("100", "4", "1/20", (("1/20", "1/4"), ("1/20", "3/2")));
+    let (bands, _) = bands(&grid, Products::default(), Shard::WHOLE, 0);
+    let ties = |kind| {
+        let in_band = |band: &Band| {
+            (0..band.verdicts.len()).filter(|&n| band.decision(n).verdict.kind() == kind).count()
+        };
+        bands.iter().map(|(_, band)| in_band(band)).sum::<usize>()
+    };
+    // h1 = 1/10: th = pi/3, so that h2 = 3/10, 6/10, ... sit on the edge of a tongue.
+    assert!(ties(Kind::Parabolic) >= 5);
+    assert_eq!(ties(Kind::Coexistence), 0);
+}
+
+#[test]
+fn windows_with_steps_of_their_own_agree() {
+    let x = |text: &str| parse("x", text).unwrap();
+    for (d1, d2) in [("1/7", "3/35"), ("pi/90", "7*pi/300"), ("1/1000", "1/10")] {
+        let range = |lo, hi| (x(lo), x(hi));
+        let grid =
+            Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("0.2", "0.66"), range("0.1", "2.2")).unwrap();
+        agrees(&grid, Tier::Refine, 1 + grid.pairs() as usize / 300);
+    }
+}
+
+#[test]
+fn labels_and_growth_are_those_of_the_single_pair() {
+    let grid = figure_1("1/60");
+    let mut seen = 0;
+    for (_, band) in bands(&grid, BOTH, Shard::WHOLE, 0).0 {
+        let hyperbolic = |&n: &usize| band.decision(n).verdict.kind() == Kind::Hyperbolic;
+        assert_eq!(band.growing.len(), (0..band.verdicts.len()).filter(hyperbolic).count());
+        for found in band.growing.iter().step_by(5) {
+            let n = found.position as usize;
+            let (i, j) = band.multipliers(&grid, n);
+            let single =
+                growth(&grid.clocks(i, j).unwrap(), band.decision(n).verdict, &Limits::default()).unwrap();
+            assert_eq!(found.label, single.label);
+            let (ours, exact) = (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().mid_f64());
+            // The enclosure is tight to 60 bits; ours loses digits only where |Tr| - 2 is tiny.
+            assert!((ours - exact).abs() <= 1e-9 * (1.0 + exact), "{ours} {exact} at ({i}, {j})");
+            seen += 1;
+        }
+    }
+    assert!(seen > 100);
+}
+
+#[test]
+fn threads_and_shards_change_nothing() {
+    let grid = figure_1("1/150");
+    let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 1);
+    assert!(whole.len() > 1);
+    assert_eq!(bands(&grid, BOTH, Shard::WHOLE, 3).0, whole);
+    let mut parts: Vec<_> =
+        (1..=3).flat_map(|k| bands(&grid, BOTH, Shard::new(k, 3).unwrap(), 2).0).collect();
+    parts.sort_by_key(|(n, _)| *n);
+    assert_eq!(parts, whole);
+    assert_eq!(counters.pairs, grid.pairs());
+}
+
+#[test]
+fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
+    let (grid, limits) = (figure_1("1/150"), Limits::default());
+    let directory = std::env::temp_dir().join(format!("kickdrift-map-{}", std::process::id()));
+    let store = Store::open(&directory, &grid, BOTH).unwrap();
+    let shard = |k| Shard::new(k, 2).unwrap();
+    // Stopped after the first band of the first shard; the second is missing.
+    let stop = |_, _| Err(kickdrift::error::Error::io("output", "stopped"));
+    resume(&grid, BOTH, shard(1), 1, &limits, &store, stop).unwrap_err();
+    assert!(
+        merge(&grid, std::slice::from_ref(&store), |_, _| Ok(()))
+            .unwrap_err()
+            .to_string()
+            .contains("is in no part")
+    );
+    for k in [1, 2] {
+        resume(&grid, BOTH, shard(k), 2, &limits, &store, |_, _| Ok(())).unwrap();
+    }
+    // A damaged file is not there, nor is that of another map.
+    let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 0);
+    let file = directory.join("band-00000001");
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes[300] ^= 1;
+    std::fs::write(&file, bytes).unwrap();
+    assert!(store.load(1).is_none() && store.load(0).is_some());
+    assert!(Store::open(&directory, &grid, Products::default()).unwrap().load(0).is_none());
+    resume(&grid, BOTH, Shard::WHOLE, 2, &limits, &store, |_, _| Ok(())).unwrap();
+    let mut joined = Vec::new();
+    let sums = merge(&grid, &[store], |n, band| {
+        joined.push((n, band));
+        Ok(())
+    });
+    assert_eq!((joined, sums.unwrap()), (whole, counters));
+    std::fs::remove_dir_all(directory).unwrap();
+}
+
+#[test]
+fn wanting_less_does_less() {
+    let grid = figure_1("1/100");
+    let (bare, full) =
+        (bands(&grid, Products::default(), Shard::WHOLE, 0), bands(&grid, BOTH, Shard::WHOLE, 0));
+    assert_eq!((bare.1.kicks_again, bare.1.kicks), (0, full.1.kicks));
+    assert!(bare.0.iter().all(|(_, band)| band.growing.is_empty()));
+    // Only pairs in tongues are run again.
+    assert!(0 < full.1.kicks_again && 4 * full.1.kicks_again < full.1.kicks);
+}
+
+#[test]
+fn impossible_grids_are_refused_by_name() {
+    let x = |text: &str| parse("x", text).unwrap();
+    let grid = |l1, d1, d2, hi| {
+        Grid::new(x(l1), x("1"), [x(d1), x(d2)], (x("1"), x(hi)), (x("1"), x("2"))).unwrap_err()
+    };
+    assert!(grid("0", "1", "1", "2").to_string().starts_with("lambda1 = 0"));
+    assert!(grid("1", "-1", "1", "2").to_string().starts_with("step1 = -1"));
+    assert!(grid("1", "1", "pi/9", "2").to_string().starts_with("step2/step1 = (pi/9)/(1)"));
+    assert!(grid("1", "3", "3", "2").to_string().starts_with("h1-range = 1..2"));
+    assert_eq!(grid("1", "10^-9", "1", "2").kind(), ErrorKind::Budget);
+}
