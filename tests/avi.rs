@@ -33,17 +33,19 @@ fn any_system() -> impl Strategy<Value = System> {
     (1usize..=4, 1usize..=4).prop_flat_map(|(n, clocks)| {
         let spring = (0..n, 0..=n, -5i64..40);
         let one = (prop::collection::vec(spring, 1..=n + 2), 1i64..8, 1i64..4, any::<bool>());
-        (prop::collection::vec(1i64..6, n), prop::collection::vec(one, clocks)).prop_map(move |(masses, potentials)| {
-            let mass = Symmetric::diagonal(&masses.iter().map(|&m| ratio(m, 3)).collect::<Vec<_>>());
-            let build = |(springs, p, q, late): (Vec<(usize, usize, i64)>, i64, i64, bool)| {
-                let mut stiffness = Symmetric::zero(n);
-                for (i, j, k) in springs {
-                    stiffness.add_spring(i, (j < n && j != i).then_some(j), &ratio(k, 20));
-                }
-                Potential { stiffness, step: ratio(p, 2 * q), phase: ratio(i64::from(late), 2) }
-            };
-            System::new(mass, potentials.into_iter().map(build).collect()).unwrap()
-        })
+        (prop::collection::vec(1i64..6, n), prop::collection::vec(one, clocks)).prop_map(
+            move |(masses, potentials)| {
+                let mass = Symmetric::diagonal(&masses.iter().map(|&m| ratio(m, 3)).collect::<Vec<_>>());
+                let build = |(springs, p, q, late): (Vec<(usize, usize, i64)>, i64, i64, bool)| {
+                    let mut stiffness = Symmetric::zero(n);
+                    for (i, j, k) in springs {
+                        stiffness.add_spring(i, (j < n && j != i).then_some(j), &ratio(k, 20));
+                    }
+                    Potential { stiffness, step: ratio(p, 2 * q), phase: ratio(i64::from(late), 2) }
+                };
+                System::new(mass, potentials.into_iter().map(build).collect()).unwrap()
+            },
+        )
     })
 }
 
@@ -149,14 +151,16 @@ fn nonlinear_forms_conserve_what_they_should() {
     let energies = [ratio(1, 20), ratio(1, 40)].map(|h| {
         let clocks = Clocks::new(&[h.clone(), &h * ratio(3, 2)], &[ratio(0, 1), ratio(0, 1)]).unwrap();
         let start = State::new(vec![0.0, 0.3, -0.2], vec![0.5, -0.25, 0.0]);
-        let mut simulation = Simulation::new(&vec![ratio(1, 1); 3], vec![quartic(0), quartic(1)], clocks, start).unwrap();
+        let mut simulation =
+            Simulation::new(&vec![ratio(1, 1); 3], vec![quartic(0), quartic(1)], clocks, start).unwrap();
         let period = simulation.clocks().period;
         let off = avi::irreversibility(&mut simulation, 20 * period);
         // Roundoff of some hundred kicks, little amplified.
         assert!(off < 1e-11, "{off}");
         let samples = avi::series(&mut simulation, 400, period);
         assert!(samples.iter().all(|s| (s.momentum - 0.25).abs() < 1e-12));
-        let (first, worst) = (samples[0].energy, samples.iter().map(|s| (s.energy - samples[0].energy).abs()));
+        let (first, worst) =
+            (samples[0].energy, samples.iter().map(|s| (s.energy - samples[0].energy).abs()));
         worst.fold(0.0, f64::max) / first
     });
     // Second order: half the step, a quarter of the error; sampled at other times, so within a factor 2.

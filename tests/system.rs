@@ -4,8 +4,8 @@ use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::system::{
-    Evidence, Limits, ManyClocks, Origin, Potential, Symmetric, System, builders, decide_exact, decide_system,
-    full_period, half_period,
+    Evidence, Limits, ManyClocks, Origin, Potential, Symmetric, System, builders, decide_exact,
+    decide_system, full_period, half_period,
 };
 use kickdrift::verdict::{Decidable, Kind};
 use nalgebra::DMatrix;
@@ -213,7 +213,11 @@ fn an_indefinite_stiffness_is_computed_with_a_warning() {
     let mut k = Symmetric::zero(2);
     k.add_spring(0, Some(1), &ratio(1, 1));
     k.add_spring(0, None, &ratio(-1, 4));
-    let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), vec![potential(k, ratio(1, 2), ratio(0, 1))]).unwrap();
+    let system = System::new(
+        Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]),
+        vec![potential(k, ratio(1, 2), ratio(0, 1))],
+    )
+    .unwrap();
     let analysis = decide_system(&system, &Limits::default()).unwrap();
     assert_eq!(analysis.kind, Kind::Hyperbolic);
     assert!(analysis.warnings[0].contains("indefinite"));
@@ -225,7 +229,11 @@ fn double_modes_on_and_off_the_edge_are_decided_exactly() {
     // on the limit h² L = 4 for both: a double Jordan block.
     let at = |l: i64| {
         let mass = Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]);
-        System::new(mass, vec![potential(Symmetric::diagonal(&[ratio(l, 1), ratio(l, 1)]), ratio(1, 1), ratio(0, 1))]).unwrap()
+        System::new(
+            mass,
+            vec![potential(Symmetric::diagonal(&[ratio(l, 1), ratio(l, 1)]), ratio(1, 1), ratio(0, 1))],
+        )
+        .unwrap()
     };
     for (l, kind) in [(3, Kind::Elliptic), (4, Kind::Parabolic), (5, Kind::Hyperbolic)] {
         assert_eq!(decide_exact(&at(l), &Limits::default()).unwrap().kind, kind);
@@ -234,8 +242,10 @@ fn double_modes_on_and_off_the_edge_are_decided_exactly() {
     // The closing of 5/3 in two copies: Q = I.
     let (fast, slow) = (ratio(11, 4), ratio(11, 4) * ratio(114, 55));
     let twice = |k: &Rational| Symmetric::diagonal(&[k.clone(), k.clone()]);
-    let potentials =
-        vec![potential(twice(&fast), ratio(1, 1), ratio(0, 1)), potential(twice(&slow), ratio(5, 3), ratio(0, 1))];
+    let potentials = vec![
+        potential(twice(&fast), ratio(1, 1), ratio(0, 1)),
+        potential(twice(&slow), ratio(5, 3), ratio(0, 1)),
+    ];
     let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), potentials).unwrap();
     let exact = decide_exact(&system, &Limits::default()).unwrap();
     assert_eq!((exact.kind, exact.roots.at_zero), (Kind::Coexistence, 2));
@@ -249,10 +259,8 @@ fn a_collision_of_two_modes_is_named_with_its_resonance() {
     let mut slow = Symmetric::zero(2);
     slow.add(0, 1, &ratio(1, 5));
     let step = ratio(2094, 1000); // 2 pi/3 = 2.0944
-    let potentials = vec![
-        potential(fast, &step / ratio(40, 1), ratio(0, 1)),
-        potential(slow, step.clone(), ratio(0, 1)),
-    ];
+    let potentials =
+        vec![potential(fast, &step / ratio(40, 1), ratio(0, 1)), potential(slow, step.clone(), ratio(0, 1))];
     let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), potentials).unwrap();
     let analysis = decide_system(&system, &Limits::default()).unwrap();
     assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
@@ -267,8 +275,11 @@ fn a_collision_of_two_modes_is_named_with_its_resonance() {
 #[test]
 fn large_chains_and_bars_are_proven_quickly() {
     let chain = builders::periodic_chain(
-        200, &[ratio(4, 1), ratio(2, 1), ratio(1, 2)], &[ratio(1, 4), ratio(3, 8), ratio(1, 2)],
-    ).unwrap();
+        200,
+        &[ratio(4, 1), ratio(2, 1), ratio(1, 2)],
+        &[ratio(1, 4), ratio(3, 8), ratio(1, 2)],
+    )
+    .unwrap();
     let start = std::time::Instant::now();
     let analysis = decide_system(&chain, &Limits::default()).unwrap();
     println!("chain {:?} {:?} {:?}", start.elapsed(), analysis.kind, analysis.parts[0].evidence);
@@ -278,9 +289,22 @@ fn large_chains_and_bars_are_proven_quickly() {
     let bar = builders::graded_bar(100, 10, &ratio(1, 4)).unwrap();
     assert_eq!(bar.clocks().len(), 10);
     let analysis2 = decide_system(&bar, &Limits::default()).unwrap();
-    println!("bar {:?} {:?} {:?} {}", start.elapsed(), analysis2.kind, analysis2.parts[0].evidence, bar.schedule().strikes());
+    println!(
+        "bar {:?} {:?} {:?} {}",
+        start.elapsed(),
+        analysis2.kind,
+        analysis2.parts[0].evidence,
+        bar.schedule().strikes()
+    );
     let mu: Vec<_> = analysis2.parts[0].multipliers.iter().map(|m| m.mu).collect();
-    println!("bar radius {:?} gap {:?} ends {:?} {:?} im {:?}", analysis2.parts[0].multipliers[0].radius, mu.windows(2).map(|w| (w[1] - w[0]).norm()).fold(1.0, f64::min), mu[0], mu[99], mu.iter().map(|m| m.im).fold(0.0, f64::max));
+    println!(
+        "bar radius {:?} gap {:?} ends {:?} {:?} im {:?}",
+        analysis2.parts[0].multipliers[0].radius,
+        mu.windows(2).map(|w| (w[1] - w[0]).norm()).fold(1.0, f64::min),
+        mu[0],
+        mu[99],
+        mu.iter().map(|m| m.im).fold(0.0, f64::max)
+    );
     println!("growth {:?} {:?}", analysis.growth_rate(), analysis2.growth_rate());
     println!("{:?} {:?}", analysis.warnings, analysis2.warnings);
     assert!(analysis.is_proof() && analysis2.is_proof());

@@ -31,7 +31,11 @@ impl<S: Ring> Linear<S> {
     pub fn new(particles: Vec<usize>, rows: Vec<Vec<S>>) -> Result<Self> {
         let n = particles.len();
         if rows.len() != n || rows.iter().any(|row| row.len() != n) {
-            return Err(Error::input("stiffness", format!("{} rows", rows.len()), format!("give {n} x {n} entries")));
+            return Err(Error::input(
+                "stiffness",
+                format!("{} rows", rows.len()),
+                format!("give {n} x {n} entries"),
+            ));
         }
         Ok(Linear { particles, entries: rows.concat() })
     }

@@ -47,7 +47,8 @@ pub fn series<F: Force<f64>>(simulation: &mut Simulation<f64, F>, samples: usize
 /// stable, to about 1/(periods T).
 pub fn growth_rate<F: Force<f64>>(simulation: &mut Simulation<f64, F>, periods: u32) -> f64 {
     let ticks = simulation.clocks().period;
-    let size = |s: &Simulation<f64, F>| s.state().x.iter().chain(&s.state().p).fold(0.0, |a: f64, z| a.hypot(*z));
+    let size =
+        |s: &Simulation<f64, F>| s.state().x.iter().chain(&s.state().p).fold(0.0, |a: f64, z| a.hypot(*z));
     let (mut log, mut middle) = (0.0, 0.0);
     for period in 0..periods {
         if period == periods / 2 {
@@ -104,7 +105,11 @@ pub fn equilibrium(bonds: &[Bond], start: &[f64]) -> Result<Vec<f64>> {
             }
         }
         let singular = || {
-            Error::input("near", format!("{x:?}"), "the Hessian is singular there: start elsewhere, or tie it to a wall")
+            Error::input(
+                "near",
+                format!("{x:?}"),
+                "the Hessian is singular there: start elsewhere, or tie it to a wall",
+            )
         };
         let step: nalgebra::DVector<f64> = hessian.lu().solve(&force).ok_or_else(singular)?;
         x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);

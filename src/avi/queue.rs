@@ -47,8 +47,10 @@ impl Clocks {
             tick = common_measure(&common_measure(&tick, step), &(step * phase));
         }
         tick /= Rational::from_integer(2.into());
-        let too_long = || Error::budget("the synchronization period exceeds 2^62 ticks: choose simpler step ratios");
-        let ticks = |x: Rational| (x / &tick).to_integer().to_u64().filter(|&n| n < 1 << 62).ok_or_else(too_long);
+        let too_long =
+            || Error::budget("the synchronization period exceeds 2^62 ticks: choose simpler step ratios");
+        let ticks =
+            |x: Rational| (x / &tick).to_integer().to_u64().filter(|&n| n < 1 << 62).ok_or_else(too_long);
         let clock = |(h, phase): (&Rational, &Rational)| {
             Ok(Clock { first: ticks(h * phase)?, step: ticks(h.clone())? })
         };
@@ -99,7 +101,9 @@ impl Queue {
         let due = |time: u64| time < end || (time == end && inclusive);
         match &mut self.order {
             Order::Few(next) => {
-                let earlier = |best: (u64, usize), (k, &time): (usize, &u64)| if time < best.0 { (time, k) } else { best };
+                let earlier = |best: (u64, usize), (k, &time): (usize, &u64)| {
+                    if time < best.0 { (time, k) } else { best }
+                };
                 let (time, potential) = next.iter().enumerate().fold((u64::MAX, 0), earlier);
                 if !due(time) {
                     return None;

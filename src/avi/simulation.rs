@@ -231,11 +231,19 @@ fn check<S, F: Force<S>>(masses: &[Rational], forces: &[F], clocks: &Clocks, sta
         return Err(Error::input("state", given, format!("give {n} of each")));
     }
     if forces.len() != clocks.clocks.len() {
-        return Err(Error::input("steps", clocks.clocks.len(), format!("give {}, one a potential", forces.len())));
+        return Err(Error::input(
+            "steps",
+            clocks.clocks.len(),
+            format!("give {}, one a potential", forces.len()),
+        ));
     }
     for (k, force) in forces.iter().enumerate() {
         if let Some(i) = force.particles().iter().find(|&&i| i >= n) {
-            return Err(Error::input(&format!("potentials[{k}]"), i, format!("particles are 0 to {}", n.max(1) - 1)));
+            return Err(Error::input(
+                &format!("potentials[{k}]"),
+                i,
+                format!("particles are 0 to {}", n.max(1) - 1),
+            ));
         }
     }
     Ok(())

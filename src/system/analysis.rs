@@ -16,9 +16,9 @@ use super::frame::Frame;
 use super::model::System;
 use super::modes::{NormalModes, Origin, Resonance};
 use super::single;
+use super::sparse::{dot, null_space};
 use super::spectrum::{Spectrum, from_segment};
 use super::split::{Subspace, invariant_subspaces};
-use super::sparse::{dot, null_space};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
@@ -153,7 +153,9 @@ const SMALL: usize = 16;
 pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
     let mut warnings = Vec::new();
     if !system.total_stiffness().is_positive_semidefinite() {
-        warnings.push("the total stiffness is indefinite: the system itself is unstable, whatever the steps".into());
+        warnings.push(
+            "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
+        );
     }
     let graphs = system.clocks().iter().map(|clock| &clock.stiffness).chain([system.mass()]);
     let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
@@ -217,7 +219,8 @@ fn pieces(component: System, frame: Frame) -> Vec<Piece> {
         let system = vibrating.restricted(&space)?;
         let frame = Frame::new(&system);
         let lifted = |y: &Vec<Rational>| {
-            let rows = (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
+            let rows =
+                (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
             rows.map(|row| dot(&row, y)).collect()
         };
         Some(Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) })
@@ -226,19 +229,14 @@ fn pieces(component: System, frame: Frame) -> Vec<Piece> {
 }
 
 impl Piece {
-    fn decide(
-        &self,
-        n: usize,
-        dofs: &[usize],
-        limits: &Limits,
-        warnings: &mut Vec<String>,
-    ) -> Result<Part> {
+    fn decide(&self, n: usize, dofs: &[usize], limits: &Limits, warnings: &mut Vec<String>) -> Result<Part> {
         let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
             single::decide(&self.system)?
         } else {
             self.decide_many(limits, warnings)?
         };
-        let taken = |i: &usize| self.columns.as_ref().is_none_or(|z| z.iter().any(|z| z[*i] != Rational::default()));
+        let taken =
+            |i: &usize| self.columns.as_ref().is_none_or(|z| z.iter().any(|z| z[*i] != Rational::default()));
         part.dofs = (0..dofs.len()).filter(taken).map(|i| dofs[i]).collect();
         for instability in &mut part.instabilities {
             instability.shape = self.lifted(&instability.shape, n, dofs);
@@ -280,7 +278,12 @@ impl Piece {
     }
 
     /// The multipliers, and what the unstable ones are.
-    fn explain(&self, spectrum: &Spectrum, blocks: &FloatBlocks, kind: Kind) -> (Vec<Multiplier>, Vec<Instability>) {
+    fn explain(
+        &self,
+        spectrum: &Spectrum,
+        blocks: &FloatBlocks,
+        kind: Kind,
+    ) -> (Vec<Multiplier>, Vec<Instability>) {
         let mut order: Vec<usize> = (0..spectrum.mu.len()).collect();
         order.sort_by(|&i, &j| spectrum.mu[i].re.total_cmp(&spectrum.mu[j].re));
         let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], spectrum.radius);
@@ -292,9 +295,10 @@ impl Piece {
         let period = to_f64(&self.system.period());
         // Conjugates tell the same; the farthest one from stability is there even if no disc is clear of it.
         let upper = |i: &&usize| spectrum.mu[**i].im >= 0.0;
-        let farthest = order.iter().filter(upper).max_by(|a, b| {
-            from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b]))
-        });
+        let farthest = order
+            .iter()
+            .filter(upper)
+            .max_by(|a, b| from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b])));
         let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > spectrum.radius.unwrap_or(ROUGH);
         let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
         let instability = |&i: &usize| {

@@ -27,7 +27,11 @@ fn at_least(field: &str, n: usize, least: usize) -> Result<()> {
 pub fn periodic_chain(n: usize, stiffness: &[Rational], steps: &[Rational]) -> Result<System> {
     at_least("masses", n, 1)?;
     if stiffness.is_empty() || stiffness.len() != steps.len() {
-        return Err(Error::input("steps", steps.len(), format!("give {} steps, one a stiffness", stiffness.len())));
+        return Err(Error::input(
+            "steps",
+            steps.len(),
+            format!("give {} steps, one a stiffness", stiffness.len()),
+        ));
     }
     let mut kinds = vec![Symmetric::zero(n); stiffness.len()];
     for spring in 0..=n {

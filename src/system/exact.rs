@@ -16,8 +16,8 @@ use num_traits::{One, Signed, Zero};
 
 use super::frame::Frame;
 use super::integers::{IntegerBlocks, IntegerProgram};
-use super::modular::Field;
 use super::model::System;
+use super::modular::Field;
 use super::roots::{self, RootCount};
 use crate::error::{Error, Result};
 use crate::number::Rational;

@@ -19,7 +19,7 @@ use faer::Mat;
 use super::compose::{Program, Row, State};
 use super::frame::Frame;
 use super::model::System;
-use super::modes::frequencies;
+use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, Ring};
@@ -159,8 +159,11 @@ pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
 /// Projects rows of positions and columns of momenta, y_i = x_i − Σ n_J\[i\] x_J.
 fn finish(rows: Rows, frame: &Frame, scales: Vec<f64>) -> FloatBlocks {
     let (m, columns) = (frame.kept.len(), rows.columns);
-    let rigid: Vec<(usize, Vec<f64>)> =
-        frame.rigid.iter().map(|(own, n)| (*own, frame.kept.iter().map(|&i| to_f64(&n[i])).collect())).collect();
+    let rigid: Vec<(usize, Vec<f64>)> = frame
+        .rigid
+        .iter()
+        .map(|(own, n)| (*own, frame.kept.iter().map(|&i| to_f64(&n[i])).collect()))
+        .collect();
     let row = |from: &[f64], i: usize| from[i * columns..(i + 1) * columns].to_vec();
     let mut y: Vec<Vec<f64>> = frame.kept.iter().map(|&i| row(&rows.x, i)).collect();
     for (own, n) in &rigid {
@@ -221,12 +224,9 @@ fn scales(program: &Program<f64>, omega: f64) -> Vec<f64> {
 
 /// The geometric mean of the lowest and the highest frequency per tick; 1 where there is none.
 fn middle_frequency(system: &System, frame: &Frame) -> f64 {
-    let frequencies = frequencies(system, frame).unwrap_or_default();
-    let highest = frequencies.iter().copied().fold(0.0, f64::max);
-    // Modes softer than roundoff can tell are no guide.
-    let lowest = frequencies.into_iter().filter(|w| *w > 1e-7 * highest).fold(highest, f64::min);
-    let omega = (lowest * highest).sqrt() * to_f64(system.tick());
-    if omega > 0.0 { omega } else { 1.0 }
+    let omega = frequency_range(system, frame).map_or(0.0, |(lowest, highest)| (lowest * highest).sqrt());
+    let per_tick = omega * to_f64(system.tick());
+    if per_tick.is_normal() { per_tick } else { 1.0 }
 }
 
 fn rescale(program: &mut Program<f64>, a: &[f64]) {

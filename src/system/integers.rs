@@ -175,6 +175,8 @@ impl IntegerBlocks {
     /// Bᵀ C times [`IntegerBlocks::scale`].
     pub fn product(&self) -> DMatrix<BigInt> {
         let m = self.b.ncols();
-        DMatrix::from_fn(m, m, |i, j| (0..m).fold(BigInt::zero(), |sum, k| sum + &self.b[(k, i)] * &self.c[(k, j)]))
+        DMatrix::from_fn(m, m, |i, j| {
+            (0..m).fold(BigInt::zero(), |sum, k| sum + &self.b[(k, i)] * &self.c[(k, j)])
+        })
     }
 }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use faer::linalg::solvers::DenseSolveCore;
+use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side, c64};
 
 use super::compose::Program;
@@ -47,12 +47,30 @@ pub(super) struct NormalModes {
     inverse: Mat<f64>,
 }
 
-/// The frequencies of the normal modes per unit time, imaginary ones (of an indefinite stiffness) as 0, rounded;
-/// `None` where an iteration of the eigenvalue solver fails.
-pub(super) fn frequencies(system: &System, frame: &Frame) -> Option<Vec<f64>> {
-    let (_, symmetric) = symmetric_form(system, frame)?;
-    let squares = symmetric.self_adjoint_eigenvalues(Side::Lower).ok()?;
-    Some(squares.into_iter().map(|w2: f64| w2.max(0.0).sqrt()).collect())
+/// Roughly the lowest and the highest frequency; `None` where the stiffness is not positive definite.
+///
+/// Highest by Gershgorin's rows of M⁻¹ K, lowest by a few steps of inverse iteration.
+pub(super) fn frequency_range(system: &System, frame: &Frame) -> Option<(f64, f64)> {
+    let (m, total) = (frame.kept.len(), system.total_stiffness());
+    let mut stiffness = Mat::<f64>::zeros(m, m);
+    for (a, i) in frame.kept.iter().enumerate() {
+        for (b, j) in frame.kept.iter().enumerate() {
+            stiffness[(a, b)] = total.row(*i).get(j).map_or(0.0, to_f64);
+        }
+    }
+    let masses: Vec<f64> = frame.kept.iter().map(|&i| to_f64(&system.mass().get(i, i))).collect();
+    let row = |a: usize| (0..m).map(|b| stiffness[(a, b)].abs()).sum::<f64>() / masses[a];
+    let highest = (0..m).map(row).fold(0.0, f64::max).sqrt();
+    let factor = stiffness.llt(Side::Lower).ok()?;
+    // x ← K⁻¹ M x grows by 1/w² of the lowest mode.
+    let mut x = Mat::from_fn(m, 1, |_, _| 1.0);
+    let mut growth = 0.0;
+    for _ in 0..4 {
+        let image = factor.solve(Mat::from_fn(m, 1, |a, _| masses[a] * x[(a, 0)]));
+        growth = (0..m).map(|a| image[(a, 0)].abs()).fold(0.0, f64::max);
+        x = Mat::from_fn(m, 1, |a, _| image[(a, 0)] / growth);
+    }
+    Some((growth.sqrt().recip(), highest))
 }
 
 /// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G u.

@@ -221,7 +221,8 @@ impl Lift {
         for (value, &residue) in self.values.iter_mut().zip(residues) {
             let step = field.value(field.mul(field.sub(residue, field.of_big(value)), inverse));
             // The representative nearest 0 of value + product · step, |value| ≤ product/2.
-            let step = if step > field.prime() / 2 { BigInt::from(step) - field.prime() } else { step.into() };
+            let step =
+                if step > field.prime() / 2 { BigInt::from(step) - field.prime() } else { step.into() };
             changed |= !step.is_zero();
             *value += &self.product * step;
         }
@@ -254,7 +255,8 @@ mod tests {
         let field = fields().nth(3).unwrap();
         // z^4 - 2 z^3 + 3 z^2 - 5 z + 7.
         let last = [-7, 5, -3, 2];
-        let m = DMatrix::from_fn(4, 4, |i, j| BigInt::from(if j == 3 { last[i] } else { i64::from(i == j + 1) }));
+        let m =
+            DMatrix::from_fn(4, 4, |i, j| BigInt::from(if j == 3 { last[i] } else { i64::from(i == j + 1) }));
         let got: Vec<_> = field.characteristic(field.matrix(&m));
         let want: Vec<_> = [7, -5, 3, -2, 1].map(|c| field.of_big(&BigInt::from(c))).into();
         assert_eq!(got, want);

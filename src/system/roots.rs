@@ -131,7 +131,8 @@ pub(super) fn count(f: &[BigInt], d: &BigInt) -> RootCount {
         scaled.push(c * &power);
         power *= -d;
     }
-    let mirrored: Vec<_> = scaled.iter().enumerate().map(|(k, c)| if k.is_odd() { -c } else { c.clone() }).collect();
+    let mirrored: Vec<_> =
+        scaled.iter().enumerate().map(|(k, c)| if k.is_odd() { -c } else { c.clone() }).collect();
     let reversed = |f: &[BigInt]| f.iter().rev().cloned().collect::<Vec<_>>();
     let inside = in_unit_interval(scaled.clone());
     let below = in_unit_interval(reversed(&scaled));

@@ -40,7 +40,9 @@ impl System {
         let first = &self.clocks()[0].step;
         let steps: Vec<_> = self.clocks().iter().map(|clock| &clock.step / first).collect();
         let phases: Vec<_> = self.clocks().iter().map(|clock| clock.phase.clone()).collect();
-        let strength = |clock: &super::Potential| first * &clock.step * clock.stiffness.get(0, 0) / self.mass().get(0, 0);
+        let strength = |clock: &super::Potential| {
+            first * &clock.step * clock.stiffness.get(0, 0) / self.mass().get(0, 0)
+        };
         let strengths = self.clocks().iter().map(strength).collect();
         Some(ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system"))
     }

@@ -39,15 +39,12 @@ impl Symmetric {
         for (i, row) in entries.iter().enumerate() {
             if row.len() != n {
                 let remedy = format!("a matrix of {n} rows needs {n} entries in each");
-                return Err(Error::input(
-                    &format!("{field}[{i}]"),
-                    format!("{} entries", row.len()),
-                    remedy,
-                ));
+                return Err(Error::input(&format!("{field}[{i}]"), format!("{} entries", row.len()), remedy));
             }
             for (j, x) in row.iter().enumerate().take(i + 1) {
                 if entries[j][i] != *x {
-                    let remedy = format!("differs from {field}[{j}][{i}] = {}: make it symmetric", entries[j][i]);
+                    let remedy =
+                        format!("differs from {field}[{j}][{i}] = {}: make it symmetric", entries[j][i]);
                     return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
                 }
                 matrix.add(i, j, x);
@@ -135,10 +132,10 @@ impl Symmetric {
 
     /// The rows and columns in `indices`.
     pub fn restricted(&self, indices: &[usize]) -> Self {
-        let place: BTreeMap<usize, usize> = indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
-        let row = |&i: &usize| {
-            self.rows[i].iter().filter_map(|(j, x)| Some((*place.get(j)?, x.clone()))).collect()
-        };
+        let place: BTreeMap<usize, usize> =
+            indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
+        let row =
+            |&i: &usize| self.rows[i].iter().filter_map(|(j, x)| Some((*place.get(j)?, x.clone()))).collect();
         Symmetric { rows: indices.iter().map(row).collect() }
     }
 
@@ -157,7 +154,8 @@ impl Symmetric {
     /// self x.
     pub fn times(&self, x: &[Rational]) -> Vec<Rational> {
         let row = |row: &BTreeMap<usize, Rational>| {
-            row.iter().fold(Rational::zero(), |sum, (&j, a)| if x[j].is_zero() { sum } else { sum + a * &x[j] })
+            row.iter()
+                .fold(Rational::zero(), |sum, (&j, a)| if x[j].is_zero() { sum } else { sum + a * &x[j] })
         };
         self.rows.iter().map(row).collect()
     }
@@ -245,5 +243,8 @@ fn eliminate(row: &mut BTreeMap<usize, Rational>, column: usize, pivot_row: &BTr
 
 /// Σ x_i y_i.
 pub(super) fn dot(x: &[Rational], y: &[Rational]) -> Rational {
-    x.iter().zip(y).filter(|(a, b)| !a.is_zero() && !b.is_zero()).fold(Rational::zero(), |sum, (a, b)| sum + a * b)
+    x.iter()
+        .zip(y)
+        .filter(|(a, b)| !a.is_zero() && !b.is_zero())
+        .fold(Rational::zero(), |sum, (a, b)| sum + a * b)
 }

@@ -1,6 +1,7 @@
 //! Eigenvalues of S = Bᵀ C in doubles, each with a disc that is proven to hold it.
 //!
-//! For the computed eigenvectors V, an approximate inverse W of V, and D the computed eigenvalues,
+//! For the computed eigenvectors V (Re v and Im v of pairs), an approximate inverse W of V, and D the computed
+//! eigenvalues (real 2 x 2 blocks for pairs, so that D is normal),
 //! V⁻¹ S V = D + F, F = (I − Y)⁻¹ W (S V − V D) with Y = I − W V. The discs of radius ‖F‖₂ about the entries of D hold
 //! the eigenvalues (Bauer and Fike), as many in each connected component as it has discs, since no eigenvalue of
 //! D + tF leaves them for 0 ≤ t ≤ 1. Since S is real, an isolated disc about a real number holds one real
@@ -76,28 +77,58 @@ pub(super) fn from_segment(z: c64) -> f64 {
     (z.re - nearest).hypot(z.im)
 }
 
-/// γ: a product of m terms, complex or real, in any order, has a relative error of at most this.
+/// γ: a sum of m products, in any order, has an error of at most this times the sum of their absolute values.
 fn gamma(m: usize) -> f64 {
-    4.0 * (m as f64 + 4.0) * U
+    1.01 * (m as f64 + 4.0) * U
+}
+
+/// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D: the
+/// numbers themselves and the blocks ((a, b), (−b, a)).
+fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
+    let m = mu.len();
+    let (mut real, mut d) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
+    let mut k = 0;
+    while k < m {
+        d[(k, k)] = mu[k].re;
+        (0..m).for_each(|i| real[(i, k)] = v[(i, k)].re);
+        if mu[k].im != 0.0 {
+            // Pairs stand side by side.
+            mu.get(k + 1).filter(|next| **next == mu[k].conj())?;
+            (0..m).for_each(|i| real[(i, k + 1)] = v[(i, k)].im);
+            d[(k + 1, k + 1)] = mu[k].re;
+            (d[(k, k + 1)], d[(k + 1, k)]) = (mu[k].im, -mu[k].im);
+            k += 1;
+        }
+        k += 1;
+    }
+    Some((real, d))
+}
+
+/// V D for the block-diagonal D of [`real_form`].
+fn times_blocks(v: &Mat<f64>, d: &Mat<f64>) -> Mat<f64> {
+    let m = v.ncols();
+    Mat::from_fn(m, m, |i, j| {
+        let neighbours = j.saturating_sub(1)..(j + 2).min(m);
+        neighbours.map(|k| v[(i, k)] * d[(k, j)]).sum()
+    })
 }
 
 /// More than ‖F‖₂ for the true S, which is within `delta` of the given one.
 fn radius(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<f64> {
     let m = mu.len();
+    let (v, d) = real_form(mu, v)?;
     let w = v.partial_piv_lu().inverse();
-    let s_complex = Mat::from_fn(m, m, |i, j| c64::new(s[(i, j)], 0.0));
-    let vd = Mat::from_fn(m, m, |i, j| v[(i, j)] * mu[j]);
-    let residual = norm::frobenius_complex(&(&s_complex * v - &vd));
-    let (nv, nw) = (norm::frobenius_complex(v), norm::frobenius_complex(&w));
-    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius_complex(&vd));
-    let product = &w * v;
-    let y = Mat::from_fn(m, m, |i, j| c64::new(f64::from(u8::from(i == j)), 0.0) - product[(i, j)]);
-    let y = norm::frobenius_complex(&y) + gamma(m) * (nw * nv + m as f64);
+    let vd = times_blocks(&v, &d);
+    let residual = norm::frobenius(&(s * &v - &vd));
+    let (nv, nw) = (norm::frobenius(&v), norm::frobenius(&w));
+    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(&d));
+    let y = Mat::<f64>::identity(m, m) - &w * &v;
+    let y = norm::frobenius(&y) + gamma(m) * (nw * nv + m as f64);
     if y.is_nan() || y >= 0.5 {
         return None;
     }
-    let off = residual + rounding + delta * norm::spectral_complex(v);
-    let radius = 1.01 * norm::spectral_complex(&w) * off / (1.0 - y);
+    let off = residual + rounding + delta * norm::spectral(&v);
+    let radius = 1.01 * norm::spectral(&w) * off / (1.0 - y);
     radius.is_finite().then_some(radius)
 }
 

@@ -31,7 +31,11 @@ pub(super) fn invariant_subspaces(system: &System) -> Option<Vec<Subspace>> {
         return None;
     }
     let mut subspaces = Vec::new();
-    let mut open = vec![(0..n).map(|i| (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()).collect::<Subspace>()];
+    let mut open = vec![
+        (0..n)
+            .map(|i| (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect())
+            .collect::<Subspace>(),
+    ];
     for operator in &operators {
         let mut next = Vec::new();
         for space in open {
