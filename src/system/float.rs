@@ -39,6 +39,8 @@ pub(super) struct FloatBlocks {
     pub p: Vec<Vec<f64>>,
     /// The Frobenius norm of the error of all together is at most this; `None` where the bound's condition fails.
     pub error: Option<f64>,
+    /// More than the spectral norm of each.
+    pub norm: f64,
     /// Positions are a_i y_i, momenta p_i/a_i.
     pub scales: Vec<f64>,
 }
@@ -180,13 +182,16 @@ fn finish(rows: Rows, frame: &Frame, scales: Vec<f64>) -> FloatBlocks {
     };
     let (y, p) = (y.into_iter().map(project).collect(), p.into_iter().map(project).collect());
     let stretch = rigid.iter().map(|(_, n)| norm2(n)).sum::<f64>();
-    FloatBlocks { m, y, p, error: rows.error(rigid.len(), stretch), scales }
+    let end = rows.spectral_norm();
+    let error = rows.error(rigid.len(), stretch, end);
+    let norm = 1.01 * end * (1.0 + stretch) + error.unwrap_or(0.0);
+    FloatBlocks { m, y, p, error, norm, scales }
 }
 
 impl Rows {
     /// The bound of the module's head, through a projection P = (I, −N) on both sides, r columns in N of squared
-    /// norm `stretch` together: ‖P‖² ≤ 1 + ‖N‖², and each side rounds r + 1 terms, N itself included.
-    fn error(&self, r: usize, stretch: f64) -> Option<f64> {
+    /// norm `stretch` together, ‖Ĥ‖₂ ≤ `end`: ‖P‖² ≤ 1 + ‖N‖², and each side rounds r + 1 terms, N itself included.
+    fn error(&self, r: usize, stretch: f64, end: f64) -> Option<f64> {
         // 1.01: the roundings of norms and of their running sums (fewer than 10^12 updates).
         let largest = 1.01 * (self.largest + self.total.abs()).sqrt();
         let (rho, sigma) = (1.01 * self.rho, 1.01 * self.sigma);
@@ -194,7 +199,6 @@ impl Rows {
             return None;
         }
         let s = sigma + 2.0 * largest * sigma * rho;
-        let end = self.spectral_norm();
         let absolute = (1.0 + stretch.sqrt()).powi(2);
         let projection = if r == 0 { 0.0 } else { 4.0 * (r as f64 + 2.0) * U * absolute * largest };
         Some(1.01 * (end * s / (1.0 - s) * (1.0 + stretch) + projection))

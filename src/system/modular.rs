@@ -129,7 +129,7 @@ impl Field {
 
     /// The coefficients of det(z − m), lowest first, monic; by reduction to Hessenberg's form.
     pub fn characteristic(&self, mut m: DMatrix<u64>) -> Vec<u64> {
-        self.to_hessenberg(&mut m);
+        self.reduce_to_hessenberg(&mut m);
         // f_k = det(z − leading k x k) = (z − m_kk) f_(k−1) − Σ_i m_ik (subdiagonals i+1..k) f_(i−1).
         let mut f: Vec<Vec<u64>> = vec![vec![self.of(1)]];
         for k in 0..m.nrows() {
@@ -151,7 +151,7 @@ impl Field {
         f.pop().expect("not empty")
     }
 
-    fn to_hessenberg(&self, m: &mut DMatrix<u64>) {
+    fn reduce_to_hessenberg(&self, m: &mut DMatrix<u64>) {
         let n = m.nrows();
         for k in 1..n.saturating_sub(1) {
             let Some(pivot) = (k..n).find(|&i| m[(i, k - 1)] != 0) else { continue };

@@ -46,7 +46,7 @@ impl Spectrum {
         let radius = blocks.error.filter(|_| finite).and_then(|e| {
             // What rounding the product adds: (m + 2) u |B|ᵀ |C|.
             let rounding = 1.01 * (m as f64 + 2.0) * U * norm::frobenius(&b) * norm::frobenius(&c);
-            let delta = e * (norm::spectral(&b) + norm::spectral(&c) + e) + rounding;
+            let delta = e * (2.0 * blocks.norm + e) + rounding;
             radius(&s, delta, &mu, &vectors)
         });
         finite.then_some(Spectrum { mu, radius, vectors })
