@@ -273,41 +273,53 @@ fn a_collision_of_two_modes_is_named_with_its_resonance() {
 }
 
 #[test]
-fn large_chains_and_bars_are_proven_quickly() {
-    let chain = builders::periodic_chain(
-        200,
-        &[ratio(4, 1), ratio(2, 1), ratio(1, 2)],
-        &[ratio(1, 4), ratio(3, 8), ratio(1, 2)],
-    )
-    .unwrap();
-    let start = std::time::Instant::now();
-    let analysis = decide_system(&chain, &Limits::default()).unwrap();
-    println!("chain {:?} {:?} {:?}", start.elapsed(), analysis.kind, analysis.parts[0].evidence);
-    let radii: Vec<_> = analysis.parts[0].multipliers.iter().map(|m| m.radius).collect();
-    println!("radius {:?}", radii.iter().flatten().copied().fold(0.0, f64::max));
-    let start = std::time::Instant::now();
+fn large_chains_and_bars_are_proven_in_doubles() {
+    let stiffness = [ratio(4, 1), ratio(2, 1), ratio(1, 2)];
+    let steps = [ratio(1, 4), ratio(3, 10), ratio(7, 20)];
+    let chain = builders::periodic_chain(200, &stiffness, &steps).unwrap();
     let bar = builders::graded_bar(100, 10, &ratio(1, 4)).unwrap();
-    assert_eq!(bar.clocks().len(), 10);
-    let analysis2 = decide_system(&bar, &Limits::default()).unwrap();
-    println!(
-        "bar {:?} {:?} {:?} {}",
-        start.elapsed(),
-        analysis2.kind,
-        analysis2.parts[0].evidence,
-        bar.schedule().strikes()
-    );
-    let mu: Vec<_> = analysis2.parts[0].multipliers.iter().map(|m| m.mu).collect();
-    println!(
-        "bar radius {:?} gap {:?} ends {:?} {:?} im {:?}",
-        analysis2.parts[0].multipliers[0].radius,
-        mu.windows(2).map(|w| (w[1] - w[0]).norm()).fold(1.0, f64::min),
-        mu[0],
-        mu[99],
-        mu.iter().map(|m| m.im).fold(0.0, f64::max)
-    );
-    println!("growth {:?} {:?}", analysis.growth_rate(), analysis2.growth_rate());
-    println!("{:?} {:?}", analysis.warnings, analysis2.warnings);
-    assert!(analysis.is_proof() && analysis2.is_proof());
+    assert_eq!((chain.clocks().len(), bar.clocks().len()), (3, 10));
+    for system in [chain, bar] {
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Elliptic, Evidence::Discs));
+    }
+}
+
+#[test]
+fn a_large_unstable_chain_is_proven_and_explained() {
+    // The fast springs beyond their Verlet limit h² · 2 k = 4 somewhere.
+    let chain =
+        builders::alternating_chain(60, [&ratio(9, 1), &ratio(1, 1)], [&ratio(1, 2), &ratio(3, 4)]).unwrap();
+    let analysis = decide_system(&chain, &Limits::default()).unwrap();
+    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
+    let instabilities = &analysis.parts[0].instabilities;
+    assert!(!instabilities.is_empty());
+    for instability in instabilities {
+        assert!(instability.growth_rate > 0.0);
+        assert!(instability.shape.iter().any(|x| *x == 1.0) && instability.shape.len() == 60);
+    }
+}
+
+#[test]
+fn exact_arithmetic_reaches_twelve_degrees_of_freedom() {
+    let stiffness = [ratio(4, 1), ratio(2, 1), ratio(1, 2)];
+    for (steps, kind) in [
+        ([ratio(1, 4), ratio(3, 10), ratio(7, 20)], Kind::Elliptic),
+        ([ratio(1, 4), ratio(3, 10), ratio(3, 1)], Kind::Hyperbolic),
+    ] {
+        let chain = builders::periodic_chain(12, &stiffness, &steps).unwrap();
+        let start = std::time::Instant::now();
+        let exact = decide_exact(&chain, &Limits::default()).unwrap();
+        println!("n = 12, {} kicks: {:?}", chain.schedule().strikes(), start.elapsed());
+        assert_eq!(exact.kind, kind);
+        let analysis = decide_system(&chain, &Limits::default()).unwrap();
+        assert_eq!((analysis.kind, analysis.parts[0].evidence), (kind, Evidence::Discs));
+    }
+    let chain =
+        builders::periodic_chain(12, &stiffness, &[ratio(1, 4), ratio(1, 997), ratio(7, 20)]).unwrap();
+    let error = decide_exact(&chain, &Limits { products: 1000 }).unwrap_err();
+    assert_eq!(error.kind(), kickdrift::error::Kind::Budget);
+    assert!(error.to_string().contains("--budget"), "{error}");
 }
 
 #[test]

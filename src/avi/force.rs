@@ -58,7 +58,7 @@ impl<S: Ring> Force<S> for Linear<S> {
     }
 
     fn force(&self, x: &[S], force: &mut [S]) {
-        for (row, f) in self.entries.chunks_exact(x.len()).zip(force) {
+        for (row, f) in self.entries.chunks_exact(x.len().max(1)).zip(force) {
             *f = S::zero();
             row.iter().zip(x).for_each(|(k, x)| f.sub_product(k, x));
         }
@@ -66,7 +66,7 @@ impl<S: Ring> Force<S> for Linear<S> {
 
     fn energy(&self, x: &[S]) -> S {
         let mut twice = S::zero();
-        for (row, xi) in self.entries.chunks_exact(x.len()).zip(x) {
+        for (row, xi) in self.entries.chunks_exact(x.len().max(1)).zip(x) {
             row.iter().zip(x).for_each(|(k, xj)| twice.add_product(&S::product(k, xj), xi));
         }
         let half = crate::number::Rational::new(1.into(), 2.into());
