@@ -29,7 +29,12 @@ fn masses(system: &System) -> Vec<Rational> {
     (0..system.size()).map(|i| system.mass().get(i, i)).collect()
 }
 
+/// Random systems of few kicks a period: exact orbits grow longer with each.
 fn any_system() -> impl Strategy<Value = System> {
+    every_system().prop_filter("a long period", |system| system.schedule().strikes() <= 60)
+}
+
+fn every_system() -> impl Strategy<Value = System> {
     (1usize..=4, 1usize..=4).prop_flat_map(|(n, clocks)| {
         let spring = (0..n, 0..=n, -5i64..40);
         let one = (prop::collection::vec(spring, 1..=n + 2), 1i64..8, 1i64..4, any::<bool>());

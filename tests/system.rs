@@ -296,7 +296,7 @@ fn a_large_unstable_chain_is_proven_and_explained() {
     assert!(!instabilities.is_empty());
     for instability in instabilities {
         assert!(instability.growth_rate > 0.0);
-        assert!(instability.shape.iter().any(|x| *x == 1.0) && instability.shape.len() == 60);
+        assert!(instability.shape.contains(&1.0) && instability.shape.len() == 60);
     }
 }
 
