@@ -13,9 +13,9 @@
 //! use kickdrift::verdict::Kind;
 //! // Three levels, h = 1, 2, 6: strengths h_1 h_k L_k in the time unit h_1.
 //! let (steps, phases) = ([ratio(1, 1), ratio(2, 1), ratio(6, 1)], [ratio(0, 1), ratio(0, 1), ratio(0, 1)]);
-//! let clocks = ManyClocks::new(&steps, &phases, vec![ratio(9, 10), ratio(1, 5), ratio(1, 10)]).unwrap();
+//! let clocks = ManyClocks::new(&steps, &phases, vec![ratio(19, 10), ratio(1, 5), ratio(1, 10)]).unwrap();
 //! assert_eq!(clocks.half_signs().verdict().kind(), Kind::Hyperbolic);
-//! assert_eq!(clocks.label(), Some(2));
+//! assert_eq!(clocks.label(), Some(3)); // next to s = 2, where 6 θ = 3 π
 //! ```
 
 use nalgebra::Matrix2;
