@@ -1,40 +1,41 @@
-//! The verdicts of a grid, computed once for all products that show them.
+//! The verdicts of a grid, computed once for all products of a scene that show them.
 
 use crate::error::Result;
 use crate::map::{Band, Grid, Products, Shard, for_each_band};
-use crate::report::map::{Counts, Marked};
+use crate::report::map::{MapArrays, Marked, Tally, marked};
 use crate::report::plane::Cloud;
-use crate::verdict::{Kind, Limits};
+use crate::verdict::Limits;
+
+/// Pixels per inch of PNG figures: print quality.
+pub const DPI: f64 = 300.0;
 
 /// Every pair of a grid decided: the counts, and the pairs that are not plainly stable.
 #[derive(Clone, Debug, Default)]
 pub struct Verdicts {
-    pub counts: Counts,
+    pub tally: Tally,
     /// In the order of h1, then h2.
     pub marked: Vec<Marked>,
 }
 
 impl Verdicts {
-    /// Decides all pairs, band by band; `threads` 0 means one a core.
-    pub fn compute(grid: &Grid, threads: usize, limits: &Limits) -> Result<Verdicts> {
+    /// Decides all pairs, band by band; `threads` 0 means one a core. The arrays take what they want on the way.
+    pub fn compute(
+        grid: &Grid,
+        threads: usize,
+        limits: &Limits,
+        mut arrays: Option<&mut MapArrays>,
+    ) -> Result<Verdicts> {
         let mut verdicts = Verdicts::default();
         for_each_band(grid, Products::default(), Shard::WHOLE, threads, limits, |_, band| {
             verdicts.add(grid, &band);
-            Ok(())
+            arrays.as_mut().map_or(Ok(()), |arrays| arrays.add(grid, &band))
         })?;
         Ok(verdicts)
     }
 
     fn add(&mut self, grid: &Grid, band: &Band) {
-        for n in 0..band.verdicts.len() {
-            let decision = band.decision(n);
-            self.counts.add(&decision);
-            if decision.verdict.kind() != Kind::Elliptic {
-                let (i, j) = band.multipliers(grid, n);
-                let (p, q) = grid.terms(i, j);
-                self.marked.push(Marked { i, j, p, q, decision });
-            }
-        }
+        self.tally.add(grid, band);
+        self.marked.extend(marked(grid, band));
     }
 
     /// The unstable pairs for a figure.

@@ -1,18 +1,21 @@
 //! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
 
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format as DocumentFormat};
-use super::plane::Verdicts;
+use super::args::{Common, Format as DocumentFormat, echo_grid};
+use super::plane::{DPI, Verdicts};
 use super::{compare, curves, map, polynomial, proposition};
 use crate::error::{Error, Result};
+use crate::map::Products;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
-use crate::report::file::write_output;
+use crate::report::file::{Folder, write_output};
+use crate::report::map::MapArrays;
 use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
-use crate::scene::{Format, Product, Scene, Want};
+use crate::scene::{self, Format, Product, Scene, Want};
 use crate::verdict::Limits;
 
 /// Flags of `run`.
@@ -23,31 +26,37 @@ pub struct Args {
     scene: PathBuf,
 }
 
-/// Pixels per inch of PNG figures: print quality.
-const DPI: f64 = 300.0;
-
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let text = std::fs::read_to_string(&self.scene)
-            .map_err(|cause| Error::io(self.scene.display(), format!("cannot read the scene: {cause}")))?;
-        let scene = Scene::read(&text)?;
-        let folder = common.output.clone().unwrap_or_else(|| self.default_folder());
-        std::fs::create_dir_all(&folder).map_err(|cause| {
-            Error::io(
-                folder.display(),
-                format!("cannot make the output folder: {cause}; choose one with --output"),
-            )
-        })?;
-        let work = Work::new(&scene, common);
+        let scene = Scene::read(&self.text()?)?;
+        let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
+        let work = Work::new(&scene, common, folder.path());
+        // All products before the first file: an error leaves nothing behind.
+        let contents = scene.want().iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut summary = Summary::default();
-        for want in scene.want() {
-            let path = folder.join(want.file_name());
-            write_output(Some(&path), &work.bytes(*want)?)?;
+        for (want, contents) in scene.want().iter().zip(contents) {
+            let path = folder.path().join(want.file_name());
+            work.write(contents, &path)?;
             summary.add(*want, &path, &work);
         }
-        let document = summary.document(&scene);
+        folder.keep();
+        let document = echo(summary.document(&scene), &scene)?;
         let format = common.format.unwrap_or(DocumentFormat::Text).into();
         write_output(None, document.render(format)?.as_bytes())
+    }
+
+    /// The text of the scene file; no more of it than a scene may have.
+    fn text(&self) -> Result<String> {
+        let read = || {
+            let mut text = String::new();
+            let file = std::fs::File::open(&self.scene)?;
+            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
+            Ok(text)
+        };
+        read().map_err(|cause: std::io::Error| {
+            let remedy = "name a scene file, such as data/scenes/figure1.json";
+            Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
+        })
     }
 
     /// `out/` and the scene's name.
@@ -61,27 +70,47 @@ struct Work<'a> {
     scene: &'a Scene,
     limits: Limits,
     threads: usize,
+    /// Where the arrays of the map go, if they are wanted.
+    archive: Option<PathBuf>,
     verdicts: OnceCell<Verdicts>,
+    /// Filled with the verdicts, taken when written.
+    arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
     documents: [OnceCell<Document>; 5],
     figures: [OnceCell<String>; 2],
 }
 
 impl<'a> Work<'a> {
-    fn new(scene: &'a Scene, common: &Common) -> Self {
+    fn new(scene: &'a Scene, common: &Common, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
+        let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
             limits,
             threads,
+            archive: arrays.map(|want| folder.join(want.file_name())),
             verdicts: OnceCell::new(),
+            arrays: RefCell::default(),
             curves: OnceCell::new(),
             documents: Default::default(),
             figures: Default::default(),
         }
     }
 
-    /// The bytes of one product's file.
+    /// One product, computed: its bytes, or nothing for arrays, which are on the disk already.
+    fn contents(&self, want: Want) -> Result<Option<Vec<u8>>> {
+        if want.format == Format::Npz { self.verdicts().map(|_| None) } else { self.bytes(want).map(Some) }
+    }
+
+    /// Writes one product's file.
+    fn write(&self, contents: Option<Vec<u8>>, path: &Path) -> Result<()> {
+        match contents {
+            Some(bytes) => write_output(Some(path), &bytes),
+            None => self.arrays.take().map_or(Ok(()), MapArrays::finish),
+        }
+    }
+
+    /// The bytes of one product's file, where they fit memory.
     fn bytes(&self, want: Want) -> Result<Vec<u8>> {
         let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
         match want.format {
@@ -91,6 +120,7 @@ impl<'a> Work<'a> {
             Format::Csv => text(document::Format::Csv),
             Format::Latex => text(document::Format::Latex),
             Format::Text => text(document::Format::Text),
+            Format::Npz => unreachable!("arrays are streamed"),
         }
     }
 
@@ -109,7 +139,10 @@ impl<'a> Work<'a> {
     fn make_document(&self, product: Product) -> Result<Document> {
         let scene = self.scene;
         match product {
-            Product::Map => Ok(map::document(&scene.grid()?, scene.range()?, self.verdicts()?)),
+            Product::Map => {
+                let Verdicts { tally, marked } = self.verdicts()?;
+                Ok(map::document(&scene.grid()?, scene.range()?, tally, marked))
+            }
             Product::Curves => {
                 Ok(curves::document(&scene.lambda1()?, scene.range()?, &scene.families()?, self.curves()?))
             }
@@ -138,7 +171,14 @@ impl<'a> Work<'a> {
     }
 
     fn verdicts(&self) -> Result<&Verdicts> {
-        once(&self.verdicts, || Verdicts::compute(&self.scene.grid()?, self.threads, &self.limits))
+        once(&self.verdicts, || {
+            let grid = self.scene.grid()?;
+            let arrays = self.archive.as_ref().map(|path| MapArrays::new(path, &grid, Products::default()));
+            let mut arrays = arrays.transpose()?;
+            let verdicts = Verdicts::compute(&grid, self.threads, &self.limits, arrays.as_mut())?;
+            self.arrays.replace(arrays);
+            Ok(verdicts)
+        })
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
@@ -190,4 +230,33 @@ impl Summary {
         let lines: Vec<String> = heading.into_iter().chain(self.lines).collect();
         Document::new("run").input("title", scene.title()).entry("products", self.products).summary(&lines)
     }
+}
+
+/// Echoes what the scene gives, exactly.
+fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
+    let given = scene.document();
+    if given.lambda1.is_some() {
+        document = document.input("lambda1", scene.lambda1()?);
+    }
+    if given.lambda2.is_some() {
+        document = document.input("lambda2", scene.lambda2()?);
+    }
+    if let Ok(range) = scene.range() {
+        document = echo_grid(document, range);
+    }
+    if given.families.is_some() {
+        document = curves::echo(document, &scene.families()?);
+    }
+    if given.tolerance.is_some() {
+        document = document.input("tolerance", scene.tolerance()?);
+    }
+    if given.ratio.is_some() {
+        let (p, q) = scene.ratio()?;
+        document = document.input("ratio", format!("{p}/{q}"));
+    }
+    if let Some(max) = given.max {
+        document = document.input("max", max);
+    }
+    let want: Vec<String> = scene.want().iter().map(Want::file_name).collect();
+    Ok(document.input("want", want.join(", ")))
 }

@@ -63,6 +63,11 @@ impl Shard {
     fn bands(self, grid: &Grid) -> Vec<Numbered> {
         (0..).zip(bands(grid)).filter(|(n, _)| n % self.n == self.k - 1).collect()
     }
+
+    /// The number of pairs in this part of the grid.
+    pub fn pairs(self, grid: &Grid) -> u64 {
+        self.bands(grid).iter().map(|(_, (_, columns))| *columns as u64 * grid.shape().1 as u64).sum()
+    }
 }
 
 fn pool(threads: usize) -> Result<ThreadPool> {

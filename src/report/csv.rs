@@ -32,6 +32,15 @@ pub fn write<R: AsRef<[Cell]>>(
     columns: &[Column],
     rows: impl IntoIterator<Item = R>,
 ) -> io::Result<()> {
+    write_header(sink, columns)?;
+    write_rows(sink, columns, rows)
+}
+
+/// The header alone, for rows that come later.
+///
+/// # Errors
+/// Those of `sink`.
+pub fn write_header(sink: &mut dyn Write, columns: &[Column]) -> io::Result<()> {
     let mut line = String::new();
     for column in columns {
         let key = &column.key;
@@ -42,7 +51,22 @@ pub fn write<R: AsRef<[Cell]>>(
             put(&mut line, key);
         }
     }
-    finish(sink, &mut line)?;
+    finish(sink, &mut line)
+}
+
+/// Rows without a header.
+///
+/// # Errors
+/// Those of `sink`.
+///
+/// # Panics
+/// If a row does not fit the columns, as in [`Table::push`].
+pub fn write_rows<R: AsRef<[Cell]>>(
+    sink: &mut dyn Write,
+    columns: &[Column],
+    rows: impl IntoIterator<Item = R>,
+) -> io::Result<()> {
+    let mut line = String::new();
     for row in rows {
         check(columns, row.as_ref());
         for (column, cell) in columns.iter().zip(row.as_ref()) {

@@ -69,18 +69,18 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
 }
 
 /// A temporary file that is removed again unless it takes its final name.
-struct Temporary(Option<PathBuf>);
+pub(super) struct Temporary(Option<PathBuf>);
 
 impl Temporary {
     /// A new file in the directory of `target`, under a name that nobody else has.
-    fn beside(target: &Path) -> io::Result<(Self, File)> {
+    pub(super) fn beside(target: &Path) -> io::Result<(Self, File)> {
         let name = target.file_name().ok_or(ErrorKind::IsADirectory)?;
         for attempt in 0..1000 {
             let mut hidden = OsString::from(".");
             hidden.push(name);
             hidden.push(format!(".{}-{attempt}.part", std::process::id()));
             let path = target.with_file_name(hidden);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
+            match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
                 Err(cause) if cause.kind() == ErrorKind::AlreadyExists => continue,
                 file => return Ok((Temporary(Some(path)), file?)),
             }
@@ -106,8 +106,50 @@ impl Drop for Temporary {
     }
 }
 
+/// A folder for files to come; what of it was not there before goes again unless it is kept.
+pub struct Folder {
+    path: PathBuf,
+    /// The folders made for it, the innermost first.
+    made: Vec<PathBuf>,
+}
+
+impl Folder {
+    /// Makes the folder and those around it, where they are missing.
+    ///
+    /// # Errors
+    /// [`Kind::Io`](crate::error::Kind::Io) naming the path and a remedy.
+    pub fn make(path: &Path) -> Result<Self> {
+        let missing = |part: &&Path| !part.as_os_str().is_empty() && !part.exists();
+        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let folder = Folder { path: path.to_path_buf(), made };
+        fs::create_dir_all(path).map_err(|cause| {
+            Error::io(path.display(), format_args!("cannot make this folder ({cause}): name another one"))
+        })?;
+        Ok(folder)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Leaves it where it is.
+    pub fn keep(mut self) {
+        self.made.clear();
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        for path in &self.made {
+            // Only an empty folder goes; the error that brought us here is the one to report.
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
 /// The cause with a remedy beside it.
-fn explained(path: &Path, cause: &io::Error) -> Error {
+pub(super) fn explained(path: &Path, cause: &io::Error) -> Error {
     let remedy = match cause.kind() {
         ErrorKind::NotFound => "create the directory first, or name another file",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {

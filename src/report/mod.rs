@@ -16,6 +16,7 @@ pub mod figure;
 pub mod file;
 pub mod latex;
 pub mod map;
+pub mod npz;
 pub mod plane;
 pub mod polynomial;
 pub mod proposition;

@@ -38,6 +38,30 @@ const BITS: u32 = 96;
 /// # Errors
 /// Where L1 ≤ 0, or fewer than 2 samples are asked for.
 pub fn curve(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize) -> Result<Curve> {
+    curve_over((0.0, 1.0), (a, b), lambda1, window, samples)
+}
+
+/// The same curve with all its samples in the window's range of h1: for windows that show a small part of it.
+///
+/// # Errors
+/// As [`curve`].
+pub fn curve_within(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize) -> Result<Curve> {
+    // θ = 2 asin(h1 √L1/2); from the limit h1 √L1 = 2 on there is none.
+    let half_root = lambda1.to_f64().max(0.0).sqrt() / 2.0;
+    let x = |h1: f64| (h1 * half_root).clamp(0.0, 1.0).asin() / std::f64::consts::FRAC_PI_2;
+    let (lo, hi) = (x(window.h1.0), x(window.h1.1));
+    // A sample beyond either side, so that the border is crossed.
+    let beyond = 2.0 * (hi - lo) / samples.max(1) as f64;
+    curve_over(((lo - beyond).max(0.0), (hi + beyond).min(1.0)), (a, b), lambda1, window, samples)
+}
+
+fn curve_over(
+    (lo, hi): (f64, f64),
+    (a, b): (i64, i64),
+    lambda1: &Laurent,
+    window: &Window,
+    samples: usize,
+) -> Result<Curve> {
     if lambda1.sign() != Sign::Positive {
         return Err(Error::input("lambda1", lambda1, "the fast stiffness must be positive"));
     }
@@ -50,7 +74,7 @@ pub fn curve(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize)
     let mut piece: Vec<CurvePoint> = Vec::new();
     let mut before: Option<f64> = None;
     for i in 1..samples {
-        let x = i as f64 / samples as f64;
+        let x = lo + (hi - lo) * (i as f64 / samples as f64);
         let now = on_curve(x).filter(|p| window.contains(p));
         if now.is_some() == piece.is_empty()
             && let Some(border) = before.and_then(|before| crossing(&on_curve, window, before, x))

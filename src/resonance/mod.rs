@@ -24,6 +24,6 @@ mod strength;
 pub mod tan;
 
 pub use angle::{Angle, Nearest};
-pub use curve::{Curve, CurvePoint, Window, curve};
+pub use curve::{Curve, CurvePoint, Window, curve, curve_within};
 pub use family::{dominant_family, families};
 pub use strength::{FirstOrder, first_order, strength};

@@ -30,6 +30,8 @@ pub enum Format {
     Text,
     Svg,
     Png,
+    /// NumPy arrays; of the map alone.
+    Npz,
 }
 
 /// One product in one format: one file.
@@ -49,13 +51,14 @@ const PRODUCTS: [(&str, Product); 7] = [
     ("overlay", Product::Overlay),
 ];
 
-const FORMATS: [(&str, Format); 6] = [
+const FORMATS: [(&str, Format); 7] = [
     ("json", Format::Json),
     ("csv", Format::Csv),
     ("tex", Format::Latex),
     ("txt", Format::Text),
     ("svg", Format::Svg),
     ("png", Format::Png),
+    ("npz", Format::Npz),
 ];
 
 impl Want {
@@ -78,6 +81,9 @@ impl Want {
         if drawn != product.is_figure() {
             let remedy = if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg or png" };
             return Err(Error::input("want", text, remedy));
+        }
+        if format == Format::Npz && product != Product::Map {
+            return Err(Error::input("want", text, "arrays are those of the map: map.npz"));
         }
         Ok(Want { product, format })
     }
@@ -131,11 +137,12 @@ mod tests {
             assert_eq!(Want::new(&want.file_name()).unwrap(), want);
         }
         assert_eq!(Want::new("figure.png").unwrap().format, Format::Png);
+        assert_eq!(Want::new("map.npz").unwrap().format, Format::Npz);
     }
 
     #[test]
     fn nonsense_is_refused() {
-        for text in ["", "maps", "map.xls", "map.png", "figure.csv", "figure.svg.png", "."] {
+        for text in ["", "maps", "map.xls", "map.png", "curves.npz", "figure.csv", "figure.svg.png", "."] {
             assert!(Want::new(text).is_err(), "{text}");
         }
     }

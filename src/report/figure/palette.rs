@@ -45,6 +45,12 @@ impl Gradient {
         Gradient { from: [0.22, 0.10, 0.785], to: [0.93, 0.175, 0.295] }
     }
 
+    /// The same colours from the other end.
+    #[must_use]
+    pub const fn reversed(self) -> Self {
+        Gradient { from: self.to, to: self.from }
+    }
+
     /// The colour at `t`, clamped to [0, 1].
     pub fn at(&self, t: f64) -> Colour {
         let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };

@@ -1,5 +1,10 @@
 //! The (h1, h2) plane drawn: unstable pairs, resonance curves, and one over the other.
 
+mod chart;
+mod raster;
+
+pub use chart::{Chart, Colouring, window};
+
 use super::figure::palette::Colour;
 use super::figure::{Axis, Cells, Dash, Figure, Layer, Panel, Place, Stroke};
 use crate::resonance::{Curve, Window};

@@ -1,0 +1,102 @@
+//! How a map is drawn.
+
+use clap::ValueEnum;
+
+use super::{Map, Target};
+use crate::cli::curves;
+use crate::error::{Error, Result};
+use crate::map::Products;
+use crate::number::parse::parse_integer_range;
+use crate::report::plane::{Colouring, window};
+use crate::resonance::Curve;
+use crate::scene::Families;
+
+/// Flags of figures.
+#[derive(Debug, clap::Args)]
+pub struct Drawing {
+    /// What the colours of a figure tell [default: verdict].
+    #[arg(long, value_name = "WHAT")]
+    colour: Option<Colour>,
+    /// Draw the curves (a, b) over a figure.
+    #[arg(long)]
+    curves: bool,
+    /// The range of a for --curves [default: 0..3].
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    a: Option<String>,
+    /// The range of b for --curves [default: -12..12].
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    b: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Colour {
+    /// Exponential growth, linear growth, closed tongues.
+    Verdict,
+    /// The growth rate per unit time.
+    Growth,
+    /// The a of the dominant family.
+    Family,
+    /// Slow steps until the amplitude is tenfold.
+    Tenfold,
+}
+
+/// Samples of a curve in the window: on paper a third of a millimetre apart.
+const SAMPLES: usize = 400;
+
+impl Drawing {
+    /// What the colours tell.
+    pub fn colouring(&self) -> Colouring {
+        match self.colour {
+            None | Some(Colour::Verdict) => Colouring::Verdict,
+            Some(Colour::Growth) => Colouring::Growth,
+            Some(Colour::Family) => Colouring::Family,
+            Some(Colour::Tenfold) => Colouring::Tenfold,
+        }
+    }
+
+    /// What has to be computed for the drawing: nothing where none is made.
+    ///
+    /// # Errors
+    /// Where flags of figures are given without one, or flags of curves without these.
+    pub fn products(&self, target: Target) -> Result<Products> {
+        let given = [
+            ("--colour", self.colour.is_some()),
+            ("--curves", self.curves),
+            ("--a", self.a.is_some()),
+            ("--b", self.b.is_some()),
+        ];
+        if !target.is_figure() {
+            return match given.iter().find(|(_, given)| *given) {
+                None => Ok(Products::default()),
+                Some((flag, _)) => Err(Error::input(
+                    flag,
+                    "given",
+                    "is for figures: write one with --output FILE.svg or FILE.png",
+                )),
+            };
+        }
+        match given[2..].iter().find(|(_, given)| *given && !self.curves) {
+            Some((flag, _)) => Err(Error::input(flag, "given", "is for curves: add --curves")),
+            None => Ok(self.colouring().needs()),
+        }
+    }
+
+    /// The curves wanted.
+    ///
+    /// # Errors
+    /// Ranges that do not parse or are too large.
+    pub fn sampled(&self, map: &Map) -> Result<Vec<Curve>> {
+        if !self.curves {
+            return Ok(Vec::new());
+        }
+        let range = |flag: &str, text: &Option<String>, default| {
+            text.as_ref().map_or(Ok(default), |text| parse_integer_range(flag, text))
+        };
+        let families = Families {
+            a: range("--a", &self.a, (0, 3))?,
+            b: range("--b", &self.b, (-12, 12))?,
+            samples: SAMPLES,
+        };
+        curves::sample_within(map.grid.lambdas().0, &families, &window(&map.grid))
+    }
+}

@@ -1,0 +1,71 @@
+//! `kickdrift map`: the verdicts of a grid, and what else is asked for of its unstable pairs.
+
+mod drawing;
+mod output;
+mod part;
+mod source;
+
+use std::path::PathBuf;
+
+use super::args::{self, Common, Stiffness};
+use crate::error::{Error, Result};
+use crate::map::{Products, Shard};
+pub use drawing::Drawing;
+pub use output::{Output, Target, document};
+pub use part::{Map, Part};
+pub use source::Source;
+
+/// Flags of `map`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    stiffness: Stiffness,
+    #[command(flatten)]
+    grid: args::Grid,
+    /// Tell the tongue's label m of each growing pair, and its dominant family (a, b).
+    #[arg(long)]
+    label: bool,
+    /// Tell the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
+    #[arg(long)]
+    growth: bool,
+    #[command(flatten)]
+    drawing: Drawing,
+    /// Keep finished bands in this directory and take from it those it already holds.
+    #[arg(long, value_name = "DIR")]
+    resume: Option<PathBuf>,
+    /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
+    #[arg(long, value_name = "K/N")]
+    shard: Option<String>,
+}
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let target = Target::of(common);
+        let shard = self.shard(target)?;
+        let coloured = self.drawing.products(target)?;
+        let products =
+            Products { label: self.label || coloured.label, growth: self.growth || coloured.growth };
+        let map = Map::new(self.stiffness.quantities()?, self.grid.range()?, products)?;
+        let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
+        let source = Source::compute(common, shard, store.map(Part::into_store));
+        let output = Output { map: &map, target, drawing: &self.drawing, part: self.shard.as_deref() };
+        output.write(&source, common.output.as_deref())
+    }
+
+    /// The part of the map to compute.
+    fn shard(&self, target: Target) -> Result<Shard> {
+        let Some(text) = &self.shard else { return Ok(Shard::WHOLE) };
+        let terms = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+        let (k, n) = terms.ok_or_else(|| Error::input("--shard", text, "write part and parts as 2/16"))?;
+        if self.resume.is_none() {
+            let remedy = "needs --resume DIR, where the part is kept for kickdrift merge";
+            return Err(Error::input("--shard", text, remedy));
+        }
+        if !target.is_summary() {
+            let remedy =
+                "a part has only a summary (json, text): kickdrift merge makes the rest of all parts";
+            return Err(Error::input("--shard", text, remedy));
+        }
+        Shard::new(k, n)
+    }
+}

@@ -1,0 +1,55 @@
+//! Where a map's bands come from: computed, resumed, or joined from parts.
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::Map;
+use crate::cli::args::Common;
+use crate::error::Result;
+use crate::map::{Band, Shard, Store, for_each_band, merge, resume};
+use crate::verdict::Limits;
+
+/// Bands in order.
+pub enum Source {
+    Computed { shard: Shard, store: Option<Store>, threads: usize, limits: Limits, quiet: bool },
+    Joined(Vec<Store>),
+}
+
+impl Source {
+    /// Bands that are computed as the flags say, kept in a store where there is one.
+    pub fn compute(common: &Common, shard: Shard, store: Option<Store>) -> Source {
+        let (threads, limits) = (common.threads(), common.limits());
+        Source::Computed { shard, store, threads, limits, quiet: common.quiet }
+    }
+
+    /// Hands the bands on in order.
+    ///
+    /// # Errors
+    /// As [`for_each_band`], [`resume`] and [`merge`].
+    pub fn each(&self, map: &Map, see: &mut dyn FnMut(&Band) -> Result<()>) -> Result<()> {
+        let Map { grid, products, .. } = map;
+        match self {
+            Source::Joined(stores) => merge(grid, stores, |_, band| see(&band)).map(drop),
+            Source::Computed { shard, store, threads, limits, quiet } => {
+                let bar = if *quiet { ProgressBar::hidden() } else { progress(shard.pairs(grid)) };
+                let see = |_, band: Band| {
+                    see(&band)?;
+                    bar.inc(band.counters.pairs);
+                    Ok(())
+                };
+                let done = match store {
+                    None => for_each_band(grid, *products, *shard, *threads, limits, see),
+                    Some(store) => resume(grid, *products, *shard, *threads, limits, store, see),
+                };
+                bar.finish_and_clear();
+                done.map(drop)
+            }
+        }
+    }
+}
+
+/// A bar on standard error, which shows itself on a terminal only.
+fn progress(pairs: u64) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(pairs), ProgressDrawTarget::stderr());
+    let template = "{bar:30} {human_pos} of {human_len} pairs, {per_sec}, {eta} left";
+    bar.with_style(ProgressStyle::with_template(template).expect("the template is sound"))
+}

@@ -1,0 +1,43 @@
+//! `kickdrift merge`: the parts of a sharded map joined to the bytes of a single run.
+
+use std::path::PathBuf;
+
+use super::args::Common;
+use super::map::{Drawing, Map, Output, Part, Source, Target};
+use crate::error::{Error, Result};
+
+/// Flags of `merge`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The directories that map --shard K/N --resume DIR has filled; one of them may hold several parts.
+    #[arg(value_name = "PARTS", required = true)]
+    parts: Vec<PathBuf>,
+    #[command(flatten)]
+    drawing: Drawing,
+}
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let target = Target::of(common);
+        let parts = self.parts.iter().map(|directory| Part::open(directory)).collect::<Result<Vec<_>>>()?;
+        let map = Part::common_map(&parts)?;
+        self.check(target, &map)?;
+        let source = Source::Joined(parts.into_iter().map(Part::into_store).collect());
+        let output = Output { map: &map, target, drawing: &self.drawing, part: None };
+        output.write(&source, common.output.as_deref())
+    }
+
+    /// The parts hold what the colours tell.
+    fn check(&self, target: Target, map: &Map) -> Result<()> {
+        let (needs, held) = (self.drawing.products(target)?, map.products);
+        for (flag, missing) in
+            [("--label", needs.label && !held.label), ("--growth", needs.growth && !held.growth)]
+        {
+            if missing {
+                let remedy = format!("the parts were computed without {flag}: compute them with it");
+                return Err(Error::input("--colour", "given", remedy));
+            }
+        }
+        Ok(())
+    }
+}

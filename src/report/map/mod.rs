@@ -1,0 +1,48 @@
+//! The verdicts of a grid on their way out: counts for the summary, rows of the pairs that are not plainly stable,
+//! arrays of all pairs. All take one band at a time.
+
+mod arrays;
+mod rows;
+mod tally;
+
+use serde_json::json;
+
+pub use arrays::MapArrays;
+pub use rows::{Found, Marked, Rows, marked};
+pub use tally::{Counts, Tally};
+
+use super::document::Document;
+use super::table::Table;
+use crate::verdict::Tier;
+
+/// The document `kickdrift/map/1`, with rows where the form is to show them. The caller adds the input.
+pub fn document(tally: &Tally, rows: Option<Table>) -> Document {
+    let counts = &tally.counts;
+    let [filter, refine, exact] = counts.decided_by;
+    let tiers = [Tier::Filter, Tier::Refine, Tier::Exact].map(Tier::name);
+    let mut lines = vec![
+        format!(
+            "{} pairs, each decided: {} stable, {} unstable",
+            counts.pairs, counts.stable, counts.unstable
+        ),
+        format!("  parabolic {}, coexistence {}", counts.parabolic, counts.coexistence),
+        format!("  decided by {} {filter}, {} {refine}, {} {exact}", tiers[0], tiers[1], tiers[2]),
+    ];
+    lines.extend(tally.lines());
+    let mut document = Document::new("map")
+        .entry("pairs", counts.pairs)
+        .entry("stable", counts.stable)
+        .entry("unstable", counts.unstable)
+        .entry("parabolic", counts.parabolic)
+        .entry("coexistence", counts.coexistence)
+        .entry("decided_by", json!({tiers[0]: filter, tiers[1]: refine, tiers[2]: exact}))
+        .entry("work", tally.work());
+    for (key, value) in tally.entries() {
+        document = document.entry(key, value);
+    }
+    match rows {
+        Some(table) => document.long_rows(table),
+        None => document,
+    }
+    .summary(&lines)
+}

@@ -1,0 +1,118 @@
+//! Counts over a grid, and what stands out in it.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::rows::{Found, marked};
+use crate::map::{Band, Counters, Grid};
+use crate::verdict::{Kind, Verdict};
+
+/// Counts over a grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    pub pairs: u64,
+    /// Elliptic or coexistence.
+    pub stable: u64,
+    /// Hyperbolic or parabolic.
+    pub unstable: u64,
+    pub parabolic: u64,
+    pub coexistence: u64,
+    /// By tier: filter, refine, exact.
+    pub decided_by: [u64; 3],
+}
+
+impl Counts {
+    /// Counts the pairs of a band in.
+    pub fn add(&mut self, band: &Band) {
+        let mut seen = [0u64; Verdict::ALL.len()];
+        band.verdicts.iter().for_each(|&verdict| seen[usize::from(verdict)] += 1);
+        band.tiers.iter().for_each(|&tier| self.decided_by[usize::from(tier)] += 1);
+        for (verdict, count) in Verdict::ALL.iter().zip(seen) {
+            self.pairs += count;
+            *(if verdict.is_stable() { &mut self.stable } else { &mut self.unstable }) += count;
+            self.parabolic += if verdict.kind() == Kind::Parabolic { count } else { 0 };
+            self.coexistence += if verdict.kind() == Kind::Coexistence { count } else { 0 };
+        }
+    }
+
+    /// The pairs that are not elliptic: those that have a row.
+    pub fn marked(&self) -> u64 {
+        self.unstable + self.coexistence
+    }
+}
+
+/// What the summary tells.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    pub counts: Counts,
+    counters: Counters,
+    /// Pairs by the a of their dominant family, where labels were asked for.
+    families: BTreeMap<i64, u64>,
+    /// The pair that grows fastest, the first of equals, where growth was asked for.
+    fastest: Option<Fastest>,
+}
+
+#[derive(Clone, Debug)]
+struct Fastest {
+    steps: [String; 2],
+    rate: f64,
+    tenfold: f64,
+}
+
+impl Tally {
+    /// Counts a band in.
+    pub fn add(&mut self, grid: &Grid, band: &Band) {
+        self.counts.add(band);
+        self.counters.add(&band.counters);
+        if band.growing.is_empty() {
+            return;
+        }
+        for pair in marked(grid, band) {
+            let Found { family, rate, tenfold, .. } = pair.found();
+            if let Some((a, _)) = family {
+                *self.families.entry(a).or_default() += 1;
+            }
+            if let (Some(rate), Some(tenfold)) = (rate, tenfold)
+                && self.fastest.as_ref().is_none_or(|fastest| rate > fastest.rate)
+            {
+                let steps = [grid.h1(pair.i).to_string(), grid.h2(pair.j).to_string()];
+                self.fastest = Some(Fastest { steps, rate, tenfold });
+            }
+        }
+    }
+
+    /// The kicks composed: the cost of the map, the same on every machine.
+    pub(super) fn work(&self) -> Value {
+        let Counters { kicks, kicks_again, escalated, .. } = self.counters;
+        json!({"kicks": kicks, "kicks_again": kicks_again, "escalated": escalated})
+    }
+
+    /// What was asked for beside the verdicts.
+    pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
+        let mut entries = Vec::new();
+        if !self.families.is_empty() {
+            let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
+            entries.push(("families", self.families.iter().map(count).collect()));
+        }
+        if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+            let value = json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
+            entries.push(("fastest", value));
+        }
+        entries
+    }
+
+    pub(super) fn lines(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        if !self.families.is_empty() {
+            let counts: Vec<String> = self.families.iter().map(|(a, n)| format!("{n} a = {a}")).collect();
+            lines.push(format!("  dominant families {}", counts.join(", ")));
+        }
+        if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+            lines.push(format!(
+                "  fastest growth {rate:.4e} per unit time at h1 = {h1}, h2 = {h2}: tenfold in {tenfold:.3e} slow steps"
+            ));
+        }
+        lines
+    }
+}

@@ -1,0 +1,255 @@
+//! A map drawn: its unstable pairs in colour, the edges marked, the curves over them on request.
+
+use super::raster::Raster;
+use super::{lines, stroke};
+use crate::map::{Band, Grid, Products};
+use crate::report::figure::palette::{self, Colour, Gradient};
+use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place};
+use crate::report::map::{Counts, Found, marked};
+use crate::resonance::{Curve, Window};
+use crate::verdict::Kind;
+
+/// What colours tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colouring {
+    /// The kind of instability.
+    Verdict,
+    /// The growth rate.
+    Growth,
+    /// The dominant family.
+    Family,
+    /// Slow steps until the amplitude is tenfold.
+    Tenfold,
+}
+
+impl Colouring {
+    /// What the map has to tell for these colours.
+    pub fn needs(self) -> Products {
+        Products { label: self == Colouring::Family, growth: self.by_growth() }
+    }
+
+    fn by_growth(self) -> bool {
+        matches!(self, Colouring::Growth | Colouring::Tenfold)
+    }
+
+    /// The larger, the stronger: of the pairs in a cell the strongest is shown.
+    fn strength(self, found: &Found) -> f64 {
+        // What grows so slowly that its rate rounds to nothing is still shown, as the weakest.
+        let positive = |x: Option<f64>| x.filter(|&x| x > 0.0).unwrap_or(f64::MIN_POSITIVE);
+        match self {
+            Colouring::Verdict => 1.0,
+            Colouring::Growth => positive(found.rate),
+            Colouring::Tenfold => positive(found.tenfold.map(f64::recip)),
+            Colouring::Family => found.family.map_or(f64::NEG_INFINITY, |(a, _)| -rank(a)),
+        }
+    }
+}
+
+/// The place of a in 0, 1, -1, 2, -2, ...
+fn rank(a: i64) -> f64 {
+    if a > 0 { 2.0 * a as f64 - 1.0 } else { -2.0 * a as f64 }
+}
+
+/// The a at a place.
+fn of_rank(rank: f64) -> i64 {
+    let half = (rank / 2.0).ceil() as i64;
+    if rank % 2.0 == 1.0 { half } else { -half }
+}
+
+/// An edge of a tongue; where both kinds meet in a cell, the rarer is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Edge {
+    Parabolic,
+    Coexistence,
+}
+
+/// A map on its way into a figure: memory is bounded by what paper can show.
+#[derive(Clone, Debug)]
+pub struct Chart {
+    colouring: Colouring,
+    growing: Raster<f64>,
+    edges: Raster<Edge>,
+}
+
+/// Shades of a gradient: neighbours are barely told apart.
+const SHADES: u16 = 40;
+/// Families with a colour of their own; the others share a grey.
+const FAMILIES: usize = 8;
+/// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour vision.
+const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
+const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
+const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
+/// Pairs in points of paper; on an edge they are few and should be found.
+const PAIR: f64 = 0.35;
+const EDGE: f64 = 1.8;
+
+impl Chart {
+    pub fn new(grid: &Grid, colouring: Colouring) -> Self {
+        Chart { colouring, growing: Raster::new(grid), edges: Raster::new(grid) }
+    }
+
+    /// Puts a band in.
+    pub fn add(&mut self, grid: &Grid, band: &Band) {
+        for pair in marked(grid, band) {
+            match pair.decision.verdict.kind() {
+                Kind::Elliptic => {}
+                Kind::Hyperbolic => self.growing.put(pair.i, pair.j, self.colouring.strength(&pair.found())),
+                Kind::Parabolic => self.edges.put(pair.i, pair.j, Edge::Parabolic),
+                Kind::Coexistence => self.edges.put(pair.i, pair.j, Edge::Coexistence),
+            }
+        }
+    }
+
+    /// The figure, with the curves given over it.
+    pub fn figure(&self, grid: &Grid, counts: &Counts, curves: &[Curve]) -> Figure {
+        let window = window(grid);
+        let steps = [grid.steps().0.to_f64(), grid.steps().1.to_f64()];
+        let mut panel = Panel::new(axis("*h*_1 (time)", window.h1), axis("*h*_2 (time)", window.h2))
+            .titled(&format!("{} of {} pairs unstable", grouped(counts.unstable), grouped(counts.pairs)));
+        panel = match self.colouring {
+            Colouring::Verdict => self.by_verdict(panel, steps),
+            Colouring::Growth | Colouring::Tenfold => self.by_growth(panel, steps),
+            Colouring::Family => self.by_family(panel, steps),
+        };
+        for (edge, colour, name) in [
+            (Edge::Parabolic, PARABOLIC, "linear growth (parabolic)"),
+            (Edge::Coexistence, COEXISTENCE, "closed tongue (coexistence)"),
+        ] {
+            let mut cells = cells(&self.edges, steps, vec![colour]).at_least(EDGE);
+            let found = self.edges.filled().filter(|(_, _, value)| *value == edge);
+            let count = found.map(|(k, l, _)| cells.push(k, l, 0)).count();
+            if count > 0 {
+                panel = panel.with(Layer::cells(cells).labelled(name));
+            }
+        }
+        if !curves.is_empty() {
+            panel = labels(lines(panel, curves), curves, &window);
+        }
+        let wide = if self.colouring.by_growth() { 150.0 } else { 135.0 };
+        Figure::new(wide, 135.0)
+            .named(&format!("Stability map; {}", grid.fingerprint()))
+            .with(panel.legend(Place::Above))
+    }
+
+    fn by_verdict(&self, panel: Panel, steps: [f64; 2]) -> Panel {
+        let mut cells = cells(&self.growing, steps, vec![HYPERBOLIC]);
+        self.growing.filled().for_each(|(k, l, _)| cells.push(k, l, 0));
+        panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
+    }
+
+    fn by_growth(&self, panel: Panel, steps: [f64; 2]) -> Panel {
+        let bar = self.bar();
+        let mut cells = cells(&self.growing, steps, bar.gradient.steps(SHADES.into()));
+        for (k, l, strength) in self.growing.filled() {
+            cells.push(k, l, bar.class(self.shown(strength), SHADES));
+        }
+        panel.with(Layer::cells(cells)).bar(bar)
+    }
+
+    /// The quantity on the bar.
+    fn shown(&self, strength: f64) -> f64 {
+        if self.colouring == Colouring::Tenfold { strength.recip() } else { strength }
+    }
+
+    /// From the strongest cell down to the decade of the weakest but one in a hundred: near the edges of tongues
+    /// growth falls to zero, and a few of these would stretch the bar beyond use. They take its last colour.
+    fn bar(&self) -> ColourBar {
+        let mut all: Vec<f64> = self.growing.filled().map(|(_, _, strength)| strength).collect();
+        all.sort_unstable_by(f64::total_cmp);
+        let strongest = all.last().copied().unwrap_or(1.0);
+        let weak = all.get(all.len() / 100).copied().unwrap_or(strongest);
+        let (low, high) = (10f64.powi(weak.log10().floor() as i32), strongest);
+        if self.colouring == Colouring::Tenfold {
+            let axis = Axis::log("slow steps until tenfold", high.recip(), low.recip());
+            return ColourBar { axis, gradient: Gradient::on_white().reversed() };
+        }
+        ColourBar { axis: Axis::log("growth rate (1/time)", low, high), gradient: Gradient::on_white() }
+    }
+
+    fn by_family(&self, mut panel: Panel, steps: [f64; 2]) -> Panel {
+        let mut ranks: Vec<f64> = self.growing.filled().map(|(_, _, strength)| -strength).collect();
+        ranks.sort_unstable_by(f64::total_cmp);
+        ranks.dedup();
+        let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
+        for (n, &rank) in own.iter().enumerate() {
+            let mut cells = cells(&self.growing, steps, vec![palette::family(n)]);
+            let of_rank_n = self.growing.filled().filter(|(_, _, strength)| -strength == rank);
+            of_rank_n.for_each(|(k, l, _)| cells.push(k, l, 0));
+            panel = panel.with(Layer::cells(cells).labelled(&family_name(rank)));
+        }
+        if let Some(&first) = others.first() {
+            let mut cells = cells(&self.growing, steps, vec![palette::GREY]);
+            let rest = self.growing.filled().filter(|(_, _, strength)| -strength >= first);
+            rest.for_each(|(k, l, _)| cells.push(k, l, 0));
+            panel = panel.with(Layer::cells(cells).labelled("others"));
+        }
+        panel
+    }
+}
+
+fn family_name(rank: f64) -> String {
+    if !rank.is_finite() {
+        return "not labelled".into();
+    }
+    format!("family *a* = {}", of_rank(rank)).replace('-', "−")
+}
+
+fn cells<T: Copy + PartialOrd>(raster: &Raster<T>, steps: [f64; 2], colours: Vec<Colour>) -> Cells {
+    let (origin, pitch) = raster.geometry(steps);
+    Cells::new(origin, pitch, colours).at_least(PAIR)
+}
+
+/// The cells of all pairs, from edge to edge.
+pub fn window(grid: &Grid) -> Window {
+    let edges =
+        |(first, last): (u64, u64), step: f64| ((first as f64 - 0.5) * step, (last as f64 + 0.5) * step);
+    Window {
+        h1: edges(grid.columns(), grid.steps().0.to_f64()),
+        h2: edges(grid.rows(), grid.steps().1.to_f64()),
+    }
+}
+
+/// An axis over the range; one that begins near zero begins at zero.
+fn axis(label: &str, (lo, hi): (f64, f64)) -> Axis {
+    Axis::linear(label, if lo < 0.1 * hi { 0.0 } else { lo }, hi)
+}
+
+/// (a, b) on each thick curve.
+fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
+    let at = |share: f64| window.h1.0 + share * (window.h1.1 - window.h1.0);
+    for curve in curves.iter().filter(|curve| stroke(curve.a) == stroke(0)) {
+        // Near the right, where the curves are farthest apart.
+        let distance = |h1: f64| (h1 - at(0.86)).abs();
+        let points = curve.pieces.iter().flatten();
+        if let Some(point) = points.min_by(|p, q| distance(p.h1).total_cmp(&distance(q.h1))) {
+            let text = format!("({}, {})", curve.a, curve.b).replace('-', "−");
+            let note = Note::new([point.h1, point.h2], &text).anchored(Anchor::Middle, [0.0, 0.0]);
+            panel = panel.note(note);
+        }
+    }
+    panel
+}
+
+/// A count with its digits in groups of three.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().map(|group| std::str::from_utf8(group).expect("digits")).collect();
+    groups.join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn families_have_places() {
+        assert_eq!([0, 1, -1, 2, -2].map(rank), [0.0, 1.0, 2.0, 3.0, 4.0]);
+        assert!((-9..9).all(|a| of_rank(rank(a)) == a));
+    }
+
+    #[test]
+    fn counts_are_grouped() {
+        assert_eq!([0, 999, 1000, 2_226_000].map(grouped), ["0", "999", "1,000", "2,226,000"]);
+    }
+}
