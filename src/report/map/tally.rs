@@ -42,6 +42,9 @@ impl Counts {
     }
 }
 
+/// Families that the summary for people tells.
+const FAMILIES_TOLD: usize = 6;
+
 /// What the summary tells.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
@@ -105,8 +108,13 @@ impl Tally {
     pub(super) fn lines(&self) -> Vec<String> {
         let mut lines = Vec::new();
         if !self.families.is_empty() {
-            let counts: Vec<String> = self.families.iter().map(|(a, n)| format!("{n} a = {a}")).collect();
-            lines.push(format!("  dominant families {}", counts.join(", ")));
+            let mut families: Vec<(&i64, &u64)> = self.families.iter().collect();
+            families.sort_by_key(|(a, pairs)| (std::cmp::Reverse(**pairs), **a));
+            let told: Vec<String> =
+                families.iter().take(FAMILIES_TOLD).map(|(a, pairs)| format!("a = {a}: {pairs}")).collect();
+            let others = families.len().saturating_sub(FAMILIES_TOLD);
+            let others = if others > 0 { format!(", {others} others") } else { String::new() };
+            lines.push(format!("  dominant families {}{others}", told.join(", ")));
         }
         if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
             lines.push(format!(

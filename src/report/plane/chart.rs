@@ -151,13 +151,13 @@ impl Chart {
         if self.colouring == Colouring::Tenfold { strength.recip() } else { strength }
     }
 
-    /// From the strongest cell down to the decade of the weakest but one in a hundred: near the edges of tongues
+    /// From the strongest cell down to the decade of the weakest but one in twenty: near the edges of tongues
     /// growth falls to zero, and a few of these would stretch the bar beyond use. They take its last colour.
     fn bar(&self) -> ColourBar {
         let mut all: Vec<f64> = self.growing.filled().map(|(_, _, strength)| strength).collect();
         all.sort_unstable_by(f64::total_cmp);
         let strongest = all.last().copied().unwrap_or(1.0);
-        let weak = all.get(all.len() / 100).copied().unwrap_or(strongest);
+        let weak = all.get(all.len() / 20).copied().unwrap_or(strongest);
         let (low, high) = (10f64.powi(weak.log10().floor() as i32), strongest);
         if self.colouring == Colouring::Tenfold {
             let axis = Axis::log("slow steps until tenfold", high.recip(), low.recip());
@@ -214,17 +214,18 @@ fn axis(label: &str, (lo, hi): (f64, f64)) -> Axis {
     Axis::linear(label, if lo < 0.1 * hi { 0.0 } else { lo }, hi)
 }
 
-/// (a, b) on each thick curve.
+/// (a, b) beside each thick curve, where it enters the window from the left, a little below its top.
 fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
-    let at = |share: f64| window.h1.0 + share * (window.h1.1 - window.h1.0);
+    let share = |(lo, hi): (f64, f64), x: f64| (x - lo) / (hi - lo);
     for curve in curves.iter().filter(|curve| stroke(curve.a) == stroke(0)) {
-        // Near the right, where the curves are farthest apart.
-        let distance = |h1: f64| (h1 - at(0.86)).abs();
-        let points = curve.pieces.iter().flatten();
-        if let Some(point) = points.min_by(|p, q| distance(p.h1).total_cmp(&distance(q.h1))) {
+        let roomy = |h1: f64, h2: f64| share(window.h1, h1) > 0.06 && share(window.h2, h2) < 0.94;
+        let mut points = curve.pieces.iter().flatten();
+        if let Some(point) = points.find(|point| roomy(point.h1, point.h2)) {
             let text = format!("({}, {})", curve.a, curve.b).replace('-', "−");
-            let note = Note::new([point.h1, point.h2], &text).anchored(Anchor::Middle, [0.0, 0.0]);
-            panel = panel.note(note);
+            // Above the curve; from the middle on, where curves with a = 0 fall steeply, left of it.
+            let side = if share(window.h1, point.h1) < 0.5 { Anchor::Middle } else { Anchor::End };
+            let shift = if side == Anchor::Middle { [0.0, 7.5] } else { [-4.0, -3.0] };
+            panel = panel.note(Note::new([point.h1, point.h2], &text).anchored(side, shift));
         }
     }
     panel
