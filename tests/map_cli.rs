@@ -14,7 +14,7 @@ const GRID: &str =
 fn kickdrift(words: &str, paths: &[&dyn AsRef<OsStr>]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_kickdrift"));
     command.args(words.split_whitespace());
-    paths.iter().for_each(|path| drop(command.arg(path)));
+    command.args(paths);
     command.output().unwrap()
 }
 
