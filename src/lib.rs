@@ -69,6 +69,7 @@
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
 //! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
 
+pub mod avi;
 pub mod cli;
 pub mod error;
 pub mod map;
@@ -77,4 +78,5 @@ pub mod propagator;
 pub mod report;
 pub mod resonance;
 pub mod scene;
+pub mod system;
 pub mod verdict;

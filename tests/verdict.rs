@@ -1,7 +1,7 @@
 //! The ladder: every tier right, every tier's certificate honest.
 
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Rational, Sign, parse};
+use kickdrift::number::{Rational, Real, Sign, parse};
 use kickdrift::propagator::{Oscillator, TwoClocks, full_period, half_period};
 use kickdrift::verdict::{Decidable, Kind, Limits, Tier, decide, decide_from, growth};
 use num_integer::Integer;
@@ -126,6 +126,30 @@ fn exact_ties_over_q_pi_are_decided() {
     // s = h1^2 lambda1 can be rational though neither factor is.
     let verlet = Oscillator::new(x("4/pi^2"), x("0"), x("pi"), x("2*pi")).unwrap();
     assert_eq!(decide(&verlet.clocks(), &Limits::default()).unwrap().verdict.kind(), Kind::Parabolic);
+}
+
+/// Steps and stiffnesses at the ends of any float's range: decided, with the trace and the growth enclosed.
+#[test]
+fn extreme_scales_are_decided() {
+    let x = |text| parse::parse("x", text).unwrap();
+    for (lambda1, lambda2, h1, h2, kind) in [
+        ("1e-300", "1", "1e-300", "3e-300", Kind::Elliptic),
+        ("pi", "1", "1e-300", "3e-300", Kind::Elliptic),
+        ("1e300", "pi", "1e300", "3e300", Kind::Hyperbolic),
+        ("1e300", "-1e300", "1e300", "1e300", Kind::Parabolic),
+        ("2", "1e-300", "1", "5/3", Kind::Elliptic),
+        ("2", "1e300", "1", "5/3", Kind::Hyperbolic),
+        ("1e-600", "pi", "1e290", "2e290", Kind::Hyperbolic),
+    ] {
+        let clocks = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap().clocks();
+        let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
+        assert_eq!(verdict.kind(), kind, "{lambda1} {lambda2} {h1} {h2}");
+        let growth = growth(&clocks, verdict, &Limits::default()).unwrap();
+        let trace = half_period(&clocks).trace().enclosure(256);
+        assert!(growth.trace.lower() <= trace.lower() && trace.upper() <= growth.trace.upper());
+        assert_eq!(growth.label.is_some(), kind == Kind::Hyperbolic);
+        assert_eq!(growth.ln_multiplier.is_some(), kind == Kind::Hyperbolic);
+    }
 }
 
 #[test]

@@ -14,22 +14,28 @@ use crate::verdict::Limits;
 
 /// Flags of every command.
 #[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form of the result [default: text for verdict, compare, proposition, polynomial and run; else json].
+    /// The form of the result [default: json for curves and map, else text].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
-    /// Write to this file instead of standard output; the file appears whole or not at all.
+    /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.
     #[arg(long, global = true, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = whole::<usize>)]
     pub threads: Option<usize>,
     /// No progress on standard error.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// The most kicks that one tier may compose for one pair.
-    #[arg(long, global = true, value_name = "KICKS")]
+    /// The most kicks that one tier may compose for one pair [default: 100000000].
+    #[arg(long, global = true, value_name = "KICKS", value_parser = whole::<u64>)]
     pub budget: Option<u64>,
+}
+
+/// A count, with the remedy that the standard library's message lacks.
+pub fn whole<T: std::str::FromStr>(text: &str) -> std::result::Result<T, String> {
+    text.parse().map_err(|_| "write a whole number, in digits only, within 64 bits".into())
 }
 
 /// Output formats of documents.
@@ -52,6 +58,9 @@ impl From<Format> for document::Format {
     }
 }
 
+/// More threads than this are a slip of the keyboard; starting them could bring the machine down.
+const MOST_THREADS: usize = 1024;
+
 impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
@@ -72,8 +81,8 @@ impl Common {
     /// Sets the number of threads, once.
     pub fn set_threads(&self) -> Result<()> {
         let Some(threads) = self.threads else { return Ok(()) };
-        if threads == 0 {
-            return Err(Error::input("threads", 0, "use at least 1"));
+        if !(1..=MOST_THREADS).contains(&threads) {
+            return Err(Error::input("threads", threads, format!("choose 1 to {MOST_THREADS}")));
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|cause| Error::input("threads", threads, cause))
@@ -129,19 +138,18 @@ impl Grid {
     /// The grid as a library type.
     pub fn range(&self) -> Result<GridRange> {
         let given = |flag: &str, text: Option<&String>, example: &str| {
-            text.cloned()
-                .ok_or_else(|| Error::input(flag, "missing", format!("a grid needs it, as {example}")))
+            text.cloned().ok_or_else(|| Error::missing(flag, format!("a grid needs it, as {example}")))
         };
         let step = |flag: &str, own: &Option<String>| {
-            let text = given("--step", own.as_ref().or(self.step.as_ref()), "--step 1/100")?;
+            let text = given("step", own.as_ref().or(self.step.as_ref()), "--step 1/100")?;
             parse(flag, &text)
         };
         let range = |flag: &str, text: &Option<String>, example: &str| {
             parse_range(flag, &given(flag, text.as_ref(), example)?)
         };
-        let steps = [step("--step1", &self.step1)?, step("--step2", &self.step2)?];
-        let h1 = range("--h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?;
-        let h2 = range("--h2-range", &self.h2_range, "--h2-range 1/100..7/2")?;
+        let steps = [step("step1", &self.step1)?, step("step2", &self.step2)?];
+        let h1 = range("h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?;
+        let h2 = range("h2-range", &self.h2_range, "--h2-range 1/100..7/2")?;
         Ok(GridRange::new(steps, [h1, h2]))
     }
 }
@@ -149,10 +157,14 @@ impl Grid {
 /// Echoes a grid into a document.
 pub fn echo_grid(document: Document, grid: &GridRange) -> Document {
     let ([step1, step2], [h1, h2]) = (grid.steps(), grid.ranges());
-    let range = |(lo, hi): &(Laurent, Laurent)| format!("{lo}..{hi}");
     document
         .input("step1", step1)
         .input("step2", step2)
-        .input("h1_range", range(h1))
-        .input("h2_range", range(h2))
+        .input("h1_range", shown_range(h1))
+        .input("h2_range", shown_range(h2))
+}
+
+/// A closed range as it is written, exactly.
+pub fn shown_range((lo, hi): &(Laurent, Laurent)) -> String {
+    format!("{lo}..{hi}")
 }

@@ -3,7 +3,7 @@
 use num_integer::Integer;
 use rayon::prelude::*;
 
-use super::args::{self, Common, Format, echo_grid};
+use super::args::{self, Common, Format, echo_grid, whole};
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::Rational;
@@ -27,13 +27,13 @@ pub struct Args {
     #[command(flatten)]
     grid: args::Grid,
     /// Instead of a grid: all coprime p + q up to this number.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     rho: Option<String>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
-    #[arg(long, value_name = "K", default_value_t = 99)]
+    #[arg(long, value_name = "K", default_value_t = 99, value_parser = whole::<u64>)]
     samples: u64,
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true)]
@@ -56,7 +56,7 @@ impl Args {
             }
             _ => {
                 let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
-                return Err(Error::input("compare", "what?", remedy));
+                return Err(Error::input("flags", "incomplete or mixed", remedy));
             }
         };
         common.write(&document, Format::Text)

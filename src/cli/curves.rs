@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::args::{Common, Format, echo_grid};
+use super::args::{Common, Format, echo_grid, shown_range, whole};
 use crate::error::{Error, Result};
-use crate::number::Laurent;
 use crate::number::parse::{parse, parse_integer_range, parse_range};
+use crate::number::{ExactSign, Laurent, Sign};
 use crate::report::curves;
 use crate::report::document::Document;
 use crate::resonance::{Curve, Window, curve, curve_within};
@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "LO..HI", default_value = "-12..12", allow_hyphen_values = true)]
     b: String,
     /// Points a curve, evenly spaced in theta.
-    #[arg(long, value_name = "N", default_value_t = 400)]
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<usize>)]
     samples: usize,
 }
 
@@ -38,13 +38,22 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let lambda1 = parse("lambda1", &self.lambda1)?;
         let (h1, h2) = (parse_range("h1-range", &self.h1_range)?, parse_range("h2-range", &self.h2_range)?);
+        for (field, (lo, hi)) in [("h1-range", &h1), ("h2-range", &h2)] {
+            if hi.sign() != Sign::Positive {
+                return Err(Error::input(
+                    field,
+                    format!("{lo}..{hi}"),
+                    "holds no positive step; raise its end",
+                ));
+            }
+        }
         let (a, b) = (parse_integer_range("a", &self.a)?, parse_integer_range("b", &self.b)?);
         let families = Families { a, b, samples: self.samples };
         let curves = sample(&lambda1, &families, &window(&h1, &h2))?;
         let document = curves::document(&curves)
             .input("lambda1", &lambda1)
-            .input("h1_range", &self.h1_range)
-            .input("h2_range", &self.h2_range);
+            .input("h1_range", shown_range(&h1))
+            .input("h2_range", shown_range(&h2));
         common.write(&echo(document, &families), Format::Json)
     }
 }
@@ -55,13 +64,17 @@ pub fn document(lambda1: &Laurent, range: &GridRange, families: &Families, curve
     echo(echo_grid(document, range), families)
 }
 
-fn echo(document: Document, families: &Families) -> Document {
+/// Echoes the families into a document.
+pub fn echo(document: Document, families: &Families) -> Document {
     let range = |(lo, hi): (i64, i64)| format!("{lo}..{hi}");
     document.input("a", range(families.a)).input("b", range(families.b)).input("samples", families.samples)
 }
 
 /// The most curves drawn at once: beyond it the range is a mistake.
 const MOST_CURVES: i128 = 100_000;
+
+/// The most points of all curves together: some gigabytes of rows.
+const MOST_POINTS: i128 = 20_000_000;
 
 /// All curves of the families that pass through the window.
 pub fn sample(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
@@ -75,13 +88,18 @@ pub fn sample_within(lambda1: &Laurent, families: &Families, window: &Window) ->
 
 fn each(families: &Families, sample: impl Fn(i64, i64) -> Result<Curve> + Sync) -> Result<Vec<Curve>> {
     let count = |(lo, hi): (i64, i64)| i128::from(hi) - i128::from(lo) + 1;
-    if count(families.a) * count(families.b) > MOST_CURVES {
+    let curves = count(families.a) * count(families.b);
+    if curves > MOST_CURVES {
         let value = format!("{:?} by {:?}", families.a, families.b);
         return Err(Error::input(
             "a, b",
             value,
             format!("at most {MOST_CURVES} curves: choose smaller ranges"),
         ));
+    }
+    if curves * families.samples as i128 > MOST_POINTS {
+        let remedy = format!("{curves} curves of so many points are more than {MOST_POINTS}: choose fewer");
+        return Err(Error::input("samples", families.samples, remedy));
     }
     let pairs: Vec<(i64, i64)> = (families.a.0..=families.a.1)
         .flat_map(|a| (families.b.0..=families.b.1).map(move |b| (a, b)))

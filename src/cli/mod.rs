@@ -11,8 +11,10 @@ mod plane;
 mod polynomial;
 mod proposition;
 mod run;
+mod usage;
 mod verdict;
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
@@ -45,7 +47,7 @@ enum Command {
     Proposition(proposition::Args),
     /// A, B, C, D and the trace of one ratio as polynomials in s and rho.
     Polynomial(polynomial::Args),
-    /// The verdicts of a grid of step pairs, as table, summary or figure.
+    /// The verdicts of a grid of step pairs: counts, and the unstable pairs as a table.
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
     Merge(merge::Args),
@@ -59,10 +61,10 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             // A closed pipe is the reader's choice.
-            let _ = error.print();
+            let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
             return ExitCode::SUCCESS;
         }
-        Err(error) => return failure(&one_line(&error)),
+        Err(error) => return failure(&usage::explained(&error)),
     };
     match run(&cli) {
         Ok(code) => code,
@@ -87,14 +89,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
 }
 
 fn failure(message: &str) -> ExitCode {
-    eprintln!("kickdrift: {message}");
+    // Where standard error is closed too, the exit code alone has to tell.
+    let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
     ExitCode::from(2)
-}
-
-/// A usage error in one line: what is wrong, and where help is.
-fn one_line(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let what: Vec<&str> = text.split("\n\n").next().unwrap_or("").lines().map(str::trim).collect();
-    let what = what.join(" ");
-    format!("{}; see kickdrift --help", what.strip_prefix("error: ").unwrap_or(&what))
 }

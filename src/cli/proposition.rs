@@ -1,6 +1,6 @@
 //! `kickdrift proposition`: the exhaustive exact check.
 
-use super::args::{Common, Format};
+use super::args::{Common, Format, whole};
 use crate::error::{Error, Result};
 use crate::report::document::Document;
 use crate::report::proposition;
@@ -10,7 +10,7 @@ use crate::resonance::proposition::check;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// All coprime p, q up to this number.
-    #[arg(long, value_name = "N", default_value_t = 60)]
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = whole::<u64>)]
     max: u64,
 }
 

@@ -1,20 +1,21 @@
 //! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
 
 use std::cell::{OnceCell, RefCell};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format as DocumentFormat};
+use super::args::{Common, Format as DocumentFormat, echo_grid};
 use super::plane::{DPI, Verdicts};
 use super::{compare, curves, map, polynomial, proposition};
 use crate::error::{Error, Result};
 use crate::map::Products;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
-use crate::report::file::write_output;
+use crate::report::file::{Folder, write_output};
 use crate::report::map::MapArrays;
 use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
-use crate::scene::{Format, Product, Scene, Want};
+use crate::scene::{self, Format, Product, Scene, Want};
 use crate::verdict::Limits;
 
 /// Flags of `run`.
@@ -27,26 +28,35 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let text = std::fs::read_to_string(&self.scene)
-            .map_err(|cause| Error::io(self.scene.display(), format!("cannot read the scene: {cause}")))?;
-        let scene = Scene::read(&text)?;
-        let folder = common.output.clone().unwrap_or_else(|| self.default_folder());
-        std::fs::create_dir_all(&folder).map_err(|cause| {
-            Error::io(
-                folder.display(),
-                format!("cannot make the output folder: {cause}; choose one with --output"),
-            )
-        })?;
-        let work = Work::new(&scene, common, &folder);
+        let scene = Scene::read(&self.text()?)?;
+        let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
+        let work = Work::new(&scene, common, folder.path());
+        // All products before the first file: an error leaves nothing behind.
+        let contents = scene.want().iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut summary = Summary::default();
-        for want in scene.want() {
-            let path = folder.join(want.file_name());
-            work.write(*want, &path)?;
+        for (want, contents) in scene.want().iter().zip(contents) {
+            let path = folder.path().join(want.file_name());
+            work.write(contents, &path)?;
             summary.add(*want, &path, &work);
         }
-        let document = summary.document(&scene);
+        folder.keep();
+        let document = echo(summary.document(&scene), &scene)?;
         let format = common.format.unwrap_or(DocumentFormat::Text).into();
         write_output(None, document.render(format)?.as_bytes())
+    }
+
+    /// The text of the scene file; no more of it than a scene may have.
+    fn text(&self) -> Result<String> {
+        let read = || {
+            let mut text = String::new();
+            let file = std::fs::File::open(&self.scene)?;
+            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
+            Ok(text)
+        };
+        read().map_err(|cause: std::io::Error| {
+            let remedy = "name a scene file, such as data/scenes/figure1.json";
+            Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
+        })
     }
 
     /// `out/` and the scene's name.
@@ -87,13 +97,17 @@ impl<'a> Work<'a> {
         }
     }
 
+    /// One product, computed: its bytes, or nothing for arrays, which are on the disk already.
+    fn contents(&self, want: Want) -> Result<Option<Vec<u8>>> {
+        if want.format == Format::Npz { self.verdicts().map(|_| None) } else { self.bytes(want).map(Some) }
+    }
+
     /// Writes one product's file.
-    fn write(&self, want: Want, path: &Path) -> Result<()> {
-        if want.format != Format::Npz {
-            return write_output(Some(path), &self.bytes(want)?);
+    fn write(&self, contents: Option<Vec<u8>>, path: &Path) -> Result<()> {
+        match contents {
+            Some(bytes) => write_output(Some(path), &bytes),
+            None => self.arrays.take().map_or(Ok(()), MapArrays::finish),
         }
-        self.verdicts()?;
-        self.arrays.take().map_or(Ok(()), MapArrays::finish)
     }
 
     /// The bytes of one product's file, where they fit memory.
@@ -216,4 +230,33 @@ impl Summary {
         let lines: Vec<String> = heading.into_iter().chain(self.lines).collect();
         Document::new("run").input("title", scene.title()).entry("products", self.products).summary(&lines)
     }
+}
+
+/// Echoes what the scene gives, exactly.
+fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
+    let given = scene.document();
+    if given.lambda1.is_some() {
+        document = document.input("lambda1", scene.lambda1()?);
+    }
+    if given.lambda2.is_some() {
+        document = document.input("lambda2", scene.lambda2()?);
+    }
+    if let Ok(range) = scene.range() {
+        document = echo_grid(document, range);
+    }
+    if given.families.is_some() {
+        document = curves::echo(document, &scene.families()?);
+    }
+    if given.tolerance.is_some() {
+        document = document.input("tolerance", scene.tolerance()?);
+    }
+    if given.ratio.is_some() {
+        let (p, q) = scene.ratio()?;
+        document = document.input("ratio", format!("{p}/{q}"));
+    }
+    if let Some(max) = given.max {
+        document = document.input("max", max);
+    }
+    let want: Vec<String> = scene.want().iter().map(Want::file_name).collect();
+    Ok(document.input("want", want.join(", ")))
 }

@@ -2,6 +2,7 @@
 
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
+use crate::resonance::dominant_family;
 use crate::verdict::filter::{Ends, Group};
 use crate::verdict::kernel::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, winding};
@@ -34,6 +35,11 @@ pub struct Growing {
 }
 
 impl Growing {
+    /// (a, b), the dominant family of the tongue, where the label was asked for; p/q in lowest terms.
+    pub fn family(&self, (p, q): (u64, u64)) -> Option<(i64, i64)> {
+        self.label.map(|m| dominant_family(p, q, m))
+    }
+
     /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period.
     pub fn rate(&self, period: f64) -> Option<f64> {
         Some(self.ln_multiplier? / period)

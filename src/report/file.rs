@@ -106,6 +106,48 @@ impl Drop for Temporary {
     }
 }
 
+/// A folder for files to come; what of it was not there before goes again unless it is kept.
+pub struct Folder {
+    path: PathBuf,
+    /// The folders made for it, the innermost first.
+    made: Vec<PathBuf>,
+}
+
+impl Folder {
+    /// Makes the folder and those around it, where they are missing.
+    ///
+    /// # Errors
+    /// [`Kind::Io`](crate::error::Kind::Io) naming the path and a remedy.
+    pub fn make(path: &Path) -> Result<Self> {
+        let missing = |part: &&Path| !part.as_os_str().is_empty() && !part.exists();
+        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let folder = Folder { path: path.to_path_buf(), made };
+        fs::create_dir_all(path).map_err(|cause| {
+            Error::io(path.display(), format_args!("cannot make this folder ({cause}): name another one"))
+        })?;
+        Ok(folder)
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Leaves it where it is.
+    pub fn keep(mut self) {
+        self.made.clear();
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        for path in &self.made {
+            // Only an empty folder goes; the error that brought us here is the one to report.
+            let _ = fs::remove_dir(path);
+        }
+    }
+}
+
 /// The cause with a remedy beside it.
 pub(super) fn explained(path: &Path, cause: &io::Error) -> Error {
     let remedy = match cause.kind() {

@@ -105,7 +105,7 @@ impl Column {
 /// let mut table = Table::new("steps", "Resonant steps", vec![Column::new("p"), Column::new("h2")]);
 /// table.push(vec![Cell::Integer(7), Cell::Exact("7/2".into())]);
 /// assert_eq!(kickdrift::report::csv::document(&table), "p,h2\r\n7,7/2\r\n");
-/// assert_eq!(table.to_json_rows().to_string(), r#"[{"h2":"7/2","p":7}]"#);
+/// assert_eq!(table.to_json_rows().to_string(), r#"[{"p":7,"h2":"7/2"}]"#);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {

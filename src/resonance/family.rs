@@ -26,12 +26,16 @@ pub fn families(p: u64, q: u64, m: u64) -> (i64, i64) {
 /// π (r r'³ − r' r³) = (r³ + r'³) sin θ, where r ≠ r' makes π algebraic and r = r' makes sin θ zero.
 ///
 /// Tongues m ≥ p have no resonance below the fast clock's Verlet limit; they are labelled as at θ = π, where
-/// ties go to the smaller |a|.
+/// ties go to the smaller |a|. Where a negative slow stiffness outweighs the fast one the solution grows without
+/// turning: m = 0, the trivial family (0, 0).
 ///
 /// # Panics
 /// As [`families`].
 pub fn dominant_family(p: u64, q: u64, m: u64) -> (i64, i64) {
     let (a0, b0) = families(p, q, m);
+    if m == 0 {
+        return (0, 0);
+    }
     let (step_a, step_b) = (q as i64, p as i64);
     let above = if a0 >= 1 { (a0, b0) } else { (a0 + step_a, b0 - step_b) };
     let below = (above.0 - step_a, above.1 + step_b);
@@ -88,6 +92,11 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn growth_without_a_turn_is_no_resonance() {
+        assert_eq!(dominant_family(5, 3, 0), (0, 0));
     }
 
     #[test]

@@ -26,11 +26,7 @@ impl GridRange {
     pub(super) fn read(grid: &document::Grid) -> Result<Self> {
         let step = |field, own: &Option<String>| match own.as_ref().or(grid.step.as_ref()) {
             Some(text) => parse(field, text),
-            None => Err(Error::input(
-                field,
-                "missing",
-                "give the spacing as \"step\", or as \"step1\" and \"step2\"",
-            )),
+            None => Err(Error::missing(field, "give the spacing as \"step\", or as \"step1\" and \"step2\"")),
         };
         let steps = [step("grid.step1", &grid.step1)?, step("grid.step2", &grid.step2)?];
         Ok(GridRange::new(steps, [parse_range("grid.h1", &grid.h1)?, parse_range("grid.h2", &grid.h2)?]))

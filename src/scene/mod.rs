@@ -19,6 +19,7 @@
 
 mod document;
 mod grid;
+mod system;
 mod want;
 
 use crate::error::{Error, Result};
@@ -28,6 +29,7 @@ use crate::number::{Laurent, Rational};
 
 pub use document::Document;
 pub use grid::GridRange;
+pub use system::SystemScene;
 pub use want::{Format, Product, Want};
 
 /// What is to be computed, checked as far as it can be without computing.
@@ -47,7 +49,7 @@ pub struct Families {
 }
 
 /// The longest scene file read, in bytes: a scene is written by hand.
-const LONGEST: usize = 1 << 20;
+pub const LONGEST: usize = 1 << 20;
 
 impl Scene {
     /// Reads a scene from the text of its file.
@@ -60,9 +62,7 @@ impl Scene {
             let remedy = "a scene has at most 1 MiB; is this the right file?";
             return Err(Error::input("scene", format!("{} bytes", text.len()), remedy));
         }
-        let document: Document = serde_json::from_str(text).map_err(|cause| {
-            Error::input("scene", cause, "write one JSON object as in data/scenes/figure1.json")
-        })?;
+        let document: Document = serde_json::from_str(text).map_err(|cause| not_a_scene(text, &cause))?;
         Scene::new(document)
     }
 
@@ -75,6 +75,7 @@ impl Scene {
         let range = document.grid.as_ref().map(GridRange::read).transpose()?;
         let want = document.want.iter().map(|text| Want::new(text)).collect::<Result<Vec<_>>>()?;
         let scene = Scene { document, range, want };
+        scene.parses()?;
         scene.want.iter().try_for_each(|want| scene.supports(want.product))?;
         Ok(scene)
     }
@@ -167,16 +168,23 @@ impl Scene {
         self.document.max.unwrap_or(60)
     }
 
-    /// The fields that a product needs are there and parse.
+    /// What is given parses, wanted or not.
+    fn parses(&self) -> Result<()> {
+        let Document { lambda1, lambda2, ratio, .. } = &self.document;
+        lambda1.as_ref().map(|_| self.lambda1()).transpose()?;
+        lambda2.as_ref().map(|_| self.lambda2()).transpose()?;
+        ratio.as_ref().map(|_| self.ratio()).transpose()?;
+        self.families().and(self.tolerance()).map(drop)
+    }
+
+    /// The fields that a product needs are there, and make sense together.
     fn supports(&self, product: Product) -> Result<()> {
         match product {
-            Product::Map | Product::Compare => self.grid().map(drop),
-            Product::Figure | Product::Overlay => self.grid().map(drop).and(self.families().map(drop)),
-            Product::Curves => self.lambda1().and(self.range().map(drop)).and(self.families().map(drop)),
+            Product::Map | Product::Compare | Product::Figure | Product::Overlay => self.grid().map(drop),
+            Product::Curves => self.lambda1().and(self.range().map(drop)),
             Product::Polynomial => self.ratio().map(drop),
             Product::Proposition => Ok(()),
-        }?;
-        if product == Product::Compare { self.tolerance().map(drop) } else { Ok(()) }
+        }
     }
 }
 
@@ -185,9 +193,15 @@ fn quantity(field: &str, text: Option<&str>) -> Result<Laurent> {
 }
 
 fn missing(field: &str, example: &str) -> Error {
-    Error::input(
-        field,
-        "missing",
-        format!("a wanted product needs it: add for example \"{field}\": {example}"),
-    )
+    Error::missing(field, format!("a wanted product needs it: add for example \"{field}\": {example}"))
+}
+
+/// The line at which reading stopped, and why.
+fn not_a_scene(text: &str, cause: &serde_json::Error) -> Error {
+    let (number, column) = (cause.line(), cause.column());
+    let line = text.lines().nth(number.saturating_sub(1)).unwrap_or("");
+    let told = cause.to_string();
+    let why = told.strip_suffix(&format!(" at line {number} column {column}")).unwrap_or(&told);
+    let remedy = format!("{why}; a scene is one JSON object, as data/scenes/figure1.json");
+    Error::input(&format!("line {number} of the scene"), line.trim(), remedy)
 }

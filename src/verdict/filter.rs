@@ -21,7 +21,8 @@ use crate::number::Sign;
 /// Half the distance from 1 to the next double.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// The most updates between two looks at |g|.
+/// The most updates between two looks at |g| in a group; alone, a pair is watched at every update, which gives the
+/// sharpest bound.
 const BLOCK: i32 = 32;
 
 /// The constants of the certification, all dimensionless.
@@ -41,10 +42,11 @@ pub(super) struct Certificate {
 }
 
 impl Certificate {
-    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these; `None` where the theorem's
+    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these, in blocks of `most` updates at most;
+    /// `None` where the theorem's
     /// conditions cannot be met.
     #[inline(always)]
-    fn new(beta: f64, slope: f64, steps: u64) -> Option<Certificate> {
+    fn new(beta: f64, slope: f64, steps: u64, most: i32) -> Option<Certificate> {
         // 1 + 64u covers the roundings of β and of this line.
         let beta = beta * (1.0 + 64.0 * U);
         let kappa = (beta / 2.0 + (1.0 + beta * beta / 4.0).sqrt()) * (1.0 + 8.0 * U);
@@ -54,7 +56,7 @@ impl Certificate {
         let tau = step.tau(steps)?;
         // Blocks in which |g| grows sixteenfold at most: the bound has digits to spare, a look costs an update.
         let growth = step.growth();
-        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, BLOCK);
+        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, most);
         // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
         // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
         // rounding of the sum itself (at most 10^13 terms) and of these constants.
@@ -196,7 +198,7 @@ impl<const L: usize> Group<L> {
         let strongest = self.instructions.perform(Start(pairs, &mut self.lanes));
         let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
         let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-        let certificate = Certificate::new(strongest, slope, steps)?;
+        let certificate = Certificate::new(strongest, slope, steps, if L == 1 { 1 } else { BLOCK })?;
         (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
         self.instructions.perform(Advance::<W, L>(&mut self.lanes, certificate.block, PhantomData));
         for (i, pair) in pairs.iter().enumerate() {

@@ -80,6 +80,11 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
     Growth { trace, ln_multiplier, label }
 }
 
+/// The bound's constants are doubles, which cannot tell a precision beyond 1000 bits from that one: strengths of
+/// 10^90 and more, say, leave them no room however many bits there are. Then balls take over, which lose some
+/// bits of the strongest kick every step but ask for nothing else.
+const MOST_BOUNDED: u32 = 4096;
+
 /// Refines until the distance from ±2 is known to [`ACCURACY`] bits, or, on an edge, once.
 fn refined<S: Decidable>(
     clocks: &TwoClocks<S>,
@@ -88,7 +93,11 @@ fn refined<S: Decidable>(
 ) -> (refine::Ends, u32) {
     let mut bits = 128;
     loop {
-        let ends = refine::run(clocks, schedule, bits);
+        let ends = if bits <= MOST_BOUNDED {
+            refine::run(clocks, schedule, bits)
+        } else {
+            Some(refine::run_balls(clocks, schedule, bits))
+        };
         bits *= 2;
         let Some(ends) = ends else { continue };
         let products = ends.products(bits);

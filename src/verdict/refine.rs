@@ -11,7 +11,7 @@ use num_traits::{FromPrimitive, Signed, ToPrimitive};
 
 use super::bound::StepBound;
 use super::kind::PartialSigns;
-use crate::number::{Ball, Real, Sign};
+use crate::number::{Ball, Rational, Real, Sign};
 use crate::propagator::{Event, Schedule, TwoClocks, Weight};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
@@ -51,6 +51,28 @@ pub(super) fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32
         orbit.finish()
     };
     Some(Ends { even: end(1, 0)?, odd: end(0, 1)? })
+}
+
+/// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
+pub(super) fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
+    let (fast, slow) = (clocks.fast().enclosure(bits), clocks.slow().enclosure(bits));
+    let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, bits)];
+    let ticks = BigInt::from(schedule.clocks()[0].step());
+    let end = |x: u8, v: u8| {
+        let [mut x, mut v] = [x, v].map(|n| Ball::from_integer(&n.into()));
+        let mut nodes = Nodes::default();
+        for event in schedule.half_period() {
+            let drift = Ball::from_rational(&Rational::new(event.drift.into(), ticks.clone()), bits);
+            x = x.add(&v.mul(&drift, bits), bits);
+            // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
+            nodes.see(x.sign().filter(|&sign| sign != Sign::Zero));
+            let halvings = i64::from(event.weight == Weight::Half);
+            v = v.sub(&strengths[event.kicks as usize].scale2(-halvings).mul(&x, bits), bits);
+        }
+        let signs = (x.sign(), v.sign());
+        End { x, v, signs, nodes: nodes.count() }
+    };
+    Ends { even: end(1, 0), odd: end(0, 1) }
 }
 
 /// The lengths and strengths of the events, and the constants of the bound.

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use kickdrift::number::Rational;
 use kickdrift::number::parse::parse;
-use kickdrift::propagator::{Oscillator, TwoClocks, full_period};
+use kickdrift::propagator::{Oscillator, TwoClocks};
 use kickdrift::verdict::{Limits, Tier, decide_from, exact_trace};
 
 /// The least time of `work` in seconds over `rounds` runs.
@@ -39,7 +39,6 @@ fn main() {
     let tier = |first| least(20, || drop(decide_from(first, &clocks, &limits)));
     let (filter, refine, exact) = (tier(Tier::Filter), tier(Tier::Refine), tier(Tier::Exact));
     let trace = least(5, || drop(exact_trace(&clocks)));
-    let plain = least(1, || drop(full_period(&clocks).trace()));
     println!(
         "p/q = 3499/631, lambda1 = 10, lambda2 = 2/5, h1 = 0.631: seconds, and ratios to the exact tier"
     );
@@ -48,7 +47,6 @@ fn main() {
         ("refine (128 bits)", refine),
         ("exact (product tree, half period)", exact),
         ("exact trace in lowest terms", trace),
-        ("plain rational product, full period", plain),
         ("process, beyond its start", process(&[])),
         ("process --exact, beyond its start", process(&["--exact"])),
     ] {

@@ -168,7 +168,10 @@ impl Parser<'_> {
         }
         Err(match name.to_lowercase().as_str() {
             "nan" | "inf" | "infinity" => "is not a number; write a finite one such as 3/10".into(),
-            _ => format!("knows no name but pi, found {}", name.chars().take(20).collect::<String>()),
+            _ => format!(
+                "knows no name but pi, found {}; write digits and pi, as in pi^2/25",
+                name.chars().take(20).collect::<String>()
+            ),
         })
     }
 
@@ -301,7 +304,7 @@ fn mean_size(x: &Laurent) -> u64 {
 
 fn check_divisor(divisor: &Laurent) -> Parsed<()> {
     if divisor.is_zero() {
-        return Err("divides by zero".into());
+        return Err("divides by zero; write a divisor other than 0".into());
     }
     if divisor.as_monomial().is_none() {
         return Err("a divisor that is a sum involving pi is not supported; \

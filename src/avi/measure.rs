@@ -1,0 +1,126 @@
+//! What a run shows: energy, momentum and amplitude over time, growth, reversibility.
+
+use super::force::{Bond, Force};
+use super::simulation::{Ends, Simulation};
+use crate::error::{Error, Result};
+use crate::number::rational::to_f64;
+
+/// One line of a series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Time.
+    pub time: f64,
+    /// Σ p²/2m + Σ V.
+    pub energy: f64,
+    /// Σ p.
+    pub momentum: f64,
+    /// max |x_i|.
+    pub amplitude: f64,
+}
+
+fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>) -> Sample {
+    Sample {
+        time: to_f64(&simulation.clocks().tick) * simulation.now() as f64,
+        energy: simulation.energy(),
+        momentum: simulation.momentum(),
+        amplitude: simulation.state().x.iter().fold(0.0, |a, x| x.abs().max(a)),
+    }
+}
+
+/// The state now and after each of `samples` runs of `ticks` in the time-symmetric form. Where a run overflows the
+/// series ends.
+pub fn series<F: Force<f64>>(simulation: &mut Simulation<f64, F>, samples: usize, ticks: u64) -> Vec<Sample> {
+    let mut series = vec![sample(simulation)];
+    for _ in 0..samples {
+        simulation.run(ticks, Ends::Symmetric);
+        let next = sample(simulation);
+        if !(next.energy.is_finite() && next.amplitude.is_finite()) {
+            break;
+        }
+        series.push(next);
+    }
+    series
+}
+
+/// The measured growth rate of a linear system, per unit time: ln |z|/|z_0| over the second half of `periods`
+/// synchronization periods, the state z scaled back after each (exactly, by a power of two). Near 0 where it is
+/// stable, to about 1/(periods T).
+pub fn growth_rate<F: Force<f64>>(simulation: &mut Simulation<f64, F>, periods: u32) -> f64 {
+    let ticks = simulation.clocks().period;
+    let size =
+        |s: &Simulation<f64, F>| s.state().x.iter().chain(&s.state().p).fold(0.0, |a: f64, z| a.hypot(*z));
+    let (mut log, mut middle) = (0.0, 0.0);
+    for period in 0..periods {
+        if period == periods / 2 {
+            middle = log + size(simulation).ln();
+        }
+        simulation.run(ticks, Ends::Symmetric);
+        let scale = (-size(simulation).log2().round()).clamp(-900.0, 900.0).exp2();
+        let scaled = |z: &Vec<f64>| z.iter().map(|z| z * scale).collect();
+        let (x, p) = (scaled(&simulation.state().x), scaled(&simulation.state().p));
+        simulation.set(x, p);
+        log -= scale.ln();
+    }
+    let half = f64::from(periods - periods / 2) * ticks as f64 * to_f64(&simulation.clocks().tick);
+    (log + size(simulation).ln() - middle) / half
+}
+
+/// Runs `ticks` forward, turns the momenta round, runs back: the largest difference to the start over the largest
+/// entry of it. 0 in exact arithmetic, where `ticks` is a multiple of half the period.
+pub fn irreversibility<F: Force<f64>>(simulation: &mut Simulation<f64, F>, ticks: u64) -> f64 {
+    let start = simulation.state().clone();
+    simulation.run(ticks, Ends::Symmetric);
+    simulation.reverse();
+    simulation.run(ticks, Ends::Symmetric);
+    simulation.reverse();
+    let both = |s: &super::State<f64>| s.x.iter().chain(&s.p).copied().collect::<Vec<_>>();
+    let (before, after) = (both(&start), both(simulation.state()));
+    let largest = before.iter().fold(0.0, |a: f64, z| a.max(z.abs()));
+    let off = before.iter().zip(&after).fold(0.0, |a: f64, (z, w)| a.max((z - w).abs()));
+    off / largest
+}
+
+/// Iterations of Newton's method before it is given up.
+const ITERATIONS: usize = 200;
+
+/// Positions near `start` at which no bond's forces are left, by Newton's method; rounded.
+///
+/// # Errors
+/// Where it does not converge, or the Hessian is singular on the way (a free molecule: tie it to a wall).
+pub fn equilibrium(bonds: &[Bond], start: &[f64]) -> Result<Vec<f64>> {
+    let (n, mut x) = (start.len(), start.to_vec());
+    for _ in 0..ITERATIONS {
+        let (mut force, mut hessian) = (nalgebra::DVector::zeros(n), nalgebra::DMatrix::zeros(n, n));
+        for bond in bonds {
+            let own = bond.particles();
+            let at: Vec<f64> = own.iter().map(|&i| x[i]).collect();
+            let mut f = vec![0.0; own.len()];
+            bond.force(&at, &mut f);
+            let curvature = bond.curvature(&at);
+            for (a, &i) in own.iter().enumerate() {
+                force[i] += f[a];
+                for (b, &j) in own.iter().enumerate() {
+                    hessian[(i, j)] += if a == b { curvature } else { -curvature };
+                }
+            }
+        }
+        let singular = || {
+            Error::input(
+                "near",
+                format!("{x:?}"),
+                "the Hessian is singular there: start elsewhere, or tie it to a wall",
+            )
+        };
+        let step: nalgebra::DVector<f64> = hessian.lu().solve(&force).ok_or_else(singular)?;
+        x.iter_mut().zip(step.iter()).for_each(|(x, s)| *x += s);
+        let scale = x.iter().fold(1.0, |a: f64, x| a.max(x.abs()));
+        if step.amax() <= 1e-14 * scale {
+            return Ok(x);
+        }
+        if !step.amax().is_finite() {
+            break;
+        }
+    }
+    let remedy = "Newton's method finds no equilibrium from there: start nearer to one";
+    Err(Error::input("near", format!("{start:?}"), remedy))
+}

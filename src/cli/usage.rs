@@ -1,0 +1,77 @@
+//! Usage errors in one line: what is wrong, with which value, and what to do.
+
+use clap::CommandFactory;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+use super::Cli;
+use crate::error::Error;
+
+/// The one line for an error that the argument parser found.
+pub fn explained(error: &clap::Error) -> String {
+    let invalid = || shown(error, ContextKind::InvalidArg);
+    let known = match error.kind() {
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
+            Some(Error::missing("command", format!("choose {}", commands())))
+        }
+        ErrorKind::MissingRequiredArgument => {
+            invalid().map(|flags| Error::missing(&names(&flags), format!("add {flags}")))
+        }
+        ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand)
+            .map(|name| Error::input("command", name, format!("choose {}", commands()))),
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation => bad_value(error),
+        ErrorKind::ArgumentConflict => {
+            invalid().map(|flag| Error::input("flag", names(&flag), "is given twice; give it once"))
+        }
+        ErrorKind::UnknownArgument => invalid().map(|flag| Error::input("flag", flag, suggestion(error))),
+        _ => None,
+    };
+    known.unwrap_or_else(|| plain(error)).to_string()
+}
+
+fn bad_value(error: &clap::Error) -> Option<Error> {
+    let flag = names(&shown(error, ContextKind::InvalidArg)?);
+    let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
+    let choices = shown(error, ContextKind::ValidValue).filter(|choices| !choices.is_empty());
+    let remedy = match (choices, std::error::Error::source(error)) {
+        (Some(choices), _) => format!("choose one of {}", choices.replace(' ', ", ")),
+        (None, Some(cause)) => cause.to_string(),
+        (None, None) => "write a value".into(),
+    };
+    Some(if value.is_empty() { Error::missing(&flag, remedy) } else { Error::input(&flag, value, remedy) })
+}
+
+fn suggestion(error: &clap::Error) -> String {
+    match shown(error, ContextKind::SuggestedArg) {
+        Some(flag) => format!("unknown; did you mean {flag}?"),
+        None => "unknown; see --help for those that there are".into(),
+    }
+}
+
+/// Anything else, in the parser's own words.
+fn plain(error: &clap::Error) -> Error {
+    let text = error.to_string();
+    let first = text.split("\n\n").next().unwrap_or_default();
+    Error::input("command line", first.strip_prefix("error: ").unwrap_or(first), "see kickdrift --help")
+}
+
+/// What the parser says about one aspect, its parts side by side.
+fn shown(error: &clap::Error, kind: ContextKind) -> Option<String> {
+    match error.get(kind)? {
+        ContextValue::String(text) => Some(text.clone()),
+        ContextValue::Strings(parts) => Some(parts.join(" ")),
+        _ => None,
+    }
+}
+
+/// `--h1 <A> --h2 <B>` as the fields it names: `h1, h2`.
+fn names(flags: &str) -> String {
+    let words = flags.split_whitespace();
+    let flags: Vec<&str> = words.clone().filter_map(|word| word.strip_prefix("--")).collect();
+    if flags.is_empty() { words.collect::<Vec<_>>().join(" ") } else { flags.join(", ") }
+}
+
+fn commands() -> String {
+    let command = Cli::command();
+    let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+    format!("{}; each has a --help", names.join(", "))
+}

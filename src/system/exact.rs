@@ -1,0 +1,156 @@
+//! The verdict over ℚ: characteristic polynomial, root counts, diagonalizability; nothing is left open.
+//!
+//! With S = Bᵀ C the multipliers satisfy λ + 1/λ = 2 + 4 μ, μ the eigenvalues of S.
+//!
+//! * Spectrally stable iff all μ lie in [−1, 0]: a count of real roots.
+//! * At an interior μ, where λ ≠ 1/λ: (Q + 1/Q) = 2 + 4 diag(S, Sᵀ) makes Q semisimple iff S is. With f the
+//!   squarefree polynomial of the interior roots that is rank f(S) = the multiplicities of 0 and −1 together.
+//! * At λ = ±1: Q = R H⁻¹ R H with R = diag(I, −I), so Q v = v iff H v commutes with R: ker(Q − I) =
+//!   ker C ⊕ ker B, and ker(Q + I) = ker A ⊕ ker D. A root μ = 0 of multiplicity a (λ = 1 of multiplicity 2a) is
+//!   semisimple iff null B + null C = 2a; μ = −1 likewise with A and D. For one degree of freedom this is the table of
+//!   four signs.
+
+use nalgebra::DMatrix;
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
+
+use super::frame::Frame;
+use super::integers::{IntegerBlocks, IntegerProgram};
+use super::model::System;
+use super::modular::Field;
+use super::roots::{self, RootCount};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::verdict::Kind;
+
+/// How much exact work one verdict may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// The most products of 64-bit words.
+    pub products: u64,
+}
+
+impl Default for Limits {
+    /// 10^11: some minutes at worst.
+    fn default() -> Self {
+        Limits { products: 100_000_000_000 }
+    }
+}
+
+/// What exact arithmetic says of a system without rigid modes.
+#[derive(Clone, Debug)]
+pub struct ExactVerdict {
+    /// Elliptic: stable. Coexistence: stable with a multiplier ±1. Parabolic: all |λ| = 1, with a Jordan block.
+    /// Hyperbolic: some |λ| > 1.
+    pub kind: Kind,
+    /// The eigenvalues μ of Bᵀ C by place, each counted once.
+    pub roots: MuCount,
+    /// Bᵀ C, exactly.
+    pub half_product: DMatrix<Rational>,
+}
+
+/// The eigenvalues μ of Bᵀ C by place: λ + 1/λ = 2 + 4 μ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MuCount {
+    /// Distinct μ in (−1, 0): λ on the unit circle.
+    pub inside: usize,
+    /// The multiplicity of μ = 0: λ = 1.
+    pub at_zero: usize,
+    /// The multiplicity of μ = −1: λ = −1.
+    pub at_minus_one: usize,
+    /// Distinct μ > 0: real λ > 1.
+    pub above: usize,
+    /// Distinct μ < −1: real λ < −1.
+    pub below: usize,
+    /// Distinct μ that are not real: quadruples λ, 1/λ and their conjugates.
+    pub complex: usize,
+}
+
+/// The exact verdict on a system; its rigid modes are set apart.
+///
+/// # Errors
+/// A budget error with the estimated cost, before any work.
+pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
+    let frame = Frame::new(system);
+    let program = IntegerProgram::new(system);
+    let cost = estimate(system, &frame, &program);
+    if cost > limits.products {
+        return Err(Error::budget(format!(
+            "exact arithmetic on {} degrees of freedom with {} kicks in half a period would cost about {cost:.1e} \
+             products of machine words, the budget is {:.1e}: allow it with --budget {cost}, or choose steps with \
+             simpler ratios",
+            frame.kept.len(),
+            system.schedule().strikes() / 2,
+            limits.products as f64,
+            cost = cost,
+        )));
+    }
+    Ok(judge(&program.half_period(system, &frame)))
+}
+
+/// Products of 64-bit words, roughly: composing (numbers grow by the bits of f with each kick), and n³ operations
+/// for each of the primes of which the coefficients consist.
+fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
+    let kicks = (system.schedule().strikes() / 2 + 1) as f64;
+    let n = frame.kept.len() as f64;
+    let words = kicks * program.bits() as f64 / 64.0 + 1.0;
+    let entries: usize = system.clocks().iter().map(|c| c.stiffness.support().len()).max().unwrap_or(0);
+    let compose = kicks * 2.0 * n * 3.0 * entries as f64 * words / 2.0;
+    let primes = 2.0 * n * words + 1.0;
+    let characteristic = primes * (2.0 * n * n * words + 2.0 * n * n * n + n * primes);
+    (compose + characteristic).min(1e19) as u64
+}
+
+fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
+    let product = blocks.product();
+    let d = &blocks.scale;
+    let polynomial = roots::characteristic(&product);
+    let (at_zero, rest) = roots::divided_out(polynomial, &BigInt::zero());
+    let (at_minus_one, rest) = roots::divided_out(rest, &-d);
+    let simple = roots::squarefree(&rest);
+    let RootCount { inside, above, below, complex } = roots::count(&simple, d);
+    let mu = MuCount { inside, at_zero, at_minus_one, above, below, complex };
+    let semisimple = || {
+        (at_zero == 0 || nullity(&blocks.b) + nullity(&blocks.c) == 2 * at_zero)
+            && (at_minus_one == 0 || nullity(&blocks.a) + nullity(&blocks.d) == 2 * at_minus_one)
+            && (simple.len() == rest.len() || rank_at(&product, &simple) == at_zero + at_minus_one)
+    };
+    let kind = if above + below + complex > 0 {
+        Kind::Hyperbolic
+    } else if !semisimple() {
+        Kind::Parabolic
+    } else if at_zero + at_minus_one > 0 {
+        Kind::Coexistence
+    } else {
+        Kind::Elliptic
+    };
+    let half_product = product.map(|x| Rational::new(x, d.clone()));
+    ExactVerdict { kind, roots: mu, half_product }
+}
+
+fn nullity(m: &DMatrix<BigInt>) -> usize {
+    let bound = m.iter().map(Signed::abs).max().unwrap_or_default();
+    m.nrows() - roots::rank(m.nrows(), &bound, |field| field.matrix(m))
+}
+
+/// rank f(m).
+fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
+    let n = m.nrows();
+    let norm = roots::row_sum(m);
+    let bound = f.iter().rev().fold(BigInt::zero(), |value, c| value * &norm + c.abs()) + BigInt::one();
+    roots::rank(n, &bound, |field| {
+        let m = field.matrix(m);
+        f.iter().rev().fold(DMatrix::from_element(n, n, 0), |value, c| {
+            let mut next = times(field, &value, &m);
+            let c = field.of_big(c);
+            (0..n).for_each(|i| next[(i, i)] = field.add(next[(i, i)], c));
+            next
+        })
+    })
+}
+
+fn times(field: &Field, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
+        (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
+    })
+}

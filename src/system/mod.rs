@@ -1,0 +1,58 @@
+//! Many clocks, many degrees of freedom: M x'' + Σ K_k x = 0, each potential with a step of its own.
+//!
+//! The kick pattern is a palindrome, so the half period H = \[\[A, B\], \[C, D\]\], now in n x n blocks, decides. H is
+//! symplectic in positions and momenta, and with S = Bᵀ C
+//!
+//! ```text
+//!     Q + 1/Q = diag(2 + 4 S, 2 + 4 Sᵀ):     λ + 1/λ = 2 + 4 μ,   μ an eigenvalue of S
+//! ```
+//!
+//! so the multipliers come from an n x n matrix and half a period. Stable iff every μ is real and in [−1, 0] and Q is
+//! diagonalizable.
+//!
+//! | file | what |
+//! |---|---|
+//! | `model`, `sparse`, `builders` | what a system is, and the usual ones |
+//! | `compose` | kicks and drifts that touch only the degrees of freedom of their potential |
+//! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
+//! | `scalar`, `single` | K clocks on one oscillator |
+//! | `float`, `spectrum` | doubles with proven bounds |
+//! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
+//! | `analysis`, `modes`, `scan` | the verdict, what grows and why, maps |
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::system::{Limits, builders, decide_system};
+//! // Eight masses, soft springs with a step of 1/2 between stiff ones with a step of 1/4.
+//! let chain = builders::alternating_chain(8, [&ratio(10, 1), &ratio(1, 1)], [&ratio(1, 4), &ratio(1, 2)]).unwrap();
+//! let analysis = decide_system(&chain, &Limits::default()).unwrap();
+//! assert!(analysis.is_proof());
+//! assert!(analysis.is_stable());
+//! ```
+
+mod analysis;
+pub mod builders;
+mod compose;
+mod exact;
+mod float;
+mod frame;
+mod integers;
+mod model;
+mod modes;
+mod modular;
+mod norm;
+mod roots;
+mod scalar;
+pub mod scan;
+mod single;
+mod sparse;
+mod spectrum;
+mod split;
+
+pub use analysis::{Analysis, Evidence, Instability, Multiplier, Part, decide_system};
+pub use compose::{full_period, half_period};
+pub use exact::{ExactVerdict, Limits, MuCount, decide_exact};
+pub use model::{Potential, System};
+pub use modes::{Origin, Resonance};
+pub use scalar::{ManyClocks, families, shortest_family};
+pub use sparse::Symmetric;

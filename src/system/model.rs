@@ -1,0 +1,205 @@
+//! A linear system with a clock for each of its potentials.
+
+use std::collections::BTreeMap;
+
+use num_traits::{Signed, Zero};
+
+use super::sparse::{Symmetric, null_space};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::propagator::Schedule;
+
+/// One potential xᵀ K x/2, its force applied as kicks at the times (n + phase) step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Potential {
+    /// K, symmetric, force/length.
+    pub stiffness: Symmetric,
+    /// The time between two kicks, positive.
+    pub step: Rational,
+    /// 0 or 1/2.
+    pub phase: Rational,
+}
+
+/// M x'' + Σ K_k x = 0, each K_k kicking by its own clock.
+///
+/// Potentials of equal step and phase are one potential, their sum.
+#[derive(Clone, Debug)]
+pub struct System {
+    mass: Symmetric,
+    clocks: Vec<Potential>,
+    schedule: Schedule,
+    tick: Rational,
+}
+
+impl System {
+    /// From a mass matrix and potentials of its size.
+    ///
+    /// # Errors
+    /// Names the entry: a mass matrix that is not positive definite (a mass ≤ 0), a stiffness of another size,
+    /// a step ≤ 0, a phase other than 0 and 1/2, a period of 2^62 ticks and more, nothing at all.
+    pub fn new(mass: Symmetric, potentials: Vec<Potential>) -> Result<Self> {
+        check_mass(&mass)?;
+        for (k, potential) in potentials.iter().enumerate() {
+            check_potential(k, potential, mass.size())?;
+        }
+        System::of_clocks(mass, merged(potentials))
+    }
+
+    /// From checked parts, one clock each.
+    fn of_clocks(mass: Symmetric, clocks: Vec<Potential>) -> Result<Self> {
+        let steps: Vec<_> = clocks.iter().map(|clock| clock.step.clone()).collect();
+        let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
+        let schedule = Schedule::new(&steps, &phases)?;
+        let tick = &steps[0] / Rational::from_integer(schedule.clocks()[0].step().into());
+        Ok(System { mass, clocks, schedule, tick })
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.mass.size()
+    }
+
+    /// M.
+    pub fn mass(&self) -> &Symmetric {
+        &self.mass
+    }
+
+    /// The potentials, one for each (step, phase), by increasing step.
+    pub fn clocks(&self) -> &[Potential] {
+        &self.clocks
+    }
+
+    /// When which clock kicks.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// The unit of time of the schedule.
+    pub fn tick(&self) -> &Rational {
+        &self.tick
+    }
+
+    /// T, the synchronization period.
+    pub fn period(&self) -> Rational {
+        &self.tick * Rational::from_integer(self.schedule.period().into())
+    }
+
+    /// T/h_k, the kicks of clock k in a period.
+    pub fn strikes(&self, clock: usize) -> u64 {
+        self.schedule.period() / self.schedule.clocks()[clock].step()
+    }
+
+    /// Σ K_k.
+    pub fn total_stiffness(&self) -> Symmetric {
+        let mut total = Symmetric::zero(self.size());
+        self.clocks.iter().for_each(|clock| total.add_all(&clock.stiffness));
+        total
+    }
+
+    /// The common null vectors of all K_k, which move freely: (coordinate where it alone is 1, vector) pairs.
+    pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
+        // Common null vectors are null vectors of the sum: look among those.
+        let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
+        let mut conditions = Vec::new();
+        for clock in &self.clocks {
+            let images: Vec<_> = candidates.iter().map(|z| clock.stiffness.times(z)).collect();
+            for i in 0..self.size() {
+                let row: BTreeMap<_, _> = images.iter().map(|z| z[i].clone()).enumerate().collect();
+                conditions.push(row.into_iter().filter(|(_, x)| !x.is_zero()).collect());
+            }
+        }
+        let combine = |(_, weights): (usize, Vec<Rational>)| {
+            let entry = |i: usize| super::sparse::dot(&weights, &column(&candidates, i));
+            (0..self.size()).map(entry).collect::<Vec<_>>()
+        };
+        let common: Vec<_> = null_space(conditions, candidates.len()).into_iter().map(combine).collect();
+        reduced(common, self.size())
+    }
+
+    /// The same dynamics in the coordinates y, x = Z y, where the columns of Z span an invariant subspace.
+    /// Clocks that do not act there are left out; `None` where none is left.
+    pub(super) fn restricted(&self, columns: &[Vec<Rational>]) -> Option<System> {
+        self.mapped(self.mass.congruent(columns), |k| k.congruent(columns))
+    }
+
+    /// The degrees of freedom in `indices` alone.
+    pub(super) fn component(&self, indices: &[usize]) -> Option<System> {
+        self.mapped(self.mass.restricted(indices), |k| k.restricted(indices))
+    }
+
+    fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> Option<System> {
+        let clock = |clock: &Potential| Potential { stiffness: map(&clock.stiffness), ..clock.clone() };
+        let clocks: Vec<_> = self.clocks.iter().map(clock).filter(|c| !c.stiffness.is_zero()).collect();
+        // A part of a schedule has no longer a period than the whole.
+        (!clocks.is_empty()).then(|| System::of_clocks(mass, clocks).expect("a part of a checked system"))
+    }
+}
+
+fn column(vectors: &[Vec<Rational>], i: usize) -> Vec<Rational> {
+    vectors.iter().map(|z| z[i].clone()).collect()
+}
+
+/// The reduced basis of the span: each vector 1 at a coordinate of its own, where the others are 0.
+fn reduced(mut vectors: Vec<Vec<Rational>>, n: usize) -> Vec<(usize, Vec<Rational>)> {
+    let mut pivots = Vec::new();
+    for k in 0..vectors.len() {
+        let own = (0..n).rev().find(|&i| !vectors[k][i].is_zero()).expect("independent vectors");
+        let inverse = vectors[k][own].recip();
+        vectors[k].iter_mut().for_each(|x| *x *= &inverse);
+        let pivot = vectors[k].clone();
+        for (_, other) in vectors.iter_mut().enumerate().filter(|(j, _)| *j != k) {
+            let factor = other[own].clone();
+            other.iter_mut().zip(&pivot).for_each(|(x, y)| *x -= &factor * y);
+        }
+        pivots.push(own);
+    }
+    pivots.into_iter().zip(vectors).collect()
+}
+
+fn check_mass(mass: &Symmetric) -> Result<()> {
+    if mass.size() == 0 {
+        return Err(Error::input("masses", "none", "give at least one mass"));
+    }
+    for i in 0..mass.size() {
+        if !mass.get(i, i).is_positive() {
+            return Err(Error::input(&format!("masses[{i}]"), mass.get(i, i), "a mass must be positive"));
+        }
+    }
+    if !mass.is_positive_definite() {
+        return Err(Error::input("masses", "the mass matrix", "must be positive definite"));
+    }
+    Ok(())
+}
+
+fn check_potential(k: usize, potential: &Potential, n: usize) -> Result<()> {
+    let field = |name: &str| format!("potentials[{k}].{name}");
+    if potential.stiffness.size() != n {
+        let size = potential.stiffness.size();
+        let remedy = format!("there are {n} degrees of freedom: give {n} rows and columns");
+        return Err(Error::input(&field("stiffness"), format!("{size} x {size}"), remedy));
+    }
+    if !potential.step.is_positive() {
+        return Err(Error::input(&field("step"), &potential.step, "a step must be positive"));
+    }
+    let half = Rational::new(1.into(), 2.into());
+    if !potential.phase.is_zero() && potential.phase != half {
+        let remedy = "must be 0 or 1/2: other phases have no time reversal, so no half period decides them";
+        return Err(Error::input(&field("phase"), &potential.phase, remedy));
+    }
+    Ok(())
+}
+
+/// One potential for each (step, phase), by increasing step; those that vanish are kept if nothing else is.
+fn merged(potentials: Vec<Potential>) -> Vec<Potential> {
+    let mut clocks: BTreeMap<(Rational, Rational), Potential> = BTreeMap::new();
+    for potential in potentials {
+        match clocks.entry((potential.step.clone(), potential.phase.clone())) {
+            std::collections::btree_map::Entry::Vacant(place) => drop(place.insert(potential)),
+            std::collections::btree_map::Entry::Occupied(mut place) => {
+                place.get_mut().stiffness.add_all(&potential.stiffness);
+            }
+        }
+    }
+    let (moving, still): (Vec<_>, Vec<_>) = clocks.into_values().partition(|c| !c.stiffness.is_zero());
+    if moving.is_empty() { still } else { moving }
+}

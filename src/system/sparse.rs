@@ -1,0 +1,250 @@
+//! Symmetric rational matrices by rows, zeros left out: what a mass or a stiffness is.
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+use num_traits::{Signed, Zero};
+
+use crate::error::{Error, Result};
+use crate::number::Rational;
+
+/// A symmetric n x n matrix over ℚ.
+///
+/// Invariant: `rows[i][j] == rows[j][i]`, and no stored entry is 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symmetric {
+    rows: Vec<BTreeMap<usize, Rational>>,
+}
+
+impl Symmetric {
+    /// The zero matrix.
+    pub fn zero(n: usize) -> Self {
+        Symmetric { rows: vec![BTreeMap::new(); n] }
+    }
+
+    /// diag(d_1, ..., d_n).
+    pub fn diagonal(entries: &[Rational]) -> Self {
+        let mut matrix = Symmetric::zero(entries.len());
+        entries.iter().enumerate().for_each(|(i, x)| matrix.add(i, i, x));
+        matrix
+    }
+
+    /// From all entries by rows.
+    ///
+    /// # Errors
+    /// Names the first row of a wrong length and the first pair of entries that differ.
+    pub fn dense(field: &str, entries: &[Vec<Rational>]) -> Result<Self> {
+        let n = entries.len();
+        let mut matrix = Symmetric::zero(n);
+        for (i, row) in entries.iter().enumerate() {
+            if row.len() != n {
+                let remedy = format!("a matrix of {n} rows needs {n} entries in each");
+                return Err(Error::input(&format!("{field}[{i}]"), format!("{} entries", row.len()), remedy));
+            }
+            for (j, x) in row.iter().enumerate().take(i + 1) {
+                if entries[j][i] != *x {
+                    let remedy =
+                        format!("differs from {field}[{j}][{i}] = {}: make it symmetric", entries[j][i]);
+                    return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
+                }
+                matrix.add(i, j, x);
+            }
+        }
+        Ok(matrix)
+    }
+
+    /// Adds x to the entries (i, j) and (j, i), once if i = j.
+    ///
+    /// # Panics
+    /// Where an index is out of range.
+    pub fn add(&mut self, i: usize, j: usize, x: &Rational) {
+        self.add_at(i, j, x);
+        if i != j {
+            self.add_at(j, i, x);
+        }
+    }
+
+    fn add_at(&mut self, i: usize, j: usize, x: &Rational) {
+        let entry = self.rows[i].entry(j).or_insert_with(Rational::zero);
+        *entry += x;
+        if entry.is_zero() {
+            self.rows[i].remove(&j);
+        }
+    }
+
+    /// A spring of stiffness k between i and j, energy k (x_i − x_j)²/2; to a wall without j.
+    ///
+    /// # Panics
+    /// Where an index is out of range.
+    pub fn add_spring(&mut self, i: usize, j: Option<usize>, k: &Rational) {
+        self.add(i, i, k);
+        if let Some(j) = j {
+            self.add(j, j, k);
+            self.add(i, j, &-k);
+        }
+    }
+
+    /// Adds the other matrix of the same size.
+    pub fn add_all(&mut self, other: &Symmetric) {
+        for (i, row) in other.rows.iter().enumerate() {
+            row.iter().for_each(|(&j, x)| self.add_at(i, j, x));
+        }
+    }
+
+    /// c times the matrix.
+    pub fn scaled(&self, c: &Rational) -> Self {
+        let mut matrix = Symmetric::zero(self.size());
+        for (i, row) in self.rows.iter().enumerate() {
+            row.iter().for_each(|(&j, x)| matrix.add_at(i, j, &(x * c)));
+        }
+        matrix
+    }
+
+    /// n.
+    pub fn size(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The entries of row i that are not 0, by column.
+    pub fn row(&self, i: usize) -> &BTreeMap<usize, Rational> {
+        &self.rows[i]
+    }
+
+    /// The entry (i, j).
+    pub fn get(&self, i: usize, j: usize) -> Rational {
+        self.rows[i].get(&j).cloned().unwrap_or_else(Rational::zero)
+    }
+
+    /// The rows that are not 0.
+    pub fn support(&self) -> Vec<usize> {
+        (0..self.size()).filter(|&i| !self.rows[i].is_empty()).collect()
+    }
+
+    /// Whether all entries are 0.
+    pub fn is_zero(&self) -> bool {
+        self.rows.iter().all(BTreeMap::is_empty)
+    }
+
+    /// Whether all entries off the diagonal are 0.
+    pub fn is_diagonal(&self) -> bool {
+        self.rows.iter().enumerate().all(|(i, row)| row.keys().all(|&j| i == j))
+    }
+
+    /// The rows and columns in `indices`.
+    pub fn restricted(&self, indices: &[usize]) -> Self {
+        let place: BTreeMap<usize, usize> =
+            indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
+        let row =
+            |&i: &usize| self.rows[i].iter().filter_map(|(j, x)| Some((*place.get(j)?, x.clone()))).collect();
+        Symmetric { rows: indices.iter().map(row).collect() }
+    }
+
+    /// Zᵀ self Z for the n x m matrix with the given columns.
+    pub fn congruent(&self, columns: &[Vec<Rational>]) -> Self {
+        let images: Vec<_> = columns.iter().map(|z| self.times(z)).collect();
+        let mut matrix = Symmetric::zero(columns.len());
+        for (i, z) in columns.iter().enumerate() {
+            for (j, image) in images.iter().enumerate().take(i + 1) {
+                matrix.add(i, j, &dot(z, image));
+            }
+        }
+        matrix
+    }
+
+    /// self x.
+    pub fn times(&self, x: &[Rational]) -> Vec<Rational> {
+        let row = |row: &BTreeMap<usize, Rational>| {
+            row.iter()
+                .fold(Rational::zero(), |sum, (&j, a)| if x[j].is_zero() { sum } else { sum + a * &x[j] })
+        };
+        self.rows.iter().map(row).collect()
+    }
+
+    /// All entries.
+    pub fn to_dense(&self) -> DMatrix<Rational> {
+        DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
+    }
+
+    /// Whether xᵀ self x ≥ 0 for all x; by symmetric elimination, exactly.
+    pub fn is_positive_semidefinite(&self) -> bool {
+        self.pivots().is_some()
+    }
+
+    /// Whether xᵀ self x > 0 for all x ≠ 0.
+    pub fn is_positive_definite(&self) -> bool {
+        self.pivots() == Some(self.size())
+    }
+
+    /// The number of positive pivots of a semidefinite matrix (its rank), or `None` if it is not one.
+    fn pivots(&self) -> Option<usize> {
+        let mut rest = self.clone();
+        let mut rank = 0;
+        for i in 0..self.size() {
+            let row = std::mem::take(&mut rest.rows[i]);
+            let pivot = row.get(&i).cloned().unwrap_or_else(Rational::zero);
+            let others: Vec<_> = row.into_iter().filter(|(j, _)| *j != i).collect();
+            if pivot.is_negative() || (pivot.is_zero() && !others.is_empty()) {
+                return None;
+            }
+            rank += usize::from(pivot.is_positive());
+            for (j, a) in &others {
+                rest.rows[*j].remove(&i);
+                let factor = a / &pivot;
+                others.iter().for_each(|(k, b)| rest.add_at(*j, *k, &-(&factor * b)));
+            }
+        }
+        Some(rank)
+    }
+
+    /// A basis of the null space in reduced form, each vector with the coordinate of its own where it is 1
+    /// and all others are 0.
+    pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
+        null_space(self.rows.clone(), self.size())
+    }
+}
+
+/// A basis of {x : rows x = 0}: (free coordinate, vector) pairs, each vector 1 there and 0 at the other free ones.
+pub(super) fn null_space(mut rows: Vec<BTreeMap<usize, Rational>>, n: usize) -> Vec<(usize, Vec<Rational>)> {
+    // Gauss and Jordan; pivots[i] = the column that row i was solved for.
+    let mut solved: Vec<(usize, BTreeMap<usize, Rational>)> = Vec::new();
+    while let Some(mut row) = rows.pop() {
+        for (column, pivot_row) in &solved {
+            eliminate(&mut row, *column, pivot_row);
+        }
+        let Some((&column, pivot)) = row.first_key_value() else { continue };
+        let inverse = pivot.recip();
+        row.values_mut().for_each(|x| *x *= &inverse);
+        solved.iter_mut().for_each(|(_, other)| eliminate(other, column, &row));
+        solved.push((column, row));
+    }
+    let is_pivot = |j: usize| solved.iter().any(|(column, _)| *column == j);
+    let vector = |free: usize| {
+        let mut x = vec![Rational::zero(); n];
+        x[free] = Rational::from_integer(1.into());
+        for (column, row) in &solved {
+            x[*column] = row.get(&free).map_or_else(Rational::zero, |a| -a);
+        }
+        (free, x)
+    };
+    (0..n).filter(|&j| !is_pivot(j)).map(vector).collect()
+}
+
+/// `row -= row[column] pivot_row`, where pivot_row\[column\] = 1.
+fn eliminate(row: &mut BTreeMap<usize, Rational>, column: usize, pivot_row: &BTreeMap<usize, Rational>) {
+    let Some(factor) = row.get(&column).cloned() else { return };
+    for (&j, x) in pivot_row {
+        let entry = row.entry(j).or_insert_with(Rational::zero);
+        *entry -= &factor * x;
+        if entry.is_zero() {
+            row.remove(&j);
+        }
+    }
+}
+
+/// Σ x_i y_i.
+pub(super) fn dot(x: &[Rational], y: &[Rational]) -> Rational {
+    x.iter()
+        .zip(y)
+        .filter(|(a, b)| !a.is_zero() && !b.is_zero())
+        .fold(Rational::zero(), |sum, (a, b)| sum + a * b)
+}

@@ -1,0 +1,151 @@
+//! Eigenvalues of S = Bᵀ C in doubles, each with a disc that is proven to hold it.
+//!
+//! For the computed eigenvectors V (Re v and Im v of pairs), an approximate inverse W of V, and D the computed
+//! eigenvalues (real 2 x 2 blocks for pairs, so that D is normal),
+//! V⁻¹ S V = D + F, F = (I − Y)⁻¹ W (S V − V D) with Y = I − W V. The discs of radius ‖F‖₂ about the entries of D hold
+//! the eigenvalues (Bauer and Fike), as many in each connected component as it has discs, since no eigenvalue of
+//! D + tF leaves them for 0 ≤ t ≤ 1. Since S is real, an isolated disc about a real number holds one real
+//! eigenvalue. So
+//!
+//! * a component of discs that does not meet the segment [−1, 0] proves instability;
+//! * isolated discs about real numbers, all inside (−1, 0), prove stability: all multipliers are distinct and lie
+//!   on the unit circle.
+//!
+//! Double eigenvalues, of symmetric systems say, are beyond it: they need exact arithmetic.
+
+use faer::linalg::solvers::DenseSolveCore;
+use faer::{Mat, c64};
+
+use super::float::FloatBlocks;
+use super::norm;
+use crate::verdict::Kind;
+
+const U: f64 = f64::EPSILON / 2.0;
+
+/// The eigenvalues μ of Bᵀ C with their vectors.
+#[derive(Clone, Debug)]
+pub(super) struct Spectrum {
+    pub mu: Vec<c64>,
+    /// The radius of the discs; `None` where the bound's conditions fail.
+    pub radius: Option<f64>,
+    /// One column for each, in the coordinates of [`FloatBlocks`].
+    pub vectors: Mat<c64>,
+}
+
+impl Spectrum {
+    /// `None` where the eigenvalue iteration fails: never seen, but not excluded.
+    pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
+        let m = blocks.m;
+        let b = Mat::from_fn(m, m, |i, j| blocks.y[i][m + j]);
+        let c = Mat::from_fn(m, m, |i, j| blocks.p[i][j]);
+        let s = b.transpose() * &c;
+        let eigen = s.eigen().ok()?;
+        let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
+        let vectors = eigen.U().to_owned();
+        let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
+        let radius = blocks.error.filter(|_| finite).and_then(|e| {
+            // What rounding the product adds: (m + 2) u |B|ᵀ |C|.
+            let rounding = 1.01 * (m as f64 + 2.0) * U * norm::frobenius(&b) * norm::frobenius(&c);
+            let delta = e * (2.0 * blocks.norm + e) + rounding;
+            radius(&s, delta, &mu, &vectors)
+        });
+        finite.then_some(Spectrum { mu, radius, vectors })
+    }
+
+    /// What the discs prove, if anything.
+    pub fn certified(&self) -> Option<Kind> {
+        let radius = 1.01 * self.radius?;
+        let components = components(&self.mu, radius);
+        let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
+        if components.iter().any(off) {
+            return Some(Kind::Hyperbolic);
+        }
+        let inside = |component: &Vec<usize>| match component.as_slice() {
+            [i] => {
+                let z = self.mu[*i];
+                z.im == 0.0 && z.re + radius < 0.0 && z.re - radius > -1.0
+            }
+            _ => false,
+        };
+        components.iter().all(inside).then_some(Kind::Elliptic)
+    }
+}
+
+/// The distance from the segment [−1, 0], rounded.
+pub(super) fn from_segment(z: c64) -> f64 {
+    let nearest = z.re.clamp(-1.0, 0.0);
+    (z.re - nearest).hypot(z.im)
+}
+
+/// γ: a sum of m products, in any order, has an error of at most this times the sum of their absolute values.
+fn gamma(m: usize) -> f64 {
+    1.01 * (m as f64 + 4.0) * U
+}
+
+/// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D: the
+/// numbers themselves and the blocks ((a, b), (−b, a)).
+fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
+    let m = mu.len();
+    let (mut real, mut d) = (Mat::<f64>::zeros(m, m), Mat::<f64>::zeros(m, m));
+    let mut k = 0;
+    while k < m {
+        d[(k, k)] = mu[k].re;
+        (0..m).for_each(|i| real[(i, k)] = v[(i, k)].re);
+        if mu[k].im != 0.0 {
+            // Pairs stand side by side.
+            mu.get(k + 1).filter(|next| **next == mu[k].conj())?;
+            (0..m).for_each(|i| real[(i, k + 1)] = v[(i, k)].im);
+            d[(k + 1, k + 1)] = mu[k].re;
+            (d[(k, k + 1)], d[(k + 1, k)]) = (mu[k].im, -mu[k].im);
+            k += 1;
+        }
+        k += 1;
+    }
+    Some((real, d))
+}
+
+/// V D for the block-diagonal D of [`real_form`].
+fn times_blocks(v: &Mat<f64>, d: &Mat<f64>) -> Mat<f64> {
+    let m = v.ncols();
+    Mat::from_fn(m, m, |i, j| {
+        let neighbours = j.saturating_sub(1)..(j + 2).min(m);
+        neighbours.map(|k| v[(i, k)] * d[(k, j)]).sum()
+    })
+}
+
+/// More than ‖F‖₂ for the true S, which is within `delta` of the given one.
+fn radius(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<f64> {
+    let m = mu.len();
+    let (v, d) = real_form(mu, v)?;
+    let w = v.partial_piv_lu().inverse();
+    let vd = times_blocks(&v, &d);
+    let residual = norm::frobenius(&(s * &v - &vd));
+    let (nv, nw) = (norm::frobenius(&v), norm::frobenius(&w));
+    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(&d));
+    let y = Mat::<f64>::identity(m, m) - &w * &v;
+    let y = norm::frobenius(&y) + gamma(m) * (nw * nv + m as f64);
+    if y.is_nan() || y >= 0.5 {
+        return None;
+    }
+    let off = residual + rounding + delta * norm::spectral(&v);
+    let radius = 1.01 * norm::spectral(&w) * off / (1.0 - y);
+    radius.is_finite().then_some(radius)
+}
+
+/// The connected components of the union of the discs of one radius.
+fn components(mu: &[c64], radius: f64) -> Vec<Vec<usize>> {
+    let mut open: Vec<usize> = (0..mu.len()).collect();
+    let mut components = Vec::new();
+    while let Some(first) = open.pop() {
+        let (mut component, mut next) = (vec![first], 0);
+        while let Some(&i) = component.get(next) {
+            next += 1;
+            let meets = |j: &usize| (mu[i] - mu[*j]).norm() <= 2.01 * radius;
+            let (joined, rest) = open.into_iter().partition::<Vec<_>, _>(meets);
+            component.extend(joined);
+            open = rest;
+        }
+        components.push(component);
+    }
+    components
+}

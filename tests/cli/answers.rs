@@ -1,0 +1,188 @@
+//! The contract: keys, formats, exit codes.
+
+use super::support::{json, keys, run, stdout, words};
+
+/// h2 just below T½: resonant. And a plainly stable neighbour.
+const UNSTABLE: &str = "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98";
+const STABLE: &str = "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2";
+/// A closed tongue, Q = I, and an exactly rational edge.
+const CLOSED: &str = "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3";
+const EDGE: &str = "verdict --lambda1 1 --lambda2 0.1 --h1 1 --h2 3";
+
+const GRID: &str = "--lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..3/5 --h2-range 0.1..3";
+
+#[test]
+fn a_verdict_has_the_keys_of_the_contract_in_their_order() {
+    let verdict = json(&words(UNSTABLE, &[]));
+    let contract = [
+        "schema",
+        "input",
+        "p",
+        "q",
+        "kind",
+        "stable",
+        "side",
+        "trace",
+        "growth_rate",
+        "resonance",
+        "decided_by",
+    ];
+    assert_eq!(keys(&verdict), contract);
+    assert_eq!(verdict["schema"], "kickdrift/verdict/1");
+    assert_eq!(keys(&verdict["resonance"]), ["m", "a", "b"]);
+    assert_eq!((verdict["p"].as_u64(), verdict["q"].as_u64()), (Some(98), Some(1)));
+    assert_eq!(verdict["resonance"].to_string(), r#"{"m":1,"a":0,"b":1}"#);
+    let rate = &verdict["growth_rate"];
+    assert!(rate["lo"].as_f64() > Some(0.0) && rate["lo"].as_f64() <= rate["hi"].as_f64());
+}
+
+#[test]
+fn every_kind_of_verdict_comes_out_with_its_side() {
+    let seen = |line: &str| {
+        let verdict = json(&words(line, &[]));
+        let kind = verdict["kind"].as_str().unwrap().to_string();
+        (kind, verdict["stable"].as_bool().unwrap(), verdict["side"].as_i64().unwrap())
+    };
+    assert_eq!(seen(UNSTABLE), ("hyperbolic".into(), false, -1));
+    assert_eq!(seen(STABLE), ("elliptic".into(), true, 0));
+    assert_eq!(seen(CLOSED), ("coexistence".into(), true, 1));
+    assert_eq!(seen(EDGE), ("parabolic".into(), false, -1));
+}
+
+#[test]
+fn inputs_are_echoed_as_exact_strings_however_they_were_typed() {
+    let line = "verdict --lambda1 1e1 --lambda2 0.4 --h1 .5 --h2 (1+1/2)/2*3";
+    let input = json(&words(line, &[]))["input"].to_string();
+    assert_eq!(input, r#"{"lambda1":"10","lambda2":"2/5","h1":"1/2","h2":"9/4"}"#);
+    let curves =
+        json(&words("curves --h1-range 0.1..0.5 --h2-range 0.5..2 --a 0..0 --b 1..1 --samples 9", &[]));
+    let input = &curves["input"];
+    assert_eq!((&input["h1_range"], &input["h2_range"]), (&"1/10..1/2".into(), &"1/2..2".into()));
+    assert_eq!((&input["a"], &input["samples"]), (&"0..0".into(), &"9".into()));
+    let map = json(&words("map", &words(GRID, &[])));
+    assert_eq!(map["input"]["h1_range"], "1/10..3/5");
+    assert_eq!(map["input"]["h2_range"], "1/10..3");
+}
+
+#[test]
+fn the_exit_code_tells_stable_from_unstable_only_when_asked() {
+    for (line, code) in [(STABLE, 0), (CLOSED, 0), (UNSTABLE, 1), (EDGE, 1)] {
+        assert_eq!(run(&words(line, &[])).code, Some(0), "{line}");
+        assert_eq!(run(&words(line, &["--exit-code"])).code, Some(code), "{line}");
+    }
+    let nonsense = run(&words("verdict --lambda1 x --lambda2 1 --h1 1 --h2 1 --exit-code", &[]));
+    assert_eq!(nonsense.code, Some(2));
+}
+
+#[test]
+fn people_get_text_from_verdict_and_scripts_get_json_from_tables() {
+    assert!(stdout(&words(UNSTABLE, &[])).starts_with("unstable: hyperbolic, Tr Q < -2"));
+    assert!(stdout(&words(CLOSED, &[])).contains("stable: coexistence, Q = I"));
+    assert!(stdout(&words("map", &words(GRID, &[]))).starts_with("{\n  \"schema\": \"kickdrift/map/1\""));
+    assert!(stdout(&words("curves --samples 5", &[])).starts_with("{\n  \"schema\": \"kickdrift/curves/1\""));
+}
+
+#[test]
+fn csv_is_a_header_and_one_line_a_row() {
+    let csv = stdout(&words(UNSTABLE, &["--format", "csv"]));
+    let lines: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(lines.len(), 2);
+    assert_eq!(lines[0].len(), lines[1].len());
+    assert_eq!(lines[0][..5], ["h1", "h2", "p", "q", "kind"]);
+    assert_eq!(lines[1][..5], ["1/100", "49/50", "98", "1", "hyperbolic"]);
+    let map = stdout(&words("map --format csv", &words(GRID, &[])));
+    assert_eq!(map.lines().next(), Some("h1,h2,p,q,kind,side,decided_by"));
+}
+
+#[test]
+fn latex_is_a_booktabs_table() {
+    for line in
+        [UNSTABLE, "curves --a 0..0 --b 1..1 --samples 4", "polynomial --ratio 3/2", "proposition --max 3"]
+    {
+        let table = stdout(&words(line, &["--format", "latex"]));
+        for part in
+            ["\\begin{table}", "\\begin{tabular}", "\\toprule", "\\midrule", "\\bottomrule", "\\end{table}"]
+        {
+            assert!(table.contains(part), "{line}: no {part} in {table}");
+        }
+    }
+}
+
+#[test]
+fn the_exact_tier_shows_the_exact_trace() {
+    let verdict = json(&words("verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499 --exact", &[]));
+    assert_eq!(verdict["decided_by"], "exact");
+    let trace = verdict["trace"]["exact"].as_str().unwrap();
+    // An integer over a power of 10, far beyond doubles in both parts.
+    let (above, below) = trace.split_once('/').unwrap();
+    assert!(above.len() > 1000 && below.len() > 1000);
+    let plain = json(&words("verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499", &[]));
+    assert!(plain["trace"].get("exact").is_none());
+    assert_eq!((&plain["kind"], &plain["resonance"]), (&verdict["kind"], &verdict["resonance"]));
+}
+
+#[test]
+fn stiffnesses_far_beyond_doubles_are_answered_too() {
+    for (lambda2, kind, side) in
+        [("1e100", "hyperbolic", -1), ("-1e400", "hyperbolic", 1), ("1e-400", "elliptic", 0)]
+    {
+        let line = ["verdict", "--lambda1", "1", "--lambda2", lambda2, "--h1", "1", "--h2", "1"];
+        let verdict = json(&line);
+        assert_eq!(
+            (verdict["kind"].as_str(), verdict["side"].as_i64()),
+            (Some(kind), Some(side)),
+            "{lambda2}"
+        );
+        assert!(verdict["growth_rate"]["hi"].is_f64(), "{lambda2}");
+        assert_eq!(verdict["resonance"].is_object(), kind == "hyperbolic", "{lambda2}");
+    }
+}
+
+#[test]
+fn compare_agrees_with_tan_everywhere_and_lists_its_offenders() {
+    for line in [format!("compare {GRID}"), "compare --max-sum 9 --rho 1/25 --samples 30".into()] {
+        let compare = json(&words(&line, &[]));
+        let count = |key: &str| compare["resonance"][key].as_u64().unwrap();
+        assert_eq!(compare["tan"]["disagree"], 0);
+        assert_eq!(compare["tan"]["agree"], compare["pairs"]);
+        let offenders = compare["offenders"].as_array().unwrap();
+        assert_eq!(offenders.len() as u64, count("misses") + count("false_alarms"));
+        assert_eq!(
+            compare["pairs"].as_u64().unwrap(),
+            ["hits", "quiet", "misses", "false_alarms", "beyond_verlet"].map(count).iter().sum::<u64>()
+        );
+    }
+}
+
+#[test]
+fn the_polynomials_of_one_fast_and_one_slow_kick_are_those_of_velocity_verlet() {
+    // p/q = 1: Tr Q = 2 - s (1 + rho).
+    let polynomial = json(&words("polynomial --ratio 3/3", &[]));
+    assert_eq!((polynomial["p"].as_u64(), polynomial["q"].as_u64()), (Some(1), Some(1)));
+    assert_eq!(polynomial["polynomials"]["trace"], "(-rho - 1)*s + 2");
+}
+
+#[test]
+fn the_proposition_holds_with_a_witness_for_every_resonant_point() {
+    let document = json(&words("proposition --max 9", &[]));
+    assert_eq!(document["holds"], true);
+    let witnesses = document["witnesses"].as_array().unwrap();
+    assert_eq!(witnesses.len() as u64, document["resonant_points"].as_u64().unwrap());
+    for w in witnesses {
+        let n = |key: &str| w[key].as_i64().unwrap();
+        assert_eq!(n("m"), n("a") * n("p") + n("b") * n("q"), "{w}");
+        assert_ne!(n("b"), 0, "{w}");
+    }
+}
+
+#[test]
+fn every_command_explains_itself() {
+    for command in ["verdict", "curves", "compare", "proposition", "polynomial", "map", "run"] {
+        let help = stdout(&[command, "--help"]);
+        assert!(help.contains(&format!("Usage: kickdrift {command}")), "{help}");
+        assert!(help.lines().all(|line| line.chars().count() <= 140), "{help}");
+    }
+    let all = stdout(&["--help"]);
+    assert!(all.contains("verdict") && all.contains("--budget"));
+    assert!(stdout(&["--version"]).starts_with("kickdrift "));
+}

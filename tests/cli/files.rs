@@ -1,0 +1,78 @@
+//! Files whole or not at all, pipes that close, the same bytes always.
+
+use std::io::Read;
+use std::process::Stdio;
+
+use super::support::{Desk, stdout, words};
+
+const MAP: &str =
+    "map --lambda1 pi^2 --lambda2 pi^2/25 --step 1/20 --h1-range 1/20..2/pi --h2-range 1/20..7/2";
+const VERDICT: &str = "verdict --lambda1 10 --lambda2 2/5 --h1 1/10 --h2 1";
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let compare = "compare --max-sum 12 --rho 1/25 --samples 20";
+    for line in [MAP, "curves --samples 50", compare] {
+        for format in ["json", "csv", "latex", "text"] {
+            let with = |n| stdout(&words(line, &["--format", format, "--threads", n]));
+            assert_eq!(with("1"), with("2"), "{line} --format {format}");
+        }
+    }
+}
+
+#[test]
+fn an_output_file_holds_what_standard_output_would() {
+    let desk = Desk::new();
+    let ended = desk.run(&words(MAP, &["--format", "csv", "--output", "map.csv"]));
+    assert_eq!((ended.code, ended.stdout.as_str(), ended.stderr.as_str()), (Some(0), "", ""));
+    assert_eq!(desk.read("map.csv"), stdout(&words(MAP, &["--format", "csv"])).into_bytes());
+    assert_eq!(desk.files(), ["map.csv"]);
+}
+
+#[test]
+fn an_error_leaves_the_old_file_as_it_was() {
+    let desk = Desk::new();
+    desk.write("old.json", "old");
+    let line = "verdict --lambda1 10 --lambda2 1 --h1 1/10 --h2 pi --output old.json";
+    assert_eq!(desk.run(&words(line, &[])).code, Some(2));
+    assert_eq!(desk.read("old.json"), b"old");
+    assert_eq!(desk.files(), ["old.json"]);
+}
+
+#[test]
+fn an_unwritable_output_is_named_and_nothing_is_left() {
+    for (output, remedy) in [("no/such/folder.json", "create the directory"), (".", "name a file in it")] {
+        let desk = Desk::new();
+        let ended = desk.run(&words(VERDICT, &["--output", output]));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+        assert_eq!(ended.stderr.lines().count(), 1, "{}", ended.stderr);
+        assert!(ended.stderr.contains(output) && ended.stderr.contains(remedy), "{}", ended.stderr);
+        assert!(desk.is_empty());
+    }
+}
+
+#[test]
+fn a_reader_who_goes_away_early_is_no_error() {
+    let desk = Desk::new();
+    // Some megabytes, more than any pipe holds.
+    let line = "curves --samples 2000";
+    let mut child =
+        desk.command(&words(line, &[])).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut few = [0; 10];
+    child.stdout.take().unwrap().read_exact(&mut few).unwrap(); // and dropped
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.len()), (Some(0), 0));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_an_error() {
+    let desk = Desk::new();
+    let full = || std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = desk.command(&words(VERDICT, &[])).stdout(full()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("standard output"));
+    // Where even the message cannot be written, the code still tells.
+    let status = desk.command(&["verdict"]).stderr(full()).status().unwrap();
+    assert_eq!(status.code(), Some(2));
+}

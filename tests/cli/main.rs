@@ -1,0 +1,8 @@
+//! The program from outside: what a person or a script types, and what comes back.
+
+mod answers;
+mod files;
+mod golden;
+mod refusals;
+mod scenes;
+mod support;

@@ -1,0 +1,179 @@
+//! Bad input: one line that names field, value and remedy, exit code 2, and nothing written.
+
+use std::time::{Duration, Instant};
+
+use super::support::Desk;
+
+/// Far beyond what any refusal needs, far below a hang.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Runs and expects a refusal with all of `parts` in its one line.
+fn refused(desk: &Desk, args: &[&str], parts: &[&str]) {
+    let before = desk.files();
+    let start = Instant::now();
+    let ended = desk.run(&[args, &["--output", "nothing"]].concat());
+    assert!(start.elapsed() < PATIENCE, "{args:?} took {:?}", start.elapsed());
+    let line = &ended.stderr;
+    assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{args:?}: {line}");
+    assert!(line.starts_with("kickdrift: ") && line.ends_with('\n') && line.lines().count() == 1, "{line}");
+    assert!(line.len() < 1000 && !line.trim_end().contains(char::is_control), "{line}");
+    for part in parts {
+        assert!(line.contains(part), "{args:?}: no {part:?} in {line}");
+    }
+    assert_eq!(desk.files(), before, "{args:?} wrote something");
+    assert!(!desk.path().join("nothing").exists(), "{args:?} left a folder");
+}
+
+fn verdict<'a>(lambda1: &'a str, lambda2: &'a str, h1: &'a str, h2: &'a str) -> Vec<&'a str> {
+    vec!["verdict", "--lambda1", lambda1, "--lambda2", lambda2, "--h1", h1, "--h2", h2]
+}
+
+#[test]
+fn steps_without_a_rational_ratio() {
+    let parts = ["h2/h1 = (pi/10)/(1/10)", "irrational", "commensurable"];
+    refused(&Desk::new(), &verdict("10", "1", "1/10", "pi/10"), &parts);
+}
+
+#[test]
+fn steps_and_stiffnesses_out_of_range() {
+    let desk = Desk::new();
+    refused(&desk, &verdict("10", "1", "0", "1"), &["h1 = 0: ", "positive"]);
+    refused(&desk, &verdict("10", "1", "1", "-1/2"), &["h2 = -1/2: ", "positive"]);
+    refused(&desk, &verdict("10", "1", "pi-pi", "1"), &["h1 = 0: ", "positive"]);
+    refused(&desk, &verdict("0", "1", "1", "1"), &["lambda1 = 0: ", "positive"]);
+    refused(&desk, &verdict("3-pi", "1", "1", "1"), &["lambda1 = ", "positive"]);
+}
+
+#[test]
+fn texts_that_are_no_numbers() {
+    let desk = Desk::new();
+    for (text, parts) in [
+        ("1/0", ["lambda2 = 1/0: ", "zero"]),
+        ("1/(1+pi)", ["lambda2 = 1/(1+pi): ", "divide by a rational multiple"]),
+        ("NaN", ["lambda2 = NaN: ", "finite"]),
+        ("inf", ["lambda2 = inf: ", "finite"]),
+        ("", ["lambda2 = : ", "empty"]),
+        ("2 pi", ["lambda2 = 2 pi: ", "*"]),
+        ("1,5", ["lambda2 = 1,5: ", "','"]),
+        ("0x10", ["lambda2 = 0x10: ", "'x'"]),
+        ("2^(1/2)", ["lambda2 = 2^(1/2): ", "integer"]),
+        ("9^9^9", ["lambda2 = 9^9^9: ", "parentheses"]),
+        ("9^999999999", ["lambda2 = 9^999999999: ", "smaller power"]),
+        ("one\ntwo", ["lambda2 = one two: ", "no name but pi"]),
+        ("\u{1b}[31m", ["lambda2 = ", "unexpected"]),
+    ] {
+        refused(&desk, &verdict("10", text, "1", "1"), &parts);
+    }
+}
+
+#[test]
+fn a_number_of_a_hundred_thousand_digits_is_refused_at_once() {
+    let digits = "7".repeat(100_000);
+    refused(&Desk::new(), &verdict("10", "1", &digits, "1"), &["h1 = 777", "100000 characters", "shorter"]);
+    let threads = ["--threads", &digits];
+    refused(&Desk::new(), &[&verdict("10", "1", "1", "1")[..], &threads].concat(), &["threads = 777"]);
+}
+
+#[test]
+fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
+    let desk = Desk::new();
+    refused(&desk, &verdict("10", "1", "0.123456789", "1"), &["kicks", "--budget", " s;"]);
+    refused(&desk, &verdict("10", "1", "1", "1.000000000000000000000001"), &["h2/h1"]);
+    let frugal = [&verdict("10", "1", "0.01", "1.01")[..], &["--exact", "--budget", "50"]].concat();
+    refused(&desk, &frugal, &["kicks", "--budget 51"]);
+    refused(&desk, &["polynomial", "--ratio", "1000/7"], &["1000/7", "--budget 1007"]);
+}
+
+#[test]
+fn flags_that_are_missing_unknown_or_given_twice() {
+    let desk = Desk::new();
+    refused(&desk, &["verdict", "--lambda1", "1"], &["lambda2, h1, h2 missing", "--h1 <A>"]);
+    refused(&desk, &["polynomial"], &["ratio missing", "--ratio <P/Q>"]);
+    refused(&desk, &["run"], &["SCENE.json"]);
+    refused(&desk, &["curves", "--sample", "3"], &["--sample", "--samples"]);
+    refused(&desk, &["curves", "--samples", "3", "--samples", "4"], &["samples", "once"]);
+    refused(&desk, &["curves", "--format", "yaml"], &["format = yaml", "latex"]);
+    refused(&desk, &["curves", "--samples", "3.5"], &["samples = 3.5", "whole number"]);
+    refused(&desk, &["curves", "--threads", "0"], &["threads = 0", "1 to"]);
+    refused(&desk, &["curves", "--threads", "1000000000"], &["threads = 1000000000", "1 to"]);
+    refused(&desk, &["verdicts"], &["command = verdicts", "verdict, curves"]);
+    refused(&desk, &[], &["command missing", "verdict, curves"]);
+    refused(&desk, &["compare"], &["--max-sum"]);
+    refused(&desk, &["compare", "--max-sum", "5", "--rho", "1", "--lambda1", "1"], &["--max-sum"]);
+}
+
+#[test]
+fn ranges_and_grids_without_a_pair() {
+    let desk = Desk::new();
+    let map = |step: &str, h1: &str, h2: &str, parts: &[&str]| {
+        let flags =
+            ["map", "--lambda1", "10", "--lambda2", "1", "--step", step, "--h1-range", h1, "--h2-range", h2];
+        refused(&desk, &flags, parts);
+    };
+    map("1/10", "1..1/2", "1..2", &["h1-range = 1..1/2", "smaller number first"]);
+    map("1/10", "1..2", "1", &["h2-range = 1: ", "LO..HI"]);
+    map("1/10", "1..2", "0.01..0.09", &["h2-range = 1/100..9/100", "1/10"]);
+    map("0", "1..2", "1..2", &["step1 = 0", "positive"]);
+    map("-1/10", "1..2", "1..2", &["step1 = -1/10", "positive"]);
+    map("1e-30", "1..2", "1..2", &["h1-range", "larger step"]);
+    refused(&desk, &["map", "--lambda1", "1", "--lambda2", "1"], &["step missing", "--step 1/100"]);
+    let apart = "map --lambda1 1 --lambda2 1 --step1 1 --step2 pi --h1-range 1..9 --h2-range 1..9";
+    refused(&desk, &apart.split(' ').collect::<Vec<_>>(), &["step2/step1", "commensurable"]);
+    refused(&desk, &["curves", "--a", "3..1"], &["a = 3..1", "smaller number first"]);
+    refused(&desk, &["curves", "--a", "1/2..1"], &["a = 1/2", "integer"]);
+    refused(&desk, &["curves", "--h1-range", "-2..-1"], &["h1-range = -2..-1", "positive"]);
+    refused(&desk, &["curves", "--samples", "1"], &["samples = 1", "at least 2"]);
+    refused(&desk, &["curves", "--samples", "99999999999"], &["samples = 99999999999", "fewer"]);
+    refused(&desk, &["curves", "--b", "-9999999..9999999"], &["choose smaller ranges"]);
+    refused(&desk, &["compare", "--max-sum", "1", "--rho", "1"], &["max-sum = 1", "2 to"]);
+    refused(&desk, &["compare", "--max-sum", "5", "--rho", "pi"], &["rho = pi", "rational"]);
+    refused(&desk, &["compare", "--max-sum", "5", "--rho", "1", "--tolerance", "-1"], &["tolerance = -1"]);
+    refused(&desk, &["proposition", "--max", "0"], &["max = 0", "1 to"]);
+    refused(&desk, &["polynomial", "--ratio", "-1/2"], &["ratio = -1/2", "positive"]);
+}
+
+#[test]
+fn scenes_that_cannot_be_read_or_meant() {
+    let desk = Desk::new();
+    refused(&desk, &["run", "no.json"], &["no.json", "cannot read the scene", "name a scene file"]);
+    refused(&desk, &["run", "."], &["cannot read the scene", "name a scene file"]);
+    let plane = r#""lambda1": "1", "lambda2": "1", "grid": {"step": "1", "h1": "1..9", "h2": "1..9"}"#;
+    for (text, parts) in [
+        ("", &["line", "JSON object"][..]),
+        ("{", &["line 1 of the scene = {", "JSON object"]),
+        ("[1, 2]", &["line 1 of the scene = [1, 2]", "JSON object"]),
+        (r#"{"want": ["map"]}"#, &["schema"]),
+        (
+            r#"{"schema": "kickdrift/scene/2", "want": []}"#,
+            &["schema = kickdrift/scene/2", "kickdrift/scene/1"],
+        ),
+        (r#"{"schema": "kickdrift/scene/1"}"#, &["want"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["maps"]}"#, &["want = maps", "map, curves"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["map.png"]}"#, &["want = map.png", "csv"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["map"]}"#, &["grid missing", "add"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["polynomial"]}"#, &["ratio missing", "7/2"]),
+        (r#"{"schema": "kickdrift/scene/1", "lamda1": "1", "want": []}"#, &["lamda1", "lambda1"]),
+        (r#"{"schema": "kickdrift/scene/1", "lambda1": 0.3, "want": []}"#, &["0.3", "string"]),
+        (r#"{"schema": "kickdrift/scene/1", "lambda1": "1/0", "want": []}"#, &["lambda1 = 1/0", "zero"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["\u001b\n"]}"#, &["want = "]),
+        (&format!(r#"{{"schema": "kickdrift/scene/1", "{}": 1}}"#, "x".repeat(100_000)), &["unknown field"]),
+        (
+            &format!(r#"{{"schema": "kickdrift/scene/1", {plane}, "want": ["compare"], "tolerance": "x"}}"#),
+            &["tolerance = x"],
+        ),
+        (&"[".repeat(100_000), &["line 1"]),
+        (&"x".repeat(2_000_000), &["1 MiB"]),
+    ] {
+        desk.write("bad.json", text);
+        refused(&desk, &["run", "bad.json"], parts);
+    }
+    std::fs::write(desk.path().join("bad.json"), b"\xff\xfe{}").unwrap();
+    refused(&desk, &["run", "bad.json"], &["bad.json", "UTF-8", "name a scene file"]);
+}
+
+#[test]
+fn a_negative_stiffness_that_outweighs_the_fast_one_is_no_bad_input() {
+    let ended = Desk::new().run(&[&verdict("1", "-5", "1", "5/3")[..], &["--format", "json"]].concat());
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(ended.stdout.contains(r#""resonance": {"m":0,"a":0,"b":0}"#), "{}", ended.stdout);
+}

@@ -1,0 +1,127 @@
+//! `run`: the products a scene wants, all of them and no other.
+
+use serde_json::{Value, json};
+
+use super::support::{Desk, Ended};
+
+fn scene(want: &[&str]) -> Value {
+    json!({
+        "schema": "kickdrift/scene/1",
+        "lambda1": "pi^2",
+        "lambda2": "pi^2/25",
+        "grid": {"step": "1/10", "h1": "1/10..2/pi", "h2": "1/10..2"},
+        "families": {"a": "0..1", "b": "-2..2", "samples": 20},
+        "ratio": "3/2",
+        "max": 4,
+        "want": want
+    })
+}
+
+fn run(desk: &Desk, scene: &Value, more: &[&str]) -> Ended {
+    desk.write("tiny.json", &scene.to_string());
+    desk.run(&[&["run", "tiny.json"], more].concat())
+}
+
+#[test]
+fn a_scene_writes_what_it_wants_and_no_more() {
+    let all = [
+        "map.json",
+        "map.csv",
+        "map.tex",
+        "map.txt",
+        "curves.csv",
+        "compare.json",
+        "proposition.txt",
+        "polynomial.tex",
+        "figure.svg",
+        "figure.png",
+        "overlay.svg",
+        "overlay.png",
+    ];
+    for want in [&all[..], &all[..1], &["figure.png"], &["polynomial"], &[]] {
+        let desk = Desk::new();
+        let ended = run(&desk, &scene(want), &["--output", "here"]);
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+        let mut expected: Vec<String> = want
+            .iter()
+            .map(|name| format!("here/{name}{}", if name.contains('.') { "" } else { ".json" }))
+            .chain(["tiny.json".to_string()])
+            .collect();
+        expected.sort();
+        assert_eq!(desk.files(), expected);
+    }
+}
+
+#[test]
+fn without_an_output_folder_the_products_lie_in_out_under_the_name_of_the_scene() {
+    let desk = Desk::new();
+    let ended = run(&desk, &scene(&["map"]), &[]);
+    assert_eq!(ended.code, Some(0));
+    assert_eq!(desk.files(), ["out/tiny/map.json", "tiny.json"]);
+    assert!(ended.stdout.contains("out/tiny/map.json") && ended.stdout.contains("pairs, each decided"));
+}
+
+#[test]
+fn figures_are_what_their_names_say() {
+    let desk = Desk::new();
+    run(&desk, &scene(&["figure.svg", "figure.png"]), &["--output", "f"]);
+    let svg = String::from_utf8(desk.read("f/figure.svg")).unwrap();
+    assert!(svg.starts_with("<svg") || svg.starts_with("<?xml"), "{}", &svg[..60]);
+    assert!(svg.trim_end().ends_with("</svg>"));
+    let png = desk.read("f/figure.png");
+    assert!(png.starts_with(b"\x89PNG\r\n\x1a\n") && png.len() > 10_000, "{} bytes", png.len());
+}
+
+#[test]
+fn a_scene_gives_the_same_bytes_on_one_thread_and_on_two_and_when_run_again() {
+    let desk = Desk::new();
+    let want = ["map.csv", "curves.json", "compare.json", "overlay.svg", "figure.png"];
+    for (folder, threads) in [("one", "1"), ("two", "2"), ("one", "2")] {
+        assert_eq!(run(&desk, &scene(&want), &["--output", folder, "--threads", threads]).code, Some(0));
+    }
+    for name in want {
+        assert_eq!(desk.read(&format!("one/{name}")), desk.read(&format!("two/{name}")), "{name}");
+    }
+}
+
+#[test]
+fn a_product_of_a_scene_is_what_the_command_of_its_name_prints() {
+    let desk = Desk::new();
+    run(&desk, &scene(&["map.json", "polynomial.json"]), &["--output", "p"]);
+    let map = "map --lambda1 pi^2 --lambda2 pi^2/25 --step 0.1 --h1-range 0.1..2/pi --h2-range 0.1..2";
+    for (file, line) in [("p/map.json", map), ("p/polynomial.json", "polynomial --ratio 3/2 --format json")] {
+        let ended = desk.run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(String::from_utf8(desk.read(file)).unwrap(), ended.stdout);
+    }
+}
+
+#[test]
+fn the_closing_document_echoes_the_scene_as_exact_strings() {
+    let desk = Desk::new();
+    let mut scene = scene(&["map.txt", "figure"]);
+    scene["tolerance"] = "0.05".into();
+    let ended = run(&desk, &scene, &["--output", "o", "--format", "json"]);
+    let document: Value = serde_json::from_str(&ended.stdout).unwrap();
+    let input = &document["input"];
+    let expected = json!({
+        "title": "", "lambda1": "pi^2", "lambda2": "pi^2/25", "step1": "1/10", "step2": "1/10",
+        "h1_range": "1/10..2/pi", "h2_range": "1/10..2", "a": "0..1", "b": "-2..2", "samples": "20",
+        "tolerance": "1/20", "ratio": "3/2", "max": "4", "want": "map.txt, figure.svg"
+    });
+    assert_eq!(*input, expected);
+    assert_eq!(document["products"][1], json!({"product": "figure", "file": "o/figure.svg"}));
+}
+
+/// The polynomial alone would do; the Proposition's bound is out of range. Neither is written.
+#[test]
+fn an_error_in_a_late_product_leaves_no_early_one_and_no_folder() {
+    let desk = Desk::new();
+    let mut scene = scene(&["polynomial.json", "proposition.json"]);
+    scene["max"] = 100_000.into();
+    let ended = run(&desk, &scene, &["--output", "deep/er/folder"]);
+    assert_eq!(ended.code, Some(2));
+    assert_eq!(ended.stderr.lines().count(), 1);
+    assert!(ended.stderr.contains("max = 100000"), "{}", ended.stderr);
+    assert_eq!(desk.files(), ["tiny.json"]);
+    assert!(!desk.path().join("deep").exists());
+}

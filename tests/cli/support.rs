@@ -1,0 +1,98 @@
+//! Running the program in an empty folder of its own.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A run that has ended.
+pub struct Ended {
+    pub code: Option<i32>,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+/// An empty folder in which the program runs.
+pub struct Desk(pub TempDir);
+
+impl Desk {
+    pub fn new() -> Desk {
+        Desk(tempfile::tempdir().unwrap())
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_kickdrift"));
+        command.args(args).current_dir(self.path()).stdin(Stdio::null());
+        command
+    }
+
+    pub fn run(&self, args: &[&str]) -> Ended {
+        let output = self.command(args).output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
+    }
+
+    /// All files below the folder, sorted, their paths relative to it.
+    pub fn files(&self) -> Vec<String> {
+        let mut files = Vec::new();
+        list(self.path(), self.path(), &mut files);
+        files.sort();
+        files
+    }
+
+    /// Whether not even a folder was made.
+    pub fn is_empty(&self) -> bool {
+        std::fs::read_dir(self.path()).unwrap().next().is_none()
+    }
+
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path().join(name), text).unwrap();
+    }
+
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path().join(name)).unwrap()
+    }
+}
+
+fn list(root: &Path, folder: &Path, files: &mut Vec<String>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            list(root, &path, files);
+        } else {
+            files.push(path.strip_prefix(root).unwrap().to_str().unwrap().to_string());
+        }
+    }
+}
+
+/// Runs on an empty desk.
+pub fn run(args: &[&str]) -> Ended {
+    Desk::new().run(args)
+}
+
+/// The standard output of a run that must end well and say nothing on standard error.
+pub fn stdout(args: &[&str]) -> String {
+    let ended = run(args);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{args:?}");
+    ended.stdout
+}
+
+/// The same, as JSON.
+pub fn json(args: &[&str]) -> Value {
+    serde_json::from_str(&stdout(&[args, &["--format", "json"]].concat())).unwrap()
+}
+
+/// `text` split at white space, and `more` behind it.
+pub fn words<'a>(text: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    text.split_whitespace().chain(more.iter().copied()).collect()
+}
+
+/// The keys of a JSON object, in order.
+pub fn keys(object: &Value) -> Vec<&str> {
+    object.as_object().unwrap().keys().map(String::as_str).collect()
+}

@@ -1,0 +1,227 @@
+//! What the program writes and reads is what data/schema says.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use jsonschema::Validator;
+use kickdrift::scene::Scene;
+use serde_json::{Value, json};
+
+fn data(folder: &str) -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(folder);
+    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut paths: Vec<PathBuf> =
+        paths.filter(|path| path.extension().is_some_and(|e| e == "json")).collect();
+    paths.sort();
+    assert!(!paths.is_empty());
+    paths
+}
+
+fn read(path: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The schema of `kickdrift/NAME/1`.
+fn schema(name: &str) -> Value {
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("data/schema/{name}.json")))
+}
+
+fn validator(name: &str) -> Validator {
+    jsonschema::validator_for(&schema(name)).unwrap()
+}
+
+/// The NAME by which a document calls itself.
+fn name(document: &Value) -> String {
+    let schema = document["schema"].as_str().unwrap();
+    schema.strip_prefix("kickdrift/").and_then(|rest| rest.strip_suffix("/1")).unwrap().to_string()
+}
+
+/// Valid, or all that is wrong.
+fn check(document: &Value) {
+    let validator = validator(&name(document));
+    let wrong: Vec<String> =
+        validator.iter_errors(document).map(|error| format!("{}: {error}", error.instance_path())).collect();
+    assert!(wrong.is_empty(), "{}\n{}", wrong.join("\n"), document["input"]);
+}
+
+/// What a command prints as JSON.
+fn output(line: &str) -> Value {
+    let output = Command::new(env!("CARGO_BIN_EXE_kickdrift"))
+        .args(line.split_whitespace())
+        .args(["--format", "json"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// One line for every shape that a command's answer can take.
+const LINES: [&str; 17] = [
+    "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+    "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
+    "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
+    "verdict --lambda1 1 --lambda2 1/10 --h1 1 --h2 3",
+    "verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499 --exact",
+    "verdict --lambda1 1 --lambda2 1e400 --h1 1 --h2 1",
+    "verdict --lambda1 1 --lambda2 -5 --h1 pi/4 --h2 pi",
+    "verdict --lambda1 3*pi^2-pi+1/2 --lambda2 1/pi --h1 1/9 --h2 1/7",
+    "curves",
+    "curves --lambda1 10 --a -3..5 --b -4..4 --samples 7 --h1-range 0..1 --h2-range 1..2",
+    "curves --a 1..1 --b 5..5",
+    "compare --max-sum 8 --rho 1/25 --samples 20",
+    "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+    "proposition --max 7",
+    "polynomial --ratio 7/4",
+    "polynomial --ratio 1",
+    "map --lambda1 pi^2 --lambda2 pi^2/25 --step1 1/10 --step2 1/7 --h1-range 1/10..2/pi --h2-range 1/20..7/2",
+];
+
+#[test]
+fn every_schema_is_a_schema_and_is_named_like_its_file() {
+    for path in data("schema") {
+        let schema = read(&path);
+        assert!(jsonschema::meta::is_valid(&schema), "{}", path.display());
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
+        let id = format!("kickdrift/{}/1", path.file_stem().unwrap().to_str().unwrap());
+        assert_eq!(schema["$id"], id);
+        assert_eq!(schema["properties"]["schema"]["const"], id);
+    }
+}
+
+/// Calls `see` with every schema inside a schema.
+fn walk(schema: &Value, see: &mut impl FnMut(&Value)) {
+    see(schema);
+    match schema {
+        Value::Object(map) => map.values().for_each(|value| walk(value, see)),
+        Value::Array(items) => items.iter().for_each(|value| walk(value, see)),
+        _ => {}
+    }
+}
+
+#[test]
+fn every_float_says_whether_it_is_rounded_or_an_end_of_an_enclosure() {
+    let mut floats = 0;
+    for path in data("schema") {
+        walk(&read(&path), &mut |schema| {
+            let kinds = &schema["type"];
+            if kinds == "number" || kinds.as_array().is_some_and(|kinds| kinds.contains(&"number".into())) {
+                floats += 1;
+                let description = schema["description"].as_str().unwrap_or("");
+                let told = description.contains("double") || description.starts_with("As ");
+                assert!(told, "{}: {schema}", path.display());
+            }
+        });
+    }
+    assert!(floats >= 7, "only {floats} floats found: is the walk complete?");
+}
+
+#[test]
+fn what_every_command_prints_is_valid() {
+    LINES.iter().for_each(|line| check(&output(line)));
+    let huge = output(LINES[5]);
+    assert!(huge["trace"]["lo"].is_null() && huge["trace"]["hi"].is_f64(), "{huge}");
+}
+
+#[test]
+fn every_scene_is_valid_and_read() {
+    for path in data("scenes") {
+        let scene = read(&path);
+        assert_eq!(name(&scene), "scene");
+        check(&scene);
+        Scene::read(&fs::read_to_string(&path).unwrap()).unwrap();
+    }
+}
+
+#[test]
+fn the_small_scene_runs_and_all_that_it_writes_is_valid() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = output(&format!("run data/scenes/small.json --output {}", folder.path().display()));
+    check(&run);
+    let mut tables = 0;
+    for product in run["products"].as_array().unwrap() {
+        let file = Path::new(product["file"].as_str().unwrap());
+        assert!(fs::metadata(file).unwrap().len() > 0, "{}", file.display());
+        if file.extension().is_some_and(|extension| extension == "json") {
+            let document = read(file);
+            assert_eq!(product["product"], name(&document));
+            check(&document);
+            tables += 1;
+        }
+    }
+    assert_eq!(tables, 5);
+}
+
+/// The reader and the schema refuse the same scenes; what only arithmetic can tell is the reader's alone.
+#[test]
+fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
+    let good = read(&data("scenes")[0]);
+    let mut scenes = Vec::new();
+    for (key, value) in [
+        ("schema", json!("kickdrift/scene/2")),
+        ("want", json!(["maps"])),
+        ("want", json!(["map.png"])),
+        ("want", json!("map")),
+        ("want", Value::Null),
+        ("lambda1", json!(0.3)),
+        ("lambda1", json!("")),
+        ("grid", json!({"h1": "1..2", "h2": "1..2"})),
+        ("grid", json!({"step1": "1", "h1": "1..2", "h2": "1..2"})),
+        ("grid", json!({"step": "1", "h1": "12", "h2": "1..2"})),
+        ("grid", json!({"step": "1", "h1": "1..2"})),
+        ("families", json!({"a": 3})),
+        ("families", json!({"samples": -1})),
+        ("max", json!("60")),
+        ("colour", json!("red")),
+    ] {
+        let mut scene = good.clone();
+        scene[key] = value;
+        scenes.push(scene);
+    }
+    let validator = validator("scene");
+    for scene in scenes {
+        assert!(!validator.is_valid(&scene), "{scene}");
+        assert!(Scene::read(&scene.to_string()).is_err(), "{scene}");
+    }
+}
+
+#[test]
+fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
+    for line in LINES {
+        let document = output(line);
+        let (name, validator) = (name(&document), validator(&name(&document)));
+        for key in document.as_object().unwrap().keys() {
+            let mut broken = document.clone();
+            broken.as_object_mut().unwrap().remove(key);
+            assert!(!validator.is_valid(&broken), "{name} without {key}");
+            let mut broken = document.clone();
+            broken[key] = json!({"surprise": 1.5});
+            assert!(!validator.is_valid(&broken), "{name} with a strange {key}");
+        }
+        for key in document["input"].as_object().unwrap().keys() {
+            let mut broken = document.clone();
+            broken["input"][key] = json!(0.5);
+            assert!(!validator.is_valid(&broken), "{name} with a float for {key}");
+        }
+    }
+}
+
+#[test]
+fn verdicts_that_contradict_themselves_are_refused() {
+    let validator = validator("verdict");
+    for (key, value) in [
+        ("stable", json!(true)),
+        ("side", json!(0)),
+        ("kind", json!("elliptic")),
+        ("trace", json!(-2.5)),
+        ("trace", json!({"lo": -2.5})),
+        ("decided_by", json!("guess")),
+        ("surprise", json!(1)),
+    ] {
+        let mut verdict = output(LINES[0]);
+        assert!(validator.is_valid(&verdict));
+        verdict[key] = value;
+        assert!(!validator.is_valid(&verdict), "{verdict}");
+    }
+}
