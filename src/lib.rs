@@ -63,7 +63,7 @@
 //! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
 //! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
 //! | 5 | [`scene`] | input documents → library types |
-//! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, SVG, PNG |
+//! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
 //! | 6 | [`cli`] | arguments → a scene → the library → a report |
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to

@@ -77,11 +77,12 @@ const SHADES: u16 = 40;
 const FAMILIES: usize = 8;
 /// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour vision.
 const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
+const BEHIND_CURVES: Colour = Colour(0x92, 0xb4, 0xdc);
 const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 /// Pairs in points of paper; on an edge they are few and should be found.
 const PAIR: f64 = 0.35;
-const EDGE: f64 = 1.8;
+const EDGE: f64 = 2.4;
 
 impl Chart {
     pub fn new(grid: &Grid, colouring: Colouring) -> Self {
@@ -107,10 +108,13 @@ impl Chart {
         let mut panel = Panel::new(axis("*h*_1 (time)", window.h1), axis("*h*_2 (time)", window.h2))
             .titled(&format!("{} of {} pairs unstable", grouped(counts.unstable), grouped(counts.pairs)));
         panel = match self.colouring {
-            Colouring::Verdict => self.by_verdict(panel, steps),
+            Colouring::Verdict => self.by_verdict(panel, steps, curves.is_empty()),
             Colouring::Growth | Colouring::Tenfold => self.by_growth(panel, steps),
             Colouring::Family => self.by_family(panel, steps),
         };
+        if !curves.is_empty() {
+            panel = labels(lines(panel, curves), curves, &window);
+        }
         for (edge, colour, name) in [
             (Edge::Parabolic, PARABOLIC, "linear growth (parabolic)"),
             (Edge::Coexistence, COEXISTENCE, "closed tongue (coexistence)"),
@@ -122,17 +126,15 @@ impl Chart {
                 panel = panel.with(Layer::cells(cells).labelled(name));
             }
         }
-        if !curves.is_empty() {
-            panel = labels(lines(panel, curves), curves, &window);
-        }
         let wide = if self.colouring.by_growth() { 150.0 } else { 135.0 };
         Figure::new(wide, 135.0)
             .named(&format!("Stability map; {}", grid.fingerprint()))
             .with(panel.legend(Place::Above))
     }
 
-    fn by_verdict(&self, panel: Panel, steps: [f64; 2]) -> Panel {
-        let mut cells = cells(&self.growing, steps, vec![HYPERBOLIC]);
+    fn by_verdict(&self, panel: Panel, steps: [f64; 2], alone: bool) -> Panel {
+        let colour = if alone { HYPERBOLIC } else { BEHIND_CURVES };
+        let mut cells = cells(&self.growing, steps, vec![colour]);
         self.growing.filled().for_each(|(k, l, _)| cells.push(k, l, 0));
         panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
     }
