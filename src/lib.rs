@@ -4,4 +4,5 @@ pub mod error;
 pub mod number;
 pub mod propagator;
 pub mod resonance;
+pub mod tongue;
 pub mod verdict;

@@ -1,0 +1,214 @@
+//! Eigenvalues one by one: isolated by Sturm counts, improved and certified by Rayleigh quotients.
+
+use std::ops::RangeInclusive;
+
+use super::mode::{Mode, Workspace};
+use super::string::{Entry, HalfString};
+use super::sturm::{LANES, Lanes, lanes};
+use crate::error::Result;
+use crate::number::Rational;
+
+/// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    pub entry: Entry,
+    /// 1, 2, ... from below.
+    pub index: usize,
+    /// The enclosure of s = h1² L1.
+    pub lo: f64,
+    pub hi: f64,
+}
+
+/// An interval of κ in which a problem has, by computed counts, the eigenvalues `below` + 1 ..= `upto`.
+#[derive(Clone, Copy, Debug)]
+struct Bracket {
+    lo: f64,
+    hi: f64,
+    below: u64,
+    upto: u64,
+}
+
+/// Rounds of Rayleigh quotient iteration and halvings for one eigenvalue before more bits are called.
+const ROUNDS: u32 = 60;
+
+/// Quotients that may follow one another before the bracket is halved: they converge cubically or not at all.
+const PATIENCE: u32 = 6;
+
+/// An uncertainty of the quotient that no double shows.
+const NEGLIGIBLE: f64 = 1e-18;
+
+impl HalfString {
+    /// The eigenvalues with the given indices, `None` where doubles cannot certify one.
+    pub fn eigenvalues(&self, entry: Entry, wanted: RangeInclusive<usize>, space: &mut Workspace) -> Vec<Option<Edge>> {
+        let first = *wanted.start();
+        let mut found = vec![None; wanted.end() + 1 - first];
+        let brackets = self.isolate(entry, &wanted);
+        let mut search = Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
+        search.run(|edge: Edge| found[edge.index - first] = Some(edge));
+        found
+    }
+
+    /// Brackets of one eigenvalue each, for all wanted ones that counts in doubles can tell apart.
+    fn isolate(&self, entry: Entry, wanted: &RangeInclusive<usize>) -> Vec<Bracket> {
+        let upto = self.dimension(entry) as u64;
+        let mut open = vec![Bracket { lo: 0.0, hi: self.upper_bound(), below: 0, upto }];
+        let mut isolated = Vec::new();
+        while !open.is_empty() {
+            let cuts: Vec<Vec<f64>> = open.iter().map(|bracket| bracket.cuts(LANES / open.len())).collect();
+            let points: Vec<f64> = cuts.iter().flatten().copied().collect();
+            let counts: Vec<u64> = points
+                .chunks(LANES)
+                .flat_map(|chunk| self.counts(entry, &lanes(|i| chunk[i.min(chunk.len() - 1)])).into_iter().take(chunk.len()))
+                .collect();
+            let mut next = Vec::new();
+            let mut at = 0;
+            for (bracket, cuts) in open.iter().zip(&cuts) {
+                let known = points[at..at + cuts.len()].iter().copied().zip(counts[at..].iter().copied());
+                at += cuts.len();
+                for part in bracket.parts(known) {
+                    let asked = part.below < *wanted.end() as u64 && part.upto >= *wanted.start() as u64;
+                    match part.upto.saturating_sub(part.below) {
+                        0 => {}
+                        _ if !asked => {}
+                        1 => isolated.push(part),
+                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => {}
+                        _ => next.push(part),
+                    }
+                }
+            }
+            open = next;
+        }
+        isolated
+    }
+}
+
+impl Bracket {
+    /// Points that cut the bracket evenly in √κ, one for each eigenvalue in it and at least `least`.
+    fn cuts(&self, least: usize) -> Vec<f64> {
+        let n = ((self.upto - self.below) as usize).min(64).max(least).max(1);
+        let (from, to) = (self.lo.sqrt(), self.hi.sqrt());
+        let point = |k: usize| (from + (to - from) * k as f64 / (n + 1) as f64).powi(2);
+        (1..=n).map(point).collect()
+    }
+
+    /// The parts between neighbouring points.
+    fn parts(self, points: impl Iterator<Item = (f64, u64)>) -> impl Iterator<Item = Bracket> {
+        let end = (self.hi, self.upto);
+        points.chain(std::iter::once(end)).scan((self.lo, self.below), |from, to| {
+            let part = Bracket { lo: from.0, hi: to.0, below: from.1, upto: to.1 };
+            *from = to;
+            Some(part)
+        })
+    }
+}
+
+/// One eigenvalue being looked for.
+#[derive(Clone, Copy, Debug)]
+struct Task {
+    /// What the counts say: it bounds the neighbours.
+    bracket: Bracket,
+    /// The part of the bracket where the eigenvalue is.
+    inner: Bracket,
+    kappa: f64,
+    rounds: u32,
+    /// The last quotient left the inner bracket, or there were too many: halve it first.
+    astray: bool,
+}
+
+impl Task {
+    fn new(bracket: Bracket) -> Task {
+        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false }
+    }
+}
+
+fn middle(bracket: &Bracket) -> f64 {
+    (0.5 * (bracket.lo.sqrt() + bracket.hi.sqrt())).powi(2)
+}
+
+struct Search<'a> {
+    string: &'a HalfString,
+    entry: Entry,
+    space: &'a mut Workspace,
+    tasks: Vec<Task>,
+}
+
+impl Search<'_> {
+    /// Works on up to [`LANES`] tasks at a time until none is left.
+    fn run(&mut self, mut found: impl FnMut(Edge)) {
+        while !self.tasks.is_empty() {
+            let mut batch = self.tasks.split_off(self.tasks.len().saturating_sub(LANES));
+            self.halve(&mut batch);
+            let kappa = lanes(|i| batch[i.min(batch.len() - 1)].kappa);
+            let modes = self.space.modes(self.string, self.entry, &kappa);
+            for (mut task, mode) in batch.into_iter().zip(modes) {
+                match self.certified(&task.bracket, &mode) {
+                    Some(edge) => found(edge),
+                    None => {
+                        task.follow(&mode);
+                        if task.rounds < ROUNDS {
+                            self.tasks.push(task);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Halves the brackets of the tasks that went astray.
+    fn halve(&self, batch: &mut [Task]) {
+        if batch.iter().all(|task| !task.astray) {
+            return;
+        }
+        let kappa: Lanes = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
+        let counts = self.string.counts(self.entry, &kappa);
+        for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
+            if task.astray {
+                let inner = &mut task.inner;
+                if count <= inner.below { inner.lo = kappa } else { inner.hi = kappa }
+                task.kappa = middle(inner);
+            }
+        }
+    }
+
+    /// The theorems of [`super::mode`] and [`super::sturm`] together: eigenvalue `below` lies below lo (1 + η),
+    /// eigenvalue `below` + 2 above hi (1 − η).
+    fn certified(&self, bracket: &Bracket, mode: &Mode) -> Option<Edge> {
+        let (mu, eta) = (mode.quotient.hi, self.string.eta());
+        // What the quotient's own uncertainty takes from the distances.
+        let own = 2.0 * (mode.relative + f64::EPSILON) * mu;
+        let (alpha, beta) = (bracket.lo * (1.0 + 2.0 * eta), bracket.hi * (1.0 - 2.0 * eta));
+        let (down, up) = (mu - own - alpha, beta - own - mu);
+        let inside = mode.residual < down && mode.residual < up;
+        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.relative * mu;
+        if !inside || radius > (NEGLIGIBLE * mu).max(1.02 * mode.relative * mu) {
+            return None;
+        }
+        let ticks = super::twofold::Twofold { hi: self.string.ticks, lo: 0.0 };
+        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.string.ticks);
+        Some(Edge { entry: self.entry, index: bracket.upto as usize, lo, hi })
+    }
+}
+
+impl Task {
+    /// Takes the quotient as the next guess where it stays inside the bracket.
+    fn follow(&mut self, mode: &Mode) {
+        let mu = mode.quotient.hi;
+        self.rounds += 1;
+        self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds % PATIENCE == 0;
+        self.kappa = mu;
+    }
+}
+
+/// All edges of p/q and ρ, by entry.
+pub fn edges(p: u64, q: u64, rho: &Rational) -> Result<Vec<Option<Edge>>> {
+    let string = HalfString::new(p, q, rho)?;
+    let mut space = Workspace::default();
+    let mut all = Vec::new();
+    for entry in Entry::ALL {
+        let n = string.dimension(entry);
+        if n > 0 {
+            all.extend(string.eigenvalues(entry, 1..=n, &mut space));
+        }
+    }
+    Ok(all)
+}
