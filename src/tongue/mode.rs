@@ -46,6 +46,9 @@ fn power_of_two(e: i64) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
+/// The bits that hold a node's number in [`Workspace::twist`]: as many as the longest string needs.
+const NODE_NUMBER: u64 = (1 << 24) - 1;
+
 /// The factors that join the two recurrences to one vector, by block.
 struct Joint {
     at: Lanes,
@@ -57,21 +60,42 @@ impl Workspace {
     /// The modes near κ, one for each lane.
     pub fn modes(&mut self, string: &HalfString, entry: Entry, kappa: &Lanes) -> [Mode; LANES] {
         let kicks = string.kicks(kappa);
-        self.run_forward(string, entry, &kicks);
-        self.run_backward(string, entry, &kicks);
         // Σ z'² and Σ d'² of n terms below 2^(2 bits + 2) must stay below 2^53.
         let count = 64 - (string.nodes.len() as u64).leading_zeros();
         let bits = ((50 - count as i32) / 2).min(20);
-        let joint = self.join(&self.twist(), 2f64.powi(bits));
         let mut sums = Sums::new(string, entry, bits);
-        for j in 0..=string.end(entry) {
-            let (block, position) = (j / BLOCK, j as f64);
-            let (f, b) = (&joint.forward[block], &joint.backward[block]);
-            let (x, y) = (&self.forward[j], &self.backward[j]);
-            let z = lanes(|i| if position <= joint.at[i] { x[i] * f[i] } else { y[i] * b[i] });
-            sums.add(j, z, &kicks);
-        }
+        self.vectors(string, entry, &kicks, 2f64.powi(bits), |j, z| sums.add(j, z, &kicks));
         sums.finish()
+    }
+
+    /// The Rayleigh quotients of the modes near κ, as near as doubles get and without proof.
+    pub fn quotients(&mut self, string: &HalfString, entry: Entry, kappa: &Lanes) -> Lanes {
+        let (mut springs, mut masses, mut last) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        self.vectors(string, entry, &string.kicks(kappa), 1.0, |j, z| {
+            let (mass, stiffness) = (string.mass(j), if j > 0 { string.nodes[j].inverse } else { 0.0 });
+            for i in 0..LANES {
+                let d = z[i] - last[i];
+                springs[i] += d * d * stiffness;
+                masses[i] += z[i] * z[i] * mass;
+            }
+            last = z;
+        });
+        lanes(|i| springs[i] / masses[i])
+    }
+
+    /// Hands the amplitudes z_0, z_1, ... of the modes to `each`, |z_r| = `size`.
+    fn vectors(&mut self, string: &HalfString, entry: Entry, kicks: &Kicks, size: f64, mut each: impl FnMut(usize, Lanes)) {
+        self.run_forward(string, entry, kicks);
+        self.run_backward(string, entry, kicks);
+        let joint = self.join(&self.twist(), size);
+        for (block, (forward, backward)) in self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).enumerate() {
+            let (f, b) = (&joint.forward[block], &joint.backward[block]);
+            for (k, (x, y)) in forward.iter().zip(backward).enumerate() {
+                let j = block * BLOCK + k;
+                let z = lanes(|i| if j as f64 <= joint.at[i] { x[i] * f[i] } else { y[i] * b[i] });
+                each(j, z);
+            }
+        }
     }
 
     fn run_forward(&mut self, string: &HalfString, entry: Entry, kicks: &Kicks) {
@@ -126,22 +150,22 @@ impl Workspace {
         let sums: Vec<[i64; LANES]> =
             exponents.map(|(f, b)| std::array::from_fn(|i| f[i] + b[i])).collect();
         let top: [i64; LANES] = std::array::from_fn(|i| sums.iter().map(|s| s[i]).max().unwrap_or(0));
-        let (mut best, mut at) = ([-1.0; LANES], [0.0; LANES]);
+        let mut best = [0.0; LANES];
         let pairs = self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).zip(&sums);
         for (block, ((forward, backward), sum)) in pairs.enumerate() {
             // 2^-400 keeps the product of two blocks' growths in range.
             let factor = lanes(|i| power_of_two(sum[i] - top[i]) * 2f64.powi(-400));
             for (k, (x, y)) in forward.iter().zip(backward).enumerate() {
-                let j = (block * BLOCK + k) as f64;
+                let j = (block * BLOCK + k) as u64;
                 for i in 0..LANES {
-                    let product = (x[i] * factor[i]).abs() * y[i].abs();
-                    let better = product > best[i];
-                    best[i] = if better { product } else { best[i] };
-                    at[i] = if better { j } else { at[i] };
+                    // The node's number takes the product's last bits: a maximum without branches.
+                    let product = ((x[i] * factor[i]) * y[i]).abs().to_bits();
+                    let marked = f64::from_bits((product & !NODE_NUMBER) | j);
+                    best[i] = if marked > best[i] { marked } else { best[i] };
                 }
             }
         }
-        at.map(|j| j as usize)
+        best.map(|marked: f64| ((marked.to_bits() & NODE_NUMBER) as usize).min(self.forward.len() - 1))
     }
 
     /// Scales both halves to |z_r| = `size`.
@@ -197,7 +221,8 @@ struct Sums<'a> {
     /// Σ d²/ℓ.
     springs: Square,
     residual: Lanes,
-    largest: Lanes,
+    /// The exponent bits that any z on its way to the grid changed: none, if all were in range.
+    strayed: [u64; LANES],
     z: Lanes,
     force: Lanes,
 }
@@ -213,7 +238,7 @@ impl<'a> Sums<'a> {
             slow: Square::ZERO,
             springs: Square::ZERO,
             residual: zero,
-            largest: zero,
+            strayed: [0; LANES],
             z: zero,
             force: zero,
         }
@@ -222,8 +247,9 @@ impl<'a> Sums<'a> {
     /// Adds node j with amplitude z, and the spring before it.
     fn add(&mut self, j: usize, z: Lanes, kicks: &Kicks) {
         let (node, n) = (&self.string.nodes[j], self.string.end(self.entry));
-        let z = z.map(|z| (z + self.to_grid) - self.to_grid);
-        (0..LANES).for_each(|i| self.largest[i] = self.largest[i].max(z[i].abs()));
+        let raised = z.map(|z| z + self.to_grid);
+        (0..LANES).for_each(|i| self.strayed[i] |= raised[i].to_bits() ^ self.to_grid.to_bits());
+        let z = raised.map(|z| z - self.to_grid);
         if j > 0 {
             let force = self.add_spring(j, &z);
             if j > 1 || self.entry.starts_free() {
@@ -292,7 +318,7 @@ impl<'a> Sums<'a> {
         let relative = 1.01 * (springs_loss / springs.hi + mass_loss / mass.hi) + 2f64.powi(-96);
         let residual = (1.01 * self.residual[i] / mass.hi).sqrt();
         // A vector off the grid's range proves nothing.
-        let in_range = self.largest[i] * 4.0 < self.to_grid;
+        let in_range = self.strayed[i] >> 52 == 0;
         let residual = if in_range && residual.is_finite() { residual } else { f64::INFINITY };
         Mode { quotient: springs.over(mass), relative, residual }
     }

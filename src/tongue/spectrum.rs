@@ -34,6 +34,10 @@ const ROUNDS: u32 = 60;
 /// Quotients that may follow one another before the bracket is halved: they converge cubically or not at all.
 const PATIENCE: u32 = 6;
 
+/// A quotient that moved by less than this part of its distance to the neighbours is close: its own error is
+/// about the cube of that.
+const CLOSE: f64 = 1e-4;
+
 /// An uncertainty of the quotient that no double shows.
 const NEGLIGIBLE: f64 = 1e-18;
 
@@ -121,6 +125,16 @@ impl Task {
     }
 }
 
+/// Takes up to [`LANES`] tasks off the list.
+fn next_batch(tasks: &mut Vec<Task>) -> Vec<Task> {
+    tasks.split_off(tasks.len().saturating_sub(LANES))
+}
+
+/// The guesses of a batch, the last one repeated in the lanes left over.
+fn guesses(batch: &[Task]) -> Lanes {
+    lanes(|i| batch[i.min(batch.len() - 1)].kappa)
+}
+
 fn middle(bracket: &Bracket) -> f64 {
     (0.5 * (bracket.lo.sqrt() + bracket.hi.sqrt())).powi(2)
 }
@@ -133,22 +147,30 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Works on up to [`LANES`] tasks at a time until none is left.
+    /// Works on up to [`LANES`] tasks at a time: first brings them near, then certifies them.
     fn run(&mut self, mut found: impl FnMut(Edge)) {
+        let mut near = Vec::with_capacity(self.tasks.len());
         while !self.tasks.is_empty() {
-            let mut batch = self.tasks.split_off(self.tasks.len().saturating_sub(LANES));
+            let mut batch = next_batch(&mut self.tasks);
             self.halve(&mut batch);
-            let kappa = lanes(|i| batch[i.min(batch.len() - 1)].kappa);
-            let modes = self.space.modes(self.string, self.entry, &kappa);
+            let quotients = self.space.quotients(self.string, self.entry, &guesses(&batch));
+            for (mut task, mu) in batch.into_iter().zip(quotients) {
+                let shift = (mu - task.kappa).abs();
+                task.follow(mu);
+                let distance = (mu - task.bracket.lo).min(task.bracket.hi - mu);
+                let close = !task.astray && shift <= CLOSE * distance;
+                if close || task.rounds >= ROUNDS { near.push(task) } else { self.tasks.push(task) }
+            }
+        }
+        while !near.is_empty() {
+            let batch = next_batch(&mut near);
+            let modes = self.space.modes(self.string, self.entry, &guesses(&batch));
             for (mut task, mode) in batch.into_iter().zip(modes) {
+                task.follow(mode.quotient.hi);
                 match self.certified(&task.bracket, &mode) {
                     Some(edge) => found(edge),
-                    None => {
-                        task.follow(&mode);
-                        if task.rounds < ROUNDS {
-                            self.tasks.push(task);
-                        }
-                    }
+                    None if task.rounds < ROUNDS => near.push(task),
+                    None => {}
                 }
             }
         }
@@ -159,7 +181,7 @@ impl Search<'_> {
         if batch.iter().all(|task| !task.astray) {
             return;
         }
-        let kappa: Lanes = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
+        let kappa = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
         let counts = self.string.counts(self.entry, &kappa);
         for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
             if task.astray {
@@ -191,8 +213,7 @@ impl Search<'_> {
 
 impl Task {
     /// Takes the quotient as the next guess where it stays inside the bracket.
-    fn follow(&mut self, mode: &Mode) {
-        let mu = mode.quotient.hi;
+    fn follow(&mut self, mu: f64) {
         self.rounds += 1;
         self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds % PATIENCE == 0;
         self.kappa = mu;
