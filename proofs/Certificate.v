@@ -8,7 +8,7 @@
     - [certificate]              check = true proves the verdict about the real full-period propagator;
     - [certify]                  the tactic that generated files use: one vm_compute.                  *)
 
-From Kickdrift Require Import Vocabulary Algebra TwoClocks Stability.
+From Kickdrift Require Import Vocabulary Algebra TwoClocks SignTable.
 From Coq Require Import Reals Qreals QArith ZArith List Arith Bool Lia Lra Psatz.
 
 (** ** The computation *)

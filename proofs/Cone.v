@@ -9,7 +9,7 @@
     - [cone_criterion]  a cone mapped into its interior: Tr > 2; into the opposite interior: Tr < -2;
     - [cone_hyperbolic] ... hence exponential growth.                                             *)
 
-From Kickdrift Require Import Vocabulary Algebra Stability Perturbation.
+From Kickdrift Require Import Vocabulary Algebra Stability Plane.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
 

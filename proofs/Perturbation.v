@@ -9,61 +9,16 @@
     long the orbit has become: a sign is certified although the orbit grows.
 
     - [perturbed_orbit]   the bound;
-    - [sign_certificate]  a linear form <n, uh_k> that is large enough has the sign of <n, u_k>.   *)
+    - [sign_certificate]  a linear form <v, uh_k> that is large enough has the sign of <v, u_k>;
+    - [sign_certificate_rounded]
+                          the same when the form itself is only known to within delta;
+    - [contained_inverse], [shrink_bound]
+                          |M y| <= kappa |y| bounds the inverse too, so g = kappa / (1 - kappa eps) will do;
+    - [update_contained]  a Floquet update has kappa = 1 + |k| (E^2 + O^2).                         *)
 
-From Kickdrift Require Import Vocabulary Algebra Stability.
+From Kickdrift Require Import Vocabulary Algebra Floquet Plane.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
-
-(** ** Plane vectors *)
-
-Definition dot (u w : vec) := position u * position w + velocity u * velocity w.
-Definition cross (u w : vec) := position u * velocity w - velocity u * position w.          (* det (u, w) *)
-Definition len (u : vec) := sqrt (dot u u).
-Definition J (u : vec) := Vec (- velocity u) (position u).                         (* a quarter turn *)
-Definition add (u w : vec) := Vec (position u + position w) (velocity u + velocity w).
-Definition smul (x : R) (u : vec) := Vec (x * position u) (x * velocity u).
-Definition zero := Vec 0 0.
-
-Ltac coordinates := unfold dot, cross, J, add, smul, act, det, zero in *; simpl in *.
-
-Lemma vec_ext u w : position u = position w -> velocity u = velocity w -> u = w.
-Proof. destruct u, w; simpl; congruence. Qed.
-
-Lemma len_nonneg u : 0 <= len u.
-Proof. apply sqrt_pos. Qed.
-
-Lemma len_sqr u : len u * len u = dot u u.
-Proof. apply sqrt_sqrt; coordinates; nra. Qed.
-
-Lemma len_pos u : u <> zero -> 0 < len u.
-Proof.
-  intros N; apply sqrt_lt_R0; destruct (Req_dec (position u) 0) as [A|A], (Req_dec (velocity u) 0) as [B|B];
-    [exfalso; apply N; now apply vec_ext | coordinates; nra ..].
-Qed.
-
-Lemma len_J u : len (J u) = len u.
-Proof. unfold len; f_equal; coordinates; ring. Qed.
-
-(** Lagrange's identity gives both inequalities of Cauchy and Schwarz. *)
-Lemma lagrange u w : dot u w * dot u w + cross u w * cross u w = dot u u * dot w w.
-Proof. coordinates; ring. Qed.
-
-Lemma dot_le u w : Rabs (dot u w) <= len u * len w.
-Proof.
-  pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply sqr_le_abs; [nra|].
-  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
-  rewrite <- lagrange; nra.
-Qed.
-
-Lemma cross_le u w : Rabs (cross u w) <= len u * len w.
-Proof.
-  pose proof (len_nonneg u); pose proof (len_nonneg w).
-  apply sqr_le_abs; [nra|].
-  replace (len u * len w * (len u * len w)) with (dot u u * dot w w) by (rewrite <- !len_sqr; ring).
-  rewrite <- lagrange; nra.
-Qed.
 
 (** ** Bernoulli's inequality, both ways *)
 
@@ -83,15 +38,6 @@ Proof.
   apply Rle_trans with ((1 + x) ^ n * (1 - x) ^ n); [nra|].
   rewrite <- Rpow_mult_distr; replace ((1 + x) * (1 - x)) with (1 - x * x) by ring.
   apply Rle_trans with (1 ^ n); [apply pow_incr; split; nra | rewrite pow1; lra].
-Qed.
-
-(** Coordinates in the orthogonal frame (w, J w). *)
-Lemma frame w v : w <> zero ->
-  v = add (smul (dot w v / (len w * len w)) w) (smul (cross w v / (len w * len w)) (J w)).
-Proof.
-  intros Z; pose proof (len_pos w Z) as P; pose proof (len_sqr w) as S.
-  assert (0 < dot w w) by nra; rewrite S.
-  apply vec_ext; coordinates; field; lra.
 Qed.
 
 (** ** One step *)
@@ -147,7 +93,7 @@ Qed.
 
 Lemma alpha_bounds : 1 - omega <= alpha <= 1 + omega.
 Proof.
-  pose proof alpha_near as A; apply Rabs_def2 in A || idtac.
+  pose proof alpha_near as A.
   unfold Rabs in A; destruct Rcase_abs; lra.
 Qed.
 
@@ -243,7 +189,7 @@ Proof.
   apply Rmult_le_reg_r with (1 - INR k * x); [lra|]. nra.
 Qed.
 
-(** One step's bound, multiplied out, for the running sum (without powers). *)
+(** The exact orbit in the frame of the computed one. *)
 Theorem perturbed_orbit k :
   (k <= n)%nat ->
   exists a t,
@@ -342,4 +288,88 @@ Proof.
   assert (0 < (d + e) * d) by (unfold Rabs in Y; destruct (Rcase_abs e), (Rcase_abs d); nra).
   nra.
 Qed.
+
+(** The form may be rounded too: v is meant, vh is at hand. *)
+Theorem sign_certificate_rounded k v vh delta :
+  (k <= n)%nat ->
+  len (add v (smul (-1) vh)) <= delta ->
+  2 * b k * (len vh + delta) + delta * (len (uh k) * len (uh k)) < Rabs (dot vh (uh k)) * len (uh k) ->
+  0 < dot v (u k) * dot vh (uh k).
+Proof.
+  intros L Dl S; pose proof (len_pos _ (nonzero k L)) as P.
+  assert (B : 0 <= b k).
+  { clear S; induction k as [|k IH]; [exact b_start|].
+    pose proof (b_step k ltac:(lia)); pose proof (len_nonneg (r k)); pose proof (len_nonneg (uh (S k))).
+    assert (0 <= len (r k) * len (uh (S k))) by nra.
+    pose proof (IH ltac:(lia) (len_pos _ (nonzero k ltac:(lia)))); lra. }
+  set (e := add v (smul (-1) vh)) in *.
+  assert (V : v = add vh e) by (apply vec_ext; unfold e; simpl; ring).
+  pose proof (dot_le e (uh k)) as De; pose proof (len_nonneg e).
+  assert (De' : Rabs (dot e (uh k)) <= delta * len (uh k)) by nra.
+  assert (Sp : dot v (uh k) = dot vh (uh k) + dot e (uh k)) by (rewrite V; coordinates; ring).
+  assert (Lv : len v <= len vh + delta).
+  { apply Rle_trans with (len vh + len e); [|lra]; rewrite V.
+    pose proof (len_nonneg vh); apply Rsqr_incr_0_var; [|lra]; unfold Rsqr.
+    rewrite len_sqr; pose proof (dot_le vh e) as C; pose proof (len_sqr vh); pose proof (len_sqr e).
+    pose proof (Rle_abs (dot vh e)).
+    replace (dot (add vh e) (add vh e)) with (dot vh vh + 2 * dot vh e + dot e e) by (coordinates; ring); nra. }
+  assert (Close : 2 * b k * len v < (Rabs (dot vh (uh k)) - delta * len (uh k)) * len (uh k)).
+  { apply Rle_lt_trans with (2 * b k * (len vh + delta)); [apply Rmult_le_compat_l; lra | lra]. }
+  assert (Bd : 0 <= 2 * b k * len v) by (pose proof (len_nonneg v); nra).
+  assert (Big : delta * len (uh k) < Rabs (dot vh (uh k))) by nra.
+  assert (Same : 0 < dot v (uh k) * dot vh (uh k) /\ Rabs (dot vh (uh k)) - delta * len (uh k) <= Rabs (dot v (uh k))).
+  { rewrite Sp; split; unfold Rabs in *; destruct (Rcase_abs (dot vh (uh k))), (Rcase_abs (dot e (uh k)));
+      try destruct Rcase_abs; nra. }
+  destruct Same as [Same Far].
+  assert (C : 0 < dot v (u k) * dot v (uh k)).
+  { apply sign_certificate; [exact L|]; eapply Rlt_le_trans; [exact Close|].
+    apply Rmult_le_compat_r; lra. }
+  destruct (Rtotal_order (dot v (uh k)) 0) as [X|[X|X]]; nra.
+Qed.
 End Orbit.
+
+(** ** Where kappa and g come from *)
+
+Theorem contained_inverse M kappa :
+  det M = 1 -> (forall y, len (M @ y) <= kappa * len y) -> forall y, len y <= kappa * len (M @ y).
+Proof.
+  intros D K y; pose proof (len_nonneg y) as [P|P]; [|rewrite <- P; pose proof (K y) as Ky].
+  - apply Rmult_le_reg_l with (len y); [exact P|].
+    rewrite len_sqr; replace (dot y y) with (cross (M @ y) (M @ J y)).
+    2: { transitivity (det M * dot y y); [coordinates; ring | rewrite D; ring]. }
+    eapply Rle_trans; [apply Rle_abs|]; eapply Rle_trans; [apply cross_le|].
+    pose proof (K (J y)) as Kj; rewrite len_J in Kj; pose proof (len_nonneg (M @ y)); nra.
+  - pose proof (len_nonneg (M @ y)); rewrite <- P in Ky.
+    replace (len (M @ y)) with 0 by lra; lra.
+Qed.
+
+Theorem shrink_bound M uh r kappa eps :
+  det M = 1 -> (forall y, len (M @ y) <= kappa * len y) ->
+  0 <= kappa -> kappa * eps < 1 -> len r <= eps * len uh ->
+  len uh <= kappa / (1 - kappa * eps) * len (add (M @ uh) r).
+Proof.
+  intros D K P S R; pose proof (contained_inverse M kappa D K uh) as I.
+  pose proof (len_triangle (add (M @ uh) r) (smul (-1) r)) as T.
+  rewrite len_smul, (Rabs_left (-1)) in T by lra.
+  replace (add (add (M @ uh) r) (smul (-1) r)) with (M @ uh) in T by (apply vec_ext; coordinates; ring).
+  apply Rmult_le_reg_l with (1 - kappa * eps); [lra|].
+  replace ((1 - kappa * eps) * (kappa / (1 - kappa * eps) * len (add (M @ uh) r)))
+    with (kappa * len (add (M @ uh) r)) by (field; lra).
+  assert (kappa * len (M @ uh) <= kappa * (len (add (M @ uh) r) + eps * len uh)) by (apply Rmult_le_compat_l; lra).
+  nra.
+Qed.
+
+Theorem update_contained k e o y :
+  det (update k e o) = 1 /\ len (update k e o @ y) <= (1 + Rabs k * (e * e + o * o)) * len y.
+Proof.
+  split; [coordinates; ring|].
+  set (f := Vec e o).
+  replace (update k e o @ y) with (add y (smul (- (k * dot f y)) (J f))) by (apply vec_ext; coordinates; ring).
+  eapply Rle_trans; [apply len_triangle|].
+  rewrite len_smul, len_J, Rabs_Ropp, Rabs_mult.
+  replace (e * e + o * o) with (len f * len f) by (rewrite len_sqr; coordinates; ring).
+  pose proof (dot_le f y); pose proof (len_nonneg f); pose proof (Rabs_pos k).
+  assert (Rabs (dot f y) * len f <= len f * len y * len f) by (apply Rmult_le_compat_r; assumption).
+  assert (Rabs k * (Rabs (dot f y) * len f) <= Rabs k * (len f * len y * len f)) by (apply Rmult_le_compat_l; assumption).
+  nra.
+Qed.

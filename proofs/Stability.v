@@ -4,14 +4,9 @@
     - [elliptic], [hyperbolic], [parabolic]
                            bounded, exponential and linear growth;
     - [bounded_iff]        powers are bounded iff |Tr Q| < 2 or Q = I or Q = -I;
-    - [four_signs]         the seven rows of the four-sign table, as equivalences;
-    - [row_total], [behaves_unique]
-                           each half period lies in exactly one row;
-    - [two_clocks_verdict] hence the verdict on two clocks is a row of the half period;
-    - [staggered_bounded]  the event loop (Algorithm 1) and the symmetric form are stable together;
-    - [verlet]             velocity Verlet: bounded iff 0 < h^2 L < 4 (h <> 0).    *)
+    - [verlet]             velocity Verlet: bounded iff 0 < h^2 L < 4 (h <> 0).                 *)
 
-From Kickdrift Require Import Vocabulary Algebra TwoClocks.
+From Kickdrift Require Import Vocabulary Algebra.
 From Coq Require Import Reals Lra Lia Psatz.
 Open Scope R_scope.
 
@@ -313,101 +308,6 @@ Proof.
     destruct (Dec Q one) as [|N1]; [now left|]; destruct (Dec Q (opp one)) as [|N2]; [now right|].
     exfalso; eapply linear_unbounded; [|exact B]; now apply parabolic.
   - intros [T|[-> | ->]]; [now apply elliptic | exact bounded_one | apply bounded_opp; exact bounded_one].
-Qed.
-
-(** ** The four-sign table *)
-
-Lemma row_total H : exists k, row k H.
-Proof.
-  destruct (Rtotal_order (mB H * mC H) 0) as [BC|[BC|BC]].
-  - destruct (Rtotal_order (mA H * mD H) 0) as [AD|[AD|AD]].
-    + exists (Hyperbolic Minus); exact AD.
-    + destruct (Req_dec (mA H) 0), (Req_dec (mD H) 0).
-      * exists (Coexistence Minus); simpl; tauto.
-      * exists (Parabolic Minus); simpl; tauto.
-      * exists (Parabolic Minus); simpl; tauto.
-      * nra.
-    + exists Elliptic; simpl; lra.
-  - destruct (Req_dec (mB H) 0), (Req_dec (mC H) 0).
-    + exists (Coexistence Plus); simpl; tauto.
-    + exists (Parabolic Plus); simpl; tauto.
-    + exists (Parabolic Plus); simpl; tauto.
-    + nra.
-  - exists (Hyperbolic Plus); exact BC.
-Qed.
-
-Lemma behaves_unique k k' Q : behaves k Q -> behaves k' Q -> k = k'.
-Proof.
-  destruct k as [|[]|[]|[]], k' as [|[]|[]|[]]; simpl; intros [A B] [A' B']; try reflexivity; exfalso;
-    try (rewrite A in A'); try (rewrite A' in A); unfold tr in *; simpl in *;
-    first [lra | now apply linear_unbounded in B | now apply linear_unbounded in B' | idtac].
-  all: injection A'; lra.
-Qed.
-
-Lemma factor_zero x y : x * y + y * x = 0 -> y <> 0 -> x = 0.
-Proof. intros E N; apply Rmult_eq_reg_r with y; lra. Qed.
-
-Lemma row_behaves k H : det H = 1 -> row k H -> behaves k (mirror H ** H).
-Proof.
-  intros D; set (Q := mirror H ** H).
-  assert (DQ : det Q = 1) by (unfold Q, det in *; simpl; nra).
-  assert (T1 : tr Q - 2 = 4 * (mB H * mC H)) by (unfold Q, tr, det in *; simpl; nra).
-  assert (T2 : tr Q + 2 = 4 * (mA H * mD H)) by (unfold Q, tr, det in *; simpl; nra).
-  destruct k as [|[]|[]|[]]; simpl; intros R.
-  - assert (T : -2 < tr Q < 2) by lra; split; [exact T | now apply elliptic].
-  - assert (T : 2 < tr Q) by lra; split; [exact T | apply hyperbolic; [assumption | rewrite Rabs_pos_eq; lra]].
-  - assert (T : tr Q < -2) by lra; split; [exact T | apply hyperbolic; [assumption | rewrite Rabs_left; lra]].
-  - assert (T : tr Q = 2) by (destruct R as [[R _]|[_ R]]; rewrite R in T1; lra).
-    split; [exact T | apply parabolic; [assumption | rewrite Rabs_pos_eq; lra | | ]]; intros E.
-    + unfold Q in E; injection E; intros _ C B _; unfold det in D; destruct R as [[R N]|[N R]]; rewrite R in *.
-      * assert (Z := factor_zero (mA H) (mC H)); rewrite Z in D; lra.
-      * assert (Z := factor_zero (mD H) (mB H)); rewrite Z in D; lra.
-    + rewrite E in T; unfold tr in T; simpl in T; lra.
-  - assert (T : tr Q = -2) by (destruct R as [[R _]|[_ R]]; rewrite R in T2; lra).
-    split; [exact T | apply parabolic; [assumption | rewrite Rabs_left; lra | | ]]; intros E.
-    + rewrite E in T; unfold tr in T; simpl in T; lra.
-    + unfold Q in E; injection E; intros _ C B _; unfold det in D; destruct R as [[R N]|[N R]]; rewrite R in *.
-      * assert (Z := factor_zero (mB H) (mD H)); rewrite Z in D; lra.
-      * assert (Z := factor_zero (mC H) (mA H)); rewrite Z in D; lra.
-  - assert (E : Q = one); [|split; [exact E | rewrite E; exact bounded_one]].
-    destruct R as [B C]; unfold Q, det in *; apply mat_ext; simpl; rewrite B, C in *; lra.
-  - assert (E : Q = opp one); [|split; [exact E | rewrite E; apply bounded_opp; exact bounded_one]].
-    destruct R as [A C]; unfold Q, det in *; apply mat_ext; simpl; rewrite A, C in *; lra.
-Qed.
-
-Theorem four_signs k H : det H = 1 -> row k H <-> behaves k (mirror H ** H).
-Proof.
-  intros D; split; [now apply row_behaves|]; intros B.
-  destruct (row_total H) as [k' R].
-  now rewrite (behaves_unique k k' _ B (row_behaves k' H D R)).
-Qed.
-
-Theorem row_unique k k' H : det H = 1 -> row k H -> row k' H -> k = k'.
-Proof. intros D R R'; apply (behaves_unique k k' (mirror H ** H)); now apply row_behaves. Qed.
-
-(** ** Two clocks *)
-
-Theorem two_clocks_verdict k p q h1 L1 h2 L2 :
-  (1 <= p)%nat -> (1 <= q)%nat ->
-  behaves k (full_period p q h1 L1 h2 L2) <-> row k (half_period p q h1 L1 h2 L2).
-Proof.
-  intros P Q; destruct (full_period_mirror p q h1 L1 h2 L2 P Q) as (D & -> & _).
-  symmetry; now apply four_signs.
-Qed.
-
-(** The event loop's product and the symmetric one are stable together. *)
-Theorem staggered_bounded f d n :
-  f n = f O -> bounded_powers (propagator (staggered f d n)) <-> bounded_powers (propagator (schedule f d n)).
-Proof.
-  intros E; rewrite !bounded_iff, (staggered_trace f d n E) by apply det_propagator.
-  pose proof (staggered_conjugate f d n) as C; rewrite E in C; set (h := f O / 2) in *.
-  assert (I : forall M N X, kick h ** M = N ** kick h -> kick h ** X = X ** kick h -> (M = X <-> N = X)).
-  { intros M N X MN XX; split; intros ->.
-    - transitivity (N ** kick h ** kick (- h)); [rewrite <- mul_assoc, kick_add, Rplus_opp_r, kick_zero; now rewrite mul_one_r|].
-      now rewrite <- MN, XX, <- mul_assoc, kick_add, Rplus_opp_r, kick_zero, mul_one_r.
-    - transitivity (kick (- h) ** (kick h ** M)); [rewrite mul_assoc, kick_add, Rplus_opp_l, kick_zero; now rewrite mul_one_l|].
-      now rewrite MN, <- XX, mul_assoc, kick_add, Rplus_opp_l, kick_zero, mul_one_l. }
-  rewrite (I _ _ one C), (I _ _ (opp one) C) by matrix_ring; reflexivity.
 Qed.
 
 (** ** Velocity Verlet, eq. (1) of the paper *)

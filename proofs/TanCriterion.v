@@ -319,27 +319,35 @@ Qed.
 Theorem tan_criterion_q2 :
   let Q := full_period p 2 h1 L1 h2 L2 in
   let t := tan phi in
-  cos phi <> 0 ->
-  (2 < tr Q  <-> t * (t * (1 - alpha * alpha * c2) + alpha * (1 + c2)) < 0) /\
-  (tr Q < -2 <-> (1 - alpha * t) * (1 - alpha * c2 * t) < 0).
+  (cos phi <> 0 ->
+     (2 < tr Q  <-> t * (t * (1 - alpha * alpha * c2) + alpha * (1 + c2)) < 0) /\
+     (tr Q < -2 <-> (1 - alpha * t) * (1 - alpha * c2 * t) < 0)) /\
+  (cos phi = 0 -> (2 < tr Q <-> 1 < alpha * alpha * c2) /\ ~ tr Q < -2).
 Proof.
-  intros Q t N.
+  intros Q t.
   destruct (forms_traces p 2 h1 L1 h2 L2 th p_pos ltac:(lia) h1_pos th_range s_th) as [T1 T2].
   unfold formA, formB, formC, formD in T1, T2; rewrite gather_q2 in T1, T2; fold phi Q in T1, T2; simpl in T1, T2.
+  pose proof (sin2_cos2 phi) as S; unfold Rsqr in S.
   set (c := cos phi) in *; set (x := cos (th / 2)) in *.
-  assert (St : sin phi = t * c) by (unfold t, tan, c; field; exact N).
-  assert (S : t * c * (t * c) + c * c = 1) by (rewrite <- St; apply (sin2_cos2 phi)).
-  rewrite St in T1, T2; clearbody t c x.
-  assert (P : tr Q - 2 = - (4 * (c * c * (t * (t * (1 - alpha * alpha * c2) + alpha * (1 + c2)))))).
-  { rewrite T1; transitivity (- (4 * (c * c * (t * (t + alpha +
-      (alpha * x * x - alpha * alpha * x * x * t) * (t * c * (t * c) + c * c)))))); [ring|].
-    rewrite S; unfold c2; ring. }
-  assert (P' : tr Q + 2 = 4 * (c * c * ((1 - alpha * t) * (1 - alpha * c2 * t)))).
-  { rewrite T2; transitivity (4 * (c * c * ((1 - alpha * t) *
-      (1 - alpha * x * x * t * (t * c * (t * c) + c * c))))); [ring|].
-    rewrite S; unfold c2; ring. }
-  destruct (scaled_sign c _ _ N (eq_refl (c * c * (t * (t * (1 - alpha * alpha * c2) + alpha * (1 + c2)))))) as [_ <-].
-  destruct (scaled_sign c _ _ N (eq_refl (c * c * ((1 - alpha * t) * (1 - alpha * c2 * t))))) as [_ <-].
-  split; split; lra.
+  assert (X : c2 = x * x) by reflexivity; clearbody c2 x; subst c2.
+  split; intros N.
+  - assert (St : sin phi = t * c) by (unfold t, tan, c; field; exact N).
+    rewrite St in T1, T2, S; clearbody t c.
+    assert (P : tr Q - 2 = - (4 * (c * c * (t * (t * (1 - alpha * alpha * (x * x)) + alpha * (1 + x * x)))))).
+    { rewrite T1; transitivity (- (4 * (c * c * (t * (t + alpha +
+        (alpha * x * x - alpha * alpha * x * x * t) * (t * c * (t * c) + c * c)))))); [ring|].
+      rewrite S; ring. }
+    assert (P' : tr Q + 2 = 4 * (c * c * ((1 - alpha * t) * (1 - alpha * (x * x) * t)))).
+    { rewrite T2; transitivity (4 * (c * c * ((1 - alpha * t) *
+        (1 - alpha * x * x * t * (t * c * (t * c) + c * c))))); [ring|].
+      rewrite S; ring. }
+    destruct (scaled_sign c _ _ N (eq_refl (c * c * (t * (t * (1 - alpha * alpha * (x * x)) + alpha * (1 + x * x)))))) as [_ <-].
+    destruct (scaled_sign c _ _ N (eq_refl (c * c * ((1 - alpha * t) * (1 - alpha * (x * x) * t))))) as [_ <-].
+    split; split; lra.
+  - rewrite N in T1, T2, S; set (y := sin phi) in *; clearbody c y.
+    assert (P : tr Q - 2 = - (4 * (y * y * (1 - alpha * alpha * (x * x) * (y * y + 0 * 0))))) by (rewrite T1; ring).
+    assert (P' : tr Q + 2 = 4 * (alpha * x * y * y * (alpha * x * y * y))) by (rewrite T2; ring).
+    rewrite S in P; replace (y * y) with 1 in P by lra.
+    pose proof (Rle_0_sqr (alpha * x * y * y)) as Sq; unfold Rsqr in Sq; split; [split|]; lra.
 Qed.
 End SmallQ.

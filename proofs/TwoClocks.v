@@ -8,6 +8,9 @@
     - [full_period_mirror]
                         Q = mirror H ** H with H the half period, hence the two trace identities;
     - [strikes_middle]  a kick stands at T/2 iff p (fast) or q (slow) is even;
+    - [swap_clocks]     the two clocks may change their names;
+    - [many_clocks_palindrome]
+                        the same for any number of clocks;
     - [event_loop_trace]
                         the staggered algorithm (Algorithm 1 of the paper) has the same trace.        *)
 
@@ -110,6 +113,31 @@ Lemma strikes_middle m n : (1 <= m)%nat -> strikes m false (n * m) = Nat.even n.
 Proof.
   intros M; apply Bool.eq_iff_eq_true; rewrite strikes_spec, Nat.even_spec by assumption.
   split; intros [k K]; exists k; nia.
+Qed.
+
+Theorem swap_clocks p q h1 L1 h2 L2 :
+  (1 <= p)%nat -> (1 <= q)%nat -> INR p * h1 = INR q * h2 ->
+  full_period q p h2 L2 h1 L1 = full_period p q h1 L1 h2 L2.
+Proof.
+  intros P Q E; unfold full_period; rewrite <- (tick_slow p q h1 h2 P Q E), (Nat.mul_comm q p).
+  f_equal; apply schedule_ext; intros j _; unfold two_clocks; ring.
+Qed.
+
+(** ** Any number of clocks *)
+
+Theorem many_clocks_palindrome clocks d n :
+  (forall m late k, In (m, late, k) clocks -> (1 <= m)%nat /\ exists c, n = (c * m)%nat) ->
+  let f := many_clocks clocks in
+  schedule f d (2 * n) = schedule f d n ++ rev (schedule f d n).
+Proof.
+  intros Fit f; apply palindrome_schedule; intros j J; unfold f; clear f.
+  induction clocks as [|[[m late] k] rest IH]; [reflexivity|].
+  assert (Cons : forall i, many_clocks ((m, late, k) :: rest) i =
+    (if strikes m late i then k else 0) + many_clocks rest i) by reflexivity.
+  rewrite !Cons, IH by (intros; apply (Fit m0 late0 k0); now right).
+  destruct (Fit m late k) as [M [c ->]]; [now left|].
+  replace (2 * (c * m) - j)%nat with (c * (2 * m) - j)%nat by lia.
+  rewrite strikes_mirror by lia; reflexivity.
 Qed.
 
 (** ** The event loop *)

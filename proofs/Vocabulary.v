@@ -10,6 +10,7 @@
     staggered f d n   == the same ticks as the event loop runs them: kick, drift, kick, drift ...
     strikes m late j  == a clock whose step is 2m ticks kicks at tick j (late: phase 1/2)
     two_clocks        == the kicks of the fast clock (step 2q ticks) and the slow one (2p ticks)
+    many_clocks       == the kicks of any list of clocks
     tick, half_period, full_period
                       == the tick h1/(2q), and the propagators over T/2 and T of two clocks with p h1 = q h2
     three_term t a b  == the sequence X_0 = a, X_1 = b, X_{n+2} = t X_{n+1} - X_n
@@ -71,6 +72,10 @@ Definition strikes (m : nat) (late : bool) (j : nat) : bool :=
 
 Definition two_clocks (p q : nat) (late1 late2 : bool) (k1 k2 : R) (j : nat) : R :=
   (if strikes q late1 j then k1 else 0) + (if strikes p late2 j then k2 else 0).
+
+(** Any number of clocks (m, late, k): steps of 2m ticks, phase 0 or 1/2, strength k. *)
+Definition many_clocks (clocks : list (nat * bool * R)) (j : nat) : R :=
+  fold_right (fun '(m, late, k) sum => (if strikes m late j then k else 0) + sum) 0 clocks.
 
 Definition tick (q : nat) (h1 : R) := h1 / (2 * INR q).
 

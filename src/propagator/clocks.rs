@@ -50,7 +50,8 @@ impl Oscillator {
         positive("h1", &h1, "a step must be positive")?;
         positive("h2", &h2, "a step must be positive")?;
         let irrational = || {
-            let remedy = "is not rational: the clocks never meet again; choose commensurable steps";
+            let remedy =
+                "the ratio is irrational, so the clocks never meet again; choose commensurable steps";
             Error::input("h2/h1", format!("({h2})/({h1})"), remedy)
         };
         let ratio = Laurent::ratio(&h2, &h1).ok_or_else(irrational)?;

@@ -16,6 +16,7 @@
 //! ```
 
 mod angle;
+pub mod compare;
 mod curve;
 mod family;
 pub mod proposition;

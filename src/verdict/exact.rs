@@ -52,24 +52,60 @@ impl Decidable for Rational {
     fn half_signs(clocks: &TwoClocks<Rational>) -> HalfSigns {
         let schedule =
             Schedule::two_clocks(clocks.p(), clocks.q()).expect("a period short enough to compose");
-        let [[a, b], [c, d]] = product(&Steps::new(clocks, &schedule), &schedule).0;
+        let [[a, b], [c, d]] = product(&Steps::new(clocks, &schedule), &schedule).entries;
         let sign = |n: &BigInt| Sign::from_ordering(n.cmp(&BigInt::zero()));
         HalfSigns::new(sign(&a), sign(&b), sign(&c), sign(&d))
     }
 }
 
-/// A positive multiple of a matrix of determinant 1.
-struct Matrix([[BigInt; 2]; 2]);
+/// Tr Q = 2 (AD + BC) over the rationals, in lowest terms, by the product tree.
+///
+/// Its denominator divides a power of the strengths' common denominator, so common factors are found by
+/// division by that small number instead of a greatest common divisor of two long ones.
+///
+/// # Panics
+/// Where the period has 2^62 ticks and more.
+pub fn exact_trace(clocks: &TwoClocks<Rational>) -> Rational {
+    let schedule = Schedule::two_clocks(clocks.p(), clocks.q()).expect("a period short enough to compose");
+    let steps = Steps::new(clocks, &schedule);
+    let half = product(&steps, &schedule);
+    let [[a, b], [c, d]] = &half.entries;
+    let mut trace = (a * d + b * c) * 2u8;
+    let mut power = 2 * half.kicks;
+    // Whole factors of the denominator first, then what part of it the last ones still share.
+    while power > 0 && (&trace % &steps.denominator).is_zero() {
+        trace /= &steps.denominator;
+        power -= 1;
+    }
+    let mut denominator = steps.denominator.pow(power);
+    loop {
+        let shared = steps.denominator.gcd(&(&trace % &steps.denominator));
+        let shared = shared.gcd(&(&denominator % &shared));
+        if shared.is_one() || denominator.is_one() {
+            return Rational::new_raw(trace, denominator);
+        }
+        trace /= &shared;
+        denominator /= &shared;
+    }
+}
+
+/// The denominator to the power `kicks` times a matrix of determinant 1.
+struct Matrix {
+    entries: [[BigInt; 2]; 2],
+    kicks: u32,
+}
 
 impl Matrix {
     fn identity() -> Self {
-        Matrix([[BigInt::one(), BigInt::zero()], [BigInt::zero(), BigInt::one()]])
+        let entries = [[BigInt::one(), BigInt::zero()], [BigInt::zero(), BigInt::one()]];
+        Matrix { entries, kicks: 0 }
     }
 
     /// `self · earlier`.
     fn times(&self, earlier: &Matrix) -> Matrix {
-        let ([[a, b], [c, d]], [[e, f], [g, h]]) = (&self.0, &earlier.0);
-        Matrix([[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]])
+        let ([[a, b], [c, d]], [[e, f], [g, h]]) = (&self.entries, &earlier.entries);
+        let entries = [[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]];
+        Matrix { entries, kicks: self.kicks + earlier.kicks }
     }
 }
 
@@ -100,7 +136,8 @@ impl Steps {
             Weight::Full => &self.full[event.kicks as usize],
             Weight::Half => &self.half[event.kicks as usize],
         };
-        let [xs, vs] = &mut m.0;
+        m.kicks += u32::from(event.kicks != 0);
+        let [xs, vs] = &mut m.entries;
         for (x, v) in xs.iter_mut().zip(vs) {
             *x += &*v * event.drift;
             if event.kicks != 0 {
@@ -153,6 +190,9 @@ mod tests {
             let half = half_period(&clocks);
             let plain = HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign());
             prop_assert_eq!(Decidable::half_signs(&clocks), plain);
+            let trace = exact_trace(&clocks);
+            prop_assert_eq!(trace.denom().gcd(trace.numer()), BigInt::one());
+            prop_assert_eq!(trace, half.trace());
         }
     }
 }

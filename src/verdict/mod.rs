@@ -25,10 +25,10 @@ mod floquet;
 mod growth;
 mod kind;
 mod ladder;
-mod refine;
+pub(crate) mod refine;
 mod winding;
 
-pub use exact::Decidable;
+pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
 pub(crate) use ladder::filter_only;

@@ -1,0 +1,340 @@
+(** * The theorems that kickdrift relies on, on one page
+
+    The words are defined in Vocabulary.v (a few at the head of the file that first needs them); the proofs
+    are in the files named. Equation numbers are those of Fong, Darve, Lew, "Stability of Asynchronous
+    Variational Integrators". Assumptions.v prints what each theorem rests on.                         *)
+
+From Coq Require Import Reals ZArith List QArith Qreals.
+From Kickdrift Require Import
+  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Proposition Plane Perturbation
+  Cone Certificate.
+Open Scope R_scope.
+
+(** ** 1. Algebra *)
+
+Theorem det_propagator : forall l, det (propagator l) = 1.
+Proof. exact Algebra.det_propagator. Qed.
+
+Theorem propagator_rev : forall l, propagator (rev l) = mirror (propagator l).
+Proof. exact Algebra.propagator_rev. Qed.
+
+Theorem palindrome : forall h,
+  let H := propagator h in
+  let Q := propagator (h ++ rev h) in
+  Q = mirror H ** H /\ tr Q = 2 * (mA H * mD H + mB H * mC H) /\
+  tr Q - 2 = 4 * (mB H * mC H) /\ tr Q + 2 = 4 * (mA H * mD H).
+Proof. exact Algebra.palindrome. Qed.
+
+(** Ticks that strike are exactly the times n h and, for phase 1/2, (n + 1/2) h. *)
+Theorem strikes_times : forall q h1 j, (1 <= q)%nat -> 0 < h1 ->
+  strikes q false j = true <-> exists n, INR j * tick q h1 = INR n * h1.
+Proof. exact TwoClocks.strikes_times. Qed.
+
+Theorem strikes_times_late : forall q h1 j, (1 <= q)%nat -> 0 < h1 ->
+  strikes q true j = true <-> exists n, INR j * tick q h1 = (INR n + 1 / 2) * h1.
+Proof. exact TwoClocks.strikes_times_late. Qed.
+
+Theorem tick_slow : forall p q h1 h2, (1 <= p)%nat -> (1 <= q)%nat ->
+  INR p * h1 = INR q * h2 -> tick q h1 = tick p h2.
+Proof. exact TwoClocks.tick_slow. Qed.
+
+Theorem two_clocks_palindrome : forall p q late1 late2 k1 k2 d, (1 <= p)%nat -> (1 <= q)%nat ->
+  let f := two_clocks p q late1 late2 k1 k2 in
+  let h := schedule f d (p * q) in
+  schedule f d (2 * (p * q)) = h ++ rev h.
+Proof. exact TwoClocks.two_clocks_palindrome. Qed.
+
+Theorem many_clocks_palindrome : forall clocks d n,
+  (forall m late k, In (m, late, k) clocks -> (1 <= m)%nat /\ exists c, n = (c * m)%nat) ->
+  let f := many_clocks clocks in
+  schedule f d (2 * n) = schedule f d n ++ rev (schedule f d n).
+Proof. exact TwoClocks.many_clocks_palindrome. Qed.
+
+Theorem swap_clocks : forall p q h1 L1 h2 L2, (1 <= p)%nat -> (1 <= q)%nat -> INR p * h1 = INR q * h2 ->
+  full_period q p h2 L2 h1 L1 = full_period p q h1 L1 h2 L2.
+Proof. exact TwoClocks.swap_clocks. Qed.
+
+(** A full kick of the fast (slow) clock stands at T/2 iff p (q) is even. *)
+Theorem strikes_middle : forall m n, (1 <= m)%nat -> strikes m false (n * m) = Nat.even n.
+Proof. exact TwoClocks.strikes_middle. Qed.
+
+Theorem scaling : forall f d n c, c <> 0 ->
+  propagator (schedule (fun j => f j / c) (d * c) n) = rescale c (propagator (schedule f d n)).
+Proof. exact Algebra.scaling. Qed.
+
+(** Algorithm 1 (staggered) against the time-symmetric form. *)
+Theorem staggered_trace : forall f d n, f n = f O ->
+  tr (propagator (staggered f d n)) = tr (propagator (schedule f d n)).
+Proof. exact Algebra.staggered_trace. Qed.
+
+Theorem staggered_bounded : forall f d n, f n = f O ->
+  bounded_powers (propagator (staggered f d n)) <-> bounded_powers (propagator (schedule f d n)).
+Proof. exact SignTable.staggered_bounded. Qed.
+
+(** ** 2. Stability *)
+
+Theorem bounded_iff : forall Q, det Q = 1 ->
+  bounded_powers Q <-> -2 < tr Q < 2 \/ Q = one \/ Q = opp one.
+Proof. exact Stability.bounded_iff. Qed.
+
+(** The seven rows of the four-sign table; each half period lies in exactly one. *)
+Theorem four_signs : forall k H, det H = 1 -> row k H <-> behaves k (mirror H ** H).
+Proof. exact SignTable.four_signs. Qed.
+
+Theorem row_total : forall H, exists k, row k H.
+Proof. exact SignTable.row_total. Qed.
+
+Theorem row_unique : forall k k' H, det H = 1 -> row k H -> row k' H -> k = k'.
+Proof. exact SignTable.row_unique. Qed.
+
+Theorem symmetric_verdict : forall k f d n, (forall j, (j <= 2 * n)%nat -> f (2 * n - j)%nat = f j) ->
+  behaves k (propagator (schedule f d (2 * n))) <-> row k (propagator (schedule f d n)).
+Proof. exact SignTable.symmetric_verdict. Qed.
+
+Theorem two_clocks_verdict : forall k p q h1 L1 h2 L2, (1 <= p)%nat -> (1 <= q)%nat ->
+  behaves k (full_period p q h1 L1 h2 L2) <-> row k (half_period p q h1 L1 h2 L2).
+Proof. exact SignTable.two_clocks_verdict. Qed.
+
+(** The growth of one period, without cancellation near |Tr| = 2. *)
+Theorem multiplier_plus : forall H, det H = 1 -> 0 < mB H * mC H ->
+  ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (mB H * mC H)).
+Proof. exact SignTable.multiplier_plus. Qed.
+
+Theorem multiplier_minus : forall H, det H = 1 -> mA H * mD H < 0 ->
+  ln (multiplier (mirror H ** H)) = 2 * arcsinh (sqrt (- (mA H * mD H))).
+Proof. exact SignTable.multiplier_minus. Qed.
+
+(** Velocity Verlet, eq. (1), sharper than |eigenvalues| <= 1. *)
+Theorem verlet : forall h L, h <> 0 ->
+  bounded_powers (verlet_matrix h L) <-> 0 < h * h * L < 4.
+Proof. exact Stability.verlet. Qed.
+
+(** ** 3. r-RESPA *)
+
+Theorem rotation_power : forall h L th, 0 < h -> 0 < th < PI -> h * h * L = 2 - 2 * cos th -> forall p,
+  power (verlet_matrix h L) p =
+  diagonal (sin th / h) ** rotation_matrix (INR p * th) ** diagonal (/ (sin th / h)).
+Proof. exact Respa.rotation_power. Qed.
+
+Theorem sin_angle : forall h L th, 0 < h -> 0 < L -> 0 < th < PI -> h * h * L = 2 - 2 * cos th ->
+  sin th = h * sqrt L * sqrt (1 - h * h * L / 4).
+Proof. exact Respa.sin_angle. Qed.
+
+Theorem respa_trace : forall h L th, 0 < h -> 0 < th < PI -> h * h * L = 2 - 2 * cos th -> forall p h2 L2,
+  let alpha := h * h2 * L2 / (2 * sin th) in
+  tr (respa p h L h2 L2) = 2 * (cos (INR p * th) - alpha * sin (INR p * th)).
+Proof. exact Respa.respa_trace. Qed.
+
+Theorem respa_two_clocks : forall p h1 L1 h2 L2, (1 <= p)%nat ->
+  full_period p 1 h1 L1 h2 L2 = respa p h1 L1 h2 L2.
+Proof. exact Respa.respa_two_clocks. Qed.
+
+Theorem respa_tan : forall p h1 L1 h2 L2 th,
+  (1 <= p)%nat -> 0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th ->
+  let alpha := h1 * h2 * L2 / (2 * sin th) in
+  let t := tan (INR p * th / 2) in
+  0 < alpha ->
+  2 < Rabs (tr (respa p h1 L1 h2 L2)) <->
+  cos (INR p * th / 2) <> 0 /\ (0 < 1 / alpha < t \/ - alpha < t < 0).
+Proof. exact Respa.respa_tan. Qed.
+
+Theorem respa_window : forall p h1 L1 h2 L2 th,
+  0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th ->
+  let alpha := h1 * h2 * L2 / (2 * sin th) in
+  0 < alpha ->
+  2 < Rabs (tr (respa p h1 L1 h2 L2)) <->
+  exists k, IZR k * PI - 2 * atan alpha < INR p * th < IZR k * PI.
+Proof. exact Respa.respa_window. Qed.
+
+(** ** 4. The Proposition: eq. (9) iff eq. (10) *)
+
+Theorem proposition : forall h1 h2 T, 0 < h1 -> 0 < h2 -> 0 < T ->
+  resonant h1 h2 T <-> on_curve h1 h2 T.
+Proof. exact Proposition.proposition. Qed.
+
+Theorem proposition_forward : forall h1 h2 T, 0 < h1 -> 0 < T -> forall p q m,
+  resonant_with p q m h1 h2 T ->
+  exists a b, m = (a * p + b * q)%Z /\ b <> 0%Z /\ on_curve_with a b p q h1 h2 T.
+Proof. exact Proposition.forward. Qed.
+
+Theorem proposition_backward : forall h1 h2 T, 0 < h1 -> forall a b p q,
+  (0 < p)%Z -> (0 < q)%Z -> Z.gcd p q = 1%Z ->
+  on_curve_with a b p q h1 h2 T -> resonant_with p q (a * p + b * q) h1 h2 T.
+Proof. exact Proposition.backward. Qed.
+
+(** The gap in the paper's proof: a Bezout pair with b = 0 makes the denominator of (10) vanish. *)
+Theorem proposition_gap : forall h1 h2 T, 0 < h1 -> forall p q m a,
+  resonant_with p q m h1 h2 T -> m = (a * p + 0 * q)%Z -> h1 - IZR a * T = 0.
+Proof. exact Proposition.gap. Qed.
+
+Theorem symmetric_form : forall h1 h2 T, 0 < h1 -> 0 < h2 -> 0 < T -> forall a b,
+  h1 - IZR a * T <> 0 ->
+  h2 = IZR b * T * h1 / (h1 - IZR a * T) <-> 1 / T = IZR a / h1 + IZR b / h2.
+Proof. exact Proposition.symmetric_form. Qed.
+
+Theorem resonant_steps : forall h1 T, 0 < h1 -> forall p q m,
+  (0 < p)%Z -> (0 < q)%Z -> Z.gcd p q = 1%Z -> IZR m * T = IZR p * h1 ->
+  resonant_with p q m h1 (IZR p / IZR q * h1) T.
+Proof. exact Proposition.resonant_steps. Qed.
+
+Theorem sign_of_b : forall h1 h2 T, 0 < h1 -> 0 < h2 -> 0 < T -> forall a b,
+  h1 < T -> 1 / T = IZR a / h1 + IZR b / h2 -> ((a <= 0 -> 0 < b) /\ (1 <= a -> b < 0))%Z.
+Proof. exact Proposition.sign_of_b. Qed.
+
+(** ** 5. Floquet coordinates *)
+
+Theorem wronskian : forall s n x, det (W s n x) = 1.
+Proof. exact Floquet.wronskian. Qed.
+
+Theorem update_kick : forall s n x k,
+  kick k ** W s n x =
+  W s n x ** update k (even s n x) (odd s n x).
+Proof. exact Floquet.update_kick. Qed.
+
+Theorem foreign_kicks : forall s n x kicks, in_order n kicks ->
+  let (n', x') := last_time n x kicks in
+  propagator (foreign_schedule s n x kicks) ** W s n x =
+  W s n' x' ** foreign_updates s kicks.
+Proof. exact Floquet.foreign_kicks. Qed.
+
+Theorem foreign_ticks : forall s q g, (1 <= q)%nat -> forall j,
+  propagator (schedule (fun i => base s q i + g i) (1 / (2 * INR q)) j) =
+  kick (- (base s q j / 2)) ** W s (j / (2 * q)) (INR (j mod (2 * q)) / (2 * INR q)) **
+  updates s q g j.
+Proof. exact Floquet.foreign_ticks. Qed.
+
+Theorem angle : forall s, 0 < s < 4 -> exists th, 0 < th < PI /\ s = 2 - 2 * cos th.
+Proof. exact TanCriterion.angle. Qed.
+
+Theorem cosines : forall s th, s = 2 - 2 * cos th -> forall n, Cn s n = cos (INR n * th).
+Proof. exact TanCriterion.cosines. Qed.
+
+Theorem sines : forall s th, s = 2 - 2 * cos th -> forall n, Sn s n * sin th = sin (INR n * th).
+Proof. exact TanCriterion.sines. Qed.
+
+(** The update in the coordinates (c_E, c_O = d / sin th): beta = k / sin th. *)
+Theorem trig_update : forall th, 0 < th < PI -> forall k e o,
+  rescale (sin th) (update k e o) = update (k / sin th) e (sin th * o).
+Proof. exact TanCriterion.trig_update. Qed.
+
+(** The four signs of the half period are those of four linear forms in cos (p th / 2), sin (p th / 2). *)
+Theorem four_forms : forall p q h1 L1 h2 L2 th,
+  (1 <= q)%nat -> 0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th ->
+  let H := half_period p q h1 L1 h2 L2 in
+  exists x y, 0 < x /\ 0 < y /\
+    mA H = x * formA p q h1 L1 h2 L2 th /\
+    mB H = y * formB p q h1 L1 h2 L2 th /\
+    mC H = formC p q h1 L1 h2 L2 th / y /\
+    mD H = formD p q h1 L1 h2 L2 th / x.
+Proof. exact TanCriterion.four_forms. Qed.
+
+Theorem tan_criterion : forall p q h1 L1 h2 L2 th,
+  (1 <= p)%nat -> (1 <= q)%nat -> 0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th ->
+  let Q := full_period p q h1 L1 h2 L2 in
+  let G := gather p q h1 L1 h2 L2 th in
+  let phi := INR p * th / 2 in
+  let t := tan phi in
+  (cos phi <> 0 ->
+     (2 < tr Q  <-> 0 < (mB G + mD G * t) * (mC G - mA G * t)) /\
+     (tr Q < -2 <-> (mA G + mC G * t) * (mD G - mB G * t) < 0)) /\
+  (cos phi = 0 ->
+     (2 < tr Q  <-> mA G * mD G < 0) /\
+     (tr Q < -2 <-> 0 < mB G * mC G)).
+Proof. exact TanCriterion.tan_criterion. Qed.
+
+Theorem tan_criterion_q1 : forall p h1 L1 h2 L2 th,
+  (1 <= p)%nat -> 0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th ->
+  let phi := INR p * th / 2 in
+  let alpha := h1 * h2 * L2 / (2 * sin th) in
+  let Q := full_period p 1 h1 L1 h2 L2 in
+  let t := tan phi in
+  (cos phi <> 0 -> (2 < tr Q <-> t * (t + alpha) < 0) /\ (tr Q < -2 <-> 1 < alpha * t)) /\
+  (cos phi = 0 -> tr Q = -2).
+Proof. exact TanCriterion.tan_criterion_q1_signs. Qed.
+
+Theorem tan_criterion_q2 : forall p h1 L1 h2 L2 th,
+  (1 <= p)%nat -> 0 < h1 -> 0 < th < PI -> h1 * h1 * L1 = 2 - 2 * cos th -> Nat.Odd p ->
+  let phi := INR p * th / 2 in
+  let alpha := h1 * h2 * L2 / (2 * sin th) in
+  let c2 := cos (th / 2) * cos (th / 2) in
+  let Q := full_period p 2 h1 L1 h2 L2 in
+  let t := tan phi in
+  (cos phi <> 0 ->
+     (2 < tr Q  <-> t * (t * (1 - alpha * alpha * c2) + alpha * (1 + c2)) < 0) /\
+     (tr Q < -2 <-> (1 - alpha * t) * (1 - alpha * c2 * t) < 0)) /\
+  (cos phi = 0 -> (2 < tr Q <-> 1 < alpha * alpha * c2) /\ ~ tr Q < -2).
+Proof. exact TanCriterion.tan_criterion_q2. Qed.
+
+(** ** 6. Rounding and cones *)
+
+(** Vectors of the plane with the Euclidean length; J is the quarter turn. Steps k = 0 ... n - 1. *)
+Section Orbit.
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b : nat -> R) (n : nat) (kappa eps g tau : R).
+Let omega := g * eps + g * kappa * tau.
+Hypothesis start : u O = uh O.
+Hypothesis exact_steps : forall k, (k < n)%nat -> u (S k) = M k @ u k.
+Hypothesis computed_steps : forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k).
+Hypothesis unimodular : forall k, (k < n)%nat -> det (M k) = 1.
+Hypothesis contained : forall k y, (k < n)%nat -> len (M k @ y) <= kappa * len y.
+Hypothesis nonzero : forall k, (k <= n)%nat -> uh k <> zero.
+Hypothesis residual : forall k, (k < n)%nat -> len (r k) <= eps * len (uh k).
+Hypothesis shrink : forall k, (k < n)%nat -> len (uh k) <= g * len (uh (S k)).
+Hypothesis b_start : 0 <= b O.
+Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
+Hypothesis b_small : forall k, (k < n)%nat -> 2 * b k <= tau * (len (uh k) * len (uh k)).
+Hypotheses (g_nonneg : 0 <= g) (tau_nonneg : 0 <= tau).
+Hypothesis budget : INR n * (kappa * eps + omega) <= 1 / 2.
+
+Theorem perturbed_orbit : forall k, (k <= n)%nat ->
+  exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t <= 2 * b k /\
+    (1 - omega) ^ k <= a <= (1 + omega) ^ k /\
+    0 < a /\ 1 - INR k * omega <= a <= / (1 - INR k * omega).
+Proof. eapply Perturbation.perturbed_orbit; eassumption. Qed.
+
+Theorem sign_certificate : forall k v, (k <= n)%nat ->
+  2 * b k * len v < Rabs (dot v (uh k)) * len (uh k) ->
+  0 < dot v (u k) * dot v (uh k).
+Proof. eapply Perturbation.sign_certificate; eassumption. Qed.
+
+(** The form v is meant, vh is at hand. *)
+Theorem sign_certificate_rounded : forall k v vh delta, (k <= n)%nat ->
+  len (add v (smul (-1) vh)) <= delta ->
+  2 * b k * (len vh + delta) + delta * (len (uh k) * len (uh k)) < Rabs (dot vh (uh k)) * len (uh k) ->
+  0 < dot v (u k) * dot vh (uh k).
+Proof. eapply Perturbation.sign_certificate_rounded; eassumption. Qed.
+End Orbit.
+
+(** Where kappa and g come from. *)
+Theorem update_contained : forall k e o y,
+  det (update k e o) = 1 /\ len (update k e o @ y) <= (1 + Rabs k * (e * e + o * o)) * len y.
+Proof. exact Perturbation.update_contained. Qed.
+
+Theorem contained_inverse : forall M kappa, det M = 1 ->
+  (forall y, len (M @ y) <= kappa * len y) -> forall y, len y <= kappa * len (M @ y).
+Proof. exact Perturbation.contained_inverse. Qed.
+
+Theorem shrink_bound : forall M uh r kappa eps, det M = 1 ->
+  (forall y, len (M @ y) <= kappa * len y) -> 0 <= kappa -> kappa * eps < 1 -> len r <= eps * len uh ->
+  len uh <= kappa / (1 - kappa * eps) * len (add (M @ uh) r).
+Proof. exact Perturbation.shrink_bound. Qed.
+
+Theorem cone_chain : forall M u w n,
+  (forall k, (k < n)%nat ->
+     in_cone (u (S k)) (w (S k)) (M k @ u k) /\ in_cone (u (S k)) (w (S k)) (M k @ w k)) ->
+  forall v, in_cone (u O) (w O) v -> in_cone (u n) (w n) (product M n @ v).
+Proof. exact Cone.cone_chain. Qed.
+
+Theorem cone_criterion : forall Q u w, det Q = 1 -> cross u w <> 0 ->
+  (inside u w (Q @ u) -> inside u w (Q @ w) -> 2 < tr Q) /\
+  (inside u w (smul (-1) (Q @ u)) -> inside u w (smul (-1) (Q @ w)) -> tr Q < -2).
+Proof. exact Cone.cone_criterion. Qed.
+
+(** ** 7. Certificates *)
+
+Theorem certificate : forall k p q (h1 L1 h2 L2 : Q) x1 l1 x2 l2,
+  x1 = Q2R h1 -> l1 = Q2R L1 -> x2 = Q2R h2 -> l2 = Q2R L2 ->
+  check k p q h1 L1 h2 L2 = true ->
+  verdict k p q x1 l1 x2 l2.
+Proof. exact Certificate.certificate. Qed.

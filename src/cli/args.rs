@@ -1,0 +1,155 @@
+//! Flags that several commands share.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use crate::error::{Error, Result};
+use crate::number::Laurent;
+use crate::number::parse::{parse, parse_range};
+use crate::report::document::{self, Document};
+use crate::report::file::write_output;
+use crate::scene::GridRange;
+use crate::verdict::Limits;
+
+/// Flags of every command.
+#[derive(Debug, clap::Args)]
+pub struct Common {
+    /// The form of the result [default: text for verdict, compare, proposition, polynomial and run; else json].
+    #[arg(long, global = true, value_name = "FORMAT")]
+    pub format: Option<Format>,
+    /// Write to this file instead of standard output; the file appears whole or not at all.
+    #[arg(long, global = true, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Threads to use [default: one a core]. The result is the same, byte for byte.
+    #[arg(long, global = true, value_name = "N")]
+    pub threads: Option<usize>,
+    /// No progress on standard error.
+    #[arg(long, global = true)]
+    pub quiet: bool,
+    /// The most kicks that one tier may compose for one pair.
+    #[arg(long, global = true, value_name = "KICKS")]
+    pub budget: Option<u64>,
+}
+
+/// Output formats of documents.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Format {
+    Text,
+    Json,
+    Csv,
+    Latex,
+}
+
+impl From<Format> for document::Format {
+    fn from(format: Format) -> Self {
+        match format {
+            Format::Text => document::Format::Text,
+            Format::Json => document::Format::Json,
+            Format::Csv => document::Format::Csv,
+            Format::Latex => document::Format::Latex,
+        }
+    }
+}
+
+impl Common {
+    /// Writes a document where and how the flags say, in `default` format if they do not.
+    pub fn write(&self, document: &Document, default: Format) -> Result<()> {
+        let text = document.render(self.format.unwrap_or(default).into())?;
+        write_output(self.output.as_deref(), text.as_bytes())
+    }
+
+    /// The work one verdict may cost.
+    pub fn limits(&self) -> Limits {
+        self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
+    }
+
+    /// Sets the number of threads, once.
+    pub fn set_threads(&self) -> Result<()> {
+        let Some(threads) = self.threads else { return Ok(()) };
+        if threads == 0 {
+            return Err(Error::input("threads", 0, "use at least 1"));
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+        pool.map_err(|cause| Error::input("threads", threads, cause))
+    }
+}
+
+/// The two stiffnesses.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Stiffness {
+    /// The stiffness of the fast force, as 10 or pi^2.
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    lambda1: String,
+    /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    lambda2: String,
+}
+
+impl Stiffness {
+    /// lambda1 and lambda2.
+    pub fn quantities(&self) -> Result<(Laurent, Laurent)> {
+        Ok((parse("lambda1", &self.lambda1)?, parse("lambda2", &self.lambda2)?))
+    }
+}
+
+/// A grid of step pairs: all multiples of the spacing in closed ranges.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Grid {
+    /// The spacing of both steps.
+    #[arg(long, value_name = "D", allow_hyphen_values = true)]
+    step: Option<String>,
+    /// The spacing of h1, where it differs.
+    #[arg(long, value_name = "D1", allow_hyphen_values = true)]
+    step1: Option<String>,
+    /// The spacing of h2, where it differs.
+    #[arg(long, value_name = "D2", allow_hyphen_values = true)]
+    step2: Option<String>,
+    /// The closed range of h1, as 1/100..2/pi.
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    h1_range: Option<String>,
+    /// The closed range of h2.
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    h2_range: Option<String>,
+}
+
+impl Grid {
+    /// Whether no flag of the grid was given.
+    pub fn is_absent(&self) -> bool {
+        [&self.step, &self.step1, &self.step2, &self.h1_range, &self.h2_range]
+            .iter()
+            .all(|flag| flag.is_none())
+    }
+
+    /// The grid as a library type.
+    pub fn range(&self) -> Result<GridRange> {
+        let given = |flag: &str, text: Option<&String>, example: &str| {
+            text.cloned()
+                .ok_or_else(|| Error::input(flag, "missing", format!("a grid needs it, as {example}")))
+        };
+        let step = |flag: &str, own: &Option<String>| {
+            let text = given("--step", own.as_ref().or(self.step.as_ref()), "--step 1/100")?;
+            parse(flag, &text)
+        };
+        let range = |flag: &str, text: &Option<String>, example: &str| {
+            parse_range(flag, &given(flag, text.as_ref(), example)?)
+        };
+        GridRange::from_quantities(
+            step("--step1", &self.step1)?,
+            step("--step2", &self.step2)?,
+            range("--h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?,
+            range("--h2-range", &self.h2_range, "--h2-range 1/100..7/2")?,
+        )
+    }
+}
+
+/// Echoes a grid into a document.
+pub fn echo_grid(document: Document, grid: &GridRange) -> Document {
+    let ((step1, step2), [h1, h2]) = (grid.steps(), grid.ranges());
+    let range = |(lo, hi): &(Laurent, Laurent)| format!("{lo}..{hi}");
+    document
+        .input("step1", step1)
+        .input("step2", step2)
+        .input("h1_range", range(h1))
+        .input("h2_range", range(h2))
+}

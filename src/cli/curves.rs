@@ -1,0 +1,89 @@
+//! `kickdrift curves`: the (a, b) families as tables.
+
+use rayon::prelude::*;
+
+use super::args::{Common, Format, echo_grid};
+use crate::error::{Error, Result};
+use crate::number::Laurent;
+use crate::number::parse::{parse, parse_integer_range, parse_range};
+use crate::report::curves;
+use crate::report::document::Document;
+use crate::resonance::{Curve, Window, curve};
+use crate::scene::{Families, GridRange};
+
+/// Flags of `curves`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The stiffness of the fast force.
+    #[arg(long, value_name = "X", default_value = "pi^2", allow_hyphen_values = true)]
+    lambda1: String,
+    /// The closed range of h1.
+    #[arg(long, value_name = "LO..HI", default_value = "1/1000..2/pi", allow_hyphen_values = true)]
+    h1_range: String,
+    /// The closed range of h2.
+    #[arg(long, value_name = "LO..HI", default_value = "1/1000..7/2", allow_hyphen_values = true)]
+    h2_range: String,
+    /// The range of a.
+    #[arg(long, value_name = "LO..HI", default_value = "0..3", allow_hyphen_values = true)]
+    a: String,
+    /// The range of b.
+    #[arg(long, value_name = "LO..HI", default_value = "-12..12", allow_hyphen_values = true)]
+    b: String,
+    /// Points a curve, evenly spaced in theta.
+    #[arg(long, value_name = "N", default_value_t = 400)]
+    samples: usize,
+}
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let lambda1 = parse("lambda1", &self.lambda1)?;
+        let (h1, h2) = (parse_range("h1-range", &self.h1_range)?, parse_range("h2-range", &self.h2_range)?);
+        let (a, b) = (parse_integer_range("a", &self.a)?, parse_integer_range("b", &self.b)?);
+        let families = Families { a, b, samples: self.samples };
+        let curves = sample(&lambda1, &families, &window(&h1, &h2))?;
+        let document = curves::document(&curves)
+            .input("lambda1", &lambda1)
+            .input("h1_range", &self.h1_range)
+            .input("h2_range", &self.h2_range);
+        common.write(&echo(document, &families), Format::Json)
+    }
+}
+
+/// The curves of a grid's window as a document.
+pub fn document(lambda1: &Laurent, grid: &GridRange, families: &Families, curves: &[Curve]) -> Document {
+    let document = curves::document(curves).input("lambda1", lambda1);
+    echo(echo_grid(document, grid), families)
+}
+
+fn echo(document: Document, families: &Families) -> Document {
+    let range = |(lo, hi): (i64, i64)| format!("{lo}..{hi}");
+    document.input("a", range(families.a)).input("b", range(families.b)).input("samples", families.samples)
+}
+
+/// The most curves drawn at once: beyond it the range is a mistake.
+const MOST_CURVES: i128 = 100_000;
+
+/// All curves of the families that pass through the window.
+pub fn sample(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
+    let count = |(lo, hi): (i64, i64)| i128::from(hi) - i128::from(lo) + 1;
+    if count(families.a) * count(families.b) > MOST_CURVES {
+        let value = format!("{:?} by {:?}", families.a, families.b);
+        return Err(Error::input(
+            "a, b",
+            value,
+            format!("at most {MOST_CURVES} curves: choose smaller ranges"),
+        ));
+    }
+    let pairs: Vec<(i64, i64)> = (families.a.0..=families.a.1)
+        .flat_map(|a| (families.b.0..=families.b.1).map(move |b| (a, b)))
+        .collect();
+    let curves: Result<Vec<Curve>> =
+        pairs.into_par_iter().map(|(a, b)| curve(a, b, lambda1, window, families.samples)).collect();
+    Ok(curves?.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
+}
+
+/// The window of two closed ranges, widened to doubles.
+pub fn window(h1: &(Laurent, Laurent), h2: &(Laurent, Laurent)) -> Window {
+    let ends = |(lo, hi): &(Laurent, Laurent)| (lo.enclose_f64().0, hi.enclose_f64().1);
+    Window { h1: ends(h1), h2: ends(h2) }
+}

@@ -1,0 +1,96 @@
+//! The command line: arguments → a scene → the library → a report.
+//!
+//! Exit codes: 0 done, 1 unstable (only with `verdict --exit-code`), 2 error, with one line on standard error.
+
+mod args;
+mod compare;
+mod curves;
+mod map;
+mod plane;
+mod polynomial;
+mod proposition;
+mod run;
+mod verdict;
+
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+
+use crate::error::Result;
+use args::Common;
+
+/// Exact, certified linear stability of multiple-time-step integrators.
+///
+/// Every number is exact: 0.3 is 3/10; 7/2, pi^2/25 and 2/pi mean what they say.
+#[derive(Debug, Parser)]
+#[command(name = "kickdrift", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Is this pair of steps stable?
+    Verdict(verdict::Args),
+    /// The (a, b) families of resonance curves, as tables.
+    Curves(curves::Args),
+    /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
+    Compare(compare::Args),
+    /// Checks the Proposition exhaustively and exactly, with witnesses.
+    Proposition(proposition::Args),
+    /// A, B, C, D and the trace of one ratio as polynomials in s and rho.
+    Polynomial(polynomial::Args),
+    /// The verdicts of a grid of step pairs, as table, summary or figure.
+    Map(map::Args),
+    /// Reads a scene file and computes the products that it wants.
+    Run(run::Args),
+}
+
+/// Runs the program with the process's arguments.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
+            // A closed pipe is the reader's choice.
+            let _ = error.print();
+            return ExitCode::SUCCESS;
+        }
+        Err(error) => return failure(&one_line(&error)),
+    };
+    match run(&cli) {
+        Ok(code) => code,
+        Err(error) => failure(&error.to_string()),
+    }
+}
+
+fn run(cli: &Cli) -> Result<ExitCode> {
+    let common = &cli.common;
+    common.set_threads()?;
+    match &cli.command {
+        Command::Verdict(args) => return args.run(common),
+        Command::Curves(args) => args.run(common)?,
+        Command::Compare(args) => args.run(common)?,
+        Command::Proposition(args) => args.run(common)?,
+        Command::Polynomial(args) => args.run(common)?,
+        Command::Map(args) => args.run(common)?,
+        Command::Run(args) => args.run(common)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn failure(message: &str) -> ExitCode {
+    eprintln!("kickdrift: {message}");
+    ExitCode::from(2)
+}
+
+/// A usage error in one line: what is wrong, and where help is.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let what: Vec<&str> = text.split("\n\n").next().unwrap_or("").lines().map(str::trim).collect();
+    let what = what.join(" ");
+    format!("{}; see kickdrift --help", what.strip_prefix("error: ").unwrap_or(&what))
+}

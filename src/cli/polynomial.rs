@@ -1,0 +1,43 @@
+//! `kickdrift polynomial`: the half period of one ratio in s and rho.
+
+use super::args::{Common, Format};
+use crate::error::{Error, Result};
+use crate::number::parse::parse_ratio;
+use crate::report::polynomial;
+
+/// Flags of `polynomial`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// h2/h1 = p/q.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
+    ratio: String,
+}
+
+/// The largest p + q unless a budget says otherwise: the entries have about p q/4 terms, with coefficients of
+/// some p + q digits.
+const MOST_KICKS: u64 = 120;
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let (p, q) = parse_ratio("ratio", &self.ratio)?;
+        let most = common.budget.unwrap_or(MOST_KICKS);
+        check(p, q, most)?;
+        common.write(&polynomial::document(p, q), Format::Text)
+    }
+}
+
+/// The default bound for scenes.
+pub fn check_default(p: u64, q: u64) -> Result<()> {
+    check(p, q, MOST_KICKS)
+}
+
+fn check(p: u64, q: u64, most: u64) -> Result<()> {
+    let kicks = p.saturating_add(q);
+    if kicks <= most {
+        return Ok(());
+    }
+    Err(Error::budget(format!(
+        "polynomials of {p}/{q} have about {} terms each: allow them with --budget {kicks}, or choose p + q <= {most}",
+        u128::from(p) * u128::from(q) / 4 + 1
+    )))
+}

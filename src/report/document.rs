@@ -1,0 +1,192 @@
+//! A result on its way out: one document, four formats.
+//!
+//! JSON carries everything: the schema's name, the input as exact strings, the summary, the rows. CSV is the
+//! rows alone, LaTeX the rows as a table for a paper, text the summary and (where there are few) the rows for
+//! a person at a terminal.
+
+use serde_json::{Map, Value};
+
+use super::table::Table;
+use super::{csv, latex, text};
+use crate::error::{Error, Result};
+
+/// The form in which a document is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Text,
+    Json,
+    Csv,
+    Latex,
+}
+
+/// A named result.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// NAME in `kickdrift/NAME/1`.
+    name: &'static str,
+    input: Map<String, Value>,
+    body: Map<String, Value>,
+    table: Option<Table>,
+    summary: String,
+    all_told: bool,
+}
+
+/// Rows beyond this number are left out of the text form, which says so.
+const ROWS_FOR_PEOPLE: usize = 60;
+
+impl Document {
+    /// A document without content, `name` as in `kickdrift/NAME/1`.
+    pub fn new(name: &'static str) -> Self {
+        Document {
+            name,
+            input: Map::new(),
+            body: Map::new(),
+            table: None,
+            summary: String::new(),
+            all_told: false,
+        }
+    }
+
+    /// Echoes one input, as an exact string.
+    #[must_use]
+    pub fn input(mut self, key: &str, value: impl ToString) -> Self {
+        self.input.insert(key.into(), Value::String(value.to_string()));
+        self
+    }
+
+    /// Adds one entry to the JSON body.
+    #[must_use]
+    pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {
+        self.body.insert(key.into(), value.into());
+        self
+    }
+
+    /// The rows for CSV, LaTeX and text; in JSON too, under the table's name, unless the body has that key.
+    #[must_use]
+    pub fn rows(mut self, table: Table) -> Self {
+        if !self.body.contains_key(table.name()) {
+            self.body.insert(table.name().into(), table.to_json_rows());
+        }
+        self.table = Some(table);
+        self
+    }
+
+    /// Rows that are too many for JSON: CSV, LaTeX and text alone show them.
+    #[must_use]
+    pub fn long_rows(mut self, table: Table) -> Self {
+        self.table = Some(table);
+        self
+    }
+
+    /// The summary for people: whole lines, the last one without a newline.
+    #[must_use]
+    pub fn summary(mut self, lines: &[String]) -> Self {
+        self.summary = lines.join("\n");
+        self
+    }
+
+    /// A summary that says all: the text form leaves the rows out.
+    #[must_use]
+    pub fn told(mut self, lines: &[String]) -> Self {
+        self.all_told = true;
+        self.summary(lines)
+    }
+
+    /// The summary alone.
+    pub fn summary_text(&self) -> &str {
+        &self.summary
+    }
+
+    /// The document in one format, ending in a newline.
+    ///
+    /// # Errors
+    /// CSV or LaTeX of a document without rows.
+    pub fn render(&self, format: Format) -> Result<String> {
+        let table = || {
+            let remedy = "this result has no rows; use --format text or json";
+            self.table.as_ref().ok_or_else(|| Error::input("format", self.name, remedy))
+        };
+        match format {
+            Format::Json => Ok(self.json()),
+            Format::Csv => Ok(csv::document(table()?)),
+            Format::Latex => Ok(latex::document(table()?)),
+            Format::Text => Ok(self.text()),
+        }
+    }
+
+    /// The document as a JSON value, its keys in order.
+    pub fn value(&self) -> Value {
+        let mut all = Map::new();
+        all.insert("schema".into(), format!("kickdrift/{}/1", self.name).into());
+        all.insert("input".into(), Value::Object(self.input.clone()));
+        all.extend(self.body.clone());
+        Value::Object(all)
+    }
+
+    fn json(&self) -> String {
+        let mut out = String::new();
+        write_json(&mut out, &self.value(), 0);
+        out.push('\n');
+        out
+    }
+
+    fn text(&self) -> String {
+        let mut out = self.summary.clone();
+        out.push('\n');
+        if let Some(table) = self.table.as_ref().filter(|_| !self.all_told) {
+            let rows = table.rows().len();
+            if rows > ROWS_FOR_PEOPLE {
+                out += &format!("\n{rows} rows: use --format csv, json or latex to see them\n");
+            } else if rows > 0 {
+                out += &format!("\n{}\n", text::document(table).trim_end());
+            }
+        }
+        out
+    }
+}
+
+/// `{"lo": , "hi": }`.
+pub fn enclosure((lo, hi): (f64, f64)) -> Value {
+    let mut ends = Map::new();
+    ends.insert("lo".into(), lo.into());
+    ends.insert("hi".into(), hi.into());
+    Value::Object(ends)
+}
+
+/// JSON that people can read and diff: what holds only plain values stands on one line.
+fn write_json(out: &mut String, value: &Value, depth: usize) {
+    let nested = |value: &Value| matches!(value, Value::Object(_) | Value::Array(_));
+    let line = |out: &mut String, depth: usize, first: bool| {
+        *out += if first { "\n" } else { ",\n" };
+        *out += &"  ".repeat(depth);
+    };
+    match value {
+        Value::Object(map) if depth == 0 || deep(value) => {
+            out.push('{');
+            for (i, (key, value)) in map.iter().enumerate() {
+                line(out, depth + 1, i == 0);
+                *out += &format!("{}: ", Value::from(key.as_str()));
+                write_json(out, value, depth + 1);
+            }
+            *out += &format!("\n{}}}", "  ".repeat(depth));
+        }
+        Value::Array(items) if items.iter().any(nested) => {
+            out.push('[');
+            for (i, item) in items.iter().enumerate() {
+                line(out, depth + 1, i == 0);
+                write_json(out, item, depth + 1);
+            }
+            *out += &format!("\n{}]", "  ".repeat(depth));
+        }
+        _ => *out += &value.to_string(),
+    }
+}
+
+/// Whether an array of objects lies somewhere inside.
+fn deep(value: &Value) -> bool {
+    match value {
+        Value::Object(map) => map.values().any(deep),
+        Value::Array(items) => items.iter().any(|item| item.is_object() || deep(item)),
+        _ => false,
+    }
+}

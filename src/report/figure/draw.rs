@@ -1,0 +1,147 @@
+//! A panel into the SVG: layers, frame, ticks, numbers, labels, title.
+
+use super::axis::{Axis, Tick};
+use super::clip::{self, Rect};
+use super::font::Face;
+use super::key;
+use super::label::Label;
+use super::layout::{
+    CAPITAL, DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Site, TICK, TITLE, WORDS, ticks, widest_number,
+};
+use super::marks;
+use super::palette::{Colour, INK};
+use super::panel::{Note, Panel};
+use super::svg::{Anchor, Canvas, Path, Set, number};
+
+/// Lines of the frame and its ticks.
+const HAIR: f64 = 0.5;
+/// Lines of a grid.
+const FAINT: Colour = Colour(0xe4, 0xe5, 0xe8);
+
+/// From data to the page.
+#[derive(Clone, Copy)]
+pub(super) struct Plane<'a> {
+    pub x: &'a Axis,
+    pub y: &'a Axis,
+    pub frame: Rect,
+}
+
+impl Plane<'_> {
+    pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        [self.across(self.x.unit(x)), self.down(self.y.unit(y))]
+    }
+
+    fn across(&self, unit: f64) -> f64 {
+        self.frame[0] + unit * (self.frame[2] - self.frame[0])
+    }
+
+    fn down(&self, unit: f64) -> f64 {
+        self.frame[3] - unit * (self.frame[3] - self.frame[1])
+    }
+}
+
+/// A plain setting; the fields not given here are the common ones.
+pub(super) fn set(size: f64, anchor: Anchor) -> Set {
+    Set { size, anchor, turn: 0.0, colour: INK, halo: false }
+}
+
+/// Draws the whole panel around and in its frame.
+pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Site) {
+    let plane = Plane { x: &panel.x, y: &panel.y, frame };
+    let (across, up) = (frame[2] - frame[0], frame[3] - frame[1]);
+    let (x_ticks, y_ticks) = (ticks(&panel.x, 0, across), ticks(&panel.y, 1, up));
+    if panel.grid {
+        grid(canvas, &plane, &x_ticks, &y_ticks);
+    }
+    canvas.open_clipped(frame);
+    for layer in &panel.layers {
+        marks::layer(canvas, &plane, layer);
+    }
+    canvas.close();
+    rim(canvas, &plane, &x_ticks, &y_ticks);
+    for note in &panel.notes {
+        words(canvas, &plane, note);
+    }
+    numbers(canvas, &plane, &x_ticks, &y_ticks);
+    axis_labels(canvas, &plane, up);
+    let title = Label::in_face(&panel.title, Face::Semibold);
+    canvas.text(&title, [frame[0], top + TITLE * CAPITAL], set(TITLE, Anchor::Start));
+    key::legend(canvas, panel, frame);
+    if let Some(bar) = &panel.bar {
+        key::bar(canvas, bar, frame);
+    }
+}
+
+fn grid(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) {
+    let [left, top, right, bottom] = plane.frame;
+    let mut lines = Path::default();
+    for tick in x_ticks.iter().filter(|tick| tick.label.is_some()) {
+        lines.vertical([plane.across(plane.x.unit(tick.at)), top], bottom);
+    }
+    for tick in y_ticks.iter().filter(|tick| tick.label.is_some()) {
+        lines.horizontal([left, plane.down(plane.y.unit(tick.at))], right);
+    }
+    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{FAINT}\" stroke-width=\"{}\"", number(HAIR)));
+}
+
+/// The frame with its ticks, as one path.
+fn rim(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) {
+    let [left, top, right, bottom] = plane.frame;
+    let length = |tick: &Tick| if tick.label.is_some() { TICK } else { MINOR_TICK };
+    let mut lines = Path::default();
+    lines.move_to([left, top]);
+    for corner in [[right, top], [right, bottom], [left, bottom]] {
+        lines.line_to(corner);
+    }
+    lines.close([left, top]);
+    for tick in x_ticks {
+        lines.vertical([plane.across(plane.x.unit(tick.at)), bottom], bottom + length(tick));
+    }
+    for tick in y_ticks {
+        lines.horizontal([left, plane.down(plane.y.unit(tick.at))], left - length(tick));
+    }
+    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"{}\"", number(HAIR)));
+}
+
+fn numbers(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) {
+    let [left, _, _, bottom] = plane.frame;
+    let labelled = |ticks: &[Tick]| -> Vec<(f64, Label)> {
+        ticks.iter().filter_map(|t| Some((t.at, Label::new(t.label.as_ref()?)))).collect()
+    };
+    if plane.x.numbered {
+        let base = bottom + TICK + GAP + NUMBER * DIGIT;
+        for (at, label) in labelled(x_ticks) {
+            canvas.text(&label, [plane.across(plane.x.unit(at)), base], set(NUMBER, Anchor::Middle));
+        }
+    }
+    if plane.y.numbered {
+        for (at, label) in labelled(y_ticks) {
+            let base = plane.down(plane.y.unit(at)) + NUMBER * DIGIT / 2.0;
+            canvas.text(&label, [left - TICK - GAP, base], set(NUMBER, Anchor::End));
+        }
+    }
+}
+
+fn axis_labels(canvas: &mut Canvas, plane: &Plane, up: f64) {
+    let [left, top, right, bottom] = plane.frame;
+    if plane.x.numbered {
+        let base = bottom + TICK + GAP + NUMBER * DIGIT + GAP + WORDS * 0.85;
+        let label = Label::new(&plane.x.label);
+        canvas.text(&label, [(left + right) / 2.0, base], set(WORDS, Anchor::Middle));
+    }
+    if plane.y.numbered {
+        let base = left - TICK - GAP - widest_number(plane.y, up) - GAP - WORDS * (LINE - 0.85);
+        let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
+        canvas.text(&Label::new(&plane.y.label), [base, (top + bottom) / 2.0], upright);
+    }
+}
+
+fn words(canvas: &mut Canvas, plane: &Plane, note: &Note) {
+    let [x, y] = plane.place(note.at);
+    if clip::holds(plane.frame, [x, y]) {
+        // Centred on the point: half the height of a small letter lies below it.
+        let at = [x + note.shift[0], y - note.shift[1] + NUMBER * 0.23];
+        let set = Set { turn: note.turn, colour: note.colour, halo: true, ..set(NUMBER, note.anchor) };
+        canvas.text(&Label::new(&note.text), at, set);
+    }
+}

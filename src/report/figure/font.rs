@@ -1,0 +1,187 @@
+//! The text face: Libertinus Serif (SIL Open Font License), built in.
+//!
+//! Glyphs are drawn as outlines, so that a figure looks the same in a browser, in a paper and as PNG, with no
+//! font installed; the words themselves stay in the SVG as `aria-label`s. Lengths are in em.
+
+use std::fmt::Write as _;
+use std::sync::LazyLock;
+
+use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
+use ttf_parser::{GlyphId, OutlineBuilder};
+
+/// The four faces in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Face {
+    Roman,
+    Italic,
+    Semibold,
+    SemiboldItalic,
+}
+
+impl Face {
+    const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
+
+    /// The same weight, leaning.
+    pub(super) fn italic(self) -> Face {
+        match self {
+            Face::Roman | Face::Italic => Face::Italic,
+            Face::Semibold | Face::SemiboldItalic => Face::SemiboldItalic,
+        }
+    }
+
+    /// Its place among the fonts of `typst-assets`; a test holds the names against it.
+    fn place(self) -> usize {
+        match self {
+            Face::Roman => 0,
+            Face::Italic => 2,
+            Face::Semibold => 4,
+            Face::SemiboldItalic => 5,
+        }
+    }
+
+    /// A letter that starts the names of its glyphs in the SVG.
+    pub(super) fn prefix(self) -> char {
+        match self {
+            Face::Roman => 'r',
+            Face::Italic => 'i',
+            Face::Semibold => 's',
+            Face::SemiboldItalic => 't',
+        }
+    }
+
+    fn font(self) -> &'static ttf_parser::Face<'static> {
+        static FONTS: LazyLock<[ttf_parser::Face<'static>; 4]> = LazyLock::new(|| {
+            Face::ALL.map(|face| {
+                let bytes = typst_assets::fonts().nth(face.place()).expect("the font is built in");
+                ttf_parser::Face::parse(bytes, 0).expect("a built-in font is sound")
+            })
+        });
+        &FONTS[self as usize]
+    }
+
+    /// The glyph of a letter; of one that the face lacks, the empty box.
+    pub(super) fn glyph(self, letter: char) -> u16 {
+        self.font().glyph_index(letter).map_or(0, |id| id.0)
+    }
+
+    /// How far the pen moves on after a glyph.
+    pub(super) fn advance(self, glyph: u16) -> f64 {
+        f64::from(self.font().glyph_hor_advance(GlyphId(glyph)).unwrap_or(0)) / self.em()
+    }
+
+    /// How much closer (negative) or farther two neighbours stand than their advances say.
+    pub(super) fn kerning(self, left: u16, right: u16) -> f64 {
+        let (left, right) = (GlyphId(left), GlyphId(right));
+        let Some(gpos) = self.font().tables().gpos else { return 0.0 };
+        let shift = gpos.lookups.into_iter().find_map(|lookup| {
+            lookup.subtables.into_iter::<PositioningSubtable>().find_map(|table| match table {
+                // Tables that know the pair but leave it alone make way for the next.
+                PositioningSubtable::Pair(pairs) => pair_shift(&pairs, left, right).filter(|&by| by != 0),
+                _ => None,
+            })
+        });
+        f64::from(shift.unwrap_or(0)) / self.em()
+    }
+
+    /// The outline as SVG path data in units of 1/1000 em, y pointing down.
+    pub(super) fn outline(self, glyph: u16) -> String {
+        let mut pen = Pen { data: String::new(), scale: (1000.0 / self.em()) as f32 };
+        self.font().outline_glyph(GlyphId(glyph), &mut pen);
+        pen.data
+    }
+
+    fn em(self) -> f64 {
+        f64::from(self.font().units_per_em())
+    }
+}
+
+/// The change of the left glyph's advance, if the table knows the pair.
+fn pair_shift(pairs: &PairAdjustment, left: GlyphId, right: GlyphId) -> Option<i16> {
+    let row = pairs.coverage().get(left)?;
+    let (first, _) = match pairs {
+        PairAdjustment::Format1 { sets, .. } => sets.get(row)?.get(right)?,
+        PairAdjustment::Format2 { classes, matrix, .. } => {
+            matrix.get((classes.0.get(left), classes.1.get(right)))?
+        }
+    };
+    Some(first.x_advance)
+}
+
+struct Pen {
+    data: String,
+    scale: f32,
+}
+
+impl Pen {
+    fn put(&mut self, command: char, numbers: &[f32]) {
+        self.data.push(command);
+        for (i, number) in numbers.iter().enumerate() {
+            // Fonts count upwards, SVG downwards.
+            let value = (number * self.scale * if i % 2 == 1 { -1.0 } else { 1.0 }).round() as i32;
+            let gap = if i > 0 && value >= 0 { " " } else { "" };
+            write!(self.data, "{gap}{value}").expect("writing to a String does not fail");
+        }
+    }
+}
+
+impl OutlineBuilder for Pen {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.put('M', &[x, y]);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.put('L', &[x, y]);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.put('Q', &[x1, y1, x, y]);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.put('C', &[x1, y1, x2, y2, x, y]);
+    }
+
+    fn close(&mut self) {
+        self.data.push('Z');
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_built_in_fonts_are_the_ones_we_mean() {
+        let full_name = |face: Face| {
+            face.font()
+                .names()
+                .into_iter()
+                .find(|n| n.name_id == 4 && n.is_unicode())
+                .and_then(|n| n.to_string())
+        };
+        let names = Face::ALL.map(|face| full_name(face).unwrap());
+        assert_eq!(
+            names,
+            [
+                "Libertinus Serif Regular",
+                "Libertinus Serif Italic",
+                "Libertinus Serif Semibold",
+                "Libertinus Serif Semibold Italic"
+            ]
+        );
+    }
+
+    #[test]
+    fn every_letter_that_figures_use_is_there() {
+        for letter in "0123456789−.,×·±≤≥½∞√′″αβγδθλμπρσωΛΔ()[]/%&=<>|".chars()
+        {
+            assert!(Face::ALL.iter().all(|face| face.glyph(letter) != 0), "no {letter}");
+        }
+    }
+
+    #[test]
+    fn neighbours_are_kerned() {
+        let pair = |a, b| Face::Roman.kerning(Face::Roman.glyph(a), Face::Roman.glyph(b));
+        assert!(pair('A', 'V') < -0.03 && pair('H', 'H') == 0.0, "{} {}", pair('A', 'V'), pair('H', 'H'));
+    }
+}

@@ -1,0 +1,168 @@
+//! Keys: legends and colour bars.
+
+use super::clip::Rect;
+use super::draw::{Plane, set};
+use super::label::Label;
+use super::layer::{Layer, Mark, Shape};
+use super::layout::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, TICK, WORDS, ticks, widest_number};
+use super::marks;
+use super::palette::{INK, WHITE};
+use super::panel::{ColourBar, Panel, Place};
+use super::svg::{Anchor, Canvas, Path, Set, number};
+use crate::report::figure::Axis;
+
+/// A sample of a line, the space to its words, the space to the next entry, the height of a line of entries.
+const SAMPLE: f64 = 17.0;
+const TO_WORDS: f64 = 4.0;
+const TO_NEXT: f64 = 11.0;
+const ROW: f64 = 11.0;
+/// Between the frame and a legend in its corner.
+const INSET: f64 = 5.0;
+/// A colour bar's distance from the frame and its width.
+const BAR_GAP: f64 = 8.0;
+const BAR: f64 = 7.0;
+/// Steps of colour in a bar: finer than the eye tells apart.
+const SHADES: usize = 96;
+
+/// One entry: the layer it stands for and its words.
+type Entry<'a> = (&'a Layer, Label);
+
+fn entries(panel: &Panel) -> Vec<Entry<'_>> {
+    panel.layers.iter().filter_map(|layer| Some((layer, Label::new(layer.label.as_ref()?)))).collect()
+}
+
+fn width((_, label): &Entry) -> f64 {
+    SAMPLE + TO_WORDS + NUMBER * label.width
+}
+
+/// The entries in lines no longer than `room`.
+fn rows<'a>(entries: Vec<Entry<'a>>, room: f64) -> Vec<Vec<Entry<'a>>> {
+    let mut rows: Vec<Vec<Entry>> = Vec::new();
+    let mut used = f64::INFINITY;
+    for entry in entries {
+        let wide = width(&entry);
+        if used + TO_NEXT + wide > room {
+            rows.push(Vec::new());
+            used = -TO_NEXT;
+        }
+        used += TO_NEXT + wide;
+        rows.last_mut().expect("the first entry opens a line").push(entry);
+    }
+    rows
+}
+
+/// The height of a legend above a frame of the given width.
+pub(super) fn rows_height(panel: &Panel, room: f64) -> f64 {
+    let count = rows(entries(panel), room).len();
+    if count == 0 { 0.0 } else { ROW * count as f64 + 3.0 }
+}
+
+/// Draws the legend where the panel wants it.
+pub(super) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
+    let entries = entries(panel);
+    match panel.legend {
+        None => {}
+        Some(Place::Above) => {
+            let height = rows_height(panel, frame[2] - frame[0]);
+            for (i, row) in rows(entries, frame[2] - frame[0]).iter().enumerate() {
+                let mut x = frame[0];
+                for entry in row {
+                    draw_entry(canvas, entry, [x, frame[1] - height + ROW * (i as f64 + 0.5)]);
+                    x += width(entry) + TO_NEXT;
+                }
+            }
+        }
+        Some(corner) => in_corner(canvas, &entries, corner, frame),
+    }
+}
+
+fn in_corner(canvas: &mut Canvas, entries: &[Entry], corner: Place, [left, top, right, bottom]: Rect) {
+    let wide = entries.iter().map(width).fold(0.0, f64::max) + 2.0 * TO_WORDS;
+    let high = ROW * entries.len() as f64 + TO_WORDS;
+    let x = match corner {
+        Place::TopLeft | Place::BottomLeft => left + INSET,
+        _ => right - INSET - wide,
+    };
+    let y = match corner {
+        Place::BottomLeft | Place::BottomRight => bottom - INSET - high,
+        _ => top + INSET,
+    };
+    let place = format!(
+        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
+        number(x),
+        number(y),
+        number(wide),
+        number(high)
+    );
+    canvas.raw(&format!("<rect {place} rx=\"1.5\" fill=\"{WHITE}\" fill-opacity=\".88\"/>"));
+    for (i, entry) in entries.iter().enumerate() {
+        draw_entry(canvas, entry, [x + TO_WORDS, y + TO_WORDS / 2.0 + ROW * (i as f64 + 0.5)]);
+    }
+}
+
+/// A sample of the layer's mark and its words, around the height y.
+fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
+    let unit = Axis::linear("", 0.0, 1.0);
+    let frame = [x, y - 3.5, x + SAMPLE, y + 3.5];
+    let plane = Plane { x: &unit, y: &unit, frame };
+    let swatch = |colour, opacity| {
+        let outline = vec![[0.1, 0.0], [0.9, 0.0], [0.9, 1.0], [0.1, 1.0]];
+        Some(Layer::areas(vec![outline], colour, opacity))
+    };
+    let sample = match &layer.mark {
+        Mark::Lines { stroke, .. } => Some(Layer::lines(vec![vec![[0.0, 0.5], [1.0, 0.5]]], *stroke)),
+        Mark::Dots { shape, size, colour, .. } => {
+            // A dot in a legend is for being seen.
+            let size = if *shape == Shape::Disc { size.max(2.5) } else { *size };
+            Some(Layer::dots(vec![[0.5, 0.5]], *shape, size, *colour))
+        }
+        Mark::Area { colour, opacity, .. } => swatch(*colour, *opacity),
+        Mark::Cells(cells) => {
+            cells.colours.get(cells.colours.len() / 2).and_then(|colour| swatch(*colour, 1.0))
+        }
+        Mark::Picture(_) => None,
+    };
+    if let Some(sample) = sample {
+        marks::layer(canvas, &plane, &sample);
+    }
+    let at = [x + SAMPLE + TO_WORDS, y + NUMBER * 0.23];
+    canvas.text(label, at, set(NUMBER, Anchor::Start));
+}
+
+/// What a colour bar takes at the right of a frame of the given height.
+pub(super) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
+    let label = if bar.axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
+    BAR_GAP + BAR + TICK + GAP + widest_number(&bar.axis, height) + label
+}
+
+/// Draws a colour bar at the right of a frame.
+pub(super) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
+    let [_, top, right, bottom] = frame;
+    let (left, edge) = (right + BAR_GAP, right + BAR_GAP + BAR);
+    let high = bottom - top;
+    for (i, colour) in bar.gradient.steps(SHADES).into_iter().enumerate() {
+        // From each shade's foot up to the top: the next one covers the rest, and no seam shows.
+        let foot = bottom - high * i as f64 / SHADES as f64;
+        let (x, y) = (number(left), number(top));
+        let (w, h) = (number(BAR), number(foot - top));
+        canvas.raw(&format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{colour}\"/>"));
+    }
+    let mut lines = Path::default();
+    lines.move_to([left, top]);
+    for corner in [[edge, top], [edge, bottom], [left, bottom]] {
+        lines.line_to(corner);
+    }
+    lines.close([left, top]);
+    for tick in ticks(&bar.axis, 1, high) {
+        let y = bottom - high * bar.axis.unit(tick.at);
+        lines.horizontal([edge, y], edge + if tick.label.is_some() { TICK } else { MINOR_TICK });
+        if let Some(label) = &tick.label {
+            let at = [edge + TICK + GAP, y + NUMBER * DIGIT / 2.0];
+            canvas.text(&Label::new(label), at, set(NUMBER, Anchor::Start));
+        }
+    }
+    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\".5\""));
+    let x = edge + TICK + GAP + widest_number(&bar.axis, high) + GAP + WORDS * 0.75;
+    let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
+    canvas.text(&Label::new(&bar.axis.label), [x, (top + bottom) / 2.0], upright);
+}

@@ -1,0 +1,200 @@
+//! Where everything goes: room for titles, numbers and labels first, the frames share the rest.
+//!
+//! Frames in one row have one height, frames in one column one width, and all of a row or column line up,
+//! whatever stands beside them. Lengths are points.
+
+use super::axis::{Axis, Tick};
+use super::clip::Rect;
+use super::font::Face;
+use super::key;
+use super::label::Label;
+use super::panel::{Panel, Place};
+
+/// Sizes of letters.
+pub(super) const NUMBER: f64 = 8.0;
+pub(super) const WORDS: f64 = 9.0;
+pub(super) const TITLE: f64 = 9.5;
+/// Ticks point outward, away from the data.
+pub(super) const TICK: f64 = 2.8;
+pub(super) const MINOR_TICK: f64 = 1.6;
+/// Between a tick and its number, a number and the label, the frame and the edge of the paper.
+pub(super) const GAP: f64 = 2.2;
+/// The paper's rim.
+const RIM: f64 = 3.0;
+/// Between two panels side by side, and one above the other.
+const BESIDE: f64 = 11.0;
+const BELOW: f64 = 18.0;
+/// The least distance between two labelled ticks.
+const APART: [f64; 2] = [34.0, 24.0];
+/// Height of a capital relative to the size of the letters.
+pub(super) const CAPITAL: f64 = 0.72;
+/// Height of a digit, and of a line of labels with its indices, relative to the size of the letters.
+pub(super) const DIGIT: f64 = 0.66;
+pub(super) const LINE: f64 = 1.15;
+
+/// Where a panel stands on the page.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Site {
+    /// What the axes enclose.
+    pub frame: Rect,
+    /// Where the row begins: all its titles hang from here.
+    pub top: f64,
+}
+
+/// The place of each panel on a page of the given size.
+pub(super) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -> Vec<Site> {
+    let rows = panels.len().div_ceil(columns).max(1);
+    let (row, column) = (|i: usize| i / columns, |i: usize| i % columns);
+    let (width, height) =
+        (width - 2.0 * RIM - BESIDE * (columns - 1) as f64, height - 2.0 * RIM - BELOW * (rows - 1) as f64);
+    // Heights ask for a width where a legend stands above its frame, widths for a height where the numbers of an axis
+    // stand beside it. From a guess at the width, two rounds settle both.
+    let mut wide = width / columns as f64;
+    let (mut high, mut vertical, mut horizontal) = (0.0, Vec::new(), Vec::new());
+    for _ in 0..2 {
+        vertical = panels.iter().map(|panel| (above(panel, wide), below(panel))).collect();
+        high = share(rows, &vertical, row, height);
+        horizontal = panels.iter().map(|panel| (left(panel, high), right(panel, high))).collect();
+        wide = share(columns, &horizontal, column, width);
+    }
+    let xs = starts(columns, &horizontal, column, wide + BESIDE);
+    let ys = starts(rows, &vertical, row, high + BELOW);
+    (0..panels.len())
+        .map(|i| ((xs[column(i)].1, ys[row(i)].1), ys[row(i)].0))
+        .map(|((x, y), top)| Site { frame: [x, y, x + wide, y + high], top })
+        .collect()
+}
+
+/// The most room that the members of a track want before and after their frames.
+fn wants(track: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize) -> (f64, f64) {
+    let members = rooms.iter().enumerate().filter(|(i, _)| of(*i) == track);
+    members.fold((0.0, 0.0), |(a, b), (_, room)| (f64::max(a, room.0), f64::max(b, room.1)))
+}
+
+/// What the room around the frames leaves for each of them.
+fn share(count: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize + Copy, length: f64) -> f64 {
+    let taken: f64 = (0..count).map(|track| wants(track, rooms, of)).map(|(a, b)| a + b).sum();
+    // On paper too small for its labels the frames still exist, and overlap.
+    ((length - taken) / count as f64).max(10.0)
+}
+
+/// Where each track begins, and where its frames do, when a frame and the gap behind it take `pitch`.
+fn starts(
+    count: usize,
+    rooms: &[(f64, f64)],
+    of: impl Fn(usize) -> usize + Copy,
+    pitch: f64,
+) -> Vec<(f64, f64)> {
+    let mut at = RIM;
+    (0..count)
+        .map(|track| {
+            let (before, after) = wants(track, rooms, of);
+            let begin = at;
+            at += before + pitch + after;
+            (begin, begin + before)
+        })
+        .collect()
+}
+
+/// The ticks of a horizontal (0) or vertical (1) axis of the given length: as many as fit without crowding.
+pub(super) fn ticks(axis: &Axis, direction: usize, length: f64) -> Vec<Tick> {
+    let mut most = (length / APART[direction]) as usize + 1;
+    loop {
+        let ticks = axis.marks(most);
+        let labelled: Vec<&Tick> = ticks.iter().filter(|tick| tick.label.is_some()).collect();
+        let crowded = labelled.windows(2).any(|pair| {
+            let apart = (axis.unit(pair[1].at) - axis.unit(pair[0].at)).abs() * length;
+            let wide = |tick: &Tick| number_width(tick);
+            let needed =
+                if direction == 0 { (wide(pair[0]) + wide(pair[1])) / 2.0 + 6.0 } else { 1.2 * NUMBER };
+            apart < needed
+        });
+        if !crowded || most <= 2 {
+            return ticks;
+        }
+        most -= 1;
+    }
+}
+
+fn number_width(tick: &Tick) -> f64 {
+    tick.label.as_ref().map_or(0.0, |label| NUMBER * Label::new(label).width)
+}
+
+/// The width of the widest number on a vertical axis.
+pub(super) fn widest_number(axis: &Axis, length: f64) -> f64 {
+    ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)
+}
+
+fn above(panel: &Panel, width: f64) -> f64 {
+    let title = if panel.title.is_empty() { 0.0 } else { title_height(panel) };
+    let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width) } else { 0.0 };
+    // The topmost number of the vertical axis reaches over the frame by half its height.
+    (title + legend).max(NUMBER * DIGIT / 2.0)
+}
+
+/// The height that the title takes above the legend or the frame.
+fn title_height(panel: &Panel) -> f64 {
+    if Label::in_face(&panel.title, Face::Semibold).glyphs.is_empty() { 0.0 } else { TITLE * CAPITAL + 6.0 }
+}
+
+fn below(panel: &Panel) -> f64 {
+    if !panel.x.numbered {
+        return TICK;
+    }
+    let label = if panel.x.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
+    TICK + GAP + NUMBER * DIGIT + 2.0 + label
+}
+
+fn left(panel: &Panel, height: f64) -> f64 {
+    if !panel.y.numbered {
+        return TICK;
+    }
+    let label = if panel.y.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
+    TICK + GAP + widest_number(&panel.y, height) + 1.5 + label
+}
+
+fn right(panel: &Panel, height: f64) -> f64 {
+    match &panel.bar {
+        Some(bar) => key::bar_width(bar, height),
+        // The last number of the horizontal axis reaches over the frame by half its width.
+        None => 7.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel(label: &str) -> Panel {
+        Panel::new(Axis::linear("x", 0.0, 1.0), Axis::linear(label, 0.0, 1.0))
+    }
+
+    #[test]
+    fn frames_line_up_and_stay_on_the_page() {
+        let panels = [panel("y").titled("a"), panel(""), panel("y"), panel("").titled("d")];
+        let found: Vec<Rect> = sites(&panels, 2, 400.0, 300.0).iter().map(|site| site.frame).collect();
+        assert_eq!((found[0][0], found[0][2]), (found[2][0], found[2][2]));
+        assert_eq!((found[0][1], found[0][3]), (found[1][1], found[1][3]));
+        assert!((found[1][2] - found[1][0] - (found[0][2] - found[0][0])).abs() < 1e-9);
+        for (frame, panel) in found.iter().zip(&panels) {
+            let (wide, high) = (frame[2] - frame[0], frame[3] - frame[1]);
+            assert!(frame[0] >= left(panel, high) && frame[1] >= above(panel, wide), "{frame:?}");
+            assert!(frame[2] + right(panel, high) <= 400.0 && frame[3] + below(panel) <= 300.0, "{frame:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_never_touch() {
+        for length in [15.0, 40.0, 90.0, 300.0] {
+            let axis = Axis::linear("", 0.731610, 0.731625);
+            let at: Vec<(f64, f64)> = ticks(&axis, 0, length)
+                .iter()
+                .filter(|tick| tick.label.is_some())
+                .map(|tick| (axis.unit(tick.at) * length, number_width(tick)))
+                .collect();
+            // Two numbers are the fewest an axis shows, even on one too short for them.
+            let apart = at.windows(2).all(|w| w[1].0 - w[0].0 >= (w[0].1 + w[1].1) / 2.0);
+            assert!(apart || at.len() <= 2, "{length}: {at:?}");
+        }
+    }
+}

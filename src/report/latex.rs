@@ -1,0 +1,194 @@
+//! Tables for papers: a LaTeX `table` with a `booktabs` body, numbers in math mode.
+
+use super::decimal;
+use super::table::{Align, Cell, Column, Table};
+
+/// The whole table as a float with caption and the label `tab:NAME`; needs `\usepackage{booktabs}`.
+pub fn document(table: &Table) -> String {
+    let sides: String = table.columns().iter().map(side).collect();
+    let heads: Vec<String> = table.columns().iter().map(head).collect();
+    let mut out = format!(
+        "\\begin{{table}}\n  \\centering\n  \\caption{{{}}}\n  \\label{{tab:{}}}\n  \\begin{{tabular}}{{{sides}}}\n",
+        escaped(table.caption()),
+        table.name()
+    );
+    out.push_str("    \\toprule\n");
+    put_line(&mut out, &heads);
+    out.push_str("    \\midrule\n");
+    for row in table.rows() {
+        put_line(&mut out, &row.iter().map(shown).collect::<Vec<_>>());
+    }
+    out.push_str("    \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
+    out
+}
+
+/// One cell, ready to stand between two `&`.
+pub fn shown(cell: &Cell) -> String {
+    match cell {
+        Cell::Exact(text) => format!("${}$", exact(text)),
+        Cell::Float(value) => format!("${}$", float(*value)),
+        Cell::Enclosure { lo, hi } => format!("${}$", decimal::enclosure(*lo, *hi).latex()),
+        Cell::Integer(value) => format!("${value}$"),
+        Cell::Text(text) => escaped(text),
+        Cell::Flag(true) => "yes".into(),
+        Cell::Flag(false) => "no".into(),
+        Cell::Missing => "--".into(),
+    }
+}
+
+/// A double in math mode: the shortest digits that read back as the same double.
+pub fn float(value: f64) -> String {
+    if value.is_nan() {
+        return "\\text{NaN}".into();
+    }
+    let text = format!("{value:?}").replace("inf", "\\infty");
+    match text.split_once('e') {
+        Some((mantissa, power)) => format!("{mantissa} \\times 10^{{{power}}}"),
+        None => text,
+    }
+}
+
+/// An exact number of kickdrift's notation in math mode: `3*pi^-2/25` becomes `3\pi^{-2}/25`.
+pub fn exact(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(letter) = rest.chars().next() {
+        let (taken, typeset) = token(rest, letter);
+        // A command such as \pi must not run into a letter behind it.
+        if ends_in_command(&out) && typeset.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            out.push(' ');
+        }
+        out.push_str(&typeset);
+        rest = &rest[taken..];
+    }
+    out
+}
+
+/// How many bytes the first token takes, and how it is typeset.
+fn token(rest: &str, letter: char) -> (usize, String) {
+    if rest.starts_with("pi") {
+        return (2, "\\pi".into());
+    }
+    if let Some(power) = rest.strip_prefix('^') {
+        let sign = usize::from(power.starts_with('-'));
+        let digits = power[sign..].bytes().take_while(u8::is_ascii_digit).count();
+        return (1 + sign + digits, format!("^{{{}}}", &power[..sign + digits]));
+    }
+    match letter {
+        // A product with pi needs no sign; one of two numbers does.
+        '*' if rest[1..].trim_start().starts_with("pi") => (1, String::new()),
+        '*' => (1, " \\cdot ".into()),
+        other => (other.len_utf8(), escaped(&other.to_string())),
+    }
+}
+
+fn ends_in_command(text: &str) -> bool {
+    text.rsplit_once('\\').is_some_and(|(_, name)| name.bytes().all(|b| b.is_ascii_alphabetic()))
+}
+
+/// Plain text with everything that means something to LaTeX made harmless.
+///
+/// ```
+/// use kickdrift::report::latex::escaped;
+/// assert_eq!(escaped("50% of h_1 & ~h^2"), r"50\% of h\_1 \& \textasciitilde{}h\textasciicircum{}2");
+/// ```
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' | '%' | '$' | '#' | '_' | '{' | '}' => out.extend(['\\', letter]),
+            '\\' => out.push_str("\\textbackslash{}"),
+            '~' => out.push_str("\\textasciitilde{}"),
+            '^' => out.push_str("\\textasciicircum{}"),
+            '<' => out.push_str("\\textless{}"),
+            '>' => out.push_str("\\textgreater{}"),
+            '|' => out.push_str("\\textbar{}"),
+            control if control.is_control() => out.push(' '),
+            plain => out.push(plain),
+        }
+    }
+    out
+}
+
+fn side(column: &Column) -> char {
+    match column.align {
+        Align::Left => 'l',
+        Align::Right => 'r',
+    }
+}
+
+fn head(column: &Column) -> String {
+    match &column.unit {
+        Some(unit) => format!("{} ({})", column.latex, escaped(unit)),
+        None => column.latex.clone(),
+    }
+}
+
+fn put_line(out: &mut String, fields: &[String]) {
+    out.push_str("    ");
+    out.push_str(&fields.join(" & "));
+    out.push_str(" \\\\\n");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_numbers_are_typeset() {
+        let pairs = [
+            ("pi^2/25", "\\pi^{2}/25"),
+            ("-7/2", "-7/2"),
+            ("3*pi^-2/25", "3\\pi^{-2}/25"),
+            ("2*3", "2 \\cdot 3"),
+            ("1 + 2*pi", "1 + 2\\pi"),
+            ("pi^10", "\\pi^{10}"),
+            ("_", "\\_"),
+            ("^", "^{}"),
+        ];
+        for (plain, typeset) in pairs {
+            assert_eq!(exact(plain), typeset);
+        }
+    }
+
+    #[test]
+    fn every_special_letter_is_escaped() {
+        let special = "\\&%$#_{}~^<>|\n";
+        let harmless = "\\textbackslash{}\\&\\%\\$\\#\\_\\{\\}\\textasciitilde{}\\textasciicircum{}\
+                        \\textless{}\\textgreater{}\\textbar{} ";
+        assert_eq!(escaped(special), harmless);
+    }
+
+    #[test]
+    fn floats_use_powers_of_ten() {
+        assert_eq!(float(1.5e-7), "1.5 \\times 10^{-7}");
+        assert_eq!(float(f64::NEG_INFINITY), "-\\infty");
+        assert_eq!(float(0.25), "0.25");
+    }
+
+    #[test]
+    fn a_table_is_a_booktabs_float() {
+        let columns = vec![
+            Column::new("lambda2").titled("lambda2", "$\\Lambda_2$"),
+            Column::new("s").titled("s", "$s$").enclosure(),
+            Column::new("note").left(),
+        ];
+        let mut table = Table::new("edges", "Edges of R&D", columns);
+        let edge = Cell::Enclosure { lo: 2.31828, hi: 2.31829 };
+        table.push(vec![Cell::Exact("pi^2/25".into()), edge, Cell::Text("a_b".into())]);
+        let expected = r"\begin{table}
+  \centering
+  \caption{Edges of R\&D}
+  \label{tab:edges}
+  \begin{tabular}{rrl}
+    \toprule
+    $\Lambda_2$ & $s$ & note \\
+    \midrule
+    $\pi^{2}/25$ & $2.318285(6)$ & a\_b \\
+    \bottomrule
+  \end{tabular}
+\end{table}
+";
+        assert_eq!(document(&table), expected);
+    }
+}

@@ -1,0 +1,23 @@
+//! Floor 5: results on their way out, as tables and as figures.
+//!
+//! The lower half knows no physics. A [`table::Table`] holds typed cells and each format is one file
+//! ([`csv`], [`latex`], [`text`], and JSON through `serde`); a [`figure::Figure`] holds panels of layers and
+//! is drawn as SVG, from which the PNG is rasterized; [`file`](mod@file) puts the bytes where they belong, whole or
+//! not at all. On it stand a [`document::Document`] for every kind of result, one file each, and the drawings
+//! of the (h1, h2) [`plane`].
+
+pub mod compare;
+pub mod csv;
+pub mod curves;
+pub mod decimal;
+pub mod document;
+pub mod figure;
+pub mod file;
+pub mod latex;
+pub mod map;
+pub mod plane;
+pub mod polynomial;
+pub mod proposition;
+pub mod table;
+pub mod text;
+pub mod verdict;

@@ -1,0 +1,241 @@
+//! One table for every format: named columns, typed cells.
+//!
+//! A cell says what its number *is*: exact text, the double nearest to a value, or an enclosure that contains
+//! it. The formats differ in how they show that, never in what they claim.
+
+use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
+
+/// One value of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cell {
+    /// An exact number in the notation that kickdrift also reads, as `7/2` or `pi^2/25`.
+    Exact(String),
+    /// The double nearest to the value.
+    Float(f64),
+    /// Two doubles with the value between them, ends included.
+    Enclosure {
+        /// The lower end.
+        lo: f64,
+        /// The upper end.
+        hi: f64,
+    },
+    /// A count, a label, an index.
+    Integer(i64),
+    /// Words.
+    Text(String),
+    /// Yes or no.
+    Flag(bool),
+    /// No value belongs here.
+    Missing,
+}
+
+/// How a column lies on paper and on a terminal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// One column: its key for programs, its titles for people.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// The name in CSV and JSON.
+    pub key: String,
+    /// The name in plain text.
+    pub title: String,
+    /// The name in LaTeX, typeset as it stands.
+    pub latex: String,
+    /// The unit, shown in parentheses after the title.
+    pub unit: Option<String>,
+    /// The side on which the cells line up.
+    pub align: Align,
+    /// Whether the cells are enclosures: these take two columns of CSV.
+    pub enclosed: bool,
+}
+
+impl Column {
+    /// A right-aligned column whose titles are its key.
+    pub fn new(key: &str) -> Self {
+        Column {
+            key: key.into(),
+            title: key.into(),
+            latex: super::latex::escaped(key),
+            unit: None,
+            align: Align::Right,
+            enclosed: false,
+        }
+    }
+
+    /// The same column with a title for people, plain and in LaTeX.
+    #[must_use]
+    pub fn titled(mut self, title: &str, latex: &str) -> Self {
+        self.title = title.into();
+        self.latex = latex.into();
+        self
+    }
+
+    /// The same column with a unit.
+    #[must_use]
+    pub fn in_unit(mut self, unit: &str) -> Self {
+        self.unit = Some(unit.into());
+        self
+    }
+
+    /// The same column, its cells lined up on the left.
+    #[must_use]
+    pub fn left(mut self) -> Self {
+        self.align = Align::Left;
+        self
+    }
+
+    /// The same column for enclosures.
+    #[must_use]
+    pub fn enclosure(mut self) -> Self {
+        self.enclosed = true;
+        self
+    }
+}
+
+/// Named columns and rows of cells.
+///
+/// ```
+/// use kickdrift::report::table::{Cell, Column, Table};
+/// let mut table = Table::new("steps", "Resonant steps", vec![Column::new("p"), Column::new("h2")]);
+/// table.push(vec![Cell::Integer(7), Cell::Exact("7/2".into())]);
+/// assert_eq!(kickdrift::report::csv::document(&table), "p,h2\r\n7,7/2\r\n");
+/// assert_eq!(table.to_json_rows().to_string(), r#"[{"h2":"7/2","p":7}]"#);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    name: String,
+    caption: String,
+    columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(name: &str, caption: &str, columns: Vec<Column>) -> Self {
+        Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+    }
+
+    /// Adds a row.
+    ///
+    /// # Panics
+    /// If the row has not one cell a column, or an enclosure stands in a column that is not for enclosures:
+    /// such a row is a bug of its maker, and would shift the columns of a CSV file.
+    pub fn push(&mut self, row: Vec<Cell>) {
+        check(&self.columns, &row);
+        self.rows.push(row);
+    }
+
+    /// The name: the key in JSON, the label in LaTeX.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// One sentence on what the rows are.
+    pub fn caption(&self) -> &str {
+        &self.caption
+    }
+
+    /// The columns, in order.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The rows, in the order they came.
+    pub fn rows(&self) -> &[Vec<Cell>] {
+        &self.rows
+    }
+
+    /// The rows as a JSON array of objects, one key a column; see the [`Serialize`] implementation.
+    pub fn to_json_rows(&self) -> serde_json::Value {
+        serde_json::to_value(self).expect("rows of plain cells are always JSON")
+    }
+}
+
+/// Panics unless `row` fits `columns`; see [`Table::push`].
+pub(super) fn check(columns: &[Column], row: &[Cell]) {
+    assert_eq!(row.len(), columns.len(), "a row has one cell a column");
+    for (column, cell) in columns.iter().zip(row) {
+        let enclosure = matches!(cell, Cell::Enclosure { .. });
+        assert!(column.enclosed || !enclosure, "column {} is not for enclosures", column.key);
+    }
+}
+
+/// As a sequence of maps from column keys to cells, in the order of the columns. Exact numbers are strings,
+/// enclosures `{"lo": , "hi": }`, missing values null, and so is a float that is not finite: JSON has none.
+impl Serialize for Table {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
+        for row in &self.rows {
+            rows.serialize_element(&Row { columns: &self.columns, cells: row })?;
+        }
+        rows.end()
+    }
+}
+
+struct Row<'a> {
+    columns: &'a [Column],
+    cells: &'a [Cell],
+}
+
+impl Serialize for Row<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.columns.iter().map(|column| &column.key).zip(self.cells))
+    }
+}
+
+impl Serialize for Cell {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Cell::Exact(text) | Cell::Text(text) => serializer.serialize_str(text),
+            Cell::Float(value) => serializer.serialize_f64(*value),
+            Cell::Enclosure { lo, hi } => {
+                let mut ends = serializer.serialize_map(Some(2))?;
+                ends.serialize_entry("lo", lo)?;
+                ends.serialize_entry("hi", hi)?;
+                ends.end()
+            }
+            Cell::Integer(value) => serializer.serialize_i64(*value),
+            Cell::Flag(value) => serializer.serialize_bool(*value),
+            Cell::Missing => serializer.serialize_none(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn columns() -> Vec<Column> {
+        vec![Column::new("z"), Column::new("s").enclosure(), Column::new("a").left()]
+    }
+
+    #[test]
+    fn json_keeps_the_order_of_the_columns_and_the_kind_of_each_cell() {
+        let mut table = Table::new("t", "", columns());
+        table.push(vec![Cell::Integer(-3), Cell::Enclosure { lo: 0.1, hi: 0.25 }, Cell::Text("a\"b".into())]);
+        table.push(vec![Cell::Float(f64::INFINITY), Cell::Exact("11/4".into()), Cell::Missing]);
+        assert_eq!(
+            serde_json::to_string(&table).unwrap(),
+            r#"[{"z":-3,"s":{"lo":0.1,"hi":0.25},"a":"a\"b"},{"z":null,"s":"11/4","a":null}]"#
+        );
+    }
+
+    #[test]
+    #[should_panic(expected = "one cell a column")]
+    fn a_short_row_is_a_bug() {
+        Table::new("t", "", columns()).push(vec![Cell::Missing]);
+    }
+
+    #[test]
+    #[should_panic(expected = "column a is not for enclosures")]
+    fn an_enclosure_in_a_plain_column_is_a_bug() {
+        let wide = Cell::Enclosure { lo: 0.0, hi: 1.0 };
+        Table::new("t", "", columns()).push(vec![Cell::Missing, Cell::Missing, wide]);
+    }
+}

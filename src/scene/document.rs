@@ -1,0 +1,68 @@
+//! A scene as it is written: texts, not yet quantities.
+
+use serde::Deserialize;
+
+use crate::error::{Error, Result};
+
+/// The schema that this version reads.
+const SCHEMA: &str = "kickdrift/scene/1";
+
+/// The fields of a scene file; all quantities are exact strings. See data/schema/scene.json.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Document {
+    /// `kickdrift/scene/1`.
+    pub schema: String,
+    /// Shown on figures and summaries.
+    pub title: Option<String>,
+    /// The stiffness of the fast force, 1/time².
+    pub lambda1: Option<String>,
+    /// The stiffness of the slow force, 1/time².
+    pub lambda2: Option<String>,
+    /// The step pairs.
+    pub grid: Option<Grid>,
+    /// The curves (a, b).
+    pub families: Option<Families>,
+    /// Nearness to a resonance in units of T½.
+    pub tolerance: Option<String>,
+    /// h2/h1 = p/q for products about one ratio.
+    pub ratio: Option<String>,
+    /// The bound on p and q of exhaustive checks.
+    pub max: Option<u64>,
+    /// The products, `NAME` or `NAME.FORMAT`.
+    pub want: Vec<String>,
+}
+
+/// All multiples of the steps in closed ranges `LO..HI`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Grid {
+    /// The spacing of both steps ...
+    pub step: Option<String>,
+    /// ... or of h1 and h2 apart.
+    pub step1: Option<String>,
+    /// The spacing of h2.
+    pub step2: Option<String>,
+    /// The range of h1.
+    pub h1: String,
+    /// The range of h2.
+    pub h2: String,
+}
+
+/// Ranges `LO..HI` of a and b, and samples a curve.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Families {
+    pub a: Option<String>,
+    pub b: Option<String>,
+    pub samples: Option<u32>,
+}
+
+impl Document {
+    pub(super) fn check_schema(&self) -> Result<()> {
+        if self.schema == SCHEMA {
+            return Ok(());
+        }
+        Err(Error::input("schema", &self.schema, format!("this version reads {SCHEMA}")))
+    }
+}

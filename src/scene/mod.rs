@@ -1,0 +1,188 @@
+//! Input documents: what a person writes in a scene file, as library types.
+//!
+//! A scene names its quantities as exact strings and the products it wants; only those are computed. It is
+//! read in two steps: JSON into [`document::Document`], whose fields are still text, then each text into the
+//! type that the library asks for, so that every error names the field, its value and a remedy.
+//!
+//! ```
+//! use kickdrift::scene::{Product, Scene};
+//! let text = r#"{
+//!     "schema": "kickdrift/scene/1",
+//!     "lambda1": "pi^2", "lambda2": "pi^2/25",
+//!     "grid": {"step": "1/100", "h1": "1/100..2/pi", "h2": "1/100..7/2"},
+//!     "want": ["map.csv"]
+//! }"#;
+//! let scene = Scene::read(text).unwrap();
+//! assert_eq!(scene.grid().unwrap().len(), 63 * 350);
+//! assert!(matches!(scene.want()[0].product, Product::Map));
+//! ```
+
+mod document;
+mod grid;
+mod want;
+
+use crate::error::{Error, Result};
+use crate::number::parse::{parse, parse_integer_range, parse_ratio, parse_rational};
+use crate::number::{Laurent, Rational};
+
+pub use document::Document;
+pub use grid::GridRange;
+pub use want::{Format, Product, Want};
+
+/// What is to be computed, checked as far as it can be without computing.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    document: Document,
+    grid: Option<GridRange>,
+    want: Vec<Want>,
+}
+
+/// The curves wanted: closed ranges of a and b, and the number of samples in 0 < θ < π.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Families {
+    pub a: (i64, i64),
+    pub b: (i64, i64),
+    pub samples: usize,
+}
+
+/// The longest scene file read, in bytes: a scene is written by hand.
+const LONGEST: usize = 1 << 20;
+
+impl Scene {
+    /// Reads a scene from the text of its file.
+    ///
+    /// # Errors
+    /// JSON that is not a scene, an unknown field or product, a quantity that does not parse or is out of
+    /// range, a product whose fields are missing.
+    pub fn read(text: &str) -> Result<Scene> {
+        if text.len() > LONGEST {
+            let remedy = "a scene has at most 1 MiB; is this the right file?";
+            return Err(Error::input("scene", format!("{} bytes", text.len()), remedy));
+        }
+        let document: Document = serde_json::from_str(text).map_err(|cause| {
+            Error::input("scene", cause, "write one JSON object as in data/scenes/figure1.json")
+        })?;
+        Scene::new(document)
+    }
+
+    /// Checks a document and turns its texts into quantities.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    pub fn new(document: Document) -> Result<Scene> {
+        document.check_schema()?;
+        let grid = document.grid.as_ref().map(GridRange::new).transpose()?;
+        let want = document.want.iter().map(|text| Want::new(text)).collect::<Result<Vec<_>>>()?;
+        let scene = Scene { document, grid, want };
+        scene.want.iter().try_for_each(|want| scene.supports(want.product))?;
+        Ok(scene)
+    }
+
+    /// The products wanted, in the order of the file.
+    pub fn want(&self) -> &[Want] {
+        &self.want
+    }
+
+    /// The document behind the scene, for the echo of the input.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The title, or nothing.
+    pub fn title(&self) -> &str {
+        self.document.title.as_deref().unwrap_or("")
+    }
+
+    /// The stiffness of the fast force.
+    ///
+    /// # Errors
+    /// Where the field is missing or does not parse.
+    pub fn lambda1(&self) -> Result<Laurent> {
+        quantity("lambda1", self.document.lambda1.as_deref())
+    }
+
+    /// The stiffness of the slow force.
+    ///
+    /// # Errors
+    /// As [`Scene::lambda1`].
+    pub fn lambda2(&self) -> Result<Laurent> {
+        quantity("lambda2", self.document.lambda2.as_deref())
+    }
+
+    /// The grid of step pairs.
+    ///
+    /// # Errors
+    /// Where the scene has none.
+    pub fn grid(&self) -> Result<&GridRange> {
+        self.grid
+            .as_ref()
+            .ok_or_else(|| missing("grid", "{\"step\": \"1/100\", \"h1\": \"LO..HI\", \"h2\": \"LO..HI\"}"))
+    }
+
+    /// The families of curves; a from 0 to 3 and |b| up to 12 unless the scene says otherwise.
+    ///
+    /// # Errors
+    /// Where a range does not parse.
+    pub fn families(&self) -> Result<Families> {
+        let range = |field, text: Option<&String>, default| {
+            text.map_or(Ok(default), |text| parse_integer_range(field, text))
+        };
+        let families = self.document.families.clone().unwrap_or_default();
+        Ok(Families {
+            a: range("families.a", families.a.as_ref(), (0, 3))?,
+            b: range("families.b", families.b.as_ref(), (-12, 12))?,
+            samples: families.samples.unwrap_or(400) as usize,
+        })
+    }
+
+    /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless the scene
+    /// says otherwise.
+    ///
+    /// # Errors
+    /// Where it does not parse.
+    pub fn tolerance(&self) -> Result<Rational> {
+        parse_rational("tolerance", self.document.tolerance.as_deref().unwrap_or("1/20"))
+    }
+
+    /// h2/h1 = p/q.
+    ///
+    /// # Errors
+    /// Where the field is missing or is no positive ratio.
+    pub fn ratio(&self) -> Result<(u64, u64)> {
+        let text = self.document.ratio.as_deref().ok_or_else(|| missing("ratio", "\"7/2\""))?;
+        parse_ratio("ratio", text)
+    }
+
+    /// The bound on p and q of an exhaustive check of the Proposition; 60 unless the scene says otherwise.
+    pub fn max(&self) -> u64 {
+        self.document.max.unwrap_or(60)
+    }
+
+    /// The fields that a product needs are there and parse.
+    fn supports(&self, product: Product) -> Result<()> {
+        match product {
+            Product::Map | Product::Compare => self.plane(),
+            Product::Figure | Product::Overlay => self.plane().and(self.families().map(drop)),
+            Product::Curves => self.lambda1().and(self.grid().map(drop)).and(self.families().map(drop)),
+            Product::Polynomial => self.ratio().map(drop),
+            Product::Proposition => Ok(()),
+        }?;
+        if product == Product::Compare { self.tolerance().map(drop) } else { Ok(()) }
+    }
+
+    fn plane(&self) -> Result<()> {
+        self.lambda1().and(self.lambda2()).and(self.grid().map(drop))
+    }
+}
+
+fn quantity(field: &str, text: Option<&str>) -> Result<Laurent> {
+    parse(field, text.ok_or_else(|| missing(field, "\"pi^2/25\""))?)
+}
+
+fn missing(field: &str, example: &str) -> Error {
+    Error::input(
+        field,
+        "missing",
+        format!("a wanted product needs it: add for example \"{field}\": {example}"),
+    )
+}

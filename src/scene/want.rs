@@ -1,0 +1,142 @@
+//! The products that a scene can want.
+
+use crate::error::{Error, Result};
+
+/// A product of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Product {
+    /// The verdicts of the grid.
+    Map,
+    /// The (a, b) curves over the grid's window.
+    Curves,
+    /// Trace against tan criterion and resonance over the grid.
+    Compare,
+    /// The Proposition, exhaustively.
+    Proposition,
+    /// The half period as polynomials.
+    Polynomial,
+    /// Unstable pairs and curves side by side.
+    Figure,
+    /// Unstable pairs under the curves.
+    Overlay,
+}
+
+/// The form of a product's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Format {
+    Json,
+    Csv,
+    Latex,
+    Text,
+    Svg,
+    Png,
+}
+
+/// One product in one format: one file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Want {
+    pub product: Product,
+    pub format: Format,
+}
+
+const PRODUCTS: [(&str, Product); 7] = [
+    ("map", Product::Map),
+    ("curves", Product::Curves),
+    ("compare", Product::Compare),
+    ("proposition", Product::Proposition),
+    ("polynomial", Product::Polynomial),
+    ("figure", Product::Figure),
+    ("overlay", Product::Overlay),
+];
+
+const FORMATS: [(&str, Format); 6] = [
+    ("json", Format::Json),
+    ("csv", Format::Csv),
+    ("tex", Format::Latex),
+    ("txt", Format::Text),
+    ("svg", Format::Svg),
+    ("png", Format::Png),
+];
+
+impl Want {
+    /// Reads `NAME` or `NAME.FORMAT`. Without a format: JSON for tables, SVG for figures.
+    ///
+    /// # Errors
+    /// An unknown product or format, or a format that the product does not have.
+    pub(super) fn new(text: &str) -> Result<Want> {
+        let (name, format) = text.split_once('.').map_or((text, None), |(name, format)| (name, Some(format)));
+        let product =
+            find(&PRODUCTS, name).ok_or_else(|| unknown(text, "the products are", &names(&PRODUCTS)))?;
+        let default = if product.is_figure() { Format::Svg } else { Format::Json };
+        let format = match format {
+            Some(format) => {
+                find(&FORMATS, format).ok_or_else(|| unknown(text, "the formats are", &names(&FORMATS)))?
+            }
+            None => default,
+        };
+        let drawn = matches!(format, Format::Svg | Format::Png);
+        if drawn != product.is_figure() {
+            let remedy = if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg or png" };
+            return Err(Error::input("want", text, remedy));
+        }
+        Ok(Want { product, format })
+    }
+
+    /// The name of the product's file.
+    pub fn file_name(&self) -> String {
+        format!("{}.{}", self.product.name(), self.format.extension())
+    }
+}
+
+impl Product {
+    /// The name in `want`.
+    pub fn name(self) -> &'static str {
+        PRODUCTS.iter().find(|(_, product)| *product == self).expect("every product has a name").0
+    }
+
+    /// Whether it is drawn.
+    pub fn is_figure(self) -> bool {
+        matches!(self, Product::Figure | Product::Overlay)
+    }
+}
+
+impl Format {
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        FORMATS.iter().find(|(_, format)| *format == self).expect("every format has an extension").0
+    }
+}
+
+fn find<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    table.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
+}
+
+fn names<T>(table: &[(&str, T)]) -> String {
+    table.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ")
+}
+
+fn unknown(text: &str, what: &str, known: &str) -> Error {
+    Error::input("want", text, format!("unknown; {what} {known}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_product_has_a_file_and_a_default_format() {
+        for (name, product) in PRODUCTS {
+            let want = Want::new(name).unwrap();
+            assert_eq!(want.product, product);
+            assert_eq!(Want::new(&want.file_name()).unwrap(), want);
+        }
+        assert_eq!(Want::new("figure.png").unwrap().format, Format::Png);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["", "maps", "map.xls", "map.png", "figure.csv", "figure.svg.png", "."] {
+            assert!(Want::new(text).is_err(), "{text}");
+        }
+    }
+}
