@@ -5,8 +5,6 @@ use std::ops::RangeInclusive;
 use super::mode::{Mode, Workspace};
 use super::string::{Entry, HalfString};
 use super::sturm::{LANES, Lanes, lanes};
-use crate::error::Result;
-use crate::number::Rational;
 
 /// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,6 +48,13 @@ impl HalfString {
         let mut search = Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
         search.run(|edge: Edge| found[edge.index - first] = Some(edge));
         found
+    }
+
+    /// An interval of s that holds the eigenvalue and no other one of the problem, by counts in doubles.
+    pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
+        let found = self.isolate(entry, &(index..=index)).into_iter().find(|bracket| bracket.upto == index as u64)?;
+        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
+        Some((found.lo * (1.0 - slack) * self.ticks, found.hi * (1.0 + slack) * self.ticks))
     }
 
     /// Brackets of one eigenvalue each, for all wanted ones that counts in doubles can tell apart.
@@ -218,18 +223,4 @@ impl Task {
         self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds % PATIENCE == 0;
         self.kappa = mu;
     }
-}
-
-/// All edges of p/q and ρ, by entry.
-pub fn edges(p: u64, q: u64, rho: &Rational) -> Result<Vec<Option<Edge>>> {
-    let string = HalfString::new(p, q, rho)?;
-    let mut space = Workspace::default();
-    let mut all = Vec::new();
-    for entry in Entry::ALL {
-        let n = string.dimension(entry);
-        if n > 0 {
-            all.extend(string.eigenvalues(entry, 1..=n, &mut space));
-        }
-    }
-    Ok(all)
 }
