@@ -3,6 +3,7 @@
 use num_traits::Zero;
 
 use super::string::Entry;
+use crate::number::polynomial::resultant;
 use crate::number::{Polynomial, Rational};
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 
@@ -30,4 +31,32 @@ fn without_zero(f: &InS) -> InS {
 pub(super) fn common_factor(p: u64, q: u64, rho: &Rational, pair: [Entry; 2]) -> InS {
     let entries = entries(p, q, rho);
     entries[pair[0] as usize].gcd(&entries[pair[1] as usize])
+}
+
+/// Q\[ρ\]\[s\].
+type InRho = Polynomial<Polynomial<Rational>>;
+
+/// How many ρ in \[lo, hi\], 0 < lo, let two entries share a zero; `None` where an entry has no zeros, so none.
+///
+/// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are what
+/// the string has masses: they do not fall.
+pub(super) fn closings(p: u64, q: u64, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
+    let s = InRho::variable();
+    let rho = InRho::constant(Polynomial::variable());
+    let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(p, q, s, rho)));
+    let c = Polynomial::new(c.coefficients()[1..].to_vec());
+    let entries = [a, b, c, d];
+    let [x, y] = pair.map(|entry| primitive(&entries[entry as usize]));
+    if x.degree()? == 0 || y.degree()? == 0 {
+        return None;
+    }
+    Some(resultant(&x, &y).count_roots(lo, hi))
+}
+
+/// The polynomial with integer coefficients: a positive rational factor taken out, which keeps the zeros.
+fn primitive(f: &InRho) -> InRho {
+    use num_integer::Integer;
+    let denominators = f.coefficients().iter().flat_map(|c| c.coefficients().iter().map(|c| c.denom().clone()));
+    let common = denominators.fold(num_bigint::BigInt::from(1), |lcm, d| lcm.lcm(&d));
+    f.map(|c| c.scale(&Rational::from_integer(common.clone())))
 }

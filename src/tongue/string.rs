@@ -93,6 +93,9 @@ pub(super) struct HalfString {
 /// doubles.
 const EXTREME: f64 = 1e16;
 
+/// The bit of the slow clock in an event's kicks.
+const SLOW: u64 = 2;
+
 /// More kicks than this are not laid out in memory.
 const MOST_KICKS: u64 = 1 << 24;
 
@@ -117,7 +120,20 @@ impl HalfString {
             return Err(Error::budget(cost));
         }
         let schedule = Schedule::two_clocks(p, q)?;
-        let nodes: Vec<Node> = schedule.half_period().map(|event| node(event.drift, event.kicks, event.weight)).collect();
+        let mut nodes: Vec<Node> = Vec::new();
+        let mut skipped = 0;
+        let end = schedule.period() / 2;
+        let mut now = 0;
+        for event in schedule.half_period() {
+            now += event.drift;
+            // Where the slow clock is silent its kick times are no nodes, unless the half period ends there.
+            if rho.is_zero() && event.kicks == SLOW && now < end {
+                skipped += event.drift;
+            } else {
+                nodes.push(node(skipped + event.drift, event.kicks, event.weight));
+                skipped = 0;
+            }
+        }
         let whole = [0.0, 1.0, slow, 1.0 + slow];
         let masses = std::array::from_fn(|kind| whole[kind / 2] * if kind % 2 == 0 { 0.5 } else { 1.0 });
         let stiffness = nodes[1..].iter().map(|node| node.inverse).sum();
