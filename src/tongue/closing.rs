@@ -213,9 +213,13 @@ impl Start {
         let (p, q) = (self.p, self.q);
         let centre = [s, rho].map(|x| Ball::from_rational(x, BITS));
         let radius = [s, rho].map(|x| x.abs() * rational::scale2(&One::one(), BOX));
-        let wide: [Ball; 2] = std::array::from_fn(|i| symmetric(&radius[i]));
+        let sides: [Ball; 2] = std::array::from_fn(|i| {
+            let end = |x: Rational| Ball::from_rational(&x, BITS);
+            end([s, rho][i] - &radius[i]).union(&end([s, rho][i] + &radius[i]), BITS)
+        });
+        let wide: [Ball; 2] = std::array::from_fn(|i| sides[i].sub(&centre[i], BITS));
         let at = jets(p, q, &centre[0], &centre[1], pair, BITS)?;
-        let over = jets(p, q, &centre[0].add(&wide[0], BITS), &centre[1].add(&wide[1], BITS), pair, BITS)?;
+        let over = jets(p, q, &sides[0], &sides[1], pair, BITS)?;
         // K − centre = −Y F(centre) + (1 − Y F'(box)) (box − centre), Y ≈ F'(centre)⁻¹.
         let Some(inverse) = inverse(&at) else { return Ok(None) };
         let mut image = Vec::new();
@@ -282,11 +286,6 @@ impl Start {
 fn point(x: &Ball) -> Ball {
     let middle = (x.lower() + x.upper()) / Rational::from_integer(2.into());
     Ball::from_rational(&Ball::from_rational(&middle, BITS).lower(), 2 * BITS)
-}
-
-/// [−r, r].
-fn symmetric(r: &Rational) -> Ball {
-    Ball::from_rational(r, BITS).union(&Ball::from_rational(&-r.clone(), BITS), BITS)
 }
 
 fn dot(row: &[Ball; 2], x: [&Ball; 2]) -> Ball {
