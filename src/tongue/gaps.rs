@@ -193,6 +193,10 @@ impl Tongues {
         Function::new(self.p, self.q, &self.rho, entry)
     }
 
+    pub(super) fn string(&self) -> &HalfString {
+        &self.string
+    }
+
     fn check(&self, m: u64) -> Result<()> {
         if (1..=self.last()).contains(&m) {
             return Ok(());

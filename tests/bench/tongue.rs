@@ -1,17 +1,56 @@
-//! scratch
-use kickdrift::number::rational::ratio;
-use kickdrift::tongue::Tongues;
-use num_integer::Integer;
+//! All edges of all coprime p + q <= N at rho = 1/25, certified, one thread and all threads; one edge of a long
+//! period; closings; the survey.
+//!
+//!     cargo bench --bench tongue -- 100        beside it: tests/bench/peers/tongue.py 100
+
+use std::time::Instant;
+
+use kickdrift::number::{Rational, rational::ratio};
+use kickdrift::tongue::{Edge, Entry, Search, Tongues, closings, ratios, survey};
+use rayon::prelude::*;
+
+/// The edges of one ratio, all four problems, and how many needed more bits than doubles have.
+fn edges((p, q): (u64, u64), rho: &Rational) -> (Vec<Edge>, u64) {
+    let mut tongues = Tongues::new(p, q, rho).unwrap();
+    let mut all = Vec::new();
+    for entry in Entry::ALL {
+        let zeros = tongues.zeros(entry);
+        if zeros > 0 {
+            all.extend(tongues.edges(entry, 1, zeros).unwrap());
+        }
+    }
+    (all, tongues.effort().precise)
+}
+
+fn report(name: &str, start: Instant, found: &[(Vec<Edge>, u64)]) {
+    let seconds = start.elapsed().as_secs_f64();
+    let mut widths = [0u64; 4];
+    let all: Vec<&Edge> = found.iter().flat_map(|(edges, _)| edges).collect();
+    all.iter().for_each(|edge| widths[(edge.hi.to_bits() - edge.lo.to_bits()).min(3) as usize] += 1);
+    let precise: u64 = found.iter().map(|(_, precise)| precise).sum();
+    println!(
+        "{name}: {} edges, {seconds:.3} s; width in ulps 0/1/2/more: {widths:?}; {precise} with more bits",
+        all.len()
+    );
+}
+
 fn main() {
-    let max: u64 = std::env::args().nth(1).and_then(|x| x.parse().ok()).unwrap_or(100);
-    let t = std::time::Instant::now();
-    let (mut n, mut bad, mut ulps) = (0u64, 0u64, [0u64; 6]);
-    for sum in 2..=max { for p in 1..sum { let q = sum - p; if p.gcd(&q) != 1 { continue; }
-        let mut t = Tongues::new(p, q, &ratio(1, 25)).unwrap();
-        for entry in kickdrift::tongue::Entry::ALL { let k = t.zeros(entry); if k > 0 { for x in t.edges(entry, 1, k).unwrap() {
-          n += 1; let w = x.hi.to_bits() - x.lo.to_bits(); ulps[(w as usize).min(5)] += 1; } } }
-        bad += t.effort().precise;
-    } }
-    println!("{n} edges, {bad} uncertified, ulps {ulps:?}, {:?}", t.elapsed());
-    for (p, q) in [(7,2),(7,3),(5,3)] { for g in Tongues::new(p,q,&ratio(1,25)).unwrap().all().unwrap() { println!("{p}/{q} {g:?}"); } }
+    let max_sum = std::env::args().find_map(|x| x.parse().ok()).unwrap_or(100);
+    let (rho, ratios) = (ratio(1, 25), ratios(max_sum));
+    let start = Instant::now();
+    let found: Vec<_> = ratios.iter().map(|&pair| edges(pair, &rho)).collect();
+    report(&format!("p + q <= {max_sum}, one thread"), start, &found);
+    let start = Instant::now();
+    let found: Vec<_> = ratios.par_iter().map(|&pair| edges(pair, &rho)).collect();
+    report(&format!("p + q <= {max_sum}, all threads"), start, &found);
+
+    let start = Instant::now();
+    let one = Tongues::new(61_803, 38_197, &rho).unwrap().edges(Entry::B, 12_345, 12_345).unwrap();
+    println!("one edge of 61803/38197: {:?}, {:.3} s", one[0], start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let found = closings(7, 4, &Search::default()).unwrap();
+    println!("closings of 7/4: {}, {:.3} s", found.closings.len(), start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let survey = survey(max_sum, &rho, 5).unwrap();
+    println!("survey: {:.3} s\n{survey:#?}", start.elapsed().as_secs_f64());
 }
