@@ -172,7 +172,8 @@ impl Tongues {
             let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
             Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? })
         });
-        let start = start.unwrap_or_else(|| function.isolate(&self.string, index));
+        let start = start.filter(|start| function.changes_sign(start));
+        let start = start.unwrap_or_else(|| function.isolate(&self.string, index, self.string.cluster(entry, index)));
         self.effort.precise += 1;
         let (lo, hi) = function.shrink(&start, &tenth_power(20)).to_f64();
         Ok(Edge { entry, index, lo, hi })

@@ -6,8 +6,9 @@
 //! change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
 //! and from exact arithmetic where that cannot tell: then the point may be the zero itself.
 
-use num_bigint::BigInt;
-use num_traits::{One, Signed, ToPrimitive, Zero};
+use num_bigint::{BigInt, Sign as IntSign};
+use num_integer::Integer;
+use num_traits::{One, Signed, Zero};
 
 use super::string::{Entry, HalfString};
 use crate::error::Result;
@@ -90,6 +91,17 @@ impl Function {
         Ball::from_integer(&self.exact_sign(s).to_i8().into())
     }
 
+    /// Whether the entry has different signs at the two ends, neither of them zero.
+    pub fn changes_sign(&self, interval: &Enclosure) -> bool {
+        const BITS: u32 = 128;
+        let sign = |s: &Rational| self.value(s, BITS).sign();
+        interval.lo < interval.hi
+            && matches!(
+                (sign(&interval.lo), sign(&interval.hi)),
+                (Some(Sign::Negative), Some(Sign::Positive)) | (Some(Sign::Positive), Some(Sign::Negative))
+            )
+    }
+
     /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself.
     ///
     /// # Panics
@@ -140,49 +152,74 @@ impl Function {
         Enclosure { hi: &lo + step, lo }
     }
 
-    /// How many zeros lie in (0, s), and whether s is one: by the signs of x along the string in exact integers.
+    /// How many zeros lie in (0, s), and whether s is one: by the signs of x along the string in exact integers,
+    /// (x, v) carrying the kicks' common denominator as a positive factor.
     fn exact_count(&self, s: &Rational) -> (u64, bool) {
-        let ticks = self.schedule.clocks()[0].step();
-        let kappa = s / Rational::from_integer((2 * ticks).into());
-        let mass = &self.rho * Rational::new(self.p.into(), self.q.into());
-        let (fast, slow) = (kappa.clone(), kappa * mass);
-        let whole = [Rational::zero(), fast.clone(), slow.clone(), fast + slow];
+        let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
+        let slow = &kappa * &self.rho * Rational::new(self.p.into(), self.q.into());
+        let denominator = kappa.denom().lcm(slow.denom());
+        let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
+        let half = [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
         let even = self.entry.starts_free();
-        let (mut x, mut v) = if even { (Rational::one(), Rational::zero()) } else { (Rational::zero(), Rational::one()) };
-        let (mut last, mut changes) = (1, 0);
+        let (mut x, mut v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
+        let (mut last, mut changes) = (IntSign::Plus, 0);
         for Event { drift, kicks, weight } in self.schedule.half_period() {
-            x += &v * Rational::from_integer(drift.into());
-            let sign = x.signum().to_integer().to_i32().expect("a sign");
-            if sign != 0 && sign != last {
-                (last, changes) = (sign, changes + 1);
+            x += &v * drift;
+            if x.sign() != IntSign::NoSign && x.sign() != last {
+                (last, changes) = (x.sign(), changes + 1);
             }
-            let parts = if weight == Weight::Half { 1 } else { 2 };
-            v -= &whole[kicks as usize] * Rational::from_integer(parts.into()) * &x;
+            if kicks != 0 {
+                let parts = if weight == Weight::Half { 1u8 } else { 2 };
+                v = v * &denominator - &half[kicks as usize] * parts * &x;
+                x *= &denominator;
+            }
         }
         if !self.entry.ends_free() {
             return (changes, x.is_zero());
         }
         // At a free end the slope's zeros count; the rigid shift of C does not.
-        let falling = u64::from((&x * &v).is_negative() || x.is_zero());
-        (changes + falling - u64::from(self.entry == Entry::C), v.is_zero())
+        let falling = x.is_zero() || (!v.is_zero() && x.sign() != v.sign());
+        (changes + u64::from(falling) - u64::from(self.entry == Entry::C), v.is_zero())
     }
 
-    /// Isolates a zero by halving with exact counts: for strings that counts in doubles cannot resolve.
-    pub fn isolate(&self, string: &HalfString, index: usize) -> Enclosure {
-        let bound = rational::from_f64_exact(2.0 * string.upper_bound() * string.ticks).expect("finite");
+    /// Isolates a zero by halving with exact counts: for zeros so close that counts in doubles cannot tell them
+    /// apart. `around`, if given, is where doubles saw it.
+    pub fn isolate(&self, string: &HalfString, index: usize, around: Option<(f64, f64)>) -> Enclosure {
+        let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
         let upto = string.dimension(self.entry) as u64;
-        let (mut lo, mut hi) = ((Rational::zero(), 0u64), (bound, upto));
-        let index = index as u64;
-        while hi.1 - lo.1 > 1 || lo.0.is_zero() {
-            let middle = (&lo.0 + &hi.0) / Rational::from_integer(2.into());
-            let (count, is_zero) = self.exact_count(&middle);
-            if is_zero && count + 1 == index {
-                return Enclosure { lo: middle.clone(), hi: middle };
+        let bound = exact(2.0 * string.upper_bound() * string.ticks);
+        let mut cell = Cell { lo: Rational::zero(), hi: bound, below: 0, upto, index: index as u64 };
+        let mut hints = around.map_or(Vec::new(), |(lo, hi)| vec![exact(hi), exact(lo)]);
+        loop {
+            let middle = || (&cell.lo + &cell.hi) / Rational::from_integer(2.into());
+            let cut = hints.pop().filter(|x| cell.lo < *x && *x < cell.hi).unwrap_or_else(middle);
+            let (count, is_zero) = self.exact_count(&cut);
+            if let Some(found) = cell.cut(cut, count, is_zero) {
+                return found;
             }
-            let count = count + u64::from(is_zero);
-            if count < index { lo = (middle, count) } else { hi = (middle, count) }
         }
-        Enclosure { lo: lo.0, hi: hi.0 }
+    }
+}
+
+/// An interval with the zeros `below` + 1 ..= `upto`, on the way to the zero `index` alone.
+struct Cell {
+    lo: Rational,
+    hi: Rational,
+    below: u64,
+    upto: u64,
+    index: u64,
+}
+
+impl Cell {
+    /// Cuts at x, with `count` zeros below it and perhaps one on it.
+    fn cut(&mut self, x: Rational, count: u64, is_zero: bool) -> Option<Enclosure> {
+        if is_zero && count + 1 == self.index {
+            return Some(Enclosure { lo: x.clone(), hi: x });
+        }
+        let count = count + u64::from(is_zero);
+        if count < self.index { (self.lo, self.below) = (x, count) } else { (self.hi, self.upto) = (x, count) }
+        let alone = self.upto - self.below == 1 && self.lo.is_positive();
+        alone.then(|| Enclosure { lo: self.lo.clone(), hi: self.hi.clone() })
     }
 }
 

@@ -44,21 +44,34 @@ impl HalfString {
     pub fn eigenvalues(&self, entry: Entry, wanted: RangeInclusive<usize>, space: &mut Workspace) -> Vec<Option<Edge>> {
         let first = *wanted.start();
         let mut found = vec![None; wanted.end() + 1 - first];
-        let brackets = self.isolate(entry, &wanted);
+        let brackets = self.isolate(entry, &wanted, false);
         let mut search = Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
         search.run(|edge: Edge| found[edge.index - first] = Some(edge));
         found
     }
 
-    /// An interval of s that holds the eigenvalue and no other one of the problem, by counts in doubles.
+    /// An interval of s that holds no other eigenvalue of the problem than this one, by counts in doubles: the one
+    /// before lies below lo (1 + η), the one after above hi (1 − η). Whether it holds this one, signs must tell.
     pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        let found = self.isolate(entry, &(index..=index)).into_iter().find(|bracket| bracket.upto == index as u64)?;
-        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
-        Some((found.lo * (1.0 - slack) * self.ticks, found.hi * (1.0 + slack) * self.ticks))
+        self.around(entry, index, true)
+    }
+
+    /// An interval of s in which the eigenvalue lies, perhaps with others.
+    pub fn cluster(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
+        self.around(entry, index, false)
+    }
+
+    fn around(&self, entry: Entry, index: usize, alone: bool) -> Option<(f64, f64)> {
+        let parts = self.isolate(entry, &(index..=index), !alone);
+        let found = parts.into_iter().find(|part| part.below < index as u64 && index as u64 <= part.upto)?;
+        let slack = (2.0 * self.eta() + 4.0 * f64::EPSILON) * if alone { 1.0 } else { -1.0 };
+        Some((found.lo * (1.0 + slack) * self.ticks, found.hi * (1.0 - slack) * self.ticks))
     }
 
     /// Brackets of one eigenvalue each, for all wanted ones that counts in doubles can tell apart.
-    fn isolate(&self, entry: Entry, wanted: &RangeInclusive<usize>) -> Vec<Bracket> {
+    ///
+    /// `clusters`: those that they cannot tell apart too, together.
+    fn isolate(&self, entry: Entry, wanted: &RangeInclusive<usize>, clusters: bool) -> Vec<Bracket> {
         let upto = self.dimension(entry) as u64;
         let mut open = vec![Bracket { lo: 0.0, hi: self.upper_bound(), below: 0, upto }];
         let mut isolated = Vec::new();
@@ -80,7 +93,7 @@ impl HalfString {
                         0 => {}
                         _ if !asked => {}
                         1 => isolated.push(part),
-                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => {}
+                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => isolated.extend(clusters.then_some(part)),
                         _ => next.push(part),
                     }
                 }
