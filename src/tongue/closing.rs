@@ -48,7 +48,11 @@ pub struct Search {
 impl Default for Search {
     /// All tongues, ρ from 1e-4 to 100, 400 samples.
     fn default() -> Self {
-        Search { m: None, rho: (Rational::new(1.into(), 10_000.into()), Rational::from_integer(100.into())), samples: 400 }
+        Search {
+            m: None,
+            rho: (Rational::new(1.into(), 10_000.into()), Rational::from_integer(100.into())),
+            samples: 400,
+        }
     }
 }
 
@@ -104,7 +108,8 @@ pub fn closings(p: u64, q: u64, search: &Search) -> Result<Found> {
         before = Some((rho, orders));
     }
     found.sort();
-    let closings: Vec<Closing> = found.into_iter().map(|(m, lo, hi)| certify(p, q, m, &lo, &hi)).collect::<Result<_>>()?;
+    let closings: Vec<Closing> =
+        found.into_iter().map(|(m, lo, hi)| certify(p, q, m, &lo, &hi)).collect::<Result<_>>()?;
     let complete = p + q <= ELIMINATION && is_complete(p, q, search, &closings)?;
     Ok(Found { closings, complete })
 }
@@ -152,7 +157,9 @@ fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Closi
     let (mut lo, mut hi) = (lo.clone(), hi.clone());
     loop {
         let start = Start::new(p, q, m, &lo, &hi)?;
-        if let Some(closing) = start.newton(pair)?.and_then(|(s, rho)| start.proven(pair, &s, &rho).transpose()) {
+        if let Some(closing) =
+            start.newton(pair)?.and_then(|(s, rho)| start.proven(pair, &s, &rho).transpose())
+        {
             return closing;
         }
         // Closer still: the middle's order tells which half holds the crossing.
@@ -202,7 +209,8 @@ impl Start {
         }
         let (s, rho) = (s.lower(), rho.lower());
         let within = |x: &Rational, (lo, hi): &(Rational, Rational)| {
-            let slack = (hi - lo) / Rational::from_integer(1000.into()) + lo * Rational::new(1.into(), (1u64 << 60).into());
+            let slack = (hi - lo) / Rational::from_integer(1000.into())
+                + lo * Rational::new(1.into(), (1u64 << 60).into());
             lo - &slack <= *x && *x <= hi + &slack
         };
         Ok((within(&s, &self.s) && within(&rho, &self.rho)).then_some((s, rho)))
@@ -276,8 +284,10 @@ impl Start {
         let (s, rho) = (simplest(&s.lo, &s.hi), simplest(&rho.lo, &rho.hi));
         // Half the box's own digits: a coincidence of that kind would be a wonder, and is checked all the same.
         let short = s.denom().bits() < 100 && rho.denom().bits() < 100;
-        let signs = short.then(|| Decidable::half_signs(&TwoClocks::with_rho(self.p, self.q, s.clone(), rho.clone())))?;
-        let closed = modular::pair(self.m % 2 == 1).iter().all(|&entry| signs.all()[entry as usize] == Sign::Zero);
+        let signs = short
+            .then(|| Decidable::half_signs(&TwoClocks::with_rho(self.p, self.q, s.clone(), rho.clone())))?;
+        let closed =
+            modular::pair(self.m % 2 == 1).iter().all(|&entry| signs.all()[entry as usize] == Sign::Zero);
         closed.then_some((s, rho))
     }
 }

@@ -56,7 +56,8 @@ pub(super) fn closings(p: u64, q: u64, pair: [Entry; 2], lo: &Rational, hi: &Rat
 /// The polynomial with integer coefficients: a positive rational factor taken out, which keeps the zeros.
 fn primitive(f: &InRho) -> InRho {
     use num_integer::Integer;
-    let denominators = f.coefficients().iter().flat_map(|c| c.coefficients().iter().map(|c| c.denom().clone()));
+    let denominators =
+        f.coefficients().iter().flat_map(|c| c.coefficients().iter().map(|c| c.denom().clone()));
     let common = denominators.fold(num_bigint::BigInt::from(1), |lcm, d| lcm.lcm(&d));
     f.map(|c| c.scale(&Rational::from_integer(common.clone())))
 }

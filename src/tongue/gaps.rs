@@ -58,11 +58,23 @@ impl Tongues {
     /// p/q not in lowest terms, ρ < 0 (no string: use `map`), ρ p/q beyond 1e±16, too many kicks.
     pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
         if p == 0 || q == 0 || p.gcd(&q) != 1 {
-            return Err(Error::input("ratio", format!("{p}/{q}"), "give a positive fraction in lowest terms"));
+            return Err(Error::input(
+                "ratio",
+                format!("{p}/{q}"),
+                "give a positive fraction in lowest terms",
+            ));
         }
         let string = HalfString::new(p, q, rho)?;
         let rho = rho.clone();
-        Ok(Tongues { p, q, rho, string, space: Workspace::default(), open: [None; 2], effort: Effort::default() })
+        Ok(Tongues {
+            p,
+            q,
+            rho,
+            string,
+            space: Workspace::default(),
+            open: [None; 2],
+            effort: Effort::default(),
+        })
     }
 
     /// The numerator of h2/h1.
@@ -143,7 +155,8 @@ impl Tongues {
     /// Where the schedule is too long; an index out of range.
     pub fn edges(&mut self, entry: Entry, first: usize, last: usize) -> Result<Vec<Edge>> {
         if first == 0 || first > last || last > self.string.dimension(entry) {
-            let remedy = format!("entry {} has {} positive zeros", entry.name(), self.string.dimension(entry));
+            let remedy =
+                format!("entry {} has {} positive zeros", entry.name(), self.string.dimension(entry));
             return Err(Error::input("edge", format!("{first}..{last}"), remedy));
         }
         let found = self.string.eigenvalues(entry, first..=last, &mut self.space);
@@ -173,7 +186,8 @@ impl Tongues {
             Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? })
         });
         let start = start.filter(|start| function.changes_sign(start));
-        let start = start.unwrap_or_else(|| function.isolate(&self.string, index, self.string.cluster(entry, index)));
+        let start =
+            start.unwrap_or_else(|| function.isolate(&self.string, index, self.string.cluster(entry, index)));
         self.effort.precise += 1;
         let (lo, hi) = function.shrink(&start, &tenth_power(20)).to_f64();
         Ok(Edge { entry, index, lo, hi })

@@ -84,11 +84,20 @@ impl Workspace {
     }
 
     /// Hands the amplitudes z_0, z_1, ... of the modes to `each`, |z_r| = `size`.
-    fn vectors(&mut self, string: &HalfString, entry: Entry, kicks: &Kicks, size: f64, mut each: impl FnMut(usize, Lanes)) {
+    fn vectors(
+        &mut self,
+        string: &HalfString,
+        entry: Entry,
+        kicks: &Kicks,
+        size: f64,
+        mut each: impl FnMut(usize, Lanes),
+    ) {
         self.run_forward(string, entry, kicks);
         self.run_backward(string, entry, kicks);
         let joint = self.join(&self.twist(), size);
-        for (block, (forward, backward)) in self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).enumerate() {
+        for (block, (forward, backward)) in
+            self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).enumerate()
+        {
             let (f, b) = (&joint.forward[block], &joint.backward[block]);
             for (k, (x, y)) in forward.iter().zip(backward).enumerate() {
                 let j = block * BLOCK + k;
@@ -147,8 +156,7 @@ impl Workspace {
     /// r for each lane.
     fn twist(&self) -> [usize; LANES] {
         let exponents = self.forward_exponents.iter().zip(&self.backward_exponents);
-        let sums: Vec<[i64; LANES]> =
-            exponents.map(|(f, b)| std::array::from_fn(|i| f[i] + b[i])).collect();
+        let sums: Vec<[i64; LANES]> = exponents.map(|(f, b)| std::array::from_fn(|i| f[i] + b[i])).collect();
         let top: [i64; LANES] = std::array::from_fn(|i| sums.iter().map(|s| s[i]).max().unwrap_or(0));
         let mut best = [0.0; LANES];
         let pairs = self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).zip(&sums);
@@ -279,7 +287,8 @@ impl<'a> Sums<'a> {
             let square = whole * whole;
             let t = (square * node.inverse + TO_INTEGER) - TO_INTEGER;
             self.springs.exact[i] += t;
-            self.springs.correction[i] += ((square - t * node.length) + (d - whole) * (d + whole)) * node.inverse;
+            self.springs.correction[i] +=
+                ((square - t * node.length) + (d - whole) * (d + whole)) * node.inverse;
             force[i] = d * node.inverse;
         }
         force

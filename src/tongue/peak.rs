@@ -71,7 +71,8 @@ impl Tongues {
         Ok(move |s: &Rational| {
             let clocks = TwoClocks::with_rho(p, q, s.clone(), rho.clone());
             let Some(ends) = refine::run(&clocks, &schedule, bits) else { return 0.0 };
-            let excess = if odd { ends.even.x.mul(&ends.odd.v, 64).neg() } else { ends.odd.x.mul(&ends.even.v, 64) };
+            let excess =
+                if odd { ends.even.x.mul(&ends.odd.v, 64).neg() } else { ends.odd.x.mul(&ends.even.v, 64) };
             excess.sqrt_clipped(64).map_or(0.0, |root: Ball| 2.0 * root.mid_f64().asinh())
         })
     }

@@ -112,7 +112,9 @@ impl Function {
         let mut ends: Option<(Ball, Ball)> = None;
         while !interval.is_below(relative) {
             let bits = self.bits_for(&interval, cells);
-            let (below, above) = ends.take().unwrap_or_else(|| (self.value(&interval.lo, bits), self.value(&interval.hi, bits)));
+            let (below, above) = ends
+                .take()
+                .unwrap_or_else(|| (self.value(&interval.lo, bits), self.value(&interval.hi, bits)));
             match (below.sign(), above.sign()) {
                 (Some(Sign::Zero), _) => return Enclosure { hi: interval.lo.clone(), lo: interval.lo },
                 (_, Some(Sign::Zero)) => return Enclosure { lo: interval.hi.clone(), hi: interval.hi },
@@ -159,7 +161,8 @@ impl Function {
         let slow = &kappa * &self.rho * Rational::new(self.p.into(), self.q.into());
         let denominator = kappa.denom().lcm(slow.denom());
         let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
-        let half = [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
+        let half =
+            [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
         let even = self.entry.starts_free();
         let (mut x, mut v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
         let (mut last, mut changes) = (IntSign::Plus, 0);
@@ -217,7 +220,11 @@ impl Cell {
             return Some(Enclosure { lo: x.clone(), hi: x });
         }
         let count = count + u64::from(is_zero);
-        if count < self.index { (self.lo, self.below) = (x, count) } else { (self.hi, self.upto) = (x, count) }
+        if count < self.index {
+            (self.lo, self.below) = (x, count)
+        } else {
+            (self.hi, self.upto) = (x, count)
+        }
         let alone = self.upto - self.below == 1 && self.lo.is_positive();
         alone.then(|| Enclosure { lo: self.lo.clone(), hi: self.hi.clone() })
     }

@@ -41,11 +41,17 @@ const NEGLIGIBLE: f64 = 1e-18;
 
 impl HalfString {
     /// The eigenvalues with the given indices, `None` where doubles cannot certify one.
-    pub fn eigenvalues(&self, entry: Entry, wanted: RangeInclusive<usize>, space: &mut Workspace) -> Vec<Option<Edge>> {
+    pub fn eigenvalues(
+        &self,
+        entry: Entry,
+        wanted: RangeInclusive<usize>,
+        space: &mut Workspace,
+    ) -> Vec<Option<Edge>> {
         let first = *wanted.start();
         let mut found = vec![None; wanted.end() + 1 - first];
         let brackets = self.isolate(entry, &wanted, false);
-        let mut search = Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
+        let mut search =
+            Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
         search.run(|edge: Edge| found[edge.index - first] = Some(edge));
         found
     }
@@ -80,7 +86,11 @@ impl HalfString {
             let points: Vec<f64> = cuts.iter().flatten().copied().collect();
             let counts: Vec<u64> = points
                 .chunks(LANES)
-                .flat_map(|chunk| self.counts(entry, &lanes(|i| chunk[i.min(chunk.len() - 1)])).into_iter().take(chunk.len()))
+                .flat_map(|chunk| {
+                    self.counts(entry, &lanes(|i| chunk[i.min(chunk.len() - 1)]))
+                        .into_iter()
+                        .take(chunk.len())
+                })
                 .collect();
             let mut next = Vec::new();
             let mut at = 0;
@@ -93,7 +103,9 @@ impl HalfString {
                         0 => {}
                         _ if !asked => {}
                         1 => isolated.push(part),
-                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => isolated.extend(clusters.then_some(part)),
+                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => {
+                            isolated.extend(clusters.then_some(part))
+                        }
                         _ => next.push(part),
                     }
                 }
@@ -204,7 +216,11 @@ impl Search<'_> {
         for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
             if task.astray {
                 let inner = &mut task.inner;
-                if count <= inner.below { inner.lo = kappa } else { inner.hi = kappa }
+                if count <= inner.below {
+                    inner.lo = kappa
+                } else {
+                    inner.hi = kappa
+                }
                 task.kappa = middle(inner);
             }
         }
@@ -233,7 +249,7 @@ impl Task {
     /// Takes the quotient as the next guess where it stays inside the bracket.
     fn follow(&mut self, mu: f64) {
         self.rounds += 1;
-        self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds % PATIENCE == 0;
+        self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds.is_multiple_of(PATIENCE);
         self.kappa = mu;
     }
 }

@@ -116,7 +116,8 @@ impl HalfString {
             return Err(Error::input("rho", rho, "rho p/q must lie between 1e-16 and 1e16"));
         }
         if p.saturating_add(q) > MOST_KICKS {
-            let cost = format!("{p}/{q} has more than {MOST_KICKS} kicks in a period: choose a simpler ratio");
+            let cost =
+                format!("{p}/{q} has more than {MOST_KICKS} kicks in a period: choose a simpler ratio");
             return Err(Error::budget(cost));
         }
         let schedule = Schedule::two_clocks(p, q)?;
@@ -166,7 +167,8 @@ impl HalfString {
 
     /// A bound above all eigenvalues κ of all four problems: max (2/m)(1/ℓ + 1/ℓ') (Gershgorin on M⁻¹K).
     pub fn upper_bound(&self) -> f64 {
-        let inverse = |j: usize| if j == 0 { 0.0 } else { self.nodes.get(j).map_or(0.0, |node| node.inverse) };
+        let inverse =
+            |j: usize| if j == 0 { 0.0 } else { self.nodes.get(j).map_or(0.0, |node| node.inverse) };
         let row = |j: usize| 2.0 * (inverse(j) + inverse(j + 1)) / self.mass(j);
         let largest = (0..=self.last()).filter(|&j| self.mass(j) > 0.0).map(row).fold(0.0, f64::max);
         largest * (1.0 + 1e-9) // far beyond the rounding of this line
@@ -175,7 +177,15 @@ impl HalfString {
 
 fn node(drift: u64, kicks: u64, weight: Weight) -> Node {
     let whole = weight == Weight::Full;
-    let part = |bit: u64| if kicks & bit == 0 { 0.0 } else if whole { 1.0 } else { 0.5 };
+    let part = |bit: u64| {
+        if kicks & bit == 0 {
+            0.0
+        } else if whole {
+            1.0
+        } else {
+            0.5
+        }
+    };
     let length = drift as f64;
     let kind = 2 * kicks as usize + usize::from(whole);
     Node { length, inverse: 1.0 / length, fast: part(1), slow: part(2), kind }
