@@ -62,6 +62,7 @@
 //! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
 //! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
 //! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
+//! | 4 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
 //! | 4 | [`system`] | many clocks, many degrees of freedom |
 //! | 4 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 5 | [`scene`] | input documents → library types |
@@ -81,4 +82,5 @@ pub mod report;
 pub mod resonance;
 pub mod scene;
 pub mod system;
+pub mod tongue;
 pub mod verdict;

@@ -132,6 +132,11 @@ impl HalfSigns {
         Verdict { kind, side }
     }
 
+    /// The signs of A, B, C, D.
+    pub fn all(self) -> [Sign; 4] {
+        [self.a, self.b, self.c, self.d]
+    }
+
     /// The signs of A and C tell where the even solution ends; the label of a tongue needs them.
     pub fn even(self) -> (Sign, Sign) {
         (self.a, self.c)

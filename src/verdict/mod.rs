@@ -26,7 +26,7 @@ mod growth;
 pub(crate) mod kernel;
 mod kind;
 mod ladder;
-mod refine;
+pub(crate) mod refine;
 mod residue;
 pub(crate) mod winding;
 

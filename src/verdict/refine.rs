@@ -19,14 +19,14 @@ const HEADROOM: u64 = 32;
 
 /// The even and the odd solution at T/2, in the time unit h1.
 #[derive(Clone, Debug)]
-pub(super) struct Ends {
+pub(crate) struct Ends {
     pub even: End,
     pub odd: End,
 }
 
 /// One solution at T/2: enclosures, certified signs, and the sign changes of x on the way.
 #[derive(Clone, Debug)]
-pub(super) struct End {
+pub(crate) struct End {
     pub x: Ball,
     pub v: Ball,
     pub signs: (Option<Sign>, Option<Sign>),
@@ -43,7 +43,7 @@ impl Ends {
 }
 
 /// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
-pub(super) fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
+pub(crate) fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
     let steps = Steps::new(clocks, schedule, bits)?;
     let end = |x: u8, v: u8| {
         let mut orbit = Orbit::new(&steps, x, v);

@@ -1,0 +1,316 @@
+//! The tongues of one ratio: which edge bounds which, open or closed.
+//!
+//! With 0 = P0 < P1 <= P2 < ... the zeros of B and C together and M1 <= M2 < ... those of A and D, tongue m is
+//! [M_m, M_{m+1}] for odd m and [P_{m−1}, P_m] for even m: one edge from each of the two problems, both with the index
+//! ⌈m/2⌉. For ρ > 0 there are p + q − 2 of them, and the last, m = p + q − 1, has no upper end. For ρ = 0 the slow clock is
+//! silent: all are closed, at p θ = m π, m < p, and m = p begins at the Verlet limit s = 4.
+
+use num_integer::Integer;
+use num_traits::{Signed, Zero};
+
+use super::mode::Workspace;
+use super::modular;
+use super::precise::{Enclosure, Function, simplest};
+use super::spectrum::Edge;
+use super::string::{Entry, HalfString};
+use crate::error::{Error, Result};
+use crate::number::{Ball, Rational, Sign, rational};
+
+/// A tongue of p/q: the pairs with s between the edges are unstable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    pub m: u64,
+    /// The edges, `lower` ≤ `upper`, in the right order by proof; `None` above the last tongue.
+    pub lower: Edge,
+    pub upper: Option<Edge>,
+    /// Whether the edges are one point: no instability, Q = ±I there.
+    pub closed: bool,
+    /// hi − lo, enclosed; infinite for the last tongue.
+    pub width: (f64, f64),
+}
+
+/// How much work was done.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Edges certified in doubles.
+    pub doubles: u64,
+    /// Edges certified with more bits, refinements for a width or an order included.
+    pub precise: u64,
+}
+
+/// All tongues of one p/q and ρ ≥ 0, computed as they are asked for.
+#[derive(Clone, Debug)]
+pub struct Tongues {
+    p: u64,
+    q: u64,
+    rho: Rational,
+    string: HalfString,
+    space: Workspace,
+    /// Whether all tongues of even and of odd m are proven open; `None`: not asked yet.
+    open: [Option<bool>; 2],
+    effort: Effort,
+}
+
+impl Tongues {
+    /// The tongues of h2/h1 = p/q and ρ = L2/L1.
+    ///
+    /// # Errors
+    /// p/q not in lowest terms, ρ < 0 (no string: use `map`), ρ p/q beyond 1e±16, too many kicks.
+    pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
+        if p == 0 || q == 0 || p.gcd(&q) != 1 {
+            return Err(Error::input(
+                "ratio",
+                format!("{p}/{q}"),
+                "give a positive fraction in lowest terms",
+            ));
+        }
+        let string = HalfString::new(p, q, rho)?;
+        let rho = rho.clone();
+        Ok(Tongues {
+            p,
+            q,
+            rho,
+            string,
+            space: Workspace::default(),
+            open: [None; 2],
+            effort: Effort::default(),
+        })
+    }
+
+    /// The numerator of h2/h1.
+    pub fn p(&self) -> u64 {
+        self.p
+    }
+
+    /// The denominator of h2/h1.
+    pub fn q(&self) -> u64 {
+        self.q
+    }
+
+    /// ρ = L2/L1.
+    pub fn rho(&self) -> &Rational {
+        &self.rho
+    }
+
+    /// m of the last tongue, which is infinite: p + q − 1, or p for ρ = 0.
+    pub fn last(&self) -> u64 {
+        if self.rho.is_zero() { self.p } else { self.p + self.q - 1 }
+    }
+
+    /// The work done so far.
+    pub fn effort(&self) -> Effort {
+        self.effort
+    }
+
+    /// Tongue m alone, 1 ≤ m ≤ [`Tongues::last`]: two edges are computed.
+    ///
+    /// # Errors
+    /// m out of range.
+    pub fn gap(&mut self, m: u64) -> Result<Gap> {
+        self.check(m)?;
+        let index = m.div_ceil(2) as usize;
+        let mut edges = [None, None];
+        for (edge, entry) in edges.iter_mut().zip(modular::pair(m % 2 == 1)) {
+            if index <= self.string.dimension(entry) {
+                *edge = self.edges(entry, index, index)?.pop();
+            }
+        }
+        self.assemble(m, edges)
+    }
+
+    /// The tongues `from` ..= `upto`; all edges of one problem are computed side by side.
+    ///
+    /// # Errors
+    /// m out of range.
+    pub fn gaps(&mut self, from: u64, upto: u64) -> Result<Vec<Gap>> {
+        self.check(from)?;
+        self.check(upto)?;
+        let mut lists = Vec::with_capacity(4);
+        for entry in Entry::ALL {
+            let (first, last) = indices(entry, from, upto);
+            let last = last.min(self.string.dimension(entry));
+            lists.push((first, if first <= last { self.edges(entry, first, last)? } else { Vec::new() }));
+        }
+        let edge = |entry: Entry, index: usize| {
+            let (first, edges) = &lists[entry as usize];
+            edges.get(index - first).copied()
+        };
+        let pairs: Vec<_> = (from..=upto)
+            .map(|m| (m, modular::pair(m % 2 == 1).map(|entry| edge(entry, m.div_ceil(2) as usize))))
+            .collect();
+        pairs.into_iter().map(|(m, pair)| self.assemble(m, pair)).collect()
+    }
+
+    /// All tongues, the infinite one last.
+    ///
+    /// # Errors
+    /// As [`Tongues::gaps`].
+    pub fn all(&mut self) -> Result<Vec<Gap>> {
+        self.gaps(1, self.last())
+    }
+
+    /// The edges `first` ..= `last` of one problem.
+    ///
+    /// # Errors
+    /// Where the schedule is too long; an index out of range.
+    pub fn edges(&mut self, entry: Entry, first: usize, last: usize) -> Result<Vec<Edge>> {
+        if first == 0 || first > last || last > self.string.dimension(entry) {
+            let remedy =
+                format!("entry {} has {} positive zeros", entry.name(), self.string.dimension(entry));
+            return Err(Error::input("edge", format!("{first}..{last}"), remedy));
+        }
+        let found = self.string.eigenvalues(entry, first..=last, &mut self.space);
+        let mut edges = Vec::with_capacity(found.len());
+        for (edge, index) in found.into_iter().zip(first..) {
+            edges.push(match edge {
+                Some(edge) => {
+                    self.effort.doubles += 1;
+                    edge
+                }
+                None => self.by_more_bits(entry, index)?,
+            });
+        }
+        Ok(edges)
+    }
+
+    /// How many positive zeros an entry has.
+    pub fn zeros(&self, entry: Entry) -> usize {
+        self.string.dimension(entry)
+    }
+
+    /// An edge that doubles could not certify.
+    fn by_more_bits(&mut self, entry: Entry, index: usize) -> Result<Edge> {
+        let function = self.function(entry)?;
+        let start = self.string.bracket(entry, index).and_then(|(lo, hi)| {
+            let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
+            Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? })
+        });
+        let start = start.filter(|start| function.changes_sign(start));
+        let start =
+            start.unwrap_or_else(|| function.isolate(&self.string, index, self.string.cluster(entry, index)));
+        self.effort.precise += 1;
+        let (lo, hi) = function.shrink(&start, &tenth_power(20)).to_f64();
+        Ok(Edge { entry, index, lo, hi })
+    }
+
+    /// The edge to `digits` significant digits: an interval narrower than 10^-digits of itself.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn refine(&mut self, edge: &Edge, digits: u32) -> Result<Enclosure> {
+        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
+        let start = Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) };
+        self.effort.precise += 1;
+        Ok(self.function(edge.entry)?.shrink(&start, &tenth_power(digits)))
+    }
+
+    pub(super) fn function(&self, entry: Entry) -> Result<Function> {
+        Function::new(self.p, self.q, &self.rho, entry)
+    }
+
+    pub(super) fn string(&self) -> &HalfString {
+        &self.string
+    }
+
+    fn check(&self, m: u64) -> Result<()> {
+        if (1..=self.last()).contains(&m) {
+            return Ok(());
+        }
+        Err(Error::input("m", m, format!("{}/{} has the tongues 1 to {}", self.p, self.q, self.last())))
+    }
+
+    /// Orders two edges, or proves them equal.
+    fn assemble(&mut self, m: u64, edges: [Option<Edge>; 2]) -> Result<Gap> {
+        let (a, b) = match edges {
+            [Some(a), Some(b)] => (a, b),
+            [Some(lower), None] | [None, Some(lower)] => {
+                let width = (f64::INFINITY, f64::INFINITY);
+                return Ok(Gap { m, lower, upper: None, closed: false, width });
+            }
+            [None, None] => unreachable!("tongue {m} has an edge"),
+        };
+        let (lower, upper) = if a.lo <= b.lo { (a, b) } else { (b, a) };
+        let width = ((upper.lo - lower.hi).next_down(), (upper.hi - lower.lo).next_up());
+        // A width is worth a few digits; below that the edges are refined.
+        if width.0 > 0.0 && width.1 <= width.0 * (1.0 + WIDTH_ACCURACY) {
+            return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
+        }
+        self.assemble_thin(m, lower, upper)
+    }
+
+    /// The same for edges within each other's enclosure, or nearly so.
+    fn assemble_thin(&mut self, m: u64, a: Edge, b: Edge) -> Result<Gap> {
+        if self.rho.is_zero() {
+            return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
+        }
+        let open = self.is_open(m % 2 == 1)?;
+        let mut digits = 30;
+        loop {
+            let (x, y) = (self.refine(&a, digits)?, self.refine(&b, digits)?);
+            for (below, above, lower, upper) in [(&x, &y, a, b), (&y, &x, b, a)] {
+                let width = Enclosure { lo: &above.lo - &below.hi, hi: &above.hi - &below.lo };
+                if width.lo.is_positive() && width.width() * Rational::from_integer(1000.into()) <= width.lo {
+                    return Ok(Gap { m, lower, upper: Some(upper), closed: false, width: width.to_f64() });
+                }
+            }
+            if !open && self.coincide(&[(a, &x), (b, &y)])? {
+                return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
+            }
+            digits *= 2;
+        }
+    }
+
+    /// Whether all tongues of one parity of m are proven open.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn is_open(&mut self, odd: bool) -> Result<bool> {
+        if let Some(open) = self.open[usize::from(odd)] {
+            return Ok(open);
+        }
+        let degrees = modular::pair(odd).map(|entry| self.string.dimension(entry));
+        let open = modular::all_open(self.p, self.q, &self.rho, odd, degrees)?;
+        self.open[usize::from(odd)] = Some(open);
+        Ok(open)
+    }
+
+    /// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero there.
+    fn coincide(&self, edges: &[(Edge, &Enclosure); 2]) -> Result<bool> {
+        let [(a, x), (b, y)] = edges;
+        let (lo, hi) = ((&x.lo).max(&y.lo), (&x.hi).min(&y.hi));
+        if lo > hi {
+            return Ok(false);
+        }
+        let candidate = simplest(lo, hi);
+        let (f, g) = (self.function(a.entry)?, self.function(b.entry)?);
+        if f.exact_sign(&candidate) == Sign::Zero && g.exact_sign(&candidate) == Sign::Zero {
+            return Ok(true);
+        }
+        let common = super::elimination::common_factor(self.p, self.q, &self.rho, [a.entry, b.entry]);
+        Ok(common.degree() > Some(0) && common.count_roots(lo, hi) > 0)
+    }
+
+    /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
+    pub fn resonance(&self, m: u64, bits: u32) -> Ball {
+        let angle = Ball::pi(bits + 16)
+            .mul(&Ball::from_rational(&Rational::new(m.into(), (2 * self.p).into()), bits + 16), bits + 16);
+        angle.sin(bits + 8).square(bits).scale2(2)
+    }
+}
+
+/// Relative accuracy of a width below which more bits are asked.
+const WIDTH_ACCURACY: f64 = 1e-3;
+
+/// The indices of an entry's edges in the tongues `from` ..= `upto`.
+fn indices(entry: Entry, from: u64, upto: u64) -> (usize, usize) {
+    let odd = matches!(entry, Entry::A | Entry::D);
+    // The least and the largest m of the parity in the range.
+    let first = if (from % 2 == 1) == odd { from } else { from + 1 };
+    let last = if (upto % 2 == 1) == odd { upto } else { upto.saturating_sub(1) };
+    (first.div_ceil(2) as usize, last.div_ceil(2) as usize)
+}
+
+/// 10^-digits.
+fn tenth_power(digits: u32) -> Rational {
+    Rational::new(1.into(), num_bigint::BigInt::from(10).pow(digits))
+}

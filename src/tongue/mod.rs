@@ -1,0 +1,55 @@
+//! Every tongue of a ratio, exactly: a grid can miss a thin tongue, this cannot.
+//!
+//! For fixed h2/h1 = p/q and ρ = L2/L1 ≥ 0 the unstable set in s = h1² L1 is a finite list of intervals. Their edges are
+//! the zeros of the half period's entries A, B, C, D, and those are the eigenvalues of four vibrating strings (the
+//! `string` module). So nothing is searched on a grid:
+//!
+//! ```text
+//!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
+//!       (sturm)      (spectrum)        (mode)          (gaps)                 closings
+//!                                       more bits: precise      open or closed: modular, elimination
+//! ```
+//!
+//! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
+//! Inside tongue m the growing solution changes sign m times in a period: m is the label that the map and the
+//! verdict give, and the paper's m of q h2 = m T½ (eq. (9)).
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::tongue::{Entry, Tongues};
+//! // 7/2 at rho = 1/25, m = 4: one edge sits on the resonance 4 sin²(2 pi/7).
+//! let mut tongues = Tongues::new(7, 2, &ratio(1, 25)).unwrap();
+//! let gap = tongues.gap(4).unwrap();
+//! let (lower, upper) = (gap.lower, gap.upper.unwrap());
+//! assert!(lower.lo <= 2.3150964145691537 && 2.3150964145691537 <= lower.hi);
+//! assert_eq!((lower.entry, upper.entry), (Entry::C, Entry::B));
+//! assert!(upper.hi <= upper.lo.next_up().next_up() && !gap.closed);
+//! // Fifty digits of it.
+//! let precise = tongues.refine(&lower, 50).unwrap();
+//! assert!(precise.width() < &precise.lo * num_rational::BigRational::new(1.into(), num_bigint::BigInt::from(10).pow(50)));
+//! ```
+
+mod closing;
+mod elimination;
+mod gaps;
+mod jet;
+mod mode;
+mod modular;
+mod peak;
+mod precise;
+mod row;
+mod spectrum;
+mod string;
+mod sturm;
+mod survey;
+mod twofold;
+
+pub use closing::{Closing, ELIMINATION, Found, Search, closings};
+pub use elimination::entries;
+pub use gaps::{Effort, Gap, Tongues};
+pub use peak::Peak;
+pub use precise::Enclosure;
+pub use row::{ExactEdge, Law, Predicted, Row, Side, Wanted};
+pub use spectrum::Edge;
+pub use string::Entry;
+pub use survey::{Spread, Survey, Thin, ratios, survey};

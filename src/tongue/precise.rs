@@ -1,0 +1,244 @@
+//! Edges to any number of digits, from certified signs of the entry at rational points.
+//!
+//! Quadratic interval refinement (Abbott 2006): the interval is cut into N equal cells, the secant says which one
+//! holds the zero, and the entry's signs at the cell's two ends prove it; then N is squared, else its root is
+//! taken. So the number of correct digits doubles with every two or three signs, and the proof is nothing but a
+//! change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
+//! and from exact arithmetic where that cannot tell: then the point may be the zero itself.
+
+use num_bigint::{BigInt, Sign as IntSign};
+use num_integer::Integer;
+use num_traits::{One, Signed, Zero};
+
+use super::string::{Entry, HalfString};
+use crate::error::Result;
+use crate::number::{Ball, Rational, Sign, rational};
+use crate::propagator::{Event, Schedule, TwoClocks, Weight};
+use crate::verdict::{Decidable, refine};
+
+/// An interval with rational ends that holds exactly one zero of an entry; a point where that is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Enclosure {
+    pub lo: Rational,
+    pub hi: Rational,
+}
+
+/// An entry of the half period as a function of s, for fixed p/q and ρ.
+#[derive(Clone, Debug)]
+pub(super) struct Function {
+    p: u64,
+    q: u64,
+    rho: Rational,
+    schedule: Schedule,
+    entry: Entry,
+}
+
+/// Bits beyond which the refine tier is not asked before exact arithmetic: four times what the cell's size asks.
+const PATIENCE: u32 = 4;
+
+impl Enclosure {
+    /// The doubles around the enclosure.
+    pub fn to_f64(&self) -> (f64, f64) {
+        (rational::enclose_f64(&self.lo).0, rational::enclose_f64(&self.hi).1)
+    }
+
+    /// hi − lo.
+    pub fn width(&self) -> Rational {
+        &self.hi - &self.lo
+    }
+
+    /// The middle.
+    pub fn middle(&self) -> Rational {
+        (&self.lo + &self.hi) / Rational::from_integer(2.into())
+    }
+
+    fn is_below(&self, relative: &Rational) -> bool {
+        self.width() <= &self.lo * relative
+    }
+}
+
+impl Function {
+    pub fn new(p: u64, q: u64, rho: &Rational, entry: Entry) -> Result<Self> {
+        Ok(Function { p, q, rho: rho.clone(), schedule: Schedule::two_clocks(p, q)?, entry })
+    }
+
+    fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
+        TwoClocks::with_rho(self.p, self.q, s.clone(), self.rho.clone())
+    }
+
+    /// The entry's exact sign at s.
+    pub fn exact_sign(&self, s: &Rational) -> Sign {
+        Decidable::half_signs(&self.clocks(s)).all()[self.entry as usize]
+    }
+
+    /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0.
+    fn value(&self, s: &Rational, bits: u32) -> Ball {
+        let clocks = self.clocks(s);
+        let mut working = bits;
+        while working <= PATIENCE * bits {
+            let ends = refine::run(&clocks, &self.schedule, working);
+            let value = ends.map(|ends| match self.entry {
+                Entry::A => ends.even.x,
+                Entry::B => ends.odd.x,
+                Entry::C => ends.even.v,
+                Entry::D => ends.odd.v,
+            });
+            if let Some(value) = value.filter(|value| value.sign().is_some()) {
+                return value;
+            }
+            working *= 2;
+        }
+        Ball::from_integer(&self.exact_sign(s).to_i8().into())
+    }
+
+    /// Whether the entry has different signs at the two ends, neither of them zero.
+    pub fn changes_sign(&self, interval: &Enclosure) -> bool {
+        const BITS: u32 = 128;
+        let sign = |s: &Rational| self.value(s, BITS).sign();
+        interval.lo < interval.hi
+            && matches!(
+                (sign(&interval.lo), sign(&interval.hi)),
+                (Some(Sign::Negative), Some(Sign::Positive)) | (Some(Sign::Positive), Some(Sign::Negative))
+            )
+    }
+
+    /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself.
+    ///
+    /// # Panics
+    /// Where the entry has one sign at both ends: no interval with one simple zero.
+    pub fn shrink(&self, start: &Enclosure, relative: &Rational) -> Enclosure {
+        let mut interval = start.clone();
+        let mut cells = 2u32; // log2 N
+        let mut ends: Option<(Ball, Ball)> = None;
+        while !interval.is_below(relative) {
+            let bits = self.bits_for(&interval, cells);
+            let (below, above) = ends
+                .take()
+                .unwrap_or_else(|| (self.value(&interval.lo, bits), self.value(&interval.hi, bits)));
+            match (below.sign(), above.sign()) {
+                (Some(Sign::Zero), _) => return Enclosure { hi: interval.lo.clone(), lo: interval.lo },
+                (_, Some(Sign::Zero)) => return Enclosure { lo: interval.hi.clone(), hi: interval.hi },
+                (a, b) => assert!(a != b, "no change of sign between {} and {}", interval.lo, interval.hi),
+            }
+            let cell = self.cell(&interval, &below, &above, cells);
+            let (x, y) = (self.value(&cell.lo, bits), self.value(&cell.hi, bits));
+            if x.sign() == above.sign() {
+                (interval.hi, ends) = (cell.lo, Some((below, x)));
+                cells = (cells / 2).max(1);
+            } else if y.sign() == below.sign() {
+                (interval.lo, ends) = (cell.hi, Some((y, above)));
+                cells = (cells / 2).max(1);
+            } else {
+                (interval, ends) = (cell, Some((x, y)));
+                cells = (2 * cells).min(1 << 12);
+            }
+        }
+        interval
+    }
+
+    /// Enough bits to tell the entry's sign a cell away from the zero, as a rule.
+    fn bits_for(&self, interval: &Enclosure, cells: u32) -> u32 {
+        let ratio = &interval.hi / interval.width();
+        let magnitude = ratio.numer().bits().saturating_sub(ratio.denom().bits()) as u32;
+        (magnitude + cells + 96).next_multiple_of(32)
+    }
+
+    /// The one of 2^cells equal parts that the secant points to.
+    fn cell(&self, interval: &Enclosure, below: &Ball, above: &Ball, cells: u32) -> Enclosure {
+        const BITS: u32 = 64;
+        let share = below.div(&below.sub(above, BITS), BITS).unwrap_or_else(|| Ball::one().scale2(-1));
+        let last = (BigInt::one() << cells) - 1u8;
+        let at = share.mid_scaled(i64::from(cells)).0.clamp(BigInt::zero(), last);
+        let step = interval.width() / Rational::from_integer(BigInt::one() << cells);
+        let lo = &interval.lo + &step * Rational::from_integer(at);
+        Enclosure { hi: &lo + step, lo }
+    }
+
+    /// How many zeros lie in (0, s), and whether s is one: by the signs of x along the string in exact integers,
+    /// (x, v) carrying the kicks' common denominator as a positive factor.
+    fn exact_count(&self, s: &Rational) -> (u64, bool) {
+        let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
+        let slow = &kappa * &self.rho * Rational::new(self.p.into(), self.q.into());
+        let denominator = kappa.denom().lcm(slow.denom());
+        let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
+        let half =
+            [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
+        let even = self.entry.starts_free();
+        let (mut x, mut v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
+        let (mut last, mut changes) = (IntSign::Plus, 0);
+        for Event { drift, kicks, weight } in self.schedule.half_period() {
+            x += &v * drift;
+            if x.sign() != IntSign::NoSign && x.sign() != last {
+                (last, changes) = (x.sign(), changes + 1);
+            }
+            if kicks != 0 {
+                let parts = if weight == Weight::Half { 1u8 } else { 2 };
+                v = v * &denominator - &half[kicks as usize] * parts * &x;
+                x *= &denominator;
+            }
+        }
+        if !self.entry.ends_free() {
+            return (changes, x.is_zero());
+        }
+        // At a free end the slope's zeros count; the rigid shift of C does not.
+        let falling = x.is_zero() || (!v.is_zero() && x.sign() != v.sign());
+        (changes + u64::from(falling) - u64::from(self.entry == Entry::C), v.is_zero())
+    }
+
+    /// Isolates a zero by halving with exact counts: for zeros so close that counts in doubles cannot tell them
+    /// apart. `around`, if given, is where doubles saw it.
+    pub fn isolate(&self, string: &HalfString, index: usize, around: Option<(f64, f64)>) -> Enclosure {
+        let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
+        let upto = string.dimension(self.entry) as u64;
+        let bound = exact(2.0 * string.upper_bound() * string.ticks);
+        let mut cell = Cell { lo: Rational::zero(), hi: bound, below: 0, upto, index: index as u64 };
+        let mut hints = around.map_or(Vec::new(), |(lo, hi)| vec![exact(hi), exact(lo)]);
+        loop {
+            let middle = || (&cell.lo + &cell.hi) / Rational::from_integer(2.into());
+            let cut = hints.pop().filter(|x| cell.lo < *x && *x < cell.hi).unwrap_or_else(middle);
+            let (count, is_zero) = self.exact_count(&cut);
+            if let Some(found) = cell.cut(cut, count, is_zero) {
+                return found;
+            }
+        }
+    }
+}
+
+/// An interval with the zeros `below` + 1 ..= `upto`, on the way to the zero `index` alone.
+struct Cell {
+    lo: Rational,
+    hi: Rational,
+    below: u64,
+    upto: u64,
+    index: u64,
+}
+
+impl Cell {
+    /// Cuts at x, with `count` zeros below it and perhaps one on it.
+    fn cut(&mut self, x: Rational, count: u64, is_zero: bool) -> Option<Enclosure> {
+        if is_zero && count + 1 == self.index {
+            return Some(Enclosure { lo: x.clone(), hi: x });
+        }
+        let count = count + u64::from(is_zero);
+        if count < self.index {
+            (self.lo, self.below) = (x, count)
+        } else {
+            (self.hi, self.upto) = (x, count)
+        }
+        let alone = self.upto - self.below == 1 && self.lo.is_positive();
+        alone.then(|| Enclosure { lo: self.lo.clone(), hi: self.hi.clone() })
+    }
+}
+
+/// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot).
+pub(super) fn simplest(lo: &Rational, hi: &Rational) -> Rational {
+    let floor = lo.floor();
+    if floor == *lo {
+        return floor;
+    }
+    if floor < hi.floor() {
+        return floor + Rational::one();
+    }
+    let inner = simplest(&(hi - &floor).recip(), &(lo - &floor).recip());
+    floor + inner.recip()
+}

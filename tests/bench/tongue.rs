@@ -1,0 +1,56 @@
+//! All edges of all coprime p + q <= N at rho = 1/25, certified, one thread and all threads; one edge of a long
+//! period; closings; the survey.
+//!
+//!     cargo bench --bench tongue -- 100        beside it: tests/bench/peers/tongue.py 100
+
+use std::time::Instant;
+
+use kickdrift::number::{Rational, rational::ratio};
+use kickdrift::tongue::{Edge, Entry, Search, Tongues, closings, ratios, survey};
+use rayon::prelude::*;
+
+/// The edges of one ratio, all four problems, and how many needed more bits than doubles have.
+fn edges((p, q): (u64, u64), rho: &Rational) -> (Vec<Edge>, u64) {
+    let mut tongues = Tongues::new(p, q, rho).unwrap();
+    let mut all = Vec::new();
+    for entry in Entry::ALL {
+        let zeros = tongues.zeros(entry);
+        if zeros > 0 {
+            all.extend(tongues.edges(entry, 1, zeros).unwrap());
+        }
+    }
+    (all, tongues.effort().precise)
+}
+
+fn report(name: &str, start: Instant, found: &[(Vec<Edge>, u64)]) {
+    let seconds = start.elapsed().as_secs_f64();
+    let mut widths = [0u64; 4];
+    let all: Vec<&Edge> = found.iter().flat_map(|(edges, _)| edges).collect();
+    all.iter().for_each(|edge| widths[(edge.hi.to_bits() - edge.lo.to_bits()).min(3) as usize] += 1);
+    let precise: u64 = found.iter().map(|(_, precise)| precise).sum();
+    println!(
+        "{name}: {} edges, {seconds:.3} s; width in ulps 0/1/2/more: {widths:?}; {precise} with more bits",
+        all.len()
+    );
+}
+
+fn main() {
+    let max_sum = std::env::args().find_map(|x| x.parse().ok()).unwrap_or(100);
+    let (rho, ratios) = (ratio(1, 25), ratios(max_sum));
+    let start = Instant::now();
+    let found: Vec<_> = ratios.iter().map(|&pair| edges(pair, &rho)).collect();
+    report(&format!("p + q <= {max_sum}, one thread"), start, &found);
+    let start = Instant::now();
+    let found: Vec<_> = ratios.par_iter().map(|&pair| edges(pair, &rho)).collect();
+    report(&format!("p + q <= {max_sum}, all threads"), start, &found);
+
+    let start = Instant::now();
+    let one = Tongues::new(61_803, 38_197, &rho).unwrap().edges(Entry::B, 12_345, 12_345).unwrap();
+    println!("one edge of 61803/38197: {:?}, {:.3} s", one[0], start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let found = closings(7, 4, &Search::default()).unwrap();
+    println!("closings of 7/4: {}, {:.3} s", found.closings.len(), start.elapsed().as_secs_f64());
+    let start = Instant::now();
+    let survey = survey(max_sum, &rho, 5).unwrap();
+    println!("survey: {:.3} s\n{survey:#?}", start.elapsed().as_secs_f64());
+}
