@@ -76,6 +76,7 @@ const LINES: [&str; 17] = [
     "polynomial --ratio 7/4",
     "polynomial --ratio 1",
     "map --lambda1 pi^2 --lambda2 pi^2/25 --step1 1/10 --step2 1/7 --h1-range 1/10..2/pi --h2-range 1/20..7/2",
+    "map --lambda1 pi^2 --lambda2 pi^2/25 --step1 1/10 --step2 1/7 --h1-range 1/10..2/pi --h2-range 1/20..7/2 --label --growth",
 ];
 
 #[test]
