@@ -62,6 +62,8 @@
 //! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
 //! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
 //! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
+//! | 4 | [`system`] | many clocks, many degrees of freedom |
+//! | 4 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 5 | [`scene`] | input documents → library types |
 //! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
 //! | 6 | [`cli`] | arguments → a scene → the library → a report |

@@ -11,6 +11,8 @@ mod plane;
 mod polynomial;
 mod proposition;
 mod run;
+mod simulate;
+mod system;
 mod usage;
 mod verdict;
 
@@ -51,6 +53,10 @@ enum Command {
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
     Merge(merge::Args),
+    /// Many clocks, many degrees of freedom: is the system stable, and what grows?
+    System(system::Args),
+    /// Runs Algorithm 1 on a system and shows energy and growth against the prediction.
+    Simulate(simulate::Args),
     /// Reads a scene file and computes the products that it wants.
     Run(run::Args),
 }
@@ -84,6 +90,8 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Map(args) => args.run(common)?,
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
+        Command::System(args) => args.run(common)?,
+        Command::Simulate(args) => args.run(common)?,
     }
     Ok(ExitCode::SUCCESS)
 }

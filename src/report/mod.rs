@@ -20,6 +20,8 @@ pub mod npz;
 pub mod plane;
 pub mod polynomial;
 pub mod proposition;
+pub mod simulate;
+pub mod system;
 pub mod table;
 pub mod text;
 pub mod verdict;

@@ -34,6 +34,12 @@ pub trait Decidable: Real {
         HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
     }
 
+    /// What [`Decidable::half_signs`] costs for a half period of so many kicks, in kicks of the refine tier (about
+    /// 1 µs each): the numbers grow with every kick. Measured, good to a factor of some units.
+    fn exact_cost(_clocks: &TwoClocks<Self>, kicks: u64) -> u64 {
+        kicks.saturating_pow(3)
+    }
+
     /// Whether a cheap test shows that none of A, B, C, D is zero, so that more bits must end with their
     /// signs. `false` says nothing.
     fn surely_nonzero(_clocks: &TwoClocks<Self>) -> bool {
@@ -49,6 +55,13 @@ impl Decidable for Laurent {
         }
         let half = half_period(clocks);
         HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+    }
+
+    /// As for the rationals where both strengths are rational.
+    fn exact_cost(clocks: &TwoClocks<Laurent>, kicks: u64) -> u64 {
+        clocks
+            .as_rational()
+            .map_or(kicks.saturating_pow(3), |rational| Decidable::exact_cost(&rational, kicks))
     }
 
     /// By residues: exact arithmetic over Q\[π\] is dear, and its only zeros are polynomial identities.
@@ -67,6 +80,11 @@ impl Decidable for Rational {
         let [[a, b], [c, d]] = product(&Steps::new(clocks, &schedule), &schedule).entries;
         let sign = |n: &BigInt| Sign::from_ordering(n.cmp(&BigInt::zero()));
         HalfSigns::new(sign(&a), sign(&b), sign(&c), sign(&d))
+    }
+
+    /// The last few multiplications, of numbers as long as all strengths together, make up most of it.
+    fn exact_cost(_clocks: &TwoClocks<Rational>, kicks: u64) -> u64 {
+        kicks.saturating_add(kicks.saturating_mul(kicks) / 100)
     }
 }
 

@@ -41,12 +41,14 @@ pub struct Decision {
 /// How much work one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Limits {
-    /// The most kicks that one tier may compose: min(p, q)/2 in the filter, (p + q)/2 in the other two.
+    /// The most kicks that one tier may compose: min(p, q)/2 in the filter, (p + q)/2 in the refine tier; for
+    /// the exact tier its cost in kicks of the refine tier, [`Decidable::exact_cost`].
     pub kicks: u64,
 }
 
 impl Default for Limits {
-    /// 10^8 kicks: about a second in the filter, minutes in the other tiers.
+    /// 10^8 kicks: about a second in the filter, minutes in the other tiers. That is p + q up to some 2·10^8 in
+    /// the refine tier, 2·10^5 in the exact one over the rationals, 900 over Q\[π\].
     fn default() -> Self {
         Limits { kicks: 100_000_000 }
     }
@@ -61,8 +63,12 @@ impl Limits {
         }
         // A kick costs the filter some 10 ns, the others about 1 µs a pass.
         let seconds = if tier == Tier::Filter { kicks / 100_000_000 } else { kicks / 1_000_000 };
+        let work = match tier {
+            Tier::Exact => "work as long as for",
+            _ => "compose",
+        };
         Err(Error::budget(format!(
-            "the {} tier would compose {kicks} kicks, on the order of {} s; the budget is {}: allow it with \
+            "the {} tier would {work} {kicks} kicks, on the order of {} s; the budget is {}: allow it with \
              --budget {kicks}, or choose steps with a simpler ratio",
             tier.name(),
             seconds.max(1),
@@ -126,6 +132,6 @@ fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Opt
 
 fn by_exact<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
     let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
-    limits.allow(schedule.strikes() / 2, Tier::Exact)?;
+    limits.allow(S::exact_cost(clocks, schedule.strikes() / 2), Tier::Exact)?;
     Ok(S::half_signs(clocks).verdict())
 }

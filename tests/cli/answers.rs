@@ -136,6 +136,9 @@ fn stiffnesses_far_beyond_doubles_are_answered_too() {
         assert!(verdict["growth_rate"]["hi"].is_f64(), "{lambda2}");
         assert_eq!(verdict["resonance"].is_object(), kind == "hyperbolic", "{lambda2}");
     }
+    // Over Q[pi] too, with a hundred kicks a period.
+    let verdict = json(&words("verdict --lambda1 pi^2 --lambda2 1e100 --h1 0.5 --h2 9.8", &[]));
+    assert_eq!(verdict["resonance"].to_string(), r#"{"m":60,"a":0,"b":12}"#);
 }
 
 #[test]

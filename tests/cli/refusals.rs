@@ -59,7 +59,7 @@ fn texts_that_are_no_numbers() {
         ("2^(1/2)", ["lambda2 = 2^(1/2): ", "integer"]),
         ("9^9^9", ["lambda2 = 9^9^9: ", "parentheses"]),
         ("9^999999999", ["lambda2 = 9^999999999: ", "smaller power"]),
-        ("one\ntwo", ["lambda2 = one two: ", "no name but pi"]),
+        ("1+\nx", ["lambda2 = 1+ x: ", "no name but pi"]),
         ("\u{1b}[31m", ["lambda2 = ", "unexpected"]),
     ] {
         refused(&desk, &verdict("10", text, "1", "1"), &parts);
@@ -80,7 +80,9 @@ fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
     refused(&desk, &verdict("10", "1", "0.123456789", "1"), &["kicks", "--budget", " s;"]);
     refused(&desk, &verdict("10", "1", "1", "1.000000000000000000000001"), &["h2/h1"]);
     let frugal = [&verdict("10", "1", "0.01", "1.01")[..], &["--exact", "--budget", "50"]].concat();
-    refused(&desk, &frugal, &["kicks", "--budget 51"]);
+    refused(&desk, &frugal, &["kicks", "--budget 77"]);
+    // s = 1, 3 | p: an exact edge, which only the exact tier can tell from its neighbourhood.
+    refused(&desk, &verdict("1", "1/10", "1", "300003"), &["exact tier", " s;", "--budget"]);
     refused(&desk, &["polynomial", "--ratio", "1000/7"], &["1000/7", "--budget 1007"]);
 }
 

@@ -93,7 +93,7 @@ impl Output<'_> {
             Target::Text => ROWS_FOR_PEOPLE,
             _ => MOST_ROWS,
         };
-        let (mut tally, mut pairs) = (Tally::new(self.map.products), Vec::<Marked>::new());
+        let (mut tally, mut pairs) = (Tally::default(), Vec::<Marked>::new());
         source.each(self.map, &mut |band| {
             tally.add(&self.map.grid, band);
             if tally.counts.marked() <= most {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::rows::{Found, marked};
-use crate::map::{Band, Counters, Grid, Products};
+use crate::map::{Band, Counters, Grid};
 use crate::verdict::{Kind, Verdict};
 
 /// Counts over a grid.
@@ -50,8 +50,6 @@ const FAMILIES_TOLD: usize = 6;
 pub struct Tally {
     pub counts: Counts,
     counters: Counters,
-    /// What was asked for.
-    products: Products,
     /// Pairs by the a of their dominant family, where labels were asked for.
     families: BTreeMap<i64, u64>,
     /// The pair that grows fastest, the first of equals, where growth was asked for.
@@ -66,11 +64,6 @@ struct Fastest {
 }
 
 impl Tally {
-    /// Nothing yet of a map that tells these products.
-    pub fn new(products: Products) -> Self {
-        Tally { products, ..Tally::default() }
-    }
-
     /// Counts a band in.
     pub fn add(&mut self, grid: &Grid, band: &Band) {
         self.counts.add(band);
@@ -98,16 +91,16 @@ impl Tally {
         json!({"kicks": kicks, "kicks_again": kicks_again, "escalated": escalated})
     }
 
-    /// What was asked for beside the verdicts.
+    /// What was asked for beside the verdicts, where some pair grows.
     pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = Vec::new();
-        if self.products.label {
+        if !self.families.is_empty() {
             let count = |(a, pairs): (&i64, &u64)| json!({"a": a, "pairs": pairs});
             entries.push(("families", self.families.iter().map(count).collect()));
         }
-        if self.products.growth {
-            let value = |Fastest { steps: [h1, h2], rate, tenfold }: &Fastest| json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
-            entries.push(("fastest", self.fastest.as_ref().map_or(Value::Null, value)));
+        if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+            let value = json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
+            entries.push(("fastest", value));
         }
         entries
     }

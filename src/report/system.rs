@@ -1,0 +1,144 @@
+//! The verdict on a system of many clocks and degrees of freedom as a document.
+
+use serde_json::{Value, json};
+
+use super::document::Document;
+use super::table::{Cell, Column, Table};
+use crate::number::rational::to_f64;
+use crate::system::{Analysis, Instability, Origin, Part, System};
+
+/// The document `kickdrift/system-verdict/1`; the caller adds the input.
+pub fn document(system: &System, analysis: &Analysis) -> Document {
+    Document::new("system-verdict")
+        .entry("degrees_of_freedom", system.size())
+        .entry("clocks", system.clocks().len())
+        .entry("period", system.period().to_string())
+        .entry("kind", analysis.kind.name())
+        .entry("stable", analysis.is_stable())
+        .entry("proven", analysis.is_proof())
+        .entry("growth_rate", analysis.growth_rate())
+        .entry("rigid_modes", analysis.rigid_modes.len())
+        .entry("parts", analysis.parts.iter().map(part).collect::<Vec<_>>())
+        .entry("warnings", analysis.warnings.clone())
+        .long_rows(table(analysis))
+        .told(&lines(system, analysis))
+}
+
+fn part(part: &Part) -> Value {
+    let multiplier = |m: &crate::system::Multiplier| json!({"mu": {"re": m.mu.re, "im": m.mu.im}, "radius": m.radius, "lambda": {"re": m.lambda.re, "im": m.lambda.im}});
+    json!({
+        "dofs": part.dofs,
+        "size": part.size,
+        "period": part.period.to_string(),
+        "kind": part.kind.name(),
+        "decided_by": part.evidence.name(),
+        "multipliers": part.multipliers.iter().map(multiplier).collect::<Vec<_>>(),
+        "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
+    })
+}
+
+fn instability(unstable: &Instability) -> Value {
+    let resonance = unstable.resonance.as_ref().map(|r| {
+        json!({
+            "frequencies": [r.frequencies.0, r.frequencies.1], "sign": r.sign, "m": r.m,
+            "family": r.family, "detuning": r.detuning,
+        })
+    });
+    let lambda = unstable.multiplier.lambda;
+    json!({
+        "lambda": {"re": lambda.re, "im": lambda.im},
+        "origin": origin(unstable.origin),
+        "growth_rate": unstable.growth_rate,
+        "shape": unstable.shape,
+        "resonance": resonance,
+    })
+}
+
+fn origin(origin: Origin) -> &'static str {
+    match origin {
+        Origin::RealPair => "real pair",
+        Origin::Collision => "collision",
+    }
+}
+
+fn lines(system: &System, analysis: &Analysis) -> Vec<String> {
+    let stable = if analysis.is_stable() { "stable" } else { "unstable" };
+    let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
+    let mut lines = vec![
+        format!("{stable}: {} ({proven})", analysis.kind.name()),
+        format!(
+            "  {} degrees of freedom, {} clocks, period T = {}",
+            system.size(),
+            system.clocks().len(),
+            system.period()
+        ),
+        format!(
+            "  {} rigid modes set apart, {} independent parts",
+            analysis.rigid_modes.len(),
+            analysis.parts.len()
+        ),
+    ];
+    if !analysis.is_stable() {
+        lines.push(format!("  largest growth rate {:.6} per unit time", analysis.growth_rate()));
+    }
+    for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
+        lines.push(format!("  {}", told(unstable)));
+    }
+    lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
+    lines
+}
+
+/// One unstable multiplier in words.
+fn told(unstable: &Instability) -> String {
+    let lambda = unstable.multiplier.lambda;
+    let mut line = match unstable.origin {
+        Origin::RealPair => format!("multiplier {:.6}: one mode, ", lambda.re),
+        Origin::Collision => {
+            format!("multipliers {:.6} ± {:.6}i: two modes collide, ", lambda.re, lambda.im.abs())
+        }
+    };
+    line += &format!("growth rate {:.6}", unstable.growth_rate);
+    if let Some(r) = &unstable.resonance {
+        let sign = if r.sign > 0 { '+' } else { '-' };
+        let family: Vec<String> =
+            r.family.iter().enumerate().map(|(k, a)| format!("{a}/h{}", k + 1)).collect();
+        line += &format!(
+            "; near w = {:.4} {sign} {:.4} = 2 pi ({})",
+            r.frequencies.0,
+            r.frequencies.1,
+            family.join(" + ")
+        );
+    }
+    line
+}
+
+fn table(analysis: &Analysis) -> Table {
+    let columns = vec![
+        Column::new("part"),
+        Column::new("kind").left(),
+        Column::new("decided_by").titled("decided by", "decided by").left(),
+        Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"),
+        Column::new("mu_im").titled("Im mu", "$\\operatorname{Im}\\mu$"),
+        Column::new("radius"),
+        Column::new("lambda_abs").titled("|lambda|", "$|\\lambda|$"),
+        Column::new("growth_rate").titled("growth rate", "growth rate"),
+    ];
+    let mut table = Table::new("multipliers", "Multipliers over one synchronization period", columns);
+    for (n, part) in (1..).zip(&analysis.parts) {
+        let period = to_f64(&part.period);
+        for multiplier in &part.multipliers {
+            let length = multiplier.lambda.norm();
+            table.push(vec![
+                Cell::Integer(n),
+                Cell::Text(part.kind.name().into()),
+                Cell::Text(part.evidence.name().into()),
+                Cell::Float(multiplier.mu.re),
+                Cell::Float(multiplier.mu.im),
+                multiplier.radius.map_or(Cell::Missing, Cell::Float),
+                Cell::Float(length),
+                Cell::Float(length.ln() / period),
+            ]);
+        }
+    }
+    table
+}
