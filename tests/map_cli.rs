@@ -151,6 +151,18 @@ fn the_arrays_are_numpy_and_tell_what_the_rows_tell() {
 }
 
 #[test]
+fn a_scene_writes_the_same_arrays() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.json");
+    let text = r#"{"schema": "kickdrift/scene/1", "lambda1": "pi^2", "lambda2": "pi^2/25",
+        "grid": {"step": "1/150", "h1": "1/150..2/pi", "h2": "1/150..7/2"}, "want": ["map.npz", "map.csv"]}"#;
+    fs::write(&scene, text).unwrap();
+    done("run", &[&scene, &"--output", &folder.path()]);
+    let of_scene = ["map.npz", "map.csv"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    assert!(of_scene == ["map.npz", "map.csv"].map(|name| written(folder.path(), "", name)));
+}
+
+#[test]
 fn nothing_is_computed_unasked() {
     let folder = tempfile::tempdir().unwrap();
     let (bare, label) = (summary(""), summary("--label"));

@@ -12,7 +12,7 @@ use crate::report::csv;
 use crate::report::document::Document;
 use crate::report::figure::png;
 use crate::report::file::{write_output, write_with};
-use crate::report::map::{self as report, MapArrays, Marked, Rows, Tally, marked};
+use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
 use crate::report::plane::Chart;
 use crate::report::table::Table;
 use crate::scene::GridRange;
@@ -165,13 +165,13 @@ impl Output<'_> {
     fn figure(&self, source: &Source, path: Option<&Path>) -> Result<()> {
         let curves = self.drawing.sampled(self.map)?;
         let grid = &self.map.grid;
-        let (mut chart, mut tally) = (Chart::new(grid, self.drawing.colouring()), Tally::default());
+        let (mut chart, mut counts) = (Chart::new(grid, self.drawing.colouring()), Counts::default());
         source.each(self.map, &mut |band| {
             chart.add(grid, band);
-            tally.counts.add(band);
+            counts.add(band);
             Ok(())
         })?;
-        let svg = chart.figure(grid, &tally.counts, &curves).svg();
+        let svg = chart.figure(grid, &counts, &curves).svg();
         let bytes = if self.target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
         write_output(path, &bytes)
     }

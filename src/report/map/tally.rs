@@ -91,7 +91,7 @@ impl Tally {
         json!({"kicks": kicks, "kicks_again": kicks_again, "escalated": escalated})
     }
 
-    /// What was asked for beside the verdicts.
+    /// What was asked for beside the verdicts, where some pair grows.
     pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = Vec::new();
         if !self.families.is_empty() {
