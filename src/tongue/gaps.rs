@@ -126,10 +126,7 @@ impl Tongues {
         self.check(from)?;
         self.check(upto)?;
         let mut lists = Vec::with_capacity(4);
-        if (from, upto) == (1, self.last()) {
-            lists.extend(self.all_edges()?.map(|edges| (1, edges)));
-        }
-        for entry in Entry::ALL.into_iter().skip(lists.len()) {
+        for entry in Entry::ALL {
             let (first, last) = indices(entry, from, upto);
             let last = last.min(self.string.dimension(entry));
             lists.push((first, if first <= last { self.edges(entry, first, last)? } else { Vec::new() }));
@@ -163,29 +160,6 @@ impl Tongues {
             return Err(Error::input("edge", format!("{first}..{last}"), remedy));
         }
         let found = self.string.eigenvalues(entry, first..=last, &mut self.space);
-        self.completed(entry, first, found)
-    }
-
-    /// All edges, by entry: the quickest way to have them all.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn all_edges(&mut self) -> Result<[Vec<Edge>; 4]> {
-        let whole = |tongues: &mut Self, entry| match tongues.zeros(entry) {
-            0 => Ok(Vec::new()),
-            zeros => tongues.edges(entry, 1, zeros),
-        };
-        let (a, c) = (whole(self, Entry::A)?, whole(self, Entry::C)?);
-        let mut twin = |entry, of: &[Edge]| {
-            let found = self.string.twins(entry, of, &mut self.space);
-            self.completed(entry, 1, found)
-        };
-        let (b, d) = (twin(Entry::B, &c)?, twin(Entry::D, &a)?);
-        Ok([a, b, c, d])
-    }
-
-    /// The edges `first`, `first` + 1, ... of one problem, those that doubles could not certify by more bits.
-    fn completed(&mut self, entry: Entry, first: usize, found: Vec<Option<Edge>>) -> Result<Vec<Edge>> {
         let mut edges = Vec::with_capacity(found.len());
         for (edge, index) in found.into_iter().zip(first..) {
             edges.push(match edge {

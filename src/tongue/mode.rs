@@ -32,15 +32,6 @@ pub(super) struct Mode {
     pub residual: f64,
 }
 
-impl Mode {
-    /// Bounds of [μ − ε, μ + ε].
-    pub fn interval(&self) -> (f64, f64) {
-        let mu = self.quotient.hi;
-        let radius = self.residual + 2.0 * (self.relative + f64::EPSILON) * mu;
-        ((mu - radius).next_down(), (mu + radius).next_up())
-    }
-}
-
 /// Both recurrences at every node: x 2^exponent, the exponents by block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace {

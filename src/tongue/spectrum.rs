@@ -52,62 +52,8 @@ impl HalfString {
         let brackets = self.isolate(entry, &wanted, false);
         let mut search =
             Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
-        search.run(|index, _, edge| found[index - first] = Some(edge));
+        search.run(|edge: Edge| found[edge.index - first] = Some(edge));
         found
-    }
-
-    /// All eigenvalues of one problem, given those of its twin: the other entry whose zeros bound the same tongues,
-    /// so that each is near, and often very near, the twin's of the same index.
-    ///
-    /// The twin's values are guesses only. The proof: where the n residual intervals \[μ − ε, μ + ε\] of a problem with
-    /// n eigenvalues are disjoint, each holds exactly one (Weinstein), and its neighbours bound the others.
-    pub fn twins(&self, entry: Entry, twin: &[Edge], space: &mut Workspace) -> Vec<Option<Edge>> {
-        let n = self.dimension(entry);
-        let mut guesses: Vec<f64> = twin.iter().take(n).map(|edge| edge.lo / self.ticks).collect();
-        // One problem has a zero more than the other: the lower edge of the last tongue.
-        let extra = (guesses.len()..n).flat_map(|k| self.isolate(entry, &(k + 1..=k + 1), false));
-        guesses.extend(extra.map(|bracket| middle(&bracket)));
-        if guesses.len() < n {
-            return vec![None; n];
-        }
-        let tasks = (0..n).map(|k| Task::near(&guesses, k, self.upper_bound())).collect();
-        let mut modes: Vec<Option<Mode>> = vec![None; n];
-        Search { string: self, entry, space, tasks }.run(|index, mode, _| modes[index - 1] = Some(mode));
-        (0..n).map(|k| self.jointly(entry, &modes, k)).collect()
-    }
-
-    /// The k-th of n modes, where its neighbours' residual intervals are known and stay away.
-    fn jointly(&self, entry: Entry, modes: &[Option<Mode>], k: usize) -> Option<Edge> {
-        let mode = modes[k].as_ref()?;
-        // All intervals must be disjoint in order; each pair is checked from both its sides.
-        let (alpha, beta) = (
-            if k == 0 { 0.0 } else { modes[k - 1].as_ref()?.interval().1 },
-            if k + 1 == modes.len() { f64::INFINITY } else { modes[k + 1].as_ref()?.interval().0 },
-        );
-        self.proven(entry, k + 1, mode, (alpha, beta), TOLERABLE)
-    }
-
-    /// The theorem of [`super::mode`]: the eigenvalue before is at most α, the one after at least β.
-    fn proven(
-        &self,
-        entry: Entry,
-        index: usize,
-        mode: &Mode,
-        (alpha, beta): (f64, f64),
-        tolerance: f64,
-    ) -> Option<Edge> {
-        let mu = mode.quotient.hi;
-        // What the quotient's own uncertainty takes from the distances.
-        let own = 2.0 * (mode.relative + f64::EPSILON) * mu;
-        let (down, up) = (mu - own - alpha, beta - own - mu);
-        let inside = mode.residual < down && mode.residual < up;
-        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.relative * mu;
-        if !inside || radius > tolerance * mu {
-            return None;
-        }
-        let ticks = super::twofold::Twofold { hi: self.ticks, lo: 0.0 };
-        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.ticks);
-        Some(Edge { entry, index, lo, hi })
     }
 
     /// An interval of s that holds no other eigenvalue of the problem than this one, by counts in doubles: the one
@@ -201,22 +147,11 @@ struct Task {
     rounds: u32,
     /// The last quotient left the inner bracket, or there were too many: halve it first.
     astray: bool,
-    /// The first guess came from a twin.
-    guessed: bool,
 }
 
 impl Task {
     fn new(bracket: Bracket) -> Task {
-        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false, guessed: false }
-    }
-
-    /// The task of the eigenvalue k + 1 near the k-th guess, its bracket half way to the guesses beside it.
-    fn near(guesses: &[f64], k: usize, bound: f64) -> Task {
-        let kappa = guesses[k];
-        let lo = if k == 0 { 0.0 } else { 0.5 * (guesses[k - 1] + kappa) };
-        let hi = guesses.get(k + 1).map_or(bound, |next| 0.5 * (next + kappa));
-        let bracket = Bracket { lo, hi, below: k as u64, upto: k as u64 + 1 };
-        Task { kappa, guessed: true, ..Task::new(bracket) }
+        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false }
     }
 }
 
@@ -243,7 +178,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Works on up to [`LANES`] tasks at a time: first brings them near, then certifies them.
-    fn run(&mut self, mut found: impl FnMut(usize, Mode, Edge)) {
+    fn run(&mut self, mut found: impl FnMut(Edge)) {
         let mut near = Vec::with_capacity(self.tasks.len());
         while !self.tasks.is_empty() {
             let mut batch = next_batch(&mut self.tasks);
@@ -263,109 +198,8 @@ impl Search<'_> {
             for (mut task, mode) in batch.into_iter().zip(modes) {
                 task.follow(mode.quotient.hi);
                 match self.certified(&task.bracket, &mode) {
-                    Some(edge) => found(edge.index, mode, edge),
-                    None if task.rounds < ROUNDS => {
-                        task.kappa = if task.astray { middle(&task.inner) } else { task.kappa };
-                        near.push(task)
-                    }
-                    None => {}
-                }
-            }
-        }
-    }
-
-    /// Halves the brackets of the tasks that went astray.
-    fn halve(&self, batch: &mut [Task]) {
-        if batch.iter().all(|task| !task.astray) {
-            return;
-        }
-        let kappa = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
-        let counts = self.string.counts(self.entry, &kappa);
-        for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
-            if task.astray {
-                let inner = &mut task.inner;
-                if count <= inner.below {
-                    inner.lo = kappa
-                } else {
-                    inner.hi = kappa
-                }
-                task.kappa = middle(inner);
-            }
-        }
-    }
-
-    /// The theorems of [`super::mode`] and [`super::sturm`] together: eigenvalue `below` lies below lo (1 + η),
-    /// eigenvalue `below` + 2 above hi (1 − η).
-    fn certified(&self, bracket: &Bracket, mode: &Mode, tolerance: f64) -> Option<Edge> {
-        let eta = 2.0 * self.string.eta();
-        let others = (bracket.lo * (1.0 + eta), bracket.hi * (1.0 - eta));
-        self.string.proven(self.entry, bracket.upto as usize, mode, others, tolerance)
-    }
-}
-
-impl Task {
-    fn new(bracket: Bracket) -> Task {
-        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false, guessed: false }
-    }
-
-    /// The task of the eigenvalue k + 1 near the k-th guess, its bracket half way to the guesses beside it.
-    fn near(guesses: &[f64], k: usize, bound: f64) -> Task {
-        let kappa = guesses[k];
-        let lo = if k == 0 { 0.0 } else { 0.5 * (guesses[k - 1] + kappa) };
-        let hi = guesses.get(k + 1).map_or(bound, |next| 0.5 * (next + kappa));
-        let bracket = Bracket { lo, hi, below: k as u64, upto: k as u64 + 1 };
-        Task { kappa, guessed: true, ..Task::new(bracket) }
-    }
-}
-
-/// Takes up to [`LANES`] tasks off the list.
-fn next_batch(tasks: &mut Vec<Task>) -> Vec<Task> {
-    tasks.split_off(tasks.len().saturating_sub(LANES))
-}
-
-/// The guesses of a batch, the last one repeated in the lanes left over.
-fn guesses(batch: &[Task]) -> Lanes {
-    lanes(|i| batch[i.min(batch.len() - 1)].kappa)
-}
-
-fn middle(bracket: &Bracket) -> f64 {
-    (0.5 * (bracket.lo.sqrt() + bracket.hi.sqrt())).powi(2)
-}
-
-struct Search<'a> {
-    string: &'a HalfString,
-    entry: Entry,
-    space: &'a mut Workspace,
-    tasks: Vec<Task>,
-}
-
-impl Search<'_> {
-    /// Works on up to [`LANES`] tasks at a time: first brings them near, then certifies them.
-    fn run(&mut self, mut found: impl FnMut(usize, Mode, Edge)) {
-        let mut near = Vec::with_capacity(self.tasks.len());
-        while !self.tasks.is_empty() {
-            let mut batch = next_batch(&mut self.tasks);
-            self.halve(&mut batch);
-            let quotients = self.space.quotients(self.string, self.entry, &guesses(&batch));
-            for (mut task, mu) in batch.into_iter().zip(quotients) {
-                let shift = (mu - task.kappa).abs();
-                task.follow(mu);
-                let distance = (mu - task.bracket.lo).min(task.bracket.hi - mu);
-                let close = !task.astray && shift <= CLOSE * distance;
-                if close || task.rounds >= ROUNDS { near.push(task) } else { self.tasks.push(task) }
-            }
-        }
-        while !near.is_empty() {
-            let batch = next_batch(&mut near);
-            let modes = self.space.modes(self.string, self.entry, &guesses(&batch));
-            for (mut task, mode) in batch.into_iter().zip(modes) {
-                task.follow(mode.quotient.hi);
-                match self.certified(&task.bracket, &mode) {
-                    Some(edge) => found(edge.index, mode, edge),
-                    None if task.rounds < ROUNDS => {
-                        task.kappa = if task.astray { middle(&task.inner) } else { task.kappa };
-                        near.push(task)
-                    }
+                    Some(edge) => found(edge),
+                    None if task.rounds < ROUNDS => near.push(task),
                     None => {}
                 }
             }

@@ -12,7 +12,13 @@ use rayon::prelude::*;
 /// The edges of one ratio, all four problems, and how many needed more bits than doubles have.
 fn edges((p, q): (u64, u64), rho: &Rational) -> (Vec<Edge>, u64) {
     let mut tongues = Tongues::new(p, q, rho).unwrap();
-    let all = tongues.all_edges().unwrap().concat();
+    let mut all = Vec::new();
+    for entry in Entry::ALL {
+        let zeros = tongues.zeros(entry);
+        if zeros > 0 {
+            all.extend(tongues.edges(entry, 1, zeros).unwrap());
+        }
+    }
     (all, tongues.effort().precise)
 }
 
