@@ -272,7 +272,18 @@ mod tests {
             let g = p.gcd(&q);
             Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
         });
-        prop::collection::vec(pair, 1..9).prop_map(|pairs| pairs.into_iter().flatten().collect())
+        prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    /// All that groups of `L` lanes tell about at most as many pairs, as text: doubles by their shortest exact name.
+    fn told<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
+        let (mut group, mut text) = (Group::<L>::new(instructions), String::new());
+        for pairs in pairs.chunks(L) {
+            let mut ends = vec![None; pairs.len()];
+            group.everything(pairs, &mut ends);
+            text += &format!("{ends:?} {:?}\n", &group.verdicts(pairs)[..pairs.len()]);
+        }
+        text
     }
 
     proptest! {
@@ -280,12 +291,9 @@ mod tests {
         fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
-            let results: Vec<String> = Instructions::available().map(|instructions| {
-                let (mut group, mut ends) = (Group::<8>::new(instructions), vec![None; pairs.len()]);
-                group.everything(&pairs, &mut ends);
-                // Debug output of doubles is their shortest exact name.
-                format!("{ends:?} {:?}", group.verdicts(&pairs))
-            }).collect();
+            let results: Vec<String> = Instructions::available()
+                .map(|set| told::<1>(set, &pairs) + &told::<8>(set, &pairs) + &told::<16>(set, &pairs))
+                .collect();
             prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
         }
 
@@ -293,7 +301,7 @@ mod tests {
         fn side_by_side_and_alone_agree(floquets in pairs()) {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
-            let verdicts = Group::<8>::new(Instructions::best()).verdicts(&pairs);
+            let verdicts = Group::<16>::new(Instructions::best()).verdicts(&pairs);
             for (floquet, verdict) in floquets.iter().zip(verdicts) {
                 let alone = run(floquet).and_then(|ends| ends.signs().verdict());
                 prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));

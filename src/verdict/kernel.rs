@@ -16,8 +16,12 @@
 
 use super::floquet::Pair;
 
-/// Above this squared norm an orbit is scaled down, so that no square overflows.
+/// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
+
+/// ... at every fourth look. Between two looks |g|² grows by 2^12, or in a single step by κ² ≤ 2^82 (the certificate
+/// wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
+const SCALING: u64 = 4;
 
 const fn power_of_two(n: i64) -> f64 {
     f64::from_bits(((n + 1023) as u64) << 52)
@@ -141,9 +145,7 @@ impl<const L: usize> Orbits<L> {
             let within = |i: usize| self.squares[i] <= worst * norm[i] || !active(i);
             self.worst = each(|i| if within(i) { self.worst[i] } else { f64::INFINITY });
         }
-        let mut long = false;
-        (0..L).for_each(|i| long |= norm[i] > LARGE);
-        if strong && long {
+        if strong {
             // Powers of two: exact.
             let shrink = |by: f64| -> [f64; L] { each(|i| if norm[i] > LARGE { by } else { 1.0 }) };
             let (once, twice) = (shrink(power_of_two(-150)), shrink(power_of_two(-300)));
@@ -271,15 +273,15 @@ impl<const L: usize> Lanes<L> {
         // The last update, perhaps half a kick, is left to the loop that tells the lanes apart.
         let together = (shortest as u64).saturating_sub(1);
         // The half kick at t = 0 was the first block's first step.
-        let (mut done, mut due) = (0, block - 1);
+        let (mut done, mut due, mut looks) = (0, block - 1, 0);
         while due <= together {
             lanes.block::<W>(&mut tilt, due - done);
-            lanes.look::<W>(&tilt, |_| true);
-            (done, due) = (due, due + block);
+            lanes.look::<W>(&tilt, looks % SCALING == 0, |_| true);
+            (done, due, looks) = (due, due + block, looks + 1);
         }
         lanes.block::<W>(&mut tilt, together - done);
         if shortest == 0.0 {
-            lanes.look::<W>(&tilt, |_| true);
+            lanes.look::<W>(&tilt, true, |_| true);
         }
         for k in together + 1..=longest as u64 {
             lanes.last_updates::<W>(k as f64, &mut tilt);
@@ -314,7 +316,7 @@ impl<const L: usize> Lanes<L> {
         keep(&mut self.odd.re, &before.odd.re);
         keep(&mut self.odd.w, &before.odd.w);
         *tilt = each(|i| self.place[i] * self.tilt[i]);
-        self.look::<W>(tilt, active);
+        self.look::<W>(tilt, true, active);
     }
 
     /// From a kick to just before the next one.
@@ -346,10 +348,11 @@ impl<const L: usize> Lanes<L> {
     }
 
     #[inline(always)]
-    fn look<W: Watch>(&mut self, tilt: &[f64; L], active: impl Fn(usize) -> bool + Copy) {
+    fn look<W: Watch>(&mut self, tilt: &[f64; L], scaling: bool, active: impl Fn(usize) -> bool + Copy) {
         if W::CERTIFY {
-            self.even.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
-            self.odd.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
+            let strong = self.strong && scaling;
+            self.even.look::<W>((tilt, &self.scale), (self.worst, strong), active);
+            self.odd.look::<W>((tilt, &self.scale), (self.worst, strong), active);
         }
     }
 
