@@ -33,7 +33,7 @@ mod residue;
 pub(crate) mod winding;
 
 pub use exact::{Decidable, exact_trace};
-pub use growth::{Growth, growth};
+pub use growth::{Growth, filter_trace, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
 pub(crate) use ladder::filter_only;
 pub use ladder::{Decision, Limits, Tier, decide, decide_from};
