@@ -1,334 +1,292 @@
 //! A vibration mode near κ, and what its Rayleigh quotient proves about the eigenvalue.
 //!
-//! **The vector.** Run the recurrence from both ends and join the two halves at the node r where |x→ x←| is
-//! largest: that product is (K − κM)⁻¹_rr times a constant, so r is where the mode lives, and neither half is
-//! followed into the region where rounding errors outgrow it. (Twisted factorization: Parlett and Dhillon.)
+//! **The vector.** Run the recurrence from both ends to the node r where the mode lives (see [`super::locate`]), and
+//! join the two halves there: z_j = x_j/x_r on the left, y_j/y_r on the right, so z_r = 1. All equations
 //!
-//! **Its quotient** μ = Σ d_j²/ℓ_j / Σ m_j z_j², d_j = z_j − z_{j−1}, is off from the eigenvalue by the *square* of the
-//! vector's error only; so the vector may be rough, but its quotient is evaluated almost exactly. z is rounded to
-//! a grid on which all d_j are exact; z = z' + z'' with z' an integer, so Σ z'² is exact, and the corrections
-//! z''(z + z') are smaller by about 2^-20; likewise d² and its division by ℓ.
+//! ```text
+//!     F_j - F_{j+1} - κ m_j z_j = 0,        F_j = (z_j - z_{j-1})/ℓ_j
+//! ```
 //!
-//! **Theorem** (Weinstein; Temple, Kato). Let ε² = ‖(K − κM) z‖²_{M⁻¹}/‖z‖²_M for any κ. Some eigenvalue lies in
-//! \[μ − ε, μ + ε\]. If all but the k-th are ≤ α or ≥ β with α < μ − ε and μ + ε < β, it is the k-th one, and
+//! hold but for the roundings of each step, which are known exactly (as the errors of sums and products), and the one
+//! at r, where the two halves do not quite meet. With the residuals ρ_j the quotient is
+//!
+//! ```text
+//!     μ = Σ F_j² ℓ_j/Σ m_j z_j² = κ + Σ z_j ρ_j/Σ m_j z_j²:
+//! ```
+//!
+//! a tiny correction to κ, so it needs a few digits only, and no cancellation ever occurs but at r, where it is done in
+//! sums of two doubles. Without the roundings it is Newton's step for the mismatch at r.
+//!
+//! **Theorem** (Weinstein; Temple, Kato). Let ε² = Σ ρ_j²/m_j/Σ m_j z_j². Some eigenvalue lies in \[μ − ε, μ + ε\]. If all
+//! but the k-th are ≤ α or ≥ β with α < μ − ε and μ + ε < β, it is the k-th one, and
 //!
 //! ```text
 //!     μ - ε²/(β - μ) <= κ_k <= μ + ε²/(μ - α).
 //! ```
+//!
+//! **Roundings.** With x' = x + ℓ v' + e and v' = v − k x + f, k the rounded κ m = k − δ, a row's residual is
+//! (f + δ x) + e/ℓ − e'/ℓ' (e, ℓ of the spring before, e', ℓ' of the one after), and Σ z ρ is Σ x (f + δ x) + Σ e F but
+//! for the mismatch, by summation by parts. ε is computed from |f| + |δ x| + |e/ℓ| + |e'/ℓ'|, an upper bound that
+//! does not cancel. By Cauchy's inequality Σ |terms of Σ z ρ| ≤ ε Σ m z² with that ε, so n rounded terms put μ off by at
+//! most (n + 32) u ε, and n rounded masses, |μ − κ| being at most ε, by as much again.
 
-use super::string::{Entry, HalfString};
-use super::sturm::{BLOCK, Kicks, LANES, Lanes, lanes, rescale, start};
+use super::lanes::{LANES, Lanes, lanes, normalizing, range, two_products, two_sums};
+use super::locate::{Problems, start};
+use super::string::{BLOCK, HalfString, Kicks, Step};
 use super::twofold::Twofold;
+use crate::verdict::instructions::Task;
 
 const U: f64 = f64::EPSILON / 2.0;
 
 /// A Rayleigh quotient and its residual, both proven.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mode {
-    /// μ, off by at most `relative` μ.
+    /// μ, off by at most `error`.
     pub quotient: Twofold,
-    pub relative: f64,
+    pub error: f64,
     /// ε.
     pub residual: f64,
 }
 
-/// Both recurrences at every node: x 2^exponent, the exponents by block.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Workspace {
-    forward: Vec<Lanes>,
-    backward: Vec<Lanes>,
-    forward_exponents: Vec<[i64; LANES]>,
-    backward_exponents: Vec<[i64; LANES]>,
-}
+impl HalfString {
+    /// Newton's step for each lane from κ, with the halves joined at the nodes `at`.
+    pub fn newton(&self, problems: &Problems, at: &Lanes) -> Lanes {
+        self.instructions.perform(Improving { string: self, problems, at })
+    }
 
-/// 2^e, clipped to the range of normal doubles.
-fn power_of_two(e: i64) -> f64 {
-    f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
-}
-
-/// The bits that hold a node's number in [`Workspace::twist`]: as many as the longest string needs.
-const NODE_NUMBER: u64 = (1 << 24) - 1;
-
-/// The factors that join the two recurrences to one vector, by block.
-struct Joint {
-    at: Lanes,
-    forward: Vec<Lanes>,
-    backward: Vec<Lanes>,
-}
-
-impl Workspace {
     /// The modes near κ, one for each lane.
-    pub fn modes(&mut self, string: &HalfString, entry: Entry, kappa: &Lanes) -> [Mode; LANES] {
+    pub fn modes(&self, problems: &Problems, at: &Lanes) -> [Mode; LANES] {
+        self.instructions.perform(Proving { string: self, problems, at })
+    }
+}
+
+struct Improving<'a> {
+    string: &'a HalfString,
+    problems: &'a Problems,
+    at: &'a Lanes,
+}
+
+impl Task for Improving<'_> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn run(self) -> Lanes {
+        let kappa = &self.problems.kappa;
+        let [left, right] = halves::<false>(self.string, self.problems, self.at);
+        let mass = lanes(|i| self.string.mass(self.at[i] as usize));
+        lanes(|i| {
+            let mismatch = left.v[i] / left.x[i] + right.v[i] / right.x[i] - kappa[i] * mass[i];
+            let squares = |side: &Side| side.squares[i] / (side.x[i] * side.x[i]);
+            kappa[i] + mismatch / (squares(&left) + squares(&right) + mass[i])
+        })
+    }
+}
+
+struct Proving<'a> {
+    string: &'a HalfString,
+    problems: &'a Problems,
+    at: &'a Lanes,
+}
+
+impl Task for Proving<'_> {
+    type Output = [Mode; LANES];
+
+    #[inline(always)]
+    fn run(self) -> [Mode; LANES] {
+        let [left, right] = halves::<true>(self.string, self.problems, self.at);
+        std::array::from_fn(|i| {
+            let node = self.string.nodes[self.at[i] as usize];
+            joined(self.string, node.kind, self.problems.kappa[i], [&left, &right].map(|side| side.at(i)))
+        })
+    }
+}
+
+/// The two halves, each on arrival at r.
+#[inline(always)]
+fn halves<const PROVE: bool>(string: &HalfString, problems: &Problems, at: &Lanes) -> [Side; 2] {
+    let tables = Tables::new::<PROVE>(string, &problems.kappa);
+    let mut left = Side::new(&problems.starts_free);
+    left.follow::<PROVE>(string, &tables, &string.forward, at);
+    let mut right = Side::new(&problems.ends_free);
+    let n = string.last() as f64;
+    right.follow::<PROVE>(string, &tables, &string.backward, &lanes(|i| n - at[i]));
+    [left, right]
+}
+
+/// By kind of node: the kick k, and δ = k − κ m to within 2^-50 of itself and 2^-103 κ m.
+struct Tables {
+    kicks: Kicks,
+    deltas: Kicks,
+}
+
+impl Tables {
+    #[inline(always)]
+    fn new<const PROVE: bool>(string: &HalfString, kappa: &Lanes) -> Self {
         let kicks = string.kicks(kappa);
-        // Σ z'² and Σ d'² of n terms below 2^(2 bits + 2) must stay below 2^53.
-        let count = 64 - (string.nodes.len() as u64).leading_zeros();
-        let bits = ((50 - count as i32) / 2).min(20);
-        let mut sums = Sums::new(string, entry, bits);
-        self.vectors(string, entry, &kicks, 2f64.powi(bits), |j, z| sums.add(j, z, &kicks));
-        sums.finish()
-    }
-
-    /// The Rayleigh quotients of the modes near κ, as near as doubles get and without proof.
-    pub fn quotients(&mut self, string: &HalfString, entry: Entry, kappa: &Lanes) -> Lanes {
-        let (mut springs, mut masses, mut last) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        self.vectors(string, entry, &string.kicks(kappa), 1.0, |j, z| {
-            let (mass, stiffness) = (string.mass(j), if j > 0 { string.nodes[j].inverse } else { 0.0 });
-            for i in 0..LANES {
-                let d = z[i] - last[i];
-                springs[i] += d * d * stiffness;
-                masses[i] += z[i] * z[i] * mass;
+        let mut deltas = [[0.0; LANES]; 8];
+        if PROVE {
+            for (kind, delta) in deltas.iter_mut().enumerate() {
+                *delta = lanes(|i| delta_of(string, kind, kappa[i], kicks[kind][i]));
             }
-            last = z;
-        });
-        lanes(|i| springs[i] / masses[i])
+        }
+        Tables { kicks, deltas }
+    }
+}
+
+#[inline(always)]
+fn delta_of(string: &HalfString, kind: usize, kappa: f64, kick: f64) -> f64 {
+    -(kappa.mul_add(string.masses[kind], -kick) + kappa * string.rests[kind])
+}
+
+/// One half on its way: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
+/// of x (squares: of x²).
+struct Side {
+    x: Lanes,
+    v: Lanes,
+    /// e/ℓ of the spring just passed.
+    g: Lanes,
+    /// Σ m x².
+    squares: Lanes,
+    /// Σ x (f + δ x) + Σ e F.
+    work: Lanes,
+    /// Σ (|f| + |δ x| + |e/ℓ| + |e'/ℓ'|)²/m.
+    residual: Lanes,
+}
+
+impl Side {
+    #[inline(always)]
+    fn new(free: &[bool; LANES]) -> Self {
+        let (x, v) = start(free);
+        let zero = [0.0; LANES];
+        Side { x, v, g: zero, squares: zero, work: zero, residual: zero }
     }
 
-    /// Hands the amplitudes z_0, z_1, ... of the modes to `each`, |z_r| = `size`.
-    fn vectors(
+    /// The first `until` steps, in each lane its own number.
+    #[inline(always)]
+    fn follow<const PROVE: bool>(
         &mut self,
         string: &HalfString,
-        entry: Entry,
-        kicks: &Kicks,
-        size: f64,
-        mut each: impl FnMut(usize, Lanes),
+        tables: &Tables,
+        steps: &[Step],
+        until: &Lanes,
     ) {
-        self.run_forward(string, entry, kicks);
-        self.run_backward(string, entry, kicks);
-        let joint = self.join(&self.twist(), size);
-        for (block, (forward, backward)) in
-            self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).enumerate()
-        {
-            let (f, b) = (&joint.forward[block], &joint.backward[block]);
-            for (k, (x, y)) in forward.iter().zip(backward).enumerate() {
-                let j = block * BLOCK + k;
-                let z = lanes(|i| if j as f64 <= joint.at[i] { x[i] * f[i] } else { y[i] * b[i] });
-                each(j, z);
+        let (least, most) = range(until);
+        for (block, steps) in steps[..most as usize].chunks(BLOCK).enumerate() {
+            for (k, step) in steps.iter().enumerate() {
+                let t = (block * BLOCK + k) as f64;
+                let next = self.step::<PROVE>(string, tables, step);
+                if t < least { *self = next } else { self.take(next, |i| t < until[i]) }
             }
+            self.rescale::<PROVE>();
         }
     }
 
-    fn run_forward(&mut self, string: &HalfString, entry: Entry, kicks: &Kicks) {
-        self.forward.clear();
-        self.forward_exponents.clear();
-        let mut exponents = [0; LANES];
-        let (mut x, mut v) = start(entry.starts_free(), &kicks[string.nodes[0].kind]);
-        for (j, node) in string.nodes[..=string.end(entry)].iter().enumerate() {
-            if j % BLOCK == 0 {
-                let more = rescale(&mut x, &mut v);
-                (0..LANES).for_each(|i| exponents[i] += more[i]);
-                self.forward_exponents.push(exponents);
-            }
-            if j > 0 {
-                let kick = &kicks[node.kind];
-                for i in 0..LANES {
-                    x[i] += node.length * v[i];
-                    v[i] -= kick[i] * x[i];
-                }
-            }
-            self.forward.push(x);
+    /// The kick at a node and the drift to the next.
+    #[inline(always)]
+    fn step<const PROVE: bool>(&self, string: &HalfString, tables: &Tables, step: &Step) -> Side {
+        let (x, kick, mass) = (&self.x, &tables.kicks[step.kind], string.masses[step.kind]);
+        let squares = lanes(|i| mass.mul_add(x[i] * x[i], self.squares[i]));
+        if !PROVE {
+            let v = lanes(|i| (-kick[i]).mul_add(x[i], self.v[i]));
+            let x = lanes(|i| step.length.mul_add(v[i], x[i]));
+            return Side { x, v, squares, ..*self };
         }
+        let (kicked, product_error) = two_products(kick, x);
+        let (v, sum_error) = two_sums(&self.v, &lanes(|i| -kicked[i]));
+        let f = lanes(|i| sum_error[i] - product_error[i]);
+        let shift = lanes(|i| tables.deltas[step.kind][i] * x[i]);
+        let (drift, product_error) = two_products(&[step.length; LANES], &v);
+        let (next, sum_error) = two_sums(x, &drift);
+        let e = lanes(|i| -(product_error[i] + sum_error[i]));
+        let g = lanes(|i| e[i] * step.inverse);
+        let work = lanes(|i| x[i].mul_add(f[i] + shift[i], self.work[i]));
+        let work = lanes(|i| e[i].mul_add(v[i] + g[i], work[i]));
+        let row = lanes(|i| (f[i].abs() + shift[i].abs()) + (self.g[i].abs() + g[i].abs()));
+        let weight = string.inverse_masses[step.kind];
+        let residual = lanes(|i| (row[i] * weight).mul_add(row[i], self.residual[i]));
+        Side { x: next, v, g, squares, work, residual }
     }
 
-    /// The same from T/2, v being the slope seen backwards.
-    fn run_backward(&mut self, string: &HalfString, entry: Entry, kicks: &Kicks) {
-        let n = string.end(entry);
-        self.backward.resize(n + 1, [0.0; LANES]);
-        self.backward_exponents.resize(n / BLOCK + 1, [0; LANES]);
-        let mut exponents = [0; LANES];
-        let (mut x, mut v) = start(entry.ends_free(), &kicks[string.nodes[n].kind]);
-        for j in (0..=n).rev() {
-            if j % BLOCK == BLOCK - 1 || j == n {
-                let more = rescale(&mut x, &mut v);
-                (0..LANES).for_each(|i| exponents[i] += more[i]);
-                self.backward_exponents[j / BLOCK] = exponents;
-            }
-            if j < n {
-                let (length, kick) = (string.nodes[j + 1].length, &kicks[string.nodes[j].kind]);
-                for i in 0..LANES {
-                    x[i] += length * v[i];
-                    v[i] -= kick[i] * x[i];
-                }
-            }
-            self.backward[j] = x;
-        }
-    }
-
-    /// r for each lane.
-    fn twist(&self) -> [usize; LANES] {
-        let exponents = self.forward_exponents.iter().zip(&self.backward_exponents);
-        let sums: Vec<[i64; LANES]> = exponents.map(|(f, b)| std::array::from_fn(|i| f[i] + b[i])).collect();
-        let top: [i64; LANES] = std::array::from_fn(|i| sums.iter().map(|s| s[i]).max().unwrap_or(0));
-        let mut best = [0.0; LANES];
-        let pairs = self.forward.chunks(BLOCK).zip(self.backward.chunks(BLOCK)).zip(&sums);
-        for (block, ((forward, backward), sum)) in pairs.enumerate() {
-            // 2^-400 keeps the product of two blocks' growths in range.
-            let factor = lanes(|i| power_of_two(sum[i] - top[i]) * 2f64.powi(-400));
-            for (k, (x, y)) in forward.iter().zip(backward).enumerate() {
-                let j = (block * BLOCK + k) as u64;
-                for i in 0..LANES {
-                    // The node's number takes the product's last bits: a maximum without branches.
-                    let product = ((x[i] * factor[i]) * y[i]).abs().to_bits();
-                    let marked = f64::from_bits((product & !NODE_NUMBER) | j);
-                    best[i] = if marked > best[i] { marked } else { best[i] };
-                }
-            }
-        }
-        best.map(|marked: f64| ((marked.to_bits() & NODE_NUMBER) as usize).min(self.forward.len() - 1))
-    }
-
-    /// Scales both halves to |z_r| = `size`.
-    fn join(&self, at: &[usize; LANES], size: f64) -> Joint {
-        let scaled = |values: &[Lanes], exponents: &[[i64; LANES]]| -> Vec<Lanes> {
-            let peak = lanes(|i| size / values[at[i]][i]);
-            let base: [i64; LANES] = std::array::from_fn(|i| exponents[at[i] / BLOCK][i]);
-            exponents.iter().map(|e| lanes(|i| peak[i] * power_of_two(e[i] - base[i]))).collect()
+    /// Takes the next state where the lane still goes.
+    #[inline(always)]
+    fn take(&mut self, next: Side, goes: impl Fn(usize) -> bool) {
+        let pick = |new: &Lanes, old: &Lanes| lanes(|i| if goes(i) { new[i] } else { old[i] });
+        *self = Side {
+            x: pick(&next.x, &self.x),
+            v: pick(&next.v, &self.v),
+            g: pick(&next.g, &self.g),
+            squares: pick(&next.squares, &self.squares),
+            work: pick(&next.work, &self.work),
+            residual: pick(&next.residual, &self.residual),
         };
-        Joint {
-            at: lanes(|i| at[i] as f64),
-            forward: scaled(&self.forward, &self.forward_exponents),
-            backward: scaled(&self.backward, &self.backward_exponents),
+    }
+
+    #[inline(always)]
+    fn rescale<const PROVE: bool>(&mut self) {
+        let factor = normalizing(&self.x, &self.v);
+        let once = |x: &Lanes| lanes(|i| x[i] * factor[i]);
+        let twice = |x: &Lanes| lanes(|i| x[i] * factor[i] * factor[i]);
+        let (x, v, squares) = (once(&self.x), once(&self.v), twice(&self.squares));
+        *self = if PROVE {
+            let (work, residual) = (twice(&self.work), twice(&self.residual));
+            Side { x, v, g: once(&self.g), squares, work, residual }
+        } else {
+            Side { x, v, squares, ..*self }
+        };
+    }
+
+    /// One lane, scaled to x = 1.
+    #[inline(always)]
+    fn at(&self, i: usize) -> Arrival {
+        let x = self.x[i];
+        let force = self.v[i] / x;
+        // The quotient's remainder is a double.
+        let rest = (-force).mul_add(x, self.v[i]) / x;
+        let square = 1.0 / (x * x);
+        Arrival {
+            force: (force, rest),
+            g: (self.g[i] / x).abs(),
+            squares: self.squares[i] * square,
+            work: self.work[i] * square,
+            residual: self.residual[i] * square,
         }
     }
 }
 
-/// 1.5 · 2^52: adding and subtracting it rounds to an integer.
-const TO_INTEGER: f64 = 6755399441055744.0;
-
-/// Σ w z² as an exact part and a correction.
-#[derive(Clone, Copy, Debug)]
-struct Square {
-    exact: Lanes,
-    correction: Lanes,
+/// A half on arrival at r, scaled to z_r = 1.
+struct Arrival {
+    force: (f64, f64),
+    g: f64,
+    squares: f64,
+    work: f64,
+    residual: f64,
 }
 
-impl Square {
-    const ZERO: Square = Square { exact: [0.0; LANES], correction: [0.0; LANES] };
-
-    /// Adds `weight` z², weight = 1/2 or 1.
-    fn add(&mut self, weight: f64, z: &Lanes) {
-        for (z, (exact, correction)) in z.iter().zip(self.exact.iter_mut().zip(&mut self.correction)) {
-            let whole = (z + TO_INTEGER) - TO_INTEGER;
-            *exact += weight * (whole * whole);
-            *correction += weight * ((z - whole) * (z + whole));
-        }
-    }
-
-    fn total(&self, i: usize) -> Twofold {
-        Twofold::sum(self.exact[i], self.correction[i])
-    }
+/// The quotient of the two halves joined.
+#[inline(always)]
+fn joined(string: &HalfString, kind: usize, kappa: f64, [left, right]: [Arrival; 2]) -> Mode {
+    let (mass, kick) = (string.masses[kind], kappa * string.masses[kind]);
+    let (force, first) = two_sum(left.force.0, right.force.0);
+    let (most, second) = two_sum(force, -kick);
+    let rest = left.force.1 + right.force.1 + delta_of(string, kind, kappa, kick);
+    let mismatch = most + (first + second + rest);
+    let squares = left.squares + right.squares + mass;
+    let correction = (left.work + right.work + mismatch) / squares;
+    let row = mismatch.abs() + left.g + right.g;
+    let residual = left.residual + right.residual + row * row * string.inverse_masses[kind];
+    let residual = (1.01 * residual / squares).sqrt();
+    // The mismatch is off by 2^-100 of its three terms; underflows are covered by 2^-100 κ.
+    let terms = (left.force.0.abs() + right.force.0.abs() + kick) / squares + kappa;
+    let error = 1.01 * (2.0 * (string.nodes.len() as f64 + 64.0) * U * residual + 2f64.powi(-100) * terms);
+    // A mode not worth the name proves nothing.
+    let residual = if residual.is_finite() && error.is_finite() { residual } else { f64::INFINITY };
+    Mode { quotient: Twofold::sum(kappa, correction), error, residual }
 }
 
-/// The running sums of the quotient and of the residual.
-struct Sums<'a> {
-    string: &'a HalfString,
-    entry: Entry,
-    /// 1.5 · 2^52 grid units, the grid being 2^(bits − 50): |z| < 2^(bits + 1) leaves 51 bits.
-    to_grid: f64,
-    fast: Square,
-    slow: Square,
-    /// Σ d²/ℓ.
-    springs: Square,
-    residual: Lanes,
-    /// The exponent bits that any z on its way to the grid changed: none, if all were in range.
-    strayed: [u64; LANES],
-    z: Lanes,
-    force: Lanes,
-}
-
-impl<'a> Sums<'a> {
-    fn new(string: &'a HalfString, entry: Entry, bits: i32) -> Self {
-        let zero = [0.0; LANES];
-        Sums {
-            string,
-            entry,
-            to_grid: 1.5 * 2f64.powi(bits + 2),
-            fast: Square::ZERO,
-            slow: Square::ZERO,
-            springs: Square::ZERO,
-            residual: zero,
-            strayed: [0; LANES],
-            z: zero,
-            force: zero,
-        }
-    }
-
-    /// Adds node j with amplitude z, and the spring before it.
-    fn add(&mut self, j: usize, z: Lanes, kicks: &Kicks) {
-        let (node, n) = (&self.string.nodes[j], self.string.end(self.entry));
-        let raised = z.map(|z| z + self.to_grid);
-        (0..LANES).for_each(|i| self.strayed[i] |= raised[i].to_bits() ^ self.to_grid.to_bits());
-        let z = raised.map(|z| z - self.to_grid);
-        if j > 0 {
-            let force = self.add_spring(j, &z);
-            if j > 1 || self.entry.starts_free() {
-                self.balance(j - 1, &force, kicks);
-            }
-            self.force = force;
-        }
-        if node.fast > 0.0 {
-            self.fast.add(node.fast, &z);
-        }
-        if node.slow > 0.0 {
-            self.slow.add(node.slow, &z);
-        }
-        self.z = z;
-        if j == n && self.entry.ends_free() {
-            self.balance(n, &[0.0; LANES], kicks);
-        }
-    }
-
-    /// Adds d²/ℓ = t + (d'² − t ℓ + d''(d + d'))/ℓ, t the integer nearest to d'²/ℓ; returns d/ℓ, rounded.
-    fn add_spring(&mut self, j: usize, z: &Lanes) -> Lanes {
-        let node = &self.string.nodes[j];
-        let mut force = [0.0; LANES];
-        for i in 0..LANES {
-            let d = z[i] - self.z[i];
-            let whole = (d + TO_INTEGER) - TO_INTEGER;
-            let square = whole * whole;
-            let t = (square * node.inverse + TO_INTEGER) - TO_INTEGER;
-            self.springs.exact[i] += t;
-            self.springs.correction[i] +=
-                ((square - t * node.length) + (d - whole) * (d + whole)) * node.inverse;
-            force[i] = d * node.inverse;
-        }
-        force
-    }
-
-    /// Adds the residual of the equation at node j, the forces before and after it rounded, over its mass.
-    fn balance(&mut self, j: usize, after: &Lanes, kicks: &Kicks) {
-        let (mass, kick) = (self.string.mass(j), &kicks[self.string.nodes[j].kind]);
-        let weight = if mass > 0.0 { 1.0 / mass } else { 0.0 };
-        for i in 0..LANES {
-            let (before, after, load) = (self.force[i], after[i], kick[i] * self.z[i]);
-            // Forces are off by 2u, the load by 4u, the two sums by u each of at most the three together.
-            let slack = 6.0 * U * (before.abs() + after.abs() + load.abs());
-            let r = (before - after - load).abs() + slack;
-            self.residual[i] += r * r * weight;
-        }
-    }
-
-    fn finish(self) -> [Mode; LANES] {
-        std::array::from_fn(|i| self.mode(i))
-    }
-
-    /// The corrections are sums of n rounded terms: each is off by at most (n + 8) u Σ|term|. With |z''| ≤ 1/2,
-    /// Σ |z''(z + z')| ≤ Σ |z| + n/4 ≤ √n (Σ z²)^½ + n/4 (Cauchy), and Σ |d''(d + d')|/ℓ + |d'² − tℓ|/ℓ ≤
-    /// (W Σ d²/ℓ)^½ + W/4 + 0.6 n with W = Σ 1/ℓ (|d'² − tℓ| ≤ 0.6 ℓ).
-    fn mode(&self, i: usize) -> Mode {
-        let n = self.string.nodes.len() as f64;
-        let (fast, slow, springs) = (self.fast.total(i), self.slow.total(i), self.springs.total(i));
-        let terms = 1.01 * (n + 8.0) * U;
-        let loss = |sum: f64| terms * ((n * sum).sqrt() + n);
-        let stiffness = self.string.stiffness;
-        let springs_loss = terms * ((stiffness * springs.hi).sqrt() + 0.25 * stiffness + 0.6 * n);
-        let mass = fast.plus(self.string.slow_mass.times(slow));
-        let mass_loss = loss(fast.hi) + self.string.slow_mass.hi * loss(slow.hi);
-        // 2^-96 covers the twofold operations, 1.01 this line.
-        let relative = 1.01 * (springs_loss / springs.hi + mass_loss / mass.hi) + 2f64.powi(-96);
-        let residual = (1.01 * self.residual[i] / mass.hi).sqrt();
-        // A vector off the grid's range proves nothing.
-        let in_range = self.strayed[i] >> 52 == 0;
-        let residual = if in_range && residual.is_finite() { residual } else { f64::INFINITY };
-        Mode { quotient: springs.over(mass), relative, residual }
-    }
+/// As [`two_sums`].
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    let t = s - a;
+    (s, (a - (s - t)) + (b - t))
 }

@@ -1,10 +1,13 @@
-//! Eigenvalues one by one: isolated by Sturm counts, improved and certified by Rayleigh quotients.
+//! Eigenvalues one by one: isolated by Sturm counts, improved by Newton's method, certified by Rayleigh quotients.
 
 use std::ops::RangeInclusive;
 
-use super::mode::{Mode, Workspace};
+use super::isolate::{Bracket, Wanted};
+use super::lanes::{LANES, Lanes, lanes};
+use super::locate::{Problems, Workspace};
+use super::mode::Mode;
 use super::string::{Entry, HalfString};
-use super::sturm::{LANES, Lanes, lanes};
+use super::twofold::Twofold;
 
 /// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,122 +20,81 @@ pub struct Edge {
     pub hi: f64,
 }
 
-/// An interval of κ in which a problem has, by computed counts, the eigenvalues `below` + 1 ..= `upto`.
-#[derive(Clone, Copy, Debug)]
-struct Bracket {
-    lo: f64,
-    hi: f64,
-    below: u64,
-    upto: u64,
-}
-
-/// Rounds of Rayleigh quotient iteration and halvings for one eigenvalue before more bits are called.
+/// Newton's steps and halvings for one eigenvalue before more bits are called.
 const ROUNDS: u32 = 60;
 
-/// Quotients that may follow one another before the bracket is halved: they converge cubically or not at all.
-const PATIENCE: u32 = 6;
+/// Newton's steps that may follow one another before the bracket is halved: as a rule four are enough.
+const PATIENCE: u32 = 8;
 
-/// A quotient that moved by less than this part of its distance to the neighbours is close: its own error is
-/// about the cube of that.
+/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square.
 const CLOSE: f64 = 1e-4;
 
-/// An uncertainty of the quotient that no double shows.
-const NEGLIGIBLE: f64 = 1e-18;
+/// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
+const NEGLIGIBLE: f64 = 1e-17;
+
+/// Proofs tried before a wider enclosure is better than none.
+const TRIALS: u32 = 3;
+
+/// One of a few units in the last place: what strings of many thousand masses allow in doubles.
+const TOLERABLE: f64 = 1e-15;
 
 impl HalfString {
-    /// The eigenvalues with the given indices, `None` where doubles cannot certify one.
+    /// The eigenvalues with the given indices, by entry; `None` where doubles cannot certify one.
     pub fn eigenvalues(
         &self,
-        entry: Entry,
-        wanted: RangeInclusive<usize>,
+        wanted: &[Option<RangeInclusive<usize>>; 4],
         space: &mut Workspace,
-    ) -> Vec<Option<Edge>> {
-        let first = *wanted.start();
-        let mut found = vec![None; wanted.end() + 1 - first];
-        let brackets = self.isolate(entry, &wanted, false);
-        let mut search =
-            Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
-        search.run(|edge: Edge| found[edge.index - first] = Some(edge));
+    ) -> [Vec<Option<Edge>>; 4] {
+        let range = |entry: Entry| wanted[entry as usize].as_ref();
+        let mut tasks = Vec::new();
+        for starts_free in [true, false] {
+            let two: Wanted = Entry::starting(starts_free)
+                .map(|entry| range(entry).map(|range| (*range.start() as u64, *range.end() as u64)));
+            if two.iter().any(Option::is_some) {
+                tasks.extend(self.sample(starts_free, &two).brackets(&two).map(Task::new));
+            }
+        }
+        let mut found = Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
+        let mut search = Search { string: self, space, moving: Vec::new(), near: Vec::new(), astray: Vec::new() };
+        search.run(tasks, |edge| {
+            let first = range(edge.entry).map_or(1, |range| *range.start());
+            found[edge.entry as usize][edge.index - first] = Some(edge);
+        });
         found
     }
 
     /// An interval of s that holds no other eigenvalue of the problem than this one, by counts in doubles: the one
     /// before lies below lo (1 + η), the one after above hi (1 − η). Whether it holds this one, signs must tell.
     pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        self.around(entry, index, true)
+        let wanted = entry.alone(index);
+        let bracket = self.sample(entry.starts_free(), &wanted).brackets(&wanted).next()?;
+        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
+        Some((bracket.lo * (1.0 + slack) * self.ticks, bracket.hi * (1.0 - slack) * self.ticks))
     }
 
     /// An interval of s in which the eigenvalue lies, perhaps with others.
     pub fn cluster(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        self.around(entry, index, false)
+        let samples = self.sample(entry.starts_free(), &entry.alone(index));
+        let (lo, hi) = samples.around(usize::from(entry.ends_free()), index as u64)?;
+        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
+        Some((lo * (1.0 - slack) * self.ticks, hi * (1.0 + slack) * self.ticks))
     }
 
-    fn around(&self, entry: Entry, index: usize, alone: bool) -> Option<(f64, f64)> {
-        let parts = self.isolate(entry, &(index..=index), !alone);
-        let found = parts.into_iter().find(|part| part.below < index as u64 && index as u64 <= part.upto)?;
-        let slack = (2.0 * self.eta() + 4.0 * f64::EPSILON) * if alone { 1.0 } else { -1.0 };
-        Some((found.lo * (1.0 + slack) * self.ticks, found.hi * (1.0 - slack) * self.ticks))
-    }
-
-    /// Brackets of one eigenvalue each, for all wanted ones that counts in doubles can tell apart.
-    ///
-    /// `clusters`: those that they cannot tell apart too, together.
-    fn isolate(&self, entry: Entry, wanted: &RangeInclusive<usize>, clusters: bool) -> Vec<Bracket> {
-        let upto = self.dimension(entry) as u64;
-        let mut open = vec![Bracket { lo: 0.0, hi: self.upper_bound(), below: 0, upto }];
-        let mut isolated = Vec::new();
-        while !open.is_empty() {
-            let cuts: Vec<Vec<f64>> = open.iter().map(|bracket| bracket.cuts(LANES / open.len())).collect();
-            let points: Vec<f64> = cuts.iter().flatten().copied().collect();
-            let counts: Vec<u64> = points
-                .chunks(LANES)
-                .flat_map(|chunk| {
-                    self.counts(entry, &lanes(|i| chunk[i.min(chunk.len() - 1)]))
-                        .into_iter()
-                        .take(chunk.len())
-                })
-                .collect();
-            let mut next = Vec::new();
-            let mut at = 0;
-            for (bracket, cuts) in open.iter().zip(&cuts) {
-                let known = points[at..at + cuts.len()].iter().copied().zip(counts[at..].iter().copied());
-                at += cuts.len();
-                for part in bracket.parts(known) {
-                    let asked = part.below < *wanted.end() as u64 && part.upto >= *wanted.start() as u64;
-                    match part.upto.saturating_sub(part.below) {
-                        0 => {}
-                        _ if !asked => {}
-                        1 => isolated.push(part),
-                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => {
-                            isolated.extend(clusters.then_some(part))
-                        }
-                        _ => next.push(part),
-                    }
-                }
-            }
-            open = next;
+    /// The theorems of [`super::mode`] and [`super::sturm`] together.
+    fn certified(&self, bracket: &Bracket, mode: &Mode, tolerance: f64) -> Option<Edge> {
+        let (mu, eta) = (mode.quotient.hi, 2.0 * self.eta());
+        // What the quotient's own uncertainty takes from the distances.
+        let own = 2.0 * (mode.error + f64::EPSILON * mu);
+        let down = mu - own - bracket.lo * (1.0 + eta);
+        let up = bracket.hi * (1.0 - eta) - own - mu;
+        let inside = mode.residual < down && mode.residual < up;
+        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.error;
+        if !inside || radius > tolerance * mu {
+            return None;
         }
-        isolated
-    }
-}
-
-impl Bracket {
-    /// Points that cut the bracket evenly in √κ, one for each eigenvalue in it and at least `least`.
-    fn cuts(&self, least: usize) -> Vec<f64> {
-        let n = ((self.upto - self.below) as usize).min(64).max(least).max(1);
-        let (from, to) = (self.lo.sqrt(), self.hi.sqrt());
-        let point = |k: usize| (from + (to - from) * k as f64 / (n + 1) as f64).powi(2);
-        (1..=n).map(point).collect()
-    }
-
-    /// The parts between neighbouring points.
-    fn parts(self, points: impl Iterator<Item = (f64, u64)>) -> impl Iterator<Item = Bracket> {
-        let end = (self.hi, self.upto);
-        points.chain(std::iter::once(end)).scan((self.lo, self.below), |from, to| {
-            let part = Bracket { lo: from.0, hi: to.0, below: from.1, upto: to.1 };
-            *from = to;
-            Some(part)
-        })
+        let ticks = Twofold { hi: self.ticks, lo: 0.0 };
+        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.ticks);
+        Some(Edge { entry: bracket.entry, index: bracket.index, lo, hi })
     }
 }
 
@@ -142,114 +104,137 @@ struct Task {
     /// What the counts say: it bounds the neighbours.
     bracket: Bracket,
     /// The part of the bracket where the eigenvalue is.
-    inner: Bracket,
+    inner: (f64, f64),
     kappa: f64,
+    /// The node where the mode lives.
+    at: f64,
     rounds: u32,
-    /// The last quotient left the inner bracket, or there were too many: halve it first.
-    astray: bool,
+    /// Proofs tried.
+    trials: u32,
 }
 
 impl Task {
     fn new(bracket: Bracket) -> Task {
-        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false }
+        let inner = (bracket.lo, bracket.hi);
+        Task { bracket, inner, kappa: middle(inner), at: 0.0, rounds: 0, trials: 0 }
     }
 }
 
-/// Takes up to [`LANES`] tasks off the list.
-fn next_batch(tasks: &mut Vec<Task>) -> Vec<Task> {
-    tasks.split_off(tasks.len().saturating_sub(LANES))
+/// The middle in √κ.
+fn middle((lo, hi): (f64, f64)) -> f64 {
+    (0.5 * (lo.sqrt() + hi.sqrt())).powi(2)
 }
 
-/// The guesses of a batch, the last one repeated in the lanes left over.
-fn guesses(batch: &[Task]) -> Lanes {
-    lanes(|i| batch[i.min(batch.len() - 1)].kappa)
+/// The last one repeated in the lanes left over.
+fn problems(batch: &[Task]) -> Problems {
+    let task = |i: usize| &batch[i.min(batch.len() - 1)];
+    Problems {
+        kappa: lanes(|i| task(i).kappa),
+        starts_free: std::array::from_fn(|i| task(i).bracket.entry.starts_free()),
+        ends_free: std::array::from_fn(|i| task(i).bracket.entry.ends_free()),
+    }
 }
 
-fn middle(bracket: &Bracket) -> f64 {
-    (0.5 * (bracket.lo.sqrt() + bracket.hi.sqrt())).powi(2)
+fn places(batch: &[Task]) -> Lanes {
+    lanes(|i| batch[i.min(batch.len() - 1)].at)
 }
 
+/// Tasks by what is to be done with them next.
 struct Search<'a> {
     string: &'a HalfString,
-    entry: Entry,
     space: &'a mut Workspace,
-    tasks: Vec<Task>,
+    moving: Vec<Task>,
+    near: Vec<Task>,
+    astray: Vec<Task>,
 }
 
 impl Search<'_> {
-    /// Works on up to [`LANES`] tasks at a time: first brings them near, then certifies them.
-    fn run(&mut self, mut found: impl FnMut(Edge)) {
-        let mut near = Vec::with_capacity(self.tasks.len());
-        while !self.tasks.is_empty() {
-            let mut batch = next_batch(&mut self.tasks);
-            self.halve(&mut batch);
-            let quotients = self.space.quotients(self.string, self.entry, &guesses(&batch));
-            for (mut task, mu) in batch.into_iter().zip(quotients) {
-                let shift = (mu - task.kappa).abs();
-                task.follow(mu);
-                let distance = (mu - task.bracket.lo).min(task.bracket.hi - mu);
-                let close = !task.astray && shift <= CLOSE * distance;
-                if close || task.rounds >= ROUNDS { near.push(task) } else { self.tasks.push(task) }
+    fn run(&mut self, mut fresh: Vec<Task>, mut found: impl FnMut(Edge)) {
+        while !fresh.is_empty() {
+            self.locate(&mut fresh);
+            self.moving = fresh;
+            while !(self.moving.is_empty() && self.near.is_empty()) {
+                self.improve();
+                self.certify(&mut found);
+            }
+            fresh = self.halve();
+        }
+    }
+
+    /// Where the modes live; tasks with neighbouring places go side by side.
+    fn locate(&mut self, fresh: &mut [Task]) {
+        for batch in fresh.chunks_mut(LANES) {
+            let places = self.string.locate(&problems(batch), self.space);
+            batch.iter_mut().zip(places).for_each(|(task, at)| task.at = at);
+        }
+        fresh.sort_by(|a, b| a.at.total_cmp(&b.at));
+    }
+
+    /// Newton's steps until all are near or astray.
+    fn improve(&mut self) {
+        while !self.moving.is_empty() {
+            let tasks = std::mem::take(&mut self.moving);
+            for batch in tasks.chunks(LANES) {
+                let steps = self.string.newton(&problems(batch), &places(batch));
+                for (&task, next) in batch.iter().zip(steps) {
+                    self.sort_in(task, next);
+                }
             }
         }
-        while !near.is_empty() {
-            let batch = next_batch(&mut near);
-            let modes = self.space.modes(self.string, self.entry, &guesses(&batch));
-            for (mut task, mode) in batch.into_iter().zip(modes) {
-                task.follow(mode.quotient.hi);
-                match self.certified(&task.bracket, &mode) {
+    }
+
+    fn sort_in(&mut self, mut task: Task, next: f64) {
+        let step = (next - task.kappa).abs();
+        let distance = (next - task.bracket.lo).min(task.bracket.hi - next);
+        task.rounds += 1;
+        // NaN is astray too.
+        if !(task.inner.0 < next && next < task.inner.1) || task.rounds.is_multiple_of(PATIENCE) {
+            return self.astray.push(task);
+        }
+        task.kappa = next;
+        if step <= CLOSE * distance { self.near.push(task) } else { self.moving.push(task) }
+    }
+
+    /// Modes of those that are near; one that does not prove enough takes its quotient for a further step.
+    fn certify(&mut self, found: &mut impl FnMut(Edge)) {
+        for batch in std::mem::take(&mut self.near).chunks(LANES) {
+            let modes = self.string.modes(&problems(batch), &places(batch));
+            for (&(mut task), mode) in batch.iter().zip(modes) {
+                task.trials += 1;
+                let tolerance = if task.trials < TRIALS { NEGLIGIBLE } else { TOLERABLE };
+                match self.string.certified(&task.bracket, &mode, tolerance) {
                     Some(edge) => found(edge),
-                    None if task.rounds < ROUNDS => near.push(task),
-                    None => {}
+                    None => self.sort_in(task, mode.quotient.hi),
                 }
             }
         }
     }
 
-    /// Halves the brackets of the tasks that went astray.
-    fn halve(&self, batch: &mut [Task]) {
-        if batch.iter().all(|task| !task.astray) {
-            return;
-        }
-        let kappa = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
-        let counts = self.string.counts(self.entry, &kappa);
-        for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
-            if task.astray {
-                let inner = &mut task.inner;
-                if count <= inner.below {
-                    inner.lo = kappa
-                } else {
-                    inner.hi = kappa
+    /// Halves the brackets of those that went astray; gives up those that did so too often.
+    fn halve(&mut self) -> Vec<Task> {
+        let mut tasks = std::mem::take(&mut self.astray);
+        tasks.retain(|task| task.rounds < ROUNDS);
+        for batch in tasks.chunks_mut(LANES) {
+            let cuts = lanes(|i| middle(batch[i.min(batch.len() - 1)].inner));
+            for starts_free in [true, false] {
+                if batch.iter().all(|task| task.bracket.entry.starts_free() != starts_free) {
+                    continue;
                 }
-                task.kappa = middle(inner);
+                let counts = self.string.counts(starts_free, &cuts);
+                for (task, (cut, counts)) in batch.iter_mut().zip(cuts.into_iter().zip(counts)) {
+                    if task.bracket.entry.starts_free() == starts_free {
+                        task.halve(cut, counts[usize::from(task.bracket.entry.ends_free())]);
+                    }
+                }
             }
         }
-    }
-
-    /// The theorems of [`super::mode`] and [`super::sturm`] together: eigenvalue `below` lies below lo (1 + η),
-    /// eigenvalue `below` + 2 above hi (1 − η).
-    fn certified(&self, bracket: &Bracket, mode: &Mode) -> Option<Edge> {
-        let (mu, eta) = (mode.quotient.hi, self.string.eta());
-        // What the quotient's own uncertainty takes from the distances.
-        let own = 2.0 * (mode.relative + f64::EPSILON) * mu;
-        let (alpha, beta) = (bracket.lo * (1.0 + 2.0 * eta), bracket.hi * (1.0 - 2.0 * eta));
-        let (down, up) = (mu - own - alpha, beta - own - mu);
-        let inside = mode.residual < down && mode.residual < up;
-        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.relative * mu;
-        if !inside || radius > (NEGLIGIBLE * mu).max(1.02 * mode.relative * mu) {
-            return None;
-        }
-        let ticks = super::twofold::Twofold { hi: self.string.ticks, lo: 0.0 };
-        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.string.ticks);
-        Some(Edge { entry: self.entry, index: bracket.upto as usize, lo, hi })
+        tasks
     }
 }
 
 impl Task {
-    /// Takes the quotient as the next guess where it stays inside the bracket.
-    fn follow(&mut self, mu: f64) {
-        self.rounds += 1;
-        self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds.is_multiple_of(PATIENCE);
-        self.kappa = mu;
+    fn halve(&mut self, cut: f64, count: u64) {
+        if count < self.bracket.index as u64 { self.inner.0 = cut } else { self.inner.1 = cut }
+        self.kappa = middle(self.inner);
     }
 }

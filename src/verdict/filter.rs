@@ -13,7 +13,8 @@ use std::marker::PhantomData;
 
 use super::bound::StepBound;
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Instructions, Lanes, Orbits, Task, Watch, each};
+use super::instructions::{Instructions, Task};
+use super::kernel::{Lanes, Orbits, Watch, each};
 use super::kind::PartialSigns;
 use super::winding;
 use crate::number::Sign;

@@ -1,0 +1,54 @@
+//! Numbers side by side: one for each eigenvalue that is being looked for.
+
+/// So many at a time.
+pub(super) const LANES: usize = 16;
+
+/// One number for each lane.
+pub(super) type Lanes = [f64; LANES];
+
+/// f of each lane; a plain loop over an array is what compilers turn into vector instructions.
+#[inline(always)]
+pub(super) fn lanes(f: impl Fn(usize) -> f64) -> Lanes {
+    let mut all = [0.0; LANES];
+    for (i, lane) in all.iter_mut().enumerate() {
+        *lane = f(i);
+    }
+    all
+}
+
+/// The rounded sums and what rounding took from them, exactly (Knuth).
+#[inline(always)]
+pub(super) fn two_sums(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
+    let s = lanes(|i| a[i] + b[i]);
+    let t = lanes(|i| s[i] - a[i]);
+    (s, lanes(|i| (a[i] - (s[i] - t[i])) + (b[i] - t[i])))
+}
+
+/// The rounded products and what rounding took from them, exactly (barring underflow).
+#[inline(always)]
+pub(super) fn two_products(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
+    let p = lanes(|i| a[i] * b[i]);
+    (p, lanes(|i| a[i].mul_add(b[i], -p[i])))
+}
+
+/// The least and the largest.
+#[inline(always)]
+pub(super) fn range(x: &Lanes) -> (f64, f64) {
+    x.iter().fold((f64::INFINITY, 0.0), |(lo, hi), &x| (x.min(lo), x.max(hi)))
+}
+
+/// 2^e, clipped to the range of normal doubles.
+#[inline(always)]
+pub(super) fn power_of_two(e: i64) -> f64 {
+    f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
+}
+
+/// The powers of two that bring the larger one of |x| and |v| to [1, 2).
+#[inline(always)]
+pub(super) fn normalizing(x: &Lanes, v: &Lanes) -> Lanes {
+    lanes(|i| {
+        let (x, v) = (x[i].abs(), v[i].abs());
+        let exponent = (if x > v { x } else { v }).to_bits() >> 52;
+        f64::from_bits((2046 - exponent) << 52)
+    })
+}
