@@ -2,7 +2,6 @@
 
 use super::lanes::{LANES, lanes};
 use super::string::{Entry, HalfString};
-use super::sturm::Counts;
 
 /// An interval of κ that, by computed counts, holds no other eigenvalue of the problem: the one before lies below
 /// lo (1 + η), the one after above hi (1 − η).
@@ -22,7 +21,7 @@ pub(super) type Wanted = [Option<(u64, u64)>; 2];
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     kappa: f64,
-    counts: Counts,
+    counts: [u64; 2],
 }
 
 /// Samples in increasing order of κ, dense enough to tell the wanted eigenvalues apart.
@@ -38,23 +37,39 @@ impl HalfString {
     /// Counts until all wanted eigenvalues are alone between two samples, or counts in doubles cannot tell them apart.
     pub fn sample(&self, starts_free: bool, wanted: &Wanted) -> Samples {
         let ends = Entry::starting(starts_free).map(|entry| self.dimension(entry) as u64);
-        let (zero, top) =
-            (Sample { kappa: 0.0, counts: [0, 0] }, Sample { kappa: self.upper_bound, counts: ends });
+        let zero = Sample { kappa: 0.0, counts: [0, 0] };
+        let top = Sample { kappa: self.upper_bound, counts: ends };
         let mut samples = Samples { starts_free, list: vec![zero, top] };
         loop {
             let points = samples.cuts(wanted, 16.0 * self.eta());
             if points.is_empty() {
                 return samples;
             }
-            let found = points.chunks(LANES).flat_map(|chunk| {
+            let mut found = Vec::with_capacity(points.len());
+            for chunk in points.chunks(LANES) {
                 let kappa = lanes(|i| chunk[i.min(chunk.len() - 1)]);
-                let counts = self.counts(starts_free, &kappa);
-                (0..chunk.len()).map(move |i| Sample { kappa: kappa[i], counts: counts[i] })
-            });
-            samples.list.extend(found);
-            samples.list.sort_by(|a, b| a.kappa.total_cmp(&b.kappa));
+                let [pinned, free] = self.counts(&[starts_free; LANES], &kappa);
+                let sample =
+                    |i: usize| Sample { kappa: kappa[i], counts: [pinned[i] as u64, free[i] as u64] };
+                found.extend((0..chunk.len()).map(sample));
+            }
+            samples.list = merged(&samples.list, &found);
         }
     }
+}
+
+/// Two sorted lists as one.
+fn merged(a: &[Sample], b: &[Sample]) -> Vec<Sample> {
+    let mut all = Vec::with_capacity(a.len() + b.len());
+    let mut later = b.iter().peekable();
+    for sample in a {
+        while let Some(&other) = later.next_if(|other| other.kappa < sample.kappa) {
+            all.push(other);
+        }
+        all.push(*sample);
+    }
+    all.extend(later);
+    all
 }
 
 impl Samples {

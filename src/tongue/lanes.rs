@@ -16,7 +16,22 @@ pub(super) fn lanes(f: impl Fn(usize) -> f64) -> Lanes {
     all
 }
 
-/// The rounded sums and what rounding took from them, exactly (Knuth).
+/// The rounded sum and what rounding took from it, exactly (Knuth).
+#[inline(always)]
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let s = a + b;
+    let t = s - a;
+    (s, (a - (s - t)) + (b - t))
+}
+
+/// The rounded product and what rounding took from it, exactly (barring underflow).
+#[inline(always)]
+pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let p = a * b;
+    (p, a.mul_add(b, -p))
+}
+
+/// The same in each lane.
 #[inline(always)]
 pub(super) fn two_sums(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
     let s = lanes(|i| a[i] + b[i]);
@@ -24,17 +39,17 @@ pub(super) fn two_sums(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
     (s, lanes(|i| (a[i] - (s[i] - t[i])) + (b[i] - t[i])))
 }
 
-/// The rounded products and what rounding took from them, exactly (barring underflow).
+/// The same in each lane.
 #[inline(always)]
 pub(super) fn two_products(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
     let p = lanes(|i| a[i] * b[i]);
     (p, lanes(|i| a[i].mul_add(b[i], -p[i])))
 }
 
-/// The least and the largest.
+/// The largest of numbers that are not negative.
 #[inline(always)]
-pub(super) fn range(x: &Lanes) -> (f64, f64) {
-    x.iter().fold((f64::INFINITY, 0.0), |(lo, hi), &x| (x.min(lo), x.max(hi)))
+pub(super) fn largest(x: &Lanes) -> f64 {
+    x.iter().fold(0.0, |most, &x| x.max(most))
 }
 
 /// 2^e, clipped to the range of normal doubles.

@@ -20,6 +20,7 @@ pub(super) struct Workspace {
 const ENOUGH: f64 = 1.0 / 16.0;
 
 /// A problem for each lane: κ, and whether the ends are free.
+#[derive(Clone, Copy)]
 pub(super) struct Problems {
     pub kappa: Lanes,
     pub starts_free: [bool; LANES],

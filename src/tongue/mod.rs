@@ -6,7 +6,7 @@
 //!
 //! ```text
 //!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
-//!       (sturm)      (isolate)      (locate, mode)    (spectrum)  (gaps)        closings
+//!       (sturm)      (isolate)    (locate, half, mode) (spectrum)  (gaps)        closings
 //!                                       more bits: precise      open or closed: modular, elimination
 //! ```
 //!
@@ -32,6 +32,7 @@
 mod closing;
 mod elimination;
 mod gaps;
+mod half;
 mod isolate;
 mod jet;
 mod lanes;

@@ -3,11 +3,10 @@
 use std::ops::RangeInclusive;
 
 use super::isolate::{Bracket, Wanted};
-use super::lanes::{LANES, Lanes, lanes};
+use super::lanes::LANES;
 use super::locate::{Problems, Workspace};
-use super::mode::Mode;
+use super::mode::{Bounds, Proofs};
 use super::string::{Entry, HalfString};
-use super::twofold::Twofold;
 
 /// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,20 +19,14 @@ pub struct Edge {
     pub hi: f64,
 }
 
-/// Newton's steps and halvings for one eigenvalue before more bits are called.
+/// Halvings and proofs for one eigenvalue before more bits are called.
 const ROUNDS: u32 = 60;
 
-/// Newton's steps that may follow one another before the bracket is halved: as a rule four are enough.
-const PATIENCE: u32 = 8;
-
-/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square.
-const CLOSE: f64 = 1e-4;
+/// Halvings between two attempts.
+const HALVINGS: u32 = 3;
 
 /// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
 const NEGLIGIBLE: f64 = 1e-17;
-
-/// Proofs tried before a wider enclosure is better than none.
-const TRIALS: u32 = 3;
 
 /// One of a few units in the last place: what strings of many thousand masses allow in doubles.
 const TOLERABLE: f64 = 1e-15;
@@ -54,9 +47,9 @@ impl HalfString {
                 tasks.extend(self.sample(starts_free, &two).brackets(&two).map(Task::new));
             }
         }
-        let mut found = Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
-        let mut search = Search { string: self, space, moving: Vec::new(), near: Vec::new(), astray: Vec::new() };
-        search.run(tasks, |edge| {
+        let mut found =
+            Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
+        Search { string: self, space }.run(tasks, |edge| {
             let first = range(edge.entry).map_or(1, |range| *range.start());
             found[edge.entry as usize][edge.index - first] = Some(edge);
         });
@@ -79,23 +72,6 @@ impl HalfString {
         let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
         Some((lo * (1.0 - slack) * self.ticks, hi * (1.0 + slack) * self.ticks))
     }
-
-    /// The theorems of [`super::mode`] and [`super::sturm`] together.
-    fn certified(&self, bracket: &Bracket, mode: &Mode, tolerance: f64) -> Option<Edge> {
-        let (mu, eta) = (mode.quotient.hi, 2.0 * self.eta());
-        // What the quotient's own uncertainty takes from the distances.
-        let own = 2.0 * (mode.error + f64::EPSILON * mu);
-        let down = mu - own - bracket.lo * (1.0 + eta);
-        let up = bracket.hi * (1.0 - eta) - own - mu;
-        let inside = mode.residual < down && mode.residual < up;
-        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.error;
-        if !inside || radius > tolerance * mu {
-            return None;
-        }
-        let ticks = Twofold { hi: self.ticks, lo: 0.0 };
-        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.ticks);
-        Some(Edge { entry: bracket.entry, index: bracket.index, lo, hi })
-    }
 }
 
 /// One eigenvalue being looked for.
@@ -108,133 +84,146 @@ struct Task {
     kappa: f64,
     /// The node where the mode lives.
     at: f64,
+    /// Halvings and proofs tried.
     rounds: u32,
-    /// Proofs tried.
-    trials: u32,
+    /// The last proof's radius: a wider enclosure is better than none where another trial gains no more.
+    radius: f64,
 }
 
 impl Task {
     fn new(bracket: Bracket) -> Task {
         let inner = (bracket.lo, bracket.hi);
-        Task { bracket, inner, kappa: middle(inner), at: 0.0, rounds: 0, trials: 0 }
+        Task { bracket, inner, kappa: middle(inner), at: 0.0, rounds: 0, radius: f64::INFINITY }
+    }
+
+    fn edge(&self, lo: f64, hi: f64) -> Edge {
+        Edge { entry: self.bracket.entry, index: self.bracket.index, lo, hi }
+    }
+
+    /// Halves the inner bracket at `cut`, given the count there.
+    fn halve(&mut self, cut: f64, count: f64) {
+        if count < self.bracket.index as f64 {
+            self.inner.0 = cut
+        } else {
+            self.inner.1 = cut
+        }
+        self.kappa = middle(self.inner);
+        self.rounds += 1;
     }
 }
 
-/// The middle in √κ.
 fn middle((lo, hi): (f64, f64)) -> f64 {
-    (0.5 * (lo.sqrt() + hi.sqrt())).powi(2)
+    0.5 * (lo + hi)
 }
 
-/// The last one repeated in the lanes left over.
+/// A number of each task, the last one's repeated in the lanes left over.
+fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
+    let mut all = [number(&batch[batch.len() - 1]); LANES];
+    all.iter_mut().zip(batch).for_each(|(lane, task)| *lane = number(task));
+    all
+}
+
 fn problems(batch: &[Task]) -> Problems {
-    let task = |i: usize| &batch[i.min(batch.len() - 1)];
     Problems {
-        kappa: lanes(|i| task(i).kappa),
-        starts_free: std::array::from_fn(|i| task(i).bracket.entry.starts_free()),
-        ends_free: std::array::from_fn(|i| task(i).bracket.entry.ends_free()),
+        kappa: each(batch, |task| task.kappa),
+        starts_free: each(batch, |task| task.bracket.entry.starts_free()),
+        ends_free: each(batch, |task| task.bracket.entry.ends_free()),
     }
 }
 
-fn places(batch: &[Task]) -> Lanes {
-    lanes(|i| batch[i.min(batch.len() - 1)].at)
-}
-
-/// Tasks by what is to be done with them next.
 struct Search<'a> {
     string: &'a HalfString,
     space: &'a mut Workspace,
-    moving: Vec<Task>,
-    near: Vec<Task>,
-    astray: Vec<Task>,
 }
 
 impl Search<'_> {
-    fn run(&mut self, mut fresh: Vec<Task>, mut found: impl FnMut(Edge)) {
-        while !fresh.is_empty() {
-            self.locate(&mut fresh);
-            self.moving = fresh;
-            while !(self.moving.is_empty() && self.near.is_empty()) {
-                self.improve();
-                self.certify(&mut found);
+    /// Halves the brackets, finds out where the modes live, and proves them; what fails, again.
+    fn run(&mut self, mut tasks: Vec<Task>, mut found: impl FnMut(Edge)) {
+        let mut again = Vec::new();
+        while !tasks.is_empty() {
+            (0..HALVINGS).for_each(|_| self.halve(&mut tasks));
+            while !tasks.is_empty() {
+                self.locate(&mut tasks);
+                // Modes that live side by side are followed side by side.
+                tasks.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
+                let (failed, rough) = self.prove(&tasks, &mut found);
+                again.extend(failed);
+                tasks = rough;
             }
-            fresh = self.halve();
+            std::mem::swap(&mut tasks, &mut again);
         }
     }
 
-    /// Where the modes live; tasks with neighbouring places go side by side.
-    fn locate(&mut self, fresh: &mut [Task]) {
-        for batch in fresh.chunks_mut(LANES) {
+    /// What cannot be proven: because κ is nowhere near, and because it is not near enough.
+    fn prove(&self, tasks: &[Task], found: &mut impl FnMut(Edge)) -> (Vec<Task>, Vec<Task>) {
+        let (mut failed, mut rough) = (Vec::new(), Vec::new());
+        for batch in tasks.chunks(LANES) {
+            let Proofs { edge: [lo, hi], radius, quotient } = self.proofs(batch);
+            for (i, task) in batch.iter().enumerate() {
+                let done =
+                    radius[i] <= NEGLIGIBLE || (radius[i] <= TOLERABLE && radius[i] > 0.1 * task.radius);
+                let inside = task.inner.0 < quotient[i] && quotient[i] < task.inner.1;
+                let next = Task { rounds: task.rounds + 1, radius: radius[i], kappa: quotient[i], ..*task };
+                match () {
+                    () if done => found(task.edge(lo[i], hi[i])),
+                    () if next.rounds >= ROUNDS => {}
+                    () if inside && radius[i] < f64::INFINITY => rough.push(next),
+                    () => failed.push(next),
+                }
+            }
+        }
+        (failed, rough)
+    }
+
+    fn proofs(&self, batch: &[Task]) -> Proofs {
+        let inner = [each(batch, |task| task.inner.0), each(batch, |task| task.inner.1)];
+        let eta = 2.0 * self.string.eta();
+        let below = each(batch, |task| task.bracket.lo * (1.0 + eta));
+        let above = each(batch, |task| task.bracket.hi * (1.0 - eta));
+        let bounds = Bounds { inner, others: [below, above] };
+        self.string.prove(&problems(batch), &bounds, &each(batch, |task| task.at))
+    }
+
+    /// Where the modes live.
+    fn locate(&mut self, tasks: &mut [Task]) {
+        for batch in tasks.chunks_mut(LANES) {
             let places = self.string.locate(&problems(batch), self.space);
             batch.iter_mut().zip(places).for_each(|(task, at)| task.at = at);
         }
-        fresh.sort_by(|a, b| a.at.total_cmp(&b.at));
     }
 
-    /// Newton's steps until all are near or astray.
-    fn improve(&mut self) {
-        while !self.moving.is_empty() {
-            let tasks = std::mem::take(&mut self.moving);
-            for batch in tasks.chunks(LANES) {
-                let steps = self.string.newton(&problems(batch), &places(batch));
-                for (&task, next) in batch.iter().zip(steps) {
-                    self.sort_in(task, next);
-                }
-            }
-        }
-    }
-
-    fn sort_in(&mut self, mut task: Task, next: f64) {
-        let step = (next - task.kappa).abs();
-        let distance = (next - task.bracket.lo).min(task.bracket.hi - next);
-        task.rounds += 1;
-        // NaN is astray too.
-        if !(task.inner.0 < next && next < task.inner.1) || task.rounds.is_multiple_of(PATIENCE) {
-            return self.astray.push(task);
-        }
-        task.kappa = next;
-        if step <= CLOSE * distance { self.near.push(task) } else { self.moving.push(task) }
-    }
-
-    /// Modes of those that are near; one that does not prove enough takes its quotient for a further step.
-    fn certify(&mut self, found: &mut impl FnMut(Edge)) {
-        for batch in std::mem::take(&mut self.near).chunks(LANES) {
-            let modes = self.string.modes(&problems(batch), &places(batch));
-            for (&(mut task), mode) in batch.iter().zip(modes) {
-                task.trials += 1;
-                let tolerance = if task.trials < TRIALS { NEGLIGIBLE } else { TOLERABLE };
-                match self.string.certified(&task.bracket, &mode, tolerance) {
-                    Some(edge) => found(edge),
-                    None => self.sort_in(task, mode.quotient.hi),
-                }
-            }
-        }
-    }
-
-    /// Halves the brackets of those that went astray; gives up those that did so too often.
-    fn halve(&mut self) -> Vec<Task> {
-        let mut tasks = std::mem::take(&mut self.astray);
-        tasks.retain(|task| task.rounds < ROUNDS);
+    fn halve(&self, tasks: &mut [Task]) {
         for batch in tasks.chunks_mut(LANES) {
-            let cuts = lanes(|i| middle(batch[i.min(batch.len() - 1)].inner));
-            for starts_free in [true, false] {
-                if batch.iter().all(|task| task.bracket.entry.starts_free() != starts_free) {
-                    continue;
-                }
-                let counts = self.string.counts(starts_free, &cuts);
-                for (task, (cut, counts)) in batch.iter_mut().zip(cuts.into_iter().zip(counts)) {
-                    if task.bracket.entry.starts_free() == starts_free {
-                        task.halve(cut, counts[usize::from(task.bracket.entry.ends_free())]);
-                    }
-                }
+            let cuts = each(batch, |task| middle(task.inner));
+            let starts_free = each(batch, |task| task.bracket.entry.starts_free());
+            let counts = self.string.counts(&starts_free, &cuts);
+            for (i, task) in batch.iter_mut().enumerate() {
+                task.halve(cuts[i], counts[usize::from(task.bracket.entry.ends_free())][i]);
             }
         }
-        tasks
     }
 }
 
-impl Task {
-    fn halve(&mut self, cut: f64, count: u64) {
-        if count < self.bracket.index as u64 { self.inner.0 = cut } else { self.inner.1 = cut }
-        self.kappa = middle(self.inner);
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::verdict::instructions::Instructions;
+
+    #[test]
+    fn every_instruction_set_finds_the_same_edges() {
+        for (p, q, rho) in
+            [(7, 3, ratio(1, 25)), (23, 20, ratio(1, 1000)), (5, 31, ratio(40, 1)), (1, 1, ratio(1, 2))]
+        {
+            let edges = |instructions: Instructions| {
+                let mut string = HalfString::new(p, q, &rho).unwrap();
+                string.instructions = instructions;
+                let wanted =
+                    Entry::ALL.map(|entry| string.dimension(entry)).map(|n| (n > 0).then_some(1..=n));
+                string.eigenvalues(&wanted, &mut Workspace::default())
+            };
+            let portable = edges(Instructions::Portable);
+            assert!(Instructions::available().all(|set| edges(set) == portable));
+        }
     }
 }

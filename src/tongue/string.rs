@@ -161,7 +161,7 @@ impl HalfString {
         let both = Twofold::sum(1.0, slow.hi);
         let whole = [(0.0, 0.0), (1.0, 0.0), (slow.hi, slow.lo), (both.hi, both.lo + slow.lo)];
         let part = |kind: usize| if kind.is_multiple_of(2) { 0.5 } else { 1.0 };
-        let masses = std::array::from_fn(|kind| whole[kind / 2].0 * part(kind));
+        let masses: [f64; 8] = std::array::from_fn(|kind| whole[kind / 2].0 * part(kind));
         let inverse = |m: f64| if m > 0.0 { 1.0 / m } else { 0.0 };
         let step = |from: &Node, length: f64| Step { kind: from.kind, length, inverse: 1.0 / length };
         let forward = nodes.windows(2).map(|pair| step(&pair[0], pair[1].length)).collect();

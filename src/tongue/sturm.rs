@@ -19,11 +19,12 @@
 //! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
 
 use super::lanes::{LANES, Lanes, lanes, normalizing};
+use super::locate::start;
 use super::string::{BLOCK, HalfString, Kicks};
 use crate::verdict::instructions::Task;
 
-/// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues.
-pub(super) type Counts = [u64; 2];
+/// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues: whole numbers.
+pub(super) type Counts = [Lanes; 2];
 
 impl HalfString {
     /// The uncertainty η of a computed count, see the module's theorem.
@@ -32,28 +33,27 @@ impl HalfString {
     }
 
     /// The counts for each lane, of the two problems that are free (or pinned) at t = 0.
-    pub fn counts(&self, starts_free: bool, kappa: &Lanes) -> [Counts; LANES] {
+    pub fn counts(&self, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
         self.instructions.perform(Counting { string: self, starts_free, kappa })
     }
 }
 
 struct Counting<'a> {
     string: &'a HalfString,
-    starts_free: bool,
+    starts_free: &'a [bool; LANES],
     kappa: &'a Lanes,
 }
 
 impl Task for Counting<'_> {
-    type Output = [Counts; LANES];
+    type Output = Counts;
 
     #[inline(always)]
-    fn run(self) -> [Counts; LANES] {
+    fn run(self) -> Counts {
         let string = self.string;
         let kicks = string.kicks(self.kappa);
         let first = &kicks[string.nodes[0].kind];
-        let free = f64::from(u8::from(self.starts_free));
-        let (mut x, mut v) = ([free; LANES], lanes(|i| if free > 0.0 { -first[i] } else { 1.0 }));
-        // The signs that differ from one node to the next, as a sum of ±0.5: exact.
+        let (mut x, mut v) = start(self.starts_free);
+        v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
         let mut changes = [0.0; LANES];
         for block in string.nodes[1..].chunks(BLOCK) {
             for node in block {
@@ -67,17 +67,15 @@ impl Task for Counting<'_> {
             x = lanes(|i| x[i] * factor[i]);
             v = lanes(|i| v[i] * factor[i]);
         }
+        let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
         // The zero eigenvalue of C is below every κ and not counted.
-        let rigid = u64::from(self.starts_free);
-        std::array::from_fn(|i| {
-            let pinned = changes[i] as u64;
-            [pinned, pinned + u64::from(x[i] * v[i] < 0.0) - rigid]
-        })
+        let free = lanes(|i| changes[i] + past[i] - if self.starts_free[i] { 1.0 } else { 0.0 });
+        [changes, free]
     }
 }
 
-/// κ m, by kind of node.
 impl HalfString {
+    /// κ m, by kind of node.
     #[inline(always)]
     pub fn kicks(&self, kappa: &Lanes) -> Kicks {
         let mut kicks = [[0.0; LANES]; 8];

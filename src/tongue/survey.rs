@@ -15,8 +15,8 @@ use num_integer::Integer;
 use rayon::prelude::*;
 
 use super::gaps::{Gap, Tongues};
-use super::row::{Row, Wanted};
 use super::lanes::LANES;
+use super::row::{Row, Wanted};
 use crate::error::Result;
 use crate::number::Rational;
 
@@ -78,7 +78,8 @@ impl Tongues {
         // A little above the limit, beyond the counts' uncertainty; what is too much is dropped.
         let kappa = [limit * (1.0 + 1e-6) / self.string().ticks; LANES];
         let upto = [true, false].map(|starts_free| {
-            let [pinned, free] = self.string().counts(starts_free, &kappa)[0];
+            let [pinned, free] =
+                self.string().counts(&[starts_free; LANES], &kappa).map(|counts| counts[0] as u64);
             let (odd, even) = if starts_free { (pinned, free) } else { (free, pinned) };
             (2 * odd).saturating_sub(1).max(2 * even)
         });
