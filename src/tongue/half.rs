@@ -16,7 +16,7 @@
 //! Σ x ρ over the nodes before r is Σ x (f + δ x) + Σ e F − (e/ℓ) x at r (summation by parts); that last term cancels
 //! against the row at r. Σ ρ²/m is computed from |f| + |δ x| + |e/ℓ| + |e'/ℓ'|, an upper bound that does not cancel.
 
-use super::lanes::{LANES, Lanes, lanes, largest, normalizing, two_product, two_sum};
+use super::lanes::{LANES, Lanes, lanes, largest, normalizing, smallest, two_product, two_sum};
 use super::locate::{Problems, start};
 use super::string::{BLOCK, HalfString, Kicks, Step};
 
@@ -91,25 +91,32 @@ impl Half {
         steps: &[Step],
         until: &Lanes,
     ) {
-        let most = largest(until);
+        let (least, most) = (smallest(until), largest(until));
         for (block, steps) in steps[..most as usize].chunks(BLOCK).enumerate() {
-            for (k, step) in steps.iter().enumerate() {
-                let t = (block * BLOCK + k) as f64;
-                if PROVE {
-                    self.prove(string, tables, step, t, until)
-                } else {
-                    self.step(string, tables, step, t, until)
+            let first = (block * BLOCK) as f64;
+            if first + steps.len() as f64 <= least {
+                for step in steps {
+                    self.pass::<PROVE>(string, tables, step, &[1.0; LANES]);
+                }
+            } else {
+                for (k, step) in steps.iter().enumerate() {
+                    let goes = lanes(|i| if first + (k as f64) < until[i] { 1.0 } else { 0.0 });
+                    self.pass::<PROVE>(string, tables, step, &goes);
                 }
             }
             self.rescale::<PROVE>();
         }
     }
 
+    #[inline(always)]
+    fn pass<const PROVE: bool>(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
+        if PROVE { self.prove(string, tables, step, goes) } else { self.step(string, tables, step, goes) }
+    }
+
     /// The kick at a node and the drift to the next, in the lanes that still go; nothing moves where `goes` is 0.
     #[inline(always)]
-    fn step(&mut self, string: &HalfString, tables: &Tables, step: &Step, t: f64, until: &Lanes) {
+    fn step(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
         let (kick, mass) = (&tables.kicks[step.kind], string.masses[step.kind]);
-        let goes = lanes(|i| if t < until[i] { 1.0 } else { 0.0 });
         let pull = lanes(|i| goes[i] * self.x[i]);
         self.squares = lanes(|i| (mass * pull[i]).mul_add(pull[i], self.squares[i]));
         self.v = lanes(|i| (-kick[i]).mul_add(pull[i], self.v[i]));
@@ -118,13 +125,13 @@ impl Half {
 
     /// The same, and the roundings.
     #[inline(always)]
-    fn prove(&mut self, string: &HalfString, tables: &Tables, step: &Step, t: f64, until: &Lanes) {
+    fn prove(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
         let (kick, delta, mass) =
             (&tables.kicks[step.kind], &tables.deltas[step.kind], string.masses[step.kind]);
         let weight = string.inverse_masses[step.kind];
         let (length, inverse) = (step.length, step.inverse);
         for i in 0..LANES {
-            let (x, goes) = (self.x[i], if t < until[i] { 1.0 } else { 0.0 });
+            let (x, goes) = (self.x[i], goes[i]);
             let pull = goes * x;
             let squares = (mass * pull).mul_add(pull, self.squares[i]);
             let (kicked, product_error) = two_product(kick[i], pull);

@@ -34,66 +34,76 @@ pub(super) struct Samples {
 const MOST: u64 = 64;
 
 impl HalfString {
-    /// Counts until all wanted eigenvalues are alone between two samples, or counts in doubles cannot tell them apart.
-    pub fn sample(&self, starts_free: bool, wanted: &Wanted) -> Samples {
-        let ends = Entry::starting(starts_free).map(|entry| self.dimension(entry) as u64);
-        let zero = Sample { kappa: 0.0, counts: [0, 0] };
-        let top = Sample { kappa: self.upper_bound, counts: ends };
-        let mut samples = Samples { starts_free, list: vec![zero, top] };
+    /// Counts until all wanted eigenvalues are alone between two samples, or counts in doubles cannot tell them apart;
+    /// for the problems that start free and those that start pinned.
+    pub fn sample(&self, wanted: &[Wanted; 2]) -> [Samples; 2] {
+        let mut both = [true, false].map(|starts_free| {
+            let counts = Entry::starting(starts_free).map(|entry| self.dimension(entry) as u64);
+            let zero = Sample { kappa: 0.0, counts: [0, 0] };
+            Samples { starts_free, list: vec![zero, Sample { kappa: self.upper_bound, counts }] }
+        });
         loop {
-            let points = samples.cuts(wanted, 16.0 * self.eta());
+            let mut points = Vec::new();
+            for (samples, wanted) in both.iter().zip(wanted) {
+                samples.cut(wanted, 16.0 * self.eta(), &mut points);
+            }
             if points.is_empty() {
-                return samples;
+                return both;
             }
-            let mut found = Vec::with_capacity(points.len());
-            for chunk in points.chunks(LANES) {
-                let kappa = lanes(|i| chunk[i.min(chunk.len() - 1)]);
-                let [pinned, free] = self.counts(&[starts_free; LANES], &kappa);
-                let sample =
-                    |i: usize| Sample { kappa: kappa[i], counts: [pinned[i] as u64, free[i] as u64] };
-                found.extend((0..chunk.len()).map(sample));
-            }
-            samples.list = merged(&samples.list, &found);
+            let found = self.count_at(&points);
+            let (free, pinned) = found.split_at(points.iter().filter(|point| point.1).count());
+            both[0].merge(free);
+            both[1].merge(pinned);
         }
     }
-}
 
-/// Two sorted lists as one.
-fn merged(a: &[Sample], b: &[Sample]) -> Vec<Sample> {
-    let mut all = Vec::with_capacity(a.len() + b.len());
-    let mut later = b.iter().peekable();
-    for sample in a {
-        while let Some(&other) = later.next_if(|other| other.kappa < sample.kappa) {
-            all.push(other);
+    /// Samples at κ, whether the string starts free being told with it.
+    fn count_at(&self, points: &[(f64, bool)]) -> Vec<Sample> {
+        let mut found = Vec::with_capacity(points.len());
+        for chunk in points.chunks(LANES) {
+            let point = |i: usize| chunk[i.min(chunk.len() - 1)];
+            let kappa = lanes(|i| point(i).0);
+            let [pinned, free] = self.counts(&std::array::from_fn(|i| point(i).1), &kappa);
+            let sample = |i: usize| Sample { kappa: kappa[i], counts: [pinned[i] as u64, free[i] as u64] };
+            found.extend((0..chunk.len()).map(sample));
         }
-        all.push(*sample);
+        found
     }
-    all.extend(later);
-    all
 }
 
 impl Samples {
-    /// Points that cut the intervals with several eigenvalues of a problem, one of them wanted, evenly in √κ.
-    fn cuts(&self, wanted: &Wanted, least_width: f64) -> Vec<f64> {
-        let mut open = Vec::new();
-        for pair in self.list.windows(2) {
+    /// Adds points that cut the intervals with several eigenvalues of a problem, one of them wanted, evenly in √κ.
+    fn cut(&self, wanted: &Wanted, least_width: f64, points: &mut Vec<(f64, bool)>) {
+        let many = self.list.windows(2).filter_map(|pair| {
             let inside = |e: usize| pair[1].counts[e].saturating_sub(pair[0].counts[e]);
             let asked = |e: usize| {
                 let (from, upto) = (pair[0].counts[e], pair[1].counts[e]);
                 inside(e) > 1 && wanted[e].is_some_and(|(first, last)| from < last && first <= upto)
             };
-            let (lo, hi) = (pair[0].kappa, pair[1].kappa);
-            if (asked(0) || asked(1)) && hi - lo >= least_width * hi {
-                open.push((lo.sqrt(), hi.sqrt(), inside(0).max(inside(1)).min(MOST)));
+            let wide = pair[1].kappa - pair[0].kappa >= least_width * pair[1].kappa;
+            ((asked(0) || asked(1)) && wide).then(|| (pair, inside(0).max(inside(1)).min(MOST)))
+        });
+        let open = many.clone().count().max(1);
+        for (pair, count) in many {
+            let (from, to) = (pair[0].kappa.sqrt(), pair[1].kappa.sqrt());
+            let n = count.max((LANES / open) as u64);
+            let step = (to - from) / (n + 1) as f64;
+            points.extend((1..=n).map(|k| ((from + step * k as f64).powi(2), self.starts_free)));
+        }
+    }
+
+    /// Takes in more samples, in increasing order of κ.
+    fn merge(&mut self, more: &[Sample]) {
+        let mut all = Vec::with_capacity(self.list.len() + more.len());
+        let mut more = more.iter().peekable();
+        for sample in &self.list {
+            while let Some(&earlier) = more.next_if(|other| other.kappa < sample.kappa) {
+                all.push(earlier);
             }
+            all.push(*sample);
         }
-        let least = (LANES / open.len().max(1)) as u64;
-        let mut points = Vec::new();
-        for (from, to, count) in open {
-            let n = count.max(least);
-            points.extend((1..=n).map(|k| (from + (to - from) * k as f64 / (n + 1) as f64).powi(2)));
-        }
-        points
+        all.extend(more);
+        self.list = all;
     }
 
     /// The wanted eigenvalues that are alone.

@@ -49,7 +49,7 @@ pub(super) fn two_products(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
 /// The largest of numbers that are not negative.
 #[inline(always)]
 pub(super) fn largest(x: &Lanes) -> f64 {
-    x.iter().fold(0.0, |most, &x| x.max(most))
+    x.iter().fold(0.0, |most, &x| if x > most { x } else { most })
 }
 
 /// 2^e, clipped to the range of normal doubles.
@@ -66,4 +66,9 @@ pub(super) fn normalizing(x: &Lanes, v: &Lanes) -> Lanes {
         let exponent = (if x > v { x } else { v }).to_bits() >> 52;
         f64::from_bits((2046 - exponent) << 52)
     })
+}
+
+#[inline(always)]
+pub(super) fn smallest(x: &Lanes) -> f64 {
+    x.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least })
 }

@@ -7,6 +7,7 @@ use super::lanes::LANES;
 use super::locate::{Problems, Workspace};
 use super::mode::{Bounds, Proofs};
 use super::string::{Entry, HalfString};
+use super::sturm::Targets;
 
 /// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Edge {
     pub hi: f64,
 }
 
-/// Halvings and proofs for one eigenvalue before more bits are called.
+/// Halvings for one eigenvalue before more bits are called.
 const ROUNDS: u32 = 60;
 
 /// Halvings between two attempts.
@@ -39,13 +40,11 @@ impl HalfString {
         space: &mut Workspace,
     ) -> [Vec<Option<Edge>>; 4] {
         let range = |entry: Entry| wanted[entry as usize].as_ref();
+        let bounds = |entry: Entry| range(entry).map(|range| (*range.start() as u64, *range.end() as u64));
+        let asked: [Wanted; 2] = [true, false].map(|free| Entry::starting(free).map(bounds));
         let mut tasks = Vec::new();
-        for starts_free in [true, false] {
-            let two: Wanted = Entry::starting(starts_free)
-                .map(|entry| range(entry).map(|range| (*range.start() as u64, *range.end() as u64)));
-            if two.iter().any(Option::is_some) {
-                tasks.extend(self.sample(starts_free, &two).brackets(&two).map(Task::new));
-            }
+        for (samples, asked) in self.sample(&asked).iter().zip(&asked) {
+            tasks.extend(samples.brackets(asked).map(Task::new));
         }
         let mut found =
             Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
@@ -60,14 +59,16 @@ impl HalfString {
     /// before lies below lo (1 + η), the one after above hi (1 − η). Whether it holds this one, signs must tell.
     pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
         let wanted = entry.alone(index);
-        let bracket = self.sample(entry.starts_free(), &wanted).brackets(&wanted).next()?;
+        let samples = self.sample(&wanted);
+        let bracket =
+            samples.iter().zip(&wanted).find_map(|(samples, asked)| samples.brackets(asked).next())?;
         let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
         Some((bracket.lo * (1.0 + slack) * self.ticks, bracket.hi * (1.0 - slack) * self.ticks))
     }
 
     /// An interval of s in which the eigenvalue lies, perhaps with others.
     pub fn cluster(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        let samples = self.sample(entry.starts_free(), &entry.alone(index));
+        let samples = &self.sample(&entry.alone(index))[usize::from(!entry.starts_free())];
         let (lo, hi) = samples.around(usize::from(entry.ends_free()), index as u64)?;
         let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
         Some((lo * (1.0 - slack) * self.ticks, hi * (1.0 + slack) * self.ticks))
@@ -83,8 +84,8 @@ struct Task {
     inner: (f64, f64),
     kappa: f64,
     /// The node where the mode lives.
-    at: f64,
-    /// Halvings and proofs tried.
+    at: u32,
+    /// Halvings done.
     rounds: u32,
     /// The last proof's radius: a wider enclosure is better than none where another trial gains no more.
     radius: f64,
@@ -93,27 +94,12 @@ struct Task {
 impl Task {
     fn new(bracket: Bracket) -> Task {
         let inner = (bracket.lo, bracket.hi);
-        Task { bracket, inner, kappa: middle(inner), at: 0.0, rounds: 0, radius: f64::INFINITY }
+        Task { bracket, inner, kappa: 0.0, at: 0, rounds: 0, radius: f64::INFINITY }
     }
 
     fn edge(&self, lo: f64, hi: f64) -> Edge {
         Edge { entry: self.bracket.entry, index: self.bracket.index, lo, hi }
     }
-
-    /// Halves the inner bracket at `cut`, given the count there.
-    fn halve(&mut self, cut: f64, count: f64) {
-        if count < self.bracket.index as f64 {
-            self.inner.0 = cut
-        } else {
-            self.inner.1 = cut
-        }
-        self.kappa = middle(self.inner);
-        self.rounds += 1;
-    }
-}
-
-fn middle((lo, hi): (f64, f64)) -> f64 {
-    0.5 * (lo + hi)
 }
 
 /// A number of each task, the last one's repeated in the lanes left over.
@@ -139,40 +125,30 @@ struct Search<'a> {
 impl Search<'_> {
     /// Halves the brackets, finds out where the modes live, and proves them; what fails, again.
     fn run(&mut self, mut tasks: Vec<Task>, mut found: impl FnMut(Edge)) {
-        let mut again = Vec::new();
         while !tasks.is_empty() {
-            (0..HALVINGS).for_each(|_| self.halve(&mut tasks));
-            while !tasks.is_empty() {
-                self.locate(&mut tasks);
-                // Modes that live side by side are followed side by side.
-                tasks.sort_unstable_by(|a, b| a.at.total_cmp(&b.at));
-                let (failed, rough) = self.prove(&tasks, &mut found);
-                again.extend(failed);
-                tasks = rough;
-            }
-            std::mem::swap(&mut tasks, &mut again);
+            self.narrow(&mut tasks);
+            self.locate(&mut tasks);
+            // Modes that live side by side are followed side by side.
+            tasks.sort_unstable_by_key(|task| task.at);
+            tasks = self.prove(&tasks, &mut found);
+            tasks.retain(|task| task.rounds < ROUNDS);
         }
     }
 
-    /// What cannot be proven: because κ is nowhere near, and because it is not near enough.
-    fn prove(&self, tasks: &[Task], found: &mut impl FnMut(Edge)) -> (Vec<Task>, Vec<Task>) {
-        let (mut failed, mut rough) = (Vec::new(), Vec::new());
+    /// What is left: κ was not near enough.
+    fn prove(&self, tasks: &[Task], found: &mut impl FnMut(Edge)) -> Vec<Task> {
+        let mut failed = Vec::new();
         for batch in tasks.chunks(LANES) {
             let Proofs { edge: [lo, hi], radius, quotient } = self.proofs(batch);
             for (i, task) in batch.iter().enumerate() {
-                let done =
-                    radius[i] <= NEGLIGIBLE || (radius[i] <= TOLERABLE && radius[i] > 0.1 * task.radius);
-                let inside = task.inner.0 < quotient[i] && quotient[i] < task.inner.1;
-                let next = Task { rounds: task.rounds + 1, radius: radius[i], kappa: quotient[i], ..*task };
-                match () {
-                    () if done => found(task.edge(lo[i], hi[i])),
-                    () if next.rounds >= ROUNDS => {}
-                    () if inside && radius[i] < f64::INFINITY => rough.push(next),
-                    () => failed.push(next),
+                if radius[i] <= NEGLIGIBLE || (radius[i] <= TOLERABLE && radius[i] > 0.1 * task.radius) {
+                    found(task.edge(lo[i], hi[i]));
+                } else {
+                    failed.push(Task { radius: radius[i], kappa: quotient[i], ..*task });
                 }
             }
         }
-        (failed, rough)
+        failed
     }
 
     fn proofs(&self, batch: &[Task]) -> Proofs {
@@ -181,24 +157,30 @@ impl Search<'_> {
         let below = each(batch, |task| task.bracket.lo * (1.0 + eta));
         let above = each(batch, |task| task.bracket.hi * (1.0 - eta));
         let bounds = Bounds { inner, others: [below, above] };
-        self.string.prove(&problems(batch), &bounds, &each(batch, |task| task.at))
+        self.string.prove(&problems(batch), &bounds, &each(batch, |task| f64::from(task.at)))
     }
 
     /// Where the modes live.
     fn locate(&mut self, tasks: &mut [Task]) {
         for batch in tasks.chunks_mut(LANES) {
             let places = self.string.locate(&problems(batch), self.space);
-            batch.iter_mut().zip(places).for_each(|(task, at)| task.at = at);
+            batch.iter_mut().zip(places).for_each(|(task, at)| task.at = at as u32);
         }
     }
 
-    fn halve(&self, tasks: &mut [Task]) {
+    /// Halves the inner brackets.
+    fn narrow(&self, tasks: &mut [Task]) {
         for batch in tasks.chunks_mut(LANES) {
-            let cuts = each(batch, |task| middle(task.inner));
-            let starts_free = each(batch, |task| task.bracket.entry.starts_free());
-            let counts = self.string.counts(&starts_free, &cuts);
+            let Problems { starts_free, ends_free, .. } = problems(batch);
+            let inside = [each(batch, |task| task.inner.0), each(batch, |task| task.inner.1)];
+            let index = each(batch, |task| task.bracket.index as f64);
+            let [lo, hi] = self.string.narrow(&Targets { starts_free, ends_free, index, inside }, HALVINGS);
             for (i, task) in batch.iter_mut().enumerate() {
-                task.halve(cuts[i], counts[usize::from(task.bracket.entry.ends_free())][i]);
+                task.inner = (lo[i], hi[i]);
+                // A mode that proves something is a better guess.
+                let keeps = task.radius < f64::INFINITY && lo[i] < task.kappa && task.kappa < hi[i];
+                task.kappa = if keeps { task.kappa } else { 0.5 * (lo[i] + hi[i]) };
+                task.rounds += HALVINGS;
             }
         }
     }

@@ -59,8 +59,9 @@ impl Entry {
     }
 
     /// One eigenvalue alone, see [`super::isolate::Wanted`].
-    pub(super) fn alone(self, index: usize) -> Wanted {
-        [false, true].map(|free| (self.ends_free() == free).then_some((index as u64, index as u64)))
+    pub(super) fn alone(self, index: usize) -> [Wanted; 2] {
+        let asked = |entry: Entry| (entry == self).then_some((index as u64, index as u64));
+        [true, false].map(|free| Entry::starting(free).map(asked))
     }
 
     /// The entry's name in documents.

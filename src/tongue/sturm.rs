@@ -49,28 +49,71 @@ impl Task for Counting<'_> {
 
     #[inline(always)]
     fn run(self) -> Counts {
-        let string = self.string;
-        let kicks = string.kicks(self.kappa);
-        let first = &kicks[string.nodes[0].kind];
-        let (mut x, mut v) = start(self.starts_free);
-        v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
-        let mut changes = [0.0; LANES];
-        for block in string.nodes[1..].chunks(BLOCK) {
-            for node in block {
-                let kick: &Lanes = &kicks[node.kind];
-                let next = lanes(|i| node.length.mul_add(v[i], x[i]));
-                changes = lanes(|i| changes[i] + if (next[i] < 0.0) != (x[i] < 0.0) { 1.0 } else { 0.0 });
-                v = lanes(|i| (-kick[i]).mul_add(next[i], v[i]));
-                x = next;
-            }
-            let factor = normalizing(&x, &v);
-            x = lanes(|i| x[i] * factor[i]);
-            v = lanes(|i| v[i] * factor[i]);
+        count(self.string, self.starts_free, self.kappa)
+    }
+}
+
+#[inline(always)]
+fn count(string: &HalfString, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
+    let kicks = string.kicks(kappa);
+    let first = &kicks[string.nodes[0].kind];
+    let (mut x, mut v) = start(starts_free);
+    v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
+    let mut changes = [0.0; LANES];
+    for block in string.nodes[1..].chunks(BLOCK) {
+        for node in block {
+            let kick: &Lanes = &kicks[node.kind];
+            let next = lanes(|i| node.length.mul_add(v[i], x[i]));
+            changes = lanes(|i| changes[i] + if (next[i] < 0.0) != (x[i] < 0.0) { 1.0 } else { 0.0 });
+            v = lanes(|i| (-kick[i]).mul_add(next[i], v[i]));
+            x = next;
         }
-        let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
-        // The zero eigenvalue of C is below every κ and not counted.
-        let free = lanes(|i| changes[i] + past[i] - if self.starts_free[i] { 1.0 } else { 0.0 });
-        [changes, free]
+        let factor = normalizing(&x, &v);
+        x = lanes(|i| x[i] * factor[i]);
+        v = lanes(|i| v[i] * factor[i]);
+    }
+    let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
+    // The zero eigenvalue of C is below every κ and not counted.
+    let free = lanes(|i| changes[i] + past[i] - if starts_free[i] { 1.0 } else { 0.0 });
+    [changes, free]
+}
+
+/// An eigenvalue for each lane, and where it is.
+#[derive(Clone, Copy)]
+pub(super) struct Targets {
+    pub starts_free: [bool; LANES],
+    pub ends_free: [bool; LANES],
+    pub index: Lanes,
+    pub inside: [Lanes; 2],
+}
+
+impl HalfString {
+    /// Halves the intervals so many times.
+    pub fn narrow(&self, targets: &Targets, halvings: u32) -> [Lanes; 2] {
+        self.instructions.perform(Narrowing { string: self, targets, halvings })
+    }
+}
+
+struct Narrowing<'a> {
+    string: &'a HalfString,
+    targets: &'a Targets,
+    halvings: u32,
+}
+
+impl Task for Narrowing<'_> {
+    type Output = [Lanes; 2];
+
+    #[inline(always)]
+    fn run(self) -> [Lanes; 2] {
+        let Targets { starts_free, ends_free, index, inside: [mut lo, mut hi] } = *self.targets;
+        for _ in 0..self.halvings {
+            let cut = lanes(|i| 0.5 * (lo[i] + hi[i]));
+            let [pinned, free] = count(self.string, &starts_free, &cut);
+            let below = lanes(|i| if ends_free[i] { free[i] } else { pinned[i] });
+            lo = lanes(|i| if below[i] < index[i] { cut[i] } else { lo[i] });
+            hi = lanes(|i| if below[i] < index[i] { hi[i] } else { cut[i] });
+        }
+        [lo, hi]
     }
 }
 
