@@ -24,6 +24,18 @@ struct Sample {
     counts: [u64; 2],
 }
 
+impl Sample {
+    /// The most eigenvalues that one of the two problems has between two samples; `all`: even where none is wanted.
+    fn inside(&self, next: &Sample, wanted: &Wanted, all: bool) -> u64 {
+        let one = |e: usize| {
+            let (from, upto) = (self.counts[e], next.counts[e]);
+            let asked = all || wanted[e].is_some_and(|(first, last)| from < last && first <= upto);
+            if asked { upto.saturating_sub(from) } else { 0 }
+        };
+        one(0).max(one(1))
+    }
+}
+
 /// Samples in increasing order of κ, dense enough to tell the wanted eigenvalues apart.
 pub(super) struct Samples {
     starts_free: bool,
@@ -74,21 +86,22 @@ impl HalfString {
 impl Samples {
     /// Adds points that cut the intervals with several eigenvalues of a problem, one of them wanted, evenly in √κ.
     fn cut(&self, wanted: &Wanted, least_width: f64, points: &mut Vec<(f64, bool)>) {
-        let many = self.list.windows(2).filter_map(|pair| {
-            let inside = |e: usize| pair[1].counts[e].saturating_sub(pair[0].counts[e]);
-            let asked = |e: usize| {
-                let (from, upto) = (pair[0].counts[e], pair[1].counts[e]);
-                inside(e) > 1 && wanted[e].is_some_and(|(first, last)| from < last && first <= upto)
-            };
-            let wide = pair[1].kappa - pair[0].kappa >= least_width * pair[1].kappa;
-            ((asked(0) || asked(1)) && wide).then(|| (pair, inside(0).max(inside(1)).min(MOST)))
-        });
-        let open = many.clone().count().max(1);
-        for (pair, count) in many {
-            let (from, to) = (pair[0].kappa.sqrt(), pair[1].kappa.sqrt());
-            let n = count.max((LANES / open) as u64);
+        let mut open = Vec::new();
+        for pair in self.list.windows(2) {
+            let [inside, asked] =
+                [pair[0].inside(&pair[1], wanted, true), pair[0].inside(&pair[1], wanted, false)];
+            if asked > 1 && pair[1].kappa - pair[0].kappa >= least_width * pair[1].kappa {
+                open.push((pair[0].kappa.sqrt(), pair[1].kappa.sqrt(), inside.min(MOST)));
+            }
+        }
+        let least = (LANES / open.len().max(1)) as u64;
+        for (from, to, count) in open {
+            let n = count.max(least);
             let step = (to - from) / (n + 1) as f64;
-            points.extend((1..=n).map(|k| ((from + step * k as f64).powi(2), self.starts_free)));
+            for k in 1..=n {
+                let root = from + step * k as f64;
+                points.push((root * root, self.starts_free));
+            }
         }
     }
 
@@ -107,21 +120,19 @@ impl Samples {
     }
 
     /// The wanted eigenvalues that are alone.
-    pub fn brackets<'a>(&'a self, wanted: &'a Wanted) -> impl Iterator<Item = Bracket> + 'a {
-        self.list.windows(2).flat_map(move |pair| {
-            let alone = move |e: usize| {
-                let (before, index) = (pair[0].counts[e], pair[1].counts[e]);
-                let asked = wanted[e].is_some_and(|(first, last)| (first..=last).contains(&index));
-                let entry = Entry::starting(self.starts_free)[e];
-                (before + 1 == index && asked).then_some(Bracket {
-                    entry,
-                    index: index as usize,
-                    lo: pair[0].kappa,
-                    hi: pair[1].kappa,
-                })
-            };
-            [alone(0), alone(1)].into_iter().flatten()
-        })
+    pub fn brackets(&self, wanted: &Wanted) -> Vec<Bracket> {
+        let mut alone = Vec::with_capacity(self.list.len());
+        for (end, entry) in Entry::starting(self.starts_free).into_iter().enumerate() {
+            let Some((first, last)) = wanted[end] else { continue };
+            for pair in self.list.windows(2) {
+                let (before, index) = (pair[0].counts[end], pair[1].counts[end]);
+                if before + 1 == index && first <= index && index <= last {
+                    let index = index as usize;
+                    alone.push(Bracket { entry, index, lo: pair[0].kappa, hi: pair[1].kappa });
+                }
+            }
+        }
+        alone
     }
 
     /// The interval between two samples where one eigenvalue lies by the counts, perhaps with others.

@@ -52,6 +52,12 @@ pub(super) fn largest(x: &Lanes) -> f64 {
     x.iter().fold(0.0, |most, &x| if x > most { x } else { most })
 }
 
+/// The smallest.
+#[inline(always)]
+pub(super) fn smallest(x: &Lanes) -> f64 {
+    x.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least })
+}
+
 /// 2^e, clipped to the range of normal doubles.
 #[inline(always)]
 pub(super) fn power_of_two(e: i64) -> f64 {
@@ -66,9 +72,4 @@ pub(super) fn normalizing(x: &Lanes, v: &Lanes) -> Lanes {
         let exponent = (if x > v { x } else { v }).to_bits() >> 52;
         f64::from_bits((2046 - exponent) << 52)
     })
-}
-
-#[inline(always)]
-pub(super) fn smallest(x: &Lanes) -> f64 {
-    x.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least })
 }

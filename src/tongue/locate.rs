@@ -82,7 +82,7 @@ impl Task for Locating<'_> {
             }
         }
         let n = self.string.last();
-        if n % BLOCK == 0 {
+        if n.is_multiple_of(BLOCK) {
             rescale(&mut x, &mut v, &mut exponents);
             self.space.exponents.push(exponents);
         }

@@ -24,7 +24,6 @@
 //!     μ - ε²/(β - μ) <= κ_k <= μ + ε²/(μ - α).
 //! ```
 //!
-//!
 //! **Roundings** of the quotient: see [`super::half`]. By Cauchy's inequality Σ |terms of Σ z ρ| ≤ ε Σ m z² with the ε that
 //! is computed there, so n rounded terms put μ off by at most (n + 32) u ε; and n rounded masses, |μ − κ| being at most ε,
 //! by as much again.

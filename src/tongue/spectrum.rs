@@ -44,7 +44,7 @@ impl HalfString {
         let asked: [Wanted; 2] = [true, false].map(|free| Entry::starting(free).map(bounds));
         let mut tasks = Vec::new();
         for (samples, asked) in self.sample(&asked).iter().zip(&asked) {
-            tasks.extend(samples.brackets(asked).map(Task::new));
+            tasks.extend(samples.brackets(asked).into_iter().map(Task::new));
         }
         let mut found =
             Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
@@ -61,7 +61,7 @@ impl HalfString {
         let wanted = entry.alone(index);
         let samples = self.sample(&wanted);
         let bracket =
-            samples.iter().zip(&wanted).find_map(|(samples, asked)| samples.brackets(asked).next())?;
+            samples.iter().zip(&wanted).find_map(|(samples, asked)| samples.brackets(asked).pop())?;
         let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
         Some((bracket.lo * (1.0 + slack) * self.ticks, bracket.hi * (1.0 - slack) * self.ticks))
     }
