@@ -275,3 +275,57 @@ fn errors_name_the_entry() {
     assert!(SystemScene::read("{}").is_err());
     assert!(with(r#""mass": 1"#).is_err());
 }
+
+/// The program on a line of arguments.
+fn kickdrift(line: &str) -> std::process::Output {
+    std::process::Command::new(env!("CARGO_BIN_EXE_kickdrift"))
+        .args(line.split_whitespace())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn maps_are_the_same_bytes_whatever_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = "system data/scenes/fpu-quartic.json --scan potentials.soft.step=1/2..1:1/40 \
+                --scan potentials.soft.scale=1/2..2:1/4";
+    let written = |threads: usize, name: &str| {
+        let path = folder.path().join(format!("{threads}-{name}"));
+        let output = kickdrift(&format!("{scan} --threads {threads} --output {}", path.display()));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(path).unwrap()
+    };
+    for name in ["map.csv", "map.json", "map.svg"] {
+        assert_eq!(written(1, name), written(2, name), "{name}");
+    }
+    let rows = String::from_utf8(written(1, "map.csv")).unwrap();
+    assert!(rows.starts_with("x,y,kind,proven,growth_rate\r\n1/2,1/2,elliptic,true,0"), "{rows}");
+    assert!(rows.contains("11/20,1,hyperbolic,true,0.0665734"), "{rows}");
+}
+
+#[test]
+fn modes_are_drawn_and_flags_that_do_nothing_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["modes.svg", "modes.png"] {
+        let path = folder.path().join(name);
+        let output = kickdrift(&format!("system data/scenes/bar-resonant.json --output {}", path.display()));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(path).unwrap();
+        assert!(bytes.starts_with(b"<svg") || bytes[1..].starts_with(b"PNG"), "{name}");
+    }
+    for (line, message) in [
+        ("system data/scenes/fpu.json --colour growth", "--colour = given: is for maps"),
+        (
+            "system data/scenes/fpu.json --scan build.stiff=1..2:1",
+            "--scan = given 1 times: a map has two axes",
+        ),
+        ("system data/scenes/ring24.json --exact --budget 10", "exact arithmetic on 23 degrees of freedom"),
+        ("simulate data/scenes/fpu.json --displace 0", "displace = 0: nothing would move"),
+    ] {
+        let output = kickdrift(line);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(error.contains(message), "{error}");
+    }
+}

@@ -67,7 +67,7 @@ impl PotentialDocument {
             stiffness += value.read_laurent(&field)?;
         }
         if let Some(scale) = &self.scale {
-            stiffness = stiffness * scale.read_laurent(&field("scale"))?;
+            stiffness *= scale.read_laurent(&field("scale"))?;
         }
         let step = self.step.read_laurent(&field("step"))?;
         if step.sign() != Sign::Positive {
