@@ -4,18 +4,22 @@ use std::cell::{OnceCell, RefCell};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format as DocumentFormat, echo_grid};
+use super::args::{Common, Format as DocumentFormat, echo_grid, shown_range};
 use super::plane::{DPI, Verdicts};
-use super::{compare, curves, map, polynomial, proposition};
+use super::tongues::{self, Atlas, Colour, Question, Ratios, Stiffness, Window as StepWindow};
+use super::{closings, compare, curves, map, polynomial, proposition};
 use crate::error::{Error, Result};
 use crate::map::Products;
+use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
 use crate::report::file::{Folder, write_output};
 use crate::report::map::MapArrays;
+use crate::report::tongues::{Frame, Tally};
 use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
 use crate::scene::{self, Format, Product, Scene, Want};
+use crate::tongue::{Selection, Wanted};
 use crate::verdict::Limits;
 
 /// Flags of `run`.
@@ -68,6 +72,7 @@ impl Args {
 /// What the products are made of, each part computed when first asked for.
 struct Work<'a> {
     scene: &'a Scene,
+    common: &'a Common,
     limits: Limits,
     threads: usize,
     /// Where the arrays of the map go, if they are wanted.
@@ -76,16 +81,19 @@ struct Work<'a> {
     /// Filled with the verdicts, taken when written.
     arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
-    documents: [OnceCell<Document>; 5],
-    figures: [OnceCell<String>; 2],
+    documents: [OnceCell<Document>; 7],
+    /// What the tongues told, once they were written.
+    tongues: OnceCell<Tally>,
+    figures: [OnceCell<String>; 3],
 }
 
 impl<'a> Work<'a> {
-    fn new(scene: &'a Scene, common: &Common, folder: &Path) -> Self {
+    fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
         let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
+            common,
             limits,
             threads,
             archive: arrays.map(|want| folder.join(want.file_name())),
@@ -93,6 +101,7 @@ impl<'a> Work<'a> {
             arrays: RefCell::default(),
             curves: OnceCell::new(),
             documents: Default::default(),
+            tongues: OnceCell::new(),
             figures: Default::default(),
         }
     }
@@ -113,6 +122,9 @@ impl<'a> Work<'a> {
     /// The bytes of one product's file, where they fit memory.
     fn bytes(&self, want: Want) -> Result<Vec<u8>> {
         let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
+        if want.product == Product::Tongues {
+            return self.tongues(want.format);
+        }
         match want.format {
             Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
             Format::Png => png::raster(self.figure(want.product)?, DPI),
@@ -131,7 +143,10 @@ impl<'a> Work<'a> {
             Product::Compare => 2,
             Product::Proposition => 3,
             Product::Polynomial => 4,
-            Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+            Product::Closings => 5,
+            Product::Survey => 6,
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
         };
         once(&self.documents[slot], || self.make_document(product))
     }
@@ -155,19 +170,88 @@ impl<'a> Work<'a> {
                 polynomial::check_default(p, q)?;
                 Ok(crate::report::polynomial::document(p, q))
             }
-            Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+            Product::Closings => {
+                closings::Question::new(self.ratios()?, None, scene.rho_range()?, 400, DIGITS)?
+                    .document(self.common)
+            }
+            Product::Survey => {
+                let max_sum = scene.document().max_sum.expect("the scene was checked");
+                tongues::survey(max_sum, &self.stiffness()?.rho, tongues::THINNEST)
+            }
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
         }
     }
 
     /// The SVG of a figure.
     fn figure(&self, product: Product) -> Result<&String> {
-        let slot = &self.figures[usize::from(product == Product::Overlay)];
-        once(slot, || {
+        let slot = match product {
+            Product::Figure => 0,
+            Product::Overlay => 1,
+            _ => return once(&self.figures[2], || self.atlas()),
+        };
+        once(&self.figures[slot], || {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
             Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
         })
+    }
+
+    /// The tongues' bytes in one format.
+    fn tongues(&self, format: Format) -> Result<Vec<u8>> {
+        let growth = self.scene.document().max_sum.is_none();
+        let question = self.question(Wanted { growth, ..Wanted::all() })?;
+        let (bytes, tally) = tongues::bytes(&question, self.common, format)?;
+        // Every format tells the same.
+        let _ = self.tongues.set(tally);
+        Ok(bytes)
+    }
+
+    fn atlas(&self) -> Result<String> {
+        let colour = match self.scene.document().colour.as_deref() {
+            None | Some("family") => Colour::Family,
+            Some("growth") => Colour::Growth,
+            Some(other) => return Err(Error::input("colour", other, "choose family or growth")),
+        };
+        let question = self.question(colour.needs())?;
+        Ok(Atlas::new(&question, colour, Some(self.scene.families()?))?.figure(self.common)?.svg())
+    }
+
+    fn question(&self, wanted: Wanted) -> Result<Question> {
+        let window = self
+            .scene
+            .window()?
+            .map_or_else(StepWindow::default, |[h1, h2]| StepWindow { h1: Some(h1), h2: Some(h2) });
+        let frame = Frame { wanted, ..Frame::default() };
+        Question::new(self.ratios()?, self.stiffness()?, window, Selection::default(), frame)
+    }
+
+    /// All ratios where a sum is given, else the one.
+    fn ratios(&self) -> Result<Ratios> {
+        match self.scene.document().max_sum {
+            Some(max_sum) => Ratios::up_to(max_sum),
+            None => self.scene.ratio().map(|(p, q)| Ratios::One(p, q)),
+        }
+    }
+
+    fn stiffness(&self) -> Result<Stiffness> {
+        let given = self.scene.document();
+        let lambda1 = given.lambda1.as_ref().map(|_| self.scene.lambda1()).transpose()?;
+        let lambda2 = given.lambda2.as_ref().map(|_| self.scene.lambda2()).transpose()?;
+        Stiffness::new(self.scene.rho()?, lambda1, lambda2)
+    }
+
+    /// The lines on a product, for the closing message.
+    fn summary(&self, product: Product) -> Option<String> {
+        match product {
+            Product::Tongues => {
+                let question = self.question(Wanted::default()).ok()?;
+                Some(self.tongues.get()?.lines(&question.words()).join("\n"))
+            }
+            _ if product.is_figure() => None,
+            _ => self.document(product).ok().map(|document| document.summary_text().to_string()),
+        }
     }
 
     fn verdicts(&self) -> Result<&Verdicts> {
@@ -216,11 +300,8 @@ impl Summary {
         self.lines.push(file.clone());
         // A product's summary is told once, with its first file.
         let known = self.products.iter().any(|p| p["product"] == want.product.name());
-        if !known
-            && !want.product.is_figure()
-            && let Ok(document) = work.document(want.product)
-        {
-            self.lines.extend(document.summary_text().lines().map(|line| format!("    {line}")));
+        if let Some(summary) = work.summary(want.product).filter(|_| !known) {
+            self.lines.extend(summary.lines().map(|line| format!("    {line}")));
         }
         self.products.push(serde_json::json!({"product": want.product.name(), "file": file}));
     }
@@ -256,6 +337,22 @@ fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
     }
     if let Some(max) = given.max {
         document = document.input("max", max);
+    }
+    if let Some(max_sum) = given.max_sum {
+        document = document.input("max_sum", max_sum);
+    }
+    if let Some(rho) = scene.rho()? {
+        document = document.input("rho", rho);
+    }
+    if let Some([h1, h2]) = scene.window()? {
+        document = document.input("window_h1", shown_range(&h1)).input("window_h2", shown_range(&h2));
+    }
+    if let Some(colour) = &given.colour {
+        document = document.input("colour", colour);
+    }
+    if given.rho_range.is_some() {
+        let (lo, hi) = scene.rho_range()?;
+        document = document.input("rho_range", format!("{lo}..{hi}"));
     }
     let want: Vec<String> = scene.want().iter().map(Want::file_name).collect();
     Ok(document.input("want", want.join(", ")))

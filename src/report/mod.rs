@@ -7,10 +7,12 @@
 //! of the (h1, h2) [`plane`].
 
 pub mod certificate;
+pub mod closings;
 pub mod compare;
 pub mod csv;
 pub mod curves;
 pub mod decimal;
+pub mod digits;
 pub mod document;
 pub mod figure;
 pub mod file;
@@ -21,7 +23,11 @@ pub mod plane;
 pub mod polynomial;
 pub mod proposition;
 pub mod simulate;
+pub mod stream;
+pub mod strength;
+pub mod survey;
 pub mod system;
 pub mod table;
 pub mod text;
+pub mod tongues;
 pub mod verdict;
