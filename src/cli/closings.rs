@@ -68,7 +68,7 @@ impl Args {
                 ));
             }
         };
-        let document = self.question()?.document(common)?;
+        let document = self.question()?.document(common, matches!(format, Format::Csv))?;
         write_output(common.output.as_deref(), document.render(format.into())?.as_bytes())
     }
 
@@ -123,11 +123,11 @@ impl Question {
         Ok(Question { ratios, m, rho, samples, digits })
     }
 
-    /// The document `kickdrift/closings/1`.
+    /// The document `kickdrift/closings/1`; its rows with all columns, or with those that fit paper.
     ///
     /// # Errors
     /// As [`search`].
-    pub fn document(&self, common: &Common) -> Result<Document> {
+    pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = match self.ratios {
             Ratios::One(p, q) => vec![(p, q)],
             Ratios::UpTo(max_sum) => ratios(max_sum),
@@ -142,7 +142,7 @@ impl Question {
         bar.finish_and_clear();
         let (lo, hi) = &self.rho;
         let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());
-        Ok(self.echo(closings::document(&found, self.digits, &what)))
+        Ok(self.echo(closings::document(&found, self.digits, &what, all_columns)))
     }
 
     /// The labels one by one where some are asked for: a search for one costs two edges a sample.

@@ -172,7 +172,7 @@ impl<'a> Work<'a> {
             }
             Product::Closings => {
                 closings::Question::new(self.ratios()?, None, scene.rho_range()?, 400, DIGITS)?
-                    .document(self.common)
+                    .document(self.common, false)
             }
             Product::Survey => {
                 let max_sum = scene.document().max_sum.expect("the scene was checked");

@@ -21,7 +21,9 @@ pub struct OfRatio {
 pub const DIGITS: u32 = 25;
 
 /// The document `kickdrift/closings/1`. The caller adds the input; `what` says in words what was searched.
-pub fn document(found: &[OfRatio], digits: u32, what: &str) -> Document {
+///
+/// With `all_columns` the table is made for programs, else for people and paper.
+pub fn document(found: &[OfRatio], digits: u32, what: &str, all_columns: bool) -> Document {
     let rows: Vec<Value> =
         found.iter().flat_map(|of| &of.closings).map(|closing| row(closing, digits)).collect();
     let complete: Vec<Value> =
@@ -29,7 +31,7 @@ pub fn document(found: &[OfRatio], digits: u32, what: &str) -> Document {
     Document::new("closings")
         .entry("closings", rows)
         .entry("ratios", complete)
-        .long_rows(table(found, digits))
+        .long_rows(if all_columns { table(found, digits) } else { short_table(found) })
         .summary(&lines(found, what))
 }
 
@@ -77,16 +79,45 @@ fn lines(found: &[OfRatio], what: &str) -> Vec<String> {
     ]
 }
 
+const CAPTION: &str = "Closed tongues: Q = I or -I";
+
+fn labels() -> Vec<Column> {
+    ["p", "q", "m"].map(|key| Column::new(key).titled(key, &format!("${key}$"))).into()
+}
+
+/// s and ρ exactly where they are rational, else as enclosures.
+fn short_table(found: &[OfRatio]) -> Table {
+    let mut columns = labels();
+    columns.extend(
+        [("s", "$s$"), ("rho", "$\\rho$")]
+            .map(|(key, latex)| Column::new(key).titled(key, latex).enclosure()),
+    );
+    columns.push(Column::new("below_verlet").titled("s < 4", "$s < 4$"));
+    let mut table = Table::new("closings", CAPTION, columns);
+    for closing in found.iter().flat_map(|of| &of.closings) {
+        let exact = closing.exact.as_ref();
+        let shown = |x: &Enclosure, exact: Option<&Rational>| {
+            let (lo, hi) = x.to_f64();
+            exact.map_or(Cell::Enclosure { lo, hi }, |x| Cell::Exact(x.to_string()))
+        };
+        let mut cells: Vec<Cell> = [closing.p, closing.q, closing.m].map(|n| Cell::Integer(n as i64)).into();
+        cells.push(shown(&closing.s, exact.map(|e| &e.0)));
+        cells.push(shown(&closing.rho, exact.map(|e| &e.1)));
+        cells.push(Cell::Flag(closing.below_verlet));
+        table.push(cells);
+    }
+    table
+}
+
 fn table(found: &[OfRatio], digits: u32) -> Table {
-    let mut columns: Vec<Column> =
-        ["p", "q", "m"].map(|key| Column::new(key).titled(key, &format!("${key}$"))).into();
+    let mut columns = labels();
     for (key, latex) in [("s", "$s$"), ("rho", "$\\rho$")] {
         columns.push(Column::new(key).titled(key, latex).enclosure());
         columns.push(Column::new(&format!("{key}_exact")).titled("exact", "exact"));
         columns.extend(["lo", "hi"].map(|end| Column::new(&format!("{key}_decimal_{end}")).titled(end, end)));
     }
     columns.push(Column::new("below_verlet").titled("s < 4", "$s < 4$"));
-    let mut table = Table::new("closings", "Closed tongues: Q = I or -I", columns);
+    let mut table = Table::new("closings", CAPTION, columns);
     for closing in found.iter().flat_map(|of| &of.closings) {
         let mut cells: Vec<Cell> = [closing.p, closing.q, closing.m].map(|n| Cell::Integer(n as i64)).into();
         let exact = closing.exact.as_ref();

@@ -63,6 +63,12 @@ pub fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 
+/// The same in writing: plain where that is short, else with an exponent.
+pub fn few(x: f64, digits: usize) -> String {
+    let x = rounded(x, digits);
+    if x == 0.0 || (1e-4..1e6).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
+}
+
 /// The rational that a finite double is.
 ///
 /// # Panics
@@ -94,5 +100,6 @@ mod tests {
     fn rounding_for_people_keeps_the_leading_digits() {
         assert_eq!([1234.56789, 0.0, -1.23456e-9].map(|x| rounded(x, 4)), [1235.0, 0.0, -1.235e-9]);
         assert!(rounded(f64::INFINITY, 3).is_infinite());
+        assert_eq!([7.6849e10, 0.012, 1.0].map(|x| few(x, 3)), ["7.68e10", "0.012", "1"]);
     }
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 18] = [
+const DOCUMENTS: [&str; 20] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -24,6 +24,8 @@ const DOCUMENTS: [&str; 18] = [
     "curves --samples 50",
     "polynomial --ratio 5/4",
     "proposition --max 6",
+    "tongues --survey --max-sum 20 --rho 1/25",
+    "tongues --max-sum 9 --rho 1e-12",
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {
@@ -48,7 +50,7 @@ fn every_change_is_found_and_its_row_named() {
     let desk = Desk::new();
     let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
     type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
-    let changes: [(&str, &str, Change); 22] = [
+    let changes: [(&str, &str, Change); 24] = [
         (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
         (DOCUMENTS[0], "row 4", |d, by| {
             let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);
@@ -99,6 +101,10 @@ fn every_change_is_found_and_its_row_named() {
         }),
         (DOCUMENTS[16], "row", |d, _| d["terms"][2]["coefficient"] = json!("1/3")),
         (DOCUMENTS[17], "row 5", |d, _| d["witnesses"][4]["b"] = json!(17)),
+        (DOCUMENTS[18], "row 2", |d, by| {
+            d["thinnest"][1]["width"] = by_both(&d["thinnest"][1]["width"], by, 1e-2)
+        }),
+        (DOCUMENTS[18], "row 11", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
     ];
     for (i, (line, row, change)) in changes.into_iter().enumerate() {
         let mut document = write(&desk, line, "d.json");
@@ -122,7 +128,7 @@ fn what_cannot_be_rechecked_is_told() {
     desk.write("text.json", "no JSON");
     desk.write("bare.json", r#"{"schema": "kickdrift/tongues/1"}"#);
     for (file, parts) in [
-        ("run.json", &["kickdrift/run/1", "one of tongues, closings, verdict"][..]),
+        ("run.json", &["kickdrift/run/1", "one of tongues, closings, survey"][..]),
         ("text.json", &["is no JSON", "--format json"]),
         ("bare.json", &["input is not an object"]),
         ("none.json", &["none.json", "cannot read it"]),

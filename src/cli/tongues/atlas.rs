@@ -91,7 +91,7 @@ impl<'a> Atlas<'a> {
             segments.extend(part.iter().map(|told| self.segment(told)));
             Ok(())
         })?;
-        let title = format!("All tongues with *p* + *q* ≤ {}", self.largest_sum());
+        let title = self.title();
         let atlas =
             plane::Atlas { window: self.window.clone(), segments: &segments, curves: &self.curves, title };
         Ok(match self.colour {
@@ -100,10 +100,11 @@ impl<'a> Atlas<'a> {
         })
     }
 
-    fn largest_sum(&self) -> u64 {
+    fn title(&self) -> String {
+        let rho = &self.question.stiffness.rho;
         match self.question.ratios {
-            super::Ratios::One(p, q) => p + q,
-            super::Ratios::UpTo(max_sum) => max_sum,
+            super::Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
+            super::Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }
 

@@ -3,6 +3,8 @@
 use std::io::{self, Write};
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::Question;
 use crate::cli::args::Common;
 use crate::cli::map::Target;
@@ -69,7 +71,7 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<io
         Err(cause) => return Ok(Err(cause)),
     };
     let row = |told: &Told| json_row(told, &question.frame.wanted).to_string();
-    let done = each_row(question, common, |told| out.row(&row(told)))?;
+    let done = each_row(question, common, row, |row| out.row(row))?;
     Ok(done.and_then(|tally| out.end(&tally.entries()).map(|()| tally)))
 }
 
@@ -83,19 +85,26 @@ fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<io
     if let Err(cause) = csv::write_header(sink, &columns) {
         return Ok(Err(cause));
     }
-    each_row(question, common, |told| csv::write_rows(sink, &columns, [rows.cells(told)]))
+    let row = |told: &Told| {
+        let mut line = Vec::new();
+        csv::write_rows(&mut line, &columns, [rows.cells(told)]).expect("memory takes all");
+        line
+    };
+    each_row(question, common, row, |line| sink.write_all(line))
 }
 
-/// Hands on the tongues until the sink is lost.
-fn each_row(
+/// Renders the tongues in parallel and hands them on in order, until the sink is lost.
+fn each_row<T: Send>(
     question: &Question,
     common: &Common,
-    mut put: impl FnMut(&Told) -> io::Result<()>,
+    render: impl Fn(&Told) -> T + Sync,
+    mut put: impl FnMut(&T) -> io::Result<()>,
 ) -> Result<io::Result<Tally>> {
     let (mut tally, mut lost) = (Tally::default(), None);
     let done = question.each(common, |part| {
         part.iter().for_each(|told| tally.add(told));
-        part.iter().try_for_each(&mut put).map_err(|cause| {
+        let rendered: Vec<T> = part.par_iter().map(&render).collect();
+        rendered.iter().try_for_each(&mut put).map_err(|cause| {
             lost = Some(cause);
             Error::io("output", "cannot be written")
         })

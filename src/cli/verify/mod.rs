@@ -3,6 +3,7 @@
 //! | document | made by | rechecked by |
 //! |---|---|---|
 //! | tongues | Rayleigh quotients of a string in doubles | exact signs of the half period at the ends of each enclosure |
+//! | survey | the same | exact signs about the edges of the thin tongues |
 //! | closings | Newton's method and Krawczyk's test | exact signs: the edges' order at both ends of the range of rho |
 //! | verdict | the filter, as a rule | the full period, kick by kick, in exact arithmetic |
 //! | map | the filter, as a rule | the refine tier, kick by kick |
@@ -17,6 +18,7 @@ mod exact;
 mod integers;
 mod plane;
 mod read;
+mod survey;
 mod tongues;
 mod verdict;
 
@@ -57,9 +59,10 @@ pub struct Context<'a> {
 type Check = fn(&Value, &Context) -> Result<Outcome>;
 
 /// The documents that can be rechecked.
-const CHECKS: [(&str, Check); 8] = [
+const CHECKS: [(&str, Check); 9] = [
     ("tongues", tongues::check),
     ("closings", closings::check),
+    ("survey", survey::check),
     ("verdict", verdict::check),
     ("map", plane::check_map),
     ("compare", plane::check_compare),

@@ -26,7 +26,7 @@ pub fn holds(truth: bool, wrong: impl FnOnce() -> String) -> Checked<()> {
 }
 
 /// An object of a document.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Row<'a>(&'a Value);
 
 impl<'a> Row<'a> {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::json::side;
 use super::told::Told;
 use crate::report::decimal;
-use crate::report::digits::rounded;
+use crate::report::digits::few;
 
 /// Counts and extremes, in the order in which the tongues come.
 #[derive(Clone, Debug, Default)]
@@ -74,11 +74,11 @@ impl Tally {
         if let Some((told, peak)) = self.fastest.as_ref().and_then(|told| Some((told, told.row.peak?))) {
             let (rate, unit) =
                 told.growth_rate.map_or((peak.rate, "√lambda1"), |rate| (rate, "per unit time"));
-            let (rate, steps) = (rounded(rate, 4), rounded(peak.slow_steps_to_tenfold, 3));
+            let (rate, steps) = (few(rate, 4), few(peak.slow_steps_to_tenfold, 3));
             lines.push(format!(
                 "  fastest      {rate} {unit}, tenfold in {steps} slow steps: {} at s = {}",
                 place(told),
-                rounded(peak.s, 6)
+                few(peak.s, 6)
             ));
         }
         if self.predicted != [0; 3] {
@@ -89,7 +89,7 @@ impl Tally {
             ));
         }
         if let Some((least, largest)) = self.ratios {
-            let [least, largest] = [least, largest].map(|x| rounded(x, 4));
+            let [least, largest] = [least, largest].map(|x| few(x, 4));
             lines.push(format!("  first order  widths are {least} to {largest} times the law's"));
         }
         lines
