@@ -4,6 +4,7 @@ use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{Band, Counters, Grid, Products, Shard, Store, for_each_band, merge, resume};
 use kickdrift::number::parse::parse;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
+use rayon::prelude::*;
 
 const BOTH: Products = Products { label: true, growth: true };
 
@@ -69,6 +70,91 @@ fn kicks_and_drifts_one_by_one_agree() {
 fn kicks_and_drifts_one_by_one_agree_everywhere() {
     agrees(&figure_1("1/100"), Tier::Refine, 1);
     agrees(&figure_1("1/1000"), Tier::Refine, 223);
+}
+
+/// The verdicts of a whole grid by column and row, and how to find one.
+fn verdicts(grid: &Grid) -> impl Fn((u64, u64)) -> u8 + Sync {
+    let all: Vec<u8> = bands(grid, Products::default(), Shard::WHOLE, 0)
+        .0
+        .into_iter()
+        .flat_map(|(_, band)| band.verdicts)
+        .collect();
+    let ((first, _), (low, high)) = (grid.columns(), grid.rows());
+    move |(i, j)| all[((i - first) * (high - low + 1) + j - low) as usize]
+}
+
+/// The pairs' verdicts against kicks and drifts one by one in 128 bits and more.
+fn agree_with_refine(grid: &Grid, pairs: &[(u64, u64)]) {
+    let verdict = verdicts(grid);
+    pairs.par_iter().for_each(|&(i, j)| {
+        let other = decide_from(Tier::Refine, &grid.clocks(i, j).unwrap(), &Limits::default()).unwrap();
+        assert_eq!(verdict((i, j)), other.verdict.index(), "i = {i}, j = {j}");
+    });
+}
+
+#[test]
+#[ignore = "a minute or two"]
+fn a_hundred_thousand_random_pairs_agree() {
+    let grid = figure_1("1/1000");
+    let ((first, last), (low, high)) = (grid.columns(), grid.rows());
+    // A multiplicative generator (Lehmer, modulus 2^61 - 1); any seed but 0 does.
+    let mut state: u128 = 20_261_121;
+    let mut random = |lo: u64, hi: u64| {
+        state = state * 437_799_614_237_992_725 % ((1 << 61) - 1);
+        lo + (state as u64) % (hi - lo + 1)
+    };
+    let pairs: Vec<(u64, u64)> = (0..100_000).map(|_| (random(first, last), random(low, high))).collect();
+    agree_with_refine(&grid, &pairs);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn the_ten_thousand_pairs_nearest_to_an_edge_agree() {
+    let grid = figure_1("1/1000");
+    let ((first, last), (low, high)) = (grid.columns(), grid.rows());
+    let mut near: Vec<(f64, (u64, u64))> = (first..=last)
+        .into_par_iter()
+        .flat_map_iter(|i| (low..=high).map(move |j| (distance_to_edge(i, j), (i, j))))
+        .collect();
+    near.select_nth_unstable_by(10_000, |x, y| x.0.total_cmp(&y.0));
+    let (near, rest) = near.split_at(10_000);
+    assert!(near.iter().all(|(distance, _)| distance <= &rest[0].0 && *distance < 1e-2));
+    agree_with_refine(&grid, &near.iter().map(|&(_, pair)| pair).collect::<Vec<_>>());
+}
+
+/// ||Tr| - 2| of the pair (i, j)/1000 of Figure 1 as a loop in doubles has it: good enough to choose by.
+fn distance_to_edge(i: u64, j: u64) -> f64 {
+    let common = num_integer::gcd(i, j);
+    let (p, q) = (j / common, i / common);
+    let pi2 = std::f64::consts::PI.powi(2);
+    // The common unit of time d gcd; in it h1 = q, h2 = p.
+    let unit = common as f64 * 1e-3;
+    let (fast, slow) = (unit * q as f64 * pi2, unit * p as f64 * pi2 / 25.0);
+    let (mut even, mut odd, mut now, mut next) = ([1.0, 0.0], [0.0, 1.0], 0, [0, 0]);
+    loop {
+        let t = next[0].min(next[1]);
+        if 2 * t > p * q {
+            break;
+        }
+        let half = if t == 0 || 2 * t == p * q { 0.5 } else { 1.0 };
+        let mut kick = 0.0;
+        for (n, step, strength) in [(0, q, fast), (1, p, slow)] {
+            if next[n] == t {
+                kick += half * strength;
+                next[n] += step;
+            }
+        }
+        let drift = (t - now) as f64 * unit;
+        for state in [&mut even, &mut odd] {
+            state[0] += drift * state[1];
+            state[1] -= kick * state[0];
+        }
+        now = t;
+    }
+    let rest = (p * q) as f64 / 2.0 - now as f64;
+    let [a, b] = [even, odd].map(|state| state[0] + rest * unit * state[1]);
+    let distance = (4.0 * b * even[1]).abs().min((4.0 * a * odd[1]).abs());
+    if distance.is_nan() { f64::INFINITY } else { distance }
 }
 
 #[test]

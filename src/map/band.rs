@@ -121,12 +121,12 @@ impl<'a> Work<'a> {
     /// Positions by min(p, q)/2: equal numbers run together.
     fn sorted(&self) -> Vec<u32> {
         let (a, b) = self.grid.ratio();
-        let updates = |n: usize| {
-            let (i, j) = self.multipliers(n);
-            (i * b).min(j * a) / u64::from(self.gcds[n]) / 2
-        };
-        let keys: Vec<u32> =
-            (0..self.gcds.len()).map(|n| updates(n).min(u64::from(u32::MAX)) as u32).collect();
+        let (rows, first_row) = (self.grid.shape().1, self.grid.rows().0);
+        let mut keys = Vec::with_capacity(self.gcds.len());
+        for (i, gcds) in (self.first..).zip(self.gcds.chunks(rows)) {
+            let updates = |(j, &gcd): (u64, &u32)| (i * b).min(j * a) / u64::from(gcd) / 2;
+            keys.extend((first_row..).zip(gcds).map(updates).map(|n| n.min(u64::from(u32::MAX)) as u32));
+        }
         by_counting(&keys)
     }
 

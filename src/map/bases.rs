@@ -51,6 +51,7 @@ impl<'a> Bases<'a> {
 
     /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves.
     /// `gcd` is that of the two steps in their common unit.
+    #[inline(always)]
     pub fn pair<'b>(
         &'b self,
         first: Option<&'b Base>,
@@ -66,16 +67,18 @@ impl<'a> Bases<'a> {
 }
 
 /// The foreign clock's step is p base steps over q, both `gcd` times what they are in lowest terms.
+#[inline(always)]
 fn pair(base: &Base, kick: f64, (p, q): (u64, u64), gcd: u64) -> Pair<'_> {
-    let reduced = (p / gcd, q / gcd);
+    // n/gcd is odd where gcd holds all factors 2 of n.
+    let odd = |n: u64| n.trailing_zeros() == gcd.trailing_zeros();
     Pair {
         base,
         kick,
         whole: p / q,
         rest: p % q,
         modulus: q,
-        p_odd: reduced.0 % 2 == 1,
-        q_even: reduced.1.is_multiple_of(2),
-        updates: reduced.1 / 2,
+        p_odd: odd(p),
+        q_even: !odd(q),
+        updates: q / gcd / 2,
     }
 }

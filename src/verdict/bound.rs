@@ -17,7 +17,7 @@
 //! since |û_k|² outruns b_k.
 
 /// What one step can do to a vector and to its error: the constants of the theorem.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct StepBound {
     /// ‖M_k‖ ≤ κ.
     pub kappa: f64,

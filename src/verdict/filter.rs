@@ -1,93 +1,16 @@
 //! The first tier: the half period in Floquet coordinates and doubles, with a proven error bound.
 //!
-//! proofs/FILTER.md derives every constant; in short, with u = 2^-53 and g in the coordinates of
-//! [`super::floquet`], where a kick has the norm κ ≤ |β|/2 + √(1 + β²/4) and a turn the norm 1,
-//!
-//! ```text
-//!     |r_k| ≤ u (κ (28 + 13 tan(θ/2)) + 6.1 |β|) |g_(k-1)| + u (1 + tan(θ/2)) |g_k|
-//! ```
-//!
-//! is what one update (four shears) adds to the error.
+//! Pairs run one by one or in groups; [`super::kernel`] does the updates, [`super::certificate`] knows what the
+//! result proves.
 
 use std::marker::PhantomData;
 
-use super::bound::StepBound;
+use super::certificate::{Certificate, Certificates, Hardest, U};
 use super::floquet::{Floquet, Pair};
 use super::kernel::{Instructions, Lanes, Orbits, Task, Watch, each};
 use super::kind::PartialSigns;
 use super::winding;
 use crate::number::Sign;
-
-/// Half the distance from 1 to the next double.
-const U: f64 = f64::EPSILON / 2.0;
-
-/// The most updates between two looks at |g| in a group; alone, a pair is watched at every update, which gives the
-/// sharpest bound.
-const BLOCK: i32 = 32;
-
-/// The constants of the certification, all dimensionless.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Certificate {
-    step: StepBound,
-    /// Updates, the half kick at t = 0 included.
-    steps: u64,
-    /// Updates between two looks at |g|.
-    pub block: u64,
-    /// 2b ≤ `ratio` · `squares/|g|²` · |g|² anywhere in a block.
-    ratio: f64,
-    /// The largest `squares/|g|²` that the theorem's condition on τ admits.
-    pub worst: f64,
-    /// 2b and the error of evaluating a linear form of g are together at most this times `squares`.
-    across: f64,
-}
-
-impl Certificate {
-    /// For all pairs whose |β|, tan(θ/2) and number of steps are at most these, in blocks of `most` updates at most;
-    /// `None` where the theorem's
-    /// conditions cannot be met.
-    #[inline(always)]
-    fn new(beta: f64, slope: f64, steps: u64, most: i32) -> Option<Certificate> {
-        // 1 + 64u covers the roundings of β and of this line.
-        let beta = beta * (1.0 + 64.0 * U);
-        let kappa = (beta / 2.0 + (1.0 + beta * beta / 4.0).sqrt()) * (1.0 + 8.0 * U);
-        let before = kappa * (28.0 + 13.0 * slope) + 6.1 * beta;
-        let after = 1.0 + slope;
-        let step = StepBound { kappa, epsilon: 1.01 * U * (before + 1.01 * kappa * after) };
-        let tau = step.tau(steps)?;
-        // Blocks in which |g| grows sixteenfold at most: the bound has digits to spare, a look costs an update.
-        let growth = step.growth();
-        let block = ((16f64.ln() / growth.ln()) as i32).clamp(1, most);
-        // Every step is within block/2 of a block's end and at most `block` steps share one: with the inequality
-        // of the means Σ |r_j| |g_j| ≤ u (before + after) block growth^(2 ⌊block/2⌋) squares. 1.01 for the
-        // rounding of the sum itself (at most 10^13 terms) and of these constants.
-        let b = 1.01 * U * (before + after) * f64::from(block) * growth.powi(2 * (block / 2));
-        // Before a block's end |g|² was smaller than there by growth^(2 (block - 1)) at most.
-        let ratio = 2.0 * b * growth.powi(2 * (block - 1));
-        let across = 2.0 * b + 1.01 * U * (7.0 + 5.0 * slope);
-        let certificate =
-            Certificate { step, steps, block: block as u64, ratio, worst: 0.99 * tau / ratio, across };
-        (steps < 1 << 43 && ratio.is_finite()).then_some(certificate)
-    }
-
-    /// Whether |g|² may pass 2^900, from 2^100 at most at the start.
-    fn strong(&self) -> bool {
-        self.steps as f64 * self.step.growth().log2() > 400.0
-    }
-
-    /// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem
-    /// failed on the way. (NaN fails.)
-    #[inline(always)]
-    fn signs<const L: usize>(&self, [x, v]: &[[f64; L]; 2], orbits: &Orbits<L>) -> [[f64; L]; 2] {
-        let length: [f64; L] = each(|i| (x[i] * x[i] + v[i] * v[i]).sqrt());
-        let held = |i: usize| orbits.worst[i] <= self.worst;
-        let across: [f64; L] =
-            each(|i| if held(i) { self.across * orbits.squares[i] } else { f64::INFINITY });
-        let sign = |form: f64, i: usize| {
-            if form.abs() * length[i] > across[i] { 1f64.copysign(form) } else { 0.0 }
-        };
-        [each(|i| sign(x[i], i)), each(|i| sign(v[i], i))]
-    }
-}
 
 /// Where the even and the odd solution stand at T/2, with proven bounds.
 #[derive(Clone, Copy, Debug)]
@@ -162,12 +85,14 @@ pub(crate) struct Group<const L: usize> {
     lanes: Lanes<L>,
     /// Cosine and sine of the base's last turn.
     left: [[f64; L]; 2],
+    certificates: Certificates,
 }
 
 impl<const L: usize> Group<L> {
     /// Room for L pairs.
     pub fn new(instructions: Instructions) -> Self {
-        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2] }
+        let certificates = if L == 1 { Certificates::alone() } else { Certificates::of_groups() };
+        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], certificates }
     }
 
     /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
@@ -188,17 +113,15 @@ impl<const L: usize> Group<L> {
 
     /// The signs as they come out, certified or not: for the benchmark alone.
     pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
-        let certificate =
-            self.run::<Bare>(pairs).map(|certificate| Certificate { across: 0.0, ..certificate });
+        let certificate = self.run::<Bare>(pairs).map(Certificate::void);
         certificate
             .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }
 
     fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
-        let strongest = self.instructions.perform(Start(pairs, &mut self.lanes));
-        let slope = pairs.iter().map(|pair| pair.base.slope).fold(0.0, f64::max);
+        let (beta, slope) = self.instructions.perform(Start(pairs, &mut self.lanes));
         let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-        let certificate = Certificate::new(strongest, slope, steps, if L == 1 { 1 } else { BLOCK })?;
+        let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
         (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
         self.instructions.perform(Advance::<W, L>(&mut self.lanes, certificate.block, PhantomData));
         for (i, pair) in pairs.iter().enumerate() {
@@ -216,13 +139,13 @@ struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 
 impl<const L: usize> Task for Start<'_, L> {
-    type Output = f64;
+    type Output = (f64, f64);
 
-    /// The strongest kick.
+    /// The strongest kick and the steepest tan(θ/2).
     #[inline(always)]
-    fn run(self) -> f64 {
+    fn run(self) -> (f64, f64) {
         self.1.start(self.0);
-        self.1.strongest()
+        (self.1.strongest(), self.1.steepest())
     }
 }
 
@@ -253,6 +176,23 @@ impl<const L: usize> Task for Verdicts<'_, L> {
     }
 }
 
+/// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem failed
+/// on the way. (NaN fails.)
+#[inline(always)]
+fn signs<const L: usize>(
+    certificate: &Certificate,
+    [x, v]: &[[f64; L]; 2],
+    orbits: &Orbits<L>,
+) -> [[f64; L]; 2] {
+    let length: [f64; L] = each(|i| (x[i] * x[i] + v[i] * v[i]).sqrt());
+    let held = |i: usize| orbits.worst[i] <= certificate.worst;
+    let across: [f64; L] =
+        each(|i| if held(i) { certificate.across * orbits.squares[i] } else { f64::INFINITY });
+    let sign =
+        |form: f64, i: usize| if form.abs() * length[i] > across[i] { 1f64.copysign(form) } else { 0.0 };
+    [each(|i| sign(x[i], i)), each(|i| sign(v[i], i))]
+}
+
 /// The half periods of a group.
 struct Halves<const L: usize> {
     /// (re, im) of the even solution before the base's last turn.
@@ -268,7 +208,7 @@ impl<const L: usize> Halves<L> {
         let [even, odd] = group.lanes.ends();
         let ends = [group.turned(&even), group.turned(&odd)];
         let (lanes, [e, o]) = (&group.lanes, &ends);
-        let signs = [certificate.signs(e, &lanes.even), certificate.signs(o, &lanes.odd)];
+        let signs = [signs(certificate, e, &lanes.even), signs(certificate, o, &lanes.odd)];
         Halves { even, ends, signs }
     }
 
@@ -292,7 +232,7 @@ impl<const L: usize> Halves<L> {
         let end = |n: usize, orbits: &Orbits<L>| {
             let certain = |x: f64| (x != 0.0).then(|| Sign::from_ordering(x.total_cmp(&0.0)));
             let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
-            let stretch = certificate.step.length_uncertainty(certificate.steps, certificate.ratio * worst);
+            let stretch = certificate.stretch(worst);
             let end = End {
                 x: self.ends[n][0][i],
                 v: self.ends[n][1][i],
@@ -332,7 +272,18 @@ mod tests {
             let g = p.gcd(&q);
             Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
         });
-        prop::collection::vec(pair, 1..9).prop_map(|pairs| pairs.into_iter().flatten().collect())
+        prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    /// All that groups of `L` lanes tell about at most as many pairs, as text: doubles by their shortest exact name.
+    fn told<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
+        let (mut group, mut text) = (Group::<L>::new(instructions), String::new());
+        for pairs in pairs.chunks(L) {
+            let mut ends = vec![None; pairs.len()];
+            group.everything(pairs, &mut ends);
+            text += &format!("{ends:?} {:?}\n", &group.verdicts(pairs)[..pairs.len()]);
+        }
+        text
     }
 
     proptest! {
@@ -340,12 +291,9 @@ mod tests {
         fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
-            let results: Vec<String> = Instructions::available().map(|instructions| {
-                let (mut group, mut ends) = (Group::<8>::new(instructions), vec![None; pairs.len()]);
-                group.everything(&pairs, &mut ends);
-                // Debug output of doubles is their shortest exact name.
-                format!("{ends:?} {:?}", group.verdicts(&pairs))
-            }).collect();
+            let results: Vec<String> = Instructions::available()
+                .map(|set| told::<1>(set, &pairs) + &told::<8>(set, &pairs) + &told::<16>(set, &pairs))
+                .collect();
             prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
         }
 
@@ -353,7 +301,7 @@ mod tests {
         fn side_by_side_and_alone_agree(floquets in pairs()) {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
-            let verdicts = Group::<8>::new(Instructions::best()).verdicts(&pairs);
+            let verdicts = Group::<16>::new(Instructions::best()).verdicts(&pairs);
             for (floquet, verdict) in floquets.iter().zip(verdicts) {
                 let alone = run(floquet).and_then(|ends| ends.signs().verdict());
                 prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));

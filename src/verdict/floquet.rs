@@ -208,6 +208,14 @@ impl Floquet {
     }
 }
 
+/// The signs of cos(nθ/2) and sin(nθ/2), as far as they are certain; `None` outside 0 < s < 4.
+pub(super) fn turn_signs(s: &Ball, n: u64) -> Option<[Option<Sign>; 2]> {
+    let rest = Ball::from_integer(&4.into()).sub(s, BITS);
+    let half = Phase { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) };
+    let turned = half.power(n);
+    Some([turned.re.sign(), turned.im.sign()])
+}
+
 /// e^{iα} in multiple precision.
 struct Phase {
     re: Ball,

@@ -16,8 +16,12 @@
 
 use super::floquet::Pair;
 
-/// Above this squared norm an orbit is scaled down, so that no square overflows.
+/// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
+
+/// ... at every fourth look. Between two looks |g|² grows by 2^12, or in a single step by κ² ≤ 2^82 (the certificate
+/// wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
+const SCALING: u64 = 4;
 
 const fn power_of_two(n: i64) -> f64 {
     f64::from_bits(((n + 1023) as u64) << 52)
@@ -55,8 +59,9 @@ pub(super) struct Lanes<const L: usize> {
     /// B t and S/B, without and with a carry.
     drift: [[f64; L]; 2],
     kick: [[f64; L]; 2],
-    /// B.
+    /// B and tan(θ/2).
     scale: [f64; L],
+    slope: [f64; L],
     /// ⌊q/2⌋, and the share of a kick that the last one is.
     updates: [f64; L],
     last_kick: [f64; L],
@@ -152,6 +157,42 @@ impl<const L: usize> Orbits<L> {
     }
 }
 
+/// What the lanes start from, by kind instead of by pair: one walk over the pairs, then vectors only.
+struct Constants<const L: usize> {
+    kick: [f64; L],
+    slope: [f64; L],
+    sin: [f64; L],
+    modulus: [f64; L],
+    rest: [f64; L],
+    /// tan(α/2) and sin α of the turns without and with a carry.
+    tan: [[f64; L]; 2],
+    sine: [[f64; L]; 2],
+    updates: [f64; L],
+    last_kick: [f64; L],
+}
+
+impl<const L: usize> Constants<L> {
+    #[inline(always)]
+    fn gather(pairs: &[Pair]) -> Self {
+        let zero = [0.0; L];
+        let (kick, slope, sin, modulus, rest, updates) = (zero, zero, zero, zero, zero, zero);
+        let (tan, sine, last_kick) = ([zero; 2], [zero; 2], zero);
+        let mut of = Constants { kick, slope, sin, modulus, rest, tan, sine, updates, last_kick };
+        for i in 0..L {
+            let pair = &pairs[i.min(pairs.len() - 1)];
+            let base = pair.base;
+            (of.kick[i], of.slope[i], of.sin[i]) = (pair.kick, base.slope, base.sin);
+            (of.modulus[i], of.rest[i]) = (pair.modulus as f64, pair.rest as f64);
+            let turns = [base.turn(pair.whole), base.turn(pair.whole + 1)];
+            (of.tan[0][i], of.sine[0][i]) = (turns[0].tan, turns[0].sin);
+            (of.tan[1][i], of.sine[1][i]) = (turns[1].tan, turns[1].sin);
+            of.updates[i] = pair.updates as f64;
+            of.last_kick[i] = if pair.q_even { 0.5 } else { 1.0 };
+        }
+        of
+    }
+}
+
 impl<const L: usize> Lanes<L> {
     /// No pair yet.
     pub fn empty() -> Self {
@@ -167,6 +208,7 @@ impl<const L: usize> Lanes<L> {
             drift: [zero; 2],
             kick: [zero; 2],
             scale: zero,
+            slope: zero,
             updates: zero,
             last_kick: zero,
             worst: 0.0,
@@ -180,34 +222,38 @@ impl<const L: usize> Lanes<L> {
     /// which are |g| before the half kick; products of the two solutions have the right scale.
     #[inline(always)]
     pub fn start(&mut self, pairs: &[Pair]) {
-        let pair = |i: usize| &pairs[i.min(pairs.len() - 1)];
-        let turn = |i: usize, carry: u64| pair(i).base.turn(pair(i).whole + carry);
-        let slope: [f64; L] = each(|i| pair(i).base.slope);
-        let scale: [f64; L] = each(|i| pair(i).kick / (2.0 * slope[i]));
+        let of = Constants::gather(pairs);
+        let scale: [f64; L] = each(|i| of.kick[i] / (2.0 * of.slope[i]));
         let inverse: [f64; L] = each(|i| 1.0 / scale[i]);
-        let secant2: [f64; L] = each(|i| slope[i].mul_add(slope[i], 1.0));
-        let modulus: [f64; L] = each(|i| pair(i).modulus as f64);
-        let step: [f64; L] = each(|i| (2 * pair(i).rest) as f64);
+        let secant2: [f64; L] = each(|i| of.slope[i].mul_add(of.slope[i], 1.0));
+        let step: [f64; L] = each(|i| 2.0 * of.rest[i]);
         *self = Lanes {
             even: Orbits::new(
                 1.0,
-                each(|i| 0.5 * pair(i).base.sin.mul_add(inverse[i], 1.0)),
+                each(|i| 0.5 * of.sin[i].mul_add(inverse[i], 1.0)),
                 each(|i| 1.0 / secant2[i]),
             ),
             odd: Orbits::new(0.0, each(|i| -inverse[i]), secant2),
-            place: each(|i| -modulus[i]),
+            place: each(|i| -of.modulus[i]),
             step,
-            limit: each(|i| modulus[i] - step[i]),
-            wrap: each(|i| step[i] - 2.0 * modulus[i]),
-            tilt: each(|i| scale[i] * slope[i] / modulus[i]),
-            drift: [each(|i| scale[i] * turn(i, 0).tan), each(|i| scale[i] * turn(i, 1).tan)],
-            kick: [each(|i| inverse[i] * turn(i, 0).sin), each(|i| inverse[i] * turn(i, 1).sin)],
+            limit: each(|i| of.modulus[i] - step[i]),
+            wrap: each(|i| step[i] - 2.0 * of.modulus[i]),
+            tilt: each(|i| scale[i] * of.slope[i] / of.modulus[i]),
+            drift: [each(|i| scale[i] * of.tan[0][i]), each(|i| scale[i] * of.tan[1][i])],
+            kick: [each(|i| inverse[i] * of.sine[0][i]), each(|i| inverse[i] * of.sine[1][i])],
             scale,
-            updates: each(|i| pair(i).updates as f64),
-            last_kick: each(|i| if pair(i).q_even { 0.5 } else { 1.0 }),
+            slope: of.slope,
+            updates: of.updates,
+            last_kick: of.last_kick,
             worst: f64::INFINITY,
             strong: true,
         };
+    }
+
+    /// The steepest tan(θ/2).
+    #[inline(always)]
+    pub fn steepest(&self) -> f64 {
+        self.slope.iter().fold(0.0, |most, &slope| if slope > most { slope } else { most })
     }
 
     /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u.
@@ -224,15 +270,18 @@ impl<const L: usize> Lanes<L> {
         let (shortest, longest) = self.updates.iter().fold((f64::INFINITY, 0.0), min_max);
         let mut lanes = *self;
         let mut tilt: [f64; L] = each(|i| lanes.place[i] * lanes.tilt[i]);
-        lanes.look::<W>(&tilt, |_| true);
         // The last update, perhaps half a kick, is left to the loop that tells the lanes apart.
         let together = (shortest as u64).saturating_sub(1);
-        let mut done = 0;
-        while done < together {
-            let end = together.min(done + block);
-            lanes.block::<W>(&mut tilt, end - done);
-            lanes.look::<W>(&tilt, |_| true);
-            done = end;
+        // The half kick at t = 0 was the first block's first step.
+        let (mut done, mut due, mut looks) = (0, block - 1, 0);
+        while due <= together {
+            lanes.block::<W>(&mut tilt, due - done);
+            lanes.look::<W>(&tilt, looks % SCALING == 0, |_| true);
+            (done, due, looks) = (due, due + block, looks + 1);
+        }
+        lanes.block::<W>(&mut tilt, together - done);
+        if shortest == 0.0 {
+            lanes.look::<W>(&tilt, true, |_| true);
         }
         for k in together + 1..=longest as u64 {
             lanes.last_updates::<W>(k as f64, &mut tilt);
@@ -267,7 +316,7 @@ impl<const L: usize> Lanes<L> {
         keep(&mut self.odd.re, &before.odd.re);
         keep(&mut self.odd.w, &before.odd.w);
         *tilt = each(|i| self.place[i] * self.tilt[i]);
-        self.look::<W>(tilt, active);
+        self.look::<W>(tilt, true, active);
     }
 
     /// From a kick to just before the next one.
@@ -299,10 +348,11 @@ impl<const L: usize> Lanes<L> {
     }
 
     #[inline(always)]
-    fn look<W: Watch>(&mut self, tilt: &[f64; L], active: impl Fn(usize) -> bool + Copy) {
+    fn look<W: Watch>(&mut self, tilt: &[f64; L], scaling: bool, active: impl Fn(usize) -> bool + Copy) {
         if W::CERTIFY {
-            self.even.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
-            self.odd.look::<W>((tilt, &self.scale), (self.worst, self.strong), active);
+            let strong = self.strong && scaling;
+            self.even.look::<W>((tilt, &self.scale), (self.worst, strong), active);
+            self.odd.look::<W>((tilt, &self.scale), (self.worst, strong), active);
         }
     }
 

@@ -4,6 +4,7 @@ use super::exact::Decidable;
 use super::filter;
 use super::floquet::Floquet;
 use super::kind::Verdict;
+use super::lone;
 use super::refine;
 use crate::error::{Error, Result};
 use crate::number::Real;
@@ -12,7 +13,8 @@ use crate::propagator::{Schedule, TwoClocks};
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Tier {
-    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound.
+    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; a closed form where only one clock
+    /// kicks.
     Filter,
     /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
     Refine,
@@ -112,7 +114,7 @@ pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
 }
 
 fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
-    let Some(floquet) = Floquet::new(clocks) else { return Ok(None) };
+    let Some(floquet) = Floquet::new(clocks) else { return Ok(lone::verdict(clocks)) };
     limits.allow(floquet.updates(), Tier::Filter)?;
     Ok(filter::run(&floquet).and_then(|ends| ends.signs().verdict()))
 }

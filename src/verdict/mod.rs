@@ -19,6 +19,7 @@
 //! ```
 
 mod bound;
+mod certificate;
 mod exact;
 pub(crate) mod filter;
 pub(crate) mod floquet;
@@ -26,6 +27,7 @@ mod growth;
 pub(crate) mod kernel;
 mod kind;
 mod ladder;
+mod lone;
 pub(crate) mod refine;
 mod residue;
 pub(crate) mod winding;
