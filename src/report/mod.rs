@@ -3,7 +3,7 @@
 //! The lower half knows no physics. A [`table::Table`] holds typed cells and each format is one file
 //! ([`csv`], [`latex`], [`text`], and JSON through `serde`), [`npz`] holds arrays too large for memory; a [`figure::Figure`] holds panels of layers and
 //! is drawn as SVG, from which the PNG is rasterized; [`file`](mod@file) puts the bytes where they belong, whole or
-//! not at all. On it stand a [`document::Document`] for every kind of result, one file each, and the drawings
+//! not at all. On it stand a [`document::Document`] for every kind of result, one file or folder each, and the drawings
 //! of the (h1, h2) [`plane`].
 
 pub mod certificate;

@@ -6,7 +6,7 @@
 //! let mut tongues = Tongues::new(70, 31, &ratio(1, 25)).unwrap();
 //! let window = Selection { s: Some((2.30, 2.32)), ..Selection::default() };
 //! let found: Vec<u64> = tongues.select(&window).unwrap().iter().map(|gap| gap.m).collect();
-//! assert_eq!(found, [38]);
+//! assert_eq!(found, [39]);
 //! assert!(tongues.effort().doubles < 20); // of 99 tongues
 //! ```
 

@@ -240,3 +240,16 @@ fn figures_are_drawn_and_hold_every_tongue() {
     assert!(text("family.svg").contains(&format!("Atlas of tongues; {count}")), "{count}");
     assert!(desk.read("atlas.png").starts_with(b"\x89PNG"));
 }
+
+#[test]
+fn the_atlas_beside_the_readme_is_what_its_scene_writes() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut scene: Value =
+        serde_json::from_slice(&std::fs::read(root.join("data/scenes/atlas.json")).unwrap()).unwrap();
+    scene["want"] = serde_json::json!(["atlas.svg"]);
+    let desk = Desk::new();
+    desk.write("atlas.json", &scene.to_string());
+    assert_eq!(desk.run(&["run", "atlas.json", "--output", "out"]).code, Some(0));
+    let kept = std::fs::read(root.join("data/figures/atlas.svg")).unwrap();
+    assert!(desk.read("out/atlas.svg") == kept, "data/figures/atlas.svg is not what its scene writes");
+}

@@ -1,5 +1,6 @@
 //! Which tongues are asked for, and what of them.
 
+use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::cli::args::{Common, shown_range};
@@ -9,7 +10,7 @@ use crate::number::ExactSign;
 use crate::number::{Laurent, Rational, Sign};
 use crate::report::document::Document;
 use crate::report::tongues::{Frame, Told};
-use crate::tongue::{Selection, Tongues, ratios};
+use crate::tongue::{Gap, Selection, Tongues, ratios};
 
 /// One ratio, or all coprime p + q up to a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,30 +164,37 @@ impl Question {
     /// Where a schedule is too long, and those of `see`.
     pub fn each(&self, common: &Common, mut see: impl FnMut(&[Told]) -> Result<()>) -> Result<()> {
         let ratios = self.ratios.list();
-        let bar = progress(common.quiet, ratios.len() as u64, "ratios");
+        // Of one ratio the tongues are counted, once it is known how many there are.
+        let alone = ratios.len() == 1;
+        let bar = progress(common.quiet, ratios.len() as u64, if alone { "tongues" } else { "ratios" });
+        let one = |&(p, q): &(u64, u64)| self.of_ratio(p, q, alone.then_some(&bar));
         for batch in ratios.chunks(BATCH) {
-            let parts: Vec<Vec<Told>> =
-                batch.par_iter().map(|&(p, q)| self.of_ratio(p, q)).collect::<Result<_>>()?;
+            let parts: Vec<Vec<Told>> = batch.par_iter().map(one).collect::<Result<_>>()?;
             for part in &parts {
                 see(part)?;
             }
-            bar.inc(batch.len() as u64);
+            bar.inc(if alone { 0 } else { batch.len() as u64 });
         }
         bar.finish_and_clear();
         Ok(())
     }
 
-    fn of_ratio(&self, p: u64, q: u64) -> Result<Vec<Told>> {
+    fn of_ratio(&self, p: u64, q: u64, bar: Option<&ProgressBar>) -> Result<Vec<Told>> {
         let mut tongues = Tongues::new(p, q, &self.stiffness.rho)?;
         let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(p, q, lambda1));
         let gaps = tongues.select(&Selection { s: window, ..self.selection.clone() })?;
-        let parts: Vec<Vec<Told>> = gaps
-            .par_chunks(CHUNK)
-            .map(|gaps| {
-                let mut own = tongues.clone();
-                gaps.iter().map(|gap| self.frame.told(&mut own, gap)).collect()
-            })
-            .collect::<Result<_>>()?;
+        if let Some(bar) = bar {
+            bar.set_length(gaps.len() as u64);
+        }
+        let chunk = |gaps: &[Gap]| {
+            let mut own = tongues.clone();
+            let told = gaps.iter().map(|gap| self.frame.told(&mut own, gap)).collect();
+            if let Some(bar) = bar {
+                bar.inc(gaps.len() as u64);
+            }
+            told
+        };
+        let parts: Vec<Vec<Told>> = gaps.par_chunks(CHUNK).map(chunk).collect::<Result<_>>()?;
         Ok(parts.into_iter().flatten().collect())
     }
 

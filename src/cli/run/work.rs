@@ -1,0 +1,207 @@
+//! The products of a scene, computed.
+
+use std::cell::{OnceCell, RefCell};
+use std::path::{Path, PathBuf};
+
+use super::tongues;
+use crate::cli::args::Common;
+use crate::cli::plane::{DPI, Verdicts};
+use crate::cli::tongues as answers;
+use crate::cli::{closings, compare, curves, map, polynomial, proposition};
+use crate::error::Result;
+use crate::map::Products;
+use crate::report::closings::DIGITS;
+use crate::report::document::Document;
+use crate::report::figure::{Figure, png};
+use crate::report::file::write_output;
+use crate::report::map::MapArrays;
+use crate::report::tongues::Tally;
+use crate::report::{document, plane};
+use crate::resonance::{Curve, Window};
+use crate::scene::{Format, Product, Scene, Want};
+use crate::tongue::Wanted;
+use crate::verdict::Limits;
+
+/// What the products are made of, each part computed when first asked for.
+pub struct Work<'a> {
+    scene: &'a Scene,
+    common: &'a Common,
+    limits: Limits,
+    threads: usize,
+    /// Where the arrays of the map go, if they are wanted.
+    archive: Option<PathBuf>,
+    verdicts: OnceCell<Verdicts>,
+    /// Filled with the verdicts, taken when written.
+    arrays: RefCell<Option<MapArrays>>,
+    curves: OnceCell<Vec<Curve>>,
+    documents: [OnceCell<Document>; 7],
+    /// What the tongues told, once they were written.
+    tongues: OnceCell<Tally>,
+    figures: [OnceCell<String>; 3],
+}
+
+impl<'a> Work<'a> {
+    pub fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
+        let (limits, threads) = (common.limits(), common.threads());
+        let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
+        Work {
+            scene,
+            common,
+            limits,
+            threads,
+            archive: arrays.map(|want| folder.join(want.file_name())),
+            verdicts: OnceCell::new(),
+            arrays: RefCell::default(),
+            curves: OnceCell::new(),
+            documents: Default::default(),
+            tongues: OnceCell::new(),
+            figures: Default::default(),
+        }
+    }
+
+    /// One product, computed: its bytes, or nothing for arrays, which are on the disk already.
+    pub fn contents(&self, want: Want) -> Result<Option<Vec<u8>>> {
+        if want.format == Format::Npz { self.verdicts().map(|_| None) } else { self.bytes(want).map(Some) }
+    }
+
+    /// Writes one product's file.
+    pub fn write(&self, contents: Option<Vec<u8>>, path: &Path) -> Result<()> {
+        match contents {
+            Some(bytes) => write_output(Some(path), &bytes),
+            None => self.arrays.take().map_or(Ok(()), MapArrays::finish),
+        }
+    }
+
+    /// The bytes of one product's file, where they fit memory.
+    fn bytes(&self, want: Want) -> Result<Vec<u8>> {
+        let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
+        if want.product == Product::Tongues {
+            return self.tongues(want.format);
+        }
+        match want.format {
+            Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
+            Format::Png => png::raster(self.figure(want.product)?, DPI),
+            Format::Json => text(document::Format::Json),
+            Format::Csv => text(document::Format::Csv),
+            Format::Latex => text(document::Format::Latex),
+            Format::Text => text(document::Format::Text),
+            Format::Npz => unreachable!("arrays are streamed"),
+        }
+    }
+
+    fn document(&self, product: Product) -> Result<&Document> {
+        let slot = match product {
+            Product::Map => 0,
+            Product::Curves => 1,
+            Product::Compare => 2,
+            Product::Proposition => 3,
+            Product::Polynomial => 4,
+            Product::Closings => 5,
+            Product::Survey => 6,
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+        };
+        once(&self.documents[slot], || self.make_document(product))
+    }
+
+    fn make_document(&self, product: Product) -> Result<Document> {
+        let scene = self.scene;
+        match product {
+            Product::Map => {
+                let Verdicts { tally, marked } = self.verdicts()?;
+                Ok(map::document(&scene.grid()?, scene.range()?, tally, marked))
+            }
+            Product::Curves => {
+                Ok(curves::document(&scene.lambda1()?, scene.range()?, &scene.families()?, self.curves()?))
+            }
+            Product::Compare => {
+                compare::over_grid(&scene.grid()?, scene.range()?, &scene.tolerance()?, &self.limits)
+            }
+            Product::Proposition => proposition::document(scene.max()),
+            Product::Polynomial => {
+                let (p, q) = scene.ratio()?;
+                polynomial::check_default(p, q)?;
+                Ok(crate::report::polynomial::document(p, q))
+            }
+            Product::Closings => {
+                closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?
+                    .document(self.common, false)
+            }
+            Product::Survey => {
+                let max_sum = scene.document().max_sum.expect("the scene was checked");
+                answers::survey(max_sum, &tongues::stiffness(scene)?.rho, answers::THINNEST)
+            }
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+        }
+    }
+
+    /// The SVG of a figure.
+    fn figure(&self, product: Product) -> Result<&String> {
+        let slot = match product {
+            Product::Figure => 0,
+            Product::Overlay => 1,
+            _ => return once(&self.figures[2], || tongues::atlas(self.scene, self.common)),
+        };
+        once(&self.figures[slot], || {
+            let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
+            let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
+                if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
+            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
+        })
+    }
+
+    /// The tongues' bytes in one format.
+    fn tongues(&self, format: Format) -> Result<Vec<u8>> {
+        let growth = self.scene.document().max_sum.is_none();
+        let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
+        let (bytes, tally) = answers::bytes(&question, self.common, format)?;
+        // Every format tells the same.
+        let _ = self.tongues.set(tally);
+        Ok(bytes)
+    }
+
+    /// The lines on a product, for the closing message.
+    pub fn summary(&self, product: Product) -> Option<String> {
+        match product {
+            Product::Tongues => {
+                let question = tongues::question(self.scene, Wanted::default()).ok()?;
+                Some(self.tongues.get()?.lines(&question.words()).join("\n"))
+            }
+            _ if product.is_figure() => None,
+            _ => self.document(product).ok().map(|document| document.summary_text().to_string()),
+        }
+    }
+
+    fn verdicts(&self) -> Result<&Verdicts> {
+        once(&self.verdicts, || {
+            let grid = self.scene.grid()?;
+            let arrays = self.archive.as_ref().map(|path| MapArrays::new(path, &grid, Products::default()));
+            let mut arrays = arrays.transpose()?;
+            let verdicts = Verdicts::compute(&grid, self.threads, &self.limits, arrays.as_mut())?;
+            self.arrays.replace(arrays);
+            Ok(verdicts)
+        })
+    }
+
+    fn curves(&self) -> Result<&Vec<Curve>> {
+        once(&self.curves, || {
+            curves::sample(&self.scene.lambda1()?, &self.scene.families()?, &self.window()?)
+        })
+    }
+
+    fn window(&self) -> Result<Window> {
+        let [h1, h2] = self.scene.range()?.ranges();
+        Ok(curves::window(h1, h2))
+    }
+}
+
+/// `OnceCell::get_or_init` for a computation that can fail.
+fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
+    if cell.get().is_none() {
+        let value = make()?;
+        // Nobody else can have filled it: the cell is not shared between threads.
+        let _ = cell.set(value);
+    }
+    Ok(cell.get().expect("just filled"))
+}
