@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 20] = [
+const DOCUMENTS: [&str; 21] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -26,6 +26,7 @@ const DOCUMENTS: [&str; 20] = [
     "proposition --max 6",
     "tongues --survey --max-sum 20 --rho 1/25",
     "tongues --max-sum 9 --rho 1e-12",
+    "closings --max-sum 9 --digits 3",
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {
@@ -50,7 +51,7 @@ fn every_change_is_found_and_its_row_named() {
     let desk = Desk::new();
     let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
     type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
-    let changes: [(&str, &str, Change); 24] = [
+    let changes: [(&str, &str, Change); 26] = [
         (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
         (DOCUMENTS[0], "row 4", |d, by| {
             let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);
@@ -83,6 +84,8 @@ fn every_change_is_found_and_its_row_named() {
             d["tongues"][0]["lower"]["decimal"] = json!({"lo": text, "hi": format!("{text}9")});
         }),
         (DOCUMENTS[6], "row 2", |d, _| d["closings"][1]["m"] = json!(4)),
+        (DOCUMENTS[6], "row 2", |d, _| d["closings"][1]["m"] = json!(3)),
+        (DOCUMENTS[6], "row 4", |d, _| d["closings"][3]["below_verlet"] = json!(false)),
         (DOCUMENTS[6], "row 5", |d, _| {
             let hi = d["closings"][4]["rho"]["decimal"]["hi"].clone();
             d["closings"][4]["rho"]["decimal"]["lo"] = json!(format!("{}5", hi.as_str().unwrap()));

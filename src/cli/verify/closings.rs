@@ -25,28 +25,50 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
     let (p, q, m) = (row.whole("p")?, row.whole("q")?, row.whole("m")?);
     holds(p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1, || "is no tongue of a ratio in lowest terms".into())?;
     let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
-    let (s, rho) = (row.object("s")?, row.object("rho")?);
+    let (s, rho) = (side(row, "s")?, side(row, "rho")?);
     let four = fraction(4, 1);
-    let ends = |x: &Row| -> Checked<(Rational, Rational)> {
-        let decimal = x.object("decimal")?;
-        Ok((decimal.rational("lo")?, decimal.rational("hi")?))
-    };
-    let (s_lo, s_hi) = ends(&s)?;
-    let below = if row.flag("below_verlet")? { s_lo < four } else { s_hi >= four };
+    let below = if row.flag("below_verlet")? { s.lo < four } else { s.hi >= four };
     holds(below, || "s* is on the other side of 4".into())?;
-    if s.get("exact").is_some() {
-        let (s, rho) = (s.rational("exact")?, rho.rational("exact")?);
-        let signs = signs(p, q, &rho, &s).all();
+    if let (Some(s), Some(rho)) = (&s.exact, &rho.exact) {
+        let signs = signs(p, q, rho, s).all();
         let closed = pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero);
-        return holds(closed, || format!("its entries do not both vanish at s = {s}, rho = {rho}"));
+        holds(closed, || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
     }
-    // A hair to either side of the box, in units of its own size: there the edges have parted.
-    let (lo, hi) = ends(&rho)?;
-    let margin = &hi - &lo;
-    let orders =
-        [&lo - &margin, &hi + &margin].map(|rho| order((p, q, m), pair, &rho, (&s_lo, &s_hi), limits));
-    let [early, late] = orders;
+    // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move by no larger
+    // part of themselves than rho does (masses and eigenvalues), and rho by three of its sizes at most.
+    let margin = rho.size();
+    let reach = s.size() + &s.hi * fraction(4, 1) * &margin / &rho.lo;
+    let around = (&s.lo - &reach, &s.hi + &reach);
+    let [early, late] =
+        [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((p, q, m), pair, &rho, &around, limits));
     holds(early? != late?, || "its edges do not exchange their order".into())
+}
+
+/// One side of a closing's box.
+struct Interval {
+    lo: Rational,
+    hi: Rational,
+    exact: Option<Rational>,
+}
+
+/// The doubles and the decimals both hold the value: what they have in common.
+fn side(row: &Row, key: &str) -> Checked<Interval> {
+    let object = row.object(key)?;
+    let decimal = object.object("decimal")?;
+    let ((a, b), (c, d)) = (row.enclosure(key)?, (decimal.rational("lo")?, decimal.rational("hi")?));
+    let (lo, hi) = (a.max(c), b.min(d));
+    holds(lo <= hi, || format!("the doubles and the decimals of {key} have nothing in common"))?;
+    let exact = object.get("exact").map(|_| object.rational("exact")).transpose()?;
+    let inside = exact.as_ref().is_none_or(|x| lo <= *x && *x <= hi);
+    holds(inside, || format!("{key} lies outside its own enclosure"))?;
+    Ok(Interval { lo, hi, exact })
+}
+
+impl Interval {
+    /// Its width, or a trillionth of a trillionth of its value where it is narrower.
+    fn size(&self) -> Rational {
+        (&self.hi - &self.lo).max(&self.hi * fraction(1, 1 << 40) * fraction(1, 1 << 40))
+    }
 }
 
 /// Whether the first entry's zero near s* lies below the second's, and that the label between them is m.
@@ -54,14 +76,11 @@ fn order(
     (p, q, m): (u64, u64, u64),
     pair: [Entry; 2],
     rho: &Rational,
-    (lo, hi): (&Rational, &Rational),
+    around: &(Rational, Rational),
     limits: &Limits,
 ) -> Checked<std::cmp::Ordering> {
-    // Far wider than the box: the zeros move with rho.
-    let reach = (hi - lo) * fraction(1 << 20, 1);
-    let around = || (lo - &reach, hi + &reach);
-    let mut first = ZeroOf::new((p, q, rho), pair[0], around(), "s")?;
-    let mut second = ZeroOf::new((p, q, rho), pair[1], around(), "s")?;
+    let mut first = ZeroOf::new((p, q, rho), pair[0], around.clone(), "s")?;
+    let mut second = ZeroOf::new((p, q, rho), pair[1], around.clone(), "s")?;
     let order = part(&mut first, &mut second);
     let (lower, upper) =
         if order == Some(std::cmp::Ordering::Less) { (first, second) } else { (second, first) };
