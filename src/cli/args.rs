@@ -16,7 +16,7 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form of the result [default: json for curves and map, else text].
+    /// The form of the result [default: json for long tables, else text].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.

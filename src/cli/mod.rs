@@ -3,18 +3,22 @@
 //! Exit codes: 0 done, 1 unstable (only with `verdict --exit-code`), 2 error, with one line on standard error.
 
 mod args;
+mod closings;
 mod compare;
 mod curves;
 mod map;
 mod merge;
 mod plane;
 mod polynomial;
+mod progress;
 mod proposition;
 mod run;
 mod simulate;
 mod system;
+mod tongues;
 mod usage;
 mod verdict;
+mod verify;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -53,12 +57,18 @@ enum Command {
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
     Merge(merge::Args),
+    /// Every unstable interval (tongue) of one ratio of steps, or of all ratios p + q <= N, with certified edges.
+    Tongues(tongues::Args),
+    /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
+    Closings(closings::Args),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
     System(system::Args),
     /// Runs Algorithm 1 on a system and shows energy and growth against the prediction.
     Simulate(simulate::Args),
     /// Reads a scene file and computes the products that it wants.
     Run(run::Args),
+    /// Rechecks every row of a JSON document that kickdrift wrote, by another route.
+    Verify(verify::Args),
 }
 
 /// Runs the program with the process's arguments.
@@ -90,6 +100,9 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Map(args) => args.run(common)?,
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
+        Command::Tongues(args) => args.run(common)?,
+        Command::Closings(args) => args.run(common)?,
+        Command::Verify(args) => args.run(common)?,
         Command::System(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
     }

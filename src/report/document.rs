@@ -27,6 +27,8 @@ pub struct Document {
     input: Map<String, Value>,
     body: Map<String, Value>,
     table: Option<Table>,
+    /// Further tables, for LaTeX and text.
+    more: Vec<Table>,
     summary: String,
     all_told: bool,
 }
@@ -42,6 +44,7 @@ impl Document {
             input: Map::new(),
             body: Map::new(),
             table: None,
+            more: Vec::new(),
             summary: String::new(),
             all_told: false,
         }
@@ -78,6 +81,13 @@ impl Document {
         self
     }
 
+    /// A further table, for LaTeX and text alone.
+    #[must_use]
+    pub fn and_rows(mut self, table: Table) -> Self {
+        self.more.push(table);
+        self
+    }
+
     /// The summary for people: whole lines, the last one without a newline.
     #[must_use]
     pub fn summary(mut self, lines: &[String]) -> Self {
@@ -109,7 +119,10 @@ impl Document {
         match format {
             Format::Json => Ok(self.json()),
             Format::Csv => Ok(csv::document(table()?)),
-            Format::Latex => Ok(latex::document(table()?)),
+            Format::Latex => {
+                let all = std::iter::once(table()?).chain(&self.more).map(latex::document);
+                Ok(all.collect::<Vec<_>>().join("\n"))
+            }
             Format::Text => Ok(self.text()),
         }
     }
@@ -133,7 +146,7 @@ impl Document {
     fn text(&self) -> String {
         let mut out = self.summary.clone();
         out.push('\n');
-        if let Some(table) = self.table.as_ref().filter(|_| !self.all_told) {
+        for table in self.table.iter().chain(&self.more).filter(|_| !self.all_told) {
             let rows = table.rows().len();
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: use --format csv, json or latex to see them\n");

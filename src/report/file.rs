@@ -33,6 +33,25 @@ pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> i
     }
 }
 
+/// As [`write_with`], for content that may fail by itself: the outer error is its own and comes back as it is, the
+/// inner one is the sink's.
+///
+/// # Errors
+/// Those of the content, and as [`write_output`].
+pub fn write_or_stop(
+    path: Option<&Path>,
+    content: impl FnOnce(&mut dyn Write) -> Result<io::Result<()>>,
+) -> Result<()> {
+    let mut stopped = None;
+    let written = write_with(path, |sink| {
+        content(sink).unwrap_or_else(|error| {
+            stopped = Some(error);
+            Err(io::Error::other("the content was not finished"))
+        })
+    });
+    stopped.map_or(written, Err)
+}
+
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut sink = BufWriter::new(io::stdout().lock());
     match content(&mut sink).and_then(|()| sink.flush()) {

@@ -3,14 +3,16 @@
 //! The lower half knows no physics. A [`table::Table`] holds typed cells and each format is one file
 //! ([`csv`], [`latex`], [`text`], and JSON through `serde`), [`npz`] holds arrays too large for memory; a [`figure::Figure`] holds panels of layers and
 //! is drawn as SVG, from which the PNG is rasterized; [`file`](mod@file) puts the bytes where they belong, whole or
-//! not at all. On it stand a [`document::Document`] for every kind of result, one file each, and the drawings
+//! not at all. On it stand a [`document::Document`] for every kind of result, one file or folder each, and the drawings
 //! of the (h1, h2) [`plane`].
 
 pub mod certificate;
+pub mod closings;
 pub mod compare;
 pub mod csv;
 pub mod curves;
 pub mod decimal;
+pub mod digits;
 pub mod document;
 pub mod figure;
 pub mod file;
@@ -21,7 +23,11 @@ pub mod plane;
 pub mod polynomial;
 pub mod proposition;
 pub mod simulate;
+pub mod stream;
+pub mod strength;
+pub mod survey;
 pub mod system;
 pub mod table;
 pub mod text;
+pub mod tongues;
 pub mod verdict;

@@ -29,6 +29,16 @@ pub struct Document {
     pub ratio: Option<String>,
     /// The bound on p and q of exhaustive checks.
     pub max: Option<u64>,
+    /// All coprime p + q up to this, for products about many ratios.
+    pub max_sum: Option<u64>,
+    /// lambda2/lambda1, in place of lambda2.
+    pub rho: Option<String>,
+    /// Where closings are searched.
+    pub rho_range: Option<String>,
+    /// The steps that tongues and the atlas show.
+    pub window: Option<Window>,
+    /// What the atlas's colours tell: family or growth.
+    pub colour: Option<String>,
     /// The products, `NAME` or `NAME.FORMAT`.
     pub want: Vec<String>,
 }
@@ -46,6 +56,14 @@ pub struct Grid {
     /// The range of h1.
     pub h1: String,
     /// The range of h2.
+    pub h2: String,
+}
+
+/// Closed ranges `LO..HI` of the steps.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Window {
+    pub h1: String,
     pub h2: String,
 }
 

@@ -24,7 +24,7 @@ mod want;
 
 use crate::error::{Error, Result};
 use crate::map::Grid;
-use crate::number::parse::{parse, parse_integer_range, parse_ratio, parse_rational};
+use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
 use crate::number::{Laurent, Rational};
 
 pub use document::Document;
@@ -47,6 +47,9 @@ pub struct Families {
     pub b: (i64, i64),
     pub samples: usize,
 }
+
+/// A closed range of steps.
+pub type StepRange = (Laurent, Laurent);
 
 /// The longest scene file read, in bytes: a scene is written by hand.
 pub const LONGEST: usize = 1 << 20;
@@ -168,12 +171,46 @@ impl Scene {
         self.document.max.unwrap_or(60)
     }
 
+    /// ρ = L2/L1, where it is given as such.
+    ///
+    /// # Errors
+    /// Where it does not parse.
+    pub fn rho(&self) -> Result<Option<Rational>> {
+        self.document.rho.as_ref().map(|text| parse_rational("rho", text)).transpose()
+    }
+
+    /// The closed range of ρ in which closings are searched; 1/10000..100 unless the scene says otherwise.
+    ///
+    /// # Errors
+    /// Where it does not parse or is not rational.
+    pub fn rho_range(&self) -> Result<(Rational, Rational)> {
+        let text = self.document.rho_range.as_deref().unwrap_or("1/10000..100");
+        let (lo, hi) = parse_range("rho_range", text)?;
+        let both = lo.as_rational().zip(hi.as_rational());
+        both.ok_or_else(|| Error::input("rho_range", text, "must be rational; write it without pi"))
+    }
+
+    /// The steps to show.
+    ///
+    /// # Errors
+    /// Where a range does not parse.
+    pub fn window(&self) -> Result<Option<[StepRange; 2]>> {
+        let Some(window) = &self.document.window else { return Ok(None) };
+        Ok(Some([parse_range("window.h1", &window.h1)?, parse_range("window.h2", &window.h2)?]))
+    }
+
     /// What is given parses, wanted or not.
     fn parses(&self) -> Result<()> {
         let Document { lambda1, lambda2, ratio, .. } = &self.document;
         lambda1.as_ref().map(|_| self.lambda1()).transpose()?;
         lambda2.as_ref().map(|_| self.lambda2()).transpose()?;
         ratio.as_ref().map(|_| self.ratio()).transpose()?;
+        self.rho().and(self.rho_range()).and(self.window())?;
+        if let Some(colour) =
+            self.document.colour.as_ref().filter(|c| !["family", "growth"].contains(&c.as_str()))
+        {
+            return Err(Error::input("colour", colour, "choose family or growth"));
+        }
         self.families().and(self.tolerance()).map(drop)
     }
 
@@ -184,7 +221,31 @@ impl Scene {
             Product::Curves => self.lambda1().and(self.range().map(drop)),
             Product::Polynomial => self.ratio().map(drop),
             Product::Proposition => Ok(()),
+            Product::Closings => self.has_ratios(),
+            Product::Tongues => self.has_ratios().and(self.has_rho()),
+            Product::Survey => self.has_max_sum().and(self.has_rho()),
+            Product::Atlas => {
+                self.has_ratios()?;
+                self.lambda1()?;
+                self.has_rho()?;
+                match self.document.window {
+                    Some(_) => Ok(()),
+                    None => Err(missing("window", "{\"h1\": \"0..2/pi\", \"h2\": \"0..7/2\"}")),
+                }
+            }
         }
+    }
+
+    fn has_max_sum(&self) -> Result<()> {
+        self.document.max_sum.map(drop).ok_or_else(|| missing("max_sum", "40"))
+    }
+
+    fn has_ratios(&self) -> Result<()> {
+        if self.document.max_sum.is_some() { Ok(()) } else { self.ratio().map(drop) }
+    }
+
+    fn has_rho(&self) -> Result<()> {
+        if self.document.rho.is_some() { Ok(()) } else { self.lambda1().and(self.lambda2()).map(drop) }
     }
 }
 

@@ -19,6 +19,14 @@ pub enum Product {
     Figure,
     /// Unstable pairs under the curves.
     Overlay,
+    /// The tongues of the ratio, or of all ratios.
+    Tongues,
+    /// Where tongues close.
+    Closings,
+    /// All tongues of all ratios, counted and compared.
+    Survey,
+    /// All tongues of all ratios in the plane.
+    Atlas,
 }
 
 /// The form of a product's file.
@@ -41,7 +49,7 @@ pub struct Want {
     pub format: Format,
 }
 
-const PRODUCTS: [(&str, Product); 7] = [
+const PRODUCTS: [(&str, Product); 11] = [
     ("map", Product::Map),
     ("curves", Product::Curves),
     ("compare", Product::Compare),
@@ -49,6 +57,10 @@ const PRODUCTS: [(&str, Product); 7] = [
     ("polynomial", Product::Polynomial),
     ("figure", Product::Figure),
     ("overlay", Product::Overlay),
+    ("tongues", Product::Tongues),
+    ("closings", Product::Closings),
+    ("survey", Product::Survey),
+    ("atlas", Product::Atlas),
 ];
 
 const FORMATS: [(&str, Format); 7] = [
@@ -102,7 +114,7 @@ impl Product {
 
     /// Whether it is drawn.
     pub fn is_figure(self) -> bool {
-        matches!(self, Product::Figure | Product::Overlay)
+        matches!(self, Product::Figure | Product::Overlay | Product::Atlas)
     }
 }
 

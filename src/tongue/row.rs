@@ -11,7 +11,7 @@
 //! assert_eq!(tongues.effort().doubles, 2); // no other edge was computed
 //! ```
 
-use num_traits::{ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::gaps::{Gap, Tongues};
 use super::peak::Peak;
@@ -183,10 +183,33 @@ impl Tongues {
             (Some(Sign::Positive), Some(Sign::Negative)) => Side::Inside,
             (at_lower, _) => self.decide_side(gap, at_lower.is_none())?,
         };
-        let (below, above) = (lower.lo - nearest, nearest - upper.hi);
-        let on_edge = matches!(side, Side::OnLower | Side::OnUpper);
-        let distance = if on_edge { 0.0 } else { below.max(above) };
+        let distance = match side {
+            Side::Below => self.distance(gap.m, &lower)?,
+            Side::Above => self.distance(gap.m, &upper)?,
+            Side::OnLower | Side::OnUpper => 0.0,
+            Side::Inside => -self.distance(gap.m, &lower)?.min(self.distance(gap.m, &upper)?),
+        };
         Ok(Some(Predicted { s: nearest, side, distance }))
+    }
+
+    /// How far the predicted point is from an edge that it is not; rounded, but never to 0 or to the other side.
+    fn distance(&mut self, m: u64, edge: &Edge) -> Result<f64> {
+        let from_doubles = |s: f64| (edge.lo - s).max(s - edge.hi);
+        let near = from_doubles(self.resonance(m, 128).mid_f64());
+        // Two roundings of s: of a larger distance they take less than a millionth.
+        if near > 1e6 * f64::EPSILON * edge.hi {
+            return Ok(near);
+        }
+        let mut digits = 40;
+        loop {
+            let precise = self.refine(edge, digits)?;
+            let s = self.resonance(m, 4 * digits + 64);
+            let (below, above) = (&precise.lo - s.upper(), s.lower() - &precise.hi);
+            if let Some(distance) = [below, above].into_iter().find(Signed::is_positive) {
+                return Ok(rational::to_f64(&distance));
+            }
+            digits *= 2;
+        }
     }
 
     /// How a ball compares with an edge, where their enclosures are apart.

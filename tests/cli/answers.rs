@@ -180,7 +180,19 @@ fn the_proposition_holds_with_a_witness_for_every_resonant_point() {
 
 #[test]
 fn every_command_explains_itself() {
-    for command in ["verdict", "curves", "compare", "proposition", "polynomial", "map", "run"] {
+    let commands = [
+        "verdict",
+        "curves",
+        "compare",
+        "proposition",
+        "polynomial",
+        "map",
+        "run",
+        "tongues",
+        "closings",
+        "verify",
+    ];
+    for command in commands {
         let help = stdout(&[command, "--help"]);
         assert!(help.contains(&format!("Usage: kickdrift {command}")), "{help}");
         assert!(help.lines().all(|line| line.chars().count() <= 140), "{help}");

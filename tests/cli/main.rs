@@ -6,3 +6,5 @@ mod golden;
 mod refusals;
 mod scenes;
 mod support;
+mod tongues;
+mod verify;

@@ -135,6 +135,40 @@ fn ranges_and_grids_without_a_pair() {
 }
 
 #[test]
+fn tongues_that_are_none() {
+    let desk = Desk::new();
+    let tongues = |line: &str, parts: &[&str]| {
+        let flags: Vec<&str> = line.split_whitespace().collect();
+        refused(&desk, &flags, parts);
+    };
+    tongues("tongues --ratio 7/3 --rho -1/25", &["rho = -1/25", "`map`"]);
+    tongues("tongues --ratio 7/3 --lambda1 10 --lambda2 -2/5", &["rho = -1/25", "`map`"]);
+    tongues("tongues --ratio 7/3 --lambda1 -10 --rho 1", &["lambda1 = -10", "positive"]);
+    tongues("tongues --ratio 7/3 --lambda1 pi^2 --lambda2 1", &["lambda2/lambda1 = (1)/(pi^2)", "rational"]);
+    tongues("tongues --ratio 7/3", &["rho missing", "--lambda2"]);
+    tongues("tongues --rho 1", &["ratio missing", "--max-sum"]);
+    tongues("tongues --ratio 7/3 --rho 1 --lambda2 1", &["rho = given with lambda2"]);
+    tongues("tongues --ratio 7/3 --max-sum 9 --rho 1", &["--max-sum"]);
+    tongues("tongues --ratio 7/3 --rho 1 --m 10", &["m = 10", "1 to 9"]);
+    tongues("tongues --ratio 7/3 --rho 1 --m 0", &["m = 0", "begin at 1"]);
+    tongues("tongues --ratio 7/3 --rho 1 --m 4..2", &["m = 4..2", "smaller number first"]);
+    tongues("tongues --ratio 7/3 --rho 1 --h1-range 1..2", &["lambda1 missing", "s = h1^2 lambda1"]);
+    tongues("tongues --ratio 7/3 --rho 1 --digits 0", &["digits = 0", "1 to 10000"]);
+    tongues("tongues --ratio 7/3 --rho 1e40", &["rho = 1", "1e16"]);
+    tongues("tongues --ratio 99999999/1 --rho 1 --m 1", &["99999999/1", "kicks"]);
+    tongues("tongues --max-sum 1 --rho 1", &["max-sum = 1", "2 to"]);
+    tongues("tongues --max-sum 9 --rho 1 --columns width", &["columns = width", "growth"]);
+    tongues("tongues --max-sum 9 --rho 1 --colour growth", &["--colour = given", ".svg"]);
+    tongues("tongues --max-sum 9 --rho 1 --survey --m 3", &["--m = given", "all tongues"]);
+    tongues("tongues --ratio 7/3 --rho 1 --survey", &["max-sum missing"]);
+    tongues("tongues --max-sum 9 --rho 1 --thinnest 3", &["--thinnest = given", "--survey"]);
+    tongues("closings --ratio 5/3 --rho-range -1..2", &["rho-range = -1..2", "0 < LO"]);
+    tongues("closings --ratio 5/3 --m 7", &["m = 7", "1 to 6"]);
+    tongues("closings --max-sum 9 --m 3", &["m = given", "--ratio"]);
+    tongues("closings --max-sum 9 --samples 1", &["samples = 1", "choose 2"]);
+}
+
+#[test]
 fn scenes_that_cannot_be_read_or_meant() {
     let desk = Desk::new();
     refused(&desk, &["run", "no.json"], &["no.json", "cannot read the scene", "name a scene file"]);
@@ -154,6 +188,9 @@ fn scenes_that_cannot_be_read_or_meant() {
         (r#"{"schema": "kickdrift/scene/1", "want": ["map.png"]}"#, &["want = map.png", "csv"]),
         (r#"{"schema": "kickdrift/scene/1", "want": ["map"]}"#, &["grid missing", "add"]),
         (r#"{"schema": "kickdrift/scene/1", "want": ["polynomial"]}"#, &["ratio missing", "7/2"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["tongues"]}"#, &["ratio missing", "7/2"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": ["survey"], "rho": "1"}"#, &["max_sum missing", "40"]),
+        (r#"{"schema": "kickdrift/scene/1", "want": [], "colour": "red"}"#, &["colour = red", "growth"]),
         (r#"{"schema": "kickdrift/scene/1", "lamda1": "1", "want": []}"#, &["lamda1", "lambda1"]),
         (r#"{"schema": "kickdrift/scene/1", "lambda1": 0.3, "want": []}"#, &["0.3", "string"]),
         (r#"{"schema": "kickdrift/scene/1", "lambda1": "1/0", "want": []}"#, &["lambda1 = 1/0", "zero"]),

@@ -1,9 +1,8 @@
 //! Where a map's bands come from: computed, resumed, or joined from parts.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use super::Map;
 use crate::cli::args::Common;
+use crate::cli::progress::progress;
 use crate::error::Result;
 use crate::map::{Band, Shard, Store, for_each_band, merge, resume};
 use crate::verdict::Limits;
@@ -30,7 +29,7 @@ impl Source {
         match self {
             Source::Joined(stores) => merge(grid, stores, |_, band| see(&band)).map(drop),
             Source::Computed { shard, store, threads, limits, quiet } => {
-                let bar = if *quiet { ProgressBar::hidden() } else { progress(shard.pairs(grid)) };
+                let bar = progress(*quiet, shard.pairs(grid), "pairs");
                 let see = |_, band: Band| {
                     see(&band)?;
                     bar.inc(band.counters.pairs);
@@ -45,11 +44,4 @@ impl Source {
             }
         }
     }
-}
-
-/// A bar on standard error, which shows itself on a terminal only.
-fn progress(pairs: u64) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(pairs), ProgressDrawTarget::stderr());
-    let template = "{bar:30} {human_pos} of {human_len} pairs, {per_sec}, {eta} left";
-    bar.with_style(ProgressStyle::with_template(template).expect("the template is sound"))
 }

@@ -46,12 +46,12 @@ impl Colouring {
 }
 
 /// The place of a in 0, 1, -1, 2, -2, ...
-fn rank(a: i64) -> f64 {
+pub(super) fn rank(a: i64) -> f64 {
     if a > 0 { 2.0 * a as f64 - 1.0 } else { -2.0 * a as f64 }
 }
 
 /// The a at a place.
-fn of_rank(rank: f64) -> i64 {
+pub(super) fn of_rank(rank: f64) -> i64 {
     let half = (rank / 2.0).ceil() as i64;
     if rank % 2.0 == 1.0 { half } else { -half }
 }
@@ -72,9 +72,9 @@ pub struct Chart {
 }
 
 /// Shades of a gradient: neighbours are barely told apart.
-const SHADES: u16 = 40;
+pub(super) const SHADES: u16 = 40;
 /// Families with a colour of their own; the others share a grey.
-const FAMILIES: usize = 8;
+pub(super) const FAMILIES: usize = 8;
 /// Exponential growth, where curves are drawn over it.
 const BEHIND_CURVES: Colour = Colour(0x92, 0xb4, 0xdc);
 /// Pairs in points of paper; on an edge they are few and should be found.
@@ -186,7 +186,7 @@ impl Chart {
     }
 }
 
-fn family_name(rank: f64) -> String {
+pub(super) fn family_name(rank: f64) -> String {
     if !rank.is_finite() {
         return "not labelled".into();
     }
@@ -209,12 +209,12 @@ pub fn window(grid: &Grid) -> Window {
 }
 
 /// An axis over the range; one that begins near zero begins at zero.
-fn axis(label: &str, (lo, hi): (f64, f64)) -> Axis {
+pub(super) fn axis(label: &str, (lo, hi): (f64, f64)) -> Axis {
     Axis::linear(label, if lo < 0.1 * hi { 0.0 } else { lo }, hi)
 }
 
 /// (a, b) beside each thick curve, where it enters the window from the left, a little below its top.
-fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
+pub(super) fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
     let share = |(lo, hi): (f64, f64), x: f64| (x - lo) / (hi - lo);
     for curve in curves.iter().filter(|curve| stroke(curve.a) == stroke(0)) {
         let roomy = |h1: f64, h2: f64| share(window.h1, h1) > 0.06 && share(window.h2, h2) < 0.94;
@@ -231,7 +231,7 @@ fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
 }
 
 /// A count with its digits in groups of three.
-fn grouped(count: u64) -> String {
+pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let groups: Vec<&str> =
         digits.as_bytes().rchunks(3).rev().map(|group| std::str::from_utf8(group).expect("digits")).collect();

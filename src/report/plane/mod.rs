@@ -1,11 +1,13 @@
-//! The (h1, h2) plane drawn: unstable pairs, resonance curves, and one over the other.
+//! The (h1, h2) plane drawn: unstable pairs, resonance curves, and one over the other; and the atlas of all tongues.
 
+mod atlas;
 mod chart;
 mod raster;
 
+pub use atlas::{Atlas, Segment};
 pub use chart::{Chart, Colouring, window};
 
-use super::figure::palette::Colour;
+use super::figure::palette::{Colour, INK};
 use super::figure::{Axis, Cells, Dash, Figure, Layer, Panel, Place, Stroke};
 use crate::resonance::{Curve, Window};
 
@@ -48,7 +50,12 @@ fn cells(cloud: &Cloud, colour: Colour) -> Layer {
 }
 
 /// One layer for each a, in the paper's line styles, and the legend.
-fn lines(mut panel: Panel, curves: &[Curve]) -> Panel {
+fn lines(panel: Panel, curves: &[Curve]) -> Panel {
+    lines_in(INK, "", panel, curves)
+}
+
+/// The same in another colour, with something before the names.
+fn lines_in(colour: Colour, before: &str, mut panel: Panel, curves: &[Curve]) -> Panel {
     let mut families: Vec<i64> = curves.iter().map(|curve| curve.a).collect();
     families.sort_unstable();
     families.dedup();
@@ -56,7 +63,8 @@ fn lines(mut panel: Panel, curves: &[Curve]) -> Panel {
         let of_a = curves.iter().filter(|curve| curve.a == a);
         let pieces = of_a.flat_map(|curve| &curve.pieces);
         let lines = pieces.map(|piece| piece.iter().map(|p| [p.h1, p.h2]).collect()).collect();
-        panel = panel.with(Layer::lines(lines, stroke(a)).labelled(&format!("*a* = {a}")));
+        let layer = Layer::lines(lines, stroke(a).in_colour(colour));
+        panel = panel.with(layer.labelled(&format!("{before}*a* = {a}")));
     }
     panel.legend(Place::Above)
 }

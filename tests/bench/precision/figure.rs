@@ -41,7 +41,7 @@ pub fn precision(traces: &[Row], verdicts: &Verdicts) -> Figure {
             points,
             Shape::Disc,
             3.0,
-            colour(method),
+            line.colour,
         ))
     });
     let right = Panel::new(

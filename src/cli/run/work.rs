@@ -1,73 +1,31 @@
-//! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
+//! The products of a scene, computed.
 
 use std::cell::{OnceCell, RefCell};
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format as DocumentFormat, echo_grid};
-use super::plane::{DPI, Verdicts};
-use super::{compare, curves, map, polynomial, proposition};
-use crate::error::{Error, Result};
+use super::tongues;
+use crate::cli::args::Common;
+use crate::cli::plane::{DPI, Verdicts};
+use crate::cli::tongues as answers;
+use crate::cli::{closings, compare, curves, map, polynomial, proposition};
+use crate::error::Result;
 use crate::map::Products;
+use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
-use crate::report::file::{Folder, write_output};
+use crate::report::file::write_output;
 use crate::report::map::MapArrays;
+use crate::report::tongues::Tally;
 use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
-use crate::scene::{self, Format, Product, Scene, Want};
+use crate::scene::{Format, Product, Scene, Want};
+use crate::tongue::Wanted;
 use crate::verdict::Limits;
 
-/// Flags of `run`.
-#[derive(Debug, clap::Args)]
-pub struct Args {
-    /// The scene, a JSON file as data/scenes/figure1.json.
-    #[arg(value_name = "SCENE.json")]
-    scene: PathBuf,
-}
-
-impl Args {
-    pub fn run(&self, common: &Common) -> Result<()> {
-        let scene = Scene::read(&self.text()?)?;
-        let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
-        let work = Work::new(&scene, common, folder.path());
-        // All products before the first file: an error leaves nothing behind.
-        let contents = scene.want().iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
-        let mut summary = Summary::default();
-        for (want, contents) in scene.want().iter().zip(contents) {
-            let path = folder.path().join(want.file_name());
-            work.write(contents, &path)?;
-            summary.add(*want, &path, &work);
-        }
-        folder.keep();
-        let document = echo(summary.document(&scene), &scene)?;
-        let format = common.format.unwrap_or(DocumentFormat::Text).into();
-        write_output(None, document.render(format)?.as_bytes())
-    }
-
-    /// The text of the scene file; no more of it than a scene may have.
-    fn text(&self) -> Result<String> {
-        let read = || {
-            let mut text = String::new();
-            let file = std::fs::File::open(&self.scene)?;
-            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
-            Ok(text)
-        };
-        read().map_err(|cause: std::io::Error| {
-            let remedy = "name a scene file, such as data/scenes/figure1.json";
-            Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
-        })
-    }
-
-    /// `out/` and the scene's name.
-    fn default_folder(&self) -> PathBuf {
-        Path::new("out").join(self.scene.file_stem().unwrap_or_default())
-    }
-}
-
 /// What the products are made of, each part computed when first asked for.
-struct Work<'a> {
+pub struct Work<'a> {
     scene: &'a Scene,
+    common: &'a Common,
     limits: Limits,
     threads: usize,
     /// Where the arrays of the map go, if they are wanted.
@@ -76,16 +34,19 @@ struct Work<'a> {
     /// Filled with the verdicts, taken when written.
     arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
-    documents: [OnceCell<Document>; 5],
-    figures: [OnceCell<String>; 2],
+    documents: [OnceCell<Document>; 7],
+    /// What the tongues told, once they were written.
+    tongues: OnceCell<Tally>,
+    figures: [OnceCell<String>; 3],
 }
 
 impl<'a> Work<'a> {
-    fn new(scene: &'a Scene, common: &Common, folder: &Path) -> Self {
+    pub fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
         let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
+            common,
             limits,
             threads,
             archive: arrays.map(|want| folder.join(want.file_name())),
@@ -93,17 +54,18 @@ impl<'a> Work<'a> {
             arrays: RefCell::default(),
             curves: OnceCell::new(),
             documents: Default::default(),
+            tongues: OnceCell::new(),
             figures: Default::default(),
         }
     }
 
     /// One product, computed: its bytes, or nothing for arrays, which are on the disk already.
-    fn contents(&self, want: Want) -> Result<Option<Vec<u8>>> {
+    pub fn contents(&self, want: Want) -> Result<Option<Vec<u8>>> {
         if want.format == Format::Npz { self.verdicts().map(|_| None) } else { self.bytes(want).map(Some) }
     }
 
     /// Writes one product's file.
-    fn write(&self, contents: Option<Vec<u8>>, path: &Path) -> Result<()> {
+    pub fn write(&self, contents: Option<Vec<u8>>, path: &Path) -> Result<()> {
         match contents {
             Some(bytes) => write_output(Some(path), &bytes),
             None => self.arrays.take().map_or(Ok(()), MapArrays::finish),
@@ -113,6 +75,9 @@ impl<'a> Work<'a> {
     /// The bytes of one product's file, where they fit memory.
     fn bytes(&self, want: Want) -> Result<Vec<u8>> {
         let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
+        if want.product == Product::Tongues {
+            return self.tongues(want.format);
+        }
         match want.format {
             Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
             Format::Png => png::raster(self.figure(want.product)?, DPI),
@@ -131,7 +96,10 @@ impl<'a> Work<'a> {
             Product::Compare => 2,
             Product::Proposition => 3,
             Product::Polynomial => 4,
-            Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+            Product::Closings => 5,
+            Product::Survey => 6,
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
         };
         once(&self.documents[slot], || self.make_document(product))
     }
@@ -155,19 +123,54 @@ impl<'a> Work<'a> {
                 polynomial::check_default(p, q)?;
                 Ok(crate::report::polynomial::document(p, q))
             }
-            Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
+            Product::Closings => {
+                closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?
+                    .document(self.common, false)
+            }
+            Product::Survey => {
+                let max_sum = scene.document().max_sum.expect("the scene was checked");
+                answers::survey(max_sum, &tongues::stiffness(scene)?.rho, answers::THINNEST)
+            }
+            Product::Tongues => unreachable!("tongues are streamed"),
+            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
         }
     }
 
     /// The SVG of a figure.
     fn figure(&self, product: Product) -> Result<&String> {
-        let slot = &self.figures[usize::from(product == Product::Overlay)];
-        once(slot, || {
+        let slot = match product {
+            Product::Figure => 0,
+            Product::Overlay => 1,
+            _ => return once(&self.figures[2], || tongues::atlas(self.scene, self.common)),
+        };
+        once(&self.figures[slot], || {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
             Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
         })
+    }
+
+    /// The tongues' bytes in one format.
+    fn tongues(&self, format: Format) -> Result<Vec<u8>> {
+        let growth = self.scene.document().max_sum.is_none();
+        let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
+        let (bytes, tally) = answers::bytes(&question, self.common, format)?;
+        // Every format tells the same.
+        let _ = self.tongues.set(tally);
+        Ok(bytes)
+    }
+
+    /// The lines on a product, for the closing message.
+    pub fn summary(&self, product: Product) -> Option<String> {
+        match product {
+            Product::Tongues => {
+                let question = tongues::question(self.scene, Wanted::default()).ok()?;
+                Some(self.tongues.get()?.lines(&question.words()).join("\n"))
+            }
+            _ if product.is_figure() => None,
+            _ => self.document(product).ok().map(|document| document.summary_text().to_string()),
+        }
     }
 
     fn verdicts(&self) -> Result<&Verdicts> {
@@ -201,62 +204,4 @@ fn once<T>(cell: &OnceCell<T>, make: impl FnOnce() -> Result<T>) -> Result<&T> {
         let _ = cell.set(value);
     }
     Ok(cell.get().expect("just filled"))
-}
-
-/// What was written, for the closing message.
-#[derive(Default)]
-struct Summary {
-    lines: Vec<String>,
-    products: Vec<serde_json::Value>,
-}
-
-impl Summary {
-    fn add(&mut self, want: Want, path: &Path, work: &Work) {
-        let file = path.display().to_string();
-        self.lines.push(file.clone());
-        // A product's summary is told once, with its first file.
-        let known = self.products.iter().any(|p| p["product"] == want.product.name());
-        if !known
-            && !want.product.is_figure()
-            && let Ok(document) = work.document(want.product)
-        {
-            self.lines.extend(document.summary_text().lines().map(|line| format!("    {line}")));
-        }
-        self.products.push(serde_json::json!({"product": want.product.name(), "file": file}));
-    }
-
-    fn document(self, scene: &Scene) -> Document {
-        let heading = if scene.title().is_empty() { vec![] } else { vec![scene.title().to_string()] };
-        let lines: Vec<String> = heading.into_iter().chain(self.lines).collect();
-        Document::new("run").input("title", scene.title()).entry("products", self.products).summary(&lines)
-    }
-}
-
-/// Echoes what the scene gives, exactly.
-fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
-    let given = scene.document();
-    if given.lambda1.is_some() {
-        document = document.input("lambda1", scene.lambda1()?);
-    }
-    if given.lambda2.is_some() {
-        document = document.input("lambda2", scene.lambda2()?);
-    }
-    if let Ok(range) = scene.range() {
-        document = echo_grid(document, range);
-    }
-    if given.families.is_some() {
-        document = curves::echo(document, &scene.families()?);
-    }
-    if given.tolerance.is_some() {
-        document = document.input("tolerance", scene.tolerance()?);
-    }
-    if given.ratio.is_some() {
-        let (p, q) = scene.ratio()?;
-        document = document.input("ratio", format!("{p}/{q}"));
-    }
-    if let Some(max) = given.max {
-        document = document.input("max", max);
-    }
-    let want: Vec<String> = scene.want().iter().map(Want::file_name).collect();
-    Ok(document.input("want", want.join(", ")))
 }

@@ -1,0 +1,182 @@
+//! `kickdrift closings`: where tongues close.
+
+use rayon::prelude::*;
+
+use super::args::{Common, Format, shown_range, whole};
+use super::map::Target;
+use super::progress::progress;
+use super::tongues::{Ratios, parse_list, shown_list};
+use crate::error::{Error, Result};
+use crate::number::parse::{parse_range, parse_ratio};
+use crate::number::{Laurent, Rational};
+use crate::report::closings::{self, DIGITS, OfRatio};
+use crate::report::document::Document;
+use crate::report::file::write_output;
+use crate::tongue::{Found, Search, closings as search, ratios};
+
+/// Flags of `closings`: a ratio or all of them.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// h2/h1 = p/q.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
+    ratio: Option<String>,
+    /// All coprime p + q up to this number.
+    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
+    max_sum: Option<u64>,
+    /// Only these labels (with --ratio), as 4 or 1,3,7..9.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    m: Option<String>,
+    /// The closed range of rho = lambda2/lambda1, positive.
+    #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true)]
+    rho_range: String,
+    /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<usize>)]
+    samples: usize,
+    /// Significant digits of s and rho.
+    #[arg(long, value_name = "N", default_value_t = DIGITS, value_parser = whole::<u32>)]
+    digits: u32,
+}
+
+/// All that `closings` asks.
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub ratios: Ratios,
+    pub m: Option<Vec<(u64, u64)>>,
+    pub rho: (Rational, Rational),
+    pub samples: usize,
+    pub digits: u32,
+}
+
+/// Searches cost p + q squared for each of the samples.
+const MOST_SUM: u64 = 200;
+const MOST_SAMPLES: usize = 1_000_000;
+/// The boxes are known to 2^-100 of their centres.
+const MOST_DIGITS: u32 = 28;
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let format = match Target::of(common) {
+            Target::Json => Format::Json,
+            Target::Text => Format::Text,
+            Target::Csv => Format::Csv,
+            Target::Latex => Format::Latex,
+            _ => {
+                return Err(Error::input(
+                    "output",
+                    "a figure",
+                    "closings are a table: json, txt, csv or tex",
+                ));
+            }
+        };
+        let document = self.question()?.document(common, matches!(format, Format::Csv))?;
+        write_output(common.output.as_deref(), document.render(format.into())?.as_bytes())
+    }
+
+    fn question(&self) -> Result<Question> {
+        let ratios = match (&self.ratio, self.max_sum) {
+            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q))?,
+            (None, Some(max_sum)) => Ratios::UpTo(max_sum),
+            (Some(_), Some(_)) => {
+                return Err(Error::input("ratio", "given with --max-sum", "give one of them"));
+            }
+            (None, None) => {
+                return Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"));
+            }
+        };
+        let m = self.m.as_ref().map(|text| parse_list(text)).transpose()?;
+        let (lo, hi) = parse_range("rho-range", &self.rho_range)?;
+        let rational = |x: &Laurent| {
+            let remedy = "must be rational; write it without pi";
+            x.as_rational().ok_or_else(|| Error::input("rho-range", x, remedy))
+        };
+        Question::new(ratios, m, (rational(&lo)?, rational(&hi)?), self.samples, self.digits)
+    }
+}
+
+impl Question {
+    /// The question, if it makes sense.
+    ///
+    /// # Errors
+    /// A sum, a number of samples or digits out of range, labels of many ratios.
+    pub fn new(
+        ratios: Ratios,
+        m: Option<Vec<(u64, u64)>>,
+        rho: (Rational, Rational),
+        samples: usize,
+        digits: u32,
+    ) -> Result<Self> {
+        match ratios {
+            Ratios::UpTo(n) if !(2..=MOST_SUM).contains(&n) => {
+                return Err(Error::input("max-sum", n, format!("choose 2 to {MOST_SUM}")));
+            }
+            Ratios::UpTo(_) if m.is_some() => {
+                return Err(Error::input("m", "given with --max-sum", "labels are those of one --ratio"));
+            }
+            _ => {}
+        }
+        if !(2..=MOST_SAMPLES).contains(&samples) {
+            return Err(Error::input("samples", samples, format!("choose 2 to {MOST_SAMPLES}")));
+        }
+        if !(1..=MOST_DIGITS).contains(&digits) {
+            return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
+        }
+        Ok(Question { ratios, m, rho, samples, digits })
+    }
+
+    /// The document `kickdrift/closings/1`; its rows with all columns, or with those that fit paper.
+    ///
+    /// # Errors
+    /// As [`search`].
+    pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
+        let list = match self.ratios {
+            Ratios::One(p, q) => vec![(p, q)],
+            Ratios::UpTo(max_sum) => ratios(max_sum),
+        };
+        let bar = progress(common.quiet, list.len() as u64, "ratios");
+        let one = |(p, q): (u64, u64)| {
+            let found = self.of_ratio(p, q);
+            bar.inc(1);
+            found
+        };
+        let found: Vec<OfRatio> = list.into_par_iter().map(one).collect::<Result<_>>()?;
+        bar.finish_and_clear();
+        let (lo, hi) = &self.rho;
+        let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());
+        Ok(self.echo(closings::document(&found, self.digits, &what, all_columns)))
+    }
+
+    /// The labels one by one where some are asked for: a search for one costs two edges a sample.
+    fn of_ratio(&self, p: u64, q: u64) -> Result<OfRatio> {
+        let of = |m| search(p, q, &Search { m, rho: self.rho.clone(), samples: self.samples });
+        let Some(list) = &self.m else {
+            let Found { closings, complete } = of(None)?;
+            return Ok(OfRatio { p, q, closings, complete });
+        };
+        // The last tongue has no upper edge, and never closes.
+        let last = p + q - 2;
+        if let Some(m) = list.iter().map(|run| run.1).find(|&m| m > last) {
+            return Err(Error::input("m", m, format!("{p}/{q} has the finite tongues 1 to {last}")));
+        }
+        let labels: Vec<u64> = (1..=last).filter(|m| list.iter().any(|(a, b)| a <= m && m <= b)).collect();
+        let found: Vec<Found> = labels.into_par_iter().map(|m| of(Some(m))).collect::<Result<_>>()?;
+        let complete = found.iter().all(|found| found.complete);
+        Ok(OfRatio { p, q, closings: found.into_iter().flat_map(|found| found.closings).collect(), complete })
+    }
+
+    fn echo(&self, document: Document) -> Document {
+        let document = match self.ratios {
+            Ratios::One(p, q) => document.input("ratio", format!("{p}/{q}")),
+            Ratios::UpTo(max_sum) => document.input("max_sum", max_sum),
+        };
+        let document = match &self.m {
+            Some(list) => document.input("m", shown_list(list)),
+            None => document,
+        };
+        let range = [&self.rho.0, &self.rho.1].map(|x| Laurent::from_rational(x.clone()));
+        let [lo, hi] = range;
+        document
+            .input("rho_range", shown_range(&(lo, hi)))
+            .input("samples", self.samples)
+            .input("digits", self.digits)
+    }
+}

@@ -1,0 +1,62 @@
+//! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
+
+mod summary;
+mod tongues;
+mod work;
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use super::args::{Common, Format};
+use crate::error::{Error, Result};
+use crate::report::file::{Folder, write_output};
+use crate::scene::{self, Scene};
+use summary::{Summary, echo};
+use work::Work;
+
+/// Flags of `run`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The scene, a JSON file as data/scenes/figure1.json.
+    #[arg(value_name = "SCENE.json")]
+    scene: PathBuf,
+}
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let scene = Scene::read(&self.text()?)?;
+        let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
+        let work = Work::new(&scene, common, folder.path());
+        // All products before the first file: an error leaves nothing behind.
+        let contents = scene.want().iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
+        let mut summary = Summary::default();
+        for (want, contents) in scene.want().iter().zip(contents) {
+            let path = folder.path().join(want.file_name());
+            work.write(contents, &path)?;
+            summary.add(*want, &path, &work);
+        }
+        folder.keep();
+        let document = echo(summary.document(&scene), &scene)?;
+        let format = common.format.unwrap_or(Format::Text).into();
+        write_output(None, document.render(format)?.as_bytes())
+    }
+
+    /// The text of the scene file; no more of it than a scene may have.
+    fn text(&self) -> Result<String> {
+        let read = || {
+            let mut text = String::new();
+            let file = std::fs::File::open(&self.scene)?;
+            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
+            Ok(text)
+        };
+        read().map_err(|cause: std::io::Error| {
+            let remedy = "name a scene file, such as data/scenes/figure1.json";
+            Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
+        })
+    }
+
+    /// `out/` and the scene's name.
+    fn default_folder(&self) -> PathBuf {
+        Path::new("out").join(self.scene.file_stem().unwrap_or_default())
+    }
+}

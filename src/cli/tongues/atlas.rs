@@ -1,0 +1,133 @@
+//! The atlas of tongues in the (h1, h2) plane.
+
+use clap::ValueEnum;
+
+use super::Question;
+use crate::cli::args::Common;
+use crate::cli::curves;
+use crate::cli::map::Target;
+use crate::cli::plane::DPI;
+use crate::error::{Error, Result};
+use crate::number::Laurent;
+use crate::report::figure::{Figure, png};
+use crate::report::file::write_output;
+use crate::report::plane::{self, Segment};
+use crate::report::tongues::{Quantity, Told, ToldEdge};
+use crate::resonance::{Curve, Window};
+use crate::scene::Families;
+use crate::tongue::Wanted;
+
+/// What the colours tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// The a of the dominant family.
+    Family,
+    /// The fastest growth inside the tongue.
+    Growth,
+}
+
+impl Colour {
+    /// What has to be computed for the colours.
+    pub fn needs(self) -> Wanted {
+        Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
+    }
+}
+
+/// A question whose answer is drawn.
+pub struct Atlas<'a> {
+    question: &'a Question,
+    colour: Colour,
+    window: Window,
+    curves: Vec<Curve>,
+}
+
+/// Samples of a curve in the window: on paper a third of a millimetre apart.
+const SAMPLES: usize = 400;
+
+impl<'a> Atlas<'a> {
+    /// The window and the curves, those of the families selected unless others are given; tongues come later.
+    ///
+    /// # Errors
+    /// No L1, no window, too many curves.
+    pub fn new(question: &'a Question, colour: Colour, families: Option<Families>) -> Result<Self> {
+        let missing =
+            |field: &str, example: &str| Error::missing(field, format!("an atlas needs it, as {example}"));
+        let lambda1 =
+            question.stiffness.lambda1.as_ref().ok_or_else(|| missing("lambda1", "--lambda1 pi^2"))?;
+        let h1 = question.window.h1.as_ref().ok_or_else(|| missing("h1-range", "--h1-range 0..2/pi"))?;
+        let h2 = question.window.h2.as_ref().ok_or_else(|| missing("h2-range", "--h2-range 0..7/2"))?;
+        let window = curves::window(h1, h2);
+        for (field, (lo, hi)) in [("h1-range", window.h1), ("h2-range", window.h2)] {
+            if hi <= lo.max(0.0) {
+                return Err(Error::input(field, format!("{lo}..{hi}"), "holds no positive step to draw"));
+            }
+        }
+        let families = families.unwrap_or(Families {
+            a: question.selection.a.unwrap_or((0, 3)),
+            b: question.selection.b.unwrap_or((-12, 12)),
+            samples: SAMPLES,
+        });
+        let curves = curves::sample_within(lambda1, &families, &window)?;
+        Ok(Atlas { question, colour, window, curves })
+    }
+
+    /// Computes the tongues and writes the figure.
+    ///
+    /// # Errors
+    /// As [`Question::each`], and an unwritable place.
+    pub fn write(&self, common: &Common, target: Target) -> Result<()> {
+        let svg = self.figure(common)?.svg();
+        let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        write_output(common.output.as_deref(), &bytes)
+    }
+
+    /// The figure.
+    ///
+    /// # Errors
+    /// As [`Question::each`].
+    pub fn figure(&self, common: &Common) -> Result<Figure> {
+        let mut segments = Vec::new();
+        self.question.each(common, |part| {
+            segments.extend(part.iter().map(|told| self.segment(told)));
+            Ok(())
+        })?;
+        let title = self.title();
+        let atlas =
+            plane::Atlas { window: self.window.clone(), segments: &segments, curves: &self.curves, title };
+        Ok(match self.colour {
+            Colour::Family => atlas.by_family(),
+            Colour::Growth => atlas.by_growth(),
+        })
+    }
+
+    fn title(&self) -> String {
+        let rho = &self.question.stiffness.rho;
+        match self.question.ratios {
+            super::Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
+            super::Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
+        }
+    }
+
+    /// The last tongue has no end: it is drawn to where the window ends.
+    fn segment(&self, told: &Told) -> Segment {
+        let middle = |q: &Quantity| 0.5 * (q.lo + q.hi);
+        let place = |edge: &ToldEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
+        let ratio = told.row.p as f64 / told.row.q as f64;
+        let from = place(&told.lower);
+        let to = told.upper.as_ref().map_or([self.window.h1.1, self.window.h1.1 * ratio], place);
+        let a = told.row.family.map_or(0, |(a, _)| a);
+        Segment { from, to, a, rate: told.growth_rate, closed: told.row.gap.closed }
+    }
+}
+
+/// θ/π of an angle strictly between 0 and π that is a rational multiple of π.
+///
+/// # Errors
+/// Another angle.
+pub fn share_of_pi(theta: &Laurent) -> Result<crate::number::Rational> {
+    use num_traits::{One, Signed};
+    let share = theta.as_monomial().filter(|(power, _)| *power == 1).map(|(_, share)| share.clone());
+    share.filter(|share| share.is_positive() && *share < One::one()).ok_or_else(|| {
+        Error::input("theta", theta, "give a rational multiple of pi between 0 and pi, as pi/2")
+    })
+}

@@ -1,0 +1,242 @@
+//! `kickdrift tongues`: every unstable interval of one ratio or of all, with certified edges.
+
+mod atlas;
+mod output;
+mod question;
+mod strength;
+mod survey;
+
+use clap::ValueEnum;
+
+use super::args::{Common, whole};
+use super::map::Target;
+use crate::error::{Error, Result};
+use crate::number::parse::{
+    parse, parse_integer, parse_integer_range, parse_range, parse_ratio, parse_rational,
+};
+use crate::report::tongues::Frame;
+use crate::tongue::{Selection, Wanted};
+pub use atlas::{Atlas, Colour};
+pub use output::bytes;
+pub use question::{Question, Ratios, Stiffness, Window, shown_list};
+pub use survey::{THINNEST, document as survey};
+
+/// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// h2/h1 = p/q.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
+    ratio: Option<String>,
+    /// All coprime p + q up to this number.
+    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
+    max_sum: Option<u64>,
+    /// rho = lambda2/lambda1, not negative.
+    #[arg(long, value_name = "R", allow_hyphen_values = true)]
+    rho: Option<String>,
+    /// The fast stiffness: edges are told in h1 and h2 too.
+    #[arg(long, value_name = "X", allow_hyphen_values = true)]
+    lambda1: Option<String>,
+    /// The slow stiffness, in place of --rho.
+    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
+    lambda2: Option<String>,
+    /// Only tongues that meet this closed range of h1 (needs --lambda1).
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    h1_range: Option<String>,
+    /// Only tongues that meet this closed range of h2 (needs --lambda1).
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    h2_range: Option<String>,
+    /// Only these labels, as 4 or 1,3,7..9.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    m: Option<String>,
+    /// Only tongues whose dominant family has its a in this range.
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    a: Option<String>,
+    /// Only tongues whose dominant family has its b in this range.
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
+    b: Option<String>,
+    /// Tell the edges to so many significant digits, as decimals.
+    #[arg(long, value_name = "N", value_parser = whole::<u32>)]
+    digits: Option<u32>,
+    /// What to tell beside the edges [default: all; with --max-sum all but growth, the dearest].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    columns: Option<Vec<Columns>>,
+    /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
+    #[arg(long)]
+    survey: bool,
+    /// The thinnest tongues that a survey lists.
+    #[arg(long, value_name = "K", value_parser = whole::<usize>)]
+    thinnest: Option<usize>,
+    /// What a figure (--output FILE.svg or FILE.png) shows [default: atlas].
+    #[arg(long, value_name = "WHAT")]
+    figure: Option<Drawn>,
+    /// What the colours of an atlas tell [default: family].
+    #[arg(long, value_name = "WHAT")]
+    colour: Option<Colour>,
+    /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
+    #[arg(long, value_name = "THETA", allow_hyphen_values = true)]
+    theta: Option<String>,
+}
+
+/// What may be told of a tongue beside p, q, m, (a, b), its edges and its width.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Columns {
+    /// Nothing else.
+    Edges,
+    /// Edges in closed form.
+    Exact,
+    /// The fastest growth inside.
+    Growth,
+    /// The point p theta = m pi against the tongue.
+    Predicted,
+    /// The first-order law against the tongue.
+    FirstOrder,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Drawn {
+    /// All tongues as segments in the (h1, h2) plane, over the curves (a, b).
+    Atlas,
+    /// Measured widths over the first-order law |S_a| at one angle, against a.
+    Strength,
+}
+
+/// Digits beyond this are a slip of the keyboard.
+const MOST_DIGITS: u32 = 10_000;
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let target = Target::of(common);
+        self.check(target)?;
+        match (target, self.figure) {
+            _ if self.survey => {
+                survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, target)
+            }
+            (Target::Svg | Target::Png, Some(Drawn::Strength)) => {
+                let theta = parse("theta", self.theta.as_deref().unwrap_or("pi/2"))?;
+                strength::run(self.ratios()?, &self.stiffness()?, &theta, common, target)
+            }
+            (Target::Svg | Target::Png, _) => {
+                let colour = self.colour.unwrap_or(Colour::Family);
+                let question = self.question(colour.needs())?;
+                Atlas::new(&question, colour, None)?.write(common, target)
+            }
+            _ => output::write(&self.question(self.wanted())?, common, target),
+        }
+    }
+
+    /// Flags that say nothing together.
+    fn check(&self, target: Target) -> Result<()> {
+        let figure = matches!(target, Target::Svg | Target::Png) && !self.survey;
+        let strength = figure && self.figure == Some(Drawn::Strength);
+        let wrong = [
+            (
+                "figure",
+                self.figure.is_some() && !figure,
+                "is for figures: write one with --output FILE.svg or FILE.png",
+            ),
+            (
+                "colour",
+                self.colour.is_some() && (!figure || strength),
+                "is for an atlas: write one with --output FILE.svg or FILE.png",
+            ),
+            (
+                "theta",
+                self.theta.is_some() && !strength,
+                "is for --figure strength with --output FILE.svg or FILE.png",
+            ),
+            ("thinnest", self.thinnest.is_some() && !self.survey, "is for --survey"),
+            ("columns", self.columns.is_some() && (figure || self.survey), "is for tables"),
+            ("digits", self.digits.is_some() && (figure || self.survey), "is for tables"),
+        ];
+        match wrong.iter().find(|(_, wrong, _)| *wrong) {
+            Some((flag, _, remedy)) => Err(Error::input(&format!("--{flag}"), "given", remedy)),
+            None if self.survey || strength => self.check_bare(),
+            None => Ok(()),
+        }
+    }
+
+    /// A survey and a figure of strengths are of all tongues.
+    fn check_bare(&self) -> Result<()> {
+        let Args { h1_range, h2_range, m, a, b, .. } = self;
+        let given = [("h1-range", h1_range), ("h2-range", h2_range), ("m", m), ("a", a), ("b", b)];
+        match given.iter().find(|(_, text)| text.is_some()) {
+            Some((flag, _)) => Err(Error::input(
+                &format!("--{flag}"),
+                "given",
+                "this result is of all tongues; leave it out",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn ratios(&self) -> Result<Ratios> {
+        match (&self.ratio, self.max_sum) {
+            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q)),
+            (None, Some(max_sum)) => Ratios::up_to(max_sum),
+            (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
+            (None, None) => {
+                Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"))
+            }
+        }
+    }
+
+    fn stiffness(&self) -> Result<Stiffness> {
+        let quantity =
+            |field: &str, text: &Option<String>| text.as_ref().map(|text| parse(field, text)).transpose();
+        let rho = self.rho.as_ref().map(|text| parse_rational("rho", text)).transpose()?;
+        Stiffness::new(rho, quantity("lambda1", &self.lambda1)?, quantity("lambda2", &self.lambda2)?)
+    }
+
+    fn question(&self, wanted: Wanted) -> Result<Question> {
+        let range = |field: &str, text: &Option<String>| {
+            text.as_ref().map(|text| parse_range(field, text)).transpose()
+        };
+        let integers = |field: &str, text: &Option<String>| {
+            text.as_ref().map(|text| parse_integer_range(field, text)).transpose()
+        };
+        let window =
+            Window { h1: range("h1-range", &self.h1_range)?, h2: range("h2-range", &self.h2_range)? };
+        let selection = Selection {
+            m: self.m.as_ref().map(|text| parse_list(text)).transpose()?,
+            a: integers("a", &self.a)?,
+            b: integers("b", &self.b)?,
+            s: None,
+        };
+        if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
+            return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
+        }
+        let frame = Frame { wanted, lambda1: None, digits: self.digits };
+        Question::new(self.ratios()?, self.stiffness()?, window, selection, frame)
+    }
+
+    fn wanted(&self) -> Wanted {
+        match &self.columns {
+            None => Wanted { growth: self.max_sum.is_none(), ..Wanted::all() },
+            Some(list) => {
+                let has = |column| list.contains(&column);
+                Wanted {
+                    family: true,
+                    exact: has(Columns::Exact),
+                    growth: has(Columns::Growth),
+                    predicted: has(Columns::Predicted),
+                    first_order: has(Columns::FirstOrder),
+                }
+            }
+        }
+    }
+}
+
+/// `4`, `1,3`, `7..9` and such, as closed ranges of labels.
+pub fn parse_list(text: &str) -> Result<Vec<(u64, u64)>> {
+    let label = |m: i64| {
+        u64::try_from(m).ok().filter(|&m| m > 0).ok_or_else(|| Error::input("m", text, "labels begin at 1"))
+    };
+    let part = |part: &str| {
+        let (from, upto) = match part.contains("..") {
+            true => parse_integer_range("m", part)?,
+            false => parse_integer("m", part).map(|m| (m, m))?,
+        };
+        Ok((label(from)?, label(upto)?))
+    };
+    text.split(',').map(part).collect()
+}

@@ -1,0 +1,90 @@
+//! The figure of measured widths against the first-order law.
+
+use num_traits::{ToPrimitive, Zero};
+use rayon::prelude::*;
+
+use super::atlas::share_of_pi;
+use super::{Ratios, Stiffness};
+use crate::cli::args::Common;
+use crate::cli::map::Target;
+use crate::cli::plane::DPI;
+use crate::error::{Error, Result};
+use crate::number::{Laurent, Rational, rational};
+use crate::report::figure::png;
+use crate::report::file::write_output;
+use crate::report::strength::{Measured, figure};
+use crate::resonance::dominant_family;
+use crate::tongue::{Gap, Tongues, ratios};
+
+/// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
+const AROUND: (i64, i64) = (1, 50);
+
+/// Draws the tongues about p θ = m π near one angle.
+///
+/// # Errors
+/// An angle that is no rational multiple of π, one ratio only, ρ = 0, a sum without such a tongue.
+pub fn run(
+    ratios: Ratios,
+    stiffness: &Stiffness,
+    theta: &Laurent,
+    common: &Common,
+    target: Target,
+) -> Result<()> {
+    let Ratios::UpTo(max_sum) = ratios else {
+        return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
+    };
+    if stiffness.rho.is_zero() {
+        return Err(Error::input(
+            "rho",
+            0,
+            "without a slow force there are no widths: choose a positive one",
+        ));
+    }
+    let share = share_of_pi(theta)?;
+    let measured = measure(max_sum, stiffness, &share)?;
+    if measured.is_empty() {
+        let remedy =
+            format!("no tongue with p + q <= {max_sum} is near this angle: choose a larger --max-sum");
+        return Err(Error::input("theta", theta, remedy));
+    }
+    let (n, d) = AROUND;
+    let title = format!(
+        "All tongues with *p* + *q* ≤ {max_sum}, *θ* = {} ± π{n}/{d}, *ρ* = {}",
+        typeset(theta),
+        stiffness.rho
+    )
+    .replace("π1/", "π/");
+    let svg = figure(rational::to_f64(&share), &title, &measured).svg();
+    let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    write_output(common.output.as_deref(), &bytes)
+}
+
+/// π as a letter.
+fn typeset(theta: &Laurent) -> String {
+    theta.to_string().replace("*pi", "π").replace("pi", "π")
+}
+
+/// The tongues with m/p near the share, in the order of p + q, p, m.
+fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<Measured>> {
+    let around = rational::ratio(AROUND.0, AROUND.1);
+    let rho = rational::to_f64(&stiffness.rho);
+    let one = |(p, q): (u64, u64)| -> Result<Vec<Measured>> {
+        let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);
+        let terms = Rational::from_integer(p.into());
+        let from = whole(((share - &around) * &terms).ceil()).max(1);
+        let upto = whole(((share + &around) * &terms).floor()).min(p - 1);
+        if from > upto {
+            return Ok(Vec::new());
+        }
+        let mut tongues = Tongues::new(p, q, &stiffness.rho)?;
+        let gaps = tongues.gaps(from, upto)?;
+        let measured = |gap: &Gap| {
+            let s = tongues.resonance(gap.m, 64).mid_f64();
+            let width = 0.5 * (gap.width.0 + gap.width.1);
+            Measured { a: dominant_family(p, q, gap.m).0, q, strength: width / (2.0 * s * rho) }
+        };
+        Ok(gaps.iter().map(measured).collect())
+    };
+    let all: Vec<Vec<Measured>> = ratios(max_sum).into_par_iter().map(one).collect::<Result<_>>()?;
+    Ok(all.into_iter().flatten().collect())
+}

@@ -1,0 +1,149 @@
+//! Exact signs: of the half period at rational s, and of the trace over the full period.
+
+use num_traits::One;
+
+use super::read::{Checked, holds};
+use crate::number::{ExactSign, Laurent, Rational, Real, Sign};
+use crate::propagator::TwoClocks;
+use crate::propagator::methods::avi;
+use crate::tongue::Entry;
+use crate::verdict::{Decidable, HalfSigns, Kind};
+
+/// The signs of A, B, C, D at s.
+pub fn signs(p: u64, q: u64, rho: &Rational, s: &Rational) -> HalfSigns {
+    Decidable::half_signs(&TwoClocks::with_rho(p, q, s.clone(), rho.clone()))
+}
+
+/// The zero of an entry between two rationals.
+#[derive(Clone, Debug)]
+pub struct ZeroOf<'a> {
+    pub p: u64,
+    pub q: u64,
+    pub rho: &'a Rational,
+    pub entry: Entry,
+    pub lo: Rational,
+    pub hi: Rational,
+    below: Sign,
+}
+
+impl<'a> ZeroOf<'a> {
+    /// That the entry changes its sign between lo and hi, or vanishes at one of them.
+    pub fn new(
+        (p, q, rho): (u64, u64, &'a Rational),
+        entry: Entry,
+        (lo, hi): (Rational, Rational),
+        name: &str,
+    ) -> Checked<Self> {
+        let at = |s: &Rational| signs(p, q, rho, s).all()[entry as usize];
+        let (below, above) = (at(&lo), at(&hi));
+        holds(below * above != Sign::Positive, || {
+            format!("{name}: {} does not vanish between {lo} and {hi}", entry.name())
+        })?;
+        Ok(ZeroOf { p, q, rho, entry, lo, hi, below })
+    }
+
+    /// Halves the interval; an end that is the zero stays.
+    pub fn halve(&mut self) {
+        if self.lo == self.hi {
+            return;
+        }
+        let middle = (&self.lo + &self.hi) / Rational::from_integer(2.into());
+        let sign = signs(self.p, self.q, self.rho, &middle).all()[self.entry as usize];
+        match (self.below, sign) {
+            (Sign::Zero, _) => self.hi = self.lo.clone(),
+            (_, Sign::Zero) => (self.lo, self.hi) = (middle.clone(), middle),
+            (below, sign) if below == sign => self.lo = middle,
+            _ => self.hi = middle,
+        }
+    }
+}
+
+/// Halvings before two zeros are taken for one: more than any tongue of a table needs (2^-4000 of its s).
+const PATIENCE: u32 = 4000;
+
+/// Halves both until one lies below the other: which is below, if they part.
+pub fn part(a: &mut ZeroOf, b: &mut ZeroOf) -> Option<std::cmp::Ordering> {
+    for _ in 0..PATIENCE {
+        if a.hi < b.lo {
+            return Some(std::cmp::Ordering::Less);
+        }
+        if b.hi < a.lo {
+            return Some(std::cmp::Ordering::Greater);
+        }
+        if a.lo == a.hi && b.lo == b.hi {
+            return None;
+        }
+        a.halve();
+        b.halve();
+    }
+    None
+}
+
+/// Kind, side and trace by the full period, kick by kick, in exact arithmetic.
+pub struct FullPeriod<S> {
+    pub kind: Kind,
+    pub side: i8,
+    pub trace: S,
+}
+
+/// The staggered form over the whole period: it shares neither the half period nor its signs.
+pub fn full_period<S: ExactSign>(clocks: &TwoClocks<S>) -> FullPeriod<S> {
+    let q = avi::staggered(clocks);
+    let mut trace = q[(0, 0)].clone();
+    trace += q[(1, 1)].clone();
+    let less = |n: i64| {
+        let mut difference = trace.clone();
+        difference -= S::from_rational(&Rational::from_integer(n.into()));
+        difference.sign()
+    };
+    let (above, below) = (less(2), less(-2));
+    let plain = q[(0, 1)].sign() == Sign::Zero && q[(1, 0)].sign() == Sign::Zero;
+    let (kind, side) = match (above, below) {
+        (Sign::Positive, _) => (Kind::Hyperbolic, 1),
+        (_, Sign::Negative) => (Kind::Hyperbolic, -1),
+        (Sign::Zero, _) => (if plain { Kind::Coexistence } else { Kind::Parabolic }, 1),
+        (_, Sign::Zero) => (if plain { Kind::Coexistence } else { Kind::Parabolic }, -1),
+        _ => (Kind::Elliptic, 0),
+    };
+    FullPeriod { kind, side, trace }
+}
+
+/// Kicks up to which the full period is composed exactly: numbers grow with every kick, over Q\[π\] much faster.
+pub fn affordable(clocks: &TwoClocks<Laurent>) -> bool {
+    let kicks = clocks.p().saturating_add(clocks.q());
+    kicks <= if clocks.as_rational().is_some() { 1000 } else { 60 }
+}
+
+/// ln μ of a trace beyond ±2: ln((|Tr| + √(Tr² − 4))/2).
+pub fn ln_multiplier<S: Real>(trace: &S, bits: u32) -> Option<crate::number::Ball> {
+    let mut square = S::product(trace, trace);
+    square -= S::from_rational(&Rational::from_integer(4.into()));
+    let root = square.enclosure(bits).sqrt(bits)?;
+    trace.enclosure(bits).abs().add(&root, bits).scale2(-1).ln(bits)
+}
+
+/// The rational n/d.
+pub fn fraction(n: u64, d: u64) -> Rational {
+    Rational::new(n.into(), d.into())
+}
+
+/// Whether an interval of doubles meets a ball.
+pub fn meets((lo, hi): (f64, f64), ball: &crate::number::Ball) -> bool {
+    let (from, upto) = ball.to_f64_enclosure();
+    lo <= upto && from <= hi
+}
+
+/// 4 sin²(m π/(2 p)).
+pub fn resonance(p: u64, m: u64, bits: u32) -> crate::number::Ball {
+    use crate::number::Ball;
+    // By the double angle, 2 − 2 cos(m π/p).
+    let angle = Ball::pi(bits + 32).mul(&Ball::from_rational(&fraction(m, p), bits + 32), bits + 32);
+    let two = Ball::from_rational(&(Rational::one() + Rational::one()), bits);
+    two.sub(&angle.cos(bits + 16).scale2(1), bits + 16)
+}
+
+/// ln μ of a rational pair to doubles, by the trace of the full period; `None` unless it grows exponentially.
+pub fn ln_multiplier_at(clocks: &TwoClocks<Rational>) -> Option<f64> {
+    let trace = crate::verdict::exact_trace(clocks);
+    ln_multiplier(&trace, 128).map(|ln| ln.mid_f64())
+}

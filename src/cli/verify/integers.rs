@@ -1,0 +1,107 @@
+//! The Proposition's witnesses and the polynomials: integers and rationals, no analysis.
+
+use std::collections::BTreeMap;
+
+use num_integer::Integer;
+use num_traits::{One, Zero};
+use serde_json::Value;
+
+use super::exact::fraction;
+use super::read::{Checked, Row, holds, whole};
+use super::{Context, Outcome};
+use crate::error::Result;
+use crate::number::Rational;
+use crate::propagator::methods::avi;
+use crate::propagator::{TwoClocks, half_period};
+
+const WITNESSES: &str = "eq. (10) with m = a p + b q in integers, b not 0; every coprime (p, q, m) once";
+const POLYNOMIALS: &str =
+    "the full period, kick by kick, at more rational points than the degrees leave free";
+
+pub fn check_proposition(document: &Value, context: &Context) -> Result<Outcome> {
+    let all = Row::new(document);
+    let max = whole(whole(all.object("input"))?.rational("max"))?.to_integer();
+    let rows = whole(all.rows("witnesses"))?;
+    let mut outcome = context.rows(rows, WITNESSES, check_witness)?;
+    let max: u64 = max.try_into().unwrap_or(0);
+    let points =
+        (1..=max).flat_map(|p| (1..=max).filter(move |q| p.gcd(q) == 1).map(move |_| p - 1)).sum::<u64>();
+    let told = whole(all.whole("resonant_points"))?;
+    if told != rows.len() as u64 || told != points {
+        outcome.failures.push((
+            0,
+            format!("max = {max}"),
+            format!("{points} resonant points are expected, {told} told"),
+        ));
+    }
+    Ok(outcome)
+}
+
+fn check_witness(row: &Row) -> Checked<()> {
+    let (p, q, m) = (row.integer("p")?, row.integer("q")?, row.integer("m")?);
+    let (a, b) = (row.integer("a")?, row.integer("b")?);
+    let whole = p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1;
+    holds(whole, || "is no resonant point of a ratio in lowest terms".into())?;
+    holds(b != 0, || "b = 0: eq. (10) has no such curve".into())?;
+    // In the unit h1 T½ = p/m: h2 = b T½/(1 − a T½) = b p/(m − a p) must be p/q.
+    holds(m - a * p != 0 && b * p * q == p * (m - a * p), || {
+        "its curve does not pass through the point".into()
+    })
+}
+
+/// Coefficients by powers of s and ρ.
+type Terms = BTreeMap<(u32, u32), Rational>;
+
+pub fn check_polynomial(document: &Value, context: &Context) -> Result<Outcome> {
+    let all = Row::new(document);
+    let (p, q) = (whole(all.whole("p"))?, whole(all.whole("q"))?);
+    let mut terms: BTreeMap<String, Terms> = BTreeMap::new();
+    for term in whole(all.rows("terms"))? {
+        let term = Row::new(term);
+        let powers = (whole(term.whole("s"))? as u32, whole(term.whole("rho"))? as u32);
+        let coefficient = whole(term.rational("coefficient"))?;
+        terms.entry(whole(term.text("entry"))?.to_string()).or_default().insert(powers, coefficient);
+    }
+    let names = ["A", "B", "C", "D", "trace"].map(|entry| serde_json::json!({"entry": entry}));
+    context.rows(&names, POLYNOMIALS, |row| check_entry(row.text("entry")?, p, q, &terms))
+}
+
+/// A polynomial of degree m in s and n in ρ is determined by (m + 1)(n + 1) values on a grid.
+fn check_entry(entry: &str, p: u64, q: u64, terms: &BTreeMap<String, Terms>) -> Checked<()> {
+    let none = Terms::new();
+    let own = terms.get(entry).unwrap_or(&none);
+    // At most p + q kicks carry a power of s each, q of them one of rho.
+    let told = |power: fn(&(u32, u32)) -> u32| u64::from(own.keys().map(power).max().unwrap_or(0));
+    let (in_s, in_rho) = (told(|k| k.0).max(p + q), told(|k| k.1).max(q));
+    for i in 0..=in_s {
+        for j in 0..=in_rho {
+            let (s, rho) = (fraction(i, 1), fraction(j, 1));
+            let value = own
+                .iter()
+                .fold(Rational::zero(), |sum, ((k, l), c)| sum + c * power(&s, *k) * power(&rho, *l));
+            let truth = kicked(entry, p, q, &s, &rho);
+            holds(value == truth, || format!("at s = {s}, rho = {rho} it is {truth}, not {value}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn power(x: &Rational, k: u32) -> Rational {
+    if k == 0 { Rational::one() } else { x.pow(k as i32) }
+}
+
+/// The entry at one point: numbers kicked and drifted, no polynomials.
+fn kicked(entry: &str, p: u64, q: u64, s: &Rational, rho: &Rational) -> Rational {
+    let clocks = TwoClocks::with_rho(p, q, s.clone(), rho.clone());
+    if entry == "trace" {
+        return avi::staggered(&clocks).trace();
+    }
+    let half = half_period(&clocks);
+    match entry {
+        "A" => half.a(),
+        "B" => half.b(),
+        "C" => half.c(),
+        _ => half.d(),
+    }
+    .clone()
+}

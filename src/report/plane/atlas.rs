@@ -1,0 +1,131 @@
+//! The atlas: every tongue as the segment that it is in the (h1, h2) plane, over the curves (a, b).
+//!
+//! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is thinner
+//! than any grid is there too: as a dot as wide as the lines.
+
+use super::chart::{FAMILIES, SHADES, axis, family_name, grouped, rank};
+use super::lines_in;
+use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient};
+use crate::report::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
+use crate::resonance::{Curve, Window};
+
+/// A tongue in the plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segment {
+    /// (h1, h2) of its edges.
+    pub from: [f64; 2],
+    pub to: [f64; 2],
+    /// The a of its dominant family.
+    pub a: i64,
+    /// Its fastest growth per unit time, where colours tell it.
+    pub rate: Option<f64>,
+    pub closed: bool,
+}
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct Atlas<'a> {
+    pub window: Window,
+    pub segments: &'a [Segment],
+    pub curves: &'a [Curve],
+    /// Shown above.
+    pub title: String,
+}
+
+/// The lines' width in points, and how many points the panel is across, about: what is shorter than the width
+/// becomes a dot.
+const WIDTH: f64 = 0.55;
+const ACROSS: f64 = 320.0;
+/// A line in the legend, wide enough to tell its colour.
+const SAMPLE: f64 = 2.0;
+/// Curves, behind the tongues.
+const PALE: Colour = Colour(0xc2, 0xc5, 0xcc);
+
+impl Atlas<'_> {
+    /// Families in colours of their own.
+    pub fn by_family(&self) -> Figure {
+        let mut panel = self.panel();
+        let mut ranks: Vec<f64> = self.open().map(|segment| rank(segment.a)).collect();
+        ranks.sort_unstable_by(f64::total_cmp);
+        ranks.dedup();
+        let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
+        for (n, &own) in own.iter().enumerate() {
+            panel = entry(panel, palette::family(n), &family_name(own));
+        }
+        // The weak ones first: the strong ones lie on top.
+        if let Some(&first) = others.first() {
+            let rest: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) >= first).collect();
+            panel = self.put(entry(panel, palette::GREY, "others"), &rest, palette::GREY);
+        }
+        for (n, &own) in own.iter().enumerate().rev() {
+            let family: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) == own).collect();
+            panel = self.put(panel, &family, palette::family(n));
+        }
+        self.finish(panel, 135.0)
+    }
+
+    /// The fastest growth on a gradient; in the last tongue of a ratio growth has no bound, and the strongest colour.
+    pub fn by_growth(&self) -> Figure {
+        let bar = self.bar();
+        let mut panel = self.panel();
+        for (class, colour) in (0..SHADES).zip(bar.gradient.steps(SHADES.into())) {
+            let of_class =
+                |segment: &&Segment| bar.class(segment.rate.unwrap_or(f64::INFINITY), SHADES) == class;
+            let segments: Vec<&Segment> = self.open().filter(of_class).collect();
+            panel = self.put(panel, &segments, colour);
+        }
+        self.finish(panel.bar(bar), 150.0)
+    }
+
+    /// From the fastest tongue down four decades, or to the slowest where that is nearer.
+    fn bar(&self) -> ColourBar {
+        let rates = || self.open().filter_map(|segment| segment.rate).filter(|rate| *rate > 0.0);
+        let fastest = rates().fold(0.0, f64::max);
+        let slowest = rates().fold(f64::INFINITY, f64::min);
+        let low = slowest.max(1e-4 * fastest);
+        ColourBar { axis: Axis::log("growth rate (1/time)", low, fastest), gradient: Gradient::on_white() }
+    }
+
+    fn open(&self) -> impl Iterator<Item = &Segment> {
+        self.segments.iter().filter(|segment| !segment.closed)
+    }
+
+    /// The curves, in the background.
+    fn panel(&self) -> Panel {
+        let Window { h1, h2 } = self.window;
+        let panel = Panel::new(axis("*h*_1 (time)", h1), axis("*h*_2 (time)", h2)).titled(&self.title);
+        lines_in(PALE, "curves ", panel, self.curves)
+    }
+
+    fn put(&self, mut panel: Panel, segments: &[&Segment], colour: Colour) -> Panel {
+        let (dots, lines): (Vec<&Segment>, Vec<&Segment>) = segments.iter().partition(|s| self.is_short(s));
+        let points =
+            dots.into_iter().map(|s| [0, 1].map(|i| 0.5 * (s.from[i] + s.to[i]))).collect::<Vec<_>>();
+        let lines = lines.into_iter().map(|s| vec![s.from, s.to]).collect::<Vec<_>>();
+        if points.is_empty() && lines.is_empty() {
+            return panel;
+        }
+        panel = panel.with(Layer::dots(points, Shape::Disc, WIDTH, colour));
+        panel.with(Layer::lines(lines, Stroke::LINE.in_colour(colour).wide(WIDTH)))
+    }
+
+    fn is_short(&self, segment: &Segment) -> bool {
+        let share = |i: usize, (lo, hi): (f64, f64)| (segment.to[i] - segment.from[i]) / (hi - lo);
+        share(0, self.window.h1).hypot(share(1, self.window.h2)) * ACROSS < WIDTH
+    }
+
+    fn finish(&self, mut panel: Panel, wide: f64) -> Figure {
+        let closed: Vec<[f64; 2]> = self.segments.iter().filter(|s| s.closed).map(|s| s.from).collect();
+        if !closed.is_empty() {
+            let layer = Layer::dots(closed, Shape::Ring, 3.0, COEXISTENCE);
+            panel = panel.with(layer.labelled("closed tongue (coexistence)"));
+        }
+        let name = format!("Atlas of tongues; {}", grouped(self.segments.len() as u64));
+        Figure::new(wide, 140.0).named(&name).with(panel.legend(Place::Above))
+    }
+}
+
+/// A legend's entry alone, so that entries stand in the order of families and tongues in that of strength.
+fn entry(panel: Panel, colour: Colour, label: &str) -> Panel {
+    panel.with(Layer::lines(Vec::new(), Stroke::LINE.in_colour(colour).wide(SAMPLE)).labelled(label))
+}

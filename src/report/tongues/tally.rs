@@ -1,0 +1,101 @@
+//! What stands out among many tongues.
+
+use serde_json::{Value, json};
+
+use super::json::side;
+use super::told::Told;
+use crate::report::decimal;
+use crate::report::digits::few;
+
+/// Counts and extremes, in the order in which the tongues come.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    pub count: u64,
+    pub closed: u64,
+    /// Inside, on the edge, outside: predicted points.
+    predicted: [u64; 3],
+    thinnest: Option<Told>,
+    fastest: Option<Told>,
+    /// The least and the largest width over first-order width.
+    ratios: Option<(f64, f64)>,
+}
+
+impl Tally {
+    /// Counts a tongue in.
+    pub fn add(&mut self, told: &Told) {
+        let row = &told.row;
+        self.count += 1;
+        self.closed += u64::from(row.gap.closed);
+        if let Some(predicted) = &row.predicted {
+            let place = ["inside", "on the edge", "outside"].iter().position(|&s| s == side(predicted.side));
+            self.predicted[place.expect("one of three")] += 1;
+        }
+        let thinner = |other: &Told| row.gap.width.0 < other.row.gap.width.0;
+        if !row.gap.closed && row.gap.upper.is_some() && self.thinnest.as_ref().is_none_or(thinner) {
+            self.thinnest = Some(told.clone());
+        }
+        let rate = |told: &Told| told.row.peak.as_ref().map(|peak| peak.rate);
+        if rate(told) > self.fastest.as_ref().and_then(rate) {
+            self.fastest = Some(told.clone());
+        }
+        if let Some(law) = &row.first_order {
+            let (least, largest) = self.ratios.unwrap_or((f64::INFINITY, 0.0));
+            self.ratios = Some((least.min(law.width_ratio), largest.max(law.width_ratio)));
+        }
+    }
+
+    /// What stands behind the rows in JSON.
+    pub fn entries(&self) -> Vec<(&'static str, Value)> {
+        let mut entries = vec![
+            ("count", self.count.into()),
+            ("open", (self.count - self.closed).into()),
+            ("closed", self.closed.into()),
+        ];
+        let [inside, on_edge, outside] = self.predicted;
+        if self.predicted != [0; 3] {
+            entries.push((
+                "predicted_points",
+                json!({"inside": inside, "on_edge": on_edge, "outside": outside}),
+            ));
+        }
+        entries
+    }
+
+    /// For people; `what` says of which ratios the tongues are.
+    pub fn lines(&self, what: &str) -> Vec<String> {
+        let open = self.count - self.closed;
+        let plural = if self.count == 1 { "" } else { "s" };
+        let mut lines =
+            vec![format!("{} tongue{plural} of {what}: {open} open, {} closed", self.count, self.closed)];
+        if let Some(told) = &self.thinnest {
+            let (lo, hi) = told.row.gap.width;
+            lines.push(format!("  thinnest     {} wide: {}", decimal::enclosure(lo, hi), place(told)));
+        }
+        if let Some((told, peak)) = self.fastest.as_ref().and_then(|told| Some((told, told.row.peak?))) {
+            let (rate, unit) =
+                told.growth_rate.map_or((peak.rate, "√lambda1"), |rate| (rate, "per unit time"));
+            let (rate, steps) = (few(rate, 4), few(peak.slow_steps_to_tenfold, 3));
+            lines.push(format!(
+                "  fastest      {rate} {unit}, tenfold in {steps} slow steps: {} at s = {}",
+                place(told),
+                few(peak.s, 6)
+            ));
+        }
+        if self.predicted != [0; 3] {
+            let [inside, on_edge, outside] = self.predicted;
+            lines.push(format!(
+                "  predicted    {} points p theta = m pi: {outside} outside their own tongue, {on_edge} on its edge, {inside} inside",
+                inside + on_edge + outside
+            ));
+        }
+        if let Some((least, largest)) = self.ratios {
+            let [least, largest] = [least, largest].map(|x| few(x, 4));
+            lines.push(format!("  first order  widths are {least} to {largest} times the law's"));
+        }
+        lines
+    }
+}
+
+fn place(told: &Told) -> String {
+    format!("{}/{}, m = {}", told.row.p, told.row.q, told.row.gap.m)
+}

@@ -1,0 +1,143 @@
+//! `verify`: what kickdrift wrote holds; what was changed does not, and the row is named.
+
+use serde_json::{Value, json};
+
+use super::support::{Desk, words};
+
+/// One document of every kind that can be rechecked, with all columns.
+const DOCUMENTS: [&str; 21] = [
+    "tongues --ratio 7/3 --rho 1/25",
+    "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
+    "tongues --ratio 5/3 --rho 114/55 --digits 40",
+    "tongues --ratio 23/20 --rho 1/1000 --columns exact,predicted",
+    "tongues --max-sum 6 --rho 0",
+    "tongues --ratio 9/4 --rho 2 --m 2,5 --lambda1 3",
+    "closings --max-sum 10",
+    "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+    "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
+    "verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499",
+    "verdict --lambda1 1 --lambda2 1e400 --h1 1 --h2 1",
+    "verdict --lambda1 3*pi^2-pi+1/2 --lambda2 1/pi --h1 1/9 --h2 1/7",
+    "map --label --growth --lambda1 10 --lambda2 -2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+    "compare --max-sum 8 --rho 1/25 --samples 20",
+    "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+    "curves --samples 50",
+    "polynomial --ratio 5/4",
+    "proposition --max 6",
+    "tongues --survey --max-sum 20 --rho 1/25",
+    "tongues --max-sum 9 --rho 1e-12",
+    "closings --max-sum 9 --digits 3",
+];
+
+fn write(desk: &Desk, line: &str, name: &str) -> Value {
+    let ended = desk.run(&words(line, &["--format", "json", "--output", name]));
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{line}");
+    serde_json::from_slice(&desk.read(name)).unwrap()
+}
+
+#[test]
+fn what_kickdrift_wrote_holds() {
+    let desk = Desk::new();
+    for line in DOCUMENTS {
+        write(&desk, line, "d.json");
+        let ended = desk.run(&["verify", "d.json"]);
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{line}");
+        assert!(ended.stdout.contains(" rows hold\n"), "{line}: {}", ended.stdout);
+    }
+}
+
+#[test]
+fn every_change_is_found_and_its_row_named() {
+    let desk = Desk::new();
+    let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
+    type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
+    let changes: [(&str, &str, Change); 26] = [
+        (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
+        (DOCUMENTS[0], "row 4", |d, by| {
+            let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);
+            d["tongues"][3]["lower"]["lo"] = lo.clone();
+            d["tongues"][3]["lower"]["hi"] = json!(lo.as_f64().unwrap().next_up());
+        }),
+        (DOCUMENTS[0], "row 2", |d, _| d["tongues"][1]["upper"]["entry"] = json!("C")),
+        (DOCUMENTS[0], "row 1", |d, by| {
+            d["tongues"][0]["width"] = by_both(&d["tongues"][0]["width"], by, 1e-9)
+        }),
+        (DOCUMENTS[0], "row 5", |d, _| d["tongues"][4]["closed"] = json!(true)),
+        (DOCUMENTS[0], "row 3", |d, by| {
+            d["tongues"][2]["growth"]["ln_multiplier"] =
+                by(&d["tongues"][2]["growth"]["ln_multiplier"], 1e-6);
+        }),
+        (DOCUMENTS[0], "row 3", |d, by| {
+            d["tongues"][2]["growth"]["s"] = by(&d["tongues"][2]["growth"]["s"], 1e-3)
+        }),
+        (DOCUMENTS[0], "row 6", |d, _| d["tongues"][5]["predicted"]["position"] = json!("below")),
+        (DOCUMENTS[0], "row 7", |d, _| drop(d["tongues"].as_array_mut().unwrap().remove(6))),
+        (DOCUMENTS[0], "row 9", |d, _| d["tongues"][8]["a"] = json!(1)),
+        (DOCUMENTS[1], "row 10", |d, by| {
+            d["tongues"][9]["lower"]["h2"] = by_both(&d["tongues"][9]["lower"]["h2"], by, 1e-12);
+        }),
+        (DOCUMENTS[2], "row 4", |d, _| {
+            d["tongues"][3]["lower"]["exact"] = json!("2749999999999999/1000000000000000")
+        }),
+        (DOCUMENTS[2], "row 1", |d, _| {
+            let text = d["tongues"][0]["lower"]["decimal"]["hi"].as_str().unwrap().to_string();
+            d["tongues"][0]["lower"]["decimal"] = json!({"lo": text, "hi": format!("{text}9")});
+        }),
+        (DOCUMENTS[6], "row 2", |d, _| d["closings"][1]["m"] = json!(4)),
+        (DOCUMENTS[6], "row 2", |d, _| d["closings"][1]["m"] = json!(3)),
+        (DOCUMENTS[6], "row 4", |d, _| d["closings"][3]["below_verlet"] = json!(false)),
+        (DOCUMENTS[6], "row 5", |d, _| {
+            let hi = d["closings"][4]["rho"]["decimal"]["hi"].clone();
+            d["closings"][4]["rho"]["decimal"]["lo"] = json!(format!("{}5", hi.as_str().unwrap()));
+            d["closings"][4]["rho"]["decimal"]["hi"] = json!(format!("{}9", hi.as_str().unwrap()));
+        }),
+        (DOCUMENTS[6], "row 1", |d, _| d["closings"][0]["rho"]["exact"] = json!("4/19")),
+        (DOCUMENTS[7], "row 1", |d, _| {
+            d["kind"] = json!("elliptic");
+            d["stable"] = json!(true);
+            d["side"] = json!(0);
+        }),
+        (DOCUMENTS[8], "row 1", |d, _| d["trace"] = json!({"lo": 2.1, "hi": 2.2})),
+        (DOCUMENTS[12], "row 3", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[15], "row 1", |d, by| {
+            d["curves"][0]["points"][3]["h2"] = by(&d["curves"][0]["points"][3]["h2"], 1e-14);
+        }),
+        (DOCUMENTS[16], "row", |d, _| d["terms"][2]["coefficient"] = json!("1/3")),
+        (DOCUMENTS[17], "row 5", |d, _| d["witnesses"][4]["b"] = json!(17)),
+        (DOCUMENTS[18], "row 2", |d, by| {
+            d["thinnest"][1]["width"] = by_both(&d["thinnest"][1]["width"], by, 1e-2)
+        }),
+        (DOCUMENTS[18], "row 11", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
+    ];
+    for (i, (line, row, change)) in changes.into_iter().enumerate() {
+        let mut document = write(&desk, line, "d.json");
+        change(&mut document, &moved);
+        desk.write("d.json", &document.to_string());
+        let ended = desk.run(&["verify", "d.json"]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "change {i} of {line}");
+        assert!(ended.stderr.contains(row) && ended.stderr.lines().count() == 1, "{i}: {}", ended.stderr);
+    }
+}
+
+/// An enclosure moved as a whole.
+fn by_both(enclosure: &Value, moved: &dyn Fn(&Value, f64) -> Value, by: f64) -> Value {
+    json!({"lo": moved(&enclosure["lo"], by), "hi": moved(&enclosure["hi"], by)})
+}
+
+#[test]
+fn what_cannot_be_rechecked_is_told() {
+    let desk = Desk::new();
+    desk.write("run.json", r#"{"schema": "kickdrift/run/1"}"#);
+    desk.write("text.json", "no JSON");
+    desk.write("bare.json", r#"{"schema": "kickdrift/tongues/1"}"#);
+    for (file, parts) in [
+        ("run.json", &["kickdrift/run/1", "one of tongues, closings, survey"][..]),
+        ("text.json", &["is no JSON", "--format json"]),
+        ("bare.json", &["input is not an object"]),
+        ("none.json", &["none.json", "cannot read it"]),
+    ] {
+        let ended = desk.run(&["verify", file]);
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{file}");
+        assert!(parts.iter().all(|part| ended.stderr.contains(part)), "{file}: {}", ended.stderr);
+    }
+}
