@@ -330,6 +330,21 @@ fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
     assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn clusters_never_contradict_exact_arithmetic(
+        cells in 3usize..=5, stiff in 1i64..40, soft in 1i64..20, h in 1i64..10, p in 1i64..7, q in 1i64..4,
+    ) {
+        let steps = [ratio(h, 16), ratio(h * p, 16 * q)];
+        let system = ring(2 * cells, [&ratio(stiff, 4), &ratio(soft, 4)], steps, ratio(0, 1));
+        let exact = decide_exact(&system, &Limits::default()).unwrap();
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        prop_assert_eq!(analysis.kind, exact.kind, "{:?} {:?}", analysis.parts[0].evidence, exact.roots);
+    }
+}
+
 #[test]
 fn the_exact_route_counts_every_root_or_tells_its_cost() {
     let system = ring(8, [&ratio(4, 1), &ratio(1, 1)], [ratio(1, 4), ratio(3, 5)], ratio(1, 2));
