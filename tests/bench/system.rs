@@ -7,12 +7,14 @@
 
 use std::time::{Duration, Instant};
 
-use faer::Mat;
 use kickdrift::avi::{Clocks, Ends, Linear, Simulation, State};
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::propagator::{Event, Weight};
 use kickdrift::system::{Limits, System, builders, decide_system};
+
+mod dense;
+
+use dense::multipliers;
 
 /// The shortest of several runs: other work on the machine only lengthens them.
 fn shortest<T>(runs: usize, mut work: impl FnMut() -> T) -> (Duration, T) {
@@ -27,45 +29,12 @@ fn shortest<T>(runs: usize, mut work: impl FnMut() -> T) -> (Duration, T) {
     })
 }
 
-/// One dense product for each kick time of the full period, then all 2n eigenvalues: their largest modulus.
-fn dense_way(system: &System) -> f64 {
-    let n = system.size();
-    let tick = to_f64(system.tick());
-    let mut product = Mat::<f64>::identity(2 * n, 2 * n);
-    for event in system.schedule().symmetric_period() {
-        product = dense_event(system, event, tick) * &product;
-    }
-    let eigenvalues = product.eigenvalues().expect("an iteration that converges");
-    eigenvalues.into_iter().map(|z| z.norm()).fold(0.0, f64::max)
-}
-
-/// Drift, then the kicks of the event.
-fn dense_event(system: &System, event: Event, tick: f64) -> Mat<f64> {
-    let n = system.size();
-    let mut m = Mat::<f64>::identity(2 * n, 2 * n);
-    for i in 0..n {
-        m[(i, n + i)] = event.drift as f64 * tick / to_f64(&system.mass().get(i, i));
-    }
-    let weight = if event.weight == Weight::Full { 1.0 } else { 0.5 };
-    for (_, clock) in system.clocks().iter().enumerate().filter(|(k, _)| event.kicks >> k & 1 == 1) {
-        let strength = weight * to_f64(&clock.step);
-        for i in 0..n {
-            for (&j, k) in clock.stiffness.row(i) {
-                let force = strength * to_f64(k);
-                m[(n + i, j)] -= force;
-                m[(n + i, n + j)] -= force * m[(j, n + j)];
-            }
-        }
-    }
-    m
-}
-
 /// At least `least` times faster than the dense way.
 fn compare(name: &str, system: &System, dense_runs: usize, least: f64) {
     let (own, analysis) = shortest(5, || decide_system(system, &Limits::default()).expect("a verdict"));
     assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
     assert!(own < Duration::from_secs(1), "{name}: {own:?}");
-    let (dense, largest) = shortest(dense_runs, || dense_way(system));
+    let (dense, largest) = shortest(dense_runs, || multipliers(system).into_iter().fold(0.0, f64::max));
     let factor = dense.as_secs_f64() / own.as_secs_f64();
     let predicted = (analysis.growth_rate() * to_f64(&system.period())).exp();
     println!(

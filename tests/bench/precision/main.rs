@@ -4,9 +4,12 @@
 //! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY, target/precision
 //! unless given. Times are minima over repetitions; only those of one run compare.
 
+#[path = "../dense.rs"]
+mod dense;
 mod figure;
 mod methods;
 mod neighbours;
+mod others;
 mod traces;
 mod verdicts;
 
@@ -24,11 +27,19 @@ fn main() {
     traces::print(&traces);
     let verdicts = verdicts::measure();
     verdicts::print(&verdicts);
+    let (edges, systems) = (others::edges(), others::systems());
+    others::print("edges of tongues: relative width of the enclosure", &edges);
+    others::print(
+        "multipliers of stable systems: distance from the unit circle, radius of proven discs",
+        &systems,
+    );
     let picture = neighbours::picture();
     let document = json!({
         "schema": "kickdrift/precision/1",
         "traces": traces.iter().map(traces::Row::json).collect::<Vec<_>>(),
         "verdicts": verdicts.json(),
+        "edges": others::json(&edges),
+        "systems": others::json(&systems),
         "neighbours": { "pairs": picture.pairs, "wrong": picture.wrong },
     });
     let write = |name: &str, text: String| {
