@@ -4,8 +4,8 @@ use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::system::{
-    Evidence, Limits, ManyClocks, Origin, Potential, Symmetric, System, builders, decide_exact,
-    decide_system, full_period, half_period,
+    Evidence, Limits, ManyClocks, Origin, Potential, Route, Symmetric, System, builders, decide_by,
+    decide_exact, decide_system, full_period, half_period,
 };
 use kickdrift::verdict::{Decidable, Kind};
 use nalgebra::DMatrix;
@@ -283,6 +283,78 @@ fn large_chains_and_bars_are_proven_in_doubles() {
         let analysis = decide_system(&system, &Limits::default()).unwrap();
         assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Elliptic, Evidence::Discs));
     }
+}
+
+/// From here on the bound through the projection past a rigid mode is too wide for double eigenvalues.
+const LARGE: usize = 60;
+
+/// A ring of n unit masses, springs stiff and soft in turn, the first mass heavier by `extra`; large ones are tied to walls.
+fn ring(n: usize, [stiff, soft]: [&Rational; 2], steps: [Rational; 2], extra: Rational) -> System {
+    let (mut fast, mut slow) = (Symmetric::zero(n), Symmetric::zero(n));
+    for i in 0..n {
+        let (k, size) = if i % 2 == 0 { (&mut fast, stiff) } else { (&mut slow, soft) };
+        k.add_spring(i, Some((i + 1) % n), size);
+        if n > LARGE {
+            slow.add_spring(i, None, &ratio(1, 4));
+        }
+    }
+    let masses: Vec<_> = (0..n).map(|i| if i == 0 { ratio(1, 1) + &extra } else { ratio(1, 1) }).collect();
+    let [h1, h2] = steps;
+    let potentials = vec![potential(fast, h1, ratio(0, 1)), potential(slow, h2, ratio(0, 1))];
+    System::new(Symmetric::diagonal(&masses), potentials).unwrap()
+}
+
+#[test]
+fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
+    // No sum of two frequencies reaches 2 pi/T.
+    let steps = || [ratio(1, 10), ratio(1, 5)];
+    for n in [18, 40, LARGE, 200] {
+        let analysis = decide_system(
+            &ring(n, [&ratio(4, 1), &ratio(1, 1)], steps(), ratio(0, 1)),
+            &Limits { products: 0 },
+        );
+        let analysis = analysis.unwrap();
+        let part = &analysis.parts[0];
+        let rigid = usize::from(n <= LARGE);
+        assert_eq!((analysis.kind, part.evidence), (Kind::Elliptic, Evidence::Discs), "{n}");
+        assert_eq!(analysis.rigid_modes.len(), rigid);
+        let twice =
+            part.multipliers.windows(2).filter(|pair| (pair[0].mu - pair[1].mu).norm() < 1e-9).count();
+        assert!(twice >= n / 2 - 2, "{twice}");
+    }
+    // Exact arithmetic says the same; and where double eigenvalues leave the circle nothing is proven stable.
+    let small = ring(12, [&ratio(4, 1), &ratio(1, 1)], steps(), ratio(0, 1));
+    assert_eq!(decide_exact(&small, &Limits::default()).unwrap().kind, Kind::Elliptic);
+    let resonant = ring(18, [&ratio(4, 1), &ratio(1, 1)], [ratio(1, 4), ratio(5, 2)], ratio(0, 1));
+    let analysis = decide_system(&resonant, &Limits::default()).unwrap();
+    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn clusters_never_contradict_exact_arithmetic(
+        cells in 3usize..=5, stiff in 1i64..40, soft in 1i64..20, h in 1i64..10, p in 1i64..7, q in 1i64..4,
+    ) {
+        let steps = [ratio(h, 16), ratio(h * p, 16 * q)];
+        let system = ring(2 * cells, [&ratio(stiff, 4), &ratio(soft, 4)], steps, ratio(0, 1));
+        let exact = decide_exact(&system, &Limits::default()).unwrap();
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        prop_assert_eq!(analysis.kind, exact.kind, "{:?} {:?}", analysis.parts[0].evidence, exact.roots);
+    }
+}
+
+#[test]
+fn the_exact_route_counts_every_root_or_tells_its_cost() {
+    let system = ring(8, [&ratio(4, 1), &ratio(1, 1)], [ratio(1, 4), ratio(3, 5)], ratio(1, 2));
+    let analysis = decide_by(Route::Exact, &system, &Limits::default()).unwrap();
+    let part = &analysis.parts[0];
+    assert_eq!((part.evidence, part.roots.unwrap().inside), (Evidence::Exact, 7));
+    assert_eq!(decide_system(&system, &Limits::default()).unwrap().kind, analysis.kind);
+    let error = decide_by(Route::Exact, &system, &Limits { products: 10 }).unwrap_err();
+    assert_eq!(error.kind(), kickdrift::error::Kind::Budget);
+    assert!(error.to_string().contains("products of machine words"), "{error}");
 }
 
 #[test]

@@ -1,8 +1,11 @@
 //! System files: the ones that ship, and what is wrong with others.
 
+use kickdrift::avi::{self, Ends};
 use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::scene::SystemScene;
-use kickdrift::system::{Limits, decide_system};
+use kickdrift::number::{Ball, Laurent, Real};
+use kickdrift::scene::{Axis, Scan, SystemScene};
+use kickdrift::system::{Evidence, Limits, ManyClocks, Route, decide_system};
+use kickdrift::verdict::{Kind, Tier};
 
 fn shipped(name: &str) -> SystemScene {
     let path = format!("{}/data/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -11,19 +14,146 @@ fn shipped(name: &str) -> SystemScene {
 
 #[test]
 fn shipped_systems_are_read_and_proven() {
-    for (name, size, clocks) in [
-        ("chain200", 200, 3),
-        ("fpu", 6, 2),
-        ("bar100", 100, 10),
-        ("diatomic-tether", 2, 2),
-        ("lennard-jones", 2, 2),
+    for (name, size, clocks, stable) in [
+        ("chain200", 200, 3, true),
+        ("fpu", 6, 2, true),
+        ("fpu-quartic", 4, 2, false),
+        ("bar100", 100, 10, true),
+        ("bar-resonant", 24, 4, false),
+        ("diatomic-tether", 2, 2, true),
+        ("lennard-jones", 2, 2, true),
+        ("lennard-jones-resonant", 2, 2, false),
+        ("ring24", 24, 2, true),
+        ("three-clocks", 1, 3, false),
     ] {
         let scene = shipped(name);
-        let system = scene.system();
-        assert_eq!((system.size(), system.clocks().len()), (size, clocks), "{name}");
+        let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        assert_eq!((analysis.size, analysis.clocks), (size, clocks), "{name}");
         assert!(!scene.title().is_empty());
-        let analysis = decide_system(system, &Limits::default()).unwrap();
         assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
+        assert_eq!(analysis.is_stable(), stable, "{name}");
+    }
+}
+
+#[test]
+fn growth_of_small_deviations_is_that_of_the_hessians() {
+    // Beside the simulated nonlinear forces: size² is lost, and roundoff/size is small.
+    for name in ["fpu-quartic", "lennard-jones-resonant"] {
+        let scene = shipped(name);
+        let predicted = scene.decide(Route::Cheapest, &Limits::default()).unwrap().growth_rate();
+        let centre = scene.equilibrium().unwrap();
+        assert!(!scene.is_linear());
+        let start: Vec<f64> = centre.iter().enumerate().map(|(i, x)| x + 1e-6 * (i as f64 - 0.4)).collect();
+        for ends in [Ends::Symmetric, Ends::Staggered] {
+            let mut run = scene.nonlinear_simulation(start.clone(), vec![0.0; start.len()]).unwrap().unwrap();
+            let time = 2000.0 * to_f64(&run.clocks().tick) * run.clocks().period as f64;
+            let measured = avi::growth_rate(&mut run, centre, 1e-6, (4000, ends));
+            // The shape turns with a collision's beat: its length changes by a factor of some units over the time.
+            let off = (measured - predicted).abs();
+            assert!(off < 2e-5 * predicted + 4.0 / time, "{name} {ends:?}: {measured} {predicted}");
+            assert!(predicted > 40.0 / time);
+        }
+    }
+}
+
+#[test]
+fn clocks_with_pi_are_enclosed_about_exact_ones() {
+    // Three clocks over Q[pi]: the trace that the file's answer encloses is the exact polynomial's value.
+    let analysis = shipped("three-clocks").decide(Route::Cheapest, &Limits::default()).unwrap();
+    let own = analysis.parts[0].oscillator.as_ref().unwrap();
+    assert_eq!(own.strikes.len(), 3);
+    let file = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/three-clocks.json"))
+        .unwrap();
+    let file: serde_json::Value = serde_json::from_str(&file).unwrap();
+    let x = |text: &str| kickdrift::number::parse::parse("x", text).unwrap();
+    let potentials = file["potentials"].as_array().unwrap();
+    let step = |p: &serde_json::Value| x(p["step"].as_str().unwrap()).as_rational().unwrap();
+    let first = step(&potentials[0]);
+    let steps: Vec<_> = potentials.iter().map(|p| step(p) / &first).collect();
+    let phases: Vec<_> =
+        potentials.iter().map(|p| p["phase"].as_str().map_or(ratio(0, 1), |_| ratio(1, 2))).collect();
+    let strength = |p: &serde_json::Value| {
+        &x(p["springs"][0][2].as_str().unwrap()) * &Laurent::from_rational(&first * step(p))
+    };
+    let exact = ManyClocks::new(&steps, &phases, potentials.iter().map(strength).collect()).unwrap();
+    let trace: Ball = exact.trace().enclosure(200);
+    let difference = trace.sub(&own.trace, 200);
+    assert!(difference.contains_zero(), "{:?} {:?}", trace.to_f64_enclosure(), own.trace.to_f64_enclosure());
+    assert_eq!(exact.half_signs().verdict().kind(), analysis.kind);
+    assert_eq!(exact.label(), own.label);
+    let m = own.label.unwrap() as i64;
+    assert!(!own.families.is_empty());
+    for family in &own.families {
+        assert_eq!(family.iter().zip(&own.strikes).map(|(a, &n)| a * n as i64).sum::<i64>(), m);
+    }
+}
+
+#[test]
+fn the_unit_of_time_may_hold_pi() {
+    let read = |mass: &str, k: [&str; 2], h: [&str; 2]| {
+        let text = format!(
+            r#"{{"schema": "kickdrift/system/1", "masses": ["{mass}"], "potentials": [
+                {{"step": "{}", "springs": [[0, null, "{}"]]}}, {{"step": "{}", "stiffness": [["{}"]]}}]}}"#,
+            h[0], k[0], h[1], k[1]
+        );
+        SystemScene::read(&text).map(|scene| scene.decide(Route::Cheapest, &Limits::default()).unwrap())
+    };
+    // The same system in three units: h sqrt(K/m) is what counts.
+    let one = read("1", ["11/4", "57/10"], ["1", "5/3"]).unwrap();
+    let two = read("pi^2", ["11/4", "57/10"], ["pi", "5*pi/3"]).unwrap();
+    let three = read("1", ["11/4*pi^2", "57/10*pi^2"], ["1/pi", "5/(3*pi)"]).unwrap();
+    for other in [&two, &three] {
+        assert_eq!((other.kind, one.kind), (Kind::Coexistence, Kind::Coexistence));
+        assert_eq!(other.parts[0].evidence, Evidence::Scalar(Tier::Exact));
+    }
+    assert_eq!((two.period.to_string().as_str(), three.period.to_string().as_str()), ("5*pi", "5/pi"));
+    let error = read("1", ["1", "1"], ["1", "pi"]).unwrap_err().to_string();
+    assert!(error.starts_with("potentials[1].step = pi: its ratio to the step 1 is irrational"), "{error}");
+    let error = read("-pi", ["1", "1"], ["1", "2"]).unwrap_err().to_string();
+    assert!(error.starts_with("masses[0] = -pi: a mass must be positive"), "{error}");
+    let error = read("1+pi", ["1", "1"], ["1", "2"]).unwrap_err().to_string();
+    assert!(error.starts_with("masses[0] = "), "{error}");
+}
+
+#[test]
+fn scans_vary_any_number_of_the_file() {
+    let text =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json"))
+            .unwrap();
+    let axis = |text: &str| Axis::parse(text).unwrap();
+    let scan =
+        Scan::read(&text, axis("potentials.tether.step=1/10..1:3/10"), axis("potentials.0.scale=1/2..1:1/2"))
+            .unwrap();
+    assert_eq!(scan.x.values(), [ratio(1, 10), ratio(4, 10), ratio(7, 10), ratio(1, 1)]);
+    let system = scan.at(&ratio(7, 10), &ratio(1, 2)).unwrap();
+    let clocks = system.system().clocks();
+    assert_eq!((&clocks[1].step, clocks[0].stiffness.get(0, 0)), (&ratio(7, 10), ratio(25, 1)));
+    // Points in parallel are those one by one.
+    let decide = |x: &_, y: &_| scan.at(x, y)?.decide(Route::Cheapest, &Limits::default());
+    let (xs, ys) = (scan.x.values(), scan.y.values());
+    let points = kickdrift::system::scan::scan(&xs, &ys, decide, |_| {}).unwrap();
+    assert_eq!(points.len(), 8);
+    for point in points {
+        let alone = scan.at(&point.at.0, &point.at.1).unwrap();
+        let alone = decide_system(alone.system(), &Limits::default()).unwrap();
+        assert_eq!((point.kind, point.growth_rate), (alone.kind, alone.growth_rate()));
+    }
+    let refused = |text: &str, start: &str| {
+        let error = Axis::parse(text).unwrap_err().to_string();
+        assert!(error.starts_with(start), "{error}");
+    };
+    refused("potentials.1.step", "scan = potentials.1.step: write PATH=LO..HI:BY");
+    refused("a=1..2:0", "scan = a=1..2:0: the spacing");
+    refused("a=2..1:1", "scan = a=2..1:1: the range is empty");
+    refused("a=0..1:1e-9", "scan = a=0..1:1e-9: at most");
+    for (path, message) in [
+        ("potentials.7.step", "scan = potentials.7.step: 7 is not in the file"),
+        ("potentials.0.colour", "system = unknown field `colour`"),
+        ("masses", "scan = masses: such a number is not in the file"),
+    ] {
+        let wrong = Scan::read(&text, axis(&format!("{path}=1..2:1")), axis("potentials.0.scale=1..2:1"));
+        let error = wrong.map(|_| ()).unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
     }
 }
 
@@ -35,9 +165,9 @@ fn hessians_are_taken_at_the_equilibrium() {
     let curvature = to_f64(&scene.system().clocks()[0].stiffness.get(0, 1));
     assert!((curvature + 72.0 / 2f64.powf(1.0 / 3.0)).abs() < 1e-9);
     let mut run = scene.nonlinear_simulation(x.to_vec(), vec![0.0; 2]).unwrap().unwrap();
-    let samples = kickdrift::avi::series(&mut run, 50, 1000);
+    let samples = avi::series(&mut run, x, 50, (1000, Ends::Symmetric));
     // It stays at its equilibrium but for roundoff.
-    assert!(samples.iter().all(|s| (s.amplitude - x[1]).abs() < 1e-10));
+    assert!(samples.iter().all(|s| s.amplitude < 1e-10));
 }
 
 #[test]
@@ -91,6 +221,50 @@ fn errors_name_the_entry() {
             "potentials[0].bonds[0].form = morse",
         ),
         (
+            format!(r#"{masses}, "potentials": [{{"step": 0.25, "springs": [[0, 1, "1"]]}}]"#),
+            "potentials[0].step = 0.25: write an exact number in quotes",
+        ),
+        (
+            format!(r#"{masses}, "potentials": [{{"step": "1", "springs": [[-1, 1, "1"]]}}]"#),
+            "potentials[0].springs[0] = -1: indices are 0 to 1",
+        ),
+        (
+            format!(r#"{masses}, "potentials": [{{"step": "1", "springs": [[1, 1, "1"]]}}]"#),
+            "potentials[0].springs[0] = 1: joins two different indices",
+        ),
+        (
+            format!(r#"{masses}, "potentials": [{{"step": "1", "bonds": [{{"i": 1, "j": 1, "form": "harmonic", "k": 1}}]}}]"#),
+            "potentials[0].bonds[0] = 1: joins two different indices",
+        ),
+        (
+            format!(r#"{masses}, "potentials": [{{"step": "1", "phase": "1/3", "springs": [[0, 1, "1"]]}}]"#),
+            "potentials[0].phase = 1/3: must be 0 or 1/2",
+        ),
+        (
+            format!(r#"{masses}, "potentials": [{{"step": "1", "stiffness": [["1", "2"], ["2"]]}}]"#),
+            "potentials[0].stiffness[1] = 1 entries",
+        ),
+        (
+            r#""mass_matrix": [["1", "2"], ["2", "1"]], "potentials": [{"step": "1", "springs": [[0, 1, "1"]]}]"#.to_string(),
+            "masses = the mass matrix: must be positive definite",
+        ),
+        (
+            r#""mass_matrix": [["1", "2"], ["3", "9"]], "potentials": [{"step": "1", "springs": [[0, 1, "1"]]}]"#.to_string(),
+            "mass_matrix[1][0] = 3: differs",
+        ),
+        (
+            r#""masses": ["1", "0"], "potentials": [{"step": "1", "springs": [[0, 1, "1"]]}]"#.to_string(),
+            "masses[1] = 0: a mass must be positive",
+        ),
+        (
+            r#""masses": ["pi"], "potentials": [{"step": "1", "springs": [[0, 1, "1"]]}]"#.to_string(),
+            "potentials[0].springs[0] = 1: indices are 0 to 0",
+        ),
+        (
+            r#""build": {"kind": "chain", "masses": "1/2", "stiffness": [1], "steps": [1]}"#.to_string(),
+            "build.masses = 1/2: write a whole number",
+        ),
+        (
             r#""build": {"kind": "chain", "masses": 100000, "stiffness": [1], "steps": [1]}"#.to_string(),
             "build.masses = 100000",
         ),
@@ -100,4 +274,58 @@ fn errors_name_the_entry() {
     }
     assert!(SystemScene::read("{}").is_err());
     assert!(with(r#""mass": 1"#).is_err());
+}
+
+/// The program on a line of arguments.
+fn kickdrift(line: &str) -> std::process::Output {
+    std::process::Command::new(env!("CARGO_BIN_EXE_kickdrift"))
+        .args(line.split_whitespace())
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn maps_are_the_same_bytes_whatever_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = "system data/scenes/fpu-quartic.json --scan potentials.soft.step=1/2..1:1/40 \
+                --scan potentials.soft.scale=1/2..2:1/4";
+    let written = |threads: usize, name: &str| {
+        let path = folder.path().join(format!("{threads}-{name}"));
+        let output = kickdrift(&format!("{scan} --threads {threads} --output {}", path.display()));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(path).unwrap()
+    };
+    for name in ["map.csv", "map.json", "map.svg"] {
+        assert_eq!(written(1, name), written(2, name), "{name}");
+    }
+    let rows = String::from_utf8(written(1, "map.csv")).unwrap();
+    assert!(rows.starts_with("x,y,kind,proven,growth_rate\r\n1/2,1/2,elliptic,true,0"), "{rows}");
+    assert!(rows.contains("11/20,1,hyperbolic,true,0.0665734"), "{rows}");
+}
+
+#[test]
+fn modes_are_drawn_and_flags_that_do_nothing_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["modes.svg", "modes.png"] {
+        let path = folder.path().join(name);
+        let output = kickdrift(&format!("system data/scenes/bar-resonant.json --output {}", path.display()));
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let bytes = std::fs::read(path).unwrap();
+        assert!(bytes.starts_with(b"<svg") || bytes[1..].starts_with(b"PNG"), "{name}");
+    }
+    for (line, message) in [
+        ("system data/scenes/fpu.json --colour growth", "--colour = given: is for maps"),
+        (
+            "system data/scenes/fpu.json --scan build.stiff=1..2:1",
+            "--scan = given 1 times: a map has two axes",
+        ),
+        ("system data/scenes/ring24.json --exact --budget 10", "exact arithmetic on 23 degrees of freedom"),
+        ("simulate data/scenes/fpu.json --displace 0", "displace = 0: nothing would move"),
+    ] {
+        let output = kickdrift(line);
+        let error = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{line}");
+        assert!(error.contains(message), "{error}");
+    }
 }

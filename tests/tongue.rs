@@ -1,6 +1,8 @@
 //! Tongues: by strings, by polynomials, by verdicts; known values; every corner of the input.
 
 use kickdrift::error::Kind as ErrorKind;
+use kickdrift::map::{Grid, Products, Shard, for_each_band};
+use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Polynomial, Rational};
 use kickdrift::propagator::TwoClocks;
@@ -194,6 +196,41 @@ proptest! {
             // Two enclosures of one ulp, and three roundings.
             prop_assert!((a.lower.lo * factor - b.lower.lo).abs() <= 4.0 * f64::EPSILON * b.lower.lo);
         }
+    }
+}
+
+/// The label of the open tongue of p/q that holds s, its edges being left out; by exact comparison.
+fn tongue_around(gaps: &[Gap], s: &Rational) -> Option<u64> {
+    let holds = |gap: &&Gap| {
+        exact(gap.lower.hi) < *s && gap.upper.is_none_or(|upper| *s < exact(upper.lo)) && !gap.closed
+    };
+    gaps.iter().find(holds).map(|gap| gap.m)
+}
+
+#[test]
+fn the_map_labels_each_pair_by_the_tongue_that_holds_it() {
+    let x = |text: &str| parse("x", text).unwrap();
+    let products = Products { label: true, ..Products::default() };
+    // Rational stiffnesses, so that s = h1² L1 is compared exactly: weak, equal and strong coupling.
+    for (lambda2, rho) in [("2/5", ratio(1, 25)), ("10", ratio(1, 1)), ("30", ratio(3, 1))] {
+        let (d, h1, h2) = (x("1/24"), (x("1/24"), x("4/5")), (x("1/24"), x("5/2")));
+        let grid = Grid::new(x("10"), x(lambda2), [d.clone(), d], h1, h2).unwrap();
+        let mut unstable = 0;
+        for_each_band(&grid, products, Shard::WHOLE, 0, &Limits::default(), |_, band| {
+            let mut labels = vec![None; band.verdicts.len()];
+            band.growing.iter().for_each(|pair| labels[pair.position as usize] = pair.label);
+            for (n, label) in labels.into_iter().enumerate() {
+                let (i, j) = band.multipliers(&grid, n);
+                let (p, q) = lowest_terms(j, i);
+                let s = ratio((i * i) as i64, 24 * 24) * ratio(10, 1);
+                let gaps = tongues(p, q, &rho).all()?;
+                assert_eq!(label, tongue_around(&gaps, &s), "{p}/{q}, rho = {rho}, s = {s}");
+                unstable += u64::from(label.is_some());
+            }
+            Ok(())
+        })
+        .unwrap();
+        assert!(unstable > 50, "{unstable}");
     }
 }
 
@@ -410,7 +447,7 @@ fn bad_input_is_told_so() {
 }
 
 #[test]
-#[ignore = "long: minutes"]
+#[ignore = "seconds in release mode"]
 fn all_ratios_up_to_100_have_only_open_tongues_below_the_verlet_limit() {
     let survey = survey(100, &ratio(1, 25), 10).unwrap();
     assert!(survey.closed.is_empty());
@@ -418,7 +455,7 @@ fn all_ratios_up_to_100_have_only_open_tongues_below_the_verlet_limit() {
 }
 
 #[test]
-#[ignore = "long: a minute"]
+#[ignore = "seconds in release mode"]
 fn string_edges_are_the_roots_of_the_entries_for_longer_periods() {
     for (p, q, rho) in [(29, 23, ratio(1, 25)), (31, 2, ratio(7, 3)), (19, 30, ratio(1, 1000))] {
         roots_are_edges(p, q, &rho);

@@ -86,6 +86,16 @@ pub enum Form {
 }
 
 impl Form {
+    /// c V.
+    #[must_use]
+    pub fn scaled(self, c: f64) -> Form {
+        match self {
+            Form::Harmonic { k } => Form::Harmonic { k: c * k },
+            Form::Quartic { k, beta } => Form::Quartic { k: c * k, beta: c * beta },
+            Form::LennardJones { epsilon, sigma } => Form::LennardJones { epsilon: c * epsilon, sigma },
+        }
+    }
+
     /// V(r).
     pub fn energy(self, r: f64) -> f64 {
         match self {

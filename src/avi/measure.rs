@@ -14,26 +14,33 @@ pub struct Sample {
     pub energy: f64,
     /// Σ p.
     pub momentum: f64,
-    /// max |x_i|.
+    /// The largest |x_i − c_i| from a centre c.
     pub amplitude: f64,
 }
 
-fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>) -> Sample {
+/// The state's line, the amplitude measured from `centre`.
+fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> Sample {
+    let x = &simulation.state().x;
     Sample {
         time: to_f64(&simulation.clocks().tick) * simulation.now() as f64,
         energy: simulation.energy(),
         momentum: simulation.momentum(),
-        amplitude: simulation.state().x.iter().fold(0.0, |a, x| x.abs().max(a)),
+        amplitude: x.iter().zip(centre).fold(0.0, |a, (x, c)| (x - c).abs().max(a)),
     }
 }
 
-/// The state now and after each of `samples` runs of `ticks` in the time-symmetric form. Where a run overflows the
-/// series ends.
-pub fn series<F: Force<f64>>(simulation: &mut Simulation<f64, F>, samples: usize, ticks: u64) -> Vec<Sample> {
-    let mut series = vec![sample(simulation)];
+/// The state now and after each of `samples` runs of `ticks`, amplitudes measured from `centre`. Where a run overflows
+/// the series ends.
+pub fn series<F: Force<f64>>(
+    simulation: &mut Simulation<f64, F>,
+    centre: &[f64],
+    samples: usize,
+    (ticks, ends): (u64, Ends),
+) -> Vec<Sample> {
+    let mut series = vec![sample(simulation, centre)];
     for _ in 0..samples {
-        simulation.run(ticks, Ends::Symmetric);
-        let next = sample(simulation);
+        simulation.run(ticks, ends);
+        let next = sample(simulation, centre);
         if !(next.energy.is_finite() && next.amplitude.is_finite()) {
             break;
         }
@@ -42,31 +49,51 @@ pub fn series<F: Force<f64>>(simulation: &mut Simulation<f64, F>, samples: usize
     series
 }
 
-/// The measured growth rate of a linear system, per unit time: ln |z|/|z_0| over the second half of `periods`
-/// synchronization periods, the state z scaled back after each (exactly, by a power of two). Near 0 where it is
-/// stable, to about 1/(periods T).
-pub fn growth_rate<F: Force<f64>>(simulation: &mut Simulation<f64, F>, periods: u32) -> f64 {
-    let ticks = simulation.clocks().period;
-    let size =
-        |s: &Simulation<f64, F>| s.state().x.iter().chain(&s.state().p).fold(0.0, |a: f64, z| a.hypot(*z));
-    let (mut log, mut middle) = (0.0, 0.0);
-    for period in 0..periods {
-        if period == periods / 2 {
-            middle = log + size(simulation).ln();
-        }
-        simulation.run(ticks, Ends::Symmetric);
-        let scale = (-size(simulation).log2().round()).clamp(-900.0, 900.0).exp2();
-        let scaled = |z: &Vec<f64>| z.iter().map(|z| z * scale).collect();
-        let (x, p) = (scaled(&simulation.state().x), scaled(&simulation.state().p));
-        simulation.set(x, p);
-        log -= scale.ln();
-    }
-    let half = f64::from(periods - periods / 2) * ticks as f64 * to_f64(&simulation.clocks().tick);
-    (log + size(simulation).ln() - middle) / half
+/// The length of the deviation (x − centre, p).
+fn deviation<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> f64 {
+    let state = simulation.state();
+    let shifts = state.x.iter().zip(centre).map(|(x, c)| x - c);
+    shifts.chain(state.p.iter().copied()).fold(0.0, f64::hypot)
 }
 
-/// Runs `ticks` forward, turns the momenta round, runs back: the largest difference to the start over the largest
-/// entry of it. 0 in exact arithmetic, where `ticks` is a multiple of half the period.
+/// Scales the deviation by a power of two to near `size`; ln of the factor.
+fn rescale<F: Force<f64>>(simulation: &mut Simulation<f64, F>, centre: &[f64], size: f64) -> f64 {
+    let scale = (size / deviation(simulation, centre)).log2().round().clamp(-900.0, 900.0).exp2();
+    let state = simulation.state();
+    let x = state.x.iter().zip(centre).map(|(x, c)| c + (x - c) * scale).collect();
+    let p = state.p.iter().map(|p| p * scale).collect();
+    simulation.set(x, p);
+    scale.ln()
+}
+
+/// The measured growth rate of small deviations z from `centre`, an equilibrium, per unit time: ln |z|/|z_0| over the
+/// second half of `periods` synchronization periods, z scaled back to near `size` after each by a power of two. Near 0
+/// where it is stable, to about 1/(periods T).
+///
+/// For a linear system about 0 scaling is exact and any size will do. Else the motion is that of the Hessians up to
+/// terms of the order z²: `size` makes them small, and has to stay well above the roundoff of x.
+pub fn growth_rate<F: Force<f64>>(
+    simulation: &mut Simulation<f64, F>,
+    centre: &[f64],
+    size: f64,
+    (periods, ends): (u32, Ends),
+) -> f64 {
+    let ticks = simulation.clocks().period;
+    let mut log = -rescale(simulation, centre, size);
+    let mut middle = 0.0;
+    for period in 0..periods {
+        if period == periods / 2 {
+            middle = log + deviation(simulation, centre).ln();
+        }
+        simulation.run(ticks, ends);
+        log -= rescale(simulation, centre, size);
+    }
+    let half = f64::from(periods - periods / 2) * ticks as f64 * to_f64(&simulation.clocks().tick);
+    (log + deviation(simulation, centre).ln() - middle) / half
+}
+
+/// Runs `ticks` forward in the time-symmetric form, turns the momenta round, runs back: the largest difference to the
+/// start over the largest entry of it. 0 in exact arithmetic, where `ticks` is a multiple of half the period.
 pub fn irreversibility<F: Force<f64>>(simulation: &mut Simulation<f64, F>, ticks: u64) -> f64 {
     let start = simulation.state().clone();
     simulation.run(ticks, Ends::Symmetric);

@@ -3,16 +3,14 @@
 use std::path::PathBuf;
 
 use super::args::{Common, Format};
-use super::system::read;
-use crate::avi::{Force, Sample, Simulation, growth_rate, irreversibility, series};
+use super::system::{draw, read};
+use crate::avi::{Ends, Force, Simulation, growth_rate, irreversibility, series};
 use crate::error::{Error, Result};
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
-use crate::report::figure::png;
-use crate::report::file::write_output;
 use crate::report::simulate::{self as report, Run};
 use crate::scene::SystemScene;
-use crate::system::{Limits, decide_system};
+use crate::system::{Limits, Route};
 
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]
@@ -26,16 +24,20 @@ pub struct Args {
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]
     displace: String,
-    /// Also draw energy and amplitude: FILE.svg or FILE.png.
+    /// Algorithm 1 as it stands: whole kicks at the start of a period, none at its end. Without it these kicks are halved,
+    /// which makes the run symmetric in time.
+    #[arg(long)]
+    staggered: bool,
+    /// Also draw energy, momentum and amplitude: FILE.svg or FILE.png.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
 
-/// Pixels per inch of PNG figures.
-const DPI: f64 = 300.0;
-
 /// The most periods: the series is kept in memory.
 const MOST: u32 = 10_000_000;
+
+/// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above roundoff.
+const SMALL: f64 = 1e-6;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
@@ -45,55 +47,46 @@ impl Args {
         let scene = read(&self.file)?;
         let run = self.simulate(&scene, common)?;
         if let Some(path) = &self.figure {
-            let svg = report::figure(&run, scene.title()).svg();
-            let drawn = match path.extension().and_then(|e| e.to_str()) {
-                Some("svg") => svg.into_bytes(),
-                Some("png") => png::raster(&svg, DPI)?,
-                _ => {
-                    return Err(Error::input(
-                        "figure",
-                        path.display(),
-                        "name a file that ends in .svg or .png",
-                    ));
-                }
-            };
-            write_output(Some(path), &drawn)?;
+            draw("figure", path, &report::figure(&run, scene.title()))?;
         }
         let document = report::document(&run)
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
             .input("title", scene.title())
             .input("periods", self.periods)
-            .input("displace", &self.displace);
+            .input("displace", &self.displace)
+            .input("form", if self.staggered { "staggered" } else { "symmetric" });
         common.write(&document, Format::Text)
     }
 
     fn simulate(&self, scene: &SystemScene, common: &Common) -> Result<Run> {
         let limits = common.budget.map_or_else(Limits::default, |products| Limits { products });
-        let predicted = decide_system(scene.system(), &limits)?.growth_rate();
+        let predicted = scene.decide(Route::Cheapest, &limits)?.growth_rate();
         let shift = self.shift(scene.system().size())?;
         let rest = vec![0.0; shift.len()];
         // Bonds are simulated about their equilibrium, linear systems about 0.
-        if let Some(equilibrium) = scene.equilibrium() {
-            let start: Vec<f64> = equilibrium.iter().zip(&shift).map(|(x, d)| x + d).collect();
+        if let Some(centre) = scene.equilibrium() {
+            let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
             let make =
                 || Ok(scene.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
-            return self.measured(make, predicted, false);
+            return self.measured(make, centre, scene.is_linear(), predicted);
         }
-        self.measured(|| scene.linear_simulation(shift.clone(), rest.clone()), predicted, true)
+        self.measured(|| scene.linear_simulation(shift.clone(), rest.clone()), &rest, true, predicted)
     }
 
     fn measured<F: Force<f64>>(
         &self,
         make: impl Fn() -> Result<Simulation<f64, F>>,
-        predicted: f64,
+        centre: &[f64],
         linear: bool,
+        predicted: f64,
     ) -> Result<Run> {
+        let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
         let period = simulation.clocks().period;
-        let series: Vec<Sample> = series(&mut simulation, self.periods as usize, period);
-        let measured = if linear { Some(growth_rate(&mut make()?, self.periods)) } else { None };
+        let series = series(&mut simulation, centre, self.periods as usize, (period, ends));
+        let measured = growth_rate(&mut make()?, centre, SMALL, (self.periods, ends));
         let irreversibility = irreversibility(&mut make()?, period);
-        Ok(Run { series, measured, predicted, irreversibility })
+        Ok(Run { series, measured, predicted, irreversibility, linear })
     }
 
     /// The displacement of every degree of freedom.
@@ -109,6 +102,9 @@ impl Args {
         let mut shift = vec![0.0; size];
         for (x, part) in shift.iter_mut().zip(parts) {
             *x = to_f64(&parse_rational("displace", part)?);
+        }
+        if shift.iter().all(|&x| x == 0.0) {
+            return Err(Error::input("displace", &self.displace, "nothing would move: displace something"));
         }
         Ok(shift)
     }

@@ -2,34 +2,142 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
 use super::args::{Common, Format};
+use super::map::Target;
+use super::plane::DPI;
 use crate::error::{Error, Result};
-use crate::report::system as report;
-use crate::scene::SystemScene;
-use crate::system::{Limits, decide_system};
+use crate::report::document::Document;
+use crate::report::figure::{Figure, png};
+use crate::report::file::write_output;
+use crate::report::system::{self as report, Colouring, SystemMap};
+use crate::scene::{Axis, Scan, SystemScene};
+use crate::system::scan::scan;
+use crate::system::{Limits, Route};
 
 /// Flags of `system`.
+///
+/// --output FILE.svg or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    /// A map: a number of the file over a range, as potentials.1.step=1/10..2:1/20 (LO..HI in steps of BY). Give it twice.
+    /// A potential's name serves as its index; potentials.NAME.scale is a factor of its stiffness.
+    #[arg(long, value_name = "PATH=LO..HI:BY", allow_hyphen_values = true)]
+    scan: Vec<String>,
+    /// What the colours of a map tell [default: growth].
+    #[arg(long, value_name = "WHAT")]
+    colour: Option<Colour>,
+    /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error tells its cost.
+    #[arg(long)]
+    exact: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Colour {
+    /// Exponential growth, linear growth, multipliers at ±1.
+    Verdict,
+    /// The growth rate per unit time.
+    Growth,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let scene = read(&self.file)?;
-        let limits = common.budget.map_or_else(Limits::default, |products| Limits { products });
-        let analysis = decide_system(scene.system(), &limits)?;
-        let document = report::document(scene.system(), &analysis)
+        let text = text(&self.file)?;
+        let scene = SystemScene::read(&text)?;
+        match self.scan.as_slice() {
+            [] if self.colour.is_some() => {
+                Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
+            }
+            [] => self.verdict(&scene, common),
+            [x, y] => self.map(&scene, &Scan::read(&text, Axis::parse(x)?, Axis::parse(y)?)?, common),
+            other => {
+                Err(Error::input("--scan", format!("given {} times", other.len()), "a map has two axes"))
+            }
+        }
+    }
+
+    fn route(&self) -> Route {
+        if self.exact { Route::Exact } else { Route::Cheapest }
+    }
+
+    fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
+        let analysis = scene.decide(self.route(), &limits(common))?;
+        match drawing(common) {
+            Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
+            None => common.write(&self.echo(report::document(&analysis), scene), Format::Text),
+        }
+    }
+
+    fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {
+        let (xs, ys, limits) = (axes.x.values(), axes.y.values(), limits(common));
+        let bar = progress(xs.len() * ys.len(), common.quiet);
+        let decide = |x: &_, y: &_| axes.at(x, y)?.decide(self.route(), &limits);
+        let points = scan(&xs, &ys, decide, |done| bar.inc(done as u64));
+        bar.finish_and_clear();
+        let names = [axes.x.path.clone(), axes.y.path.clone()];
+        let map = SystemMap { names, xs, ys, points: points? };
+        let colouring = match self.colour {
+            Some(Colour::Verdict) => Colouring::Verdict,
+            Some(Colour::Growth) | None => Colouring::Growth,
+        };
+        if let Some(path) = drawing(common) {
+            return draw("output", path, &map.figure(colouring, scene.title()));
+        }
+        let format = if Target::of(common) == Target::Csv { Format::Csv } else { Format::Json };
+        let document =
+            self.echo(map.document(), scene).input("scan_x", &self.scan[0]).input("scan_y", &self.scan[1]);
+        common.write(&document, format)
+    }
+
+    fn echo(&self, document: Document, scene: &SystemScene) -> Document {
+        let document = document
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
             .input("title", scene.title());
-        common.write(&document, Format::Text)
+        if self.exact { document.input("exact", "true") } else { document }
     }
+}
+
+fn limits(common: &Common) -> Limits {
+    common.budget.map_or_else(Limits::default, |products| Limits { products })
+}
+
+/// The file to draw, where the output is one.
+fn drawing(common: &Common) -> Option<&Path> {
+    common.output.as_deref().filter(|_| Target::of(common).is_figure())
+}
+
+/// Writes a figure to FILE.svg or FILE.png.
+pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
+    let svg = figure.svg();
+    let drawn = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("svg") => svg.into_bytes(),
+        Some("png") => png::raster(&svg, DPI)?,
+        _ => return Err(Error::input(field, path.display(), "name a file that ends in .svg or .png")),
+    };
+    write_output(Some(path), &drawn)
+}
+
+fn text(path: &Path) -> Result<String> {
+    let unreadable = |cause| Error::io(path.display(), format!("cannot read the system: {cause}"));
+    std::fs::read_to_string(path).map_err(unreadable)
 }
 
 /// A system file, read.
 pub fn read(path: &Path) -> Result<SystemScene> {
-    let unreadable = |cause| Error::io(path.display(), format!("cannot read the system: {cause}"));
-    SystemScene::read(&std::fs::read_to_string(path).map_err(unreadable)?)
+    SystemScene::read(&text(path)?)
+}
+
+/// A bar on standard error, which shows itself on a terminal only.
+fn progress(points: usize, quiet: bool) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(points as u64), ProgressDrawTarget::stderr());
+    let template = "{bar:30} {human_pos} of {human_len} points, {per_sec}, {eta} left";
+    bar.with_style(ProgressStyle::with_template(template).expect("the template is sound"))
 }

@@ -7,7 +7,7 @@ use super::products::{Growing, Products};
 use crate::error::{Error, Result};
 use crate::verdict::filter::{self, Group};
 use crate::verdict::floquet::{Base, Pair};
-use crate::verdict::kernel::Instructions;
+use crate::verdict::instructions::Instructions;
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
 
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.

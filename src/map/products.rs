@@ -4,7 +4,7 @@ use super::band::{Band, LANES, Work};
 use crate::error::Result;
 use crate::resonance::dominant_family;
 use crate::verdict::filter::{Ends, Group};
-use crate::verdict::kernel::Instructions;
+use crate::verdict::instructions::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, winding};
 
 /// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.

@@ -1,8 +1,8 @@
 //! A run of Algorithm 1 as a document: the series as rows, measured growth beside the predicted one; and drawn.
 
 use super::document::Document;
-use super::figure::palette::family;
-use super::figure::{Axis, Figure, Layer, Panel, Stroke};
+use super::figure::palette::{GREY, family};
+use super::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
 use super::table::{Cell, Column, Table};
 use crate::avi::Sample;
 
@@ -10,32 +10,44 @@ use crate::avi::Sample;
 #[derive(Clone, Debug)]
 pub struct Run {
     pub series: Vec<Sample>,
-    /// Measured growth rate, per unit time; linear systems only.
-    pub measured: Option<f64>,
+    /// Measured growth rate of small deviations, per unit time.
+    pub measured: f64,
     /// Predicted by the system's multipliers.
     pub predicted: f64,
     /// The largest difference after running forward and back, relative to the start.
     pub irreversibility: f64,
+    /// Whether deviations of any size move like small ones.
+    pub linear: bool,
+}
+
+impl Run {
+    /// What cannot be told from no growth: a bounded solution returns to its size only after a beat, and over half the
+    /// run that looks like growth.
+    fn resolution(&self) -> f64 {
+        self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
+    }
 }
 
 /// The document `kickdrift/simulate/1`; the caller adds the input.
 pub fn document(run: &Run) -> Document {
     let (first, last) = (run.series.first(), run.series.last());
     let drift = first.zip(last).map_or(f64::NAN, |(a, b)| (b.energy - a.energy) / a.energy.abs());
-    let mut lines = vec![
+    let of = if run.linear { "" } else { " of small deviations" };
+    let lines = [
         format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
         format!("  relative change of energy    {drift:.3e}"),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
-        format!("  growth rate, predicted       {:.6}", run.predicted),
+        format!("  growth rate, predicted       {:.6}{of}", run.predicted),
+        format!(
+            "  growth rate, measured        {:.6}{of}, give or take {:.1e}: run longer to see less",
+            run.measured,
+            run.resolution()
+        ),
     ];
-    if let Some(measured) = run.measured {
-        // A bounded solution returns to its size only after a beat: over half the run that looks like growth.
-        let resolution = last.map_or(f64::INFINITY, |s| 2.0 / s.time);
-        lines.push(format!("  growth rate, measured        {measured:.6}, give or take {resolution:.1e}: run longer to see less"));
-    }
     Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)
         .entry("growth_rate_measured", run.measured)
+        .entry("linear", run.linear)
         .entry("irreversibility", run.irreversibility)
         .rows(table(&run.series))
         .told(&lines)
@@ -51,22 +63,48 @@ fn table(series: &[Sample]) -> Table {
     table
 }
 
-/// Energy and amplitude over time, one above the other.
+/// A quantity that grows by more than this is drawn on a logarithmic scale.
+const MANIFOLD: f64 = 100.0;
+
+/// The title of a file is drawn where it fits the paper.
+const LONGEST_TITLE: usize = 90;
+
+/// Energy, momentum and amplitude over time, one above the other; the predicted growth beside the amplitude.
 pub fn figure(run: &Run, title: &str) -> Figure {
-    let panel = |label: &str, value: fn(&Sample) -> f64, colour: usize| {
-        let points: Vec<[f64; 2]> = run.series.iter().map(|s| [s.time, value(s)]).collect();
-        let (lo, hi) = points
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])));
+    let energy = panel(run, "energy", |s| s.energy, 0);
+    let momentum = panel(run, "momentum Σ *p*", |s| s.momentum, 4);
+    let amplitude = panel(run, "amplitude max |Δ*x*|", |s| s.amplitude, 1);
+    let figure = Figure::double_column(165.0).columns(1).named(title);
+    let title = if title.chars().count() <= LONGEST_TITLE { title } else { "" };
+    figure.with(energy.titled(title)).with(momentum).with(with_prediction(run, amplitude))
+}
+
+fn panel(run: &Run, label: &str, value: fn(&Sample) -> f64, colour: usize) -> Panel {
+    let points: Vec<[f64; 2]> = run.series.iter().map(|s| [s.time, value(s)]).collect();
+    let (lo, hi) =
+        points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])));
+    let end = points.last().map_or(1.0, |p| p[0]).max(f64::MIN_POSITIVE);
+    let axis = if lo > 0.0 && hi > MANIFOLD * lo {
+        Axis::log(label, lo / 1.5, hi * 1.5)
+    } else {
         let margin = if hi > lo { (hi - lo) * 0.05 } else { hi.abs().max(1.0) * 0.05 };
-        let end = points.last().map_or(1.0, |p| p[0]).max(f64::MIN_POSITIVE);
-        let stroke = Stroke::LINE.in_colour(family(colour));
-        Panel::new(Axis::linear("*t* (time)", 0.0, end), Axis::linear(label, lo - margin, hi + margin))
-            .with(Layer::lines(vec![points], stroke))
+        Axis::linear(label, lo - margin, hi + margin)
     };
-    Figure::double_column(120.0).columns(1).named(title).with(panel("energy", |s| s.energy, 0)).with(panel(
-        "max |*x*|",
-        |s| s.amplitude,
-        1,
-    ))
+    let stroke = Stroke::LINE.in_colour(family(colour));
+    Panel::new(Axis::linear("*t* (time)", 0.0, end), axis)
+        .with(Layer::lines(vec![points], stroke).labelled("Algorithm 1"))
+}
+
+/// a exp(rate t): through the last sample of a linear run, where the fastest mode is left alone; through the first one of a
+/// nonlinear run, which follows it while deviations are small.
+fn with_prediction(run: &Run, panel: Panel) -> Panel {
+    let (Some(first), true) = (run.series.first(), run.predicted > run.resolution()) else { return panel };
+    let end = run.series.last().map_or(1.0, |s| s.time);
+    let anchor = if run.linear { run.series.last().unwrap_or(first) } else { first };
+    let line = (0..=200).map(|i| end * f64::from(i) / 200.0);
+    let line = line.map(|t| [t, anchor.amplitude * (run.predicted * (t - anchor.time)).exp()]).collect();
+    let label = format!("predicted: exp({:.4} *t*)", run.predicted);
+    panel
+        .with(Layer::lines(vec![line], Stroke::DASHED.in_colour(GREY).wide(1.2)).labelled(&label))
+        .legend(Place::Above)
 }

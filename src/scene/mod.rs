@@ -29,7 +29,7 @@ use crate::number::{Laurent, Rational};
 
 pub use document::Document;
 pub use grid::GridRange;
-pub use system::SystemScene;
+pub use system::{Axis, Scan, SystemScene};
 pub use want::{Format, Product, Want};
 
 /// What is to be computed, checked as far as it can be without computing.

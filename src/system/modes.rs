@@ -2,7 +2,8 @@
 //!
 //! The normal modes are those of the continuous system M x'' + Σ K_k x = 0. A real pair of multipliers is one mode
 //! w in resonance with itself, 2 w = 2π m/T; a quadruple is the collision of two modes, w_i ± w_j = 2π m/T. Every
-//! Σ a_k/h_k is such an m/T, m = Σ a_k T/h_k.
+//! Σ a_k/h_k is such an m/T, m = Σ a_k T/h_k. Where the total stiffness is positive definite only sums destabilize to
+//! first order (Krein: multipliers of one sign of energy meet without leaving the circle), and only these are named.
 
 use std::f64::consts::PI;
 
@@ -123,7 +124,10 @@ impl NormalModes {
                 let second = self.frequencies[j];
                 let (sum, difference) = (turns(first + second), turns(first - second));
                 let off = |x: f64| (x - x.round()).abs();
-                let (sign, x) = if off(sum) <= off(difference) { (1, sum) } else { (-1, difference) };
+                // Modes of positive energy have one sign of Krein's: their differences pass without harm.
+                let definite = self.frequencies.iter().all(|&w| w > 0.0);
+                let (sign, x) =
+                    if definite || off(sum) <= off(difference) { (1, sum) } else { (-1, difference) };
                 ((first, second), sign, x.round(), x)
             }
             _ => {

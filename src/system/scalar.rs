@@ -56,6 +56,11 @@ impl<S: Ring> ManyClocks<S> {
         &self.schedule
     }
 
+    /// The strengths h_1 h_k L_k.
+    pub fn strengths(&self) -> &[S] {
+        &self.strengths
+    }
+
     /// N_k = T/h_k.
     pub fn strikes(&self) -> Vec<u64> {
         self.schedule.clocks().iter().map(|clock| self.schedule.period() / clock.step()).collect()
@@ -159,6 +164,23 @@ pub fn families(m: i64, strikes: &[u64], bound: i64) -> Vec<Vec<i64>> {
         })
     };
     (-bound..=bound).flat_map(with).collect()
+}
+
+/// The shortest families of the resonance m by Σ |a_k|, at most `count`: with |a_k| a little beyond those of the
+/// shortest, and for many clocks that one alone.
+pub fn shortest_families(m: i64, strikes: &[u64], count: usize) -> Vec<Vec<i64>> {
+    let Some(shortest) = shortest_family(m, strikes) else { return Vec::new() };
+    let bound = shortest.iter().map(|a| a.abs()).max().unwrap_or(0) + 3;
+    // All but one a_k are tried; the last one follows.
+    let trials = (2 * bound + 1).checked_pow(strikes.len().saturating_sub(1) as u32);
+    if trials.is_none_or(|trials| trials > MAX_SUMS) {
+        return vec![shortest];
+    }
+    let length = |family: &Vec<i64>| family.iter().map(|a| a.abs()).sum::<i64>();
+    let mut all = families(m, strikes, bound);
+    all.sort_by_key(length);
+    all.truncate(count);
+    all
 }
 
 /// The most sums that the search for a shortest family visits.

@@ -2,8 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::analysis::{Evidence, decide_system};
-use super::exact::Limits;
+use super::analysis::Analysis;
 use super::model::System;
 use crate::error::Result;
 use crate::number::Rational;
@@ -21,27 +20,36 @@ pub struct Point {
     pub growth_rate: f64,
 }
 
-/// The verdicts of `build(x, y)` for all pairs of parameters, row by row of y; in parallel, in order.
+/// Points that are handed to all threads at once.
+const AHEAD: usize = 512;
+
+/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is told how
+/// many more are done, now and then.
 ///
 /// # Errors
-/// The first error of `build` or of a verdict.
+/// The first error of `decide`.
 pub fn scan(
     xs: &[Rational],
     ys: &[Rational],
-    limits: &Limits,
-    build: impl Fn(&Rational, &Rational) -> Result<System> + Sync,
+    decide: impl Fn(&Rational, &Rational) -> Result<Analysis> + Sync,
+    mut see: impl FnMut(usize),
 ) -> Result<Vec<Point>> {
     let pairs: Vec<_> = ys.iter().flat_map(|y| xs.iter().map(move |x| (x, y))).collect();
     let point = |&(x, y): &(&Rational, &Rational)| {
-        let analysis = decide_system(&build(x, y)?, limits)?;
+        let analysis = decide(x, y)?;
         Ok(Point {
             at: (x.clone(), y.clone()),
             kind: analysis.kind,
-            is_proof: analysis.parts.iter().all(|part| part.evidence != Evidence::Estimate),
+            is_proof: analysis.is_proof(),
             growth_rate: analysis.growth_rate(),
         })
     };
-    pairs.par_iter().map(point).collect()
+    let mut points = Vec::with_capacity(pairs.len());
+    for group in pairs.chunks(AHEAD) {
+        points.extend(group.par_iter().map(point).collect::<Result<Vec<_>>>()?);
+        see(group.len());
+    }
+    Ok(points)
 }
 
 impl System {

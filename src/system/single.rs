@@ -3,16 +3,17 @@
 use num_complex::Complex64;
 
 use super::ManyClocks;
-use super::analysis::{Evidence, Instability, Multiplier, Part};
+use super::analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part, exponent};
+use super::enclose;
 use super::float;
 use super::frame::Frame;
 use super::model::System;
 use super::modes::{Origin, Resonance};
-use super::scalar::shortest_family;
+use super::scalar::{shortest_families, shortest_family};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
-use crate::number::{Ball, Rational, Sign};
-use crate::verdict::{self, Kind, Limits, PartialSigns, Tier, Verdict, growth};
+use crate::number::{Ball, Laurent, Rational, Sign};
+use crate::verdict::{self, Decidable, Kind, Limits, PartialSigns, Tier, Verdict, growth};
 
 /// A trace, a label: what the kernels tell of one oscillator.
 struct Scalar {
@@ -25,11 +26,11 @@ struct Scalar {
 
 const BITS: u32 = 128;
 
-/// Labels are counted exactly up to this many kicks, of which each makes the numbers longer.
-const COUNTED: u64 = 5_000;
+/// Balls of 2^7 to 2^16 bits are tried, as long as kicks times bits stay below this: some seconds.
+const BALL_WORK: u64 = 1 << 32;
 
-/// The most kicks composed in fractions, each of which makes the numbers longer.
-const EXACT: u64 = 50_000;
+/// Families listed of a resonance.
+const FAMILIES: usize = 6;
 
 impl System {
     /// The system as K clocks on one oscillator; `None` unless it has one degree of freedom.
@@ -51,32 +52,74 @@ impl System {
 /// The verdict on a system of one degree of freedom; shapes are (1).
 pub(super) fn decide(system: &System) -> Result<Part> {
     let clocks = system.as_many_clocks().expect("one degree of freedom");
-    let scalar = match by_ladder(&clocks)? {
+    // In fractions each kick makes the numbers longer.
+    decide_clocks(&clocks, system, Laurent::from_rational(system.period()), 50_000)
+}
+
+/// The verdict on K clocks with stiffnesses that may involve π, as the one part of a system.
+///
+/// `rounded` is the same oscillator with each stiffness/mass rounded to the nearest double, mass 1; `unit` is h_1, the
+/// unit of time of `clocks`.
+///
+/// # Errors
+/// A budget error where only more exact arithmetic than some minutes' worth would tell.
+///
+/// # Panics
+/// Where `rounded` has not the clocks of `clocks`.
+pub fn decide_oscillator(clocks: &ManyClocks<Laurent>, rounded: &System, unit: &Laurent) -> Result<Analysis> {
+    assert_eq!(clocks.strikes().len(), rounded.clocks().len(), "one stiffness a clock");
+    let period = Laurent::from_rational(clocks.period()) * unit.clone();
+    // Over Q[π] the degree grows with each kick.
+    let part = decide_clocks(clocks, rounded, period.clone(), 900)?;
+    let warnings = if rounded.total_stiffness().is_positive_semidefinite() {
+        Vec::new()
+    } else {
+        vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]
+    };
+    let (size, clocks, kind) = (1, clocks.strikes().len(), part.kind);
+    Ok(Analysis { size, clocks, period, kind, rigid_modes: Vec::new(), parts: vec![part], warnings })
+}
+
+/// By the ladder, by doubles, by balls, or by exact signs of at most `exact` kicks.
+fn decide_clocks<S: Decidable>(
+    clocks: &ManyClocks<S>,
+    rounded: &System,
+    period: Laurent,
+    exact: u64,
+) -> Result<Part> {
+    let scalar = match by_ladder(clocks)? {
         Some(scalar) => scalar,
-        None => by_doubles(system, &clocks).map_or_else(|| by_signs(&clocks), Ok)?,
+        None => match by_doubles(rounded, clocks).or_else(|| by_balls(clocks)) {
+            Some(scalar) => scalar,
+            None => by_signs(clocks, exact)?,
+        },
     };
     let (lo, hi) = scalar.mu.to_f64_enclosure();
     let mu = scalar.mu.mid_f64();
     let multiplier = Multiplier::new(Complex64::new(mu, 0.0), Some((hi - mu).max(mu - lo)));
     let kind = scalar.verdict.kind();
+    let strikes = clocks.strikes();
+    let trace = scalar.mu.scale2(2).add(&Ball::from_integer(&2.into()), BITS);
+    let families = scalar.label.map_or_else(Vec::new, |m| shortest_families(m as i64, &strikes, FAMILIES));
     let instabilities = match kind {
-        Kind::Hyperbolic => vec![instability(system, multiplier, scalar.label, scalar.verdict)],
+        Kind::Hyperbolic => vec![instability(rounded, &period, multiplier, &scalar)],
         _ => Vec::new(),
     };
     Ok(Part {
         dofs: vec![0],
         size: 1,
-        period: system.period(),
+        period,
         kind,
         evidence: Evidence::Scalar(scalar.tier),
         multipliers: vec![multiplier],
         instabilities,
         roots: None,
+        oscillator: Some(Clocked { trace, strikes, label: scalar.label, families }),
     })
 }
 
 /// One or two clocks of phase 0: the certified ladder.
-fn by_ladder(clocks: &ManyClocks<Rational>) -> Result<Option<Scalar>> {
+fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>) -> Result<Option<Scalar>> {
     let Some(two) = clocks.as_two_clocks() else { return Ok(None) };
     let limits = Limits::default();
     let decision = verdict::decide(&two, &limits)?;
@@ -85,53 +128,78 @@ fn by_ladder(clocks: &ManyClocks<Rational>) -> Result<Option<Scalar>> {
     Ok(Some(Scalar { verdict: decision.verdict, tier: decision.decided_by, mu, label: growth.label }))
 }
 
-/// Any clocks: the signs that doubles prove.
-fn by_doubles(system: &System, clocks: &ManyClocks<Rational>) -> Option<Scalar> {
-    let blocks = float::half_period(system, &Frame::new(system));
+/// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.
+fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<Scalar> {
+    let blocks = float::half_period(rounded, &Frame::new(rounded));
     let error = blocks.error?;
     let certain = |x: f64| (x.abs() > error).then_some(if x > 0.0 { Sign::Positive } else { Sign::Negative });
-    let (y, p) = (&blocks.y[0], &blocks.p[0]);
+    let (y, p) = (blocks.y.first()?, blocks.p.first()?);
     let signs = PartialSigns { a: certain(y[0]), b: certain(y[1]), c: certain(p[0]), d: certain(p[1]) };
+    let verdict = signs.verdict()?;
     let exact = |x: f64| Some(Ball::from_rational(&Rational::from_float(x)?, BITS));
     let around = |x: f64| Some(exact((x - error).next_down())?.union(&exact((x + error).next_up())?, BITS));
     let mu = around(y[1])?.mul(&around(p[0])?, BITS);
-    Some(Scalar { verdict: signs.verdict()?, tier: Tier::Filter, mu, label: counted(clocks) })
+    let label = labelled(clocks, verdict);
+    Some(Scalar { verdict, tier: Tier::Filter, mu, label })
+}
+
+/// The precisions that balls are worth trying at.
+fn precisions<S: Decidable>(clocks: &ManyClocks<S>) -> impl Iterator<Item = u32> {
+    let kicks = clocks.schedule().strikes();
+    (7..=16).map(|log2| 1u32 << log2).take_while(move |&bits| kicks.saturating_mul(bits.into()) < BALL_WORK)
+}
+
+/// Any clocks: the signs that balls tell.
+fn by_balls<S: Decidable>(clocks: &ManyClocks<S>) -> Option<Scalar> {
+    precisions(clocks).find_map(|bits| {
+        let half = enclose::run(clocks, bits);
+        let verdict = half.verdict()?;
+        let label = half.label(verdict).filter(|_| verdict.kind() == Kind::Hyperbolic);
+        Some(Scalar { verdict, tier: Tier::Refine, mu: half.mu(BITS), label })
+    })
+}
+
+/// m, where balls count it.
+fn labelled<S: Decidable>(clocks: &ManyClocks<S>, verdict: Verdict) -> Option<u64> {
+    if verdict.kind() != Kind::Hyperbolic {
+        return None;
+    }
+    precisions(clocks).find_map(|bits| enclose::run(clocks, bits).label(verdict))
 }
 
 /// Any clocks: exact signs.
-fn by_signs(clocks: &ManyClocks<Rational>) -> Result<Scalar> {
+fn by_signs<S: Decidable>(clocks: &ManyClocks<S>, most: u64) -> Result<Scalar> {
     let kicks = clocks.schedule().strikes() / 2;
-    if kicks > EXACT {
+    if kicks > most {
         return Err(Error::budget(format!(
-            "exact signs of {kicks} kicks would take more than minutes (the limit is {EXACT}): choose steps with \
+            "exact signs of {kicks} kicks would take more than minutes (the limit is {most}): choose steps with \
              simpler ratios"
         )));
     }
     let half = clocks.half_period();
-    let mu = Ball::from_rational(&(&half[(0, 1)] * &half[(1, 0)]), BITS);
-    Ok(Scalar { verdict: clocks.half_signs().verdict(), tier: Tier::Exact, mu, label: counted(clocks) })
+    let mu = S::product(&half[(0, 1)], &half[(1, 0)]).enclosure(BITS);
+    Ok(Scalar { verdict: clocks.half_signs().verdict(), tier: Tier::Exact, mu, label: clocks.label() })
 }
 
-fn counted(clocks: &ManyClocks<Rational>) -> Option<u64> {
-    if clocks.schedule().strikes() <= COUNTED { clocks.label() } else { None }
-}
-
-fn instability(system: &System, multiplier: Multiplier, label: Option<u64>, verdict: Verdict) -> Instability {
-    let period = to_f64(&system.period());
-    let stiffness = system.total_stiffness().get(0, 0) / system.mass().get(0, 0);
+fn instability(rounded: &System, period: &Laurent, multiplier: Multiplier, scalar: &Scalar) -> Instability {
+    // The frequency in the units of `rounded`, whose period is T there.
+    let stiffness = rounded.total_stiffness().get(0, 0) / rounded.mass().get(0, 0);
     let w = to_f64(&stiffness).max(0.0).sqrt();
-    let turns = w * period / std::f64::consts::PI;
+    let turns = w * to_f64(&rounded.period()) / std::f64::consts::PI;
     // m is even where Tr > 2 and odd where Tr < −2.
-    let odd = f64::from(u8::from(verdict.side() < 0));
-    let m = label.map_or((2.0 * ((turns - odd) / 2.0).round() + odd) as i64, |m| m as i64);
-    let strikes: Vec<u64> = (0..system.clocks().len()).map(|k| system.strikes(k)).collect();
+    let odd = f64::from(u8::from(scalar.verdict.side() < 0));
+    let m = scalar.label.map_or((2.0 * ((turns - odd) / 2.0).round() + odd) as i64, |m| m as i64);
+    let strikes: Vec<u64> = (0..rounded.clocks().len()).map(|k| rounded.strikes(k)).collect();
     let family = shortest_family(m, &strikes).unwrap_or_default();
+    let period = period.to_f64();
+    let w = turns * std::f64::consts::PI / period;
     let resonance = Resonance { frequencies: (w, w), sign: 1, m, family, detuning: turns - m as f64 };
     Instability {
         multiplier,
         origin: Origin::RealPair,
-        growth_rate: multiplier.lambda.norm().ln() / period,
+        growth_rate: exponent(multiplier.mu).re / period,
         shape: vec![1.0],
+        quadrature: vec![0.0],
         resonance: Some(resonance),
     }
 }

@@ -11,11 +11,12 @@
 //! * isolated discs about real numbers, all inside (−1, 0), prove stability: all multipliers are distinct and lie
 //!   on the unit circle.
 //!
-//! Double eigenvalues, of symmetric systems say, are beyond it: they need exact arithmetic.
+//! Multiple eigenvalues, of symmetric systems say, are taken together in [`clusters`](super::clusters).
 
 use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, c64};
 
+use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
 use crate::verdict::Kind;
@@ -30,6 +31,9 @@ pub(super) struct Spectrum {
     pub radius: Option<f64>,
     /// One column for each, in the coordinates of [`FloatBlocks`].
     pub vectors: Mat<c64>,
+    /// S, and how far the true one can be.
+    s: Mat<f64>,
+    s_error: Option<f64>,
 }
 
 impl Spectrum {
@@ -37,23 +41,28 @@ impl Spectrum {
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
         let m = blocks.m;
         let b = Mat::from_fn(m, m, |i, j| blocks.y[i][m + j]);
-        let c = Mat::from_fn(m, m, |i, j| blocks.p[i][j]);
-        let s = b.transpose() * &c;
+        let (s, s_error) = times_c(blocks, &b);
         let eigen = s.eigen().ok()?;
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
         let vectors = eigen.U().to_owned();
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
-        let radius = blocks.error.filter(|_| finite).and_then(|e| {
-            // What rounding the product adds: (m + 2) u |B|ᵀ |C|.
-            let rounding = 1.01 * (m as f64 + 2.0) * U * norm::frobenius(&b) * norm::frobenius(&c);
-            let delta = e * (2.0 * blocks.norm + e) + rounding;
-            radius(&s, delta, &mu, &vectors)
-        });
-        finite.then_some(Spectrum { mu, radius, vectors })
+        let radius = s_error.filter(|_| finite).and_then(|delta| radius(&s, delta, &mu, &vectors));
+        finite.then_some(Spectrum { mu, radius, vectors, s, s_error })
     }
 
-    /// What the discs prove, if anything.
-    pub fn certified(&self) -> Option<Kind> {
+    /// What the discs prove, or the clusters, if anything.
+    pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
+        self.by_discs().or_else(|| self.by_clusters(blocks).then_some(Kind::Elliptic))
+    }
+
+    fn by_clusters(&self, blocks: &FloatBlocks) -> bool {
+        let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
+        let (y, y_error) = times_c(blocks, &a);
+        let (Some(s_error), Some(y_error)) = (self.s_error, y_error) else { return false };
+        clusters::are_stable(&Pencil { s: &self.s, s_error, y: &y, y_error }, &self.mu, &self.vectors)
+    }
+
+    fn by_discs(&self) -> Option<Kind> {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
@@ -71,6 +80,19 @@ impl Spectrum {
     }
 }
 
+/// Zᵀ C for a block Z of the half period, and a bound on its distance from the true one.
+fn times_c(blocks: &FloatBlocks, z: &Mat<f64>) -> (Mat<f64>, Option<f64>) {
+    let m = blocks.m;
+    let c = Mat::from_fn(m, m, |i, j| blocks.p[i][j]);
+    let (size_z, size_c) = (norm::frobenius(z), norm::frobenius(&c));
+    let error = blocks.error.map(|e| {
+        // What rounding the product adds: (m + 2) u |Z|ᵀ |C|.
+        let rounding = 1.01 * (m as f64 + 2.0) * U * size_z * size_c;
+        e * (size_z.min(blocks.norm) + size_c.min(blocks.norm) + e) + rounding
+    });
+    (z.transpose() * &c, error)
+}
+
 /// The distance from the segment [−1, 0], rounded.
 pub(super) fn from_segment(z: c64) -> f64 {
     let nearest = z.re.clamp(-1.0, 0.0);
@@ -78,7 +100,7 @@ pub(super) fn from_segment(z: c64) -> f64 {
 }
 
 /// γ: a sum of m products, in any order, has an error of at most this times the sum of their absolute values.
-fn gamma(m: usize) -> f64 {
+pub(super) fn gamma(m: usize) -> f64 {
     1.01 * (m as f64 + 4.0) * U
 }
 
@@ -113,21 +135,27 @@ fn times_blocks(v: &Mat<f64>, d: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// More than ‖F‖₂ for the true S, which is within `delta` of the given one.
+/// More than ‖F‖₂ with the computed eigenvectors; see [`bauer_fike`].
 fn radius(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<f64> {
-    let m = mu.len();
     let (v, d) = real_form(mu, v)?;
+    bauer_fike(s, delta, &v, &d)
+}
+
+/// More than ‖F‖₂, V⁻¹ S V = D + F, for the true S, which is within `delta` of the given one, and a normal D of blocks of
+/// size 1 and 2.
+pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<f64> {
+    let m = v.ncols();
     let w = v.partial_piv_lu().inverse();
-    let vd = times_blocks(&v, &d);
-    let residual = norm::frobenius(&(s * &v - &vd));
-    let (nv, nw) = (norm::frobenius(&v), norm::frobenius(&w));
-    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(&d));
-    let y = Mat::<f64>::identity(m, m) - &w * &v;
+    let vd = times_blocks(v, d);
+    let residual = norm::frobenius(&(s * v - &vd));
+    let (nv, nw) = (norm::frobenius(v), norm::frobenius(&w));
+    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(d));
+    let y = Mat::<f64>::identity(m, m) - &w * v;
     let y = norm::frobenius(&y) + gamma(m) * (nw * nv + m as f64);
     if y.is_nan() || y >= 0.5 {
         return None;
     }
-    let off = residual + rounding + delta * norm::spectral(&v);
+    let off = residual + rounding + delta * norm::spectral(v);
     let radius = 1.01 * norm::spectral(&w) * off / (1.0 - y);
     radius.is_finite().then_some(radius)
 }

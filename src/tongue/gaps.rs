@@ -5,10 +5,12 @@
 //! ⌈m/2⌉. For ρ > 0 there are p + q − 2 of them, and the last, m = p + q − 1, has no upper end. For ρ = 0 the slow clock is
 //! silent: all are closed, at p θ = m π, m < p, and m = p begins at the Verlet limit s = 4.
 
+use std::ops::RangeInclusive;
+
 use num_integer::Integer;
 use num_traits::{Signed, Zero};
 
-use super::mode::Workspace;
+use super::locate::Workspace;
 use super::modular;
 use super::precise::{Enclosure, Function, simplest};
 use super::spectrum::Edge;
@@ -125,15 +127,16 @@ impl Tongues {
     pub fn gaps(&mut self, from: u64, upto: u64) -> Result<Vec<Gap>> {
         self.check(from)?;
         self.check(upto)?;
-        let mut lists = Vec::with_capacity(4);
+        let mut wanted = [const { None }; 4];
         for entry in Entry::ALL {
             let (first, last) = indices(entry, from, upto);
             let last = last.min(self.string.dimension(entry));
-            lists.push((first, if first <= last { self.edges(entry, first, last)? } else { Vec::new() }));
+            wanted[entry as usize] = (first <= last).then_some(first..=last);
         }
+        let lists = self.wanted_edges(&wanted)?;
         let edge = |entry: Entry, index: usize| {
-            let (first, edges) = &lists[entry as usize];
-            edges.get(index - first).copied()
+            let first = *wanted[entry as usize].as_ref()?.start();
+            lists[entry as usize].get(index - first).copied()
         };
         let pairs: Vec<_> = (from..=upto)
             .map(|m| (m, modular::pair(m % 2 == 1).map(|entry| edge(entry, m.div_ceil(2) as usize))))
@@ -159,7 +162,34 @@ impl Tongues {
                 format!("entry {} has {} positive zeros", entry.name(), self.string.dimension(entry));
             return Err(Error::input("edge", format!("{first}..{last}"), remedy));
         }
-        let found = self.string.eigenvalues(entry, first..=last, &mut self.space);
+        let mut wanted = [const { None }; 4];
+        wanted[entry as usize] = Some(first..=last);
+        let [a, b, c, d] = self.wanted_edges(&wanted)?;
+        Ok([a, b, c, d].concat())
+    }
+
+    /// All edges, by entry: the quickest way to have them all.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn all_edges(&mut self) -> Result<[Vec<Edge>; 4]> {
+        let all = Entry::ALL.map(|entry| self.string.dimension(entry));
+        self.wanted_edges(&all.map(|zeros| (zeros > 0).then_some(1..=zeros)))
+    }
+
+    /// The edges of each problem with the given indices, all side by side.
+    fn wanted_edges(&mut self, wanted: &[Option<RangeInclusive<usize>>; 4]) -> Result<[Vec<Edge>; 4]> {
+        let mut found = self.string.eigenvalues(wanted, &mut self.space).into_iter();
+        let mut edges = [const { Vec::new() }; 4];
+        for (entry, edges) in Entry::ALL.into_iter().zip(&mut edges) {
+            let first = wanted[entry as usize].as_ref().map_or(1, |range| *range.start());
+            *edges = self.completed(entry, first, found.next().unwrap_or_default())?;
+        }
+        Ok(edges)
+    }
+
+    /// The edges `first`, `first` + 1, ... of one problem, those that doubles could not certify by more bits.
+    fn completed(&mut self, entry: Entry, first: usize, found: Vec<Option<Edge>>) -> Result<Vec<Edge>> {
         let mut edges = Vec::with_capacity(found.len());
         for (edge, index) in found.into_iter().zip(first..) {
             edges.push(match edge {

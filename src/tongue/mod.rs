@@ -6,7 +6,7 @@
 //!
 //! ```text
 //!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
-//!       (sturm)      (spectrum)        (mode)          (gaps)                 closings
+//!       (sturm)      (isolate)    (locate, half, mode) (spectrum)  (gaps)        closings
 //!                                       more bits: precise      open or closed: modular, elimination
 //! ```
 //!
@@ -32,7 +32,11 @@
 mod closing;
 mod elimination;
 mod gaps;
+mod half;
+mod isolate;
 mod jet;
+mod lanes;
+mod locate;
 mod mode;
 mod modular;
 mod peak;

@@ -11,9 +11,8 @@
 //! ```
 
 use super::gaps::{Gap, Tongues};
+use super::lanes::LANES;
 use super::row::ExactEdge;
-use super::string::Entry;
-use super::sturm::LANES;
 use crate::error::{Error, Result};
 use crate::number::{Rational, rational};
 use crate::resonance::dominant_family;
@@ -94,9 +93,13 @@ impl Tongues {
         let string = self.string();
         let counts = |s: f64| {
             // The counts neither underflow nor overflow within these.
-            let kappa = (s / string.ticks).min(4.0 * string.upper_bound());
-            let count = |entry| if kappa < 1e-100 { 0 } else { string.counts(entry, &[kappa; LANES])[0] };
-            Entry::ALL.map(count)
+            let kappa = (s / string.ticks).min(4.0 * string.upper_bound);
+            let from = |starts_free: bool| {
+                let counts = string.counts(&[starts_free; LANES], &[kappa; LANES]);
+                counts.map(|counts| if kappa < 1e-100 { 0 } else { counts[0] as u64 })
+            };
+            let ([a, c], [b, d]) = (from(true), from(false));
+            [a, b, c, d]
         };
         let ([a, b, c, d], [e, f, g, h]) = (counts(lo * (1.0 - SLACK)), counts(hi * (1.0 + SLACK)));
         let first = (2 * b.min(c) + 2).min(2 * a.min(d) + 1);

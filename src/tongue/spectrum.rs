@@ -1,10 +1,13 @@
-//! Eigenvalues one by one: isolated by Sturm counts, improved and certified by Rayleigh quotients.
+//! Eigenvalues one by one: isolated by Sturm counts, improved by Newton's method, certified by Rayleigh quotients.
 
 use std::ops::RangeInclusive;
 
-use super::mode::{Mode, Workspace};
+use super::isolate::{Bracket, Wanted};
+use super::lanes::LANES;
+use super::locate::{Problems, Workspace};
+use super::mode::{Bounds, Proofs};
 use super::string::{Entry, HalfString};
-use super::sturm::{LANES, Lanes, lanes};
+use super::sturm::Targets;
 
 /// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,122 +20,58 @@ pub struct Edge {
     pub hi: f64,
 }
 
-/// An interval of κ in which a problem has, by computed counts, the eigenvalues `below` + 1 ..= `upto`.
-#[derive(Clone, Copy, Debug)]
-struct Bracket {
-    lo: f64,
-    hi: f64,
-    below: u64,
-    upto: u64,
-}
-
-/// Rounds of Rayleigh quotient iteration and halvings for one eigenvalue before more bits are called.
+/// Halvings for one eigenvalue before more bits are called.
 const ROUNDS: u32 = 60;
 
-/// Quotients that may follow one another before the bracket is halved: they converge cubically or not at all.
-const PATIENCE: u32 = 6;
+/// Halvings between two attempts.
+const HALVINGS: u32 = 3;
 
-/// A quotient that moved by less than this part of its distance to the neighbours is close: its own error is
-/// about the cube of that.
-const CLOSE: f64 = 1e-4;
+/// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
+const NEGLIGIBLE: f64 = 1e-17;
 
-/// An uncertainty of the quotient that no double shows.
-const NEGLIGIBLE: f64 = 1e-18;
+/// One of a few units in the last place: what strings of many thousand masses allow in doubles.
+const TOLERABLE: f64 = 1e-15;
 
 impl HalfString {
-    /// The eigenvalues with the given indices, `None` where doubles cannot certify one.
+    /// The eigenvalues with the given indices, by entry; `None` where doubles cannot certify one.
     pub fn eigenvalues(
         &self,
-        entry: Entry,
-        wanted: RangeInclusive<usize>,
+        wanted: &[Option<RangeInclusive<usize>>; 4],
         space: &mut Workspace,
-    ) -> Vec<Option<Edge>> {
-        let first = *wanted.start();
-        let mut found = vec![None; wanted.end() + 1 - first];
-        let brackets = self.isolate(entry, &wanted, false);
-        let mut search =
-            Search { string: self, entry, space, tasks: brackets.into_iter().map(Task::new).collect() };
-        search.run(|edge: Edge| found[edge.index - first] = Some(edge));
+    ) -> [Vec<Option<Edge>>; 4] {
+        let range = |entry: Entry| wanted[entry as usize].as_ref();
+        let bounds = |entry: Entry| range(entry).map(|range| (*range.start() as u64, *range.end() as u64));
+        let asked: [Wanted; 2] = [true, false].map(|free| Entry::starting(free).map(bounds));
+        let mut tasks = Vec::new();
+        for (samples, asked) in self.sample(&asked).iter().zip(&asked) {
+            tasks.extend(samples.brackets(asked).into_iter().map(Task::new));
+        }
+        let mut found =
+            Entry::ALL.map(|entry| vec![None; range(entry).map_or(0, |range| range.clone().count())]);
+        Search { string: self, space }.run(tasks, |edge| {
+            let first = range(edge.entry).map_or(1, |range| *range.start());
+            found[edge.entry as usize][edge.index - first] = Some(edge);
+        });
         found
     }
 
     /// An interval of s that holds no other eigenvalue of the problem than this one, by counts in doubles: the one
     /// before lies below lo (1 + η), the one after above hi (1 − η). Whether it holds this one, signs must tell.
     pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        self.around(entry, index, true)
+        let wanted = entry.alone(index);
+        let samples = self.sample(&wanted);
+        let bracket =
+            samples.iter().zip(&wanted).find_map(|(samples, asked)| samples.brackets(asked).pop())?;
+        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
+        Some((bracket.lo * (1.0 + slack) * self.ticks, bracket.hi * (1.0 - slack) * self.ticks))
     }
 
     /// An interval of s in which the eigenvalue lies, perhaps with others.
     pub fn cluster(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
-        self.around(entry, index, false)
-    }
-
-    fn around(&self, entry: Entry, index: usize, alone: bool) -> Option<(f64, f64)> {
-        let parts = self.isolate(entry, &(index..=index), !alone);
-        let found = parts.into_iter().find(|part| part.below < index as u64 && index as u64 <= part.upto)?;
-        let slack = (2.0 * self.eta() + 4.0 * f64::EPSILON) * if alone { 1.0 } else { -1.0 };
-        Some((found.lo * (1.0 + slack) * self.ticks, found.hi * (1.0 - slack) * self.ticks))
-    }
-
-    /// Brackets of one eigenvalue each, for all wanted ones that counts in doubles can tell apart.
-    ///
-    /// `clusters`: those that they cannot tell apart too, together.
-    fn isolate(&self, entry: Entry, wanted: &RangeInclusive<usize>, clusters: bool) -> Vec<Bracket> {
-        let upto = self.dimension(entry) as u64;
-        let mut open = vec![Bracket { lo: 0.0, hi: self.upper_bound(), below: 0, upto }];
-        let mut isolated = Vec::new();
-        while !open.is_empty() {
-            let cuts: Vec<Vec<f64>> = open.iter().map(|bracket| bracket.cuts(LANES / open.len())).collect();
-            let points: Vec<f64> = cuts.iter().flatten().copied().collect();
-            let counts: Vec<u64> = points
-                .chunks(LANES)
-                .flat_map(|chunk| {
-                    self.counts(entry, &lanes(|i| chunk[i.min(chunk.len() - 1)]))
-                        .into_iter()
-                        .take(chunk.len())
-                })
-                .collect();
-            let mut next = Vec::new();
-            let mut at = 0;
-            for (bracket, cuts) in open.iter().zip(&cuts) {
-                let known = points[at..at + cuts.len()].iter().copied().zip(counts[at..].iter().copied());
-                at += cuts.len();
-                for part in bracket.parts(known) {
-                    let asked = part.below < *wanted.end() as u64 && part.upto >= *wanted.start() as u64;
-                    match part.upto.saturating_sub(part.below) {
-                        0 => {}
-                        _ if !asked => {}
-                        1 => isolated.push(part),
-                        _ if part.hi - part.lo < 16.0 * self.eta() * part.hi => {
-                            isolated.extend(clusters.then_some(part))
-                        }
-                        _ => next.push(part),
-                    }
-                }
-            }
-            open = next;
-        }
-        isolated
-    }
-}
-
-impl Bracket {
-    /// Points that cut the bracket evenly in √κ, one for each eigenvalue in it and at least `least`.
-    fn cuts(&self, least: usize) -> Vec<f64> {
-        let n = ((self.upto - self.below) as usize).min(64).max(least).max(1);
-        let (from, to) = (self.lo.sqrt(), self.hi.sqrt());
-        let point = |k: usize| (from + (to - from) * k as f64 / (n + 1) as f64).powi(2);
-        (1..=n).map(point).collect()
-    }
-
-    /// The parts between neighbouring points.
-    fn parts(self, points: impl Iterator<Item = (f64, u64)>) -> impl Iterator<Item = Bracket> {
-        let end = (self.hi, self.upto);
-        points.chain(std::iter::once(end)).scan((self.lo, self.below), |from, to| {
-            let part = Bracket { lo: from.0, hi: to.0, below: from.1, upto: to.1 };
-            *from = to;
-            Some(part)
-        })
+        let samples = &self.sample(&entry.alone(index))[usize::from(!entry.starts_free())];
+        let (lo, hi) = samples.around(usize::from(entry.ends_free()), index as u64)?;
+        let slack = 2.0 * self.eta() + 4.0 * f64::EPSILON;
+        Some((lo * (1.0 - slack) * self.ticks, hi * (1.0 + slack) * self.ticks))
     }
 }
 
@@ -142,114 +81,131 @@ struct Task {
     /// What the counts say: it bounds the neighbours.
     bracket: Bracket,
     /// The part of the bracket where the eigenvalue is.
-    inner: Bracket,
+    inner: (f64, f64),
     kappa: f64,
+    /// The node where the mode lives.
+    at: u32,
+    /// Halvings done.
     rounds: u32,
-    /// The last quotient left the inner bracket, or there were too many: halve it first.
-    astray: bool,
+    /// The last proof's radius: a wider enclosure is better than none where another trial gains no more.
+    radius: f64,
 }
 
 impl Task {
     fn new(bracket: Bracket) -> Task {
-        Task { bracket, inner: bracket, kappa: middle(&bracket), rounds: 0, astray: false }
+        let inner = (bracket.lo, bracket.hi);
+        Task { bracket, inner, kappa: 0.0, at: 0, rounds: 0, radius: f64::INFINITY }
+    }
+
+    fn edge(&self, lo: f64, hi: f64) -> Edge {
+        Edge { entry: self.bracket.entry, index: self.bracket.index, lo, hi }
     }
 }
 
-/// Takes up to [`LANES`] tasks off the list.
-fn next_batch(tasks: &mut Vec<Task>) -> Vec<Task> {
-    tasks.split_off(tasks.len().saturating_sub(LANES))
+/// A number of each task, the last one's repeated in the lanes left over.
+fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
+    let mut all = [number(&batch[batch.len() - 1]); LANES];
+    all.iter_mut().zip(batch).for_each(|(lane, task)| *lane = number(task));
+    all
 }
 
-/// The guesses of a batch, the last one repeated in the lanes left over.
-fn guesses(batch: &[Task]) -> Lanes {
-    lanes(|i| batch[i.min(batch.len() - 1)].kappa)
-}
-
-fn middle(bracket: &Bracket) -> f64 {
-    (0.5 * (bracket.lo.sqrt() + bracket.hi.sqrt())).powi(2)
+fn problems(batch: &[Task]) -> Problems {
+    Problems {
+        kappa: each(batch, |task| task.kappa),
+        starts_free: each(batch, |task| task.bracket.entry.starts_free()),
+        ends_free: each(batch, |task| task.bracket.entry.ends_free()),
+    }
 }
 
 struct Search<'a> {
     string: &'a HalfString,
-    entry: Entry,
     space: &'a mut Workspace,
-    tasks: Vec<Task>,
 }
 
 impl Search<'_> {
-    /// Works on up to [`LANES`] tasks at a time: first brings them near, then certifies them.
-    fn run(&mut self, mut found: impl FnMut(Edge)) {
-        let mut near = Vec::with_capacity(self.tasks.len());
-        while !self.tasks.is_empty() {
-            let mut batch = next_batch(&mut self.tasks);
-            self.halve(&mut batch);
-            let quotients = self.space.quotients(self.string, self.entry, &guesses(&batch));
-            for (mut task, mu) in batch.into_iter().zip(quotients) {
-                let shift = (mu - task.kappa).abs();
-                task.follow(mu);
-                let distance = (mu - task.bracket.lo).min(task.bracket.hi - mu);
-                let close = !task.astray && shift <= CLOSE * distance;
-                if close || task.rounds >= ROUNDS { near.push(task) } else { self.tasks.push(task) }
-            }
-        }
-        while !near.is_empty() {
-            let batch = next_batch(&mut near);
-            let modes = self.space.modes(self.string, self.entry, &guesses(&batch));
-            for (mut task, mode) in batch.into_iter().zip(modes) {
-                task.follow(mode.quotient.hi);
-                match self.certified(&task.bracket, &mode) {
-                    Some(edge) => found(edge),
-                    None if task.rounds < ROUNDS => near.push(task),
-                    None => {}
-                }
-            }
+    /// Halves the brackets, finds out where the modes live, and proves them; what fails, again.
+    fn run(&mut self, mut tasks: Vec<Task>, mut found: impl FnMut(Edge)) {
+        while !tasks.is_empty() {
+            self.narrow(&mut tasks);
+            self.locate(&mut tasks);
+            // Modes that live side by side are followed side by side.
+            tasks.sort_unstable_by_key(|task| task.at);
+            tasks = self.prove(&tasks, &mut found);
+            tasks.retain(|task| task.rounds < ROUNDS);
         }
     }
 
-    /// Halves the brackets of the tasks that went astray.
-    fn halve(&self, batch: &mut [Task]) {
-        if batch.iter().all(|task| !task.astray) {
-            return;
-        }
-        let kappa = lanes(|i| middle(&batch[i.min(batch.len() - 1)].inner));
-        let counts = self.string.counts(self.entry, &kappa);
-        for (task, (kappa, count)) in batch.iter_mut().zip(kappa.into_iter().zip(counts)) {
-            if task.astray {
-                let inner = &mut task.inner;
-                if count <= inner.below {
-                    inner.lo = kappa
+    /// What is left: κ was not near enough.
+    fn prove(&self, tasks: &[Task], found: &mut impl FnMut(Edge)) -> Vec<Task> {
+        let mut failed = Vec::new();
+        for batch in tasks.chunks(LANES) {
+            let Proofs { edge: [lo, hi], radius, quotient } = self.proofs(batch);
+            for (i, task) in batch.iter().enumerate() {
+                if radius[i] <= NEGLIGIBLE || (radius[i] <= TOLERABLE && radius[i] > 0.1 * task.radius) {
+                    found(task.edge(lo[i], hi[i]));
                 } else {
-                    inner.hi = kappa
+                    failed.push(Task { radius: radius[i], kappa: quotient[i], ..*task });
                 }
-                task.kappa = middle(inner);
             }
+        }
+        failed
+    }
+
+    fn proofs(&self, batch: &[Task]) -> Proofs {
+        let inner = [each(batch, |task| task.inner.0), each(batch, |task| task.inner.1)];
+        let eta = 2.0 * self.string.eta();
+        let below = each(batch, |task| task.bracket.lo * (1.0 + eta));
+        let above = each(batch, |task| task.bracket.hi * (1.0 - eta));
+        let bounds = Bounds { inner, others: [below, above] };
+        self.string.prove(&problems(batch), &bounds, &each(batch, |task| f64::from(task.at)))
+    }
+
+    /// Where the modes live.
+    fn locate(&mut self, tasks: &mut [Task]) {
+        for batch in tasks.chunks_mut(LANES) {
+            let places = self.string.locate(&problems(batch), self.space);
+            batch.iter_mut().zip(places).for_each(|(task, at)| task.at = at as u32);
         }
     }
 
-    /// The theorems of [`super::mode`] and [`super::sturm`] together: eigenvalue `below` lies below lo (1 + η),
-    /// eigenvalue `below` + 2 above hi (1 − η).
-    fn certified(&self, bracket: &Bracket, mode: &Mode) -> Option<Edge> {
-        let (mu, eta) = (mode.quotient.hi, self.string.eta());
-        // What the quotient's own uncertainty takes from the distances.
-        let own = 2.0 * (mode.relative + f64::EPSILON) * mu;
-        let (alpha, beta) = (bracket.lo * (1.0 + 2.0 * eta), bracket.hi * (1.0 - 2.0 * eta));
-        let (down, up) = (mu - own - alpha, beta - own - mu);
-        let inside = mode.residual < down && mode.residual < up;
-        let radius = 1.01 * mode.residual * (mode.residual / down.min(up)) + 1.01 * mode.relative * mu;
-        if !inside || radius > (NEGLIGIBLE * mu).max(1.02 * mode.relative * mu) {
-            return None;
+    /// Halves the inner brackets.
+    fn narrow(&self, tasks: &mut [Task]) {
+        for batch in tasks.chunks_mut(LANES) {
+            let Problems { starts_free, ends_free, .. } = problems(batch);
+            let inside = [each(batch, |task| task.inner.0), each(batch, |task| task.inner.1)];
+            let index = each(batch, |task| task.bracket.index as f64);
+            let [lo, hi] = self.string.narrow(&Targets { starts_free, ends_free, index, inside }, HALVINGS);
+            for (i, task) in batch.iter_mut().enumerate() {
+                task.inner = (lo[i], hi[i]);
+                // A mode that proves something is a better guess.
+                let keeps = task.radius < f64::INFINITY && lo[i] < task.kappa && task.kappa < hi[i];
+                task.kappa = if keeps { task.kappa } else { 0.5 * (lo[i] + hi[i]) };
+                task.rounds += HALVINGS;
+            }
         }
-        let ticks = super::twofold::Twofold { hi: self.string.ticks, lo: 0.0 };
-        let (lo, hi) = mode.quotient.times(ticks).around(1.01 * radius * self.string.ticks);
-        Some(Edge { entry: self.entry, index: bracket.upto as usize, lo, hi })
     }
 }
 
-impl Task {
-    /// Takes the quotient as the next guess where it stays inside the bracket.
-    fn follow(&mut self, mu: f64) {
-        self.rounds += 1;
-        self.astray = !(self.inner.lo < mu && mu < self.inner.hi) || self.rounds.is_multiple_of(PATIENCE);
-        self.kappa = mu;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::verdict::instructions::Instructions;
+
+    #[test]
+    fn every_instruction_set_finds_the_same_edges() {
+        for (p, q, rho) in
+            [(7, 3, ratio(1, 25)), (23, 20, ratio(1, 1000)), (5, 31, ratio(40, 1)), (1, 1, ratio(1, 2))]
+        {
+            let edges = |instructions: Instructions| {
+                let mut string = HalfString::new(p, q, &rho).unwrap();
+                string.instructions = instructions;
+                let wanted =
+                    Entry::ALL.map(|entry| string.dimension(entry)).map(|n| (n > 0).then_some(1..=n));
+                string.eigenvalues(&wanted, &mut Workspace::default())
+            };
+            let portable = edges(Instructions::Portable);
+            assert!(Instructions::available().all(|set| edges(set) == portable));
+        }
     }
 }

@@ -18,10 +18,13 @@
 
 use num_traits::{Signed, Zero};
 
+use super::isolate::Wanted;
+use super::lanes::Lanes;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::{Rational, rational};
 use crate::propagator::{Schedule, Weight};
+use crate::verdict::instructions::Instructions;
 
 /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -50,6 +53,17 @@ impl Entry {
         matches!(self, Entry::C | Entry::D)
     }
 
+    /// The two problems with the same start, by the end: pinned, free.
+    pub(super) fn starting(free: bool) -> [Entry; 2] {
+        if free { [Entry::A, Entry::C] } else { [Entry::B, Entry::D] }
+    }
+
+    /// One eigenvalue alone, see [`super::isolate::Wanted`].
+    pub(super) fn alone(self, index: usize) -> [Wanted; 2] {
+        let asked = |entry: Entry| (entry == self).then_some((index as u64, index as u64));
+        [true, false].map(|free| Entry::starting(free).map(asked))
+    }
+
     /// The entry's name in documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -61,32 +75,52 @@ impl Entry {
     }
 }
 
-/// What strikes at a node: index into the tables of masses.
+/// What strikes at a kick time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Node {
     /// Ticks since the node before.
     pub length: f64,
-    /// 1/length, to the nearest.
-    pub inverse: f64,
-    /// How much of a fast and of a slow mass stands here: 0, 1/2 or 1.
-    pub fast: f64,
-    pub slow: f64,
     /// Index of the mass among [`HalfString::masses`].
     pub kind: usize,
 }
+
+/// The kick at a node and the spring to the next one on the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Step {
+    pub kind: usize,
+    pub length: f64,
+    /// 1/length, to the nearest.
+    pub inverse: f64,
+}
+
+/// κ m, rounded, by kind of node.
+pub(super) type Kicks = [Lanes; 8];
+
+/// Nodes between two rescalings. With masses within 1e±16 and lengths below 2^25 a node's factor is below 1e25,
+/// so no block overflows.
+pub(super) const BLOCK: usize = 8;
 
 /// The half period of p/q as nodes 0, 1, ..., n at the kick times; node n stands at T/2, kick or none.
 #[derive(Clone, Debug)]
 pub(super) struct HalfString {
     pub nodes: Vec<Node>,
+    /// The steps from t = 0 to T/2, and those back.
+    pub forward: Vec<Step>,
+    pub backward: Vec<Step>,
     /// The masses by kind (2 · clocks + whole?), each within 2u relative of its exact value, u = 2^-53.
     pub masses: [f64; 8],
-    /// R = ρ p/q to within 2^-104 relative.
-    pub slow_mass: Twofold,
+    /// What rounding took from them, to within 2^-104 of the masses.
+    pub rests: [f64; 8],
+    /// 1/m, rounded; 0 where there is no mass.
+    pub inverse_masses: [f64; 8],
     /// Ticks in h1: s = κ · ticks.
     pub ticks: f64,
-    /// Σ 1/ℓ, rounded.
-    pub stiffness: f64,
+    /// Above all eigenvalues κ of all four problems.
+    pub upper_bound: f64,
+    /// How many positive eigenvalues each problem has.
+    dimensions: [usize; 4],
+    /// What the kernels run on.
+    pub instructions: Instructions,
 }
 
 /// R must lie between the reciprocals of this and this, so that no product of the kernels leaves the range of
@@ -120,26 +154,34 @@ impl HalfString {
                 format!("{p}/{q} has more than {MOST_KICKS} kicks in a period: choose a simpler ratio");
             return Err(Error::budget(cost));
         }
-        let schedule = Schedule::two_clocks(p, q)?;
-        let mut nodes: Vec<Node> = Vec::new();
-        let mut skipped = 0;
-        let end = schedule.period() / 2;
-        let mut now = 0;
-        for event in schedule.half_period() {
-            now += event.drift;
-            // Where the slow clock is silent its kick times are no nodes, unless the half period ends there.
-            if rho.is_zero() && event.kicks == SLOW && now < end {
-                skipped += event.drift;
-            } else {
-                nodes.push(node(skipped + event.drift, event.kicks, event.weight));
-                skipped = 0;
-            }
-        }
-        let whole = [0.0, 1.0, slow, 1.0 + slow];
-        let masses = std::array::from_fn(|kind| whole[kind / 2] * if kind % 2 == 0 { 0.5 } else { 1.0 });
-        let stiffness = nodes[1..].iter().map(|node| node.inverse).sum();
-        let slow_mass = Twofold::from_rational(&mass);
-        Ok(HalfString { nodes, masses, slow_mass, ticks: schedule.clocks()[0].step() as f64, stiffness })
+        let (nodes, ticks) = nodes(p, q, rho.is_zero())?;
+        Ok(HalfString::with_nodes(nodes, ticks, Twofold::from_rational(&mass)))
+    }
+
+    fn with_nodes(nodes: Vec<Node>, ticks: f64, slow: Twofold) -> Self {
+        let both = Twofold::sum(1.0, slow.hi);
+        let whole = [(0.0, 0.0), (1.0, 0.0), (slow.hi, slow.lo), (both.hi, both.lo + slow.lo)];
+        let part = |kind: usize| if kind.is_multiple_of(2) { 0.5 } else { 1.0 };
+        let masses: [f64; 8] = std::array::from_fn(|kind| whole[kind / 2].0 * part(kind));
+        let inverse = |m: f64| if m > 0.0 { 1.0 / m } else { 0.0 };
+        let step = |from: &Node, length: f64| Step { kind: from.kind, length, inverse: 1.0 / length };
+        let forward = nodes.windows(2).map(|pair| step(&pair[0], pair[1].length)).collect();
+        let backward = nodes.windows(2).rev().map(|pair| step(&pair[1], pair[1].length)).collect();
+        let mut string = HalfString {
+            nodes,
+            forward,
+            backward,
+            masses,
+            rests: std::array::from_fn(|kind| whole[kind / 2].1 * part(kind)),
+            inverse_masses: masses.map(inverse),
+            ticks,
+            upper_bound: 0.0,
+            dimensions: [0; 4],
+            instructions: Instructions::best(),
+        };
+        string.upper_bound = string.bound();
+        string.dimensions = Entry::ALL.map(|entry| string.count_masses(entry));
+        string
     }
 
     /// n, the index of the node at T/2.
@@ -147,46 +189,55 @@ impl HalfString {
         self.nodes.len() - 1
     }
 
-    /// The last node that the problem moves: a free end without a mass only follows its neighbour.
-    pub fn end(&self, entry: Entry) -> usize {
-        let idle = entry.ends_free() && self.mass(self.last()) == 0.0;
-        self.last() - usize::from(idle)
-    }
-
     /// The mass at node j.
+    #[inline(always)]
     pub fn mass(&self, j: usize) -> f64 {
         self.masses[self.nodes[j].kind]
     }
 
-    /// How many positive eigenvalues the problem has: one for each free mass, less the rigid shift of C.
+    /// How many positive eigenvalues the problem has.
     pub fn dimension(&self, entry: Entry) -> usize {
-        let free = |j: usize| (j > 0 || entry.starts_free()) && (j < self.last() || entry.ends_free());
-        let masses = (0..=self.last()).filter(|&j| free(j) && self.mass(j) > 0.0).count();
-        masses - usize::from(entry == Entry::C)
+        self.dimensions[entry as usize]
     }
 
-    /// A bound above all eigenvalues κ of all four problems: max (2/m)(1/ℓ + 1/ℓ') (Gershgorin on M⁻¹K).
-    pub fn upper_bound(&self) -> f64 {
-        let inverse =
-            |j: usize| if j == 0 { 0.0 } else { self.nodes.get(j).map_or(0.0, |node| node.inverse) };
-        let row = |j: usize| 2.0 * (inverse(j) + inverse(j + 1)) / self.mass(j);
-        let largest = (0..=self.last()).filter(|&j| self.mass(j) > 0.0).map(row).fold(0.0, f64::max);
+    /// One eigenvalue for each free mass, less the rigid shift of C.
+    fn count_masses(&self, entry: Entry) -> usize {
+        let last = self.last();
+        let massive = self.nodes.iter().filter(|node| self.masses[node.kind] > 0.0).count();
+        let pinned = [(0, entry.starts_free()), (last, entry.ends_free())];
+        let lost = pinned.iter().filter(|(j, free)| !free && self.mass(*j) > 0.0).count();
+        massive - lost - usize::from(entry == Entry::C)
+    }
+
+    /// max (2/m)(1/ℓ + 1/ℓ') (Gershgorin on M⁻¹K).
+    fn bound(&self) -> f64 {
+        let inverse = |step: Option<&Step>| step.map_or(0.0, |step| step.inverse);
+        let row = |j: usize| {
+            let before = j.checked_sub(1).and_then(|j| self.forward.get(j));
+            let weight = self.inverse_masses[self.nodes[j].kind];
+            2.0 * (inverse(before) + inverse(self.forward.get(j))) * weight
+        };
+        let largest = (0..=self.last()).map(row).fold(0.0, f64::max);
         largest * (1.0 + 1e-9) // far beyond the rounding of this line
     }
 }
 
-fn node(drift: u64, kicks: u64, weight: Weight) -> Node {
-    let whole = weight == Weight::Full;
-    let part = |bit: u64| {
-        if kicks & bit == 0 {
-            0.0
-        } else if whole {
-            1.0
-        } else {
-            0.5
+/// The nodes, and how many ticks h1 has.
+fn nodes(p: u64, q: u64, slow_is_silent: bool) -> Result<(Vec<Node>, f64)> {
+    let schedule = Schedule::two_clocks(p, q)?;
+    let end = schedule.period() / 2;
+    let mut nodes = Vec::with_capacity((p + q) as usize / 2 + 2);
+    let (mut now, mut skipped) = (0, 0);
+    for event in schedule.half_period() {
+        now += event.drift;
+        // Where the slow clock is silent its kick times are no nodes, unless the half period ends there.
+        if slow_is_silent && event.kicks == SLOW && now < end {
+            skipped += event.drift;
+            continue;
         }
-    };
-    let length = drift as f64;
-    let kind = 2 * kicks as usize + usize::from(whole);
-    Node { length, inverse: 1.0 / length, fast: part(1), slow: part(2), kind }
+        let kind = 2 * event.kicks as usize + usize::from(event.weight == Weight::Full);
+        nodes.push(Node { length: (skipped + event.drift) as f64, kind });
+        skipped = 0;
+    }
+    Ok((nodes, schedule.clocks()[0].step() as f64))
 }

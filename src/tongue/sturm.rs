@@ -2,7 +2,7 @@
 //!
 //! Follow the string from t = 0: x ← x + ℓ v, v ← v − κ m x. The number of eigenvalues below κ is the number of
 //! sign changes of x on the way (to a pinned end), and one more where x v < 0 at a free end (Sturm's oscillation
-//! theorem; the zero eigenvalue of C included).
+//! theorem; the zero eigenvalue of C included). So one pass counts for two problems.
 //!
 //! **Theorem** (after Kahan 1966 and Demmel and Kahan 1990). With u = 2^-53 and n nodes the computed count N̂(κ)
 //! is the exact count of a string whose masses and lengths are off by factors within (1 ± u)^±(2n + 5), so
@@ -11,32 +11,20 @@
 //!     N(κ (1 - η)) <= N̂(κ) <= N(κ (1 + η)),        η = (4n + 16) u.
 //! ```
 //!
-//! Proof. x̂_j = (x̂_{j−1} + ℓ_j v̂_{j−1} (1 + δ)) (1 + δ') and v̂_j = (v̂_{j−1} − κ m_j x̂_j (1 + δ)²) (1 + δ''). Divide x̂_j by
-//! X_j = Π (1 + δ') and v̂_j by V_j = Π (1 + δ'') up to j: no sign changes, and what is left is the exact recurrence with
-//! ℓ_j (1 + δ) V_{j−1}/X_{j−1} and m_j (1 + δ)² X_j/V_{j−1}, where m_j itself is within two more roundings of the string's
-//! mass. Each is off by a factor within (1 ± u)^±(2n + 5), so by monotonicity (see [`super::string`]) the eigenvalues
-//! are by one within (1 ± u)^±(4n + 10). An underflowing product is less than u/4 of the sum that it enters, whose
-//! rounding covers it: rescaling by powers of two keeps max(|x|, |v|) above 2^-500. ∎
+//! Proof. x̂_j = (x̂_{j−1} + ℓ_j v̂_{j−1}) (1 + δ') and v̂_j = (v̂_{j−1} − κ m_j x̂_j (1 + δ)) (1 + δ''), the
+//! operations being fused. Divide x̂_j by X_j = Π (1 + δ') and v̂_j by V_j = Π (1 + δ'') up to j: no sign changes, and
+//! what is left is the exact recurrence with ℓ_j V_{j−1}/X_{j−1} and m_j (1 + δ) X_j/V_{j−1}, where m_j itself is
+//! within two more roundings of the string's mass. Each is off by a factor within (1 ± u)^±(2n + 5), so by
+//! monotonicity (see [`super::string`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
+//! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
 
-use super::string::{Entry, HalfString};
+use super::lanes::{LANES, Lanes, lanes, normalizing};
+use super::locate::start;
+use super::string::{BLOCK, HalfString, Kicks};
+use crate::verdict::instructions::Task;
 
-/// Eigenvalues are looked for this many at a time, side by side.
-pub(super) const LANES: usize = 8;
-
-/// One number for each lane.
-pub(super) type Lanes = [f64; LANES];
-
-/// Nodes between two rescalings. With masses within 1e±16 and lengths below 2^25 a node's factor is below 1e25,
-/// so no block overflows.
-pub(super) const BLOCK: usize = 8;
-
-/// f of each lane.
-pub(super) fn lanes(f: impl FnMut(usize) -> f64) -> Lanes {
-    std::array::from_fn(f)
-}
-
-/// The kick strengths κ m, by kind of node.
-pub(super) type Kicks = [Lanes; 8];
+/// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues: whole numbers.
+pub(super) type Counts = [Lanes; 2];
 
 impl HalfString {
     /// The uncertainty η of a computed count, see the module's theorem.
@@ -44,50 +32,99 @@ impl HalfString {
         (4.0 * self.nodes.len() as f64 + 16.0) * (f64::EPSILON / 2.0)
     }
 
+    /// The counts for each lane, of the two problems that are free (or pinned) at t = 0.
+    pub fn counts(&self, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
+        self.instructions.perform(Counting { string: self, starts_free, kappa })
+    }
+}
+
+struct Counting<'a> {
+    string: &'a HalfString,
+    starts_free: &'a [bool; LANES],
+    kappa: &'a Lanes,
+}
+
+impl Task for Counting<'_> {
+    type Output = Counts;
+
+    #[inline(always)]
+    fn run(self) -> Counts {
+        count(self.string, self.starts_free, self.kappa)
+    }
+}
+
+#[inline(always)]
+fn count(string: &HalfString, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
+    let kicks = string.kicks(kappa);
+    let first = &kicks[string.nodes[0].kind];
+    let (mut x, mut v) = start(starts_free);
+    v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
+    let mut changes = [0.0; LANES];
+    for block in string.nodes[1..].chunks(BLOCK) {
+        for node in block {
+            let kick: &Lanes = &kicks[node.kind];
+            let next = lanes(|i| node.length.mul_add(v[i], x[i]));
+            changes = lanes(|i| changes[i] + if (next[i] < 0.0) != (x[i] < 0.0) { 1.0 } else { 0.0 });
+            v = lanes(|i| (-kick[i]).mul_add(next[i], v[i]));
+            x = next;
+        }
+        let factor = normalizing(&x, &v);
+        x = lanes(|i| x[i] * factor[i]);
+        v = lanes(|i| v[i] * factor[i]);
+    }
+    let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
+    // The zero eigenvalue of C is below every κ and not counted.
+    let free = lanes(|i| changes[i] + past[i] - if starts_free[i] { 1.0 } else { 0.0 });
+    [changes, free]
+}
+
+/// An eigenvalue for each lane, and where it is.
+#[derive(Clone, Copy)]
+pub(super) struct Targets {
+    pub starts_free: [bool; LANES],
+    pub ends_free: [bool; LANES],
+    pub index: Lanes,
+    pub inside: [Lanes; 2],
+}
+
+impl HalfString {
+    /// Halves the intervals so many times.
+    pub fn narrow(&self, targets: &Targets, halvings: u32) -> [Lanes; 2] {
+        self.instructions.perform(Narrowing { string: self, targets, halvings })
+    }
+}
+
+struct Narrowing<'a> {
+    string: &'a HalfString,
+    targets: &'a Targets,
+    halvings: u32,
+}
+
+impl Task for Narrowing<'_> {
+    type Output = [Lanes; 2];
+
+    #[inline(always)]
+    fn run(self) -> [Lanes; 2] {
+        let Targets { starts_free, ends_free, index, inside: [mut lo, mut hi] } = *self.targets;
+        for _ in 0..self.halvings {
+            let cut = lanes(|i| 0.5 * (lo[i] + hi[i]));
+            let [pinned, free] = count(self.string, &starts_free, &cut);
+            let below = lanes(|i| if ends_free[i] { free[i] } else { pinned[i] });
+            lo = lanes(|i| if below[i] < index[i] { cut[i] } else { lo[i] });
+            hi = lanes(|i| if below[i] < index[i] { hi[i] } else { cut[i] });
+        }
+        [lo, hi]
+    }
+}
+
+impl HalfString {
+    /// κ m, by kind of node.
+    #[inline(always)]
     pub fn kicks(&self, kappa: &Lanes) -> Kicks {
-        self.masses.map(|m| lanes(|i| kappa[i] * m))
-    }
-
-    /// N̂(κ) for each lane: computed counts of positive eigenvalues below κ.
-    pub fn counts(&self, entry: Entry, kappa: &Lanes) -> [u64; LANES] {
-        let kicks = self.kicks(kappa);
-        let (mut x, mut v) = start(entry.starts_free(), &kicks[self.nodes[0].kind]);
-        let mut changes = [0u64; LANES];
-        for block in self.nodes[1..].chunks(BLOCK) {
-            for node in block {
-                let kick = &kicks[node.kind];
-                for i in 0..LANES {
-                    let before = x[i].to_bits();
-                    x[i] += node.length * v[i];
-                    changes[i] += (before ^ x[i].to_bits()) >> 63;
-                    v[i] -= kick[i] * x[i];
-                }
-            }
-            rescale(&mut x, &mut v);
+        let mut kicks = [[0.0; LANES]; 8];
+        for (kicks, mass) in kicks.iter_mut().zip(&self.masses) {
+            *kicks = lanes(|i| kappa[i] * mass);
         }
-        if entry.ends_free() {
-            // The zero eigenvalue of C is below every κ and not counted.
-            let rigid = u64::from(entry == Entry::C);
-            (0..LANES).for_each(|i| changes[i] = changes[i] + u64::from(x[i] * v[i] < 0.0) - rigid);
-        }
-        changes
+        kicks
     }
-}
-
-/// (x, v) after the node at a free or pinned end, whose kick strength is given.
-pub(super) fn start(free: bool, kick: &Lanes) -> (Lanes, Lanes) {
-    if free { ([1.0; LANES], kick.map(|k| -k)) } else { ([0.0; LANES], [1.0; LANES]) }
-}
-
-/// Divides x and v by a power of two that brings the larger one to [1, 2); returns its exponent.
-pub(super) fn rescale(x: &mut Lanes, v: &mut Lanes) -> [i64; LANES] {
-    let mut exponents = [0; LANES];
-    for i in 0..LANES {
-        let field = (x[i].abs().max(v[i].abs()).to_bits() >> 52) as i64;
-        exponents[i] = field - 1023;
-        let factor = f64::from_bits(((2046 - field) as u64) << 52);
-        x[i] *= factor;
-        v[i] *= factor;
-    }
-    exponents
 }

@@ -7,7 +7,8 @@ use std::marker::PhantomData;
 
 use super::certificate::{Certificate, Certificates, Hardest, U};
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Instructions, Lanes, Orbits, Task, Watch, each};
+use super::instructions::{Instructions, Task};
+use super::kernel::{Lanes, Orbits, Watch, each};
 use super::kind::PartialSigns;
 use super::winding;
 use crate::number::Sign;

@@ -17,7 +17,7 @@ use super::ladder::Limits;
 use super::refine;
 use super::winding;
 use crate::error::Result;
-use crate::number::{Ball, Rational};
+use crate::number::{Ball, Rational, Real};
 use crate::propagator::{Schedule, TwoClocks};
 
 /// How a pair moves over one synchronization period.
@@ -53,6 +53,23 @@ pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Li
     let (ends, bits) = refined(clocks, &schedule, verdict);
     let label = label.or_else(|| from_nodes(&ends, verdict));
     Ok(from_products(ends.products(bits), verdict, label))
+}
+
+/// Tr Q as the first tier alone encloses it: min(p, q)/2 updates in doubles. `None` where it proves nothing: both
+/// clocks beyond their own Verlet limits, a clock that does nothing, or a bound that a condition of its theorem
+/// does not allow.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::propagator::{TwoClocks, half_period};
+/// let clocks = TwoClocks::with_rho(7, 2, ratio(1, 3), ratio(1, 25));
+/// let trace = kickdrift::verdict::filter_trace(&clocks).unwrap();
+/// assert!(trace.contains(&half_period(&clocks).trace()) && trace.radius_log2() < Some(-40));
+/// ```
+pub fn filter_trace<S: Real>(clocks: &TwoClocks<S>) -> Option<Ball> {
+    let ends = filter::run(&Floquet::new(clocks)?)?;
+    let elliptic = Verdict::ALL[0];
+    Some(from_products(products(&ends), elliptic, None).trace)
 }
 
 /// BC and AD, as enclosures; AD − BC = 1.

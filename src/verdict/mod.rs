@@ -24,7 +24,8 @@ mod exact;
 pub(crate) mod filter;
 pub(crate) mod floquet;
 mod growth;
-pub(crate) mod kernel;
+pub(crate) mod instructions;
+mod kernel;
 mod kind;
 mod ladder;
 mod lone;
@@ -33,7 +34,7 @@ mod residue;
 pub(crate) mod winding;
 
 pub use exact::{Decidable, exact_trace};
-pub use growth::{Growth, growth};
+pub use growth::{Growth, filter_trace, growth};
 pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
 pub(crate) use ladder::filter_only;
 pub use ladder::{Decision, Limits, Tier, decide, decide_from};

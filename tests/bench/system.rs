@@ -1,7 +1,9 @@
 //! Systems: the verdict on the half period with sparse kicks against the obvious way, the dense 2n x 2n propagator of
 //! the full period and a general eigenvalue routine; and the rate of kicks of the simulation.
 //!
-//! Run with `cargo bench --bench system`. Fails where a promise is broken: a second, a factor of 8, 10^7 kicks/s.
+//! Run with `cargo bench --bench system`. Fails where a promise is broken: a second, a factor of 8 (where kicks are
+//! many), 10^7 kicks/s. With few kicks a period there is little to compose, and the eigenvalues remain: those of the
+//! 2n x 2n matrix alone cost some five times those of the n x n one with the vectors that prove them.
 
 use std::time::{Duration, Instant};
 
@@ -58,7 +60,8 @@ fn dense_event(system: &System, event: Event, tick: f64) -> Mat<f64> {
     m
 }
 
-fn compare(name: &str, system: &System, dense_runs: usize) {
+/// At least `least` times faster than the dense way.
+fn compare(name: &str, system: &System, dense_runs: usize, least: f64) {
     let (own, analysis) = shortest(5, || decide_system(system, &Limits::default()).expect("a verdict"));
     assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
     assert!(own < Duration::from_secs(1), "{name}: {own:?}");
@@ -72,7 +75,7 @@ fn compare(name: &str, system: &System, dense_runs: usize) {
         1e3 * own.as_secs_f64(),
         1e3 * dense.as_secs_f64(),
     );
-    assert!(factor >= 8.0, "{name}: only {factor} times faster");
+    assert!(factor >= least, "{name}: only {factor} times faster");
     assert!((predicted - largest).abs() < 1e-5 * largest, "{name}: {predicted} against {largest}");
 }
 
@@ -93,11 +96,20 @@ fn simulation() {
 }
 
 fn main() {
-    compare("chain of 200, 3 clocks", &chain([ratio(1, 4), ratio(3, 10), ratio(7, 20)]), 2);
+    for (steps, kicks, least) in [
+        ([ratio(1, 4), ratio(3, 10), ratio(7, 20)], 107, 8.0),
+        ([ratio(1, 8), ratio(1, 4), ratio(1, 1)], 13, 1.5),
+        ([ratio(1, 4), ratio(1, 2), ratio(1, 1)], 7, 1.5),
+    ] {
+        let chain = chain(steps);
+        assert_eq!(chain.schedule().strikes(), kicks);
+        compare("chain of 200, 3 clocks", &chain, 2, least);
+    }
     compare(
         "bar of 100 elements, 10 classes",
         &builders::graded_bar(100, 10, &ratio(1, 4)).expect("a bar"),
         1,
+        8.0,
     );
     simulation();
 }

@@ -17,6 +17,11 @@ pub const INK: Colour = Colour(0x1b, 0x1b, 0x1f);
 /// Lines that should stay in the background.
 pub const GREY: Colour = Colour(0x8f, 0x92, 0x99);
 
+/// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour vision.
+pub const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
+pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
+pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
+
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Colour(r, g, b) = self;

@@ -3,9 +3,9 @@
 //! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is thinner
 //! than any grid is there too: as a dot as wide as the lines.
 
-use super::chart::{COEXISTENCE, FAMILIES, SHADES, axis, family_name, grouped, rank};
+use super::chart::{FAMILIES, SHADES, axis, family_name, grouped, rank};
 use super::lines_in;
-use crate::report::figure::palette::{self, Colour, Gradient};
+use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient};
 use crate::report::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::resonance::{Curve, Window};
 

@@ -3,7 +3,7 @@
 use super::raster::Raster;
 use super::{lines, stroke};
 use crate::map::{Band, Grid, Products};
-use crate::report::figure::palette::{self, Colour, Gradient};
+use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient, HYPERBOLIC, PARABOLIC};
 use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place};
 use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
@@ -75,11 +75,8 @@ pub struct Chart {
 pub(super) const SHADES: u16 = 40;
 /// Families with a colour of their own; the others share a grey.
 pub(super) const FAMILIES: usize = 8;
-/// Exponential growth, linear growth, closed tongues: apart in lightness, and for every kind of colour vision.
-const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
+/// Exponential growth, where curves are drawn over it.
 const BEHIND_CURVES: Colour = Colour(0x92, 0xb4, 0xdc);
-const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
-pub(super) const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 /// Pairs in points of paper; on an edge they are few and should be found.
 const PAIR: f64 = 0.35;
 const EDGE: f64 = 2.4;

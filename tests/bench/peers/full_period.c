@@ -1,7 +1,8 @@
 /* The loop that anyone would write: Figure 1 by the product of all kicks and drifts over the whole period.
  *
- * Usage: full_period N. Steps h1 = i/N <= 2/pi and h2 = j/N <= 7/2, stiffnesses pi^2 and pi^2/25; unstable iff
- * |trace| > 2 in doubles. Prints the number of pairs, of unstable ones, and the seconds.
+ * Usage: full_period N [FILE]. Steps h1 = i/N <= 2/pi and h2 = j/N <= 7/2, stiffnesses pi^2 and pi^2/25; unstable iff
+ * |trace| > 2 in doubles. Prints the number of pairs, of unstable ones, and the seconds;
+ * FILE gets a character 0 or 1 for each pair, h2 running fastest.
  * Time is counted in units of h1/q = h2/p, so that coincidences are exact.
  */
 #include <math.h>
@@ -34,9 +35,17 @@ int main(int argc, char **argv) {
     long n = argc > 1 ? atol(argv[1]) : 100;
     long columns = (long)floor(2 / M_PI * n), rows = 7 * n / 2, count = 0;
     double d = 1.0 / n, start = omp_get_wtime();
+    char *verdicts = malloc(columns * rows);
     #pragma omp parallel for schedule(dynamic) reduction(+ : count)
     for (long i = 1; i <= columns; i++)
-        for (long j = 1; j <= rows; j++) count += unstable(i, j, d);
+        for (long j = 1; j <= rows; j++)
+            count += verdicts[(i - 1) * rows + j - 1] = unstable(i, j, d);
     printf("%ld %ld %.6f\n", columns * rows, count, omp_get_wtime() - start);
+    if (argc > 2) {
+        FILE *file = fopen(argv[2], "w");
+        for (long k = 0; k < columns * rows; k++) fputc('0' + verdicts[k], file);
+        fclose(file);
+    }
+    free(verdicts);
     return 0;
 }

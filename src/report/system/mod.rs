@@ -1,18 +1,23 @@
-//! The verdict on a system of many clocks and degrees of freedom as a document.
+//! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
+
+mod map;
+mod modes;
 
 use serde_json::{Value, json};
 
-use super::document::Document;
+use super::decimal;
+use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
-use crate::number::rational::to_f64;
-use crate::system::{Analysis, Instability, Origin, Part, System};
+use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
+pub use map::{Colouring, SystemMap};
+pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
-pub fn document(system: &System, analysis: &Analysis) -> Document {
+pub fn document(analysis: &Analysis) -> Document {
     Document::new("system-verdict")
-        .entry("degrees_of_freedom", system.size())
-        .entry("clocks", system.clocks().len())
-        .entry("period", system.period().to_string())
+        .entry("degrees_of_freedom", analysis.size)
+        .entry("clocks", analysis.clocks)
+        .entry("period", analysis.period.to_string())
         .entry("kind", analysis.kind.name())
         .entry("stable", analysis.is_stable())
         .entry("proven", analysis.is_proof())
@@ -21,7 +26,7 @@ pub fn document(system: &System, analysis: &Analysis) -> Document {
         .entry("parts", analysis.parts.iter().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone())
         .long_rows(table(analysis))
-        .told(&lines(system, analysis))
+        .told(&lines(analysis))
 }
 
 fn part(part: &Part) -> Value {
@@ -34,6 +39,22 @@ fn part(part: &Part) -> Value {
         "decided_by": part.evidence.name(),
         "multipliers": part.multipliers.iter().map(multiplier).collect::<Vec<_>>(),
         "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
+        "roots": part.roots.as_ref().map(roots),
+        "oscillator": part.oscillator.as_ref().map(clocked),
+    })
+}
+
+fn roots(count: &MuCount) -> Value {
+    json!({
+        "inside": count.inside, "at_zero": count.at_zero, "at_minus_one": count.at_minus_one,
+        "above": count.above, "below": count.below, "complex": count.complex,
+    })
+}
+
+fn clocked(own: &Clocked) -> Value {
+    json!({
+        "trace": enclosure(own.trace.to_f64_enclosure()), "strikes": own.strikes,
+        "label": own.label, "families": own.families,
     })
 }
 
@@ -50,6 +71,7 @@ fn instability(unstable: &Instability) -> Value {
         "origin": origin(unstable.origin),
         "growth_rate": unstable.growth_rate,
         "shape": unstable.shape,
+        "quadrature": unstable.quadrature,
         "resonance": resonance,
     })
 }
@@ -61,16 +83,14 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
-fn lines(system: &System, analysis: &Analysis) -> Vec<String> {
+fn lines(analysis: &Analysis) -> Vec<String> {
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
         format!("{stable}: {} ({proven})", analysis.kind.name()),
         format!(
             "  {} degrees of freedom, {} clocks, period T = {}",
-            system.size(),
-            system.clocks().len(),
-            system.period()
+            analysis.size, analysis.clocks, analysis.period
         ),
         format!(
             "  {} rigid modes set apart, {} independent parts",
@@ -81,11 +101,39 @@ fn lines(system: &System, analysis: &Analysis) -> Vec<String> {
     if !analysis.is_stable() {
         lines.push(format!("  largest growth rate {:.6} per unit time", analysis.growth_rate()));
     }
+    lines
+        .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", told(unstable)));
     }
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
+}
+
+/// Trace, label and families of one oscillator in words.
+fn oscillator_lines(own: &Clocked) -> Vec<String> {
+    let (lo, hi) = own.trace.to_f64_enclosure();
+    let mut lines = vec![format!("  trace Tr Q = {}", decimal::enclosure(lo, hi))];
+    if let Some(m) = own.label {
+        let families: Vec<String> = own.families.iter().map(|family| terms(family, "h")).collect();
+        lines.push(format!("  m = {m} half turns a period: 1/T_half near {}", families.join(" = ")));
+    }
+    lines
+}
+
+/// Σ a_k/h_k without the terms that vanish, `h` before each index.
+fn terms(family: &[i64], h: &str) -> String {
+    let mut text = String::new();
+    for (k, &a) in (1..).zip(family).filter(|(_, a)| **a != 0) {
+        text += match (text.is_empty(), a < 0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        text += &format!("{}/{h}{k}", a.abs());
+    }
+    if text.is_empty() { "0".into() } else { text }
 }
 
 /// One unstable multiplier in words.
@@ -100,14 +148,8 @@ fn told(unstable: &Instability) -> String {
     line += &format!("growth rate {:.6}", unstable.growth_rate);
     if let Some(r) = &unstable.resonance {
         let sign = if r.sign > 0 { '+' } else { '-' };
-        let family: Vec<String> =
-            r.family.iter().enumerate().map(|(k, a)| format!("{a}/h{}", k + 1)).collect();
-        line += &format!(
-            "; near w = {:.4} {sign} {:.4} = 2 pi ({})",
-            r.frequencies.0,
-            r.frequencies.1,
-            family.join(" + ")
-        );
+        let (first, second) = r.frequencies;
+        line += &format!("; near w = {first:.4} {sign} {second:.4} = 2 pi ({})", terms(&r.family, "h"));
     }
     line
 }
@@ -125,7 +167,7 @@ fn table(analysis: &Analysis) -> Table {
     ];
     let mut table = Table::new("multipliers", "Multipliers over one synchronization period", columns);
     for (n, part) in (1..).zip(&analysis.parts) {
-        let period = to_f64(&part.period);
+        let period = part.period.to_f64();
         for multiplier in &part.multipliers {
             let length = multiplier.lambda.norm();
             table.push(vec![

@@ -1,0 +1,180 @@
+//! A system's verdict over two of its numbers: counts, rows, figure.
+
+use serde_json::json;
+
+use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::report::document::Document;
+use crate::report::figure::palette::{COEXISTENCE, Gradient, HYPERBOLIC, INK, PARABOLIC};
+use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape};
+use crate::report::table::{Cell, Column, Table};
+use crate::system::scan::Point;
+use crate::verdict::Kind;
+
+/// What colours tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colouring {
+    /// The kind of instability.
+    Verdict,
+    /// The growth rate.
+    Growth,
+}
+
+/// The points of a scan, row by row of y.
+#[derive(Clone, Debug)]
+pub struct SystemMap {
+    /// What is varied along x and y.
+    pub names: [String; 2],
+    pub xs: Vec<Rational>,
+    pub ys: Vec<Rational>,
+    pub points: Vec<Point>,
+}
+
+/// Shades of a gradient: neighbours are barely told apart.
+const SHADES: u16 = 40;
+/// Points in points of paper.
+const LEAST: f64 = 0.35;
+const EDGE: f64 = 2.4;
+
+/// Six digits: eigenvalues in doubles agree in them on every machine.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().expect("a double as it was written")
+}
+
+impl SystemMap {
+    fn count(&self, kind: Kind) -> usize {
+        self.points.iter().filter(|point| point.kind == kind).count()
+    }
+
+    /// The document `kickdrift/system-map/1`; the caller adds the input.
+    pub fn document(&self) -> Document {
+        let unproven = self.points.iter().filter(|point| !point.is_proof).count();
+        let [hyperbolic, parabolic, coexistence] =
+            [Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence].map(|k| self.count(k));
+        let fastest = self.points.iter().max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate));
+        let fastest = fastest.filter(|point| point.growth_rate > 0.0);
+        let mut lines = vec![
+            format!("{} of {} points unstable", hyperbolic + parabolic, self.points.len()),
+            format!(
+                "  hyperbolic {hyperbolic}, parabolic {parabolic}, coexistence {coexistence}; not proven {unproven}"
+            ),
+        ];
+        if let Some(Point { at: (x, y), growth_rate, .. }) = fastest {
+            let [a, b] = &self.names;
+            lines.push(format!("  fastest growth {growth_rate:.5e} per unit time at {a} = {x}, {b} = {y}"));
+        }
+        let fastest = fastest.map(|point| {
+            let (x, y) = (point.at.0.to_string(), point.at.1.to_string());
+            json!({"x": x, "y": y, "growth_rate": six_digits(point.growth_rate)})
+        });
+        Document::new("system-map")
+            .entry("points", self.points.len())
+            .entry("stable", self.points.len() - hyperbolic - parabolic)
+            .entry("hyperbolic", hyperbolic)
+            .entry("parabolic", parabolic)
+            .entry("coexistence", coexistence)
+            .entry("unproven", unproven)
+            .entry("fastest", fastest)
+            .rows(self.table())
+            .summary(&lines)
+    }
+
+    fn table(&self) -> Table {
+        let columns = vec![
+            Column::new("x").titled(&self.names[0], &crate::report::latex::escaped(&self.names[0])),
+            Column::new("y").titled(&self.names[1], &crate::report::latex::escaped(&self.names[1])),
+            Column::new("kind").left(),
+            Column::new("proven"),
+            Column::new("growth_rate").titled("growth rate", "growth rate"),
+        ];
+        let mut table = Table::new("verdicts", "Verdicts over two numbers of the system", columns);
+        for point in &self.points {
+            table.push(vec![
+                Cell::Exact(point.at.0.to_string()),
+                Cell::Exact(point.at.1.to_string()),
+                Cell::Text(point.kind.name().into()),
+                Cell::Flag(point.is_proof),
+                Cell::Float(six_digits(point.growth_rate)),
+            ]);
+        }
+        table
+    }
+
+    /// The unstable points in colour, the edges marked.
+    pub fn figure(&self, colouring: Colouring, title: &str) -> Figure {
+        let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
+        let [x, y] = [(&self.names[0], &self.xs), (&self.names[1], &self.ys)].map(|(name, values)| {
+            let (first, step) = pitch(values);
+            Axis::linear(name, first - step / 2.0, first + step * (values.len() as f64 - 0.5))
+        });
+        let panel = Panel::new(x, y).titled(&format!("{unstable} of {} points unstable", self.points.len()));
+        let panel = match colouring {
+            Colouring::Verdict => {
+                let cells = self.cells(vec![HYPERBOLIC], Kind::Hyperbolic, |_| 0);
+                panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
+            }
+            Colouring::Growth => self.by_growth(panel),
+        };
+        let panel = self.edges(panel).legend(Place::Above);
+        Figure::new(if colouring == Colouring::Growth { 150.0 } else { 135.0 }, 135.0)
+            .named(title)
+            .with(panel)
+    }
+
+    /// From the fastest point down to the decade of the slowest but one in twenty, which take the last colour.
+    fn by_growth(&self, panel: Panel) -> Panel {
+        let mut rates: Vec<f64> = self.points.iter().map(|p| p.growth_rate).filter(|&r| r > 0.0).collect();
+        rates.sort_unstable_by(f64::total_cmp);
+        let fastest = rates.last().copied().unwrap_or(1.0);
+        let slow = rates.get(rates.len() / 20).copied().unwrap_or(fastest);
+        let low = 10f64.powi(slow.log10().floor() as i32);
+        let bar = ColourBar {
+            axis: Axis::log("growth rate (1/time)", low, fastest),
+            gradient: Gradient::on_white(),
+        };
+        let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), SHADES);
+        let cells = self.cells(bar.gradient.steps(SHADES.into()), Kind::Hyperbolic, shade);
+        panel.with(Layer::cells(cells)).bar(bar)
+    }
+
+    fn edges(&self, mut panel: Panel) -> Panel {
+        for (kind, colour, name) in [
+            (Kind::Parabolic, PARABOLIC, "linear growth (parabolic)"),
+            (Kind::Coexistence, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
+        ] {
+            if self.count(kind) > 0 {
+                let cells = self.cells(vec![colour], kind, |_| 0).at_least(EDGE);
+                panel = panel.with(Layer::cells(cells).labelled(name));
+            }
+        }
+        let open = self.points.iter().filter(|point| !point.is_proof);
+        let open: Vec<[f64; 2]> = open.map(|point| [to_f64(&point.at.0), to_f64(&point.at.1)]).collect();
+        if open.is_empty() {
+            return panel;
+        }
+        panel.with(Layer::dots(open, Shape::Cross, 3.0, INK).labelled("not proven"))
+    }
+
+    /// The points of one kind as cells.
+    fn cells(
+        &self,
+        colours: Vec<crate::report::figure::palette::Colour>,
+        kind: Kind,
+        class: impl Fn(&Point) -> u16,
+    ) -> Cells {
+        let ((x, dx), (y, dy)) = (pitch(&self.xs), pitch(&self.ys));
+        let mut cells = Cells::new([x, y], [dx, dy], colours).at_least(LEAST);
+        for (n, point) in self.points.iter().enumerate().filter(|(_, point)| point.kind == kind) {
+            let (i, j) = (n % self.xs.len(), n / self.xs.len());
+            cells.push(i as u32, j as u32, class(point));
+        }
+        cells
+    }
+}
+
+/// The first of evenly spaced values, and their distance.
+fn pitch(values: &[Rational]) -> (f64, f64) {
+    let first = values.first().map_or(0.0, to_f64);
+    let distance = values.get(1).map_or_else(|| first.abs().max(1.0) / 10.0, |second| to_f64(second) - first);
+    (first, distance)
+}

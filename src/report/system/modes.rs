@@ -1,0 +1,104 @@
+//! The multipliers of a system, and the shapes of those that grow.
+
+use super::terms;
+use crate::report::figure::palette::{GREY, INK, family};
+use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
+use crate::system::{Analysis, Instability, Origin};
+
+/// The most shapes on one page: the fastest.
+const MOST: usize = 4;
+/// Millimetres of paper for the multipliers and for one shape.
+const SPECTRUM: f64 = 62.0;
+const SHAPE: f64 = 42.0;
+/// Up to so many degrees of freedom each has a stem.
+const STEMS: usize = 60;
+
+/// All multipliers by angle and growth, and below the shapes of the fastest growing ones.
+pub fn figure(analysis: &Analysis, title: &str) -> Figure {
+    let mut growing: Vec<&Instability> = analysis.parts.iter().flat_map(|part| &part.instabilities).collect();
+    growing.sort_by(|a, b| b.growth_rate.total_cmp(&a.growth_rate));
+    let shown = &growing[..growing.len().min(MOST)];
+    let height = SPECTRUM + SHAPE * shown.len() as f64;
+    let first = Figure::double_column(height).columns(1).named(title).with(spectrum(analysis, shown));
+    (1..).zip(shown).fold(first, |figure, (n, unstable)| figure.with(shape(n, unstable)))
+}
+
+/// ln |λ|/T over arg λ/π.
+fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
+    let (mut still, mut moving) = (Vec::new(), Vec::new());
+    for part in &analysis.parts {
+        let angle = |z: num_complex::Complex64| z.arg().abs() / std::f64::consts::PI;
+        let unstable: Vec<_> = part.instabilities.iter().map(|own| own.multiplier.mu).collect();
+        let stable =
+            part.multipliers.iter().filter(|m| !unstable.contains(&m.mu) && !unstable.contains(&m.mu.conj()));
+        still.extend(stable.map(|m| [angle(m.lambda), 0.0]));
+        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), own.growth_rate]));
+    }
+    let fastest = analysis.growth_rate();
+    let y = if fastest > 0.0 {
+        Axis::linear("growth rate (1/time)", -0.06 * fastest, 1.15 * fastest)
+    } else {
+        let zero = crate::report::figure::Tick { at: 0.0, label: Some("0".into()) };
+        Axis::linear("growth rate (1/time)", -0.5, 0.5).ticks(vec![zero])
+    };
+    let counts =
+        format!("Multipliers: {} pairs on the unit circle, {} instabilities", still.len(), moving.len());
+    let stems = moving.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
+    let panel = Panel::new(Axis::linear("angle of the multiplier, arg *λ*/π", -0.02, 1.02), y)
+        .titled(&counts)
+        .with(Layer::lines(vec![vec![[0.0, 0.0], [1.0, 0.0]]], Stroke::THIN.in_colour(GREY)))
+        .with(Layer::lines(stems, Stroke::LINE.in_colour(family(3))))
+        .with(Layer::dots(still, Shape::Disc, 2.6, INK))
+        .with(Layer::dots(moving, Shape::Disc, 3.6, family(3)));
+    (1..).zip(shown).fold(panel, |panel, (n, unstable)| {
+        let angle = unstable.multiplier.lambda.arg().abs() / std::f64::consts::PI;
+        let (anchor, shift) = if angle > 0.9 { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
+        panel.note(Note::new([angle, unstable.growth_rate], &n.to_string()).anchored(anchor, [shift, 1.0]))
+    })
+}
+
+/// The positions of a growing solution, one degree of freedom beside the other.
+fn shape(n: usize, unstable: &Instability) -> Panel {
+    let last = unstable.shape.len() as f64 - 1.0;
+    let few = unstable.shape.len() <= STEMS;
+    let points = |values: &[f64]| (0..).zip(values).map(|(i, &y)| [f64::from(i), y]).collect::<Vec<_>>();
+    let (real, imaginary) = (points(&unstable.shape), points(&unstable.quadrature));
+    let mut panel =
+        Panel::new(Axis::linear("degree of freedom", -0.5, last + 0.5), Axis::linear("shape", -1.15, 1.15))
+            .titled(&format!("{n}  {}", told(unstable)))
+            .with(Layer::lines(vec![vec![[-0.5, 0.0], [last + 0.5, 0.0]]], Stroke::THIN.in_colour(GREY)));
+    let beats = unstable.origin == Origin::Collision;
+    if beats {
+        let line = Layer::lines(vec![imaginary.clone()], Stroke::DASHED.in_colour(family(1)));
+        panel = panel.with(line.labelled("a quarter of the beat later")).legend(Place::Above);
+        if few {
+            panel = panel.with(Layer::dots(imaginary, Shape::Ring, 3.4, family(1)));
+        }
+    }
+    let line = Layer::lines(vec![real.clone()], Stroke::LINE.in_colour(family(0)));
+    panel = panel.with(if beats { line.labelled("at the start") } else { line });
+    if few {
+        let stems = real.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
+        panel = panel.with(Layer::lines(stems, Stroke::THIN.in_colour(family(0))));
+        panel = panel.with(Layer::dots(real, Shape::Disc, 3.4, family(0)));
+    }
+    panel
+}
+
+/// Kind, growth and resonance, in the notation of labels.
+fn told(unstable: &Instability) -> String {
+    let kind = match unstable.origin {
+        Origin::RealPair => "real pair",
+        Origin::Collision => "collision",
+    };
+    let rate = unstable.growth_rate;
+    let rate = if rate < 1e-3 { format!("{rate:.2e}") } else { format!("{rate:.4}") };
+    let mut text = format!("{kind}, growth {rate}");
+    if let Some(r) = &unstable.resonance {
+        let sign = if r.sign > 0 { '+' } else { '−' };
+        let (first, second) = r.frequencies;
+        let family = terms(&r.family, "*h*_").replace(" - ", " − ");
+        text += &format!("; *w* = {first:.4} {sign} {second:.4} near 2π ({family})");
+    }
+    text
+}

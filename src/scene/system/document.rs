@@ -1,0 +1,125 @@
+//! The fields of a system file as they are written.
+
+use num_traits::ToPrimitive;
+use serde::Deserialize;
+use serde_json::Value;
+
+use crate::error::{Error, Result};
+use crate::number::parse::{parse, parse_rational};
+use crate::number::{Laurent, Rational};
+
+/// An exact number: a string, or an integer. Anything else is kept until a reader can name its field.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Number {
+    Text(String),
+    Integer(i64),
+    Other(Value),
+}
+
+impl Number {
+    fn text(&self, field: &str) -> Result<String> {
+        match self {
+            Number::Text(text) => Ok(text.clone()),
+            Number::Integer(n) => Ok(n.to_string()),
+            Number::Other(value) => {
+                let remedy = "write an exact number in quotes, as \"1/4\" or \"0.25\"";
+                Err(Error::input(field, value, remedy))
+            }
+        }
+    }
+
+    /// As a rational.
+    pub fn read(&self, field: &str) -> Result<Rational> {
+        parse_rational(field, &self.text(field)?)
+    }
+
+    /// As an element of ℚ\[π, 1/π\].
+    pub fn read_laurent(&self, field: &str) -> Result<Laurent> {
+        parse(field, &self.text(field)?)
+    }
+
+    /// As a count of at most `most`.
+    pub fn count(&self, field: &str, most: usize) -> Result<usize> {
+        let value = self.read(field)?;
+        let count = value.is_integer().then(|| value.to_integer().to_usize()).flatten();
+        let remedy = || Error::input(field, &value, format!("write a whole number of at most {most}"));
+        count.filter(|&n| n <= most).ok_or_else(remedy)
+    }
+
+    /// As an index below n.
+    pub fn index(&self, field: &str, n: usize) -> Result<usize> {
+        let remedy = || format!("indices are 0 to {}", n.max(1) - 1);
+        match self {
+            Number::Integer(i) => {
+                let index = usize::try_from(*i).ok().filter(|&i| i < n);
+                index.ok_or_else(|| Error::input(field, i, remedy()))
+            }
+            Number::Text(text) => {
+                Err(Error::input(field, text, format!("write an index without quotes; {}", remedy())))
+            }
+            Number::Other(value) => Err(Error::input(field, value, remedy())),
+        }
+    }
+}
+
+/// A system file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Document {
+    pub schema: String,
+    pub title: Option<String>,
+    pub masses: Option<Vec<Number>>,
+    pub mass_matrix: Option<Vec<Vec<Number>>>,
+    pub potentials: Option<Vec<PotentialDocument>>,
+    pub near: Option<Vec<Number>>,
+    pub build: Option<Build>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PotentialDocument {
+    /// For people, and for paths of scans.
+    #[serde(rename = "name")]
+    _name: Option<String>,
+    pub step: Number,
+    pub phase: Option<Number>,
+    /// A factor of all that the potential holds.
+    pub scale: Option<Number>,
+    #[serde(default)]
+    pub springs: Vec<(Number, Option<Number>, Number)>,
+    pub stiffness: Option<Vec<Vec<Number>>>,
+    #[serde(default)]
+    pub bonds: Vec<BondDocument>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BondDocument {
+    pub i: Number,
+    pub j: Option<Number>,
+    pub form: String,
+    pub k: Option<Number>,
+    pub beta: Option<Number>,
+    pub epsilon: Option<Number>,
+    pub sigma: Option<Number>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
+pub(super) enum Build {
+    Chain { masses: Number, stiffness: Vec<Number>, steps: Vec<Number> },
+    StiffSoft { pairs: Number, stiff: Number, steps: [Number; 2] },
+    GradedBar { elements: Number, classes: Number, courant: Number },
+    TetheredPair { masses: [Number; 2], stiffness: [Number; 2], steps: [Number; 2] },
+}
+
+/// The two ends of what joins i and j, j `None` for a wall.
+pub(super) fn ends(field: &str, i: &Number, j: Option<&Number>, n: usize) -> Result<(usize, Option<usize>)> {
+    let i = i.index(field, n)?;
+    let j = j.map(|j| j.index(field, n)).transpose()?;
+    if j == Some(i) {
+        return Err(Error::input(field, i, "joins two different indices, or one and null"));
+    }
+    Ok((i, j))
+}

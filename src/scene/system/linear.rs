@@ -1,0 +1,94 @@
+//! Masses and stiffnesses from a file, and the usual systems by name.
+
+use super::LARGEST;
+use super::document::{Build, Document, Number, PotentialDocument, ends};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::system::{Potential, Symmetric, System, builders};
+
+pub(super) fn numbers(field: &str, values: &[Number]) -> Result<Vec<Rational>> {
+    values.iter().enumerate().map(|(i, x)| x.read(&format!("{field}[{i}]"))).collect()
+}
+
+fn matrix(field: &str, rows: &[Vec<Number>]) -> Result<Symmetric> {
+    let read = |(i, row): (usize, &Vec<Number>)| numbers(&format!("{field}[{i}]"), row);
+    Symmetric::dense(field, &rows.iter().enumerate().map(read).collect::<Result<Vec<_>>>()?)
+}
+
+impl Document {
+    /// M, checked for its size alone.
+    pub fn mass(&self) -> Result<Symmetric> {
+        let mass = match (&self.masses, &self.mass_matrix) {
+            (Some(masses), None) => Symmetric::diagonal(&numbers("masses", masses)?),
+            (None, Some(rows)) => matrix("mass_matrix", rows)?,
+            _ => return Err(Error::input("masses", "missing", "give masses or mass_matrix, one of them")),
+        };
+        match mass.size() {
+            n if n > LARGEST => {
+                Err(Error::input("masses", n, format!("at most {LARGEST} degrees of freedom")))
+            }
+            _ => Ok(mass),
+        }
+    }
+
+    /// The potentials, at least one.
+    pub fn potentials(&self) -> Result<&[PotentialDocument]> {
+        let missing = || Error::input("potentials", "missing", "give at least one potential with its step");
+        self.potentials.as_deref().filter(|p| !p.is_empty()).ok_or_else(missing)
+    }
+}
+
+impl PotentialDocument {
+    /// Springs and matrix on n degrees of freedom, with the clock; bonds stand elsewhere.
+    pub fn linear(&self, k: usize, n: usize) -> Result<Potential> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
+        let mut stiffness = match &self.stiffness {
+            Some(rows) => matrix(&field("stiffness"), rows)?,
+            None => Symmetric::zero(n),
+        };
+        if self.bonds.is_empty() && stiffness.size() == n {
+            for (s, (i, j, value)) in self.springs.iter().enumerate() {
+                let field = field(&format!("springs[{s}]"));
+                let (i, j) = ends(&field, i, j.as_ref(), n)?;
+                stiffness.add_spring(i, j, &value.read(&field)?);
+            }
+        }
+        if let Some(scale) = &self.scale {
+            stiffness = stiffness.scaled(&scale.read(&field("scale"))?);
+        }
+        let phase =
+            self.phase.as_ref().map_or(Ok(Rational::default()), |phase| phase.read(&field("phase")))?;
+        Ok(Potential { stiffness, step: self.step.read(&field("step"))?, phase })
+    }
+}
+
+impl Build {
+    pub fn system(&self) -> Result<System> {
+        let pair = |field: &str, pair: &[Number; 2]| -> Result<[Rational; 2]> {
+            Ok([pair[0].read(&format!("{field}[0]"))?, pair[1].read(&format!("{field}[1]"))?])
+        };
+        match self {
+            Build::Chain { masses, stiffness, steps } => {
+                let masses = masses.count("build.masses", LARGEST)?;
+                let stiffness = numbers("build.stiffness", stiffness)?;
+                builders::periodic_chain(masses, &stiffness, &numbers("build.steps", steps)?)
+            }
+            Build::StiffSoft { pairs, stiff, steps } => {
+                let pairs = pairs.count("build.pairs", LARGEST / 2)?;
+                let [h_stiff, h_soft] = pair("build.steps", steps)?;
+                builders::stiff_soft_chain(pairs, &stiff.read("build.stiff")?, [&h_stiff, &h_soft])
+            }
+            Build::GradedBar { elements, classes, courant } => {
+                let elements = elements.count("build.elements", LARGEST)?;
+                let classes = classes.count("build.classes", LARGEST)?;
+                builders::graded_bar(elements, classes, &courant.read("build.courant")?)
+            }
+            Build::TetheredPair { masses, stiffness, steps } => {
+                let [m1, m2] = pair("build.masses", masses)?;
+                let [bond, tether] = pair("build.stiffness", stiffness)?;
+                let [h_bond, h_tether] = pair("build.steps", steps)?;
+                builders::tethered_pair([&m1, &m2], (&bond, &h_bond), (&tether, &h_tether))
+            }
+        }
+    }
+}

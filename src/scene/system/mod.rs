@@ -1,0 +1,192 @@
+//! A system as it is written: masses, potentials with their clocks, or one of the usual cases by name.
+//!
+//! ```json
+//! {
+//!     "schema": "kickdrift/system/1",
+//!     "title": "two masses",
+//!     "masses": ["1", "3/2"],
+//!     "potentials": [
+//!         {"step": "1/4", "springs": [[0, 1, "10"]]},
+//!         {"step": "1", "phase": "1/2", "springs": [[0, null, "1/2"]]},
+//!         {"step": "1/2", "stiffness": [["2", "-1"], ["-1", "2"]], "scale": "1/3"},
+//!         {"step": "1/2", "bonds": [{"i": 0, "j": 1, "form": "quartic", "k": "1", "beta": "1/3"}]}
+//!     ],
+//!     "near": ["0", "0"]
+//! }
+//! ```
+//!
+//! * All quantities are exact strings (or JSON integers) without π; indices count from 0. One mass alone may have π in
+//!   its mass, stiffnesses and steps, as `"pi^2/25"`: K clocks on one oscillator.
+//! * `masses`, or `mass_matrix` by rows.
+//! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j null for a
+//!   wall), `stiffness` (by rows), `bonds` (a named form between i and j, without j to a wall at 0). They add up, times
+//!   `scale` (1 unless given).
+//! * Forms: `harmonic` (k), `quartic` (k, beta), `lennard-jones` (epsilon, sigma). With bonds other than harmonic the
+//!   system is the linear one at the equilibrium found near the positions `near`: exact for the Hessian in doubles,
+//!   which is itself rounded.
+//! * In place of masses and potentials, `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
+//!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
+//!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
+//!   `{"kind": "tethered-pair", "masses": [...], "stiffness": [bond, tether], "steps": [bond, tether]}`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `document` | the fields |
+//! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
+//! | `scan` | one file, many systems: any number of it over a range |
+
+mod bonds;
+mod document;
+mod linear;
+mod oscillator;
+mod scan;
+
+use crate::avi::{self, Bond, Clocks, Simulation, State};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::system::{Analysis, Limits, Potential, Route, System, decide_by, decide_oscillator};
+use bonds::Nonlinear;
+use document::Document;
+use oscillator::Oscillator;
+pub use scan::{Axis, Scan};
+
+/// The schema that this version reads.
+const SCHEMA: &str = "kickdrift/system/1";
+
+/// The longest file, in bytes.
+const LONGEST: usize = 16 << 20;
+
+/// The most degrees of freedom: dense matrices of this size still fit.
+const LARGEST: usize = 4096;
+
+/// A system file, read and checked.
+#[derive(Clone, Debug)]
+pub struct SystemScene {
+    title: String,
+    system: System,
+    nonlinear: Option<Nonlinear>,
+    oscillator: Option<Oscillator>,
+}
+
+impl SystemScene {
+    /// Reads a system from the text of its file.
+    ///
+    /// # Errors
+    /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
+    /// [`System::new`] refuses; each by the entry's name.
+    pub fn read(text: &str) -> Result<SystemScene> {
+        if text.len() > LONGEST {
+            let remedy = "a system has at most 16 MiB; is this the right file?";
+            return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
+        }
+        SystemScene::of(serde_json::from_str(text).map_err(no_system)?)
+    }
+
+    fn of(document: Document) -> Result<SystemScene> {
+        if document.schema != SCHEMA {
+            return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
+        }
+        let title = document.title.clone().unwrap_or_default();
+        match &document.build {
+            Some(build) if document.masses.is_none() && document.potentials.is_none() => {
+                Ok(SystemScene { title, system: build.system()?, nonlinear: None, oscillator: None })
+            }
+            Some(_) => Err(Error::input("build", "given", "give either build, or masses and potentials")),
+            None => SystemScene::explicit(title, &document),
+        }
+    }
+
+    fn explicit(title: String, document: &Document) -> Result<SystemScene> {
+        if let Some(oscillator) = document.oscillator()? {
+            let system = oscillator.rounded.clone();
+            return Ok(SystemScene { title, system, nonlinear: None, oscillator: Some(oscillator) });
+        }
+        let (mass, potentials) = (document.mass()?, document.potentials()?);
+        let n = mass.size();
+        let linear = potentials.iter().enumerate().map(|(k, p)| p.linear(k, n)).collect::<Result<_>>()?;
+        let (system, nonlinear) = if potentials.iter().all(|p| p.bonds.is_empty()) {
+            (System::new(mass, linear)?, None)
+        } else {
+            let (system, nonlinear) = document.at_equilibrium(mass, potentials, linear)?;
+            (system, Some(nonlinear))
+        };
+        Ok(SystemScene { title, system, nonlinear, oscillator: None })
+    }
+
+    /// The title, or nothing.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// The linear system: that at the equilibrium, where there are nonlinear bonds; rounded to doubles (and, where steps
+    /// are irrational, in the unit of time of the shortest one), where an oscillator involves π.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The verdict.
+    ///
+    /// # Errors
+    /// As [`decide_by`] and [`decide_oscillator`].
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        match &self.oscillator {
+            Some(own) => decide_oscillator(&own.clocks, &own.rounded, &own.unit),
+            None => decide_by(route, &self.system, limits),
+        }
+    }
+
+    /// The equilibrium, where there are bonds.
+    pub fn equilibrium(&self) -> Option<&[f64]> {
+        self.nonlinear.as_ref().map(|n| n.equilibrium.as_slice())
+    }
+
+    /// Whether the system of [`SystemScene::system`] is all there is: no bond but harmonic ones.
+    pub fn is_linear(&self) -> bool {
+        self.nonlinear.as_ref().is_none_or(|n| n.is_harmonic)
+    }
+
+    /// The simulation of the linear system in doubles, from positions and momenta.
+    ///
+    /// # Errors
+    /// A mass matrix that is not diagonal, steps that are irrational, and as [`Simulation::new`].
+    pub fn linear_simulation(&self, x: Vec<f64>, p: Vec<f64>) -> Result<Simulation<f64, avi::Linear<f64>>> {
+        if let Some(own) = self.oscillator.as_ref().filter(|own| !own.has_rational_steps) {
+            let remedy = "a run needs rational steps: choose a unit of time in which they are";
+            return Err(Error::input("step", &own.unit, remedy));
+        }
+        let force = |clock: &Potential| {
+            let particles = clock.stiffness.support();
+            let row = |&i: &usize| particles.iter().map(|&j| to_f64(&clock.stiffness.get(i, j))).collect();
+            let rows = particles.iter().map(row).collect();
+            avi::Linear::new(particles, rows)
+        };
+        let forces = self.system.clocks().iter().map(force).collect::<Result<Vec<_>>>()?;
+        let steps: Vec<_> = self.system.clocks().iter().map(|c| c.step.clone()).collect();
+        let phases: Vec<_> = self.system.clocks().iter().map(|c| c.phase.clone()).collect();
+        Simulation::new(&self.masses()?, forces, Clocks::new(&steps, &phases)?, State::new(x, p))
+    }
+
+    /// The simulation of the bonds themselves; `None` where the file has none.
+    ///
+    /// # Errors
+    /// As [`SystemScene::linear_simulation`].
+    pub fn nonlinear_simulation(&self, x: Vec<f64>, p: Vec<f64>) -> Result<Option<Simulation<f64, Bond>>> {
+        let Some(nonlinear) = &self.nonlinear else { return Ok(None) };
+        let clocks = Clocks::new(&nonlinear.steps, &nonlinear.phases)?;
+        Simulation::new(&self.masses()?, nonlinear.bonds.clone(), clocks, State::new(x, p)).map(Some)
+    }
+
+    fn masses(&self) -> Result<Vec<Rational>> {
+        if !self.system.mass().is_diagonal() {
+            let remedy = "Algorithm 1 moves particle by particle: give masses in place of mass_matrix";
+            return Err(Error::input("mass_matrix", "not diagonal", remedy));
+        }
+        Ok((0..self.system.size()).map(|i| self.system.mass().get(i, i)).collect())
+    }
+}
+
+/// Why a text is no system.
+fn no_system(cause: serde_json::Error) -> Error {
+    Error::input("system", cause, "write one JSON object as in data/scenes/diatomic-tether.json")
+}

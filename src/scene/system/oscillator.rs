@@ -1,0 +1,127 @@
+//! One oscillator whose mass, stiffnesses or steps involve π: K clocks over ℚ\[π\].
+
+use std::collections::BTreeMap;
+
+use num_traits::Zero;
+
+use super::document::{Document, PotentialDocument, ends};
+use crate::error::{Error, Result};
+use crate::number::rational::from_f64_exact;
+use crate::number::{ExactSign, Laurent, Rational, Sign};
+use crate::system::{ManyClocks, Potential, Symmetric, System};
+
+/// The clocks in units of h_1, the shortest step.
+#[derive(Clone, Debug)]
+pub(super) struct Oscillator {
+    pub clocks: ManyClocks<Laurent>,
+    /// h_1.
+    pub unit: Laurent,
+    /// The same with every stiffness/mass rounded to the nearest double; in the unit of time h_1 where
+    /// steps are irrational.
+    pub rounded: System,
+    pub has_rational_steps: bool,
+}
+
+impl Document {
+    /// `None` unless the file is of one mass and some number of it is irrational.
+    pub fn oscillator(&self) -> Result<Option<Oscillator>> {
+        let (Some([mass]), Ok(potentials)) = (self.masses.as_deref(), self.potentials()) else {
+            return Ok(None);
+        };
+        if potentials.iter().any(|p| !p.bonds.is_empty()) {
+            return Ok(None);
+        }
+        let mass = mass.read_laurent("masses[0]")?;
+        let read = potentials.iter().enumerate().map(|(k, p)| p.clock(k));
+        let clocks = read.collect::<Result<Vec<_>>>()?;
+        let all = clocks.iter().flat_map(|(step, _, stiffness)| [step, stiffness]).chain([&mass]);
+        if all.map(Laurent::as_rational).all(|x| x.is_some()) {
+            return Ok(None);
+        }
+        if mass.sign() != Sign::Positive {
+            return Err(Error::input("masses[0]", &mass, "a mass must be positive"));
+        }
+        assembled(&mass, clocks).map(Some)
+    }
+}
+
+impl PotentialDocument {
+    /// Step, phase and stiffness on one degree of freedom.
+    fn clock(&self, k: usize) -> Result<(Laurent, Rational, Laurent)> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
+        let mut stiffness = match self.stiffness.as_deref() {
+            None => Laurent::zero(),
+            Some([row]) if row.len() == 1 => row[0].read_laurent(&field("stiffness[0][0]"))?,
+            Some(rows) => {
+                let size = format!("{} rows", rows.len());
+                return Err(Error::input(
+                    &field("stiffness"),
+                    size,
+                    "there is 1 degree of freedom: give [[k]]",
+                ));
+            }
+        };
+        for (s, (i, j, value)) in self.springs.iter().enumerate() {
+            let field = field(&format!("springs[{s}]"));
+            ends(&field, i, j.as_ref(), 1)?;
+            stiffness += value.read_laurent(&field)?;
+        }
+        if let Some(scale) = &self.scale {
+            stiffness *= scale.read_laurent(&field("scale"))?;
+        }
+        let step = self.step.read_laurent(&field("step"))?;
+        if step.sign() != Sign::Positive {
+            return Err(Error::input(&field("step"), step, "a step must be positive"));
+        }
+        let phase = self.phase.as_ref().map_or(Ok(Rational::zero()), |phase| phase.read(&field("phase")))?;
+        if !phase.is_zero() && phase != Rational::new(1.into(), 2.into()) {
+            return Err(Error::input(&field("phase"), phase, "must be 0 or 1/2"));
+        }
+        Ok((step, phase, stiffness))
+    }
+}
+
+type Merged = BTreeMap<(Laurent, Rational), (usize, Laurent)>;
+
+/// One clock for each (step, phase), with the place where it was first seen; those without stiffness are left out,
+/// unless all are.
+fn merged(clocks: Vec<(Laurent, Rational, Laurent)>) -> Merged {
+    let mut merged = Merged::new();
+    for (k, (step, phase, stiffness)) in clocks.into_iter().enumerate() {
+        merged.entry((step, phase)).or_insert_with(|| (k, Laurent::zero())).1 += stiffness;
+    }
+    if merged.values().any(|(_, stiffness)| !stiffness.is_zero()) {
+        merged.retain(|_, (_, stiffness)| !stiffness.is_zero());
+    }
+    merged
+}
+
+/// The clocks by increasing step, exactly and rounded.
+fn assembled(mass: &Laurent, clocks: Vec<(Laurent, Rational, Laurent)>) -> Result<Oscillator> {
+    let merged = merged(clocks);
+    let base = merged.first_key_value().expect("at least one clock").0.0.clone();
+    let rational_base = base.as_rational();
+    let unit = rational_base.clone().unwrap_or_else(|| Rational::from_integer(1.into()));
+    let (mut steps, mut phases, mut strengths, mut potentials) = (vec![], vec![], vec![], vec![]);
+    for ((step, phase), (k, stiffness)) in merged {
+        let ratio = Laurent::ratio(&step, &base).ok_or_else(|| {
+            let remedy = format!("its ratio to the step {base} is irrational: these clocks never meet again");
+            Error::input(&format!("potentials[{k}].step"), &step, remedy)
+        })?;
+        let over_mass = stiffness.checked_div(mass).ok_or_else(|| {
+            Error::input("masses[0]", mass, "must be a rational times a power of pi, so that K/m is exact")
+        })?;
+        strengths.push(&(&base * &step) * &over_mass);
+        let scaled = if rational_base.is_some() { over_mass } else { &(&base * &base) * &over_mass };
+        let stiffness = from_f64_exact(scaled.to_f64()).ok_or_else(|| {
+            Error::input(&format!("potentials[{k}]"), &scaled, "is beyond the range of doubles")
+        })?;
+        let stiffness = Symmetric::diagonal(&[stiffness]);
+        potentials.push(Potential { stiffness, step: &unit * &ratio, phase: phase.clone() });
+        steps.push(ratio);
+        phases.push(phase);
+    }
+    let rounded = System::new(Symmetric::diagonal(&[Rational::from_integer(1.into())]), potentials)?;
+    let clocks = ManyClocks::new(&steps, &phases, strengths)?;
+    Ok(Oscillator { clocks, unit: base, rounded, has_rational_steps: rational_base.is_some() })
+}

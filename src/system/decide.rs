@@ -1,0 +1,86 @@
+//! A system's verdict, part by part, each by the cheapest means that proves it.
+//!
+//! 1. Connected components and rigid modes are set apart; small components whose potentials commute are split
+//!    along their rational eigenvectors.
+//! 2. A part of one degree of freedom is the scalar problem: two clocks go to the certified ladder of
+//!    [`verdict`](crate::verdict), more of them to doubles, balls and exact signs.
+//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these do not tell,
+//!    in exact arithmetic.
+//! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the answer is an estimate and says so.
+//!
+//! The cost for n degrees of freedom: the half period ([`compose`](super::compose)) and some twenty products of n x n
+//! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
+
+use super::analysis::Analysis;
+use super::compose::connected;
+use super::exact::Limits;
+use super::frame::Frame;
+use super::model::System;
+use super::piece::{pieces, unit};
+use crate::error::Result;
+use crate::number::{Laurent, Rational};
+use crate::verdict::Kind;
+
+/// Which means are tried for parts of several degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// The cheapest that proves the verdict; where none does within the budget, an estimate.
+    Cheapest,
+    /// Exact arithmetic, or an error that tells its cost.
+    Exact,
+}
+
+/// The verdict on a system.
+///
+/// # Errors
+/// A budget error of the scalar kernels. (A large part that only exact arithmetic could decide, beyond the
+/// budget, is no error but an [`Evidence::Estimate`] with a warning.)
+///
+/// [`Evidence::Estimate`]: super::Evidence::Estimate
+pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
+    decide_by(Route::Cheapest, system, limits)
+}
+
+/// The verdict on a system by one route.
+///
+/// # Errors
+/// As [`decide_system`]; by [`Route::Exact`] also where exact arithmetic exceeds the budget.
+pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analysis> {
+    let mut warnings = Vec::new();
+    if !system.total_stiffness().is_positive_semidefinite() {
+        warnings.push(
+            "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
+        );
+    }
+    let graphs = system.clocks().iter().map(|clock| &clock.stiffness).chain([system.mass()]);
+    let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
+    for dofs in connected(system.size(), graphs) {
+        let Some(component) = system.component(&dofs) else {
+            rigid_modes.extend(dofs.iter().map(|&i| unit(system.size(), i)));
+            continue;
+        };
+        let frame = Frame::new(&component);
+        let place = |v: &Vec<Rational>| {
+            let mut x = vec![Rational::default(); system.size()];
+            dofs.iter().zip(v).for_each(|(&i, value)| x[i] = value.clone());
+            x
+        };
+        rigid_modes.extend(frame.rigid.iter().map(|(_, v)| place(v)));
+        for piece in pieces(component, frame) {
+            parts.push(piece.decide(system.size(), &dofs, (route, limits), &mut warnings)?);
+        }
+    }
+    let kind = parts.iter().map(|part| part.kind).max_by_key(severity).unwrap_or(Kind::Elliptic);
+    let period = Laurent::from_rational(system.period());
+    let (size, clocks) = (system.size(), system.clocks().len());
+    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings })
+}
+
+fn severity(kind: &Kind) -> u8 {
+    match kind {
+        Kind::Elliptic => 0,
+        Kind::Coexistence => 1,
+        Kind::Parabolic => 2,
+        Kind::Hyperbolic => 3,
+    }
+}

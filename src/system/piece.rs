@@ -1,0 +1,133 @@
+//! Invariant parts of a component, and the verdict on each.
+
+use super::analysis::{Evidence, Part};
+use super::decide::Route;
+use super::exact::{Limits, MuCount, decide_exact};
+use super::float;
+use super::frame::Frame;
+use super::model::System;
+use super::single;
+use super::sparse::{dot, null_space};
+use super::spectrum::{Spectrum, from_segment};
+use super::split::{Subspace, invariant_subspaces};
+use crate::error::{Kind as ErrorKind, Result};
+use crate::number::{Laurent, Rational};
+use crate::verdict::Kind;
+
+/// Components of at most this size are brought to rational normal forms before anything else.
+const SMALL: usize = 16;
+
+/// The unit vector e_i.
+pub(super) fn unit(n: usize, i: usize) -> Vec<Rational> {
+    (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()
+}
+
+/// A part of a component on its way to a verdict.
+pub(super) struct Piece {
+    pub(super) system: System,
+    pub(super) frame: Frame,
+    /// x = Z y in the component's coordinates; `None` for the component itself.
+    pub(super) columns: Option<Subspace>,
+}
+
+/// The component itself, or what it splits into.
+pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
+    if component.size() > SMALL {
+        return vec![Piece { system: component, frame, columns: None }];
+    }
+    // The M-orthogonal complement of the rigid modes.
+    let conditions = frame.rigid.iter().map(|(_, n)| {
+        let image = component.mass().times(n).into_iter().enumerate();
+        image.filter(|(_, x)| *x != Rational::default()).collect()
+    });
+    let complement: Subspace =
+        null_space(conditions.collect(), component.size()).into_iter().map(|(_, z)| z).collect();
+    let Some(vibrating) = component.restricted(&complement) else { return Vec::new() };
+    let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
+    let subspaces = invariant_subspaces(&vibrating).unwrap_or_else(whole);
+    let piece = |space: Subspace| {
+        let system = vibrating.restricted(&space)?;
+        let frame = Frame::new(&system);
+        let lifted = |y: &Vec<Rational>| {
+            let rows =
+                (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
+            rows.map(|row| dot(&row, y)).collect()
+        };
+        Some(Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) })
+    };
+    subspaces.into_iter().filter_map(piece).collect()
+}
+
+impl Piece {
+    /// The verdict on the piece of a component of `n` that has the degrees of freedom `dofs`.
+    pub(super) fn decide(
+        &self,
+        n: usize,
+        dofs: &[usize],
+        how: (Route, &Limits),
+        warnings: &mut Vec<String>,
+    ) -> Result<Part> {
+        let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
+            single::decide(&self.system)?
+        } else {
+            self.decide_many(how, warnings)?
+        };
+        let taken =
+            |i: &usize| self.columns.as_ref().is_none_or(|z| z.iter().any(|z| z[*i] != Rational::default()));
+        part.dofs = (0..dofs.len()).filter(taken).map(|i| dofs[i]).collect();
+        for instability in &mut part.instabilities {
+            self.place_shape(instability, n, dofs);
+        }
+        Ok(part)
+    }
+
+    fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
+        // What may be refused is asked for before anything else is computed.
+        let asked = (how.0 == Route::Exact).then(|| decide_exact(&self.system, how.1)).transpose()?;
+        let blocks = float::half_period(&self.system, &self.frame);
+        let spectrum = Spectrum::new(&blocks);
+        let certified = || spectrum.as_ref().and_then(|spectrum| spectrum.certified(&blocks));
+        let (kind, evidence, roots) = match asked {
+            Some(exact) => (exact.kind, Evidence::Exact, Some(exact.roots)),
+            None => match certified() {
+                Some(kind) => (kind, Evidence::Discs, None),
+                None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
+            },
+        };
+        let (multipliers, instabilities) = match &spectrum {
+            Some(spectrum) => self.explain(spectrum, &blocks, kind),
+            None => Default::default(),
+        };
+        let (size, period) = (self.frame.kept.len(), Laurent::from_rational(self.system.period()));
+        let dofs = Vec::new();
+        Ok(Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator: None })
+    }
+
+    fn exact_or_estimate(
+        &self,
+        limits: &Limits,
+        spectrum: Option<&Spectrum>,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Kind, Evidence, Option<MuCount>)> {
+        let error = match (decide_exact(&self.system, limits), spectrum) {
+            (Ok(exact), _) => return Ok((exact.kind, Evidence::Exact, Some(exact.roots))),
+            (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,
+            (Err(error), _) => return Err(error),
+        };
+        warnings.push(format!(
+            "doubles do not prove the verdict on {} degrees of freedom (eigenvalues too close together or to the edge \
+             of stability): it is an estimate; {error}",
+            self.frame.kept.len()
+        ));
+        Ok((estimate(spectrum.expect("just seen")), Evidence::Estimate, None))
+    }
+}
+
+/// Where nothing is proven: eigenvalues of a matrix of norm 1 with a well-conditioned basis are good to some
+/// 10^-12; a double eigenvalue splits by the square root of that.
+pub(super) const ROUGH: f64 = 1e-6;
+
+fn estimate(spectrum: &Spectrum) -> Kind {
+    let unstable = spectrum.mu.iter().any(|&mu| from_segment(mu) > ROUGH);
+    if unstable { Kind::Hyperbolic } else { Kind::Elliptic }
+}

@@ -1,0 +1,66 @@
+//! One portable program, and the vector instructions of the processor that it runs on.
+
+/// The instruction sets that kernels are compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Instructions {
+    Portable,
+    /// Four doubles at a time, and fused operations.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// Eight doubles at a time.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+impl Instructions {
+    /// Those that this processor has, the best first.
+    pub fn available() -> impl Iterator<Item = Instructions> {
+        #[cfg(target_arch = "x86_64")]
+        let vector = [
+            (
+                Instructions::Avx512,
+                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
+            ),
+            (Instructions::Avx2, is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")),
+        ];
+        #[cfg(not(target_arch = "x86_64"))]
+        let vector: [(Instructions, bool); 0] = [];
+        let found = vector.into_iter().filter(|(_, has)| *has).map(|(set, _)| set);
+        found.chain([Instructions::Portable])
+    }
+
+    /// The task, compiled for these instructions: the same result to the bit.
+    pub fn perform<T: Task>(self, task: T) -> T::Output {
+        match self {
+            // Safety: the two are private to `available`, which has seen the features.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => unsafe { avx512(task) },
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => unsafe { avx2(task) },
+            Instructions::Portable => task.run(),
+        }
+    }
+
+    /// The best that this processor has.
+    pub fn best() -> Instructions {
+        Instructions::available().next().unwrap_or(Instructions::Portable)
+    }
+}
+
+/// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.
+pub(crate) trait Task {
+    type Output;
+    fn run(self) -> Self::Output;
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
+fn avx512<T: Task>(task: T) -> T::Output {
+    task.run()
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<T: Task>(task: T) -> T::Output {
+    task.run()
+}

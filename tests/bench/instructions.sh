@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Counts the instructions of each kernel under callgrind and compares them with those kept in instructions.txt:
+#
+#     tests/bench/instructions.sh            compares; ends with 1 where a kernel needs 2 % more than before
+#     tests/bench/instructions.sh --keep     keeps the new counts
+#
+# Counts do not depend on the machine's load, but on the compiler: instructions.txt names the one it was made with.
+# valgrind knows no AVX-512, so the kernels run their AVX2 form. Needs valgrind (Debian: apt-get install valgrind).
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+
+kept=tests/bench/instructions.txt
+if ! command -v valgrind > /dev/null; then
+    echo "valgrind is missing: install it (Debian: apt-get install valgrind) and try again" >&2
+    exit 2
+fi
+cargo bench --bench kernels --no-run 2> /dev/null
+program=$(cargo bench --bench kernels --no-run 2>&1 | sed -n 's/.*Executable .*(\(.*\))/\1/p')
+
+count() {
+    valgrind --tool=callgrind --callgrind-out-file=/dev/null "$program" "$1" 2>&1 | sed -n 's/.*Collected : *//p'
+}
+
+start=$(count start)
+new=$(mktemp)
+trap 'rm -f "$new"' EXIT
+{
+    echo "# $(rustc --version); instructions beyond the program's start"
+    for kernel in $("$program" | grep -v start); do
+        echo "$kernel $(($(count "$kernel") - start))"
+    done
+} > "$new"
+if [ "${1:-}" = --keep ]; then
+    cp "$new" "$kept"
+    cat "$kept"
+    exit
+fi
+# 2 %: what allocation and hashing of addresses may change from run to run is far below, a lost optimization far above.
+awk '
+    /^#/ { if (NR == FNR) compiler = $0; else if ($0 != compiler) print "another compiler than kept:", compiler; next }
+    NR == FNR { before[$1] = $2; next }
+    {
+        change = 100 * ($2 / before[$1] - 1)
+        printf "%-12s %14d %14d %+8.2f %%%s\n", $1, before[$1], $2, change, change > 2 ? "  slower" : ""
+        worse += change > 2
+    }
+    END { exit worse > 0 }
+' "$kept" "$new"

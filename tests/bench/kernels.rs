@@ -1,0 +1,50 @@
+//! One kernel by name, a fixed piece of work on one thread, for counting instructions:
+//!
+//!     tests/bench/instructions.sh
+//!
+//! `cargo bench --bench kernels` lists the names.
+
+use kickdrift::map::{Grid, Products, Shard, for_each_band};
+use kickdrift::number::parse::parse;
+use kickdrift::number::rational::ratio;
+use kickdrift::propagator::TwoClocks;
+use kickdrift::tongue::Tongues;
+use kickdrift::verdict::{Limits, Tier, decide_from};
+
+/// A name, and the work.
+const KERNELS: [(&str, fn()); 7] = [
+    ("start", || ()),
+    ("filter", || tier(Tier::Filter, 61_803, 38_197)),
+    ("refine", || tier(Tier::Refine, 619, 381)),
+    ("exact", || tier(Tier::Exact, 619, 381)),
+    ("map", || map(Products::default())),
+    ("map-growth", || map(Products { label: true, growth: true })),
+    ("tongues", || {
+        Tongues::new(61, 39, &ratio(1, 25)).and_then(|mut tongues| tongues.all()).expect("a ratio");
+    }),
+];
+
+fn tier(first: Tier, p: u64, q: u64) {
+    let clocks = TwoClocks::with_rho(p, q, ratio(1, 3), ratio(1, 25));
+    std::hint::black_box(decide_from(first, &clocks, &Limits::default()).expect("a short period"));
+}
+
+fn map(products: Products) {
+    let x = |text: &str| parse("x", text).expect("a number");
+    let window = |hi: &str| (x("1/100"), x(hi));
+    let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/100"), x("1/100")], window("2/pi"), window("7/2"))
+        .expect("a grid");
+    let see = |_, band| {
+        std::hint::black_box(band);
+        Ok(())
+    };
+    for_each_band(&grid, products, Shard::WHOLE, 1, &Limits::default(), see).expect("within the budget");
+}
+
+fn main() {
+    let name = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
+    match KERNELS.iter().find(|(kernel, _)| Some(*kernel) == name.as_deref()) {
+        Some((_, work)) => work(),
+        None => KERNELS.iter().for_each(|(kernel, _)| println!("{kernel}")),
+    }
+}

@@ -1,0 +1,98 @@
+//! Our side of tests/bench/peers/peers.py: the same work, timed inside the process, answers written to a folder.
+//!
+//! `cargo bench --bench peers -- FOLDER` prints `name seconds` line by line, minima over repetitions.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Instant;
+
+use kickdrift::map::{Grid, Products, Shard, for_each_band};
+use kickdrift::number::parse::parse;
+use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::propagator::TwoClocks;
+use kickdrift::tongue::{Edge, Tongues, ratios};
+use kickdrift::verdict::{Limits, decide, exact_trace};
+use rayon::prelude::*;
+
+/// Repeats the work until a second has passed, at least three times, and prints the least time.
+fn timed<T>(name: &str, mut work: impl FnMut() -> T) -> T {
+    let (start, mut least, mut rounds) = (Instant::now(), f64::INFINITY, 0);
+    loop {
+        let begin = Instant::now();
+        let result = work();
+        least = least.min(begin.elapsed().as_secs_f64());
+        rounds += 1;
+        if rounds >= 3 && start.elapsed().as_secs_f64() > 1.0 {
+            println!("{name} {least:.9}");
+            return result;
+        }
+    }
+}
+
+fn main() {
+    let folder = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
+    let Some(folder) = folder else { return println!("usage: cargo bench --bench peers -- FOLDER") };
+    let folder = Path::new(&folder);
+    for n in [40, 200, 1000] {
+        write(folder, &format!("figure_{n}"), &figure(n));
+    }
+    long_period(folder);
+    for max_sum in [30, 100] {
+        edges(folder, max_sum);
+    }
+}
+
+fn write(folder: &Path, name: &str, text: &str) {
+    std::fs::write(folder.join(name), text).expect("a folder to write to");
+}
+
+/// Figure 1 with steps of 1/n, one character a pair: whether it is unstable.
+fn figure(n: u64) -> String {
+    let x = |text: &str| parse("x", text).expect("a number");
+    let d = format!("1/{n}");
+    let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x(&d), x(&d)], (x(&d), x("2/pi")), (x(&d), x("7/2")))
+        .expect("a grid");
+    let map = |see: &mut dyn FnMut(&[u8])| {
+        for_each_band(&grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
+            see(&band.verdicts);
+            Ok(())
+        })
+        .expect("within the budget");
+    };
+    timed(&format!("figure_{n}"), || map(&mut |_| {}));
+    let mut text = String::new();
+    map(&mut |verdicts| text.extend(verdicts.iter().map(|&verdict| if verdict == 0 { '0' } else { '1' })));
+    text
+}
+
+/// h2/h1 = 1751/317, s = h1² L1 with h1 = 0.317 and L1 = 10, rho = 1/25: trace and verdict.
+fn long_period(folder: &Path) {
+    let clocks = TwoClocks::with_rho(1751, 317, ratio(317 * 317, 100_000), ratio(1, 25));
+    let trace = timed("exact_trace", || exact_trace(&clocks));
+    write(folder, "exact_trace", &trace.to_string());
+    let verdict =
+        timed("verdict", || decide(&clocks, &Limits::default()).expect("within the budget").verdict);
+    write(folder, "verdict", &verdict.side().to_string());
+}
+
+/// Every edge of all coprime p + q <= max_sum at rho = 1/25, one a line; thirty digits of those of 13/7.
+fn edges(folder: &Path, max_sum: u64) {
+    let (rho, ratios) = (ratio(1, 25), ratios(max_sum));
+    let one = |&(p, q): &(u64, u64)| Tongues::new(p, q, &rho).and_then(|mut x| x.all_edges()).expect("edges");
+    timed(&format!("edges_{max_sum}_one_thread"), || ratios.iter().map(one).collect::<Vec<_>>());
+    let all = timed(&format!("edges_{max_sum}"), || ratios.par_iter().map(one).collect::<Vec<_>>());
+    let mut text = String::new();
+    for edge in all.iter().flatten().flatten() {
+        writeln!(text, "{:.17e} {:.17e}", edge.lo, edge.hi).expect("a string");
+    }
+    write(folder, &format!("edges_{max_sum}"), &text);
+    let digits = timed("edges_30_digits", || {
+        let mut tongues = Tongues::new(13, 7, &rho).expect("a string");
+        let edges: Vec<Edge> = tongues.all_edges().expect("edges").concat();
+        edges.iter().map(|edge| tongues.refine(edge, 30).expect("digits").middle()).collect::<Vec<_>>()
+    });
+    // Forty decimals.
+    let scale = from_f64_exact(10.0).expect("finite").pow(40);
+    let text: Vec<String> = digits.iter().map(|x| (x * &scale).round().to_string()).collect();
+    write(folder, "edges_30_digits", &text.join("\n"));
+}

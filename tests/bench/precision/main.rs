@@ -1,0 +1,42 @@
+//! Run time against error, of the trace and of the verdict: `cargo bench --bench precision [-- DIRECTORY]`.
+//!
+//! Prints tables and writes precision.json and precision.svg (trace and verdict by every method) and
+//! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY, target/precision
+//! unless given. Times are minima over repetitions; only those of one run compare.
+
+mod figure;
+mod methods;
+mod neighbours;
+mod traces;
+mod verdicts;
+
+use std::path::PathBuf;
+
+use serde_json::json;
+
+fn main() {
+    let directory: PathBuf = std::env::args()
+        .skip(1)
+        .find(|argument| !argument.starts_with("--"))
+        .map_or_else(|| PathBuf::from("target/precision"), PathBuf::from);
+    std::fs::create_dir_all(&directory).expect("a directory to write to");
+    let traces = traces::measure();
+    traces::print(&traces);
+    let verdicts = verdicts::measure();
+    verdicts::print(&verdicts);
+    let picture = neighbours::picture();
+    let document = json!({
+        "schema": "kickdrift/precision/1",
+        "traces": traces.iter().map(traces::Row::json).collect::<Vec<_>>(),
+        "verdicts": verdicts.json(),
+        "neighbours": { "pairs": picture.pairs, "wrong": picture.wrong },
+    });
+    let write = |name: &str, text: String| {
+        let path = directory.join(name);
+        std::fs::write(&path, text).expect("the directory can be written to");
+        println!("{}", path.display());
+    };
+    write("precision.json", serde_json::to_string_pretty(&document).expect("JSON") + "\n");
+    write("precision.svg", figure::precision(&traces, &verdicts).svg());
+    write("neighbours.svg", picture.figure.svg());
+}

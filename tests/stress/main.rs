@@ -1,0 +1,54 @@
+//! Every tier's claims on inputs built to break them. Quick parts always; the long run of ten million random and a
+//! million adversarial cases, whose log is in data/published, by
+//!
+//!     cargo test --release --test stress -- --ignored --nocapture ten_million
+
+mod cases;
+mod edges;
+mod record;
+
+use cases::{Random, adversarial, random};
+use record::Record;
+
+/// The published run.
+const SEED: u64 = 20_261_121;
+
+fn clean(record: &Record) {
+    assert_eq!((record.wrong, record.outside), (0, 0), "{record}");
+}
+
+#[test]
+fn random_cases_are_never_wrong() {
+    let record = random(SEED, 20_000);
+    clean(&record);
+    // Both clocks beyond their own Verlet limits, where the filter has no coordinates, are a tenth of them.
+    assert!(record.by_tier[0] > record.cases * 3 / 4, "{record}");
+}
+
+#[test]
+fn neighbouring_doubles_and_hairs_about_an_edge_are_never_wrong() {
+    let record = adversarial(SEED, 4_000);
+    clean(&record);
+    // Close enough that doubles often cannot tell, and that the exact tier has to.
+    assert!(record.by_tier[1] > record.cases / 20 && record.by_tier[0] < record.cases, "{record}");
+}
+
+#[test]
+#[ignore = "minutes"]
+fn ten_million_random_and_a_million_adversarial_cases() {
+    println!("cargo test --release --test stress -- --ignored --nocapture ten_million");
+    println!("seed {SEED}\n");
+    let random = random(SEED, 10_000_000);
+    println!("random\n{random}\n");
+    let adversarial = adversarial(SEED, 1_000_000);
+    println!("adversarial\n{adversarial}");
+    clean(&random);
+    clean(&adversarial);
+}
+
+#[test]
+fn the_generator_is_no_constant() {
+    let mut numbers = Random::new(SEED);
+    let first: Vec<u64> = (0..100).map(|_| numbers.below(1000)).collect();
+    assert!(first.iter().collect::<std::collections::BTreeSet<_>>().len() > 80);
+}
