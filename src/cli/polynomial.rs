@@ -20,18 +20,19 @@ const MOST_KICKS: u64 = 120;
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let (p, q) = parse_ratio("ratio", &self.ratio)?;
-        let most = common.budget.unwrap_or(MOST_KICKS);
-        check(p, q, most)?;
+        check(p, q, common.budget)?;
         common.write(&polynomial::document(p, q), Format::Text)
     }
 }
 
 /// The default bound for scenes.
 pub fn check_default(p: u64, q: u64) -> Result<()> {
-    check(p, q, MOST_KICKS)
+    check(p, q, None)
 }
 
-fn check(p: u64, q: u64, most: u64) -> Result<()> {
+/// That the polynomials are worth their cost, or allowed by a budget.
+pub fn check(p: u64, q: u64, budget: Option<u64>) -> Result<()> {
+    let most = budget.unwrap_or(MOST_KICKS);
     let kicks = p.saturating_add(q);
     if kicks <= most {
         return Ok(());

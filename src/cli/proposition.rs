@@ -25,6 +25,14 @@ impl Args {
 
 /// The check and all witnesses for p, q ≤ max.
 pub fn document(max: u64) -> Result<Document> {
+    check_bound(max)?;
+    let mut witnesses = Vec::new();
+    let check = check(max, |w| witnesses.push(*w));
+    Ok(proposition::document(max, &check, &witnesses))
+}
+
+/// That the check is worth its cost.
+pub fn check_bound(max: u64) -> Result<()> {
     if max == 0 || max > MOST {
         return Err(Error::input(
             "max",
@@ -32,7 +40,5 @@ pub fn document(max: u64) -> Result<Document> {
             format!("choose 1 to {MOST}; the number of witnesses grows like its cube"),
         ));
     }
-    let mut witnesses = Vec::new();
-    let check = check(max, |w| witnesses.push(*w));
-    Ok(proposition::document(max, &check, &witnesses))
+    Ok(())
 }

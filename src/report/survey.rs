@@ -101,7 +101,7 @@ fn widths(survey: &Survey) -> Table {
         Column::new("largest"),
     ];
     let caption = format!(
-        "Width over first-order width, by the dominant family, p + q <= {}, rho = {}",
+        "Width over first-order width, by the dominant family (a, b), for all p + q up to {} at rho = {}",
         survey.max_sum, survey.rho
     );
     let mut table = Table::new("width_ratios", &caption, columns);
@@ -121,7 +121,7 @@ fn thinnest(survey: &Survey) -> Table {
     columns.push(Column::new("s").titled("s", "$s$"));
     columns.push(Column::new("width").enclosure());
     let caption = format!(
-        "The thinnest tongues that begin below s = 4, p + q <= {}, rho = {}",
+        "The thinnest tongues that begin below s = 4, for all p + q up to {} at rho = {}",
         survey.max_sum, survey.rho
     );
     let mut table = Table::new("thinnest", &caption, columns);

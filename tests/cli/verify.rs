@@ -141,3 +141,60 @@ fn what_cannot_be_rechecked_is_told() {
         assert!(parts.iter().all(|part| ended.stderr.contains(part)), "{file}: {}", ended.stderr);
     }
 }
+
+/// Puts `strange` at every leaf below, one at a time.
+fn mutants(value: &Value, strange: &Value, see: &mut dyn FnMut(Value)) {
+    match value {
+        Value::Object(map) => {
+            for (key, inner) in map {
+                mutants(inner, strange, &mut |changed| {
+                    let mut whole = map.clone();
+                    whole[key] = changed;
+                    see(Value::Object(whole));
+                });
+            }
+        }
+        Value::Array(items) => {
+            // The first two of a list stand for all.
+            for (i, inner) in items.iter().enumerate().take(2) {
+                mutants(inner, strange, &mut |changed| {
+                    let mut whole = items.clone();
+                    whole[i] = changed;
+                    see(Value::Array(whole));
+                });
+            }
+        }
+        _ => see(strange.clone()),
+    }
+}
+
+#[test]
+fn nonsense_in_a_document_is_an_error_and_never_a_panic() {
+    let desk = Desk::new();
+    let lines = [
+        "tongues --ratio 5/3 --rho 114/55 --lambda1 2 --digits 20",
+        "tongues --max-sum 4 --rho 0",
+        "closings --ratio 5/3",
+        "tongues --survey --max-sum 5 --rho 1",
+        "polynomial --ratio 2/1",
+        "proposition --max 2",
+        "verdict --lambda1 2 --lambda2 1 --h1 1 --h2 3",
+    ];
+    let strange =
+        [json!(null), json!(-1), json!(0), json!(1e300), json!(1u64 << 62), json!("1/0"), json!([])];
+    let mut runs = 0;
+    for line in lines {
+        let document = write(&desk, line, "d.json");
+        for strange in &strange {
+            mutants(&document, strange, &mut |mutant| {
+                runs += 1;
+                desk.write("d.json", &mutant.to_string());
+                let ended = desk.run(&["verify", "d.json"]);
+                let told = format!("{strange} in {mutant}: {}", ended.stderr);
+                assert!(matches!(ended.code, Some(0 | 2)) && !ended.stderr.contains("panicked"), "{told}");
+                assert!(ended.stderr.lines().count() <= 1, "{told}");
+            });
+        }
+    }
+    assert!(runs > 500, "{runs}");
+}

@@ -1,10 +1,10 @@
 //! Closings: at both ends of the range of ρ the edges lie in opposite orders, by exact signs; where a closing is
 //! rational, both entries vanish there.
 
-use num_integer::Integer;
+use num_traits::Signed;
 use serde_json::Value;
 
-use super::exact::{ZeroOf, fraction, part, signs};
+use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
@@ -23,7 +23,8 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
 
 fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
     let (p, q, m) = (row.whole("p")?, row.whole("q")?, row.whole("m")?);
-    holds(p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1, || "is no tongue of a ratio in lowest terms".into())?;
+    check_ratio(p, q, limits)?;
+    holds(m > 0, || "labels begin at 1".into())?;
     let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
     let (s, rho) = (side(row, "s")?, side(row, "rho")?);
     let four = fraction(4, 1);
@@ -34,6 +35,7 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
         let closed = pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero);
         holds(closed, || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
     }
+    holds(rho.lo.is_positive() && s.lo.is_positive(), || "s and rho are positive".into())?;
     // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move by no larger
     // part of themselves than rho does (masses and eigenvalues), and rho by three of its sizes at most.
     let margin = rho.size();

@@ -1,13 +1,28 @@
 //! Exact signs: of the half period at rational s, and of the trace over the full period.
 
+use num_integer::Integer;
 use num_traits::One;
 
-use super::read::{Checked, holds};
+use super::read::{Checked, Fault, holds};
+use crate::error::Error;
 use crate::number::{ExactSign, Laurent, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
 use crate::tongue::Entry;
-use crate::verdict::{Decidable, HalfSigns, Kind};
+use crate::verdict::{Decidable, HalfSigns, Kind, Limits};
+
+/// That p/q is a ratio in lowest terms, and its exact signs within the budget.
+pub fn check_ratio(p: u64, q: u64, limits: &Limits) -> Checked<()> {
+    holds(p > 0 && q > 0 && p.gcd(&q) == 1, || format!("{p}/{q} is no ratio in lowest terms"))?;
+    let kicks = p.saturating_add(q);
+    let cost = kicks.saturating_mul(kicks) / 100;
+    if kicks <= limits.kicks && cost <= limits.kicks {
+        return Ok(());
+    }
+    let told =
+        format!("exact signs at {p}/{q} cost as much as {cost} kicks: allow them with --budget {cost}");
+    Err(Fault::Error(Error::budget(told)))
+}
 
 /// The signs of A, B, C, D at s.
 pub fn signs(p: u64, q: u64, rho: &Rational, s: &Rational) -> HalfSigns {

@@ -6,7 +6,7 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 use serde_json::Value;
 
-use super::exact::fraction;
+use super::exact::{check_ratio, fraction};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
@@ -24,6 +24,7 @@ pub fn check_proposition(document: &Value, context: &Context) -> Result<Outcome>
     let rows = whole(all.rows("witnesses"))?;
     let mut outcome = context.rows(rows, WITNESSES, check_witness)?;
     let max: u64 = max.try_into().unwrap_or(0);
+    crate::cli::proposition::check_bound(max)?;
     let points =
         (1..=max).flat_map(|p| (1..=max).filter(move |q| p.gcd(q) == 1).map(move |_| p - 1)).sum::<u64>();
     let told = whole(all.whole("resonant_points"))?;
@@ -40,8 +41,9 @@ pub fn check_proposition(document: &Value, context: &Context) -> Result<Outcome>
 fn check_witness(row: &Row) -> Checked<()> {
     let (p, q, m) = (row.integer("p")?, row.integer("q")?, row.integer("m")?);
     let (a, b) = (row.integer("a")?, row.integer("b")?);
-    let whole = p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1;
-    holds(whole, || "is no resonant point of a ratio in lowest terms".into())?;
+    let small = [p, q, m, a, b].iter().all(|n| n.unsigned_abs() < 1 << 20);
+    let sound = small && p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1;
+    holds(sound, || "is no resonant point of a ratio in lowest terms".into())?;
     holds(b != 0, || "b = 0: eq. (10) has no such curve".into())?;
     // In the unit h1 T½ = p/m: h2 = b T½/(1 − a T½) = b p/(m − a p) must be p/q.
     holds(m - a * p != 0 && b * p * q == p * (m - a * p), || {
@@ -55,10 +57,14 @@ type Terms = BTreeMap<(u32, u32), Rational>;
 pub fn check_polynomial(document: &Value, context: &Context) -> Result<Outcome> {
     let all = Row::new(document);
     let (p, q) = (whole(all.whole("p"))?, whole(all.whole("q"))?);
+    whole(check_ratio(p, q, &context.limits))?;
+    crate::cli::polynomial::check(p, q, context.common.budget)?;
     let mut terms: BTreeMap<String, Terms> = BTreeMap::new();
     for term in whole(all.rows("terms"))? {
         let term = Row::new(term);
-        let powers = (whole(term.whole("s"))? as u32, whole(term.whole("rho"))? as u32);
+        // Beyond p + q no power can stand; those are told as the first that cannot.
+        let power = |key: &str| -> Result<u32> { Ok(whole(term.whole(key))?.min(p + q + 1) as u32) };
+        let powers = (power("s")?, power("rho")?);
         let coefficient = whole(term.rational("coefficient"))?;
         terms.entry(whole(term.text("entry"))?.to_string()).or_default().insert(powers, coefficient);
     }

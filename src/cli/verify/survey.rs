@@ -3,12 +3,14 @@
 use num_traits::Zero;
 use serde_json::{Value, json};
 
-use super::exact::{ZeroOf, fraction, part};
+use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
+use crate::cli::tongues::Ratios;
 use crate::error::Result;
 use crate::number::{Rational, rational};
 use crate::tongue::{Entry, ratios};
+use crate::verdict::Limits;
 
 const ROUTE: &str = "thin tongues by exact signs about both edges; ratios counted again; the counts add up";
 
@@ -17,11 +19,12 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
     let input = whole(all.object("input"))?;
     let rho = whole(input.rational("rho"))?;
     let max_sum = whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0);
+    Ratios::up_to(max_sum)?;
     let mut rows = whole(all.rows("thinnest"))?.to_vec();
     rows.push(json!({"entry": "counts"}));
     context.rows(&rows, ROUTE, |row| match row.get("entry") {
         Some(_) => counts(&all, ratios(max_sum).len() as u64),
-        None => thin(row, &rho),
+        None => thin(row, &rho, &context.limits),
     })
 }
 
@@ -39,8 +42,9 @@ fn counts(all: &Row, ratios: u64) -> Checked<()> {
 }
 
 /// Both entries vanish just above s, as far apart as told.
-fn thin(row: &Row, rho: &Rational) -> Checked<()> {
+fn thin(row: &Row, rho: &Rational, limits: &Limits) -> Checked<()> {
     let (p, q, m, s) = (row.whole("p")?, row.whole("q")?, row.whole("m")?, row.float("s")?);
+    check_ratio(p, q, limits)?;
     let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
     let (least, most) = row.enclosure("width")?;
     // From a double below the lower edge, a few doubles and the width up.
@@ -59,7 +63,8 @@ fn thin(row: &Row, rho: &Rational) -> Checked<()> {
     };
     let (inner, outer) = loop {
         let (inner, outer) = apart(a, b);
-        if outer <= &inner * fraction(1001, 1000) {
+        let exact = a.lo == a.hi && b.lo == b.hi;
+        if exact || outer <= &inner * fraction(1001, 1000) {
             break (inner, outer);
         }
         a.halve();

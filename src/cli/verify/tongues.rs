@@ -1,12 +1,12 @@
 //! Tongues, edge by edge: exact signs of the half period at the ends of every enclosure, and the verdict inside.
 
-use num_integer::Integer;
 use num_traits::Zero;
 use serde_json::Value;
 
-use super::exact::{ZeroOf, fraction, ln_multiplier_at, meets, part, resonance, signs};
+use super::exact::{ZeroOf, check_ratio, fraction, ln_multiplier_at, meets, part, resonance, signs};
 use super::read::{Checked, Fault, Row, holds, whole};
 use super::{Context, Outcome};
+use crate::cli::tongues::Ratios;
 use crate::error::Result;
 use crate::number::parse::parse_ratio;
 use crate::number::{Laurent, Rational, Sign, rational};
@@ -48,9 +48,14 @@ fn complete(input: &Row, rows: &[Value], rho: &Rational) -> Result<Option<(u64, 
     }
     let list = match input.get("ratio") {
         Some(_) => vec![parse_ratio("ratio", whole(input.text("ratio"))?)?],
-        None => ratios(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0)),
+        None => {
+            match Ratios::up_to(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0))? {
+                Ratios::UpTo(max_sum) => ratios(max_sum),
+                Ratios::One(p, q) => vec![(p, q)],
+            }
+        }
     };
-    let last = |p: u64, q: u64| if rho.is_zero() { p } else { p + q - 1 };
+    let last = |p: u64, q: u64| if rho.is_zero() { p } else { p.saturating_add(q) - 1 };
     let expected = list.into_iter().flat_map(|(p, q)| (1..=last(p, q)).map(move |m| (p, q, m)));
     let mut rows = rows.iter().map(Row::new).enumerate();
     for (p, q, m) in expected {
@@ -80,9 +85,8 @@ struct Edge<'a> {
 impl Given {
     fn row(&self, row: &Row) -> Checked<()> {
         let (p, q, m) = (row.whole("p")?, row.whole("q")?, row.whole("m")?);
-        holds(p > 0 && q > 0 && m > 0 && p.gcd(&q) == 1, || {
-            "is no tongue of a ratio in lowest terms".into()
-        })?;
+        check_ratio(p, q, &self.limits)?;
+        holds(m > 0, || "labels begin at 1".into())?;
         let (a, b) = (i128::from(row.integer("a")?), i128::from(row.integer("b")?));
         holds(a * i128::from(p) + b * i128::from(q) == i128::from(m), || "m is not a p + b q".into())?;
         let lower = self.edge(row, "lower", (p, q, m))?;
@@ -141,6 +145,7 @@ impl Given {
         let s = if on == Resonance::Fast.name() {
             resonance(p, m, BITS)
         } else {
+            holds(!self.rho.is_zero(), || format!("{name}: without slow kicks there is no {on}"))?;
             let ratio = fraction(q, p);
             let scale = &ratio * &ratio / &self.rho;
             resonance(q, m, BITS).mul(&crate::number::Ball::from_rational(&scale, BITS), BITS)

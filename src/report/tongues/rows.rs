@@ -29,7 +29,11 @@ impl Rows {
 
     /// An empty table.
     pub fn table(&self) -> Table {
-        Table::new("tongues", "Unstable intervals (tongues) in s = h1^2 lambda1", self.columns())
+        Table::new(
+            "tongues",
+            "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step",
+            self.columns(),
+        )
     }
 
     /// The columns, in order.
@@ -78,7 +82,8 @@ impl Rows {
         let (wanted, short) = (&self.frame.wanted, self.short);
         let mut add = |key: &str, title: &str, only_long: bool| {
             if !(short && only_long) {
-                columns.push(Column::new(key).titled(title, title));
+                columns
+                    .push(Column::new(key).titled(title, &title.replace("√lambda1", "$\\sqrt{\\Lambda_1}$")));
             }
         };
         if wanted.growth {
