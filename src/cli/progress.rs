@@ -1,6 +1,8 @@
 //! Progress on standard error.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt::Write;
+
+use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// A bar that shows itself on a terminal only, and nowhere where `quiet`; `things` names what is counted.
 pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
@@ -8,6 +10,13 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
-    let template = format!("{{bar:30}} {{human_pos}} of {{human_len}} {things}, {{per_sec}}, {{eta}} left");
-    bar.with_style(ProgressStyle::with_template(&template).expect("the template is sound"))
+    let template = format!("{{bar:30}} {{human_pos}} of {{human_len}} {things}, {{rate}}/s, {{eta}} left");
+    let style = ProgressStyle::with_template(&template).expect("the template is sound");
+    bar.with_style(style.with_key("rate", rate))
+}
+
+/// Whole things a second.
+fn rate(state: &ProgressState, to: &mut dyn Write) {
+    // A bar that cannot write its rate is no reason to stop.
+    let _ = write!(to, "{}", HumanCount(state.per_sec() as u64));
 }

@@ -5,6 +5,7 @@ use super::filter;
 use super::floquet::Floquet;
 use super::kind::Verdict;
 use super::lone;
+use super::plain;
 use super::refine;
 use crate::error::{Error, Result};
 use crate::number::Real;
@@ -13,8 +14,8 @@ use crate::propagator::{Schedule, TwoClocks};
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Tier {
-    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; a closed form where only one clock
-    /// kicks.
+    /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none, kick by kick,
+    /// and a closed form where only one clock kicks.
     Filter,
     /// Kicks and drifts in multiple precision, p + q of them, with the same bound.
     Refine,
@@ -114,9 +115,19 @@ pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
 }
 
 fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
-    let Some(floquet) = Floquet::new(clocks) else { return Ok(lone::verdict(clocks)) };
+    let Some(floquet) = Floquet::new(clocks) else { return without_floquet(clocks, limits) };
     limits.allow(floquet.updates(), Tier::Filter)?;
     Ok(filter::run(&floquet).and_then(|ends| ends.signs().verdict()))
+}
+
+/// One clock alone in closed form, or kick by kick.
+fn without_floquet<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
+    if let Some(verdict) = lone::verdict(clocks) {
+        return Ok(Some(verdict));
+    }
+    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    limits.allow(schedule.strikes() / 2, Tier::Filter)?;
+    Ok(plain::signs(clocks, &schedule).and_then(|signs| signs.verdict()))
 }
 
 fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {

@@ -29,6 +29,7 @@ mod kernel;
 mod kind;
 mod ladder;
 mod lone;
+mod plain;
 pub(crate) mod refine;
 mod residue;
 pub(crate) mod winding;

@@ -21,8 +21,8 @@ fn clean(record: &Record) {
 fn random_cases_are_never_wrong() {
     let record = random(SEED, 20_000);
     clean(&record);
-    // Both clocks beyond their own Verlet limits, where the filter has no coordinates, are a tenth of them.
-    assert!(record.by_tier[0] > record.cases * 3 / 4, "{record}");
+    // The other tiers are for what doubles cannot tell: few random pairs.
+    assert!(record.by_tier[0] > record.cases * 99 / 100, "{record}");
 }
 
 #[test]

@@ -16,7 +16,8 @@ pub struct Row {
     pub kicks: u64,
     pub method: Method,
     pub seconds: f64,
-    /// |error| / max(1, |Tr|); `None` where the method has no number.
+    /// |error| / max(1, |Tr|) by exact arithmetic, in long periods by the refine tier; `None` where the method has no
+    /// number, or is the judge.
     pub error: Option<f64>,
 }
 
@@ -50,7 +51,9 @@ pub fn measure() -> Vec<Row> {
             for method in Method::ALL.into_iter().filter(|method| p + q <= method.patience()) {
                 let (seconds, trace) = timed(|| method.trace(&clocks));
                 let size = if exact.abs() > ratio(1, 1) { exact.abs() } else { ratio(1, 1) };
-                let error = trace.map(|trace| to_f64(&((trace - &exact).abs() / &size)));
+                // The refine tier is no judge of itself.
+                let judged = trace.filter(|_| method != Method::Refine || reference == Method::Exact);
+                let error = judged.map(|trace| to_f64(&((trace - &exact).abs() / &size)));
                 rows.push(Row { scene, kicks: p + q, method, seconds, error });
             }
         }
