@@ -196,6 +196,14 @@ fn windows_with_steps_of_their_own_agree() {
 }
 
 #[test]
+fn a_wide_grid_agrees() {
+    // h1 a million times h2: the tables of turns are those of a band, not of the whole row.
+    let grid = grid("10^-14", "100", "1/1000", (("1/1000", "700"), ("1/1000", "2/1000")));
+    assert_eq!(grid.shape(), (700_000, 2));
+    agrees(&grid, Tier::Refine, 600_011);
+}
+
+#[test]
 fn labels_and_growth_are_those_of_the_single_pair() {
     let grid = figure_1("1/60");
     let mut seen = 0;

@@ -86,6 +86,7 @@ pub(super) struct Work<'a> {
     limits: &'a Limits,
     first: u64,
     firsts: Vec<Option<Base>>,
+    seconds: Vec<Option<Base>>,
     gcds: Vec<u32>,
     /// Positions in the order of the number of updates.
     order: Vec<u32>,
@@ -108,7 +109,8 @@ impl<'a> Work<'a> {
             gcds.iter_mut().for_each(|g| *g *= common as u32);
         }
         let firsts = (first..).take(columns).map(|i| bases.column(i)).collect();
-        let mut work = Work { grid, bases, limits, first, firsts, gcds, order: Vec::new() };
+        let seconds = bases.rows_within(first, first + columns as u64 - 1);
+        let mut work = Work { grid, bases, limits, first, firsts, seconds, gcds, order: Vec::new() };
         work.order = work.sorted();
         work
     }
@@ -182,7 +184,8 @@ impl<'a> Work<'a> {
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
                 let first = self.firsts[n / self.grid.shape().1].as_ref();
-                if let Some(pair) = self.bases.pair(first, self.multipliers(n), u64::from(self.gcds[n])) {
+                let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
+                if let Some(pair) = self.bases.pair(first, |row| self.second(row), place, gcd) {
                     self.allow(pair.updates + 1)?;
                     kicks += pair.updates + 1;
                     pairs.push(pair);
@@ -194,6 +197,12 @@ impl<'a> Work<'a> {
             }
         }
         Ok(kicks)
+    }
+
+    /// The base of a row: of this band or, as a rule, of all.
+    fn second(&self, row: u64) -> Option<&Base> {
+        let own = self.seconds.get((row - self.grid.rows().0) as usize);
+        own.map_or_else(|| self.bases.row(row), Option::as_ref)
     }
 
     fn allow(&self, kicks: u64) -> Result<()> {
