@@ -1,5 +1,7 @@
 //! A band of columns: its pairs sorted by their number of updates, run side by side, the rest sent up the ladder.
 
+use std::cell::OnceCell;
+
 use super::bases::Bases;
 use super::gcd;
 use super::grid::Grid;
@@ -85,7 +87,8 @@ pub(super) struct Work<'a> {
     bases: &'a Bases<'a>,
     limits: &'a Limits,
     first: u64,
-    firsts: Vec<Option<Base>>,
+    /// The columns' bases, as they are asked for.
+    firsts: Vec<OnceCell<Option<Base>>>,
     seconds: Vec<Option<Base>>,
     gcds: Vec<u32>,
     /// Positions in the order of the number of updates.
@@ -108,7 +111,7 @@ impl<'a> Work<'a> {
             gcd::with_run(&[i / common, b], first_row, gcds);
             gcds.iter_mut().for_each(|g| *g *= common as u32);
         }
-        let firsts = (first..).take(columns).map(|i| bases.column(i)).collect();
+        let firsts = (0..columns).map(|_| OnceCell::new()).collect();
         let seconds = bases.rows_within(first, first + columns as u64 - 1);
         let mut work = Work { grid, bases, limits, first, firsts, seconds, gcds, order: Vec::new() };
         work.order = work.sorted();
@@ -183,9 +186,9 @@ impl<'a> Work<'a> {
             pairs.clear();
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
-                let first = self.firsts[n / self.grid.shape().1].as_ref();
                 let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
-                if let Some(pair) = self.bases.pair(first, |row| self.second(row), place, gcd) {
+                let pair = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd);
+                if let Some(pair) = pair {
                     self.allow(pair.updates + 1)?;
                     kicks += pair.updates + 1;
                     pairs.push(pair);
@@ -197,6 +200,11 @@ impl<'a> Work<'a> {
             }
         }
         Ok(kicks)
+    }
+
+    /// The base of a column of this band.
+    fn first(&self, column: u64) -> Option<&Base> {
+        self.firsts[(column - self.first) as usize].get_or_init(|| self.bases.column(column)).as_ref()
     }
 
     /// The base of a row: of this band or, as a rule, of all.

@@ -72,19 +72,19 @@ impl<'a> Bases<'a> {
             .mul(&Ball::from_integer(&BigInt::from(u128::from(multiple) * u128::from(multiple))), BITS)
     }
 
-    /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves. `second` is
-    /// asked for the row's base where that is needed; `gcd` is that of the two steps in their common unit.
+    /// The pair (i, j) on the clock that has more kicks, or on the other one; `None` where neither serves. `first`
+    /// and `second` are asked for the column's or the row's base; `gcd` is that of the two steps in their common unit.
     #[inline(always)]
     pub fn pair<'b>(
         &self,
-        first: Option<&'b Base>,
+        first: impl Fn(u64) -> Option<&'b Base>,
         second: impl Fn(u64) -> Option<&'b Base>,
         (column, row): (u64, u64),
         gcd: u64,
     ) -> Option<Pair<'b>> {
         let (a, b) = self.grid.ratio();
         let (steps, product) = ((column * b, row * a), (column * row) as f64);
-        let on_first = || Some(pair(first?, self.kicks[0]? * product, (steps.1, steps.0), gcd));
+        let on_first = || Some(pair(first(column)?, self.kicks[0]? * product, (steps.1, steps.0), gcd));
         let on_second = || Some(pair(second(row)?, self.kicks[1]? * product, steps, gcd));
         if steps.1 >= steps.0 { on_first().or_else(on_second) } else { on_second().or_else(on_first) }
     }

@@ -86,19 +86,23 @@ impl Base {
 /// Entries of the table of turns between two that come from multiple precision.
 const ANCHOR: u64 = 32;
 
+/// Entries between two anchors that are powers of their own.
+const POWER: u64 = 64 * ANCHOR;
+
 /// The turns by nθ for n in `first..=last`.
 ///
 /// e^{inθ/2} in units of 2^-62: from one anchor to the next by multiplication with e^{iθ/2}. Cutting off costs
 /// √2 units a product and the factor's own error as much, so within 32 steps the error is below 91 units,
-/// 0.18u; rounding to a double adds u.
+/// 0.18u; rounding to a double adds u. Anchors follow from one another by products of balls, whose radii may grow by
+/// √2 each time: every 64th is a power made anew.
 fn turns(half: &Phase, theta: f64, first: u64, last: u64) -> Option<Vec<Turn>> {
-    let (step, mut anchor) = (half.fixed()?, half.power(first));
+    let (step, mut anchor) = (half.fixed()?, Phase::one());
     let leap = if last - first >= ANCHOR { half.power(ANCHOR) } else { Phase::one() };
     let mut table = Vec::with_capacity((last - first) as usize + 1);
     let mut now = [0, 0];
     for n in first..=last {
         if (n - first).is_multiple_of(ANCHOR) {
-            anchor = if n == first { anchor } else { anchor.times(&leap) };
+            anchor = if (n - first).is_multiple_of(POWER) { half.power(n) } else { anchor.times(&leap) };
             now = anchor.fixed()?;
         }
         table.push(Turn::new(now.map(|x| x as f64 * UNIT), n as f64 * theta));
