@@ -24,7 +24,7 @@ pub struct Edge {
 const ROUNDS: u32 = 60;
 
 /// Halvings between two attempts.
-const HALVINGS: u32 = 3;
+const HALVINGS: u32 = 4;
 
 /// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
 const NEGLIGIBLE: f64 = 1e-17;
@@ -102,6 +102,20 @@ impl Task {
     }
 }
 
+/// The tasks by the node where the mode lives, else in their order.
+fn by_place(tasks: &[Task], nodes: usize) -> Vec<Task> {
+    let mut places = vec![0; nodes + 1];
+    tasks.iter().for_each(|task| places[task.at as usize + 1] += 1);
+    (0..nodes).for_each(|at| places[at + 1] += places[at]);
+    let mut sorted = tasks.to_vec();
+    for task in tasks {
+        let place = &mut places[task.at as usize];
+        sorted[*place] = *task;
+        *place += 1;
+    }
+    sorted
+}
+
 /// A number of each task, the last one's repeated in the lanes left over.
 fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
     let mut all = [number(&batch[batch.len() - 1]); LANES];
@@ -112,8 +126,8 @@ fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
 fn problems(batch: &[Task]) -> Problems {
     Problems {
         kappa: each(batch, |task| task.kappa),
-        starts_free: each(batch, |task| task.bracket.entry.starts_free()),
-        ends_free: each(batch, |task| task.bracket.entry.ends_free()),
+        starts_free: each(batch, |task| f64::from(u8::from(task.bracket.entry.starts_free()))),
+        ends_free: each(batch, |task| f64::from(u8::from(task.bracket.entry.ends_free()))),
     }
 }
 
@@ -129,8 +143,7 @@ impl Search<'_> {
             self.narrow(&mut tasks);
             self.locate(&mut tasks);
             // Modes that live side by side are followed side by side.
-            tasks.sort_unstable_by_key(|task| task.at);
-            tasks = self.prove(&tasks, &mut found);
+            tasks = self.prove(&by_place(&tasks, self.string.nodes.len()), &mut found);
             tasks.retain(|task| task.rounds < ROUNDS);
         }
     }
