@@ -207,11 +207,11 @@ mod tests {
 
     #[test]
     fn every_instruction_set_finds_the_same_edges() {
-        for (p, q, rho) in
-            [(7, 3, ratio(1, 25)), (23, 20, ratio(1, 1000)), (5, 31, ratio(40, 1)), (1, 1, ratio(1, 2))]
-        {
+        let rhos = [ratio(1, 1000), ratio(1, 25), ratio(1, 2), ratio(40, 1)];
+        let ratios = super::super::survey::ratios(14).into_iter().chain([(23, 20), (5, 31), (61, 38)]);
+        for ((p, q), rho) in ratios.flat_map(|pair| rhos.iter().map(move |rho| (pair, rho))) {
             let edges = |instructions: Instructions| {
-                let mut string = HalfString::new(p, q, &rho).unwrap();
+                let mut string = HalfString::new(p, q, rho).unwrap();
                 string.instructions = instructions;
                 let wanted =
                     Entry::ALL.map(|entry| string.dimension(entry)).map(|n| (n > 0).then_some(1..=n));
@@ -219,6 +219,19 @@ mod tests {
             };
             let portable = edges(Instructions::Portable);
             assert!(Instructions::available().all(|set| edges(set) == portable));
+        }
+    }
+
+    #[test]
+    fn counts_far_above_all_eigenvalues_are_complete() {
+        // Four hundred nodes, each of which multiplies x by up to 1e15 at this κ: no product may overflow.
+        let string = HalfString::new(1, 801, &ratio(1_000_000_000, 1)).unwrap();
+        let kappa = [1e9 * string.upper_bound; LANES];
+        for starts_free in [true, false] {
+            let counts = string.counts(&[starts_free; LANES], &kappa);
+            for (entry, count) in Entry::starting(starts_free).into_iter().zip(counts) {
+                assert_eq!(count, [string.dimension(entry) as f64; LANES]);
+            }
         }
     }
 }
