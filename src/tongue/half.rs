@@ -16,40 +16,88 @@
 //! Σ x ρ over the nodes before r is Σ x (f + δ x) + Σ e F − (e/ℓ) x at r (summation by parts); that last term cancels
 //! against the row at r. Σ ρ²/m is computed from |f| + |δ x| + |e/ℓ| + |e'/ℓ'|, an upper bound that does not cancel.
 
-use super::lanes::{LANES, Lanes, lanes, largest, normalizing, smallest, two_product, two_sum};
+use super::lanes::{Aligned, LANES, Lanes, lanes, largest, normalizing, smallest, two_product, two_sum};
 use super::locate::{Problems, start};
-use super::string::{BLOCK, HalfString, Kicks, Step};
+use super::string::{HalfString, Kicks, Step};
+use crate::verdict::instructions::Task;
 
 /// The two halves, each on arrival at r.
 #[inline(always)]
 pub(super) fn halves<const PROVE: bool>(string: &HalfString, problems: &Problems, at: &Lanes) -> [Half; 2] {
     let tables = Tables::new::<PROVE>(string, &problems.kappa);
     let mut left = Half::new(&problems.starts_free);
-    left.follow::<PROVE>(string, &tables, &string.forward, at);
+    follow::<PROVE>(string, &tables, &string.forward, at, &mut left);
     let mut right = Half::new(&problems.ends_free);
     let n = string.last() as f64;
-    right.follow::<PROVE>(string, &tables, &string.backward, &lanes(|i| n - at[i]));
+    follow::<PROVE>(string, &tables, &string.backward, &lanes(|i| n - at[i]), &mut right);
     [left, right]
+}
+
+#[inline(always)]
+fn follow<const PROVE: bool>(
+    string: &HalfString,
+    tables: &Tables,
+    steps: &[Step],
+    until: &Lanes,
+    half: &mut Half,
+) {
+    string.instructions.perform(Following::<PROVE> { string, tables, steps, until, half });
+}
+
+/// The first `until` steps of a half, in each lane its own number. A task of its own: what follows it is of no
+/// concern to the compiler where the loop is made vector instructions.
+struct Following<'a, const PROVE: bool> {
+    string: &'a HalfString,
+    tables: &'a Tables,
+    steps: &'a [Step],
+    until: &'a Lanes,
+    half: &'a mut Half,
+}
+
+impl<const PROVE: bool> Task for Following<'_, PROVE> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Following { string, tables, steps, until, .. } = self;
+        let mut half = *self.half;
+        let (least, most) = (smallest(until), largest(until));
+        for (block, steps) in steps[..most as usize].chunks(string.block).enumerate() {
+            let first = (block * string.block) as f64;
+            let together = ((least - first).max(0.0) as usize).min(steps.len());
+            for step in &steps[..together] {
+                half.pass::<PROVE, false>(string, tables, step, &[1.0; LANES]);
+            }
+            for (k, step) in steps.iter().enumerate().skip(together) {
+                let goes = lanes(|i| if first + (k as f64) < until[i] { 1.0 } else { 0.0 });
+                half.pass::<PROVE, true>(string, tables, step, &goes);
+            }
+            half.rescale::<PROVE>();
+        }
+        *self.half = half;
+    }
 }
 
 /// By kind of node: the kick k, and δ = k − κ m to within 2^-50 of itself and 2^-103 κ m.
 struct Tables {
     kicks: Kicks,
-    deltas: Kicks,
+    /// Where they are proven.
+    deltas: Option<Kicks>,
 }
 
 impl Tables {
     #[inline(always)]
     fn new<const PROVE: bool>(string: &HalfString, kappa: &Lanes) -> Self {
         let kicks = string.kicks(kappa);
-        let mut table = [[0.0; LANES]; 8];
-        if PROVE {
-            for (kind, delta) in table.iter_mut().enumerate() {
-                let (mass, lost) = ([string.masses[kind]; LANES], [string.rests[kind]; LANES]);
-                *delta = deltas(kappa, &mass, &lost, &kicks[kind]);
-            }
+        if !PROVE {
+            return Tables { kicks, deltas: None };
         }
-        Tables { kicks, deltas: table }
+        let mut table = Aligned([[0.0; LANES]; 8]);
+        for (kind, delta) in table.0.iter_mut().enumerate().skip(2) {
+            let (mass, lost) = ([string.masses[kind]; LANES], [string.rests[kind]; LANES]);
+            *delta = deltas(kappa, &mass, &lost, &kicks.0[kind]);
+        }
+        Tables { kicks, deltas: Some(table) }
     }
 }
 
@@ -61,6 +109,8 @@ pub(super) fn deltas(kappa: &Lanes, mass: &Lanes, lost: &Lanes, kick: &Lanes) ->
 
 /// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
 /// of x (squares: of x²).
+#[derive(Clone, Copy)]
+#[repr(align(64))]
 pub(super) struct Half {
     pub x: Lanes,
     pub v: Lanes,
@@ -76,75 +126,63 @@ pub(super) struct Half {
 
 impl Half {
     #[inline(always)]
-    fn new(free: &[bool; LANES]) -> Self {
+    fn new(free: &Lanes) -> Self {
         let (x, v) = start(free);
         let zero = [0.0; LANES];
         Half { x, v, g: zero, squares: zero, work: zero, residual: zero }
     }
 
-    /// The first `until` steps, in each lane its own number.
     #[inline(always)]
-    fn follow<const PROVE: bool>(
+    fn pass<const PROVE: bool, const SOME: bool>(
         &mut self,
         string: &HalfString,
         tables: &Tables,
-        steps: &[Step],
-        until: &Lanes,
+        step: &Step,
+        goes: &Lanes,
     ) {
-        let (least, most) = (smallest(until), largest(until));
-        for (block, steps) in steps[..most as usize].chunks(BLOCK).enumerate() {
-            let first = (block * BLOCK) as f64;
-            if first + steps.len() as f64 <= least {
-                for step in steps {
-                    self.pass::<PROVE>(string, tables, step, &[1.0; LANES]);
-                }
-            } else {
-                for (k, step) in steps.iter().enumerate() {
-                    let goes = lanes(|i| if first + (k as f64) < until[i] { 1.0 } else { 0.0 });
-                    self.pass::<PROVE>(string, tables, step, &goes);
-                }
-            }
-            self.rescale::<PROVE>();
+        if PROVE {
+            self.prove::<SOME>(string, tables, step, goes);
+        } else {
+            self.step::<SOME>(string, tables, step, goes);
         }
     }
 
+    /// The kick at a node and the drift to the next; where only `SOME` lanes go, nothing moves in those whose `goes`
+    /// is 0.
     #[inline(always)]
-    fn pass<const PROVE: bool>(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
-        if PROVE { self.prove(string, tables, step, goes) } else { self.step(string, tables, step, goes) }
-    }
-
-    /// The kick at a node and the drift to the next, in the lanes that still go; nothing moves where `goes` is 0.
-    #[inline(always)]
-    fn step(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
-        let (kick, mass) = (&tables.kicks[step.kind], string.masses[step.kind]);
-        let pull = lanes(|i| goes[i] * self.x[i]);
+    fn step<const SOME: bool>(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
+        let (kick, mass) = (&tables.kicks.0[step.kind], string.masses[step.kind]);
+        let pull = if SOME { lanes(|i| goes[i] * self.x[i]) } else { self.x };
+        let length = if SOME { lanes(|i| step.length * goes[i]) } else { [step.length; LANES] };
         self.squares = lanes(|i| (mass * pull[i]).mul_add(pull[i], self.squares[i]));
         self.v = lanes(|i| (-kick[i]).mul_add(pull[i], self.v[i]));
-        self.x = lanes(|i| (step.length * goes[i]).mul_add(self.v[i], self.x[i]));
+        self.x = lanes(|i| length[i].mul_add(self.v[i], self.x[i]));
     }
 
     /// The same, and the roundings.
     #[inline(always)]
-    fn prove(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
+    fn prove<const SOME: bool>(&mut self, string: &HalfString, tables: &Tables, step: &Step, goes: &Lanes) {
+        let deltas = tables.deltas.as_ref().expect("a proof's tables");
         let (kick, delta, mass) =
-            (&tables.kicks[step.kind], &tables.deltas[step.kind], string.masses[step.kind]);
+            (&tables.kicks.0[step.kind], &deltas.0[step.kind], string.masses[step.kind]);
         let weight = string.inverse_masses[step.kind];
         let (length, inverse) = (step.length, step.inverse);
         for i in 0..LANES {
-            let (x, goes) = (self.x[i], goes[i]);
-            let pull = goes * x;
+            let x = self.x[i];
+            let pull = if SOME { goes[i] * x } else { x };
             let squares = (mass * pull).mul_add(pull, self.squares[i]);
             let (kicked, product_error) = two_product(kick[i], pull);
             let (v, sum_error) = two_sum(self.v[i], -kicked);
             let f = sum_error - product_error;
             let shift = delta[i] * pull;
-            let (drift, product_error) = two_product(length * goes, v);
+            let (drift, product_error) = two_product(if SOME { length * goes[i] } else { length }, v);
             let (next, sum_error) = two_sum(x, drift);
             let e = -(product_error + sum_error);
-            let g = e.mul_add(inverse, (1.0 - goes) * self.g[i]);
+            let g = if SOME { e.mul_add(inverse, (1.0 - goes[i]) * self.g[i]) } else { e * inverse };
             let work = e.mul_add(v + g, x.mul_add(f + shift, self.work[i]));
             let row = (f.abs() + shift.abs()) + (self.g[i].abs() + g.abs());
-            let residual = (row * (weight * goes)).mul_add(row, self.residual[i]);
+            let weight = if SOME { weight * goes[i] } else { weight };
+            let residual = (row * weight).mul_add(row, self.residual[i]);
             self.x[i] = next;
             self.v[i] = v;
             self.g[i] = g;
@@ -167,6 +205,14 @@ impl Half {
         } else {
             Half { x, v, squares, ..*self }
         };
+    }
+
+    /// v and Σ m x², scaled to x = 1.
+    #[inline(always)]
+    pub fn force_and_squares(&self) -> (Lanes, Lanes) {
+        let inverse = lanes(|i| 1.0 / self.x[i]);
+        let force = lanes(|i| self.v[i] * inverse[i]);
+        (force, lanes(|i| self.squares[i] * inverse[i] * inverse[i]))
     }
 
     /// Scaled to x = 1.

@@ -40,83 +40,120 @@ impl Sample {
 pub(super) struct Samples {
     starts_free: bool,
     list: Vec<Sample>,
+    /// The intervals to cut, from below.
+    open: Vec<Open>,
+}
+
+/// An interval between two samples with several eigenvalues of a problem, one of them wanted.
+#[derive(Clone, Copy)]
+struct Open {
+    /// The sample below, as a position in the list.
+    from: usize,
+    /// In so many points it is cut.
+    cuts: u64,
 }
 
 /// At most so many points in an interval at a time.
 const MOST: u64 = 64;
 
+/// Where to count.
+#[derive(Default)]
+struct Points {
+    kappa: Vec<f64>,
+    starts_free: Vec<bool>,
+}
+
 impl HalfString {
     /// Counts until all wanted eigenvalues are alone between two samples, or counts in doubles cannot tell them apart;
     /// for the problems that start free and those that start pinned.
     pub fn sample(&self, wanted: &[Wanted; 2]) -> [Samples; 2] {
-        let mut both = [true, false].map(|starts_free| {
-            let counts = Entry::starting(starts_free).map(|entry| self.dimension(entry) as u64);
-            let zero = Sample { kappa: 0.0, counts: [0, 0] };
-            Samples { starts_free, list: vec![zero, Sample { kappa: self.upper_bound, counts }] }
-        });
+        let least_width = 16.0 * self.eta();
+        let mut both =
+            [true, false].map(|free| Samples::new(self, free, &wanted[usize::from(!free)], least_width));
+        let (mut points, mut found) = (Points::default(), Vec::new());
         loop {
-            let mut points = Vec::new();
-            for (samples, wanted) in both.iter().zip(wanted) {
-                samples.cut(wanted, 16.0 * self.eta(), &mut points);
-            }
-            if points.is_empty() {
+            points.kappa.clear();
+            points.starts_free.clear();
+            both.iter_mut().for_each(|samples| samples.cut(&mut points));
+            if points.kappa.is_empty() {
                 return both;
             }
-            let found = self.count_at(&points);
-            let (free, pinned) = found.split_at(points.iter().filter(|point| point.1).count());
-            both[0].merge(free);
-            both[1].merge(pinned);
+            self.count_at(&points, &mut found);
+            let mut rest = found.as_slice();
+            for (samples, wanted) in both.iter_mut().zip(wanted) {
+                rest = samples.merge(rest, wanted, least_width);
+            }
         }
     }
 
-    /// Samples at κ, whether the string starts free being told with it.
-    fn count_at(&self, points: &[(f64, bool)]) -> Vec<Sample> {
-        let mut found = Vec::with_capacity(points.len());
-        for chunk in points.chunks(LANES) {
-            let point = |i: usize| chunk[i.min(chunk.len() - 1)];
-            let kappa = lanes(|i| point(i).0);
-            let [pinned, free] = self.counts(&std::array::from_fn(|i| point(i).1), &kappa);
+    /// The samples at the points.
+    fn count_at(&self, points: &Points, found: &mut Vec<Sample>) {
+        found.clear();
+        let filled = |x: &[f64]| lanes(|i| x[i.min(x.len() - 1)]);
+        for (kappa, starts_free) in points.kappa.chunks(LANES).zip(points.starts_free.chunks(LANES)) {
+            let last = starts_free.len() - 1;
+            let starts_free = std::array::from_fn(|i| starts_free[i.min(last)]);
+            let [pinned, free] = self.counts(&starts_free, &filled(kappa));
             let sample = |i: usize| Sample { kappa: kappa[i], counts: [pinned[i] as u64, free[i] as u64] };
-            found.extend((0..chunk.len()).map(sample));
+            found.extend((0..kappa.len()).map(sample));
         }
-        found
     }
 }
 
 impl Samples {
-    /// Adds points that cut the intervals with several eigenvalues of a problem, one of them wanted, evenly in √κ.
-    fn cut(&self, wanted: &Wanted, least_width: f64, points: &mut Vec<(f64, bool)>) {
-        let mut open = Vec::new();
-        for pair in self.list.windows(2) {
-            let [inside, asked] =
-                [pair[0].inside(&pair[1], wanted, true), pair[0].inside(&pair[1], wanted, false)];
-            if asked > 1 && pair[1].kappa - pair[0].kappa >= least_width * pair[1].kappa {
-                open.push((pair[0].kappa.sqrt(), pair[1].kappa.sqrt(), inside.min(MOST)));
-            }
-        }
-        let least = (LANES / open.len().max(1)) as u64;
-        for (from, to, count) in open {
-            let n = count.max(least);
-            let step = (to - from) / (n + 1) as f64;
-            for k in 1..=n {
-                let root = from + step * k as f64;
-                points.push((root * root, self.starts_free));
-            }
-        }
+    /// All eigenvalues in one interval.
+    fn new(string: &HalfString, starts_free: bool, wanted: &Wanted, least_width: f64) -> Self {
+        let counts = Entry::starting(starts_free).map(|entry| string.dimension(entry) as u64);
+        let zero = Sample { kappa: 0.0, counts: [0, 0] };
+        let list = vec![zero, Sample { kappa: string.upper_bound, counts }];
+        let mut samples = Samples { starts_free, list, open: Vec::new() };
+        samples.open.extend(samples.open_below(1, wanted, least_width));
+        samples
     }
 
-    /// Takes in more samples, in increasing order of κ.
-    fn merge(&mut self, more: &[Sample]) {
-        let mut all = Vec::with_capacity(self.list.len() + more.len());
-        let mut more = more.iter().peekable();
-        for sample in &self.list {
-            while let Some(&earlier) = more.next_if(|other| other.kappa < sample.kappa) {
-                all.push(earlier);
-            }
-            all.push(*sample);
+    /// The interval below a sample, if it is to be cut.
+    fn open_below(&self, upper: usize, wanted: &Wanted, least_width: f64) -> Option<Open> {
+        let (lower, upper) = (&self.list[upper - 1], &self.list[upper]);
+        let wide = upper.kappa - lower.kappa >= least_width * upper.kappa;
+        let open = lower.inside(upper, wanted, false) > 1 && wide;
+        let cuts = lower.inside(upper, wanted, true).min(MOST);
+        open.then_some(Open { from: self.list.len() - 2, cuts })
+    }
+
+    /// Adds points that cut the open intervals evenly in √κ.
+    fn cut(&mut self, points: &mut Points) {
+        let least = (LANES / self.open.len().max(1)) as u64;
+        for Open { from, cuts } in &mut self.open {
+            let [lower, upper] = [self.list[*from], self.list[*from + 1]].map(|sample| sample.kappa.sqrt());
+            *cuts = least.max(*cuts);
+            let step = (upper - lower) / (*cuts + 1) as f64;
+            points.kappa.extend((1..=*cuts).map(|k| {
+                let root = lower + step * k as f64;
+                root * root
+            }));
         }
-        all.extend(more);
-        self.list = all;
+        points.starts_free.resize(points.kappa.len(), self.starts_free);
+    }
+
+    /// Takes in the samples at the points of the open intervals; what is left are the others.
+    fn merge<'a>(&mut self, mut more: &'a [Sample], wanted: &Wanted, least_width: f64) -> &'a [Sample] {
+        let cuts = self.open.iter().map(|open| open.cuts as usize).sum::<usize>();
+        let room = Vec::with_capacity(self.list.len() + cuts);
+        let list = std::mem::replace(&mut self.list, room);
+        let open = std::mem::take(&mut self.open);
+        let mut done = 0;
+        for Open { from, cuts } in open {
+            self.list.extend_from_slice(&list[done..=from]);
+            let (inner, rest) = more.split_at(cuts as usize);
+            for &sample in inner.iter().chain([&list[from + 1]]) {
+                self.list.push(sample);
+                let open = self.open_below(self.list.len() - 1, wanted, least_width);
+                self.open.extend(open);
+            }
+            (more, done) = (rest, from + 2);
+        }
+        self.list.extend_from_slice(&list[done..]);
+        more
     }
 
     /// The wanted eigenvalues that are alone.

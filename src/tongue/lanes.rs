@@ -6,6 +6,11 @@ pub(super) const LANES: usize = 16;
 /// One number for each lane.
 pub(super) type Lanes = [f64; LANES];
 
+/// On a cache line's boundary, which no vector then straddles.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub(super) struct Aligned<T>(pub T);
+
 /// f of each lane; a plain loop over an array is what compilers turn into vector instructions.
 #[inline(always)]
 pub(super) fn lanes(f: impl Fn(usize) -> f64) -> Lanes {
@@ -44,6 +49,12 @@ pub(super) fn two_sums(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
 pub(super) fn two_products(a: &Lanes, b: &Lanes) -> (Lanes, Lanes) {
     let p = lanes(|i| a[i] * b[i]);
     (p, lanes(|i| a[i].mul_add(b[i], -p[i])))
+}
+
+/// The lesser one; b if one is NaN.
+#[inline(always)]
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 /// The largest of numbers that are not negative.

@@ -4,14 +4,14 @@
 //! eigenvalue it is the square of the mode there. At the node where it is largest neither half has been followed into
 //! the region where rounding errors outgrow it. (Twisted factorization: Parlett and Dhillon.)
 
-use super::lanes::{LANES, Lanes, lanes, normalizing, power_of_two};
-use super::string::{BLOCK, HalfString, Step};
+use super::lanes::{Aligned, LANES, Lanes, lanes, normalizing, power_of_two};
+use super::string::{HalfString, Step};
 use crate::verdict::instructions::Task;
 
 /// The recurrence from t = 0 at every node, its exponents by block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workspace {
-    forward: Vec<Lanes>,
+    forward: Vec<Aligned<Lanes>>,
     exponents: Vec<[i64; LANES]>,
 }
 
@@ -23,8 +23,9 @@ const ENOUGH: f64 = 1.0 / 16.0;
 #[derive(Clone, Copy)]
 pub(super) struct Problems {
     pub kappa: Lanes,
-    pub starts_free: [bool; LANES],
-    pub ends_free: [bool; LANES],
+    /// 1 where the end is free, else 0.
+    pub starts_free: Lanes,
+    pub ends_free: Lanes,
 }
 
 impl HalfString {
@@ -40,10 +41,10 @@ struct Locating<'a> {
     space: &'a mut Workspace,
 }
 
-/// (x, v) on arrival at an end that is free or pinned.
+/// (x, v) on arrival at an end that is free (1) or pinned (0).
 #[inline(always)]
-pub(super) fn start(free: &[bool; LANES]) -> (Lanes, Lanes) {
-    (lanes(|i| if free[i] { 1.0 } else { 0.0 }), lanes(|i| if free[i] { 0.0 } else { 1.0 }))
+pub(super) fn start(free: &Lanes) -> (Lanes, Lanes) {
+    (*free, lanes(|i| 1.0 - free[i]))
 }
 
 /// Divides x and v by a power of two that brings the larger one to [1, 2), and adds its exponent.
@@ -68,39 +69,42 @@ impl Task for Locating<'_> {
 
     #[inline(always)]
     fn run(self) -> Lanes {
-        let kicks = self.string.kicks(&self.problems.kappa);
+        let (kicks, block) = (self.string.kicks(&self.problems.kappa), self.string.block);
         let (mut x, mut v) = start(&self.problems.starts_free);
         let mut exponents = [0; LANES];
         self.space.forward.clear();
         self.space.exponents.clear();
-        for steps in self.string.forward.chunks(BLOCK) {
+        for steps in self.string.forward.chunks(block) {
             rescale(&mut x, &mut v, &mut exponents);
             self.space.exponents.push(exponents);
             for step in steps {
-                self.space.forward.push(x);
-                advance(&mut x, &mut v, &kicks[step.kind], step);
+                self.space.forward.push(Aligned(x));
+                advance(&mut x, &mut v, &kicks.0[step.kind], step);
             }
         }
         let n = self.string.last();
-        if n.is_multiple_of(BLOCK) {
+        if n.is_multiple_of(block) {
             rescale(&mut x, &mut v, &mut exponents);
             self.space.exponents.push(exponents);
         }
-        self.space.forward.push(x);
+        self.space.forward.push(Aligned(x));
         let (mut x, mut v) = start(&self.problems.ends_free);
         let mut peak = Peak { product: [0.0; LANES], at: [0.0; LANES], exponents: [0; LANES] };
         let mut exponents = [0; LANES];
+        // The first node of the block.
+        let mut first = n + 1;
         for j in (0..=n).rev() {
             if j < n {
                 let step = &self.string.backward[n - 1 - j];
-                advance(&mut x, &mut v, &kicks[step.kind], step);
+                advance(&mut x, &mut v, &kicks.0[step.kind], step);
             }
-            if j == n || j % BLOCK == BLOCK - 1 {
+            if j < first {
+                first = j - j % block;
                 rescale(&mut x, &mut v, &mut exponents);
-                peak.enter(&exponents, &self.space.exponents[j / BLOCK]);
+                peak.enter(&exponents, &self.space.exponents[j / block]);
             }
             if self.string.mass(j) > 0.0 {
-                peak.look(j, &x, &self.space.forward[j]);
+                peak.look(j, &x, &self.space.forward[j].0);
             }
         }
         peak.at

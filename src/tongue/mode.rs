@@ -15,7 +15,8 @@
 //! ```
 //!
 //! a tiny correction to κ, so it needs a few digits only, and no cancellation ever occurs but at r, where it is done in
-//! sums of two doubles. Without the roundings it is Newton's step for the mismatch at r.
+//! sums of two doubles. Without the roundings it is Newton's step for the mismatch at r. Steps before that use the
+//! point before, too: κ is a smooth function of the mismatch, and two values with slopes give a cubic for it.
 //!
 //! **Theorem** (Weinstein; Temple, Kato). Let ε² = Σ ρ_j²/m_j/Σ m_j z_j². Some eigenvalue lies in \[μ − ε, μ + ε\]. If all
 //! but the k-th are ≤ α or ≥ β with α < μ − ε and μ + ε < β, it is the k-th one, and
@@ -28,8 +29,8 @@
 //! is computed there, so n rounded terms put μ off by at most (n + 32) u ε; and n rounded masses, |μ − κ| being at most ε,
 //! by as much again.
 
-use super::half::{Arrival, Half, deltas, halves};
-use super::lanes::{LANES, Lanes, lanes, two_products, two_sums};
+use super::half::{Arrival, deltas, halves};
+use super::lanes::{LANES, Lanes, lanes, largest, lesser, two_products, two_sums};
 use super::locate::Problems;
 use super::string::HalfString;
 use crate::verdict::instructions::Task;
@@ -39,10 +40,11 @@ const U: f64 = f64::EPSILON / 2.0;
 /// 2^-96.
 const SLACK: f64 = f64::from_bits((1023 - 96) << 52);
 
-/// Newton's steps at most: as a rule four are enough.
+/// Steps at most: as a rule three are enough.
 const PASSES: u32 = 7;
 
-/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square.
+/// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square, in
+/// units of the distance. So is one whose product with the step before is: what is left is about the product's square.
 const CLOSE: f64 = 1e-4;
 
 /// What bounds the search in each lane: the part of the bracket where the eigenvalue is, and bounds α, β of its
@@ -63,7 +65,7 @@ pub(super) struct Proofs {
 }
 
 impl HalfString {
-    /// Newton's method from κ within the bounds, with the halves joined at the nodes `at`, and the modes where it ends.
+    /// Steps towards the zero from κ within the bounds, with the halves joined at the nodes `at`, and the modes where it ends.
     pub fn prove(&self, problems: &Problems, bounds: &Bounds, at: &Lanes) -> Proofs {
         self.instructions.perform(Proving { string: self, problems, bounds, at })
     }
@@ -82,15 +84,26 @@ impl Task for Proving<'_> {
     #[inline(always)]
     fn run(self) -> Proofs {
         let mut problems = *self.problems;
+        let mass = lanes(|i| self.string.mass(self.at[i] as usize));
+        let mut before = Point { kappa: problems.kappa, mismatch: [0.0; LANES], slope: [0.0; LANES] };
+        // The step before: the first is plain Newton's, as long as a neighbour is far.
+        let mut last = [f64::INFINITY; LANES];
         for _ in 0..PASSES {
-            let next = newton(self.string, &problems, self.at);
+            let point = Point::new(self.string, &problems, self.at, &mass);
+            let next = point.zero(&before);
             let inside = self.within(&self.bounds.inner, &next);
             let distance = self.within(&self.bounds.others, &next);
             let step = lanes(|i| (next[i] - problems.kappa[i]).abs());
             problems.kappa = lanes(|i| if inside[i] > 0.0 { next[i] } else { problems.kappa[i] });
-            if (0..LANES).all(|i| !(inside[i] > 0.0 && step[i] > CLOSE * distance[i])) {
+            // By how much the step, and its product with the step before, are too long.
+            let reach = lanes(|i| CLOSE * distance[i]);
+            let excess = lanes(|i| step[i] - reach[i]);
+            let excess = lanes(|i| lesser(excess[i], step[i] * last[i] - reach[i] * distance[i]));
+            let far = lanes(|i| if inside[i] > 0.0 { excess[i] } else { 0.0 });
+            if largest(&far) <= 0.0 {
                 break;
             }
+            (before, last) = (point, step);
         }
         let [left, right] = halves::<true>(self.string, &problems, self.at);
         joined(self.string, &problems.kappa, self.at, [left.arrival(), right.arrival()])
@@ -102,20 +115,46 @@ impl Proving<'_> {
     /// The distance to the nearer end: positive inside.
     #[inline(always)]
     fn within(&self, [lo, hi]: &[Lanes; 2], x: &Lanes) -> Lanes {
-        lanes(|i| if x[i] - lo[i] < hi[i] - x[i] { x[i] - lo[i] } else { hi[i] - x[i] })
+        lanes(|i| lesser(x[i] - lo[i], hi[i] - x[i]))
     }
 }
 
-/// Newton's step in each lane.
-#[inline(always)]
-fn newton(string: &HalfString, problems: &Problems, at: &Lanes) -> Lanes {
-    let [left, right] = halves::<false>(string, problems, at);
-    let mass = lanes(|i| string.mass(at[i] as usize));
-    lanes(|i| {
-        let mismatch = left.v[i] / left.x[i] + right.v[i] / right.x[i] - problems.kappa[i] * mass[i];
-        let squares = |side: &Half| side.squares[i] / (side.x[i] * side.x[i]);
-        problems.kappa[i] + mismatch / (squares(&left) + squares(&right) + mass[i])
-    })
+/// The mismatch at r as a function of κ: its value, and −dκ of a unit of it, 1/Σ m z².
+#[derive(Clone, Copy)]
+struct Point {
+    kappa: Lanes,
+    mismatch: Lanes,
+    slope: Lanes,
+}
+
+impl Point {
+    #[inline(always)]
+    fn new(string: &HalfString, problems: &Problems, at: &Lanes, mass: &Lanes) -> Self {
+        let [left, right] = halves::<false>(string, problems, at);
+        let kappa = problems.kappa;
+        let own = lanes(|i| kappa[i] * mass[i]);
+        let ((f, a), (g, b)) = (left.force_and_squares(), right.force_and_squares());
+        let mismatch = lanes(|i| f[i] + g[i] - own[i]);
+        let slope = lanes(|i| 1.0 / (a[i] + b[i] + mass[i]));
+        Point { kappa, mismatch, slope }
+    }
+
+    /// Where the mismatch vanishes: by the cubic for κ as a function of it, through this point and the one before with
+    /// the slopes; by Newton's step where that is no improvement of it, or there is no point before.
+    #[inline(always)]
+    fn zero(&self, before: &Point) -> Lanes {
+        lanes(|i| {
+            let (y, z) = (self.mismatch[i], before.mismatch[i]);
+            let newton = y * self.slope[i];
+            let inverse = 1.0 / (y - z);
+            let chord = (self.kappa[i] - before.kappa[i]) * inverse;
+            let [here, there] = [(-self.slope[i] - chord) * inverse, (chord + before.slope[i]) * inverse];
+            let bend = y * y * (here - (here - there) * inverse * z);
+            // No comparison holds for NaN.
+            let bend = if bend.abs() < 0.5 * newton.abs() { bend } else { 0.0 };
+            self.kappa[i] + (newton + bend)
+        })
+    }
 }
 
 /// The quotient of the two halves joined at the nodes `at`.
@@ -161,7 +200,7 @@ impl Modes {
         let own = lanes(|i| 2.0 * (self.error[i] + f64::EPSILON * mu[i]));
         let down = lanes(|i| mu[i] - own[i] - bounds.others[0][i]);
         let up = lanes(|i| bounds.others[1][i] - own[i] - mu[i]);
-        let least = lanes(|i| if down[i] < up[i] { down[i] } else { up[i] });
+        let least = lanes(|i| lesser(down[i], up[i]));
         let radius = lanes(|i| 1.01 * (self.residual[i] * (self.residual[i] / least[i]) + self.error[i]));
         // NaN proves nothing.
         let proven = lanes(|i| if self.residual[i] < least[i] { radius[i] / mu[i] } else { f64::INFINITY });

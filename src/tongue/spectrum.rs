@@ -24,7 +24,7 @@ pub struct Edge {
 const ROUNDS: u32 = 60;
 
 /// Halvings between two attempts.
-const HALVINGS: u32 = 3;
+const HALVINGS: u32 = 4;
 
 /// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
 const NEGLIGIBLE: f64 = 1e-17;
@@ -102,6 +102,20 @@ impl Task {
     }
 }
 
+/// The tasks by the node where the mode lives, else in their order.
+fn by_place(tasks: &[Task], nodes: usize) -> Vec<Task> {
+    let mut places = vec![0; nodes + 1];
+    tasks.iter().for_each(|task| places[task.at as usize + 1] += 1);
+    (0..nodes).for_each(|at| places[at + 1] += places[at]);
+    let mut sorted = tasks.to_vec();
+    for task in tasks {
+        let place = &mut places[task.at as usize];
+        sorted[*place] = *task;
+        *place += 1;
+    }
+    sorted
+}
+
 /// A number of each task, the last one's repeated in the lanes left over.
 fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
     let mut all = [number(&batch[batch.len() - 1]); LANES];
@@ -112,8 +126,8 @@ fn each<T: Copy>(batch: &[Task], number: impl Fn(&Task) -> T) -> [T; LANES] {
 fn problems(batch: &[Task]) -> Problems {
     Problems {
         kappa: each(batch, |task| task.kappa),
-        starts_free: each(batch, |task| task.bracket.entry.starts_free()),
-        ends_free: each(batch, |task| task.bracket.entry.ends_free()),
+        starts_free: each(batch, |task| f64::from(u8::from(task.bracket.entry.starts_free()))),
+        ends_free: each(batch, |task| f64::from(u8::from(task.bracket.entry.ends_free()))),
     }
 }
 
@@ -129,8 +143,7 @@ impl Search<'_> {
             self.narrow(&mut tasks);
             self.locate(&mut tasks);
             // Modes that live side by side are followed side by side.
-            tasks.sort_unstable_by_key(|task| task.at);
-            tasks = self.prove(&tasks, &mut found);
+            tasks = self.prove(&by_place(&tasks, self.string.nodes.len()), &mut found);
             tasks.retain(|task| task.rounds < ROUNDS);
         }
     }
@@ -194,11 +207,11 @@ mod tests {
 
     #[test]
     fn every_instruction_set_finds_the_same_edges() {
-        for (p, q, rho) in
-            [(7, 3, ratio(1, 25)), (23, 20, ratio(1, 1000)), (5, 31, ratio(40, 1)), (1, 1, ratio(1, 2))]
-        {
+        let rhos = [ratio(1, 1000), ratio(1, 25), ratio(1, 2), ratio(40, 1)];
+        let ratios = super::super::survey::ratios(14).into_iter().chain([(23, 20), (5, 31), (61, 38)]);
+        for ((p, q), rho) in ratios.flat_map(|pair| rhos.iter().map(move |rho| (pair, rho))) {
             let edges = |instructions: Instructions| {
-                let mut string = HalfString::new(p, q, &rho).unwrap();
+                let mut string = HalfString::new(p, q, rho).unwrap();
                 string.instructions = instructions;
                 let wanted =
                     Entry::ALL.map(|entry| string.dimension(entry)).map(|n| (n > 0).then_some(1..=n));
@@ -206,6 +219,19 @@ mod tests {
             };
             let portable = edges(Instructions::Portable);
             assert!(Instructions::available().all(|set| edges(set) == portable));
+        }
+    }
+
+    #[test]
+    fn counts_far_above_all_eigenvalues_are_complete() {
+        // Four hundred nodes, each of which multiplies x by up to 1e15 at this κ: no product may overflow.
+        let string = HalfString::new(1, 801, &ratio(1_000_000_000, 1)).unwrap();
+        let kappa = [1e9 * string.upper_bound; LANES];
+        for starts_free in [true, false] {
+            let counts = string.counts(&[starts_free; LANES], &kappa);
+            for (entry, count) in Entry::starting(starts_free).into_iter().zip(counts) {
+                assert_eq!(count, [string.dimension(entry) as f64; LANES]);
+            }
         }
     }
 }

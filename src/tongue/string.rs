@@ -19,7 +19,7 @@
 use num_traits::{Signed, Zero};
 
 use super::isolate::Wanted;
-use super::lanes::Lanes;
+use super::lanes::{Aligned, Lanes};
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::{Rational, rational};
@@ -94,11 +94,10 @@ pub(super) struct Step {
 }
 
 /// κ m, rounded, by kind of node.
-pub(super) type Kicks = [Lanes; 8];
+pub(super) type Kicks = Aligned<[Lanes; 8]>;
 
-/// Nodes between two rescalings. With masses within 1e±16 and lengths below 2^25 a node's factor is below 1e25,
-/// so no block overflows.
-pub(super) const BLOCK: usize = 8;
+/// Decades by which (x, v) may grow or shrink between two rescalings: squares of it stay in the range of doubles.
+const RANGE: f64 = 140.0;
 
 /// The half period of p/q as nodes 0, 1, ..., n at the kick times; node n stands at T/2, kick or none.
 #[derive(Clone, Debug)]
@@ -117,6 +116,8 @@ pub(super) struct HalfString {
     pub ticks: f64,
     /// Above all eigenvalues κ of all four problems.
     pub upper_bound: f64,
+    /// Nodes between two rescalings.
+    pub block: usize,
     /// How many positive eigenvalues each problem has.
     dimensions: [usize; 4],
     /// What the kernels run on.
@@ -176,10 +177,12 @@ impl HalfString {
             inverse_masses: masses.map(inverse),
             ticks,
             upper_bound: 0.0,
+            block: 1,
             dimensions: [0; 4],
             instructions: Instructions::best(),
         };
         string.upper_bound = string.bound();
+        string.block = string.nodes_in_range();
         string.dimensions = Entry::ALL.map(|entry| string.count_masses(entry));
         string
     }
@@ -219,6 +222,16 @@ impl HalfString {
         };
         let largest = (0..=self.last()).map(row).fold(0.0, f64::max);
         largest * (1.0 + 1e-9) // far beyond the rounding of this line
+    }
+
+    /// So many that max(|x|, |v|) changes by a factor within 1e±140: a kick and a drift multiply it by (1 + k) (1 + ℓ) at
+    /// most, and so do their inverses, κ being at most twice the upper bound. A node alone, with masses within 1e±16 and
+    /// lengths below 2^25, is within 1e±48.
+    fn nodes_in_range(&self) -> usize {
+        let heaviest = self.masses.iter().fold(0.0, |most: f64, &mass| most.max(mass));
+        let longest = self.nodes.iter().fold(0.0, |most: f64, node| most.max(node.length));
+        let growth = (1.0 + 2.0 * self.upper_bound * heaviest) * (1.0 + longest);
+        ((RANGE / growth.log10()) as usize).max(1)
     }
 }
 

@@ -18,9 +18,9 @@
 //! monotonicity (see [`super::string`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
 //! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
 
-use super::lanes::{LANES, Lanes, lanes, normalizing};
+use super::lanes::{Aligned, LANES, Lanes, lanes, lesser, normalizing};
 use super::locate::start;
-use super::string::{BLOCK, HalfString, Kicks};
+use super::string::{HalfString, Kicks};
 use crate::verdict::instructions::Task;
 
 /// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues: whole numbers.
@@ -32,15 +32,18 @@ impl HalfString {
         (4.0 * self.nodes.len() as f64 + 16.0) * (f64::EPSILON / 2.0)
     }
 
-    /// The counts for each lane, of the two problems that are free (or pinned) at t = 0.
+    /// The counts for each lane, of the two problems that are free (or pinned) at t = 0. Above all eigenvalues every κ
+    /// counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
     pub fn counts(&self, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
-        self.instructions.perform(Counting { string: self, starts_free, kappa })
+        let starts_free = lanes(|i| f64::from(u8::from(starts_free[i])));
+        let kappa = lanes(|i| lesser(kappa[i], 2.0 * self.upper_bound));
+        self.instructions.perform(Counting { string: self, starts_free: &starts_free, kappa: &kappa })
     }
 }
 
 struct Counting<'a> {
     string: &'a HalfString,
-    starts_free: &'a [bool; LANES],
+    starts_free: &'a Lanes,
     kappa: &'a Lanes,
 }
 
@@ -54,17 +57,19 @@ impl Task for Counting<'_> {
 }
 
 #[inline(always)]
-fn count(string: &HalfString, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
+fn count(string: &HalfString, starts_free: &Lanes, kappa: &Lanes) -> Counts {
     let kicks = string.kicks(kappa);
-    let first = &kicks[string.nodes[0].kind];
+    let first = &kicks.0[string.nodes[0].kind];
     let (mut x, mut v) = start(starts_free);
     v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
-    let mut changes = [0.0; LANES];
-    for block in string.nodes[1..].chunks(BLOCK) {
+    let mut changes = [0; LANES];
+    for block in string.nodes[1..].chunks(string.block) {
         for node in block {
-            let kick: &Lanes = &kicks[node.kind];
+            let kick: &Lanes = &kicks.0[node.kind];
             let next = lanes(|i| node.length.mul_add(v[i], x[i]));
-            changes = lanes(|i| changes[i] + if (next[i] < 0.0) != (x[i] < 0.0) { 1.0 } else { 0.0 });
+            for i in 0..LANES {
+                changes[i] += (next[i].to_bits() ^ x[i].to_bits()) >> 63;
+            }
             v = lanes(|i| (-kick[i]).mul_add(next[i], v[i]));
             x = next;
         }
@@ -72,17 +77,26 @@ fn count(string: &HalfString, starts_free: &[bool; LANES], kappa: &Lanes) -> Cou
         x = lanes(|i| x[i] * factor[i]);
         v = lanes(|i| v[i] * factor[i]);
     }
+    let changes = lanes(|i| whole(changes[i]));
     let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
     // The zero eigenvalue of C is below every κ and not counted.
-    let free = lanes(|i| changes[i] + past[i] - if starts_free[i] { 1.0 } else { 0.0 });
+    let free = lanes(|i| changes[i] + past[i] - starts_free[i]);
     [changes, free]
+}
+
+/// A whole number below 2^52 as a double.
+#[inline(always)]
+fn whole(n: u64) -> f64 {
+    const UNIT: f64 = (1u64 << 52) as f64;
+    f64::from_bits(UNIT.to_bits() | n) - UNIT
 }
 
 /// An eigenvalue for each lane, and where it is.
 #[derive(Clone, Copy)]
 pub(super) struct Targets {
-    pub starts_free: [bool; LANES],
-    pub ends_free: [bool; LANES],
+    /// 1 where the end is free, else 0.
+    pub starts_free: Lanes,
+    pub ends_free: Lanes,
     pub index: Lanes,
     pub inside: [Lanes; 2],
 }
@@ -109,7 +123,7 @@ impl Task for Narrowing<'_> {
         for _ in 0..self.halvings {
             let cut = lanes(|i| 0.5 * (lo[i] + hi[i]));
             let [pinned, free] = count(self.string, &starts_free, &cut);
-            let below = lanes(|i| if ends_free[i] { free[i] } else { pinned[i] });
+            let below = lanes(|i| if ends_free[i] > 0.0 { free[i] } else { pinned[i] });
             lo = lanes(|i| if below[i] < index[i] { cut[i] } else { lo[i] });
             hi = lanes(|i| if below[i] < index[i] { hi[i] } else { cut[i] });
         }
@@ -121,9 +135,11 @@ impl HalfString {
     /// κ m, by kind of node.
     #[inline(always)]
     pub fn kicks(&self, kappa: &Lanes) -> Kicks {
-        let mut kicks = [[0.0; LANES]; 8];
-        for (kicks, mass) in kicks.iter_mut().zip(&self.masses) {
-            *kicks = lanes(|i| kappa[i] * mass);
+        // No closure that a compiler might leave for the processor's common instructions.
+        let mut kicks = Aligned([[0.0; LANES]; 8]);
+        for kind in 2..8 {
+            let mass = self.masses[kind];
+            kicks.0[kind] = lanes(|i| kappa[i] * mass);
         }
         kicks
     }
