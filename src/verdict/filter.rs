@@ -124,7 +124,9 @@ impl<const L: usize> Group<L> {
         let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
         let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
         (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
-        self.instructions.perform(Advance::<W, L>(&mut self.lanes, certificate.block, PhantomData));
+        // Who does not look needs no blocks.
+        let block = if W::CERTIFY { certificate.block } else { u64::MAX };
+        self.instructions.perform(Advance::<W, L>(&mut self.lanes, block, PhantomData));
         for (i, pair) in pairs.iter().enumerate() {
             let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
             (self.left[0][i], self.left[1][i]) = (cos, sin);
