@@ -41,8 +41,9 @@ awk '
     NR == FNR { before[$1] = $2; next }
     {
         change = 100 * ($2 / before[$1] - 1)
-        printf "%-12s %14d %14d %+8.2f %%%s\n", $1, before[$1], $2, change, change > 2 ? "  slower" : ""
-        worse += change > 2
+        slower = (change > 2)
+        printf "%-12s %14d %14d %+8.2f %%%s\n", $1, before[$1], $2, change, slower ? "  slower" : ""
+        worse += slower
     }
     END { exit worse > 0 }
 ' "$kept" "$new"
