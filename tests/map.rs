@@ -6,6 +6,9 @@ use kickdrift::number::parse::parse;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
 use rayon::prelude::*;
 
+#[path = "stress/random.rs"]
+mod random;
+
 const BOTH: Products = Products { label: true, growth: true };
 
 fn grid(lambda1: &str, lambda2: &str, d: &str, (h1, h2): ((&str, &str), (&str, &str))) -> Grid {
@@ -97,12 +100,8 @@ fn agree_with_refine(grid: &Grid, pairs: &[(u64, u64)]) {
 fn a_hundred_thousand_random_pairs_agree() {
     let grid = figure_1("1/1000");
     let ((first, last), (low, high)) = (grid.columns(), grid.rows());
-    // A multiplicative generator (Lehmer, modulus 2^61 - 1); any seed but 0 does.
-    let mut state: u128 = 20_261_121;
-    let mut random = |lo: u64, hi: u64| {
-        state = state * 437_799_614_237_992_725 % ((1 << 61) - 1);
-        lo + (state as u64) % (hi - lo + 1)
-    };
+    let mut numbers = random::Random::new(20_261_121);
+    let mut random = |lo: u64, hi: u64| lo + numbers.below(hi - lo + 1);
     let pairs: Vec<(u64, u64)> = (0..100_000).map(|_| (random(first, last), random(low, high))).collect();
     agree_with_refine(&grid, &pairs);
 }

@@ -5,24 +5,21 @@ use rayon::prelude::*;
 use super::args::{Common, Format, shown_range, whole};
 use super::map::Target;
 use super::progress::progress;
-use super::tongues::{Ratios, parse_list, shown_list};
+use super::ratios::{Flags, Ratios};
+use super::tongues::{parse_list, shown_list};
 use crate::error::{Error, Result};
-use crate::number::parse::{parse_range, parse_ratio};
+use crate::number::parse::parse_range;
 use crate::number::{Laurent, Rational};
 use crate::report::closings::{self, DIGITS, OfRatio};
 use crate::report::document::Document;
 use crate::report::file::write_output;
-use crate::tongue::{Found, Search, closings as search, ratios};
+use crate::tongue::{Found, Search, closings as search};
 
 /// Flags of `closings`: a ratio or all of them.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// h2/h1 = p/q.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
-    ratio: Option<String>,
-    /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
-    max_sum: Option<u64>,
+    #[command(flatten)]
+    which: Flags,
     /// Only these labels (with --ratio), as 4 or 1,3,7..9.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     m: Option<String>,
@@ -73,16 +70,7 @@ impl Args {
     }
 
     fn question(&self) -> Result<Question> {
-        let ratios = match (&self.ratio, self.max_sum) {
-            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q))?,
-            (None, Some(max_sum)) => Ratios::UpTo(max_sum),
-            (Some(_), Some(_)) => {
-                return Err(Error::input("ratio", "given with --max-sum", "give one of them"));
-            }
-            (None, None) => {
-                return Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"));
-            }
-        };
+        let ratios = self.which.ratios()?;
         let m = self.m.as_ref().map(|text| parse_list(text)).transpose()?;
         let (lo, hi) = parse_range("rho-range", &self.rho_range)?;
         let rational = |x: &Laurent| {
@@ -105,14 +93,9 @@ impl Question {
         samples: usize,
         digits: u32,
     ) -> Result<Self> {
-        match ratios {
-            Ratios::UpTo(n) if !(2..=MOST_SUM).contains(&n) => {
-                return Err(Error::input("max-sum", n, format!("choose 2 to {MOST_SUM}")));
-            }
-            Ratios::UpTo(_) if m.is_some() => {
-                return Err(Error::input("m", "given with --max-sum", "labels are those of one --ratio"));
-            }
-            _ => {}
+        let ratios = ratios.within(MOST_SUM)?;
+        if matches!(ratios, Ratios::UpTo(_)) && m.is_some() {
+            return Err(Error::input("m", "given with --max-sum", "labels are those of one --ratio"));
         }
         if !(2..=MOST_SAMPLES).contains(&samples) {
             return Err(Error::input("samples", samples, format!("choose 2 to {MOST_SAMPLES}")));
@@ -128,10 +111,7 @@ impl Question {
     /// # Errors
     /// As [`search`].
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
-        let list = match self.ratios {
-            Ratios::One(p, q) => vec![(p, q)],
-            Ratios::UpTo(max_sum) => ratios(max_sum),
-        };
+        let list = self.ratios.list();
         let bar = progress(common.quiet, list.len() as u64, "ratios");
         let one = |(p, q): (u64, u64)| {
             let found = self.of_ratio(p, q);
@@ -164,10 +144,7 @@ impl Question {
     }
 
     fn echo(&self, document: Document) -> Document {
-        let document = match self.ratios {
-            Ratios::One(p, q) => document.input("ratio", format!("{p}/{q}")),
-            Ratios::UpTo(max_sum) => document.input("max_sum", max_sum),
-        };
+        let document = self.ratios.echo(document);
         let document = match &self.m {
             Some(list) => document.input("m", shown_list(list)),
             None => document,

@@ -12,6 +12,7 @@ mod plane;
 mod polynomial;
 mod progress;
 mod proposition;
+mod ratios;
 mod run;
 mod simulate;
 mod system;

@@ -31,13 +31,13 @@ impl<'a> Bases<'a> {
         let product = |a: &Laurent, b: &Laurent, c: &Laurent| Laurent::product(&Laurent::product(a, b), c);
         let units = [product(d1, d1, lambda1), product(d2, d2, lambda2)].map(|x| x.enclosure(BITS));
         let kicks = [lambda2, lambda1].map(|lambda| ordinary(&product(d1, d2, lambda).enclosure(BITS)));
-        let ((a, b), (low, high)) = (grid.ratio(), grid.rows());
-        let turns = |row: u64| grid.columns().1 * b / (row * a) + 2;
-        let most =
-            (low..=high).try_fold(0, |sum: u64, row| Some(sum + turns(row)).filter(|&sum| sum <= TURNS));
-        let rows = most.map_or(0, |_| grid.shape().1);
-        let rows = (0..rows).map(|_| OnceLock::new()).collect();
-        Bases { grid, units, kicks, rows }
+        let mut bases = Bases { grid, units, kicks, rows: Vec::new() };
+        let ((low, high), last) = (grid.rows(), grid.columns().1);
+        let add = |sum: u64, row| Some(sum + bases.turns(last, row) + 2).filter(|&sum| sum <= TURNS);
+        if (low..=high).try_fold(0, add).is_some() {
+            bases.rows.resize_with(grid.shape().1, OnceLock::new);
+        }
+        bases
     }
 
     /// The first clock of column i as the base of all its pairs.
@@ -48,23 +48,28 @@ impl<'a> Bases<'a> {
 
     /// The second clock of row j as the base of all its pairs, if rows are shared at all.
     pub fn row(&self, row: u64) -> Option<&Base> {
-        let (a, b) = self.grid.ratio();
-        let make = || Base::new(&self.strength(1, row), 0, self.grid.columns().1 * b / (row * a) + 1);
+        let make = || self.row_base(row, 0, self.grid.columns().1);
         self.rows.get((row - self.grid.rows().0) as usize)?.get_or_init(make).as_ref()
     }
 
     /// The second clocks of all rows as bases of the pairs in the columns `first..=last`; empty where rows are shared.
     pub fn rows_within(&self, first: u64, last: u64) -> Vec<Option<Base>> {
-        let ((a, b), (low, high)) = (self.grid.ratio(), self.grid.rows());
         if !self.rows.is_empty() {
             return Vec::new();
         }
-        // Turns by the whole part of h1/h2, one less and one more.
-        let turns = |column: u64, row: u64| column * b / (row * a);
-        let make = |row| {
-            Base::new(&self.strength(1, row), turns(first, row).saturating_sub(1), turns(last, row) + 1)
-        };
-        (low..=high).map(make).collect()
+        let (low, high) = self.grid.rows();
+        (low..=high).map(|row| self.row_base(row, self.turns(first, row).saturating_sub(1), last)).collect()
+    }
+
+    /// The second clock of a row with the turns from `first` on that pairs up to column `last` make.
+    fn row_base(&self, row: u64, first: u64, last: u64) -> Option<Base> {
+        Base::new(&self.strength(1, row), first, self.turns(last, row) + 1)
+    }
+
+    /// ⌊h1/h2⌋: pairs turn by that many steps of the row's clock at a time, one less or one more.
+    fn turns(&self, column: u64, row: u64) -> u64 {
+        let (a, b) = self.grid.ratio();
+        column * b / (row * a)
     }
 
     fn strength(&self, clock: usize, multiple: u64) -> Ball {

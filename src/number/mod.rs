@@ -42,5 +42,8 @@ pub use polynomial::Polynomial;
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;
 
+/// The unit roundoff u = 2^-53 of doubles: half the distance from 1 to the next one.
+pub(crate) const U: f64 = f64::EPSILON / 2.0;
+
 /// The rationals, always in lowest terms with a positive denominator.
 pub type Rational = num_rational::BigRational;

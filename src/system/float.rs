@@ -22,11 +22,8 @@ use super::model::System;
 use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
-use crate::number::{Rational, Ring};
+use crate::number::{Rational, Ring, U};
 use crate::propagator::Weight;
-
-/// Half the distance from 1 to the next double.
-const U: f64 = f64::EPSILON / 2.0;
 
 /// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
 #[derive(Clone, Debug)]

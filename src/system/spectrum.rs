@@ -19,9 +19,8 @@ use faer::{Mat, c64};
 use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
+use crate::number::U;
 use crate::verdict::Kind;
-
-const U: f64 = f64::EPSILON / 2.0;
 
 /// The eigenvalues μ of Bᵀ C with their vectors.
 #[derive(Clone, Debug)]

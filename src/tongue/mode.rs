@@ -33,9 +33,8 @@ use super::half::{Arrival, deltas, halves};
 use super::lanes::{LANES, Lanes, lanes, largest, lesser, two_products, two_sums};
 use super::locate::Problems;
 use super::string::HalfString;
+use crate::number::U;
 use crate::verdict::instructions::Task;
-
-const U: f64 = f64::EPSILON / 2.0;
 
 /// 2^-96.
 const SLACK: f64 = f64::from_bits((1023 - 96) << 52);

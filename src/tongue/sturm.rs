@@ -21,6 +21,7 @@
 use super::lanes::{Aligned, LANES, Lanes, lanes, lesser, normalizing};
 use super::locate::start;
 use super::string::{HalfString, Kicks};
+use crate::number::U;
 use crate::verdict::instructions::Task;
 
 /// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues: whole numbers.
@@ -29,7 +30,7 @@ pub(super) type Counts = [Lanes; 2];
 impl HalfString {
     /// The uncertainty η of a computed count, see the module's theorem.
     pub fn eta(&self) -> f64 {
-        (4.0 * self.nodes.len() as f64 + 16.0) * (f64::EPSILON / 2.0)
+        (4.0 * self.nodes.len() as f64 + 16.0) * U
     }
 
     /// The counts for each lane, of the two problems that are free (or pinned) at t = 0. Above all eigenvalues every κ

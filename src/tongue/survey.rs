@@ -15,8 +15,8 @@ use num_integer::Integer;
 use rayon::prelude::*;
 
 use super::gaps::{Gap, Tongues};
-use super::lanes::LANES;
 use super::row::{Row, Wanted};
+use super::select::Selection;
 use crate::error::Result;
 use crate::number::Rational;
 
@@ -75,17 +75,8 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn below(&mut self, limit: f64) -> Result<Vec<Gap>> {
-        // A little above the limit, beyond the counts' uncertainty; what is too much is dropped.
-        let kappa = [limit * (1.0 + 1e-6) / self.string().ticks; LANES];
-        let upto = [true, false].map(|starts_free| {
-            let [pinned, free] =
-                self.string().counts(&[starts_free; LANES], &kappa).map(|counts| counts[0] as u64);
-            let (odd, even) = if starts_free { (pinned, free) } else { (free, pinned) };
-            (2 * odd).saturating_sub(1).max(2 * even)
-        });
-        let upto = upto.into_iter().max().unwrap_or(0).min(self.last());
-        let gaps = if upto == 0 { Vec::new() } else { self.gaps(1, upto)? };
-        Ok(gaps.into_iter().filter(|gap| gap.lower.lo < limit).collect())
+        let window = Selection { s: Some((0.0, limit)), ..Selection::default() };
+        Ok(self.select(&window)?.into_iter().filter(|gap| gap.lower.lo < limit).collect())
     }
 }
 

@@ -11,9 +11,7 @@
 //! is what one update (four shears) adds to the error.
 
 use super::bound::StepBound;
-
-/// Half the distance from 1 to the next double.
-pub(super) const U: f64 = f64::EPSILON / 2.0;
+use crate::number::U;
 
 /// |r_k| ≤ u (κ (`TURN` + `TURN_SLOPE` tan(θ/2)) + `KICK` |β|) |g_(k-1)| + ...
 const TURN: f64 = 28.0;

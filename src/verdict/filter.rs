@@ -5,13 +5,13 @@
 
 use std::marker::PhantomData;
 
-use super::certificate::{Certificate, Certificates, Hardest, U};
+use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
 use super::instructions::{Instructions, Task};
 use super::kernel::{Lanes, Orbits, Watch, each};
 use super::kind::PartialSigns;
 use super::winding;
-use crate::number::Sign;
+use crate::number::{Sign, U};
 
 /// Where the even and the odd solution stand at T/2, with proven bounds.
 #[derive(Clone, Copy, Debug)]

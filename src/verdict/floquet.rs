@@ -62,17 +62,18 @@ impl Base {
     /// `first..=last`; `None` outside 0 < s < 4, its Verlet limit, and where a constant leaves the comfortable
     /// range of doubles.
     pub fn new(s: &Ball, first: u64, last: u64) -> Option<Base> {
-        let rest = Ball::from_integer(&4.into()).sub(s, BITS);
+        let rest = below_four(s);
         if s.sign() != Some(Sign::Positive) || rest.sign() != Some(Sign::Positive) {
             return None;
         }
-        let (sin_half, cos_half) = (s.sqrt(BITS)?.scale2(-1), rest.sqrt(BITS)?.scale2(-1));
+        let half = Phase::half(s, &rest)?;
+        let Phase { re: cos_half, im: sin_half } = &half;
         let theta = 2.0 * sin_half.mid_f64().atan2(cos_half.mid_f64());
         Some(Base {
-            slope: ordinary(&sin_half.div(&cos_half, BITS)?)?,
-            sin: ordinary(&sin_half.mul(&cos_half, BITS).scale2(1))?,
+            slope: ordinary(&sin_half.div(cos_half, BITS)?)?,
+            sin: ordinary(&sin_half.mul(cos_half, BITS).scale2(1))?,
             theta,
-            turns: turns(&Phase { re: cos_half, im: sin_half }, theta, first, last)?,
+            turns: turns(&half, theta, first, last)?,
             first,
         })
     }
@@ -214,10 +215,13 @@ impl Floquet {
 
 /// The signs of cos(nθ/2) and sin(nθ/2), as far as they are certain; `None` outside 0 < s < 4.
 pub(super) fn turn_signs(s: &Ball, n: u64) -> Option<[Option<Sign>; 2]> {
-    let rest = Ball::from_integer(&4.into()).sub(s, BITS);
-    let half = Phase { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) };
-    let turned = half.power(n);
+    let turned = Phase::half(s, &below_four(s))?.power(n);
     Some([turned.re.sign(), turned.im.sign()])
+}
+
+/// 4 − s.
+fn below_four(s: &Ball) -> Ball {
+    Ball::from_integer(&4.into()).sub(s, BITS)
 }
 
 /// e^{iα} in multiple precision.
@@ -227,6 +231,11 @@ struct Phase {
 }
 
 impl Phase {
+    /// e^{iθ/2} = (√(4 − s) + i √s)/2, `rest` being 4 − s; `None` where a root is none.
+    fn half(s: &Ball, rest: &Ball) -> Option<Phase> {
+        Some(Phase { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) })
+    }
+
     fn one() -> Phase {
         Phase { re: Ball::one(), im: Ball::zero() }
     }

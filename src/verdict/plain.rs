@@ -15,14 +15,11 @@
 use super::bound::StepBound;
 use super::floquet::ordinary;
 use super::kind::PartialSigns;
-use crate::number::{Ball, Real, Sign};
+use crate::number::{Ball, Real, Sign, U};
 use crate::propagator::{Event, Schedule, TwoClocks, Weight};
 
 /// Bits of the strengths.
 const BITS: u32 = 128;
-
-/// Half the distance from 1 to the next double.
-const U: f64 = f64::EPSILON / 2.0;
 
 /// The squared length is kept between the reciprocal of this and this.
 const LONG: f64 = 1e180;

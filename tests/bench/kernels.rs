@@ -4,12 +4,15 @@
 //!
 //! `cargo bench --bench kernels` lists the names.
 
-use kickdrift::map::{Grid, Products, Shard, for_each_band};
-use kickdrift::number::parse::parse;
+use kickdrift::map::{Products, Shard, for_each_band};
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Limits, Tier, decide_from};
+
+mod common;
+
+use common::figure_1;
 
 /// A name, and the work.
 const KERNELS: [(&str, fn()); 7] = [
@@ -30,15 +33,12 @@ fn tier(first: Tier, p: u64, q: u64) {
 }
 
 fn map(products: Products) {
-    let x = |text: &str| parse("x", text).expect("a number");
-    let window = |hi: &str| (x("1/100"), x(hi));
-    let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/100"), x("1/100")], window("2/pi"), window("7/2"))
-        .expect("a grid");
     let see = |_, band| {
         std::hint::black_box(band);
         Ok(())
     };
-    for_each_band(&grid, products, Shard::WHOLE, 1, &Limits::default(), see).expect("within the budget");
+    for_each_band(&figure_1(100), products, Shard::WHOLE, 1, &Limits::default(), see)
+        .expect("within the budget");
 }
 
 fn main() {

@@ -5,11 +5,13 @@
 
 use std::path::PathBuf;
 use std::process::Command;
-use std::time::Instant;
 
 use kickdrift::map::{Counters, Grid, Products, Shard, for_each_band, uncertified_unstable};
-use kickdrift::number::parse::parse;
 use kickdrift::verdict::Limits;
+
+mod common;
+
+use common::{figure_1, least};
 
 fn main() {
     let arguments: Vec<String> =
@@ -18,12 +20,6 @@ fn main() {
         return curve();
     }
     side_by_side(arguments.first().and_then(|n| n.parse().ok()).unwrap_or(1000));
-}
-
-fn figure_1(n: u64) -> Grid {
-    let x = |text: &str| parse("x", text).expect("a number");
-    let d = format!("1/{n}");
-    Grid::new(x("pi^2"), x("pi^2/25"), [x(&d), x(&d)], (x(&d), x("2/pi")), (x(&d), x("7/2"))).expect("a grid")
 }
 
 fn certified(grid: &Grid) -> (u64, Counters) {
@@ -36,24 +32,18 @@ fn certified(grid: &Grid) -> (u64, Counters) {
     (unstable, counters.expect("within the budget"))
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let start = Instant::now();
-    let result = work();
-    (start.elapsed().as_secs_f64(), result)
-}
-
 fn side_by_side(n: u64) {
     let (grid, peer) = (figure_1(n), build_peer());
     let (mut ours, mut bare, mut loops) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
     for round in 0..5 {
         for _ in 0..5 {
-            let (seconds, (unstable, counters)) = timed(|| certified(&grid));
+            let (seconds, (unstable, counters)) = least(1, 0.0, || certified(&grid));
             if ours.is_infinite() {
                 println!("{} pairs, {unstable} unstable, {} kicks composed", counters.pairs, counters.kicks);
                 println!("{} pairs left the groups for the ladder", counters.escalated);
             }
             ours = ours.min(seconds);
-            bare = bare.min(timed(|| uncertified_unstable(&grid, 0)).0);
+            bare = bare.min(least(1, 0.0, || uncertified_unstable(&grid, 0)).0);
         }
         if let (Some(peer), true) = (&peer, round < 2) {
             loops = loops.min(run_peer(peer, n));
@@ -80,7 +70,7 @@ fn curve() {
     println!("{:>6} {:>12} {:>14} {:>10} {:>12}", "1/d", "pairs", "kicks", "seconds", "ns a kick");
     for n in [250, 500, 1000, 2000, 4000] {
         let grid = figure_1(n);
-        let best = (0..3).map(|_| timed(|| certified(&grid))).min_by(|a, b| a.0.total_cmp(&b.0));
+        let best = (0..3).map(|_| least(1, 0.0, || certified(&grid))).min_by(|a, b| a.0.total_cmp(&b.0));
         let (seconds, (_, counters)) = best.expect("three runs");
         let each = seconds / counters.kicks as f64 * 1e9;
         println!("{n:>6} {:>12} {:>14} {seconds:>10.3} {each:>12.4}", counters.pairs, counters.kicks);
@@ -126,7 +116,7 @@ fn fused_operations_a_second() -> f64 {
     }
     let (n, mut x) = (1_000_000, [1.5; 96]);
     let seconds = (0..5).map(|_| {
-        timed(|| {
+        least(1, 0.0, || {
             #[cfg(target_arch = "x86_64")]
             if is_x86_feature_detected!("avx512f") {
                 // Safety: just detected.

@@ -4,29 +4,23 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::time::Instant;
 
-use kickdrift::map::{Grid, Products, Shard, for_each_band};
-use kickdrift::number::parse::parse;
+use kickdrift::map::{Products, Shard, for_each_band};
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::{Edge, Tongues, ratios};
 use kickdrift::verdict::{Limits, decide, exact_trace};
 use rayon::prelude::*;
 
+mod common;
+
+use common::{figure_1, least};
+
 /// Repeats the work until a second has passed, at least three times, and prints the least time.
-fn timed<T>(name: &str, mut work: impl FnMut() -> T) -> T {
-    let (start, mut least, mut rounds) = (Instant::now(), f64::INFINITY, 0);
-    loop {
-        let begin = Instant::now();
-        let result = work();
-        least = least.min(begin.elapsed().as_secs_f64());
-        rounds += 1;
-        if rounds >= 3 && start.elapsed().as_secs_f64() > 1.0 {
-            println!("{name} {least:.9}");
-            return result;
-        }
-    }
+fn timed<T>(name: &str, work: impl FnMut() -> T) -> T {
+    let (seconds, result) = least(3, 1.0, work);
+    println!("{name} {seconds:.9}");
+    result
 }
 
 fn main() {
@@ -48,10 +42,7 @@ fn write(folder: &Path, name: &str, text: &str) {
 
 /// Figure 1 with steps of 1/n, one character a pair: whether it is unstable.
 fn figure(n: u64) -> String {
-    let x = |text: &str| parse("x", text).expect("a number");
-    let d = format!("1/{n}");
-    let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x(&d), x(&d)], (x(&d), x("2/pi")), (x(&d), x("7/2")))
-        .expect("a grid");
+    let grid = figure_1(n);
     let map = |see: &mut dyn FnMut(&[u8])| {
         for_each_band(&grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
             see(&band.verdicts);

@@ -2,31 +2,24 @@
 //!
 //!     cargo bench --bench skip
 
-use std::time::Instant;
-
-use kickdrift::map::{Counters, Grid, Products, Shard, for_each_band};
-use kickdrift::number::parse::parse;
+use kickdrift::map::{Counters, Products, Shard, for_each_band};
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::{Tongues, Wanted};
 use kickdrift::verdict::{Limits, Tier, decide, decide_from, growth};
 
+mod common;
+
+use common::{figure_1, least};
+
 /// The least time of ten runs, and what the work returned.
-fn least<T>(work: impl Fn() -> T) -> (f64, T) {
-    let timed = |_| {
-        let start = Instant::now();
-        let result = work();
-        (start.elapsed().as_secs_f64(), result)
-    };
-    (0..10).map(timed).min_by(|a, b| a.0.total_cmp(&b.0)).expect("ten runs")
+fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
+    least(10, 0.0, work)
 }
 
 fn map(products: Products) -> (f64, Counters) {
-    let x = |text: &str| parse("x", text).expect("a number");
-    let window = |hi: &str| (x("1/500"), x(hi));
-    let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/500"), x("1/500")], window("2/pi"), window("7/2"))
-        .expect("a grid");
-    least(|| {
+    let grid = figure_1(500);
+    timed(|| {
         for_each_band(&grid, products, Shard::WHOLE, 0, &Limits::default(), |_, _| Ok(()))
             .expect("within the budget")
     })
@@ -52,18 +45,18 @@ fn main() {
     }
     let clocks = TwoClocks::with_rho(3499, 631, ratio(1, 3), ratio(1, 25));
     let limits = Limits::default();
-    let (base, decision) = least(|| decide(&clocks, &limits).expect("short"));
+    let (base, decision) = timed(|| decide(&clocks, &limits).expect("short"));
     println!("| verdict at p + q = 4130 | 316 updates, {} | 1.00 |", decision.decided_by.name());
-    let (seconds, _) = least(|| growth(&clocks, decision.verdict, &limits).expect("short"));
+    let (seconds, _) = timed(|| growth(&clocks, decision.verdict, &limits).expect("short"));
     println!("| its trace, growth and label | 2065 kicks in 128 bits | {:.0} |", seconds / base);
-    let (seconds, _) = least(|| decide_from(Tier::Exact, &clocks, &limits).expect("short"));
+    let (seconds, _) = timed(|| decide_from(Tier::Exact, &clocks, &limits).expect("short"));
     println!("| its verdict by exact arithmetic alone | 2065 kicks | {:.0} |", seconds / base);
     tongues();
 }
 
 fn tongues() {
     let new = || Tongues::new(97, 61, &ratio(1, 25)).expect("a ratio");
-    let (base, edges) = least(|| {
+    let (base, edges) = timed(|| {
         let mut tongues = new();
         tongues.gap(50).expect("a tongue");
         tongues.effort()
@@ -72,7 +65,7 @@ fn tongues() {
         "| one tongue of 97/61 | {} edges in doubles, {} with more bits | 1.00 |",
         edges.doubles, edges.precise
     );
-    let (seconds, edges) = least(|| {
+    let (seconds, edges) = timed(|| {
         let mut tongues = new();
         tongues.all().expect("tongues");
         tongues.effort()
@@ -83,7 +76,7 @@ fn tongues() {
         edges.precise,
         seconds / base
     );
-    let (seconds, edges) = least(|| {
+    let (seconds, edges) = timed(|| {
         let mut tongues = new();
         let all = tongues.all().expect("tongues");
         let wanted = Wanted { growth: true, ..Wanted::default() };

@@ -1,21 +1,17 @@
 //! One verdict, tier against tier: `cargo bench --bench verdict`. Minima over repetitions; ratios count.
 
 use std::process::Command;
-use std::time::Instant;
 
 use kickdrift::number::Rational;
 use kickdrift::number::parse::parse;
 use kickdrift::propagator::{Oscillator, TwoClocks};
 use kickdrift::verdict::{Limits, Tier, decide_from, exact_trace};
 
+mod common;
+
 /// The least time of `work` in seconds over `rounds` runs.
-fn least(rounds: u32, mut work: impl FnMut()) -> f64 {
-    let timed = |_| {
-        let start = Instant::now();
-        work();
-        start.elapsed().as_secs_f64()
-    };
-    (0..rounds).map(timed).fold(f64::INFINITY, f64::min)
+fn least(rounds: u32, work: impl FnMut()) -> f64 {
+    common::least(rounds, 0.0, work).0
 }
 
 fn clocks() -> TwoClocks<Rational> {

@@ -9,32 +9,15 @@ use num_integer::Integer;
 use num_traits::{Signed, ToPrimitive};
 use rayon::prelude::*;
 
+use crate::random::Random;
 use crate::record::Record;
 
-/// Lehmer's multiplicative generator modulo 2^61 - 1.
-pub struct Random(u64);
-
-impl Random {
-    pub fn new(seed: u64) -> Random {
-        let mut random = Random(1 + seed % ((1 << 61) - 2));
-        (0..4).for_each(|_| {
-            random.below(2);
-        });
-        random
-    }
-
-    /// A number in 0..n.
-    pub fn below(&mut self, n: u64) -> u64 {
-        self.0 = (u128::from(self.0) * 437_799_614_237_992_725 % ((1 << 61) - 1)) as u64;
-        self.0 % n
-    }
-
-    fn ratio(&mut self, most: u64) -> (u64, u64) {
-        loop {
-            let (p, q) = (1 + self.below(most), 1 + self.below(most));
-            if p.gcd(&q) == 1 {
-                return (p, q);
-            }
+/// Coprime numbers up to `most`.
+fn coprime(random: &mut Random, most: u64) -> (u64, u64) {
+    loop {
+        let (p, q) = (1 + random.below(most), 1 + random.below(most));
+        if p.gcd(&q) == 1 {
+            return (p, q);
         }
     }
 }
@@ -73,7 +56,7 @@ pub fn random(seed: u64, cases: u64) -> Record {
         let mut random = Random::new(seed.wrapping_add(n.wrapping_mul(0x9E37_79B9_7F4A_7C15)));
         let mut record = Record::default();
         for case in 0..BATCH.min(cases - n * BATCH) {
-            let ((p, q), scale) = (random.ratio(40), 1i64 << random.below(12));
+            let ((p, q), scale) = (coprime(&mut random, 40), 1i64 << random.below(12));
             let s = ratio(1 + random.below(5 * 64) as i64, 64);
             let k = ratio(random.below(2 * 8 * 64) as i64 - 8 * 64, 64 * scale);
             let clocks = TwoClocks::new(p, q, s, k);
@@ -121,7 +104,7 @@ struct Pair {
 
 impl Pair {
     fn new(random: &mut Random) -> Pair {
-        let (p, q) = random.ratio(24);
+        let (p, q) = coprime(random, 24);
         let rho = ratio(1 + random.below(60) as i64, 1 + random.below(200) as i64);
         Pair { p, q, rho }
     }

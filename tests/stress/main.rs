@@ -5,9 +5,11 @@
 
 mod cases;
 mod edges;
+mod random;
 mod record;
 
-use cases::{Random, adversarial, random};
+use cases::{adversarial, random};
+use random::Random;
 use record::Record;
 
 /// The published run.

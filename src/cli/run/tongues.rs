@@ -1,7 +1,8 @@
 //! What a scene asks of tongues.
 
 use crate::cli::args::Common;
-use crate::cli::tongues::{Atlas, Colour, Question, Ratios, Stiffness, Window};
+use crate::cli::ratios::Ratios;
+use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
 use crate::error::{Error, Result};
 use crate::report::tongues::Frame;
 use crate::scene::Scene;
@@ -29,7 +30,7 @@ pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
 /// All ratios where a sum is given, else the one.
 pub fn ratios(scene: &Scene) -> Result<Ratios> {
     match scene.document().max_sum {
-        Some(max_sum) => Ratios::up_to(max_sum),
+        Some(max_sum) => Ratios::UpTo(max_sum).within(MOST_SUM),
         None => scene.ratio().map(|(p, q)| Ratios::One(p, q)),
     }
 }

@@ -7,6 +7,7 @@ use crate::cli::args::Common;
 use crate::cli::curves;
 use crate::cli::map::Target;
 use crate::cli::plane::DPI;
+use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::Laurent;
 use crate::report::figure::{Figure, png};
@@ -103,8 +104,8 @@ impl<'a> Atlas<'a> {
     fn title(&self) -> String {
         let rho = &self.question.stiffness.rho;
         match self.question.ratios {
-            super::Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
-            super::Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
+            Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
+            Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }
 

@@ -10,26 +10,21 @@ use clap::ValueEnum;
 
 use super::args::{Common, whole};
 use super::map::Target;
+use super::ratios::{Flags, Ratios};
 use crate::error::{Error, Result};
-use crate::number::parse::{
-    parse, parse_integer, parse_integer_range, parse_range, parse_ratio, parse_rational,
-};
+use crate::number::parse::{parse, parse_integer, parse_integer_range, parse_range, parse_rational};
 use crate::report::tongues::Frame;
 use crate::tongue::{Selection, Wanted};
 pub use atlas::{Atlas, Colour};
 pub use output::bytes;
-pub use question::{Question, Ratios, Stiffness, Window, shown_list};
+pub use question::{MOST_SUM, Question, Stiffness, Window, shown_list};
 pub use survey::{THINNEST, document as survey};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// h2/h1 = p/q.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
-    ratio: Option<String>,
-    /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
-    max_sum: Option<u64>,
+    #[command(flatten)]
+    which: Flags,
     /// rho = lambda2/lambda1, not negative.
     #[arg(long, value_name = "R", allow_hyphen_values = true)]
     rho: Option<String>,
@@ -170,14 +165,7 @@ impl Args {
     }
 
     fn ratios(&self) -> Result<Ratios> {
-        match (&self.ratio, self.max_sum) {
-            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q)),
-            (None, Some(max_sum)) => Ratios::up_to(max_sum),
-            (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
-            (None, None) => {
-                Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"))
-            }
-        }
+        self.which.ratios()?.within(MOST_SUM)
     }
 
     fn stiffness(&self) -> Result<Stiffness> {
@@ -211,7 +199,7 @@ impl Args {
 
     fn wanted(&self) -> Wanted {
         match &self.columns {
-            None => Wanted { growth: self.max_sum.is_none(), ..Wanted::all() },
+            None => Wanted { growth: !self.which.many(), ..Wanted::all() },
             Some(list) => {
                 let has = |column| list.contains(&column);
                 Wanted {

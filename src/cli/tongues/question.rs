@@ -5,19 +5,13 @@ use rayon::prelude::*;
 
 use crate::cli::args::{Common, shown_range};
 use crate::cli::progress::progress;
+use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::ExactSign;
 use crate::number::{Laurent, Rational, Sign};
 use crate::report::document::Document;
 use crate::report::tongues::{Frame, Told};
-use crate::tongue::{Gap, Selection, Tongues, ratios};
-
-/// One ratio, or all coprime p + q up to a number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Ratios {
-    One(u64, u64),
-    UpTo(u64),
-}
+use crate::tongue::{Gap, Selection, Tongues};
 
 /// ρ, and the stiffnesses where they are given.
 #[derive(Clone, Debug)]
@@ -50,39 +44,11 @@ pub struct Question {
 }
 
 /// The largest p + q of all ratios: there are 1.2 million of them below 2000.
-const MOST: u64 = 2000;
+pub const MOST_SUM: u64 = 2000;
 
 /// Ratios whose tongues are held in memory together, and tongues of one ratio that a thread takes at a time.
 const BATCH: usize = 64;
 const CHUNK: usize = 16;
-
-impl Ratios {
-    /// All ratios up to a sum.
-    ///
-    /// # Errors
-    /// A sum that is out of range.
-    pub fn up_to(max_sum: u64) -> Result<Ratios> {
-        if !(2..=MOST).contains(&max_sum) {
-            return Err(Error::input("max-sum", max_sum, format!("choose 2 to {MOST}")));
-        }
-        Ok(Ratios::UpTo(max_sum))
-    }
-
-    fn list(self) -> Vec<(u64, u64)> {
-        match self {
-            Ratios::One(p, q) => vec![(p, q)],
-            Ratios::UpTo(max_sum) => ratios(max_sum),
-        }
-    }
-
-    /// In words.
-    pub fn words(self) -> String {
-        match self {
-            Ratios::One(p, q) => format!("h2/h1 = {p}/{q}"),
-            Ratios::UpTo(max_sum) => format!("all h2/h1 = p/q, p + q <= {max_sum}"),
-        }
-    }
-}
 
 impl Stiffness {
     /// ρ = L2/L1 exactly, given as such or by the stiffnesses.
@@ -199,11 +165,7 @@ impl Question {
     }
 
     /// Echoes the question, exactly.
-    pub fn echo(&self, mut document: Document) -> Document {
-        document = match self.ratios {
-            Ratios::One(p, q) => document.input("ratio", format!("{p}/{q}")),
-            Ratios::UpTo(max_sum) => document.input("max_sum", max_sum),
-        };
+    pub fn echo(&self, document: Document) -> Document {
         let Stiffness { rho, lambda1, lambda2 } = &self.stiffness;
         let range = |range: &Option<Range>| range.as_ref().map(shown_range);
         let integers = |range: Option<(i64, i64)>| range.map(|(lo, hi)| format!("{lo}..{hi}"));
@@ -219,7 +181,7 @@ impl Question {
             ("b", integers(*b)),
             ("digits", self.frame.digits.map(|digits| digits.to_string())),
         ];
-        given.into_iter().fold(document, |document, (key, value)| match value {
+        given.into_iter().fold(self.ratios.echo(document), |document, (key, value)| match value {
             Some(value) => document.input(key, value),
             None => document,
         })

@@ -3,11 +3,12 @@
 use num_traits::{ToPrimitive, Zero};
 use rayon::prelude::*;
 
+use super::Stiffness;
 use super::atlas::share_of_pi;
-use super::{Ratios, Stiffness};
 use crate::cli::args::Common;
 use crate::cli::map::Target;
 use crate::cli::plane::DPI;
+use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, rational};
 use crate::report::figure::png;

@@ -1,8 +1,9 @@
 //! The survey of all ratios up to a sum.
 
-use super::{Ratios, Stiffness};
+use super::Stiffness;
 use crate::cli::args::{Common, Format};
 use crate::cli::map::Target;
+use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::report::document::Document;

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
-use crate::cli::tongues::Ratios;
+use crate::cli::ratios::Ratios;
+use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
 use crate::number::{Rational, rational};
 use crate::tongue::{Entry, ratios};
@@ -19,7 +20,7 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
     let input = whole(all.object("input"))?;
     let rho = whole(input.rational("rho"))?;
     let max_sum = whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0);
-    Ratios::up_to(max_sum)?;
+    Ratios::UpTo(max_sum).within(MOST_SUM)?;
     let mut rows = whole(all.rows("thinnest"))?.to_vec();
     rows.push(json!({"entry": "counts"}));
     context.rows(&rows, ROUTE, |row| match row.get("entry") {

@@ -6,12 +6,13 @@ use serde_json::Value;
 use super::exact::{ZeroOf, check_ratio, fraction, ln_multiplier_at, meets, part, resonance, signs};
 use super::read::{Checked, Fault, Row, holds, whole};
 use super::{Context, Outcome};
-use crate::cli::tongues::Ratios;
+use crate::cli::ratios::Ratios;
+use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
 use crate::number::parse::parse_ratio;
 use crate::number::{Laurent, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
-use crate::tongue::{Entry, Resonance, entries, ratios};
+use crate::tongue::{Entry, Resonance, entries};
 use crate::verdict::{Kind, Limits, decide, growth};
 
 const ROUTE: &str = "the entries' exact signs at both ends of every enclosure, verdict and label inside, closed forms, \
@@ -46,15 +47,11 @@ fn complete(input: &Row, rows: &[Value], rho: &Rational) -> Result<Option<(u64, 
     if ["m", "a", "b", "h1_range", "h2_range"].iter().any(|key| input.get(key).is_some()) {
         return Ok(None);
     }
-    let list = match input.get("ratio") {
-        Some(_) => vec![parse_ratio("ratio", whole(input.text("ratio"))?)?],
-        None => {
-            match Ratios::up_to(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0))? {
-                Ratios::UpTo(max_sum) => ratios(max_sum),
-                Ratios::One(p, q) => vec![(p, q)],
-            }
-        }
+    let asked = match input.get("ratio") {
+        Some(_) => parse_ratio("ratio", whole(input.text("ratio"))?).map(|(p, q)| Ratios::One(p, q))?,
+        None => Ratios::UpTo(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0)),
     };
+    let list = asked.within(MOST_SUM)?.list();
     let last = |p: u64, q: u64| if rho.is_zero() { p } else { p.saturating_add(q) - 1 };
     let expected = list.into_iter().flat_map(|(p, q)| (1..=last(p, q)).map(move |m| (p, q, m)));
     let mut rows = rows.iter().map(Row::new).enumerate();

@@ -4,6 +4,7 @@ use serde_json::json;
 
 use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::report::digits::rounded;
 use crate::report::document::Document;
 use crate::report::figure::palette::{COEXISTENCE, Gradient, HYPERBOLIC, INK, PARABOLIC};
 use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape};
@@ -36,10 +37,8 @@ const SHADES: u16 = 40;
 const LEAST: f64 = 0.35;
 const EDGE: f64 = 2.4;
 
-/// Six digits: eigenvalues in doubles agree in them on every machine.
-fn six_digits(x: f64) -> f64 {
-    format!("{x:.5e}").parse().expect("a double as it was written")
-}
+/// Digits of a growth rate: eigenvalues in doubles agree in them on every machine.
+const DIGITS: usize = 6;
 
 impl SystemMap {
     fn count(&self, kind: Kind) -> usize {
@@ -65,7 +64,7 @@ impl SystemMap {
         }
         let fastest = fastest.map(|point| {
             let (x, y) = (point.at.0.to_string(), point.at.1.to_string());
-            json!({"x": x, "y": y, "growth_rate": six_digits(point.growth_rate)})
+            json!({"x": x, "y": y, "growth_rate": rounded(point.growth_rate, DIGITS)})
         });
         Document::new("system-map")
             .entry("points", self.points.len())
@@ -94,7 +93,7 @@ impl SystemMap {
                 Cell::Exact(point.at.1.to_string()),
                 Cell::Text(point.kind.name().into()),
                 Cell::Flag(point.is_proof),
-                Cell::Float(six_digits(point.growth_rate)),
+                Cell::Float(rounded(point.growth_rate, DIGITS)),
             ]);
         }
         table

@@ -4,6 +4,8 @@
 //! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY, target/precision
 //! unless given. Times are minima over repetitions; only those of one run compare.
 
+#[path = "../common.rs"]
+mod common;
 #[path = "../dense.rs"]
 mod dense;
 mod figure;

@@ -1,12 +1,11 @@
 //! Time and error of edges of tongues, and of the multipliers of systems.
 
-use std::time::Instant;
-
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::system::{Limits, System, builders, decide_system};
 use kickdrift::tongue::{Entry, Tongues};
 use serde_json::{Value, json};
 
+use crate::common::least;
 use crate::dense;
 
 /// A method, what it was put to, how long it took, and its error or proven bound, relative.
@@ -17,19 +16,9 @@ pub struct Row {
     error: f64,
 }
 
-/// The least time of at most ten runs or half a second.
-fn timed<T>(mut work: impl FnMut() -> T) -> (f64, T) {
-    let begin = Instant::now();
-    let mut least = f64::INFINITY;
-    for _ in 0..10 {
-        let start = Instant::now();
-        let result = work();
-        least = least.min(start.elapsed().as_secs_f64());
-        if begin.elapsed().as_secs_f64() > 0.5 {
-            return (least, result);
-        }
-    }
-    (least, work())
+/// The least time of all runs in a fifth of a second.
+fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
+    least(1, 0.2, work)
 }
 
 /// An edge in the middle of the spectrum: by doubles, and to more and more digits.

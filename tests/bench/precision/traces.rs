@@ -1,13 +1,12 @@
 //! Time and error of the trace.
 
-use std::time::Instant;
-
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::propagator::TwoClocks;
 use num_traits::Signed;
 use serde_json::{Value, json};
 
+use crate::common::least;
 use crate::methods::Method;
 
 /// One method on one scene.
@@ -49,7 +48,7 @@ pub fn measure() -> Vec<Row> {
             let reference = if p + q <= Method::Exact.patience() { Method::Exact } else { Method::Refine };
             let exact = reference.trace(&clocks).expect("a trace");
             for method in Method::ALL.into_iter().filter(|method| p + q <= method.patience()) {
-                let (seconds, trace) = timed(|| method.trace(&clocks));
+                let (seconds, trace) = least(1, 0.1, || method.trace(&clocks));
                 let size = if exact.abs() > ratio(1, 1) { exact.abs() } else { ratio(1, 1) };
                 // The refine tier is no judge of itself.
                 let judged = trace.filter(|_| method != Method::Refine || reference == Method::Exact);
@@ -59,21 +58,6 @@ pub fn measure() -> Vec<Row> {
         }
     }
     rows
-}
-
-/// The least time of at most 20 runs or a fifth of a second.
-fn timed<T>(work: impl Fn() -> T) -> (f64, T) {
-    let begin = Instant::now();
-    let mut least = f64::INFINITY;
-    loop {
-        let start = Instant::now();
-        let result = std::hint::black_box(work());
-        least = least.min(start.elapsed().as_secs_f64());
-        if begin.elapsed().as_secs_f64() > 0.2 || least < 1e-2 && begin.elapsed().as_secs_f64() > 20.0 * least
-        {
-            return (least, result);
-        }
-    }
 }
 
 pub fn print(rows: &[Row]) {

@@ -1,0 +1,86 @@
+//! One ratio of steps, or all up to a sum: what `tongues` and `closings` range over.
+
+use super::args::whole;
+use crate::error::{Error, Result};
+use crate::number::parse::parse_ratio;
+use crate::report::document::Document;
+use crate::tongue::ratios;
+
+/// The flags that say which.
+#[derive(Debug, clap::Args)]
+pub struct Flags {
+    /// h2/h1 = p/q.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
+    ratio: Option<String>,
+    /// All coprime p + q up to this number.
+    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
+    max_sum: Option<u64>,
+}
+
+impl Flags {
+    /// Whether a sum is given.
+    pub fn many(&self) -> bool {
+        self.max_sum.is_some()
+    }
+
+    /// The ratios.
+    ///
+    /// # Errors
+    /// Neither flag or both, or a ratio that is none.
+    pub fn ratios(&self) -> Result<Ratios> {
+        match (&self.ratio, self.max_sum) {
+            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q)),
+            (None, Some(max_sum)) => Ok(Ratios::UpTo(max_sum)),
+            (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
+            (None, None) => {
+                Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"))
+            }
+        }
+    }
+}
+
+/// One ratio, or all coprime p + q up to a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ratios {
+    One(u64, u64),
+    UpTo(u64),
+}
+
+impl Ratios {
+    /// The same, if there are not too many.
+    ///
+    /// # Errors
+    /// A sum that is not in 2..=`most`.
+    pub fn within(self, most: u64) -> Result<Ratios> {
+        match self {
+            Ratios::UpTo(max_sum) if !(2..=most).contains(&max_sum) => {
+                Err(Error::input("max-sum", max_sum, format!("choose 2 to {most}")))
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// (p, q), by sum, then p.
+    pub fn list(self) -> Vec<(u64, u64)> {
+        match self {
+            Ratios::One(p, q) => vec![(p, q)],
+            Ratios::UpTo(max_sum) => ratios(max_sum),
+        }
+    }
+
+    /// In words.
+    pub fn words(self) -> String {
+        match self {
+            Ratios::One(p, q) => format!("h2/h1 = {p}/{q}"),
+            Ratios::UpTo(max_sum) => format!("all h2/h1 = p/q, p + q <= {max_sum}"),
+        }
+    }
+
+    /// Echoed as input.
+    pub fn echo(self, document: Document) -> Document {
+        match self {
+            Ratios::One(p, q) => document.input("ratio", format!("{p}/{q}")),
+            Ratios::UpTo(max_sum) => document.input("max_sum", max_sum),
+        }
+    }
+}
