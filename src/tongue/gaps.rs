@@ -10,7 +10,6 @@ use std::ops::RangeInclusive;
 use num_integer::Integer;
 use num_traits::{Signed, Zero};
 
-use super::locate::Workspace;
 use super::modular;
 use super::precise::{Enclosure, Function, simplest};
 use super::spectrum::Edge;
@@ -47,7 +46,6 @@ pub struct Tongues {
     q: u64,
     rho: Rational,
     string: HalfString,
-    space: Workspace,
     /// Whether all tongues of even and of odd m are proven open; `None`: not asked yet.
     open: [Option<bool>; 2],
     effort: Effort,
@@ -68,15 +66,7 @@ impl Tongues {
         }
         let string = HalfString::new(p, q, rho)?;
         let rho = rho.clone();
-        Ok(Tongues {
-            p,
-            q,
-            rho,
-            string,
-            space: Workspace::default(),
-            open: [None; 2],
-            effort: Effort::default(),
-        })
+        Ok(Tongues { p, q, rho, string, open: [None; 2], effort: Effort::default() })
     }
 
     /// The numerator of h2/h1.
@@ -179,7 +169,7 @@ impl Tongues {
 
     /// The edges of each problem with the given indices, all side by side.
     fn wanted_edges(&mut self, wanted: &[Option<RangeInclusive<usize>>; 4]) -> Result<[Vec<Edge>; 4]> {
-        let mut found = self.string.eigenvalues(wanted, &mut self.space).into_iter();
+        let mut found = self.string.eigenvalues(wanted).into_iter();
         let mut edges = [const { Vec::new() }; 4];
         for (entry, edges) in Entry::ALL.into_iter().zip(&mut edges) {
             let first = wanted[entry as usize].as_ref().map_or(1, |range| *range.start());

@@ -1,180 +1,174 @@
 //! Eigenvalues told apart by counts.
 
+use std::ops::RangeInclusive;
+
 use super::lanes::{LANES, lanes};
 use super::string::{Entry, HalfString};
 
-/// An interval of κ that, by computed counts, holds no other eigenvalue of the problem: the one before lies below
-/// lo (1 + η), the one after above hi (1 − η).
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Bracket {
-    pub entry: Entry,
-    /// 1, 2, ... from below.
-    pub index: usize,
-    pub lo: f64,
-    pub hi: f64,
-}
+/// The indices wanted of each of the four problems.
+pub(super) type Wanted = [Option<RangeInclusive<usize>>; 4];
 
-/// The first and the last index wanted of each of the two problems with the same start: pinned and free at T/2.
-pub(super) type Wanted = [Option<(u64, u64)>; 2];
-
-/// κ and the computed counts there.
+/// κ and the computed counts there, of the four problems.
 #[derive(Clone, Copy, Debug)]
 struct Sample {
     kappa: f64,
-    counts: [u64; 2],
+    counts: [u32; 4],
 }
 
-impl Sample {
-    /// The most eigenvalues that one of the two problems has between two samples; `all`: even where none is wanted.
-    fn inside(&self, next: &Sample, wanted: &Wanted, all: bool) -> u64 {
-        let one = |e: usize| {
-            let (from, upto) = (self.counts[e], next.counts[e]);
-            let asked = all || wanted[e].is_some_and(|(first, last)| from < last && first <= upto);
-            if asked { upto.saturating_sub(from) } else { 0 }
-        };
-        one(0).max(one(1))
+/// An interval of κ between two samples.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Interval {
+    lower: Sample,
+    upper: Sample,
+}
+
+impl Interval {
+    /// κ at the ends.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.lower.kappa, self.upper.kappa]
+    }
+
+    /// The indices, by the counts, of a problem's eigenvalues inside.
+    pub fn inside(&self, entry: Entry) -> RangeInclusive<usize> {
+        let [from, upto] = [&self.lower, &self.upper].map(|sample| sample.counts[entry as usize] as usize);
+        from + 1..=upto
+    }
+
+    /// The index of a problem's eigenvalue that, by the counts, is alone inside: the one before lies below lo (1 + η), the
+    /// one after above hi (1 − η).
+    pub fn alone(&self, entry: Entry) -> Option<usize> {
+        let (from, upto) = (self.lower.counts[entry as usize], self.upper.counts[entry as usize]);
+        (upto == from + 1).then_some(upto as usize)
+    }
+
+    /// Shows the wanted eigenvalues that are alone.
+    #[inline(always)]
+    pub fn each_alone(&self, limits: &Limits, mut found: impl FnMut(Entry, usize)) {
+        // Bits rather than branches: which problems have one is anybody's guess.
+        let mut alone = 0u32;
+        for entry in 0..4 {
+            let (from, upto) = (self.lower.counts[entry], self.upper.counts[entry]);
+            let asked = (limits.first[entry] <= upto) & (upto <= limits.last[entry]);
+            alone |= u32::from(asked & (upto == from + 1)) << entry;
+        }
+        while alone != 0 {
+            let entry = alone.trailing_zeros() as usize;
+            found(Entry::ALL[entry], self.upper.counts[entry] as usize);
+            alone &= alone - 1;
+        }
+    }
+
+    /// The most eigenvalues inside of a problem of which one of those is wanted.
+    #[inline(always)]
+    fn most(&self, limits: &Limits) -> u32 {
+        let mut most = 0;
+        for entry in 0..4 {
+            let (from, upto) = (self.lower.counts[entry], self.upper.counts[entry]);
+            let asked = (limits.last[entry] > from) & (limits.first[entry] <= upto);
+            most = most.max(if asked { upto.saturating_sub(from) } else { 0 });
+        }
+        most
     }
 }
 
-/// Samples in increasing order of κ, dense enough to tell the wanted eigenvalues apart.
-pub(super) struct Samples {
-    starts_free: bool,
-    list: Vec<Sample>,
-    /// The intervals to cut, from below.
-    open: Vec<Open>,
+/// The first and the last index wanted of each problem.
+pub(super) struct Limits {
+    pub first: [u32; 4],
+    pub last: [u32; 4],
 }
 
-/// An interval between two samples with several eigenvalues of a problem, one of them wanted.
-#[derive(Clone, Copy)]
-struct Open {
-    /// The sample below, as a position in the list.
-    from: usize,
-    /// In so many points it is cut.
-    cuts: u64,
+impl Limits {
+    pub fn new(wanted: &Wanted) -> Self {
+        let mut limits = Limits { first: [1; 4], last: [0; 4] };
+        for (entry, range) in wanted.iter().enumerate() {
+            if let Some(range) = range {
+                (limits.first[entry], limits.last[entry]) = (*range.start() as u32, *range.end() as u32);
+            }
+        }
+        limits
+    }
+}
+
+/// Memory for the search.
+#[derive(Debug, Default)]
+pub(super) struct Cutting {
+    /// The intervals to cut, from below; those of the next round; in how many points they are cut; the points; what is found
+    /// there.
+    open: Vec<Interval>,
+    next: Vec<Interval>,
+    cuts: Vec<usize>,
+    points: Vec<f64>,
+    samples: Vec<Sample>,
 }
 
 /// At most so many points in an interval at a time.
-const MOST: u64 = 64;
-
-/// Where to count.
-#[derive(Default)]
-struct Points {
-    kappa: Vec<f64>,
-    starts_free: Vec<bool>,
-}
+const MOST: usize = 64;
 
 impl HalfString {
-    /// Counts until all wanted eigenvalues are alone between two samples, or counts in doubles cannot tell them apart;
-    /// for the problems that start free and those that start pinned.
-    pub fn sample(&self, wanted: &[Wanted; 2]) -> [Samples; 2] {
+    /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot tell them apart, and
+    /// shows each interval to `found`.
+    pub fn isolate(&self, limits: &Limits, space: &mut Cutting, mut found: impl FnMut(&Interval)) {
         let least_width = 16.0 * self.eta();
-        let mut both =
-            [true, false].map(|free| Samples::new(self, free, &wanted[usize::from(!free)], least_width));
-        let (mut points, mut found) = (Points::default(), Vec::new());
-        loop {
-            points.kappa.clear();
-            points.starts_free.clear();
-            both.iter_mut().for_each(|samples| samples.cut(&mut points));
-            if points.kappa.is_empty() {
-                return both;
+        let counts = self.dimensions.map(|zeros| zeros as u32);
+        let (zero, top) = (Sample { kappa: 0.0, counts: [0; 4] }, Sample { kappa: self.upper_bound, counts });
+        space.open.clear();
+        space.open.push(Interval { lower: zero, upper: top });
+        while !space.open.is_empty() {
+            self.cut(limits, space);
+            self.count_at(&space.points, &mut space.samples);
+            let Cutting { open, next, cuts, samples, .. } = space;
+            let mut sort = |piece: Interval| {
+                let is_wide = piece.upper.kappa - piece.lower.kappa >= least_width * piece.upper.kappa;
+                if piece.most(limits) > 1 && is_wide {
+                    next.push(piece);
+                } else {
+                    found(&piece);
+                }
+            };
+            let mut samples = samples.as_slice();
+            for (interval, &cuts) in open.iter().zip(&*cuts) {
+                let (inner, after) = samples.split_at(cuts);
+                let mut lower = interval.lower;
+                for &upper in inner {
+                    sort(Interval { lower, upper });
+                    lower = upper;
+                }
+                sort(Interval { lower, upper: interval.upper });
+                samples = after;
             }
-            self.count_at(&points, &mut found);
-            let mut rest = found.as_slice();
-            for (samples, wanted) in both.iter_mut().zip(wanted) {
-                rest = samples.merge(rest, wanted, least_width);
+            std::mem::swap(&mut space.open, &mut space.next);
+            space.next.clear();
+        }
+    }
+
+    /// Points that cut the open intervals evenly in √κ: as many as there are eigenvalues inside, and as cost nothing more.
+    fn cut(&self, limits: &Limits, space: &mut Cutting) {
+        let Cutting { open, cuts, points, .. } = space;
+        points.clear();
+        cuts.clear();
+        cuts.extend(open.iter().map(|interval| (interval.most(limits) as usize).min(MOST)));
+        let all: usize = cuts.iter().sum();
+        let spare = all.next_multiple_of(LANES) - all;
+        for (i, (interval, cuts)) in open.iter().zip(cuts).enumerate() {
+            *cuts += (spare + i) / open.len();
+            let (lower, upper) = (interval.lower.kappa.sqrt(), interval.upper.kappa.sqrt());
+            let step = (upper - lower) / (*cuts + 1) as f64;
+            for k in 1..=*cuts {
+                let root = lower + step * k as f64;
+                points.push(root * root);
             }
         }
     }
 
     /// The samples at the points.
-    fn count_at(&self, points: &Points, found: &mut Vec<Sample>) {
-        found.clear();
-        let filled = |x: &[f64]| lanes(|i| x[i.min(x.len() - 1)]);
-        for (kappa, starts_free) in points.kappa.chunks(LANES).zip(points.starts_free.chunks(LANES)) {
-            let last = starts_free.len() - 1;
-            let starts_free = std::array::from_fn(|i| starts_free[i.min(last)]);
-            let [pinned, free] = self.counts(&starts_free, &filled(kappa));
-            let sample = |i: usize| Sample { kappa: kappa[i], counts: [pinned[i] as u64, free[i] as u64] };
-            found.extend((0..kappa.len()).map(sample));
-        }
-    }
-}
-
-impl Samples {
-    /// All eigenvalues in one interval.
-    fn new(string: &HalfString, starts_free: bool, wanted: &Wanted, least_width: f64) -> Self {
-        let counts = Entry::starting(starts_free).map(|entry| string.dimension(entry) as u64);
-        let zero = Sample { kappa: 0.0, counts: [0, 0] };
-        let list = vec![zero, Sample { kappa: string.upper_bound, counts }];
-        let mut samples = Samples { starts_free, list, open: Vec::new() };
-        samples.open.extend(samples.open_below(1, wanted, least_width));
-        samples
-    }
-
-    /// The interval below a sample, if it is to be cut.
-    fn open_below(&self, upper: usize, wanted: &Wanted, least_width: f64) -> Option<Open> {
-        let (lower, upper) = (&self.list[upper - 1], &self.list[upper]);
-        let wide = upper.kappa - lower.kappa >= least_width * upper.kappa;
-        let open = lower.inside(upper, wanted, false) > 1 && wide;
-        let cuts = lower.inside(upper, wanted, true).min(MOST);
-        open.then_some(Open { from: self.list.len() - 2, cuts })
-    }
-
-    /// Adds points that cut the open intervals evenly in √κ.
-    fn cut(&mut self, points: &mut Points) {
-        let least = (LANES / self.open.len().max(1)) as u64;
-        for Open { from, cuts } in &mut self.open {
-            let [lower, upper] = [self.list[*from], self.list[*from + 1]].map(|sample| sample.kappa.sqrt());
-            *cuts = least.max(*cuts);
-            let step = (upper - lower) / (*cuts + 1) as f64;
-            points.kappa.extend((1..=*cuts).map(|k| {
-                let root = lower + step * k as f64;
-                root * root
-            }));
-        }
-        points.starts_free.resize(points.kappa.len(), self.starts_free);
-    }
-
-    /// Takes in the samples at the points of the open intervals; what is left are the others.
-    fn merge<'a>(&mut self, mut more: &'a [Sample], wanted: &Wanted, least_width: f64) -> &'a [Sample] {
-        let cuts = self.open.iter().map(|open| open.cuts as usize).sum::<usize>();
-        let room = Vec::with_capacity(self.list.len() + cuts);
-        let list = std::mem::replace(&mut self.list, room);
-        let open = std::mem::take(&mut self.open);
-        let mut done = 0;
-        for Open { from, cuts } in open {
-            self.list.extend_from_slice(&list[done..=from]);
-            let (inner, rest) = more.split_at(cuts as usize);
-            for &sample in inner.iter().chain([&list[from + 1]]) {
-                self.list.push(sample);
-                let open = self.open_below(self.list.len() - 1, wanted, least_width);
-                self.open.extend(open);
-            }
-            (more, done) = (rest, from + 2);
-        }
-        self.list.extend_from_slice(&list[done..]);
-        more
-    }
-
-    /// The wanted eigenvalues that are alone.
-    pub fn brackets(&self, wanted: &Wanted) -> Vec<Bracket> {
-        let mut alone = Vec::with_capacity(self.list.len());
-        for (end, entry) in Entry::starting(self.starts_free).into_iter().enumerate() {
-            let Some((first, last)) = wanted[end] else { continue };
-            for pair in self.list.windows(2) {
-                let (before, index) = (pair[0].counts[end], pair[1].counts[end]);
-                if before + 1 == index && first <= index && index <= last {
-                    let index = index as usize;
-                    alone.push(Bracket { entry, index, lo: pair[0].kappa, hi: pair[1].kappa });
-                }
+    fn count_at(&self, points: &[f64], samples: &mut Vec<Sample>) {
+        samples.clear();
+        for kappa in points.chunks(LANES) {
+            let [a, b, c, d] = self.counts(&lanes(|i| kappa[i.min(kappa.len() - 1)]));
+            for (i, &kappa) in kappa.iter().enumerate() {
+                let counts = [a[i] as u32, b[i] as u32, c[i] as u32, d[i] as u32];
+                samples.push(Sample { kappa, counts });
             }
         }
-        alone
-    }
-
-    /// The interval between two samples where one eigenvalue lies by the counts, perhaps with others.
-    pub fn around(&self, end: usize, index: u64) -> Option<(f64, f64)> {
-        let holds = |pair: &&[Sample]| pair[0].counts[end] < index && index <= pair[1].counts[end];
-        self.list.windows(2).find(holds).map(|pair| (pair[0].kappa, pair[1].kappa))
     }
 }

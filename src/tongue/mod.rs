@@ -29,6 +29,7 @@
 //! assert!(precise.width() < &precise.lo * num_rational::BigRational::new(1.into(), num_bigint::BigInt::from(10).pow(50)));
 //! ```
 
+mod batch;
 mod closing;
 mod elimination;
 mod gaps;

@@ -25,200 +25,256 @@
 //!     μ - ε²/(β - μ) <= κ_k <= μ + ε²/(μ - α).
 //! ```
 //!
-//! **Roundings** of the quotient: see [`super::half`]. By Cauchy's inequality Σ |terms of Σ z ρ| ≤ ε Σ m z² with the ε that
-//! is computed there, so n rounded terms put μ off by at most (n + 32) u ε; and n rounded masses, |μ − κ| being at most ε,
-//! by as much again.
+//! **The residual**, with S = Σ m z², W = Σ (1/ℓ + 1/ℓ')² z²/m and λ the largest 1/(m ℓ) of a node and a spring at it. By
+//! [`super::half`] each row holds but for u (4 κ m |z| + (1/ℓ + 1/ℓ') |z| + 3 |F| + 3 |F'|) and, at r, the mismatch; and
+//! Σ (3 |F| + 3 |F'|)²/m ≤ 36 λ Σ F² ℓ = 36 λ μ S, μ ≤ κ + ε. With p = |mismatch|/√(m_r S):
+//!
+//! ```text
+//!     ε <= p + u (4 κ + √(W/S) + 6 √(λ (κ + ε))),
+//!     ε² <= 9/8 p² + 27 u² (16 κ² + W/S + 36 λ (κ + ε)),
+//!     ε <= √(9/8 p² + 27 u² (16 κ² + W/S + 36 λ κ)) + 972 u² λ.
+//! ```
+//!
+//! So no absolute values need to be summed on the way. What is of second order in u is far below the 1.01 given to it.
+//!
+//! **The quotient's own error.** The terms of Σ z ρ add up to at most u (5 κ + 2 √(λ μ)) S ≤ ε S in absolute value, with the
+//! ε just computed; five are summed for each of n nodes, so rounding puts μ off by (5 n + 64) u ε at most, and n rounded
+//! masses in S, |μ − κ| being at most ε, by (n + 64) u ε. The terms e²/ℓ left out of e F add less than 4 u² (κ + λ).
 
-use super::half::{Arrival, deltas, halves};
-use super::lanes::{LANES, Lanes, lanes, largest, lesser, two_products, two_sums};
-use super::locate::Problems;
+use super::batch::Batch;
+use super::half::{Half, Ways, difference};
+use super::lanes::{LANES, Lanes, lanes};
 use super::string::HalfString;
 use crate::number::U;
-use crate::verdict::instructions::Task;
+use crate::verdict::instructions::Kernel;
+use crate::verdict::vector::Vector;
 
 /// 2^-96.
 const SLACK: f64 = f64::from_bits((1023 - 96) << 52);
 
 /// Steps at most: as a rule three are enough.
-const PASSES: u32 = 7;
+const PASSES: u32 = 6;
 
 /// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square, in
 /// units of the distance. So is one whose product with the step before is: what is left is about the product's square.
 const CLOSE: f64 = 1e-4;
 
-/// What bounds the search in each lane: the part of the bracket where the eigenvalue is, and bounds α, β of its
-/// neighbours.
-pub(super) struct Bounds {
-    pub inner: [Lanes; 2],
-    pub others: [Lanes; 2],
-}
+/// What part of the way to an end of the bracket is made where a step would lead beyond it.
+const NEARLY: f64 = 0.875;
 
-/// Modes and what they prove.
+/// What the modes prove.
+#[repr(align(64))]
 pub(super) struct Proofs {
     /// The eigenvalue's enclosure, times the ticks: an edge in s.
     pub edge: [Lanes; 2],
-    /// The enclosure's radius before it is rounded to doubles, in units of μ; infinite where nothing is proven.
+    /// The enclosure's radius before it is rounded to doubles, in κ; infinite where nothing is proven.
     pub radius: Lanes,
     /// μ, rounded.
     pub quotient: Lanes,
 }
 
 impl HalfString {
-    /// Steps towards the zero from κ within the bounds, with the halves joined at the nodes `at`, and the modes where it ends.
-    pub fn prove(&self, problems: &Problems, bounds: &Bounds, at: &Lanes) -> Proofs {
-        self.instructions.perform(Proving { string: self, problems, bounds, at })
+    /// Steps from each κ towards the eigenvalue, and the modes where they end.
+    pub fn prove(&self, batch: &Batch) -> Proofs {
+        self.instructions.compute(Proving { string: self, batch })
     }
 }
 
 struct Proving<'a> {
     string: &'a HalfString,
-    problems: &'a Problems,
-    bounds: &'a Bounds,
-    at: &'a Lanes,
+    batch: &'a Batch,
 }
 
-impl Task for Proving<'_> {
+impl Kernel for Proving<'_> {
     type Output = Proofs;
 
     #[inline(always)]
-    fn run(self) -> Proofs {
-        let mut problems = *self.problems;
-        let mass = lanes(|i| self.string.mass(self.at[i] as usize));
-        let mut before = Point { kappa: problems.kappa, mismatch: [0.0; LANES], slope: [0.0; LANES] };
+    fn run<V: Vector>(self) -> Proofs {
+        let Proving { string, batch } = self;
+        let (node, ways) = (Nodes::new(string, &batch.at), Ways::new(string, batch));
+        let inner = [V::load(&batch.inside[0]), V::load(&batch.inside[1])];
+        let eta = 2.0 * string.eta();
+        let others = [
+            V::load(&batch.alone[0]).mul(V::splat(1.0 + eta)),
+            V::load(&batch.alone[1]).mul(V::splat(1.0 - eta)),
+        ];
+        let (zero, one, close) = (V::splat(0.0), V::splat(1.0), V::splat(CLOSE));
+        let mut kappa = V::load(&batch.kappa);
+        let mut before = Point { kappa, mismatch: zero, slope: zero };
         // The step before: the first is plain Newton's, as long as a neighbour is far.
-        let mut last = [f64::INFINITY; LANES];
+        let mut last = V::splat(f64::INFINITY);
         for _ in 0..PASSES {
-            let point = Point::new(self.string, &problems, self.at, &mass);
+            let point = Point::new(kappa, &ways.halves::<V, false>(kappa), node.mass);
             let next = point.zero(&before);
-            let inside = self.within(&self.bounds.inner, &next);
-            let distance = self.within(&self.bounds.others, &next);
-            let step = lanes(|i| (next[i] - problems.kappa[i]).abs());
-            problems.kappa = lanes(|i| if inside[i] > 0.0 { next[i] } else { problems.kappa[i] });
+            let (inside, distance) = (within(&inner, next), within(&others, next));
+            let step = next.sub(kappa).abs();
+            // A step beyond an end of the bracket is made one nearly to that end.
+            let end = next.if_above(kappa, inner[1], inner[0]);
+            let short = V::splat(NEARLY).mul_add(end.sub(kappa), kappa);
+            kappa = inside.if_above(zero, next, short);
             // By how much the step, and its product with the step before, are too long.
-            let reach = lanes(|i| CLOSE * distance[i]);
-            let excess = lanes(|i| step[i] - reach[i]);
-            let excess = lanes(|i| lesser(excess[i], step[i] * last[i] - reach[i] * distance[i]));
-            let far = lanes(|i| if inside[i] > 0.0 { excess[i] } else { 0.0 });
-            if largest(&far) <= 0.0 {
+            let reach = close.mul(distance);
+            let excess = step.sub(reach).lesser(step.mul(last).sub(reach.mul(distance)));
+            if !inside.if_above(zero, excess, one).any_above(zero) {
                 break;
             }
             (before, last) = (point, step);
         }
-        let [left, right] = halves::<true>(self.string, &problems, self.at);
-        joined(self.string, &problems.kappa, self.at, [left.arrival(), right.arrival()])
-            .prove(self.string, self.bounds)
+        Mode::new(string, kappa, &node, &ways.halves::<V, true>(kappa)).prove(string.ticks, &others)
     }
 }
 
-impl Proving<'_> {
-    /// The distance to the nearer end: positive inside.
+/// The distance to the nearer end: positive inside.
+#[inline(always)]
+fn within<V: Vector>([lo, hi]: &[V; 2], x: V) -> V {
+    x.sub(*lo).lesser(hi.sub(x))
+}
+
+/// The nodes r.
+struct Nodes<V> {
+    mass: V,
+    /// What rounding took from it.
+    lost: V,
+    inverse_mass: V,
+    /// (1/ℓ + 1/ℓ')²/m.
+    weight: V,
+}
+
+impl<V: Vector> Nodes<V> {
     #[inline(always)]
-    fn within(&self, [lo, hi]: &[Lanes; 2], x: &Lanes) -> Lanes {
-        lanes(|i| lesser(x[i] - lo[i], hi[i] - x[i]))
+    fn new(string: &HalfString, at: &Lanes) -> Self {
+        let kind = |i: usize| string.nodes[at[i] as usize].kind;
+        Nodes {
+            mass: V::load(&lanes(|i| string.masses[kind(i)])),
+            lost: V::load(&lanes(|i| string.rests[kind(i)])),
+            inverse_mass: V::load(&lanes(|i| string.inverse_masses[kind(i)])),
+            weight: V::load(&lanes(|i| string.weight(at[i] as usize))),
+        }
     }
 }
 
 /// The mismatch at r as a function of κ: its value, and −dκ of a unit of it, 1/Σ m z².
 #[derive(Clone, Copy)]
-struct Point {
-    kappa: Lanes,
-    mismatch: Lanes,
-    slope: Lanes,
+struct Point<V> {
+    kappa: V,
+    mismatch: V,
+    slope: V,
 }
 
-impl Point {
+impl<V: Vector> Point<V> {
     #[inline(always)]
-    fn new(string: &HalfString, problems: &Problems, at: &Lanes, mass: &Lanes) -> Self {
-        let [left, right] = halves::<false>(string, problems, at);
-        let kappa = problems.kappa;
-        let own = lanes(|i| kappa[i] * mass[i]);
-        let ((f, a), (g, b)) = (left.force_and_squares(), right.force_and_squares());
-        let mismatch = lanes(|i| f[i] + g[i] - own[i]);
-        let slope = lanes(|i| 1.0 / (a[i] + b[i] + mass[i]));
-        Point { kappa, mismatch, slope }
+    fn new(kappa: V, [left, right]: &[Half<V>; 2], mass: V) -> Self {
+        let one = V::splat(1.0);
+        let (a, b) = (one.div(left.x), one.div(right.x));
+        let mismatch = kappa.neg_mul_add(mass, left.v.mul_add(a, right.v.mul(b)));
+        let squares = left.squares.mul(a).mul_add(a, right.squares.mul(b).mul_add(b, mass));
+        Point { kappa, mismatch, slope: one.div(squares) }
     }
 
     /// Where the mismatch vanishes: by the cubic for κ as a function of it, through this point and the one before with
     /// the slopes; by Newton's step where that is no improvement of it, or there is no point before.
     #[inline(always)]
-    fn zero(&self, before: &Point) -> Lanes {
-        lanes(|i| {
-            let (y, z) = (self.mismatch[i], before.mismatch[i]);
-            let newton = y * self.slope[i];
-            let inverse = 1.0 / (y - z);
-            let chord = (self.kappa[i] - before.kappa[i]) * inverse;
-            let [here, there] = [(-self.slope[i] - chord) * inverse, (chord + before.slope[i]) * inverse];
-            let bend = y * y * (here - (here - there) * inverse * z);
-            // No comparison holds for NaN.
-            let bend = if bend.abs() < 0.5 * newton.abs() { bend } else { 0.0 };
-            self.kappa[i] + (newton + bend)
-        })
+    fn zero(&self, before: &Point<V>) -> V {
+        let (y, z) = (self.mismatch, before.mismatch);
+        let newton = y.mul(self.slope);
+        let inverse = V::splat(1.0).div(y.sub(z));
+        let chord = self.kappa.sub(before.kappa).mul(inverse);
+        // The slope of κ is minus that which is kept.
+        let (here, there) = (self.slope.add(chord).mul(inverse), before.slope.add(chord).mul(inverse));
+        let bend = y.mul(y).mul(here.add(there).mul(inverse).mul_sub(z, here));
+        // No comparison holds for NaN.
+        let bend = newton.abs().if_above(V::splat(2.0).mul(bend.abs()), bend, V::splat(0.0));
+        self.kappa.add(newton.add(bend))
     }
 }
 
-/// The quotient of the two halves joined at the nodes `at`.
-#[inline(always)]
-fn joined(string: &HalfString, kappa: &Lanes, at: &Lanes, [left, right]: [Arrival; 2]) -> Modes {
-    let table = |numbers: &[f64; 8]| lanes(|i| numbers[string.nodes[at[i] as usize].kind]);
-    let (mass, lost, weight) = (table(&string.masses), table(&string.rests), table(&string.inverse_masses));
-    let kick = lanes(|i| kappa[i] * mass[i]);
-    let delta = deltas(kappa, &mass, &lost, &kick);
-    let (force, first) = two_sums(&left.force, &right.force);
-    let (most, second) = two_sums(&force, &lanes(|i| -kick[i]));
-    let rest = lanes(|i| left.rest[i] + right.rest[i] + delta[i]);
-    let mismatch = lanes(|i| most[i] + (first[i] + second[i] + rest[i]));
-    let squares = lanes(|i| left.squares[i] + right.squares[i] + mass[i]);
-    let correction = lanes(|i| (left.work[i] + right.work[i] + mismatch[i]) / squares[i]);
-    let row = lanes(|i| mismatch[i].abs() + left.g[i] + right.g[i]);
-    let residual = lanes(|i| left.residual[i] + right.residual[i] + row[i] * row[i] * weight[i]);
-    let residual = lanes(|i| (1.01 * residual[i] / squares[i]).sqrt());
-    // The mismatch is off by less than 2^-96 of its three terms; underflows are covered by 2^-96 κ.
-    let terms = lanes(|i| (left.force[i].abs() + right.force[i].abs() + kick[i]) / squares[i] + kappa[i]);
-    let rounded = 2.0 * (string.nodes.len() as f64 + 64.0) * U;
-    let error = lanes(|i| 1.01 * (rounded * residual[i] + SLACK * terms[i]));
-    let (hi, lo) = two_sums(kappa, &correction);
-    Modes { hi, lo, error, residual }
+/// A half scaled to z_r = 1.
+struct Arrival<V> {
+    /// v, and what rounding took from it.
+    force: V,
+    rest: V,
+    squares: V,
+    work: V,
+    stretch: V,
+}
+
+impl<V: Vector> Arrival<V> {
+    #[inline(always)]
+    fn new(half: &Half<V>) -> Self {
+        let inverse = V::splat(1.0).div(half.x);
+        let force = half.v.mul(inverse);
+        let square = inverse.mul(inverse);
+        Arrival {
+            force,
+            rest: force.neg_mul_add(half.x, half.v).mul(inverse),
+            squares: half.squares.mul(square),
+            work: half.work.mul(square),
+            stretch: half.stretch.mul(square),
+        }
+    }
 }
 
 /// Rayleigh quotients and their residuals.
-struct Modes {
+struct Mode<V> {
     /// μ = hi + lo, off by at most `error`.
-    hi: Lanes,
-    lo: Lanes,
-    error: Lanes,
+    hi: V,
+    lo: V,
+    error: V,
     /// ε.
-    residual: Lanes,
+    residual: V,
 }
 
-impl Modes {
-    /// The module's theorem.
+impl<V: Vector> Mode<V> {
+    /// The two halves joined at r.
     #[inline(always)]
-    fn prove(&self, string: &HalfString, bounds: &Bounds) -> Proofs {
-        let mu = &self.hi;
-        // What the quotient's own uncertainty takes from the distances.
-        let own = lanes(|i| 2.0 * (self.error[i] + f64::EPSILON * mu[i]));
-        let down = lanes(|i| mu[i] - own[i] - bounds.others[0][i]);
-        let up = lanes(|i| bounds.others[1][i] - own[i] - mu[i]);
-        let least = lanes(|i| lesser(down[i], up[i]));
-        let radius = lanes(|i| 1.01 * (self.residual[i] * (self.residual[i] / least[i]) + self.error[i]));
-        // NaN proves nothing.
-        let proven = lanes(|i| if self.residual[i] < least[i] { radius[i] / mu[i] } else { f64::INFINITY });
-        Proofs { edge: self.rounded(string.ticks, &radius), radius: proven, quotient: *mu }
+    fn new(string: &HalfString, kappa: V, node: &Nodes<V>, [left, right]: &[Half<V>; 2]) -> Self {
+        let (left, right) = (Arrival::new(left), Arrival::new(right));
+        let kick = kappa.mul(node.mass);
+        let (force, first) = left.force.two_sum(right.force);
+        let (most, second) = force.two_sub(kick);
+        let rest = left.rest.add(right.rest).add(difference(kappa, node.mass, node.lost, kick));
+        let mismatch = most.add(first.add(second).add(rest));
+        let inverse = V::splat(1.0).div(left.squares.add(right.squares).add(node.mass));
+        let correction = left.work.add(right.work).add(mismatch).mul(inverse);
+        // ε and the quotient's own error: see the module's text.
+        let stiffest = V::splat(string.stiffest);
+        let stretch = left.stretch.add(right.stretch).add(node.weight).mul(inverse);
+        let rounding =
+            kappa.mul_add(V::splat(16.0).mul(kappa), V::splat(36.0).mul(stiffest).mul_add(kappa, stretch));
+        let own = mismatch.mul(mismatch).mul(node.inverse_mass).mul(inverse);
+        let square = V::splat(1.125).mul_add(own, V::splat(27.0 * U * U).mul(rounding));
+        let residual = V::splat(1.01).mul(square.sqrt().add(V::splat(972.0 * U * U).mul(stiffest)));
+        let terms = left.force.abs().add(right.force.abs()).add(kick).mul_add(inverse, kappa);
+        let rounded = V::splat((6.0 * string.nodes.len() as f64 + 128.0) * U).mul(residual);
+        let omitted = V::splat(4.0 * U * U).mul(kappa.add(stiffest));
+        let error = V::splat(1.01).mul(V::splat(SLACK).mul_add(terms, rounded.add(omitted)));
+        let (hi, lo) = kappa.two_sum(correction);
+        Mode { hi, lo, error, residual }
     }
 
-    /// The doubles around [μ − radius, μ + radius] · ticks. What follows rounds by less than 10 u², a hundredth of the
-    /// least radius.
+    /// The module's theorem.
     #[inline(always)]
-    fn rounded(&self, ticks: f64, radius: &Lanes) -> [Lanes; 2] {
-        let (product, rest) = two_products(&self.hi, &[ticks; LANES]);
-        let rest = lanes(|i| ticks.mul_add(self.lo[i], rest[i]));
-        let (nearest, rest) = two_sums(&product, &rest);
-        let radius = lanes(|i| 1.02 * ticks * radius[i]);
-        let (lo, below) = two_sums(&nearest, &lanes(|i| rest[i] - radius[i]));
-        let (hi, above) = two_sums(&nearest, &lanes(|i| rest[i] + radius[i]));
-        [
-            lanes(|i| if below[i] < 0.0 { lo[i].next_down() } else { lo[i] }),
-            lanes(|i| if above[i] > 0.0 { hi[i].next_up() } else { hi[i] }),
-        ]
+    fn prove(&self, ticks: f64, others: &[V; 2]) -> Proofs {
+        let (mu, infinity) = (self.hi, V::splat(f64::INFINITY));
+        // What the quotient's own uncertainty takes from the distances.
+        let own = V::splat(2.0).mul(V::splat(f64::EPSILON).mul_add(mu, self.error));
+        let least = within(others, mu).sub(own);
+        let radius = V::splat(1.01).mul(self.residual.mul(self.residual.div(least)).add(self.error));
+        // NaN proves nothing.
+        let proven = least.if_above(self.residual, radius, infinity);
+        let mut proofs = Proofs { edge: [[0.0; LANES]; 2], radius: [0.0; LANES], quotient: [0.0; LANES] };
+        proven.store(&mut proofs.radius);
+        mu.store(&mut proofs.quotient);
+        // What follows rounds by less than 10 u², a hundredth of the least radius.
+        let ticks = V::splat(ticks);
+        let (product, rest) = mu.two_product(ticks);
+        let (nearest, rest) = product.two_sum(ticks.mul_add(self.lo, rest));
+        let radius = V::splat(1.02).mul(ticks).mul(radius);
+        let (lo, below) = nearest.two_sum(rest.sub(radius));
+        let (hi, above) = nearest.two_sum(rest.add(radius));
+        let zero = V::splat(0.0);
+        zero.if_above(below, lo.below(), lo).store(&mut proofs.edge[0]);
+        above.if_above(zero, hi.above(), hi).store(&mut proofs.edge[1]);
+        proofs
     }
 }

@@ -94,12 +94,7 @@ impl Tongues {
         let counts = |s: f64| {
             // The counts neither underflow nor overflow within these.
             let kappa = (s / string.ticks).min(4.0 * string.upper_bound);
-            let from = |starts_free: bool| {
-                let counts = string.counts(&[starts_free; LANES], &[kappa; LANES]);
-                counts.map(|counts| if kappa < 1e-100 { 0 } else { counts[0] as u64 })
-            };
-            let ([a, c], [b, d]) = (from(true), from(false));
-            [a, b, c, d]
+            string.counts(&[kappa; LANES]).map(|counts| if kappa < 1e-100 { 0 } else { counts[0] as u64 })
         };
         let ([a, b, c, d], [e, f, g, h]) = (counts(lo * (1.0 - SLACK)), counts(hi * (1.0 + SLACK)));
         let first = (2 * b.min(c) + 2).min(2 * a.min(d) + 1);

@@ -16,13 +16,12 @@
 //! **Monotonicity** (Courant, Fischer). κ_k is a min-max of Σ (x_j − x_{j−1})²/ℓ_j / Σ m_j x_j². So if every mass
 //! changes by a factor in [1/μ, μ] and every length by one in [1/ν, ν], κ_k changes by one in [1/(μν), μν].
 
-use num_traits::{Signed, Zero};
+use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::isolate::Wanted;
-use super::lanes::{Aligned, Lanes};
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
-use crate::number::{Rational, rational};
+use crate::number::Rational;
 use crate::propagator::{Schedule, Weight};
 use crate::verdict::instructions::Instructions;
 
@@ -53,15 +52,19 @@ impl Entry {
         matches!(self, Entry::C | Entry::D)
     }
 
-    /// The two problems with the same start, by the end: pinned, free.
-    pub(super) fn starting(free: bool) -> [Entry; 2] {
-        if free { [Entry::A, Entry::C] } else { [Entry::B, Entry::D] }
+    /// The problem with such ends.
+    pub(super) fn of_ends(starts_free: bool, ends_free: bool) -> Entry {
+        match (starts_free, ends_free) {
+            (true, false) => Entry::A,
+            (false, false) => Entry::B,
+            (true, true) => Entry::C,
+            (false, true) => Entry::D,
+        }
     }
 
-    /// One eigenvalue alone, see [`super::isolate::Wanted`].
-    pub(super) fn alone(self, index: usize) -> [Wanted; 2] {
-        let asked = |entry: Entry| (entry == self).then_some((index as u64, index as u64));
-        [true, false].map(|free| Entry::starting(free).map(asked))
+    /// One eigenvalue alone wanted.
+    pub(super) fn alone(self, index: usize) -> Wanted {
+        Entry::ALL.map(|entry| (entry == self).then_some(index..=index))
     }
 
     /// The entry's name in documents.
@@ -89,12 +92,11 @@ pub(super) struct Node {
 pub(super) struct Step {
     pub kind: usize,
     pub length: f64,
-    /// 1/length, to the nearest.
-    pub inverse: f64,
+    /// The node's mass.
+    pub mass: f64,
+    /// The node's (1/ℓ + 1/ℓ')²/m, rounded; 0 where there is no mass.
+    pub weight: f64,
 }
-
-/// κ m, rounded, by kind of node.
-pub(super) type Kicks = Aligned<[Lanes; 8]>;
 
 /// Decades by which (x, v) may grow or shrink between two rescalings: squares of it stay in the range of doubles.
 const RANGE: f64 = 140.0;
@@ -106,12 +108,16 @@ pub(super) struct HalfString {
     /// The steps from t = 0 to T/2, and those back.
     pub forward: Vec<Step>,
     pub backward: Vec<Step>,
+    /// The kinds of nodes that there are.
+    pub kinds: Vec<usize>,
     /// The masses by kind (2 · clocks + whole?), each within 2u relative of its exact value, u = 2^-53.
     pub masses: [f64; 8],
     /// What rounding took from them, to within 2^-104 of the masses.
     pub rests: [f64; 8],
     /// 1/m, rounded; 0 where there is no mass.
     pub inverse_masses: [f64; 8],
+    /// The largest 1/(m ℓ) of a node and a spring at it, or a little more.
+    pub stiffest: f64,
     /// Ticks in h1: s = κ · ticks.
     pub ticks: f64,
     /// Above all eigenvalues κ of all four problems.
@@ -119,7 +125,7 @@ pub(super) struct HalfString {
     /// Nodes between two rescalings.
     pub block: usize,
     /// How many positive eigenvalues each problem has.
-    dimensions: [usize; 4],
+    pub dimensions: [usize; 4],
     /// What the kernels run on.
     pub instructions: Instructions,
 }
@@ -145,9 +151,8 @@ impl HalfString {
                           use `map` or `verdict`, which take any sign";
             return Err(Error::input("rho", rho, remedy));
         }
-        let mass = rho * Rational::new(p.into(), q.into());
-        let slow = rational::to_f64(&mass);
-        if !rho.is_zero() && !(1.0 / EXTREME..=EXTREME).contains(&slow) {
+        let mass = slow_mass(p, q, rho);
+        if !rho.is_zero() && !(1.0 / EXTREME..=EXTREME).contains(&mass.hi) {
             return Err(Error::input("rho", rho, "rho p/q must lie between 1e-16 and 1e16"));
         }
         if p.saturating_add(q) > MOST_KICKS {
@@ -156,7 +161,7 @@ impl HalfString {
             return Err(Error::budget(cost));
         }
         let (nodes, ticks) = nodes(p, q, rho.is_zero())?;
-        Ok(HalfString::with_nodes(nodes, ticks, Twofold::from_rational(&mass)))
+        Ok(HalfString::with_nodes(nodes, ticks, mass))
     }
 
     fn with_nodes(nodes: Vec<Node>, ticks: f64, slow: Twofold) -> Self {
@@ -165,23 +170,22 @@ impl HalfString {
         let part = |kind: usize| if kind.is_multiple_of(2) { 0.5 } else { 1.0 };
         let masses: [f64; 8] = std::array::from_fn(|kind| whole[kind / 2].0 * part(kind));
         let inverse = |m: f64| if m > 0.0 { 1.0 / m } else { 0.0 };
-        let step = |from: &Node, length: f64| Step { kind: from.kind, length, inverse: 1.0 / length };
-        let forward = nodes.windows(2).map(|pair| step(&pair[0], pair[1].length)).collect();
-        let backward = nodes.windows(2).rev().map(|pair| step(&pair[1], pair[1].length)).collect();
         let mut string = HalfString {
             nodes,
-            forward,
-            backward,
+            forward: Vec::new(),
+            backward: Vec::new(),
+            kinds: Vec::new(),
             masses,
             rests: std::array::from_fn(|kind| whole[kind / 2].1 * part(kind)),
             inverse_masses: masses.map(inverse),
+            stiffest: 0.0,
             ticks,
             upper_bound: 0.0,
             block: 1,
             dimensions: [0; 4],
             instructions: Instructions::best(),
         };
-        string.upper_bound = string.bound();
+        string.lay_steps();
         string.block = string.nodes_in_range();
         string.dimensions = Entry::ALL.map(|entry| string.count_masses(entry));
         string
@@ -198,6 +202,12 @@ impl HalfString {
         self.masses[self.nodes[j].kind]
     }
 
+    /// The weight of node j, see [`Step`].
+    #[inline(always)]
+    pub fn weight(&self, j: usize) -> f64 {
+        self.forward.get(j).or(self.backward.first()).map_or(0.0, |step| step.weight)
+    }
+
     /// How many positive eigenvalues the problem has.
     pub fn dimension(&self, entry: Entry) -> usize {
         self.dimensions[entry as usize]
@@ -212,16 +222,33 @@ impl HalfString {
         massive - lost - usize::from(entry == Entry::C)
     }
 
-    /// max (2/m)(1/ℓ + 1/ℓ') (Gershgorin on M⁻¹K).
-    fn bound(&self) -> f64 {
-        let inverse = |step: Option<&Step>| step.map_or(0.0, |step| step.inverse);
-        let row = |j: usize| {
-            let before = j.checked_sub(1).and_then(|j| self.forward.get(j));
-            let weight = self.inverse_masses[self.nodes[j].kind];
-            2.0 * (inverse(before) + inverse(self.forward.get(j))) * weight
-        };
-        let largest = (0..=self.last()).map(row).fold(0.0, f64::max);
-        largest * (1.0 + 1e-9) // far beyond the rounding of this line
+    /// The steps from node to node, and what bounds the string as a whole.
+    fn lay_steps(&mut self) {
+        const BEYOND: f64 = 1.0 + 1e-9; // far beyond the rounding of these lines
+        let n = self.last();
+        self.forward.reserve(n);
+        self.backward.reserve(n);
+        let (mut before, mut seen) = (0.0, [false; 8]);
+        for j in 0..=n {
+            let Node { length, kind } = self.nodes[j];
+            seen[kind] = true;
+            let after = self.nodes.get(j + 1).map_or(0.0, |next| 1.0 / next.length);
+            let (mass, inverse_mass) = (self.masses[kind], self.inverse_masses[kind]);
+            let row = (before + after) * inverse_mass;
+            // Gershgorin on M⁻¹K.
+            self.upper_bound = self.upper_bound.max(2.0 * row * BEYOND);
+            self.stiffest = self.stiffest.max(before.max(after) * inverse_mass * BEYOND);
+            let weight = (before + after) * row;
+            if j < n {
+                self.forward.push(Step { kind, length: self.nodes[j + 1].length, mass, weight });
+            }
+            if j > 0 {
+                self.backward.push(Step { kind, length, mass, weight });
+            }
+            before = after;
+        }
+        self.backward.reverse();
+        self.kinds.extend((0..8).filter(|&kind| seen[kind]));
     }
 
     /// So many that max(|x|, |v|) changes by a factor within 1e±140: a kick and a drift multiply it by (1 + k) (1 + ℓ) at
@@ -233,6 +260,15 @@ impl HalfString {
         let growth = (1.0 + 2.0 * self.upper_bound * heaviest) * (1.0 + longest);
         ((RANGE / growth.log10()) as usize).max(1)
     }
+}
+
+/// R = ρ p/q.
+fn slow_mass(p: u64, q: u64, rho: &Rational) -> Twofold {
+    let term = |big: &num_bigint::BigInt, small: u64| big.to_u64()?.checked_mul(small);
+    term(rho.numer(), p)
+        .zip(term(rho.denom(), q))
+        .and_then(|(a, b)| Twofold::quotient(a, b))
+        .unwrap_or_else(|| Twofold::from_rational(&(rho * Rational::new(p.into(), q.into()))))
 }
 
 /// The nodes, and how many ticks h1 has.

@@ -18,14 +18,12 @@
 //! monotonicity (see [`super::string`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
 //! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
 
-use super::lanes::{Aligned, LANES, Lanes, lanes, lesser, normalizing};
-use super::locate::start;
-use super::string::{HalfString, Kicks};
+use super::batch::Batch;
+use super::lanes::{LANES, Lanes, lanes, lesser};
+use super::string::HalfString;
 use crate::number::U;
-use crate::verdict::instructions::Task;
-
-/// N̂(κ) for a pinned and for a free end at T/2, of positive eigenvalues: whole numbers.
-pub(super) type Counts = [Lanes; 2];
+use crate::verdict::instructions::Kernel;
+use crate::verdict::vector::Vector;
 
 impl HalfString {
     /// The uncertainty η of a computed count, see the module's theorem.
@@ -33,115 +31,126 @@ impl HalfString {
         (4.0 * self.nodes.len() as f64 + 16.0) * U
     }
 
-    /// The counts for each lane, of the two problems that are free (or pinned) at t = 0. Above all eigenvalues every κ
-    /// counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
-    pub fn counts(&self, starts_free: &[bool; LANES], kappa: &Lanes) -> Counts {
-        let starts_free = lanes(|i| f64::from(u8::from(starts_free[i])));
+    /// N̂(κ) of positive eigenvalues, whole numbers: of the four problems, for the κ of each lane. Above all eigenvalues
+    /// every κ counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
+    pub fn counts(&self, kappa: &Lanes) -> [Lanes; 4] {
         let kappa = lanes(|i| lesser(kappa[i], 2.0 * self.upper_bound));
-        self.instructions.perform(Counting { string: self, starts_free: &starts_free, kappa: &kappa })
+        self.instructions.compute(Counting { string: self, kappa: &kappa })
+    }
+
+    /// Halves the intervals in which the eigenvalues are so many times, by the entries' signs.
+    pub fn narrow(&self, batches: &mut [Batch], halvings: u32) {
+        for pair in batches.chunks_mut(2) {
+            self.instructions.compute(Narrowing { string: self, pair, halvings });
+        }
+    }
+}
+
+/// Two walks from node to node side by side: one alone would wait for itself.
+struct Walks<V> {
+    x: [V; 2],
+    /// Behind the node's kick.
+    v: [V; 2],
+    changes: [V; 2],
+}
+
+/// In doubles from here on to twice it whole numbers count the last bits.
+const UNIT: f64 = (1u64 << 52) as f64;
+
+impl<V: Vector> Walks<V> {
+    /// From the first node, free (1) or pinned (0), to the last, counting the changes of sign if asked to.
+    #[inline(always)]
+    fn new<const COUNT: bool>(string: &HalfString, starts_free: &[V; 2], kappa: &[V; 2]) -> Self {
+        let mut kicks = [*kappa; 8];
+        for &kind in &string.kinds {
+            let mass = V::splat(string.masses[kind]);
+            kicks[kind] = [kappa[0].mul(mass), kappa[1].mul(mass)];
+        }
+        let (mut x, mut v, mut changes) = (*starts_free, *starts_free, [V::splat(UNIT); 2]);
+        for g in 0..2 {
+            let first = kicks[string.nodes[0].kind][g];
+            v[g] = first.neg_mul_add(x[g], V::splat(1.0).sub(x[g]));
+        }
+        for block in string.nodes[1..].chunks(string.block) {
+            for node in block {
+                let (kick, length) = (&kicks[node.kind], V::splat(node.length));
+                for g in 0..2 {
+                    let next = length.mul_add(v[g], x[g]);
+                    if COUNT {
+                        changes[g] = changes[g].count_change(next, x[g]);
+                    }
+                    v[g] = kick[g].neg_mul_add(next, v[g]);
+                    x[g] = next;
+                }
+            }
+            for g in 0..2 {
+                let factor = x[g].abs().larger(v[g].abs()).normalizing();
+                x[g] = x[g].mul(factor);
+                v[g] = v[g].mul(factor);
+            }
+        }
+        Walks { x, v, changes }
     }
 }
 
 struct Counting<'a> {
     string: &'a HalfString,
-    starts_free: &'a Lanes,
     kappa: &'a Lanes,
 }
 
-impl Task for Counting<'_> {
-    type Output = Counts;
+impl Kernel for Counting<'_> {
+    type Output = [Lanes; 4];
 
     #[inline(always)]
-    fn run(self) -> Counts {
-        count(self.string, self.starts_free, self.kappa)
-    }
-}
-
-#[inline(always)]
-fn count(string: &HalfString, starts_free: &Lanes, kappa: &Lanes) -> Counts {
-    let kicks = string.kicks(kappa);
-    let first = &kicks.0[string.nodes[0].kind];
-    let (mut x, mut v) = start(starts_free);
-    v = lanes(|i| (-first[i]).mul_add(x[i], v[i]));
-    let mut changes = [0; LANES];
-    for block in string.nodes[1..].chunks(string.block) {
-        for node in block {
-            let kick: &Lanes = &kicks.0[node.kind];
-            let next = lanes(|i| node.length.mul_add(v[i], x[i]));
-            for i in 0..LANES {
-                changes[i] += (next[i].to_bits() ^ x[i].to_bits()) >> 63;
-            }
-            v = lanes(|i| (-kick[i]).mul_add(next[i], v[i]));
-            x = next;
+    fn run<V: Vector>(self) -> [Lanes; 4] {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let starts_free = [one, zero];
+        let walks = Walks::new::<true>(self.string, &starts_free, &[V::load(self.kappa); 2]);
+        let mut counts = [[0.0; LANES]; 4];
+        for g in 0..2 {
+            // A, B: pinned at T/2.
+            let pinned = walks.changes[g].sub(V::splat(UNIT));
+            pinned.store(&mut counts[g]);
+            // C, D: one more past the last node; the zero eigenvalue of C is below every κ and not counted.
+            let past = zero.if_above(walks.x[g].mul(walks.v[g]), one, zero);
+            pinned.add(past).sub(starts_free[g]).store(&mut counts[g + 2]);
         }
-        let factor = normalizing(&x, &v);
-        x = lanes(|i| x[i] * factor[i]);
-        v = lanes(|i| v[i] * factor[i]);
-    }
-    let changes = lanes(|i| whole(changes[i]));
-    let past = lanes(|i| if x[i] * v[i] < 0.0 { 1.0 } else { 0.0 });
-    // The zero eigenvalue of C is below every κ and not counted.
-    let free = lanes(|i| changes[i] + past[i] - starts_free[i]);
-    [changes, free]
-}
-
-/// A whole number below 2^52 as a double.
-#[inline(always)]
-fn whole(n: u64) -> f64 {
-    const UNIT: f64 = (1u64 << 52) as f64;
-    f64::from_bits(UNIT.to_bits() | n) - UNIT
-}
-
-/// An eigenvalue for each lane, and where it is.
-#[derive(Clone, Copy)]
-pub(super) struct Targets {
-    /// 1 where the end is free, else 0.
-    pub starts_free: Lanes,
-    pub ends_free: Lanes,
-    pub index: Lanes,
-    pub inside: [Lanes; 2],
-}
-
-impl HalfString {
-    /// Halves the intervals so many times.
-    pub fn narrow(&self, targets: &Targets, halvings: u32) -> [Lanes; 2] {
-        self.instructions.perform(Narrowing { string: self, targets, halvings })
+        counts
     }
 }
 
 struct Narrowing<'a> {
     string: &'a HalfString,
-    targets: &'a Targets,
+    /// Two batches, or one.
+    pair: &'a mut [Batch],
     halvings: u32,
 }
 
-impl Task for Narrowing<'_> {
-    type Output = [Lanes; 2];
+impl Kernel for Narrowing<'_> {
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> [Lanes; 2] {
-        let Targets { starts_free, ends_free, index, inside: [mut lo, mut hi] } = *self.targets;
-        for _ in 0..self.halvings {
-            let cut = lanes(|i| 0.5 * (lo[i] + hi[i]));
-            let [pinned, free] = count(self.string, &starts_free, &cut);
-            let below = lanes(|i| if ends_free[i] > 0.0 { free[i] } else { pinned[i] });
-            lo = lanes(|i| if below[i] < index[i] { cut[i] } else { lo[i] });
-            hi = lanes(|i| if below[i] < index[i] { hi[i] } else { cut[i] });
+    fn run<V: Vector>(self) {
+        let Narrowing { string, pair, halvings } = self;
+        let batches = [&pair[0], &pair[pair.len() - 1]];
+        let both = |of: fn(&Batch) -> &Lanes| [V::load(of(batches[0])), V::load(of(batches[1]))];
+        let starts_free = both(|batch| &batch.starts_free);
+        let ends_free = both(|batch| &batch.ends_free);
+        let sign = both(|batch| &batch.sign);
+        let [mut lo, mut hi] = [both(|batch| &batch.inside[0]), both(|batch| &batch.inside[1])];
+        let (zero, half) = (V::splat(0.0), V::splat(0.5));
+        for _ in 0..halvings {
+            let cut = [half.mul(lo[0].add(hi[0])), half.mul(lo[1].add(hi[1]))];
+            let walks = Walks::new::<false>(string, &starts_free, &cut);
+            for g in 0..2 {
+                let value = ends_free[g].if_above(zero, walks.v[g], walks.x[g]).mul(sign[g]);
+                (lo[g], hi[g]) = (value.if_above(zero, cut[g], lo[g]), value.if_above(zero, hi[g], cut[g]));
+            }
         }
-        [lo, hi]
-    }
-}
-
-impl HalfString {
-    /// κ m, by kind of node.
-    #[inline(always)]
-    pub fn kicks(&self, kappa: &Lanes) -> Kicks {
-        // No closure that a compiler might leave for the processor's common instructions.
-        let mut kicks = Aligned([[0.0; LANES]; 8]);
-        for kind in 2..8 {
-            let mass = self.masses[kind];
-            kicks.0[kind] = lanes(|i| kappa[i] * mass);
+        for (g, batch) in pair.iter_mut().enumerate() {
+            lo[g].store(&mut batch.inside[0]);
+            hi[g].store(&mut batch.inside[1]);
+            batch.guess();
         }
-        kicks
     }
 }

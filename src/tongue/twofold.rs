@@ -19,15 +19,21 @@ impl Twofold {
         Twofold { hi, lo }
     }
 
+    /// a/b to within 2^-104 relative, for whole numbers that doubles hold.
+    pub fn quotient(a: u64, b: u64) -> Option<Twofold> {
+        const EXACT: u64 = 1 << 53;
+        let (x, y) = (a as f64, b as f64);
+        let hi = x / y;
+        // The quotient's remainder is a double.
+        (a.max(b) <= EXACT).then_some(Twofold { hi, lo: (-hi).mul_add(y, x) / y })
+    }
+
     /// x to within 2^-104 relative.
     pub fn from_rational(x: &Rational) -> Twofold {
-        const EXACT: u64 = 1 << 53;
         if let (Some(a), Some(b)) = (x.numer().to_u64(), x.denom().to_u64())
-            && a.max(b) <= EXACT
+            && let Some(quotient) = Twofold::quotient(a, b)
         {
-            let (a, b) = (a as f64, b as f64);
-            let hi = a / b;
-            return Twofold { hi, lo: (-hi).mul_add(b, a) / b };
+            return quotient;
         }
         let hi = rational::to_f64(x);
         let rest = rational::from_f64_exact(hi).map_or_else(Rational::zero, |hi| x - hi);

@@ -1,5 +1,9 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
+use std::marker::PhantomData;
+
+use super::vector::{self, Vector};
+
 /// The instruction sets that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Instructions {
@@ -41,6 +45,18 @@ impl Instructions {
         }
     }
 
+    /// The kernel, with the vectors that these instructions have: the same result to the bit.
+    pub fn compute<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            // Safety: as above.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => unsafe { avx512(With::<vector::Avx512, K>(kernel, PhantomData)) },
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => unsafe { avx2(With::<vector::Avx2, K>(kernel, PhantomData)) },
+            Instructions::Portable => kernel.run::<[f64; vector::LANES]>(),
+        }
+    }
+
     /// The best that this processor has.
     pub fn best() -> Instructions {
         Instructions::available().next().unwrap_or(Instructions::Portable)
@@ -53,8 +69,27 @@ pub(crate) trait Task {
     fn run(self) -> Self::Output;
 }
 
+/// A task that is written for vectors.
+pub(crate) trait Kernel {
+    type Output;
+    fn run<V: Vector>(self) -> Self::Output;
+}
+
+/// A kernel with its vectors.
+struct With<V, K>(K, PhantomData<V>);
+
+impl<V: Vector, K: Kernel> Task for With<V, K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn run(self) -> K::Output {
+        self.0.run::<V>()
+    }
+}
+
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
+#[inline(never)]
 fn avx512<T: Task>(task: T) -> T::Output {
     task.run()
 }

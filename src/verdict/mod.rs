@@ -32,6 +32,7 @@ mod lone;
 mod plain;
 pub(crate) mod refine;
 mod residue;
+pub(crate) mod vector;
 pub(crate) mod winding;
 
 pub use exact::{Decidable, exact_trace};
