@@ -30,9 +30,9 @@
 //! Σ (3 |F| + 3 |F'|)²/m ≤ 36 λ Σ F² ℓ = 36 λ μ S, μ ≤ κ + ε. With p = |mismatch|/√(m_r S):
 //!
 //! ```text
-//!     ε <= p + u (4 κ + √(W/S) + 6 √(λ (κ + ε))),
-//!     ε² <= 9/8 p² + 27 u² (16 κ² + W/S + 36 λ (κ + ε)),
-//!     ε <= √(9/8 p² + 27 u² (16 κ² + W/S + 36 λ κ)) + 972 u² λ.
+//!     ε <= p + u (√(W/S) + 4 κ + 6 √(λ (κ + ε)))
+//!       <= p + u √(9/8 W/S + 288 κ² + 648 λ (κ + ε))
+//!       <= 1.01 (p + u √(9/8 W/S + 288 κ² + 648 λ κ)) + 17000 u² λ.
 //! ```
 //!
 //! So no absolute values need to be summed on the way. What is of second order in u is far below the 1.01 given to it.
@@ -239,11 +239,11 @@ impl<V: Vector> Mode<V> {
         // ε and the quotient's own error: see the module's text.
         let stiffest = V::splat(string.stiffest);
         let stretch = left.stretch.add(right.stretch).add(node.weight).mul(inverse);
-        let rounding =
-            kappa.mul_add(V::splat(16.0).mul(kappa), V::splat(36.0).mul(stiffest).mul_add(kappa, stretch));
-        let own = mismatch.mul(mismatch).mul(node.inverse_mass).mul(inverse);
-        let square = V::splat(1.125).mul_add(own, V::splat(27.0 * U * U).mul(rounding));
-        let residual = V::splat(1.01).mul(square.sqrt().add(V::splat(972.0 * U * U).mul(stiffest)));
+        let bend = V::splat(288.0).mul_add(kappa, V::splat(648.0).mul(stiffest));
+        let rounding = kappa.mul_add(bend, V::splat(1.125).mul(stretch)).sqrt();
+        let own = mismatch.mul(mismatch).mul(node.inverse_mass).mul(inverse).sqrt();
+        let least = V::splat(17_000.0 * U * U).mul(stiffest);
+        let residual = V::splat(1.02).mul(V::splat(U).mul_add(rounding, own).add(least));
         let terms = left.force.abs().add(right.force.abs()).add(kick).mul_add(inverse, kappa);
         let rounded = V::splat((6.0 * string.nodes.len() as f64 + 128.0) * U).mul(residual);
         let omitted = V::splat(4.0 * U * U).mul(kappa.add(stiffest));
