@@ -27,7 +27,7 @@
 
 use super::batch::Batch;
 use super::lanes::{Lanes, lanes, range};
-use super::string::{HalfString, Step};
+use super::string::{HalfString, KINDS, Step};
 use crate::verdict::vector::Vector;
 
 /// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
@@ -72,7 +72,7 @@ impl<'a> Ways<'a> {
     /// The two halves for the κ of each lane, each on arrival.
     #[inline(always)]
     pub fn halves<V: Vector, const PROVE: bool>(&self, kappa: V) -> [Half<V>; 2] {
-        let mut tables = Tables { string: self.string, kicks: [kappa; 8], deltas: [kappa; 8] };
+        let mut tables = Tables { string: self.string, kicks: [kappa; KINDS], deltas: [kappa; KINDS] };
         tables.fill::<PROVE>(kappa);
         [Half::new::<PROVE>(&tables, &self.left), Half::new::<PROVE>(&tables, &self.right)]
     }
@@ -95,15 +95,15 @@ pub(super) fn difference<V: Vector>(kappa: V, mass: V, lost: V, kick: V) -> V {
 /// By kind of node: the kick k and, where the mode is proven, δ = k − κ m.
 struct Tables<'a, V> {
     string: &'a HalfString,
-    kicks: [V; 8],
-    deltas: [V; 8],
+    kicks: [V; KINDS],
+    deltas: [V; KINDS],
 }
 
 impl<V: Vector> Tables<'_, V> {
     /// In place: so much is not to be moved.
     #[inline(always)]
     fn fill<const PROVE: bool>(&mut self, kappa: V) {
-        for &kind in &self.string.kinds {
+        for kind in 0..KINDS {
             let (mass, rest) = (V::splat(self.string.masses[kind]), V::splat(self.string.rests[kind]));
             self.kicks[kind] = kappa.mul(mass);
             if PROVE {

@@ -117,23 +117,20 @@ impl HalfString {
             self.cut(limits, space);
             self.count_at(&space.points, &mut space.samples);
             let Cutting { open, next, cuts, samples, .. } = space;
-            let mut sort = |piece: Interval| {
-                let is_wide = piece.upper.kappa - piece.lower.kappa >= least_width * piece.upper.kappa;
-                if piece.most(limits) > 1 && is_wide {
-                    next.push(piece);
-                } else {
-                    found(&piece);
-                }
-            };
             let mut samples = samples.as_slice();
             for (interval, &cuts) in open.iter().zip(&*cuts) {
                 let (inner, after) = samples.split_at(cuts);
                 let mut lower = interval.lower;
-                for &upper in inner {
-                    sort(Interval { lower, upper });
+                for k in 0..=cuts {
+                    let upper = *inner.get(k).unwrap_or(&interval.upper);
+                    let piece = Interval { lower, upper };
+                    if piece.most(limits) > 1 && upper.kappa - lower.kappa >= least_width * upper.kappa {
+                        next.push(piece);
+                    } else {
+                        found(&piece);
+                    }
                     lower = upper;
                 }
-                sort(Interval { lower, upper: interval.upper });
                 samples = after;
             }
             std::mem::swap(&mut space.open, &mut space.next);

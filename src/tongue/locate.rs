@@ -6,7 +6,7 @@
 
 use super::batch::Batch;
 use super::lanes::{Aligned, LANES, Lanes, power_of_two};
-use super::string::{HalfString, Step};
+use super::string::{HalfString, KINDS, Step};
 use crate::verdict::instructions::Kernel;
 use crate::verdict::vector::Vector;
 
@@ -14,31 +14,24 @@ use crate::verdict::vector::Vector;
 /// string are then all followed from T/2 through most of it, and little is done twice.
 const ENOUGH: f64 = 1.0 / 16.0;
 
-/// The two recurrences at every node.
+/// The recurrence from t = 0 at every node, its exponents by block.
 #[derive(Debug, Default)]
-pub(super) struct Walks {
-    left: Walk,
-    right: Walk,
-}
-
-/// x at the nodes in the order of the steps, and its exponents by block.
-#[derive(Debug, Default)]
-struct Walk {
+pub(super) struct Walk {
     x: Vec<Aligned<Lanes>>,
     exponents: Vec<[i64; LANES]>,
 }
 
 impl HalfString {
     /// Finds a node for each lane where the mode near κ is near its largest.
-    pub fn locate(&self, batch: &mut Batch, walks: &mut Walks) {
-        self.instructions.compute(Locating { string: self, batch, walks });
+    pub fn locate(&self, batch: &mut Batch, walk: &mut Walk) {
+        self.instructions.compute(Locating { string: self, batch, walk });
     }
 }
 
 struct Locating<'a> {
     string: &'a HalfString,
     batch: &'a mut Batch,
-    walks: &'a mut Walks,
+    walk: &'a mut Walk,
 }
 
 impl Kernel for Locating<'_> {
@@ -46,50 +39,72 @@ impl Kernel for Locating<'_> {
 
     #[inline(always)]
     fn run<V: Vector>(self) {
-        let Locating { string, batch, walks: Walks { left, right } } = self;
+        let Locating { string, batch, walk } = self;
         let kappa = V::load(&batch.kappa);
-        let mut kicks = [kappa; 8];
-        for &kind in &string.kinds {
-            kicks[kind] = kappa.mul(V::splat(string.masses[kind]));
+        let mut kicks = [kappa; KINDS];
+        for (kick, &mass) in kicks.iter_mut().zip(&string.masses) {
+            *kick = kappa.mul(V::splat(mass));
         }
-        let (mut ahead, mut back) = (Front::<V>::new(&batch.starts_free), Front::<V>::new(&batch.ends_free));
-        left.begin(string);
-        right.begin(string);
-        let blocks = string.forward.chunks(string.block).zip(string.backward.chunks(string.block));
-        for (b, (forward, backward)) in blocks.enumerate() {
-            left.exponents.push(ahead.rescale());
-            right.exponents.push(back.rescale());
-            let from = b * string.block;
-            let nodes = from..from + forward.len();
-            let (x, y) = (&mut left.x[nodes.clone()], &mut right.x[nodes]);
-            for (((next, last), x), y) in forward.iter().zip(backward).zip(x).zip(y) {
-                ahead.x.store(&mut x.0);
-                back.x.store(&mut y.0);
-                ahead.advance(&kicks, next);
-                back.advance(&kicks, last);
-            }
-        }
-        left.end(ahead, string);
-        right.end(back, string);
-        batch.at = peak::<V>(string, left, right);
+        walk.fill(string, &kicks, Front::new(&batch.starts_free));
+        batch.at = walk.meet(string, &kicks, Front::new(&batch.ends_free));
     }
 }
 
 impl Walk {
+    /// From t = 0 to T/2.
     #[inline(always)]
-    fn begin(&mut self, string: &HalfString) {
+    fn fill<V: Vector>(&mut self, string: &HalfString, kicks: &[V; KINDS], mut front: Front<V>) {
+        let (n, block) = (string.last(), string.block);
         self.exponents.clear();
-        self.x.resize(string.nodes.len(), Aligned([0.0; LANES]));
-    }
-
-    /// The last node, in a block of its own if the one before is full.
-    #[inline(always)]
-    fn end<V: Vector>(&mut self, mut front: Front<V>, string: &HalfString) {
-        let n = string.last();
-        if n.is_multiple_of(string.block) {
+        self.x.resize(n + 1, Aligned([0.0; LANES]));
+        for (steps, x) in string.forward.chunks(block).zip(self.x.chunks_mut(block)) {
+            self.exponents.push(front.rescale());
+            for (step, x) in steps.iter().zip(x) {
+                front.x.store(&mut x.0);
+                front.advance(kicks, step);
+            }
+        }
+        // The last node, in a block of its own if the one before is full.
+        if n.is_multiple_of(block) {
             self.exponents.push(front.rescale());
         }
         front.x.store(&mut self.x[n].0);
+    }
+
+    /// From T/2 to t = 0 against it: the node of each lane, as a number.
+    #[inline(always)]
+    fn meet<V: Vector>(&self, string: &HalfString, kicks: &[V; KINDS], mut front: Front<V>) -> Lanes {
+        let n = string.last();
+        let (mut product, mut at) = (V::splat(0.0), V::splat(0.0));
+        // The product is in units of 2^exponents.
+        let mut exponents = [0; LANES];
+        let mut upto = n + 1;
+        for (x, left) in self.x.chunks(string.block).zip(&self.exponents).rev() {
+            let right = front.rescale();
+            let mut scale = [0.0; LANES];
+            for i in 0..LANES {
+                let unit = left[i] + right[i];
+                scale[i] = power_of_two(exponents[i] - unit);
+                exponents[i] = unit;
+            }
+            product = product.mul(V::load(&scale));
+            let from = upto - x.len();
+            for (j, x) in (from..upto).zip(x).rev() {
+                // No mode lives where there is no mass, as there may be none at T/2.
+                if j < n || string.masses[string.nodes[n].kind] > 0.0 {
+                    let here = V::load(&x.0).mul(front.x).abs();
+                    at = here.if_above(V::splat(ENOUGH).mul(product), V::splat(j as f64), at);
+                    product = here.larger(product);
+                }
+                if j > 0 {
+                    front.advance(kicks, &string.backward[n - j]);
+                }
+            }
+            upto = from;
+        }
+        let mut nodes = [0.0; LANES];
+        at.store(&mut nodes);
+        nodes
     }
 }
 
@@ -108,7 +123,7 @@ impl<V: Vector> Front<V> {
     }
 
     #[inline(always)]
-    fn advance(&mut self, kicks: &[V; 8], step: &Step) {
+    fn advance(&mut self, kicks: &[V; KINDS], step: &Step) {
         self.v = kicks[step.kind].neg_mul_add(self.x, self.v);
         self.x = V::splat(step.length).mul_add(self.v, self.x);
     }
@@ -126,36 +141,4 @@ impl<V: Vector> Front<V> {
         }
         self.exponents
     }
-}
-
-/// The node of each lane, as a number.
-#[inline(always)]
-fn peak<V: Vector>(string: &HalfString, left: &Walk, right: &Walk) -> Lanes {
-    let (n, block) = (string.last(), string.block);
-    let (mut product, mut at) = (V::splat(0.0), V::splat(0.0));
-    // The product is in units of 2^exponents.
-    let mut exponents = [0; LANES];
-    // No mode lives where there is no mass, as there may be none at T/2.
-    let mut upto = if string.mass(n) > 0.0 { n + 1 } else { n };
-    while upto > 0 {
-        // The nodes from `from` to `upto` − 1 are in one block of either walk.
-        let (ahead, back) = ((upto - 1) / block, (n + 1 - upto) / block);
-        let mut scale = [0.0; LANES];
-        for i in 0..LANES {
-            let unit = left.exponents[ahead][i] + right.exponents[back][i];
-            scale[i] = power_of_two(exponents[i] - unit);
-            exponents[i] = unit;
-        }
-        product = product.mul(V::load(&scale));
-        let from = (ahead * block).max((n + 1).saturating_sub((back + 1) * block));
-        for j in (from..upto).rev() {
-            let here = V::load(&left.x[j].0).mul(V::load(&right.x[n - j].0)).abs();
-            at = here.if_above(V::splat(ENOUGH).mul(product), V::splat(j as f64), at);
-            product = here.larger(product);
-        }
-        upto = from;
-    }
-    let mut nodes = [0.0; LANES];
-    at.store(&mut nodes);
-    nodes
 }

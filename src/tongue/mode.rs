@@ -43,8 +43,8 @@
 
 use super::batch::Batch;
 use super::half::{Half, Ways, difference};
-use super::lanes::{LANES, Lanes, lanes};
-use super::string::HalfString;
+use super::lanes::{LANES, Lanes};
+use super::string::{HalfString, Node};
 use crate::number::U;
 use crate::verdict::instructions::Kernel;
 use crate::verdict::vector::Vector;
@@ -143,12 +143,20 @@ struct Nodes<V> {
 impl<V: Vector> Nodes<V> {
     #[inline(always)]
     fn new(string: &HalfString, at: &Lanes) -> Self {
-        let kind = |i: usize| string.nodes[at[i] as usize].kind;
+        let mut nodes = [[0.0; LANES]; 4];
+        for (i, &at) in at.iter().enumerate() {
+            let Node { kind, weight, .. } = string.nodes[at as usize];
+            nodes[0][i] = string.masses[kind];
+            nodes[1][i] = string.rests[kind];
+            nodes[2][i] = string.inverse_masses[kind];
+            nodes[3][i] = weight;
+        }
+        let [mass, lost, inverse_mass, weight] = &nodes;
         Nodes {
-            mass: V::load(&lanes(|i| string.masses[kind(i)])),
-            lost: V::load(&lanes(|i| string.rests[kind(i)])),
-            inverse_mass: V::load(&lanes(|i| string.inverse_masses[kind(i)])),
-            weight: V::load(&lanes(|i| string.weight(at[i] as usize))),
+            mass: V::load(mass),
+            lost: V::load(lost),
+            inverse_mass: V::load(inverse_mass),
+            weight: V::load(weight),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use super::batch::{Batches, Order};
 use super::isolate::{Cutting, Limits, Wanted};
-use super::locate::Walks;
+use super::locate::Walk;
 use super::mode::Proofs;
 use super::string::{Entry, HalfString};
 
@@ -35,7 +35,7 @@ const TOLERABLE: f64 = 1e-15;
 #[derive(Debug, Default)]
 struct Workspace {
     cutting: Cutting,
-    walks: Walks,
+    walk: Walk,
     /// The eigenvalues that are looked for, and the same by the node where their modes live.
     tasks: Batches,
     sorted: Batches,
@@ -53,7 +53,7 @@ impl HalfString {
     }
 
     fn search(&self, wanted: &Wanted, space: &mut Workspace) -> [Vec<Option<Edge>>; 4] {
-        let Workspace { cutting, walks, tasks, sorted, order } = space;
+        let Workspace { cutting, walk, tasks, sorted, order } = space;
         tasks.clear();
         let limits = Limits::new(wanted);
         self.isolate(&limits, cutting, |interval| {
@@ -70,7 +70,7 @@ impl HalfString {
             }
             tasks.fill();
             self.narrow(tasks.all_mut(), HALVINGS);
-            tasks.all_mut().iter_mut().for_each(|batch| self.locate(batch, walks));
+            tasks.all_mut().iter_mut().for_each(|batch| self.locate(batch, walk));
             // Modes that live side by side are followed side by side.
             sorted.sort_by_place(tasks, self.nodes.len(), order);
             tasks.clear();

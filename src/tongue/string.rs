@@ -22,7 +22,7 @@ use super::isolate::Wanted;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::propagator::{Schedule, Weight};
+use crate::propagator::Schedule;
 use crate::verdict::instructions::Instructions;
 
 /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
@@ -85,7 +85,18 @@ pub(super) struct Node {
     pub length: f64,
     /// Index of the mass among [`HalfString::masses`].
     pub kind: usize,
+    /// (1/ℓ + 1/ℓ')²/m, rounded; 0 where there is no mass.
+    pub weight: f64,
 }
+
+/// So many kinds of nodes there are: that at t = 0, where both clocks strike, those of the fast clock alone and of the
+/// slow one, and that at T/2. In between the clocks never strike together.
+pub(super) const KINDS: usize = 4;
+
+const START: usize = 0;
+const FAST: usize = 1;
+const SLOW: usize = 2;
+const END: usize = 3;
 
 /// The kick at a node and the spring to the next one on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,7 +105,7 @@ pub(super) struct Step {
     pub length: f64,
     /// The node's mass.
     pub mass: f64,
-    /// The node's (1/ℓ + 1/ℓ')²/m, rounded; 0 where there is no mass.
+    /// The node's.
     pub weight: f64,
 }
 
@@ -108,14 +119,12 @@ pub(super) struct HalfString {
     /// The steps from t = 0 to T/2, and those back.
     pub forward: Vec<Step>,
     pub backward: Vec<Step>,
-    /// The kinds of nodes that there are.
-    pub kinds: Vec<usize>,
-    /// The masses by kind (2 · clocks + whole?), each within 2u relative of its exact value, u = 2^-53.
-    pub masses: [f64; 8],
+    /// The masses by kind, each within 2u relative of its exact value, u = 2^-53.
+    pub masses: [f64; KINDS],
     /// What rounding took from them, to within 2^-104 of the masses.
-    pub rests: [f64; 8],
+    pub rests: [f64; KINDS],
     /// 1/m, rounded; 0 where there is no mass.
-    pub inverse_masses: [f64; 8],
+    pub inverse_masses: [f64; KINDS],
     /// The largest 1/(m ℓ) of a node and a spring at it, or a little more.
     pub stiffest: f64,
     /// Ticks in h1: s = κ · ticks.
@@ -134,8 +143,8 @@ pub(super) struct HalfString {
 /// doubles.
 const EXTREME: f64 = 1e16;
 
-/// The bit of the slow clock in an event's kicks.
-const SLOW: u64 = 2;
+/// An event's kicks where only the fast clock strikes.
+const FAST_ALONE: u64 = 1;
 
 /// More kicks than this are not laid out in memory.
 const MOST_KICKS: u64 = 1 << 24;
@@ -160,23 +169,25 @@ impl HalfString {
                 format!("{p}/{q} has more than {MOST_KICKS} kicks in a period: choose a simpler ratio");
             return Err(Error::budget(cost));
         }
-        let (nodes, ticks) = nodes(p, q, rho.is_zero())?;
-        Ok(HalfString::with_nodes(nodes, ticks, mass))
+        let (nodes, ticks, last) = nodes(p, q, rho.is_zero())?;
+        Ok(HalfString::with_nodes(nodes, ticks, mass, last))
     }
 
-    fn with_nodes(nodes: Vec<Node>, ticks: f64, slow: Twofold) -> Self {
+    /// `last`: the clocks that strike at T/2.
+    fn with_nodes(nodes: Vec<Node>, ticks: f64, slow: Twofold, last: u64) -> Self {
         let both = Twofold::sum(1.0, slow.hi);
-        let whole = [(0.0, 0.0), (1.0, 0.0), (slow.hi, slow.lo), (both.hi, both.lo + slow.lo)];
-        let part = |kind: usize| if kind.is_multiple_of(2) { 0.5 } else { 1.0 };
-        let masses: [f64; 8] = std::array::from_fn(|kind| whole[kind / 2].0 * part(kind));
+        let both = Twofold { hi: both.hi, lo: both.lo + slow.lo };
+        let (one, none) = (Twofold { hi: 1.0, lo: 0.0 }, Twofold { hi: 0.0, lo: 0.0 });
+        // Half a kick at t = 0 and at T/2.
+        let masses = [both.half(), one, slow, [none, one, slow, both][last as usize].half()];
+        let (masses, rests) = (masses.map(|mass| mass.hi), masses.map(|mass| mass.lo));
         let inverse = |m: f64| if m > 0.0 { 1.0 / m } else { 0.0 };
         let mut string = HalfString {
             nodes,
             forward: Vec::new(),
             backward: Vec::new(),
-            kinds: Vec::new(),
             masses,
-            rests: std::array::from_fn(|kind| whole[kind / 2].1 * part(kind)),
+            rests,
             inverse_masses: masses.map(inverse),
             stiffest: 0.0,
             ticks,
@@ -202,12 +213,6 @@ impl HalfString {
         self.masses[self.nodes[j].kind]
     }
 
-    /// The weight of node j, see [`Step`].
-    #[inline(always)]
-    pub fn weight(&self, j: usize) -> f64 {
-        self.forward.get(j).or(self.backward.first()).map_or(0.0, |step| step.weight)
-    }
-
     /// How many positive eigenvalues the problem has.
     pub fn dimension(&self, entry: Entry) -> usize {
         self.dimensions[entry as usize]
@@ -228,10 +233,9 @@ impl HalfString {
         let n = self.last();
         self.forward.reserve(n);
         self.backward.reserve(n);
-        let (mut before, mut seen) = (0.0, [false; 8]);
+        let mut before = 0.0;
         for j in 0..=n {
-            let Node { length, kind } = self.nodes[j];
-            seen[kind] = true;
+            let Node { length, kind, .. } = self.nodes[j];
             let after = self.nodes.get(j + 1).map_or(0.0, |next| 1.0 / next.length);
             let (mass, inverse_mass) = (self.masses[kind], self.inverse_masses[kind]);
             let row = (before + after) * inverse_mass;
@@ -239,6 +243,7 @@ impl HalfString {
             self.upper_bound = self.upper_bound.max(2.0 * row * BEYOND);
             self.stiffest = self.stiffest.max(before.max(after) * inverse_mass * BEYOND);
             let weight = (before + after) * row;
+            self.nodes[j].weight = weight;
             if j < n {
                 self.forward.push(Step { kind, length: self.nodes[j + 1].length, mass, weight });
             }
@@ -248,7 +253,6 @@ impl HalfString {
             before = after;
         }
         self.backward.reverse();
-        self.kinds.extend((0..8).filter(|&kind| seen[kind]));
     }
 
     /// So many that max(|x|, |v|) changes by a factor within 1e±140: a kick and a drift multiply it by (1 + k) (1 + ℓ) at
@@ -271,22 +275,27 @@ fn slow_mass(p: u64, q: u64, rho: &Rational) -> Twofold {
         .unwrap_or_else(|| Twofold::from_rational(&(rho * Rational::new(p.into(), q.into()))))
 }
 
-/// The nodes, and how many ticks h1 has.
-fn nodes(p: u64, q: u64, slow_is_silent: bool) -> Result<(Vec<Node>, f64)> {
+/// The nodes, how many ticks h1 has, and the clocks that strike at T/2.
+fn nodes(p: u64, q: u64, slow_is_silent: bool) -> Result<(Vec<Node>, f64, u64)> {
     let schedule = Schedule::two_clocks(p, q)?;
     let end = schedule.period() / 2;
     let mut nodes = Vec::with_capacity((p + q) as usize / 2 + 2);
-    let (mut now, mut skipped) = (0, 0);
+    let (mut now, mut skipped, mut last) = (0, 0, 0);
     for event in schedule.half_period() {
         now += event.drift;
+        let kind = match event.kicks {
+            _ if now == 0 => START,
+            _ if now == end => END,
+            FAST_ALONE => FAST,
+            _ => SLOW,
+        };
         // Where the slow clock is silent its kick times are no nodes, unless the half period ends there.
-        if slow_is_silent && event.kicks == SLOW && now < end {
+        if slow_is_silent && kind == SLOW {
             skipped += event.drift;
             continue;
         }
-        let kind = 2 * event.kicks as usize + usize::from(event.weight == Weight::Full);
-        nodes.push(Node { length: (skipped + event.drift) as f64, kind });
-        skipped = 0;
+        nodes.push(Node { length: (skipped + event.drift) as f64, kind, weight: 0.0 });
+        (skipped, last) = (0, event.kicks);
     }
-    Ok((nodes, schedule.clocks()[0].step() as f64))
+    Ok((nodes, schedule.clocks()[0].step() as f64, last))
 }

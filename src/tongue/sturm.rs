@@ -20,7 +20,7 @@
 
 use super::batch::Batch;
 use super::lanes::{LANES, Lanes, lanes, lesser};
-use super::string::HalfString;
+use super::string::{HalfString, KINDS};
 use crate::number::U;
 use crate::verdict::instructions::Kernel;
 use crate::verdict::vector::Vector;
@@ -61,10 +61,10 @@ impl<V: Vector> Walks<V> {
     /// From the first node, free (1) or pinned (0), to the last, counting the changes of sign if asked to.
     #[inline(always)]
     fn new<const COUNT: bool>(string: &HalfString, starts_free: &[V; 2], kappa: &[V; 2]) -> Self {
-        let mut kicks = [*kappa; 8];
-        for &kind in &string.kinds {
-            let mass = V::splat(string.masses[kind]);
-            kicks[kind] = [kappa[0].mul(mass), kappa[1].mul(mass)];
+        let mut kicks = [*kappa; KINDS];
+        for (kick, &mass) in kicks.iter_mut().zip(&string.masses) {
+            let mass = V::splat(mass);
+            *kick = [kappa[0].mul(mass), kappa[1].mul(mass)];
         }
         let (mut x, mut v, mut changes) = (*starts_free, *starts_free, [V::splat(UNIT); 2]);
         for g in 0..2 {

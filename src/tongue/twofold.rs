@@ -19,6 +19,11 @@ impl Twofold {
         Twofold { hi, lo }
     }
 
+    /// A half of it, exactly.
+    pub fn half(self) -> Twofold {
+        Twofold { hi: 0.5 * self.hi, lo: 0.5 * self.lo }
+    }
+
     /// a/b to within 2^-104 relative, for whole numbers that doubles hold.
     pub fn quotient(a: u64, b: u64) -> Option<Twofold> {
         const EXACT: u64 = 1 << 53;
