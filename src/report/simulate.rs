@@ -39,11 +39,15 @@ pub fn document(run: &Run) -> Document {
         format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
         format!("  growth rate, predicted       {:.6}{of}", run.predicted),
-        format!(
-            "  growth rate, measured        {:.6}{of}, give or take {:.1e}: run longer to see less",
-            run.measured,
-            run.resolution()
-        ),
+        if run.measured.is_finite() && run.resolution().is_finite() {
+            let off = run.resolution();
+            format!(
+                "  growth rate, measured        {:.6}{of}, give or take {off:.1e}: run longer to see less",
+                run.measured
+            )
+        } else {
+            "  growth rate, measured        none: the run overflows".into()
+        },
     ];
     Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)

@@ -253,6 +253,17 @@ fn systems_that_cannot_be_read_or_meant() {
     system("system wrong.json", &["system = line 1", "unknown field `mases`", "`masses`", "JSON object"]);
     let twice = "--scan potentials.only.step=1/10..1:1/10 --scan potentials.0.step=1/10..1:1/10";
     system(&format!("system system.json {twice}"), &["potentials.0.step", "both axes"]);
+    let clock = |step: &str| format!(r#"{{"step": "{step}", "springs": [[0, null, "1"]]}}"#);
+    let clocks = ["1/10", "1/3", "999999999999"].map(clock).join(", ");
+    let endless = format!(r#"{{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [{clocks}]}}"#);
+    desk.write("endless.json", &endless);
+    system("system endless.json", &["kicks", "simpler ratios"]);
+    system("simulate endless.json", &["kicks", "simpler ratios"]);
+    let springs = r#""springs": [[0, null, "1"], [0, 1, "2"]]"#;
+    let wide =
+        endless.replace(r#""springs": [[0, null, "1"]]"#, springs).replace(r#"["1"]"#, r#"["1", "2"]"#);
+    desk.write("wide.json", &wide.replacen(springs, r#""springs": [[1, null, "1"]]"#, 1));
+    system("system wide.json", &["kicks", "simpler ratios"]);
     system("simulate system.json --periods 99999999999", &["periods = 99999999999", "smaller number"]);
     system("simulate system.json --displace 1e200", &["displace = 1e200", "smaller displacement"]);
 }
