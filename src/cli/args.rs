@@ -70,7 +70,10 @@ impl Common {
     }
 
     /// `--format`, else what the extension of `--output` says, else `default`.
-    fn format_or(&self, default: Format) -> Result<Format> {
+    ///
+    /// # Errors
+    /// Where the extension is that of a figure or of arrays.
+    pub fn format_or(&self, default: Format) -> Result<Format> {
         let (Some(path), None) = (&self.output, self.format) else {
             return Ok(self.format.unwrap_or(default));
         };

@@ -52,7 +52,7 @@ fn every_change_is_found_and_its_row_named() {
     let desk = Desk::new();
     let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
     type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
-    let changes: [(&str, &str, Change); 48] = [
+    let changes: [(&str, &str, Change); 50] = [
         (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
         (DOCUMENTS[0], "row 4", |d, by| {
             let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);
@@ -122,6 +122,8 @@ fn every_change_is_found_and_its_row_named() {
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["tan"] = json!("parabolic")),
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["rho"] = json!("1/26")),
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["q"] = json!(0)),
+        (DOCUMENTS[13], "row 0", |d, _| d["input"]["max_sum"] = json!("9")),
+        (DOCUMENTS[14], "row 0", |d, _| d["input"]["h2_range"] = json!("1/10..3")),
         (DOCUMENTS[13], "row 0", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
         (DOCUMENTS[16], "row 3", |d, _| d["polynomials"]["C"] = json!("(-1/2*rho - 1/2)*s")),
         (DOCUMENTS[17], "row 0", |d, _| d["holds"] = json!(false)),

@@ -7,6 +7,8 @@ use super::exact::{affordable, check_ratio, full_period, meets};
 use super::read::{Checked, Fault, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::cli::progress::progress;
+use crate::cli::ratios::Ratios;
+use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_range};
@@ -120,10 +122,22 @@ pub fn check_compare(document: &Value, context: &Context) -> Result<Outcome> {
         };
         check_offender(row, &clocks, &tolerance, &context.limits)
     })?;
-    if let Some(failure) = counts(&all, rows)? {
+    let asked = match &lambdas {
+        Some(_) => grid(&input)?.pairs(),
+        None => asked_ratios(&input)?,
+    };
+    if let Some(failure) = counts(&all, rows, asked)? {
         outcome.failures.push(failure);
     }
     Ok(outcome)
+}
+
+/// The pairs of all coprime p + q up to a number, so many values of s each.
+fn asked_ratios(input: &Row) -> Result<u64> {
+    let number =
+        |key: &str| -> Result<u64> { Ok(whole(input.rational(key))?.to_integer().try_into().unwrap_or(0)) };
+    let list = Ratios::UpTo(number("max_sum")?).within(MOST_SUM)?.list();
+    Ok((list.len() as u64).saturating_mul(number("samples")?))
 }
 
 fn check_offender(
@@ -161,8 +175,8 @@ fn check_offender(
     holds(meets(row.ends("distance")?, &distance), || format!("its distance is {}", distance.mid_f64()))
 }
 
-/// The counts add up, and the rows are as many as they say.
-fn counts(all: &Row, rows: &[Value]) -> Result<Option<(u64, String, String)>> {
+/// The counts add up to the pairs asked for, and the rows are as many as they say.
+fn counts(all: &Row, rows: &[Value], asked: u64) -> Result<Option<(u64, String, String)>> {
     let (resonance, tan) = (whole(all.object("resonance"))?, whole(all.object("tan"))?);
     let sum =
         |row: &Row, keys: &[&str]| -> Result<u64> { keys.iter().map(|key| whole(row.whole(key))).sum() };
@@ -170,7 +184,8 @@ fn counts(all: &Row, rows: &[Value]) -> Result<Option<(u64, String, String)>> {
     let beyond = whole(resonance.whole("beyond_verlet"))?;
     let unstable = whole(all.whole("unstable"))?;
     let seen = sum(&resonance, &["hits", "misses"])?;
-    let wrong = sum(&resonance, &["hits", "quiet", "misses", "false_alarms", "beyond_verlet"])? != pairs
+    let wrong = pairs != asked
+        || sum(&resonance, &["hits", "quiet", "misses", "false_alarms", "beyond_verlet"])? != pairs
         || !(seen..=seen.saturating_add(beyond)).contains(&unstable)
         || sum(&tan, &["agree", "disagree"])? != pairs
         || (whole(tan.whole("disagree"))? == 0
