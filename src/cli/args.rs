@@ -1,6 +1,6 @@
 //! Flags that several commands share.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
@@ -16,26 +16,27 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form of the result [default: json for long tables, else text].
+    /// The form [default: by the file name; json for tables, text else].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.
     #[arg(long, global = true, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
-    #[arg(long, global = true, value_name = "N", value_parser = whole::<usize>)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>)]
     pub threads: Option<usize>,
     /// No progress on standard error.
     #[arg(long, global = true)]
     pub quiet: bool,
     /// The most kicks that one tier may compose for one pair [default: 100000000].
-    #[arg(long, global = true, value_name = "KICKS", value_parser = whole::<u64>)]
+    #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = whole::<u64>)]
     pub budget: Option<u64>,
 }
 
 /// A count, with the remedy that the standard library's message lacks.
-pub fn whole<T: std::str::FromStr>(text: &str) -> std::result::Result<T, String> {
-    text.parse().map_err(|_| "write a whole number, in digits only, within 64 bits".into())
+pub fn whole<T: TryFrom<u64>>(text: &str) -> std::result::Result<T, String> {
+    let number: u64 = text.parse().map_err(|_| "write a whole number, in digits only, within 64 bits")?;
+    T::try_from(number).map_err(|_| "choose a smaller number".into())
 }
 
 /// Output formats of documents.
@@ -64,8 +65,40 @@ const MOST_THREADS: usize = 1024;
 impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
-        let text = document.render(self.format.unwrap_or(default).into())?;
+        let text = document.render(self.format_or(default)?.into())?;
         write_output(self.output.as_deref(), text.as_bytes())
+    }
+
+    /// `--format`, else what the extension of `--output` says, else `default`.
+    ///
+    /// # Errors
+    /// Where the extension is that of a figure or of arrays.
+    pub fn format_or(&self, default: Format) -> Result<Format> {
+        let (Some(path), None) = (&self.output, self.format) else {
+            return Ok(self.format.unwrap_or(default));
+        };
+        let extension =
+            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
+        match extension.as_deref() {
+            Some("txt") => Ok(Format::Text),
+            Some("json") => Ok(Format::Json),
+            Some("csv") => Ok(Format::Csv),
+            Some("tex") => Ok(Format::Latex),
+            Some("svg" | "png" | "npz") => {
+                let remedy =
+                    "this result is no figure and no arrays: end the name in .json, .csv, .tex or .txt";
+                Err(Error::input("output", path.display(), remedy))
+            }
+            _ => Ok(default),
+        }
+    }
+
+    /// That a second file is not the one of `--output`, which would replace it.
+    pub fn apart_from_output(&self, field: &str, path: &Path) -> Result<()> {
+        if self.output.as_deref() != Some(path) {
+            return Ok(());
+        }
+        Err(Error::input(field, path.display(), "is the file of --output too: name another one"))
     }
 
     /// The work one verdict may cost.

@@ -27,10 +27,10 @@ pub struct Args {
     #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true)]
     rho_range: String,
     /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross.
-    #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
     /// Significant digits of s and rho.
-    #[arg(long, value_name = "N", default_value_t = DIGITS, value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", default_value_t = DIGITS, allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: u32,
 }
 

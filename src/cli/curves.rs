@@ -30,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "LO..HI", default_value = "-12..12", allow_hyphen_values = true)]
     b: String,
     /// Points a curve, evenly spaced in theta.
-    #[arg(long, value_name = "N", default_value_t = 400, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
 }
 

@@ -28,7 +28,7 @@ use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 use crate::error::Result;
-use args::Common;
+use args::{Common, Format};
 
 /// Exact, certified linear stability of multiple-time-step integrators.
 ///
@@ -72,6 +72,14 @@ enum Command {
     Verify(verify::Args),
 }
 
+impl Command {
+    /// Whether its output may be a figure or arrays.
+    fn draws(&self) -> bool {
+        use Command::{Closings, Map, Merge, Run, System, Tongues};
+        matches!(self, Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_))
+    }
+}
+
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -92,6 +100,10 @@ pub fn main() -> ExitCode {
 fn run(cli: &Cli) -> Result<ExitCode> {
     let common = &cli.common;
     common.set_threads()?;
+    if !cli.command.draws() {
+        // Refused before the work, not after it.
+        common.format_or(Format::Text)?;
+    }
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
         Command::Curves(args) => args.run(common)?,

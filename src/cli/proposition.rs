@@ -10,7 +10,7 @@ use crate::resonance::proposition::check;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// All coprime p, q up to this number.
-    #[arg(long, value_name = "N", default_value_t = 60, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", default_value_t = 60, allow_negative_numbers = true, value_parser = whole::<u64>)]
     max: u64,
 }
 

@@ -13,7 +13,7 @@ pub struct Flags {
     #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
     ratio: Option<String>,
     /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
     max_sum: Option<u64>,
 }
 

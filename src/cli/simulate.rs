@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::args::{Common, Format};
+use super::args::{Common, Format, whole};
 use super::system::{draw, read};
 use crate::avi::{Ends, Force, Simulation, growth_rate, irreversibility, series};
 use crate::error::{Error, Result};
@@ -19,7 +19,7 @@ pub struct Args {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Synchronization periods to run.
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = whole::<u32>)]
     periods: u32,
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]
@@ -44,6 +44,7 @@ impl Args {
         if self.periods == 0 || self.periods > MOST {
             return Err(Error::input("periods", self.periods, format!("choose 1 to {MOST}")));
         }
+        self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
         let scene = read(&self.file)?;
         let run = self.simulate(&scene, common)?;
         if let Some(path) = &self.figure {
@@ -83,6 +84,10 @@ impl Args {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
         let period = simulation.clocks().period;
+        if !simulation.energy().is_finite() {
+            let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
+            return Err(Error::input("displace", &self.displace, remedy));
+        }
         let series = series(&mut simulation, centre, self.periods as usize, (period, ends));
         let measured = growth_rate(&mut make()?, centre, SMALL, (self.periods, ends));
         let irreversibility = irreversibility(&mut make()?, period);

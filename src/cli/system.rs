@@ -123,8 +123,10 @@ pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
 }
 
 fn text(path: &Path) -> Result<String> {
-    let unreadable = |cause| Error::io(path.display(), format!("cannot read the system: {cause}"));
-    std::fs::read_to_string(path).map_err(unreadable)
+    std::fs::read_to_string(path).map_err(|cause| {
+        let remedy = "name a system file, such as data/scenes/diatomic-tether.json";
+        Error::io(path.display(), format!("cannot read the system ({cause}): {remedy}"))
+    })
 }
 
 /// A system file, read.

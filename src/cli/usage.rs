@@ -22,6 +22,10 @@ pub fn explained(error: &clap::Error) -> String {
         ErrorKind::ArgumentConflict => {
             invalid().map(|flag| Error::input("flag", names(&flag), "is given twice; give it once"))
         }
+        ErrorKind::TooManyValues => invalid().map(|flag| {
+            let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
+            Error::input(&names(&flag), value, "takes no value: write the flag alone")
+        }),
         ErrorKind::UnknownArgument => invalid().map(|flag| Error::input("flag", flag, suggestion(error))),
         _ => None,
     };

@@ -37,6 +37,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<ExitCode> {
+        self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
         let (lambda1, lambda2) = self.stiffness.quantities()?;
         let oscillator = Oscillator::new(lambda1, lambda2, parse("h1", &self.h1)?, parse("h2", &self.h2)?)?;
         let answer = self.answer(oscillator, &common.limits())?;

@@ -60,7 +60,7 @@ impl Counters {
 impl Band {
     /// The verdict and its tier at position n.
     pub fn decision(&self, n: usize) -> Decision {
-        let decided_by = [Tier::Filter, Tier::Refine, Tier::Exact][usize::from(self.tiers[n])];
+        let decided_by = Tier::ALL[usize::from(self.tiers[n])];
         Decision { verdict: Verdict::ALL[usize::from(self.verdicts[n])], decided_by }
     }
 

@@ -29,7 +29,12 @@ impl Store {
     /// # Errors
     /// An I/O error that names the directory.
     pub fn open(directory: &Path, grid: &Grid, products: Products) -> Result<Store> {
-        fs::create_dir_all(directory).map_err(|cause| Error::io(directory.display(), cause))?;
+        fs::create_dir_all(directory).map_err(|cause| {
+            Error::io(
+                directory.display(),
+                format_args!("cannot make this directory ({cause}): name another one"),
+            )
+        })?;
         let header = format!("kickdrift band 1\n{}; {products:?}\n", grid.fingerprint());
         Ok(Store { directory: directory.to_owned(), header })
     }
@@ -56,8 +61,12 @@ impl Store {
         let mut bytes = self.header.clone().into_bytes();
         encode(band, &mut bytes);
         bytes.extend(hash(&bytes).to_le_bytes());
-        let written = fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, &path));
-        written.map_err(|cause| Error::io(path.display(), cause))
+        fs::write(&draft, bytes).and_then(|()| fs::rename(&draft, &path)).map_err(|cause| {
+            // Half a draft is of no use; the error that brought us here is the one to report.
+            let _ = fs::remove_file(&draft);
+            let remedy = "make room, or name another directory";
+            Error::io(path.display(), format_args!("cannot write ({cause}): {remedy}"))
+        })
     }
 }
 

@@ -64,21 +64,21 @@ pub fn parse_ratio(field: &str, text: &str) -> Result<(u64, u64)> {
 
 /// The closed range `LO..HI`, LO ≤ HI.
 pub fn parse_range(field: &str, text: &str) -> Result<(Laurent, Laurent)> {
-    let (lo, hi) = split_range(field, text)?;
+    let (lo, hi) = split_range(field, text, "1/100..7/2")?;
     let (lo, hi) = (parse(field, lo)?, parse(field, hi)?);
     if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
 }
 
 /// The closed range `LO..HI` of integers, LO ≤ HI.
 pub fn parse_integer_range(field: &str, text: &str) -> Result<(i64, i64)> {
-    let (lo, hi) = split_range(field, text)?;
+    let (lo, hi) = split_range(field, text, "-2..3")?;
     let (lo, hi) = (parse_integer(field, lo)?, parse_integer(field, hi)?);
     if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
 }
 
-fn split_range<'a>(field: &str, text: &'a str) -> Result<(&'a str, &'a str)> {
-    text.split_once("..")
-        .ok_or_else(|| Error::input(field, text, "must be a range LO..HI, such as 1/100..7/2"))
+fn split_range<'a>(field: &str, text: &'a str, example: &str) -> Result<(&'a str, &'a str)> {
+    let ends = text.split_once("..").filter(|(lo, hi)| !lo.trim().is_empty() && !hi.trim().is_empty());
+    ends.ok_or_else(|| Error::input(field, text, format!("must be a range LO..HI, such as {example}")))
 }
 
 fn reversed(field: &str, text: &str) -> Error {

@@ -112,15 +112,15 @@ impl Document {
     /// # Errors
     /// CSV or LaTeX of a document without rows.
     pub fn render(&self, format: Format) -> Result<String> {
-        let table = || {
+        let table = |format: &str| {
             let remedy = "this result has no rows; use --format text or json";
-            self.table.as_ref().ok_or_else(|| Error::input("format", self.name, remedy))
+            self.table.as_ref().ok_or_else(|| Error::input("format", format, remedy))
         };
         match format {
             Format::Json => Ok(self.json()),
-            Format::Csv => Ok(csv::document(table()?)),
+            Format::Csv => Ok(csv::document(table("csv")?)),
             Format::Latex => {
-                let all = std::iter::once(table()?).chain(&self.more).map(latex::document);
+                let all = std::iter::once(table("latex")?).chain(&self.more).map(latex::document);
                 Ok(all.collect::<Vec<_>>().join("\n"))
             }
             Format::Text => Ok(self.text()),

@@ -31,18 +31,23 @@ impl Run {
 /// The document `kickdrift/simulate/1`; the caller adds the input.
 pub fn document(run: &Run) -> Document {
     let (first, last) = (run.series.first(), run.series.last());
-    let drift = first.zip(last).map_or(f64::NAN, |(a, b)| (b.energy - a.energy) / a.energy.abs());
+    let drift = first.zip(last).map(|(a, b)| (b.energy - a.energy) / a.energy.abs());
+    let drift = drift.filter(|drift| drift.is_finite()).map(|drift| format!("{drift:.3e}"));
     let of = if run.linear { "" } else { " of small deviations" };
     let lines = [
         format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
-        format!("  relative change of energy    {drift:.3e}"),
+        format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
         format!("  growth rate, predicted       {:.6}{of}", run.predicted),
-        format!(
-            "  growth rate, measured        {:.6}{of}, give or take {:.1e}: run longer to see less",
-            run.measured,
-            run.resolution()
-        ),
+        if run.measured.is_finite() && run.resolution().is_finite() {
+            let off = run.resolution();
+            format!(
+                "  growth rate, measured        {:.6}{of}, give or take {off:.1e}: run longer to see less",
+                run.measured
+            )
+        } else {
+            "  growth rate, measured        none: the run overflows".into()
+        },
     ];
     Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)

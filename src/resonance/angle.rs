@@ -60,11 +60,15 @@ impl<S: Real> Angle<S> {
         slow.enclosure(bits).div(&sin2, bits).expect("sin theta > 0")
     }
 
-    /// The nearest resonance of a ratio with numerator p.
+    /// The nearest resonance of a ratio with numerator p; its distance is exact where a double can hold it and
+    /// θ/π is rational, so exactly 0 on a resonance.
     ///
     /// p θ/π is half an odd integer only if θ/π is rational, and then (unless s is one of the cyclotomic
     /// values) s = 2, p odd: the smaller m is taken.
     pub fn nearest(&self, p: u64, bits: u32) -> Nearest {
+        if let Some((m, distance)) = self.rational_nearest(p) {
+            return Nearest { m, distance: Ball::from_rational(&distance, bits) };
+        }
         let turns = self.over_pi(bits + 64).mul(&Ball::from_integer(&p.into()), bits + 64);
         let (twice, _) = turns.mid_scaled(1);
         let m = (twice / 2u8).max(One::one());
@@ -83,10 +87,8 @@ impl<S: Real> Angle<S> {
     /// Decided: θ/π is rational only where 2 cos θ is an algebraic integer. For rational s that leaves
     /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always tell.
     pub fn is_resonant(&self, p: u64, tolerance: &Rational) -> bool {
-        if let Some(over_pi) = self.rational_over_pi() {
-            let turns = over_pi * Rational::from_integer(p.into());
-            let m = turns.round().max(One::one());
-            return (turns - m).abs() <= *tolerance;
+        if let Some((_, distance)) = self.rational_nearest(p) {
+            return distance.abs() <= *tolerance;
         }
         let mut bits = 64;
         loop {
@@ -96,6 +98,14 @@ impl<S: Real> Angle<S> {
             }
             bits *= 2;
         }
+    }
+
+    /// The nearest m ≥ 1 and p θ/π − m where θ/π is rational; of two the smaller m.
+    fn rational_nearest(&self, p: u64) -> Option<(u64, Rational)> {
+        let turns = self.rational_over_pi()? * Rational::from_integer(p.into());
+        let half = Rational::new(1.into(), 2.into());
+        let m = (&turns - half).ceil().max(One::one());
+        Some((m.to_integer().try_into().unwrap_or(u64::MAX), turns - m))
     }
 
     /// θ/π where s is 1, 2 or 3: 1/3, 1/2, 2/3.
@@ -117,5 +127,28 @@ impl<S: Real> TwoClocks<S> {
     /// The fast clock's angle; `None` beyond its Verlet limit s = 4.
     pub fn angle(&self) -> Option<Angle<S>> {
         Angle::new(self.fast().clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn a_resonance_is_at_distance_zero_and_its_neighbour_is_not() {
+        let nearest = |s: Rational, p: u64| Angle::new(s).unwrap().nearest(p, 64);
+        let told = |s: Rational, p: u64| (nearest(s.clone(), p).m, nearest(s, p).distance.to_f64_enclosure());
+        for (s, p, m) in [(1, 3, 1), (1, 6, 2), (2, 2, 1), (2, 8, 4), (3, 3, 2)] {
+            assert_eq!(told(ratio(s, 1), p), (m, (0.0, 0.0)), "s = {s}, p = {p}");
+        }
+        // Half-way, and below the first resonance.
+        assert_eq!([3, 1].map(|p| told(ratio(2, 1), p)), [(1, (0.5, 0.5)), (1, (-0.5, -0.5))]);
+        // 1/3, enclosed by neighbouring doubles: the nearest one lies below it.
+        assert_eq!(told(ratio(1, 1), 4), (1, (1.0 / 3.0, (1.0_f64 / 3.0).next_up())));
+        // Elsewhere an enclosure that holds the exact value, and never only 0.
+        let beside = ratio(1_000_000_000_000_000_001, 1_000_000_000_000_000_000);
+        let (m, (lo, hi)) = told(beside, 3);
+        assert!(m == 1 && lo < hi && hi > 0.0);
     }
 }

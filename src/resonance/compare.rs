@@ -37,6 +37,16 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// What the rule makes of a pair that is stable or not, near a resonance or not.
+    pub fn of(stable: bool, near: bool) -> Outcome {
+        match (stable, near) {
+            (false, true) => Outcome::Hit,
+            (true, false) => Outcome::Quiet,
+            (false, false) => Outcome::Miss,
+            (true, true) => Outcome::FalseAlarm,
+        }
+    }
+
     /// The outcome's name in documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -86,14 +96,9 @@ pub fn compare<S: Decidable>(
     let trace = decide_from(Tier::Refine, clocks, limits)?;
     let tan = tan::criterion(clocks).verdict();
     let angle = clocks.angle();
-    let outcome = angle.as_ref().map(|angle| {
-        match (trace.verdict.is_stable(), angle.is_resonant(clocks.p(), tolerance)) {
-            (false, true) => Outcome::Hit,
-            (true, false) => Outcome::Quiet,
-            (false, false) => Outcome::Miss,
-            (true, true) => Outcome::FalseAlarm,
-        }
-    });
+    let outcome = angle
+        .as_ref()
+        .map(|angle| Outcome::of(trace.verdict.is_stable(), angle.is_resonant(clocks.p(), tolerance)));
     let nearest = angle.map(|angle| angle.nearest(clocks.p(), BITS));
     Ok(Comparison { trace, tan, nearest, outcome })
 }

@@ -15,8 +15,27 @@ use num_traits::{One, Zero};
 
 use super::model::System;
 use super::sparse::Symmetric;
+use crate::error::{Error, Result};
 use crate::number::{Rational, Ring};
-use crate::propagator::{Event, Weight};
+use crate::propagator::{Event, Schedule, Weight};
+
+/// Kicks of a half period that are composed at most: some minutes where each touches few degrees of freedom.
+const MOST_KICKS: u64 = 10_000_000_000;
+
+/// That a half period can be composed kick by kick.
+///
+/// # Errors
+/// A budget error, before any work, where it holds too many kicks.
+pub(super) fn check_length(schedule: &Schedule) -> Result<()> {
+    let kicks = schedule.strikes() / 2;
+    if kicks <= MOST_KICKS {
+        return Ok(());
+    }
+    Err(Error::budget(format!(
+        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS}): \
+         choose steps with simpler ratios"
+    )))
+}
 
 /// The coefficients of one row: (column, value) pairs.
 pub(super) type Row<S> = Vec<(usize, S)>;

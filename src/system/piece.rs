@@ -1,6 +1,7 @@
 //! Invariant parts of a component, and the verdict on each.
 
 use super::analysis::{Evidence, Part};
+use super::compose::check_length;
 use super::decide::Route;
 use super::exact::{Limits, MuCount, decide_exact};
 use super::float;
@@ -84,6 +85,7 @@ impl Piece {
     fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
         // What may be refused is asked for before anything else is computed.
         let asked = (how.0 == Route::Exact).then(|| decide_exact(&self.system, how.1)).transpose()?;
+        check_length(self.system.schedule())?;
         let blocks = float::half_period(&self.system, &self.frame);
         let spectrum = Spectrum::new(&blocks);
         let certified = || spectrum.as_ref().and_then(|spectrum| spectrum.certified(&blocks));

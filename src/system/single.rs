@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::ManyClocks;
 use super::analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part, exponent};
+use super::compose::check_length;
 use super::enclose;
 use super::float;
 use super::frame::Frame;
@@ -89,10 +90,13 @@ fn decide_clocks<S: Decidable>(
 ) -> Result<Part> {
     let scalar = match by_ladder(clocks)? {
         Some(scalar) => scalar,
-        None => match by_doubles(rounded, clocks).or_else(|| by_balls(clocks)) {
-            Some(scalar) => scalar,
-            None => by_signs(clocks, exact)?,
-        },
+        None => {
+            check_length(clocks.schedule())?;
+            match by_doubles(rounded, clocks).or_else(|| by_balls(clocks)) {
+                Some(scalar) => scalar,
+                None => by_signs(clocks, exact)?,
+            }
+        }
     };
     let (lo, hi) = scalar.mu.to_f64_enclosure();
     let mu = scalar.mu.mid_f64();

@@ -24,6 +24,9 @@ pub enum Tier {
 }
 
 impl Tier {
+    /// All tiers, the cheapest first.
+    pub const ALL: [Tier; 3] = [Tier::Filter, Tier::Refine, Tier::Exact];
+
     /// The tier's name in documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -96,7 +99,7 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<De
 /// # Errors
 /// As [`decide`].
 pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Decision> {
-    for decided_by in [Tier::Filter, Tier::Refine, Tier::Exact].into_iter().filter(|&tier| tier >= first) {
+    for decided_by in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
         let verdict = match decided_by {
             Tier::Filter => by_filter(clocks, limits)?,
             Tier::Refine => by_refine(clocks, limits)?,

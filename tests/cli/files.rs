@@ -30,6 +30,32 @@ fn an_output_file_holds_what_standard_output_would() {
 }
 
 #[test]
+fn the_extension_of_the_output_is_its_form_unless_a_format_is_asked_for() {
+    let desk = Desk::new();
+    for (name, format) in [("v.json", "json"), ("v.csv", "csv"), ("v.tex", "latex"), ("v.txt", "text")] {
+        assert_eq!(desk.run(&words(VERDICT, &["--output", name])).code, Some(0));
+        assert_eq!(desk.read(name), stdout(&words(VERDICT, &["--format", format])).into_bytes(), "{name}");
+    }
+    desk.run(&words(VERDICT, &["--format", "csv", "--output", "v.json"]));
+    assert_eq!(desk.read("v.json"), desk.read("v.csv"));
+    for name in ["v.svg", "v.PNG", "v.npz"] {
+        let ended = desk.run(&words(VERDICT, &["--output", name]));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
+        assert!(ended.stderr.contains(name) && ended.stderr.contains("no figure"), "{}", ended.stderr);
+    }
+    assert_eq!(desk.files(), ["v.csv", "v.json", "v.tex", "v.txt"]);
+}
+
+#[test]
+fn two_results_do_not_share_a_file() {
+    let desk = Desk::new();
+    let line = words(VERDICT, &["--certificate", "a.v", "--output", "a.v"]);
+    let ended = desk.run(&line);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.stderr.contains("certificate = a.v") && desk.is_empty(), "{}", ended.stderr);
+}
+
+#[test]
 fn an_error_leaves_the_old_file_as_it_was() {
     let desk = Desk::new();
     desk.write("old.json", "old");

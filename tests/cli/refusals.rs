@@ -56,6 +56,7 @@ fn texts_that_are_no_numbers() {
         ("2 pi", ["lambda2 = 2 pi: ", "*"]),
         ("1,5", ["lambda2 = 1,5: ", "','"]),
         ("0x10", ["lambda2 = 0x10: ", "'x'"]),
+        ("5.", ["lambda2 = 5.: ", "leave the point out"]),
         ("2^(1/2)", ["lambda2 = 2^(1/2): ", "integer"]),
         ("9^9^9", ["lambda2 = 9^9^9: ", "parentheses"]),
         ("9^999999999", ["lambda2 = 9^999999999: ", "smaller power"]),
@@ -98,6 +99,10 @@ fn flags_that_are_missing_unknown_or_given_twice() {
     refused(&desk, &["curves", "--samples", "3.5"], &["samples = 3.5", "whole number"]);
     refused(&desk, &["curves", "--threads", "0"], &["threads = 0", "1 to"]);
     refused(&desk, &["curves", "--threads", "1000000000"], &["threads = 1000000000", "1 to"]);
+    refused(&desk, &["curves", "--samples", "-5"], &["samples = -5", "whole number"]);
+    refused(&desk, &[&verdict("10", "1", "1", "1")[..], &["--budget", "-1"]].concat(), &["budget = -1"]);
+    refused(&desk, &["curves", "--quiet=1"], &["quiet = 1", "takes no value"]);
+    refused(&desk, &["tongues", "--digits", "99999999999"], &["digits = 99999999999", "smaller number"]);
     refused(&desk, &["verdicts"], &["command = verdicts", "verdict, curves"]);
     refused(&desk, &[], &["command missing", "verdict, curves"]);
     refused(&desk, &["compare"], &["--max-sum"]);
@@ -114,6 +119,8 @@ fn ranges_and_grids_without_a_pair() {
     };
     map("1/10", "1..1/2", "1..2", &["h1-range = 1..1/2", "smaller number first"]);
     map("1/10", "1..2", "1", &["h2-range = 1: ", "LO..HI"]);
+    map("1/10", "1..", "1..2", &["h1-range = 1..: ", "LO..HI"]);
+    map("1/10", "1..2", "..2", &["h2-range = ..2: ", "LO..HI"]);
     map("1/10", "1..2", "0.01..0.09", &["h2-range = 1/100..9/100", "1/10"]);
     map("0", "1..2", "1..2", &["step1 = 0", "positive"]);
     map("-1/10", "1..2", "1..2", &["step1 = -1/10", "positive"]);
@@ -152,6 +159,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --rho 1 --m 10", &["m = 10", "1 to 9"]);
     tongues("tongues --ratio 7/3 --rho 1 --m 0", &["m = 0", "begin at 1"]);
     tongues("tongues --ratio 7/3 --rho 1 --m 4..2", &["m = 4..2", "smaller number first"]);
+    tongues("tongues --ratio 7/3 --rho 1 --m 1,,2", &["m = 1,,2", "empty item"]);
     tongues("tongues --ratio 7/3 --rho 1 --h1-range 1..2", &["lambda1 missing", "s = h1^2 lambda1"]);
     tongues("tongues --ratio 7/3 --rho 1 --digits 0", &["digits = 0", "1 to 10000"]);
     tongues("tongues --ratio 7/3 --rho 1e40", &["rho = 1", "1e16"]);
@@ -215,4 +223,54 @@ fn a_negative_stiffness_that_outweighs_the_fast_one_is_no_bad_input() {
     let ended = Desk::new().run(&[&verdict("1", "-5", "1", "5/3")[..], &["--format", "json"]].concat());
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(ended.stdout.contains(r#""resonance": {"m":0,"a":0,"b":0}"#), "{}", ended.stdout);
+}
+
+const GRID: &str = "--lambda1 10 --lambda2 1 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..1";
+
+fn words(text: &str) -> Vec<&str> {
+    text.split_whitespace().collect()
+}
+
+#[test]
+fn a_directory_of_parts_that_cannot_be_one() {
+    let desk = Desk::new();
+    desk.write("file", "");
+    refused(&desk, &words(&format!("map {GRID} --resume file")), &["file: ", "name another one"]);
+    let negative = format!("map {GRID} --shard -1/2 --resume parts");
+    refused(&desk, &words(&negative), &["shard = -1/2", "2/16"]);
+    refused(&desk, &words("merge file"), &["file/map.json", "--resume"]);
+}
+
+#[test]
+fn systems_that_cannot_be_read_or_meant() {
+    let desk = Desk::new();
+    let oscillator = r#"{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+        {"name": "only", "step": "1/10", "springs": [[0, null, "1"]]}]}"#;
+    desk.write("system.json", oscillator);
+    desk.write("wrong.json", &oscillator.replace("masses", "mases"));
+    let system = |line: &str, parts: &[&str]| refused(&desk, &words(line), parts);
+    system("system none.json", &["none.json", "cannot read the system", "name a system file"]);
+    system("system wrong.json", &["system = line 1", "unknown field `mases`", "`masses`", "JSON object"]);
+    let twice = "--scan potentials.only.step=1/10..1:1/10 --scan potentials.0.step=1/10..1:1/10";
+    system(&format!("system system.json {twice}"), &["potentials.0.step", "both axes"]);
+    let clock = |step: &str| format!(r#"{{"step": "{step}", "springs": [[0, null, "1"]]}}"#);
+    let clocks = ["1/10", "1/3", "999999999999"].map(clock).join(", ");
+    let endless = format!(r#"{{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [{clocks}]}}"#);
+    desk.write("endless.json", &endless);
+    system("system endless.json", &["kicks", "simpler ratios"]);
+    system("simulate endless.json", &["kicks", "simpler ratios"]);
+    let springs = r#""springs": [[0, null, "1"], [0, 1, "2"]]"#;
+    let wide =
+        endless.replace(r#""springs": [[0, null, "1"]]"#, springs).replace(r#"["1"]"#, r#"["1", "2"]"#);
+    desk.write("wide.json", &wide.replacen(springs, r#""springs": [[1, null, "1"]]"#, 1));
+    system("system wide.json", &["kicks", "simpler ratios"]);
+    system("simulate system.json --periods 99999999999", &["periods = 99999999999", "smaller number"]);
+    system("simulate system.json --displace 1e200", &["displace = 1e200", "smaller displacement"]);
+}
+
+#[test]
+fn forms_that_a_result_has_not() {
+    let desk = Desk::new();
+    desk.write("scene.json", r#"{"schema": "kickdrift/scene/1", "want": []}"#);
+    refused(&desk, &["run", "scene.json", "--format", "csv"], &["format = csv", "text or json"]);
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 21] = [
+const DOCUMENTS: [&str; 22] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -27,6 +27,7 @@ const DOCUMENTS: [&str; 21] = [
     "tongues --survey --max-sum 20 --rho 1/25",
     "tongues --max-sum 9 --rho 1e-12",
     "closings --max-sum 9 --digits 3",
+    "tongues --ratio 3/2 --rho 1/25 --lambda1 2 --digits 20",
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {
@@ -51,7 +52,7 @@ fn every_change_is_found_and_its_row_named() {
     let desk = Desk::new();
     let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
     type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
-    let changes: [(&str, &str, Change); 26] = [
+    let changes: [(&str, &str, Change); 50] = [
         (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
         (DOCUMENTS[0], "row 4", |d, by| {
             let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);
@@ -108,6 +109,45 @@ fn every_change_is_found_and_its_row_named() {
             d["thinnest"][1]["width"] = by_both(&d["thinnest"][1]["width"], by, 1e-2)
         }),
         (DOCUMENTS[18], "row 11", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[9], "row 1", |d, by| d["trace"] = by_both(&d["trace"], by, 1e-12)),
+        (DOCUMENTS[9], "row 1", |d, _| d["trace"] = json!({"lo": null, "hi": null})),
+        (DOCUMENTS[9], "row 1", |d, by| d["growth_rate"] = by_both(&d["growth_rate"], by, 1e-12)),
+        (DOCUMENTS[9], "row 1", |d, _| d["resonance"] = json!(null)),
+        (DOCUMENTS[9], "row 1", |d, _| d["decided_by"] = json!("chance")),
+        (DOCUMENTS[8], "row 1", |d, _| d["trace"]["exact"] = json!("21/10")),
+        (DOCUMENTS[12], "row 6", |d, _| {
+            d["decided_by"]["exact"] = json!(d["decided_by"]["exact"].as_u64().unwrap() + 1);
+        }),
+        (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["offence"] = json!("quiet")),
+        (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["tan"] = json!("parabolic")),
+        (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["rho"] = json!("1/26")),
+        (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["q"] = json!(0)),
+        (DOCUMENTS[13], "row 0", |d, _| d["input"]["max_sum"] = json!("9")),
+        (DOCUMENTS[14], "row 0", |d, _| d["input"]["h2_range"] = json!("1/10..3")),
+        (DOCUMENTS[13], "row 0", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[16], "row 3", |d, _| d["polynomials"]["C"] = json!("(-1/2*rho - 1/2)*s")),
+        (DOCUMENTS[17], "row 0", |d, _| d["holds"] = json!(false)),
+        (DOCUMENTS[0], "row 0", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[0], "row 0", |d, _| d["predicted_points"]["inside"] = json!(1)),
+        (DOCUMENTS[0], "row 9", |d, _| d["tongues"][8]["closed"] = json!(true)),
+        (DOCUMENTS[0], "row 2", |d, by| {
+            d["tongues"][1]["predicted"]["s"] = by(&d["tongues"][1]["predicted"]["s"], 1e-15);
+        }),
+        (DOCUMENTS[0], "row 2", |d, by| {
+            d["tongues"][1]["predicted"]["distance"] = by(&d["tongues"][1]["predicted"]["distance"], 1e-2);
+        }),
+        (DOCUMENTS[0], "row 1", |d, by| {
+            d["tongues"][0]["growth"]["s"] = by(&d["tongues"][0]["growth"]["s"], 1e-3)
+        }),
+        (DOCUMENTS[21], "row 2", |d, by| {
+            let growth = &mut d["tongues"][1]["growth"];
+            growth["growth_rate"] = by(&growth["growth_rate"], 1e-6);
+        }),
+        (DOCUMENTS[21], "row 2", |d, _| {
+            let decimal = &mut d["tongues"][1]["upper"]["h2"]["decimal"];
+            decimal["lo"] = json!(format!("1{}", decimal["lo"].as_str().unwrap()));
+            decimal["hi"] = json!(format!("1{}", decimal["hi"].as_str().unwrap()));
+        }),
     ];
     for (i, (line, row, change)) in changes.into_iter().enumerate() {
         let mut document = write(&desk, line, "d.json");
@@ -179,6 +219,9 @@ fn nonsense_in_a_document_is_an_error_and_never_a_panic() {
         "polynomial --ratio 2/1",
         "proposition --max 2",
         "verdict --lambda1 2 --lambda2 1 --h1 1 --h2 3",
+        "compare --max-sum 5 --rho 1/25 --samples 3",
+        "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..1",
+        "curves --samples 5 --a 0..1 --b 1..1",
     ];
     let strange =
         [json!(null), json!(-1), json!(0), json!(1e300), json!(1u64 << 62), json!("1/0"), json!([])];

@@ -24,6 +24,11 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        if let Some(format @ (Format::Csv | Format::Latex)) = common.format {
+            let remedy = "a scene's products have their own formats, and the summary is text or json";
+            let name = if matches!(format, Format::Csv) { "csv" } else { "latex" };
+            return Err(Error::input("format", name, remedy));
+        }
         let scene = Scene::read(&self.text()?)?;
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
         let work = Work::new(&scene, common, folder.path());

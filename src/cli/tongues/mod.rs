@@ -50,7 +50,7 @@ pub struct Args {
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
     b: Option<String>,
     /// Tell the edges to so many significant digits, as decimals.
-    #[arg(long, value_name = "N", value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: Option<u32>,
     /// What to tell beside the edges [default: all; with --max-sum all but growth, the dearest].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
@@ -59,7 +59,7 @@ pub struct Args {
     #[arg(long)]
     survey: bool,
     /// The thinnest tongues that a survey lists.
-    #[arg(long, value_name = "K", value_parser = whole::<usize>)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole::<usize>)]
     thinnest: Option<usize>,
     /// What a figure (--output FILE.svg or FILE.png) shows [default: atlas].
     #[arg(long, value_name = "WHAT")]
@@ -220,6 +220,9 @@ pub fn parse_list(text: &str) -> Result<Vec<(u64, u64)>> {
         u64::try_from(m).ok().filter(|&m| m > 0).ok_or_else(|| Error::input("m", text, "labels begin at 1"))
     };
     let part = |part: &str| {
+        if part.trim().is_empty() {
+            return Err(Error::input("m", text, "has an empty item: list labels as 1,3,7..9"));
+        }
         let (from, upto) = match part.contains("..") {
             true => parse_integer_range("m", part)?,
             false => parse_integer("m", part).map(|m| (m, m))?,

@@ -10,7 +10,7 @@ use super::exact::{check_ratio, fraction};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
-use crate::number::Rational;
+use crate::number::{Polynomial, Rational};
 use crate::propagator::methods::avi;
 use crate::propagator::{TwoClocks, half_period};
 
@@ -28,6 +28,10 @@ pub fn check_proposition(document: &Value, context: &Context) -> Result<Outcome>
     let points =
         (1..=max).flat_map(|p| (1..=max).filter(move |q| p.gcd(q) == 1).map(move |_| p - 1)).sum::<u64>();
     let told = whole(all.whole("resonant_points"))?;
+    let sound = whole(all.flag("holds"))? && whole(all.rows("failures"))?.is_empty();
+    if !sound {
+        outcome.failures.push((0, format!("max = {max}"), "every point has its witness: it holds".into()));
+    }
     if told != rows.len() as u64 || told != points {
         outcome.failures.push((
             0,
@@ -66,10 +70,29 @@ pub fn check_polynomial(document: &Value, context: &Context) -> Result<Outcome> 
         let power = |key: &str| -> Result<u32> { Ok(whole(term.whole(key))?.min(p + q + 1) as u32) };
         let powers = (power("s")?, power("rho")?);
         let coefficient = whole(term.rational("coefficient"))?;
-        terms.entry(whole(term.text("entry"))?.to_string()).or_default().insert(powers, coefficient);
+        let own = terms.entry(whole(term.text("entry"))?.to_string()).or_default();
+        let twice = own.insert(powers, coefficient).is_some();
+        whole(holds(!twice, || "a term is told twice".into()))?;
     }
+    let ratio = whole(whole(all.object("input"))?.rational("ratio"))?;
+    whole(holds(ratio == fraction(p, q), || format!("its ratio is {ratio}, not {p}/{q}")))?;
+    let texts = whole(all.object("polynomials"))?;
     let names = ["A", "B", "C", "D", "trace"].map(|entry| serde_json::json!({"entry": entry}));
-    context.rows(&names, POLYNOMIALS, |row| check_entry(row.text("entry")?, p, q, &terms))
+    context.rows(&names, POLYNOMIALS, |row| {
+        let entry = row.text("entry")?;
+        check_entry(entry, p, q, &terms)?;
+        let text = terms.get(entry).map_or_else(|| "0".into(), in_writing);
+        holds(texts.text(entry)? == text, || format!("its text is not {text}"))
+    })
+}
+
+/// The polynomial with these terms as it is written.
+fn in_writing(terms: &Terms) -> String {
+    let s_and_rho = terms.iter().fold(Polynomial::zero(), |mut sum, ((k, l), c)| {
+        sum += Polynomial::monomial(Polynomial::monomial(c.clone(), *l as usize), *k as usize);
+        sum
+    });
+    s_and_rho.text(&["s", "rho"])
 }
 
 /// A polynomial of degree m in s and n in ρ is determined by (m + 1)(n + 1) values on a grid.

@@ -16,6 +16,7 @@ mod closings;
 mod curves;
 mod exact;
 mod integers;
+mod listing;
 mod plane;
 mod read;
 mod survey;

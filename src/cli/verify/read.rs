@@ -74,21 +74,23 @@ impl<'a> Row<'a> {
         self.0.get(key).and_then(Value::as_bool).ok_or_else(|| Self::missing(key, "true or false"))
     }
 
-    /// The ends of an enclosure; an end beyond all doubles is null.
+    /// The ends of an enclosure in order; an end beyond all doubles is null, the other one the last double before it.
     pub fn ends(&self, key: &str) -> Checked<(f64, f64)> {
         let object = self.object(key)?;
         let end = |side: &str, beyond: f64| match object.get(side) {
             None => Ok(beyond),
             Some(_) => object.float(side),
         };
-        Ok((end("lo", f64::NEG_INFINITY)?, end("hi", f64::INFINITY)?))
+        let (lo, hi) = (end("lo", f64::NEG_INFINITY)?, end("hi", f64::INFINITY)?);
+        let told = (lo.is_finite() || hi == f64::MIN) && (hi.is_finite() || lo == f64::MAX);
+        if told && lo <= hi { Ok((lo, hi)) } else { Err(Self::missing(key, "an enclosure with lo <= hi")) }
     }
 
-    /// The ends of a finite enclosure in order, exactly.
+    /// The ends of a finite enclosure, exactly.
     pub fn enclosure(&self, key: &str) -> Checked<(Rational, Rational)> {
         let (lo, hi) = self.ends(key)?;
         let ends = rational::from_f64_exact(lo).zip(rational::from_f64_exact(hi));
-        ends.filter(|(lo, hi)| lo <= hi).ok_or_else(|| Self::missing(key, "an enclosure with lo <= hi"))
+        ends.ok_or_else(|| Self::missing(key, "a finite enclosure"))
     }
 
     pub fn rational(&self, key: &str) -> Checked<Rational> {

@@ -1,15 +1,13 @@
 //! Tongues, edge by edge: exact signs of the half period at the ends of every enclosure, and the verdict inside.
 
-use num_traits::Zero;
+use num_traits::{Signed, Zero};
 use serde_json::Value;
 
 use super::exact::{ZeroOf, check_ratio, fraction, ln_multiplier_at, meets, part, resonance, signs};
+use super::listing::{complete, counts};
 use super::read::{Checked, Fault, Row, holds, whole};
 use super::{Context, Outcome};
-use crate::cli::ratios::Ratios;
-use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
-use crate::number::parse::parse_ratio;
 use crate::number::{Laurent, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::{Entry, Resonance, entries};
@@ -38,38 +36,10 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
     if let Some(failure) = complete(&input, rows, &given.rho)? {
         outcome.failures.insert(0, failure);
     }
+    if let Some(failure) = counts(&all, rows)? {
+        outcome.failures.push(failure);
+    }
     Ok(outcome)
-}
-
-/// Without a selection, the labels 1, 2, ... of every ratio are there, in order: as many edges as an entry has zeros,
-/// so each enclosure holds one.
-fn complete(input: &Row, rows: &[Value], rho: &Rational) -> Result<Option<(u64, String, String)>> {
-    if ["m", "a", "b", "h1_range", "h2_range"].iter().any(|key| input.get(key).is_some()) {
-        return Ok(None);
-    }
-    let asked = match input.get("ratio") {
-        Some(_) => parse_ratio("ratio", whole(input.text("ratio"))?).map(|(p, q)| Ratios::One(p, q))?,
-        None => Ratios::UpTo(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0)),
-    };
-    let list = asked.within(MOST_SUM)?.list();
-    let last = |p: u64, q: u64| if rho.is_zero() { p } else { p.saturating_add(q) - 1 };
-    let expected = list.into_iter().flat_map(|(p, q)| (1..=last(p, q)).map(move |m| (p, q, m)));
-    let mut rows = rows.iter().map(Row::new).enumerate();
-    for (p, q, m) in expected {
-        let place = format!("p = {p}, q = {q}, m = {m}");
-        let Some((i, row)) = rows.next() else {
-            return Ok(Some((0, place, "is missing at the end".into())));
-        };
-        let labels = (row.whole("p").ok(), row.whole("q").ok(), row.whole("m").ok());
-        if labels != (Some(p), Some(q), Some(m)) {
-            return Ok(Some((
-                i as u64 + 1,
-                row.place(),
-                format!("is not the tongue {place} that belongs here"),
-            )));
-        }
-    }
-    Ok(rows.next().map(|(i, row)| (i as u64 + 1, row.place(), "is one tongue too many".into())))
 }
 
 /// One edge of a row.
@@ -89,7 +59,10 @@ impl Given {
         let lower = self.edge(row, "lower", (p, q, m))?;
         let upper = row.get("upper").map(|_| self.edge(row, "upper", (p, q, m))).transpose()?;
         match upper {
-            None => self.last(&lower, m),
+            None => {
+                holds(!row.flag("closed")?, || "the last tongue is open".into())?;
+                self.last(&lower, m)
+            }
             Some(upper) => {
                 holds(lower.zero.entry != upper.zero.entry, || "both edges are zeros of one entry".into())?;
                 if row.flag("closed")? {
@@ -169,14 +142,21 @@ impl Given {
         };
         let ZeroOf { p, q, .. } = edge.zero;
         for (key, back) in [("h1", fraction(1, 1)), ("h2", fraction(q, p))] {
-            let (lo, hi) = edge.row.enclosure(key)?;
+            let step = edge.row.object(key)?;
+            let decimal = step
+                .get("decimal")
+                .map(|ends| -> Checked<_> { Ok((ends.rational("lo")?, ends.rational("hi")?)) });
             let s = |h: Rational| {
                 let h = h * &back;
                 &Laurent::from_rational(&h * &h) * lambda1
             };
             let [from, upto] = [&edge.zero.lo, &edge.zero.hi].map(|s| Laurent::from_rational(s.clone()));
-            let meets = s(lo) <= upto && from <= s(hi);
-            holds(meets, || format!("{}: {key} is not the step of s", edge.name))?;
+            for (lo, hi) in
+                [Some(edge.row.enclosure(key)), decimal].into_iter().flatten().collect::<Checked<Vec<_>>>()?
+            {
+                let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
+                holds(meets, || format!("{}: {key} is not the step of s", edge.name))?;
+            }
         }
         Ok(())
     }
@@ -225,6 +205,8 @@ impl Given {
         let (p, q) = (lower.zero.p, lower.zero.q);
         let (s, ln) = (told.float("s")?, told.float("ln_multiplier")?);
         let exact = rational::from_f64_exact(s).ok_or_else(|| Fault::Wrong("growth at no s".into()))?;
+        let inside = lower.zero.lo <= exact && exact <= upper.zero.hi;
+        holds(inside, || format!("its fastest growth is told outside of it, at s = {s}"))?;
         // Fifteen digits of the rates are told; where s is rounded to a double they are flat.
         let near = |x: f64, y: f64| (x - y).abs() <= 1e-9 * y.abs();
         let rate = |s: &Rational| {
@@ -243,6 +225,10 @@ impl Given {
         holds(near(told.float("steps_until_tenfold")?, steps), || {
             format!("tenfold takes {steps} slow steps")
         })?;
+        if let Some(lambda1) = &self.lambda1 {
+            let rate = here * lambda1.to_f64().sqrt();
+            holds(near(told.float("growth_rate")?, rate), || format!("the growth rate is {rate}"))?;
+        }
         let hundredth = (&upper.zero.lo - &lower.zero.hi) * fraction(1, 100);
         let beside = [&exact - &hundredth, &exact + &hundredth];
         let faster = beside.iter().filter_map(rate).any(|(_, beside)| beside > here * (1.0 + 1e-9));
@@ -291,6 +277,25 @@ impl Given {
             "outside" => distance >= 0.0,
             _ => distance.is_zero(),
         };
-        holds(sign, || format!("{distance} is no distance to a point {side}"))
+        holds(sign, || format!("{distance} is no distance to a point {side}"))?;
+        let (least, most) = s.to_f64_enclosure();
+        holds((least.next_down()..=most.next_up()).contains(&told.float("s")?), || {
+            format!("p theta = m pi is s = {}", s.mid_f64())
+        })?;
+        // How far the enclosures are apart at least and at most; told to a millionth, for both ends are rounded.
+        let below = (&lower.zero.lo - s.upper(), &lower.zero.hi - s.lower());
+        let above = (s.lower() - &upper.zero.hi, s.upper() - &upper.zero.lo);
+        let (least, most) = match position {
+            "below" => below,
+            "above" => above,
+            "inside" => {
+                let nearer = |a: Rational, b: Rational| (-a).min(-b);
+                (nearer(below.1, above.1), nearer(below.0, above.0))
+            }
+            _ => return Ok(()),
+        };
+        let [least, most] = [least, most].map(|x| rational::to_f64(&x));
+        let truth = least * (1.0 - 1e-6)..=most * (1.0 + 1e-6);
+        holds(truth.contains(&distance.abs()), || format!("the distance to its tongue is not {distance}"))
     }
 }

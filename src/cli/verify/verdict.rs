@@ -6,7 +6,7 @@ use super::exact::{FullPeriod, affordable, full_period, ln_multiplier, meets};
 use super::read::{Checked, Fault, Row, holds};
 use super::{Context, Outcome};
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Real};
+use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::verdict::{Decidable, Kind, Limits, Tier, decide_from, growth};
 
@@ -36,45 +36,76 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
             format!("is {}, side {other_side}, not {kind}, side {side}", other.name())
         })
     };
+    let decided_by = row.text("decided_by")?;
+    holds(Tier::ALL.iter().any(|tier| tier.name() == decided_by), || format!("{decided_by} is no tier"))?;
     if affordable(&clocks) {
-        return match clocks.as_rational() {
+        match clocks.as_rational() {
             Some(rational) => {
                 let full = full_period(&rational);
                 same(full.kind, full.side)?;
-                numbers(row, &full, &oscillator)
+                exact_trace(row, Some(&full.trace))?;
+                numbers(row, &full.trace.enclosure(BITS), ln_of(&full), &oscillator)?;
             }
             None => {
                 let full = full_period(&clocks);
                 same(full.kind, full.side)?;
-                numbers(row, &full, &oscillator)
+                exact_trace(row, None)?;
+                numbers(row, &full.trace.enclosure(BITS), ln_of(&full), &oscillator)?;
             }
         }
-        .and_then(|()| label(row, &clocks, limits));
+        return label(row, &clocks, limits);
     }
-    let tier = if row.text("decided_by")? == "filter" { Tier::Refine } else { Tier::Exact };
+    let tier = if decided_by == "filter" { Tier::Refine } else { Tier::Exact };
     let verdict = decide_from(tier, &clocks, limits)?.verdict;
     same(verdict.kind(), verdict.side())?;
+    let rational = clocks.as_rational();
+    let growth = match &rational {
+        Some(rational) => growth(rational, verdict, limits)?,
+        None => growth(&clocks, verdict, limits)?,
+    };
+    numbers(row, &growth.trace, growth.ln_multiplier, &oscillator)?;
+    if row.object("trace")?.get("exact").is_some() {
+        exact_trace(row, rational.as_ref().map(crate::verdict::exact_trace).as_ref())?;
+    }
     label(row, &clocks, limits)
 }
 
-/// The trace and the growth rate lie in their enclosures.
-fn numbers<S: Real>(row: &Row, full: &FullPeriod<S>, oscillator: &Oscillator) -> Checked<()> {
-    const BITS: u32 = 192;
-    holds(meets(row.ends("trace")?, &full.trace.enclosure(BITS)), || {
-        "the trace lies outside its enclosure".into()
-    })?;
-    let told = row.ends("growth_rate")?;
-    if full.kind != Kind::Hyperbolic {
-        return holds(told == (0.0, 0.0), || "grows though it is not hyperbolic".into());
+const BITS: u32 = 192;
+
+/// ln μ by the trace of the full period; `None` unless hyperbolic.
+fn ln_of<S: Real>(full: &FullPeriod<S>) -> Option<Ball> {
+    (full.kind == Kind::Hyperbolic).then(|| ln_multiplier(&full.trace, BITS).expect("|Tr| > 2"))
+}
+
+/// The exact trace, where it is told.
+fn exact_trace(row: &Row, truth: Option<&Rational>) -> Checked<()> {
+    let trace = row.object("trace")?;
+    if trace.get("exact").is_none() {
+        return Ok(());
     }
-    let ln = ln_multiplier(&full.trace, BITS).expect("|Tr| > 2");
+    let told = trace.rational("exact")?;
+    holds(Some(&told) == truth, || "the trace is not what it is told to be exactly".into())
+}
+
+/// The trace and the growth rate lie in their enclosures.
+fn numbers(row: &Row, trace: &Ball, ln: Option<Ball>, oscillator: &Oscillator) -> Checked<()> {
+    holds(meets(row.ends("trace")?, trace), || "the trace lies outside its enclosure".into())?;
+    let told = row.ends("growth_rate")?;
+    let Some(ln) = ln else {
+        return holds(told == (0.0, 0.0), || "grows though it is not hyperbolic".into());
+    };
     let rate = ln.div(&oscillator.period().enclosure(BITS), BITS).expect("T > 0");
     holds(meets(told, &rate), || format!("the growth rate is {}", rate.mid_f64()))
 }
 
-/// The label m, where there is one, and that m = a p + b q.
+/// The label m of what grows exponentially, and that m = a p + b q.
 fn label(row: &Row, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Checked<()> {
-    let Some(told) = row.get("resonance") else { return Ok(()) };
+    // Beyond this families are not told.
+    let small = clocks.p().max(clocks.q()) < 1 << 31;
+    let grows = row.text("kind")? == Kind::Hyperbolic.name();
+    let Some(told) = row.get("resonance") else {
+        return holds(!(grows && small), || "what grows has a label".into());
+    };
     let (m, a, b) = (told.whole("m")?, told.integer("a")?, told.integer("b")?);
     let sum = i128::from(a) * i128::from(clocks.p()) + i128::from(b) * i128::from(clocks.q());
     holds(sum == i128::from(m), || format!("m = {m} is not {a} p + {b} q"))?;

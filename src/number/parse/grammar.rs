@@ -153,7 +153,7 @@ impl Parser<'_> {
             return Err(if self.at < self.characters.len() {
                 self.unexpected()
             } else {
-                "lacks a closing parenthesis".into()
+                "lacks a closing parenthesis; add it".into()
             });
         }
         self.depth -= 1;
@@ -182,7 +182,9 @@ impl Parser<'_> {
         if self.skip('.') {
             let fraction = self.digits();
             if fraction.is_empty() {
-                return Err("has a decimal point without digits after it".into());
+                return Err(
+                    "has a decimal point without digits after it; write them, or leave the point out".into(),
+                );
             }
             scale = -(fraction.len() as i64);
             digits.push_str(&fraction);

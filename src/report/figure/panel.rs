@@ -30,6 +30,20 @@ pub struct ColourBar {
 }
 
 impl ColourBar {
+    /// Shades of a gradient: neighbours are barely told apart.
+    pub const SHADES: u16 = 40;
+
+    /// The range of a bar of rates of growth: from the largest down to the decade of the smallest but one in
+    /// twenty. Near the edges of tongues growth falls to zero, and a few of these would stretch the bar beyond
+    /// use; they take its last colour. Without a rate at all a range that has none: [`Axis::log`] replaces it.
+    pub fn range_of(rates: impl Iterator<Item = f64>) -> (f64, f64) {
+        let mut rates: Vec<f64> = rates.collect();
+        rates.sort_unstable_by(f64::total_cmp);
+        let largest = rates.last().copied().unwrap_or(1.0);
+        let small = rates.get(rates.len() / 20).copied().unwrap_or(largest);
+        (10f64.powi(small.log10().floor() as i32), largest)
+    }
+
     /// The colour of a value.
     pub fn colour(&self, value: f64) -> Colour {
         self.gradient.at(self.axis.unit(value))
@@ -142,5 +156,18 @@ impl Panel {
     pub fn gridded(mut self) -> Self {
         self.grid = true;
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_in_twenty_may_lie_below_the_decades_of_a_bar() {
+        let rates = |weak: usize| (0..20).map(move |n| if n < weak { 2e-9 } else { 0.02 + 0.1 * n as f64 });
+        assert_eq!(ColourBar::range_of(rates(1)), (0.1, 0.02 + 0.1 * 19.0));
+        assert_eq!(ColourBar::range_of(rates(2)).0, 1e-9);
+        assert_eq!(ColourBar::range_of(std::iter::empty()), (1.0, 1.0));
     }
 }

@@ -46,7 +46,7 @@ impl MapArrays {
         steps[0].put_f64(each(grid.columns()).map(|i| grid.h1(i).to_f64()))?;
         steps[1].put_f64(each(grid.rows()).map(|j| grid.h2(j).to_f64()))?;
         let names: Vec<String> = Verdict::ALL.into_iter().map(name).collect();
-        let tiers = [Tier::Filter, Tier::Refine, Tier::Exact].map(Tier::name);
+        let tiers = Tier::ALL.map(Tier::name);
         let mut legends = vec![
             array("verdict_names", Element::Text(VERDICT), &[names.len()])?,
             array("tier_names", Element::Text(TIER), &[tiers.len()])?,

@@ -19,7 +19,7 @@ use crate::verdict::Tier;
 pub fn document(tally: &Tally, rows: Option<Table>) -> Document {
     let counts = &tally.counts;
     let [filter, refine, exact] = counts.decided_by;
-    let tiers = [Tier::Filter, Tier::Refine, Tier::Exact].map(Tier::name);
+    let tiers = Tier::ALL.map(Tier::name);
     let mut lines = vec![
         format!(
             "{} pairs, each decided: {} stable, {} unstable",

@@ -3,7 +3,7 @@
 //! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is thinner
 //! than any grid is there too: as a dot as wide as the lines.
 
-use super::chart::{FAMILIES, SHADES, axis, family_name, grouped, rank};
+use super::chart::{FAMILIES, axis, family_name, grouped, rank};
 use super::lines_in;
 use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient};
 use crate::report::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
@@ -68,9 +68,9 @@ impl Atlas<'_> {
     pub fn by_growth(&self) -> Figure {
         let bar = self.bar();
         let mut panel = self.panel();
-        for (class, colour) in (0..SHADES).zip(bar.gradient.steps(SHADES.into())) {
-            let of_class =
-                |segment: &&Segment| bar.class(segment.rate.unwrap_or(f64::INFINITY), SHADES) == class;
+        for (class, colour) in (0..ColourBar::SHADES).zip(bar.gradient.steps(ColourBar::SHADES.into())) {
+            let rate = |segment: &Segment| segment.rate.unwrap_or(f64::INFINITY);
+            let of_class = |segment: &&Segment| bar.class(rate(segment), ColourBar::SHADES) == class;
             let segments: Vec<&Segment> = self.open().filter(of_class).collect();
             panel = self.put(panel, &segments, colour);
         }

@@ -71,8 +71,6 @@ pub struct Chart {
     edges: Raster<Edge>,
 }
 
-/// Shades of a gradient: neighbours are barely told apart.
-pub(super) const SHADES: u16 = 40;
 /// Families with a colour of their own; the others share a grey.
 pub(super) const FAMILIES: usize = 8;
 /// Exponential growth, where curves are drawn over it.
@@ -138,9 +136,9 @@ impl Chart {
 
     fn by_growth(&self, panel: Panel, steps: [f64; 2]) -> Panel {
         let bar = self.bar();
-        let mut cells = cells(&self.growing, steps, bar.gradient.steps(SHADES.into()));
+        let mut cells = cells(&self.growing, steps, bar.gradient.steps(ColourBar::SHADES.into()));
         for (k, l, strength) in self.growing.filled() {
-            cells.push(k, l, bar.class(self.shown(strength), SHADES));
+            cells.push(k, l, bar.class(self.shown(strength), ColourBar::SHADES));
         }
         panel.with(Layer::cells(cells)).bar(bar)
     }
@@ -150,14 +148,8 @@ impl Chart {
         if self.colouring == Colouring::Tenfold { strength.recip() } else { strength }
     }
 
-    /// From the strongest cell down to the decade of the weakest but one in twenty: near the edges of tongues
-    /// growth falls to zero, and a few of these would stretch the bar beyond use. They take its last colour.
     fn bar(&self) -> ColourBar {
-        let mut all: Vec<f64> = self.growing.filled().map(|(_, _, strength)| strength).collect();
-        all.sort_unstable_by(f64::total_cmp);
-        let strongest = all.last().copied().unwrap_or(1.0);
-        let weak = all.get(all.len() / 20).copied().unwrap_or(strongest);
-        let (low, high) = (10f64.powi(weak.log10().floor() as i32), strongest);
+        let (low, high) = ColourBar::range_of(self.growing.filled().map(|(_, _, strength)| strength));
         if self.colouring == Colouring::Tenfold {
             let axis = Axis::log("slow steps until tenfold", high.recip(), low.recip());
             return ColourBar { axis, gradient: Gradient::on_white().reversed() };

@@ -31,8 +31,6 @@ pub struct SystemMap {
     pub points: Vec<Point>,
 }
 
-/// Shades of a gradient: neighbours are barely told apart.
-const SHADES: u16 = 40;
 /// Points in points of paper.
 const LEAST: f64 = 0.35;
 const EDGE: f64 = 2.4;
@@ -120,19 +118,15 @@ impl SystemMap {
             .with(panel)
     }
 
-    /// From the fastest point down to the decade of the slowest but one in twenty, which take the last colour.
     fn by_growth(&self, panel: Panel) -> Panel {
-        let mut rates: Vec<f64> = self.points.iter().map(|p| p.growth_rate).filter(|&r| r > 0.0).collect();
-        rates.sort_unstable_by(f64::total_cmp);
-        let fastest = rates.last().copied().unwrap_or(1.0);
-        let slow = rates.get(rates.len() / 20).copied().unwrap_or(fastest);
-        let low = 10f64.powi(slow.log10().floor() as i32);
+        let rates = self.points.iter().map(|point| point.growth_rate);
+        let (low, fastest) = ColourBar::range_of(rates.filter(|&rate| rate > 0.0));
         let bar = ColourBar {
             axis: Axis::log("growth rate (1/time)", low, fastest),
             gradient: Gradient::on_white(),
         };
-        let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), SHADES);
-        let cells = self.cells(bar.gradient.steps(SHADES.into()), Kind::Hyperbolic, shade);
+        let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), ColourBar::SHADES);
+        let cells = self.cells(bar.gradient.steps(ColourBar::SHADES.into()), Kind::Hyperbolic, shade);
         panel.with(Layer::cells(cells)).bar(bar)
     }
 

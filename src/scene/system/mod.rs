@@ -188,5 +188,10 @@ impl SystemScene {
 
 /// Why a text is no system.
 fn no_system(cause: serde_json::Error) -> Error {
-    Error::input("system", cause, "write one JSON object as in data/scenes/diatomic-tether.json")
+    let place = if cause.line() > 0 { format!("line {}", cause.line()) } else { "this file".into() };
+    Error::input(
+        "system",
+        place,
+        format!("{cause}; write one JSON object as in data/scenes/diatomic-tether.json"),
+    )
 }

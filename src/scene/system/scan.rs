@@ -83,6 +83,15 @@ impl Scan {
                 format!("at most {MOST}: choose larger spacings"),
             ));
         }
+        let mut file = template.clone();
+        let [first, second] = [&x, &y].map(|axis| place(&mut file, &axis.path).map(std::ptr::from_mut));
+        if first? == second? {
+            return Err(Error::input(
+                "scan",
+                &y.path,
+                "is varied along both axes: name two numbers of the file",
+            ));
+        }
         let scan = Scan { template, x, y };
         scan.at(&scan.x.lo, &scan.y.lo)?;
         Ok(scan)
