@@ -4,7 +4,8 @@
 //! unit time at fixed L1 is that over T = p h1 = p √(s/L1). Tr has one extremum in each tongue (it is a polynomial all
 //! of whose crossings of ±2 are real), and the rate one maximum nearby: found by golden section.
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
+use super::order::Gap;
 use super::precise::Enclosure;
 use crate::error::Result;
 use crate::number::{Ball, Rational, rational};

@@ -13,7 +13,8 @@
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
+use super::order::Gap;
 use super::peak::Peak;
 use super::precise::simplest;
 use super::spectrum::Edge;
