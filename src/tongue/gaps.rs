@@ -216,10 +216,13 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn refine(&mut self, edge: &Edge, digits: u32) -> Result<Enclosure> {
-        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
-        let start = Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) };
+        self.sharpened(edge.entry, &Enclosure::from(edge), digits)
+    }
+
+    /// The same from an enclosure that may hold more digits than an edge.
+    pub(super) fn sharpened(&mut self, entry: Entry, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.effort.precise += 1;
-        Ok(self.function(edge.entry)?.shrink(&start, &tenth_power(digits)))
+        Ok(self.function(entry)?.shrink(start, &tenth_power(digits)))
     }
 
     pub(super) fn function(&self, entry: Entry) -> Result<Function> {

@@ -4,11 +4,11 @@
 //! of the edges ([`super::tunnel`]); where it is a difference of nearly equal terms, as close to a closing, by more
 //! and more digits, and where no number of digits would end that, by algebra.
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use super::gaps::Tongues;
 use super::modular;
-use super::precise::{Enclosure, simplest};
+use super::precise::{Enclosure, negative_log2, simplest};
 use super::spectrum::Edge;
 use super::tunnel;
 use crate::error::Result;
@@ -72,20 +72,25 @@ impl Tongues {
 
     /// By more and more digits of both edges, until they part or are proven one.
     fn assemble_by_digits(&mut self, m: u64, a: Edge, b: Edge) -> Result<Gap> {
-        let open = self.is_open(m % 2 == 1)?;
-        let mut digits = 30;
+        let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
+        let mut digits = 20;
         loop {
-            let (x, y) = (self.refine(&a, digits)?, self.refine(&b, digits)?);
-            for (below, above, lower, upper) in [(&x, &y, a, b), (&y, &x, b, a)] {
+            (x, y) = (self.sharpened(a.entry, &x, digits)?, self.sharpened(b.entry, &y, digits)?);
+            let parted =
+                [(&x, &y, a, b), (&y, &x, b, a)].into_iter().find(|(below, above, ..)| below.hi < above.lo);
+            if let Some((below, above, lower, upper)) = parted {
                 let width = Enclosure { lo: &above.lo - &below.hi, hi: &above.hi - &below.lo };
-                if width.lo.is_positive() && width.width() * Rational::from_integer(1000.into()) <= width.lo {
+                if width.width() * Rational::from_integer(1000.into()) <= width.lo {
                     return Ok(Gap { m, lower, upper: Some(upper), closed: false, width: width.to_f64() });
                 }
-            }
-            if !open && self.coincide(&[(a, &x), (b, &y)])? {
+                // A bit is 0.30 decimal digits: so many that the width has five, more than there are.
+                let places = 3 * negative_log2(&(width.lo / &above.hi)) / 10 + 6;
+                digits = places.max(digits + 1);
+            } else if !self.is_open(m % 2 == 1)? && self.coincide(&[(a, &x), (b, &y)])? {
                 return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
+            } else {
+                digits *= 2;
             }
-            digits *= 2;
         }
     }
 
