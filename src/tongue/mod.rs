@@ -6,8 +6,9 @@
 //!
 //! ```text
 //!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
-//!       (sturm)      (isolate)    (locate, half, mode) (spectrum)  (gaps)        closings
-//!                                       more bits: precise      open or closed: modular, elimination
+//!       (sturm)      (isolate)    (locate, half, mode) (spectrum) (gaps, order)  closings
+//!                                       more bits: precise      thinner than doubles tell: tunnel
+//!                                                               open or closed: modular, elimination
 //! ```
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.

@@ -30,7 +30,8 @@ pub struct Enclosure {
 pub(super) struct Function {
     p: u64,
     q: u64,
-    rho: Rational,
+    /// The slow clock's mass ρ p/q, in those of the fast one.
+    slow: Rational,
     schedule: Schedule,
     entry: Entry,
 }
@@ -72,7 +73,9 @@ impl Enclosure {
 
     /// −log2 of the relative width, to within 2; 0 for a point.
     fn digits(&self) -> u32 {
-        negative_log2(&(self.width() / &self.hi))
+        let length = |x: &Rational| x.numer().bits() as i64 - x.denom().bits() as i64;
+        let width = self.width();
+        if width.is_zero() { 0 } else { (length(&self.hi) - length(&width)).max(0) as u32 }
     }
 
     fn is_below(&self, relative: &Rational) -> bool {
@@ -82,11 +85,12 @@ impl Enclosure {
 
 impl Function {
     pub fn new(p: u64, q: u64, rho: &Rational, entry: Entry) -> Result<Self> {
-        Ok(Function { p, q, rho: rho.clone(), schedule: Schedule::two_clocks(p, q)?, entry })
+        let slow = rho * Rational::new(p.into(), q.into());
+        Ok(Function { p, q, slow, schedule: Schedule::two_clocks(p, q)?, entry })
     }
 
     fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
-        TwoClocks::with_rho(self.p, self.q, s.clone(), self.rho.clone())
+        TwoClocks::new(self.p, self.q, s.clone(), s * &self.slow)
     }
 
     /// The entry's exact sign at s.
@@ -177,7 +181,7 @@ impl Function {
     /// (x, v) carrying the kicks' common denominator as a positive factor.
     fn exact_count(&self, s: &Rational) -> (u64, bool) {
         let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
-        let slow = &kappa * &self.rho * Rational::new(self.p.into(), self.q.into());
+        let slow = &kappa * &self.slow;
         let denominator = kappa.denom().lcm(slow.denom());
         let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
         let half =

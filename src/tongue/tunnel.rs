@@ -23,16 +23,14 @@
 //! have positive terms and Δ is a product for each end: where its two terms do not cancel, all is known in doubles to
 //! many digits over the whole interval that holds κ_X and κ_Y, however narrow the tongue.
 //!
-//! **Roundings** and the interval's width are local errors of the computed orbit û, bounded step by step as in theorem
-//! `perturbed_orbit` in proofs/, with each step's own constants (`step_cross` and `alpha_bounds` there, proven for one
-//! step) in place of the worst step's: if |r_k| ≤ ε_k |û_{k−1}|, ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j|, τ_k = 2 b_k/|û_k|²,
+//! **Roundings** and the interval's width are local errors r_k of the computed orbit û, bounded by theorem
+//! `perturbed_orbit_stepwise` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2 b_k/|û_k|², let
 //!
 //! ```text
-//!     ω_k = (|r_k| + κ_k τ_{k-1} |û_{k-1}|)/|û_k|,        Σ (ω_k + κ_k ε_k) <= 1/4,
+//!     w_k = Σ (|r_j| + κ_j τ_{j-1} |û_{j-1}|)/|û_j|,     c_k = Σ κ_j |r_j|/|û_{j-1}|,     w_n + c_n <= 1/2.
 //! ```
 //!
-//! then u_k = a_k (û_k + (t_k/|û_k|²) J û_k) with |t_k| ≤ 2 b_k and a_k in [Π(1 − ω_j), Π(1 + ω_j)]: the error across the orbit is
-//! multiplied by Π (1 + κ_j ε_j)/(1 − ω_j) ≤ 2 at most.
+//! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
 
 use super::spectrum::Edge;
 use super::string::{HalfString, Step};
@@ -41,7 +39,7 @@ use crate::number::U;
 /// √2, rounded up: |x| + |v| is at most this times the vector's length.
 const ROOT_TWO: f64 = 1.4143;
 
-/// No orbit is used where the sum of the module's theorem, or the relative error of x, exceeds this: below it
+/// No orbit is used where w + c of the module's theorem, or the relative error of x, exceeds this: below it
 /// |ln(1 ± t)| ≤ 1.03 t, and four such errors of the logarithm change a number by no more than 1.3 times their sum.
 const MOST: f64 = 0.05;
 
@@ -123,7 +121,7 @@ struct Orbit {
     /// Σ m x² over the nodes passed, and Σ m (τ v)², the square of what it may be off by in √m x.
     squares: f64,
     strays: f64,
-    /// b, τ, Σ ω and Σ κ ε of the module's theorem.
+    /// b, τ, w and c of the module's theorem.
     across: f64,
     tilt: f64,
     stretch: f64,
@@ -202,7 +200,7 @@ impl Orbit {
         }
         let sign = if free { 1.0 } else { -1.0 };
         let value = sign / (self.x * other.x);
-        // ln |x| is off by at most 1.03 (Σ ω + τ |v/x|): see MOST.
+        // ln |x| is off by at most 1.03 (w + τ |v/x|): see MOST.
         let error = 1.3 * (self.stretch + self.lean() + other.stretch + other.lean()) + 8.0 * U;
         Some(Term { value, error: error * value.abs(), exponent: -(self.exponent + other.exponent) })
     }
@@ -211,7 +209,7 @@ impl Orbit {
     fn share(&self) -> (f64, f64) {
         let (root, stray) = (self.squares.sqrt(), 1.01 * self.strays.sqrt());
         let square = |root: f64| (root / self.x) * (root / self.x);
-        // Twice the logarithm's: Σ ω once for the sum, once for x.
+        // Twice the logarithm's: w once for the sum, once for x.
         let error = 2.6 * (2.0 * self.stretch + self.lean());
         (square((root - stray).max(0.0)) * (1.0 - error).max(0.0), square(root + stray) * (1.0 + error))
     }
