@@ -1,7 +1,7 @@
 //! Widths of tongues that doubles see as one point, against the digits of their edges.
 
 use kickdrift::number::Rational;
-use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::tongue::{Gap, Tongues, ratios};
 use num_bigint::BigInt;
 use num_integer::Integer;
@@ -15,17 +15,17 @@ fn power_of_ten(n: i32) -> Rational {
     Rational::from_integer(BigInt::from(10)).pow(n)
 }
 
-/// The width from so many digits of both edges that about eight of its own are right; they must be in order, and agree
-/// with the enclosure, which must be narrow.
+/// The width from so many digits of both edges that twenty of its own are right: they must be in order, the enclosure
+/// must hold it, and be narrow.
 fn agrees_with_digits(tongues: &mut Tongues, gap: &Gap) {
     let upper = gap.upper.unwrap();
-    let digits = (gap.lower.lo / gap.width.0).log10().ceil().max(0.0) as u32 + 8;
+    let digits = (gap.lower.lo / gap.width.0).log10().ceil().max(0.0) as u32 + 20;
     let [x, y] = [&gap.lower, &upper].map(|edge| tongues.refine(edge, digits).unwrap());
-    assert!(x.hi < y.lo, "{gap:?}");
-    let (lo, hi) = (to_f64(&(&y.lo - &x.hi)), to_f64(&(&y.hi - &x.lo)));
-    // One rounding of each.
-    assert!(gap.width.0 <= hi.next_up() && lo.next_down() <= gap.width.1, "{gap:?}: {lo}..{hi}");
-    assert!(gap.width.1 <= 1.001 * gap.width.0 && hi <= lo * (1.0 + 1e-6), "{gap:?}: {lo}..{hi}");
+    let (lo, hi) = (&y.lo - &x.hi, &y.hi - &x.lo);
+    assert!(x.hi < y.lo && &hi - &lo < &lo * power_of_ten(-18), "{gap:?}");
+    let exact = |width: f64| from_f64_exact(width).unwrap();
+    assert!(exact(gap.width.0) <= lo && hi <= exact(gap.width.1), "{gap:?}: {}", to_f64(&lo));
+    assert!(gap.width.1 <= 1.001 * gap.width.0, "{gap:?}");
 }
 
 /// Far thinner than a unit in the last place of its edges, or about as thin.
