@@ -11,6 +11,7 @@
     - [perturbed_orbit]   the bound;
     - [perturbed_orbit_stepwise]
                           the same with each step's own constants in place of the worst step's;
+    - [shear_turn]        what c needs for kicks and drifts;
     - [sign_certificate]  a linear form <v, uh_k> that is large enough has the sign of <v, u_k>;
     - [sign_certificate_rounded]
                           the same when the form itself is only known to within delta;
@@ -106,9 +107,11 @@ Proof.
   unfold t'; apply vec_ext; simpl; field; split; nra.
 Qed.
 
-Lemma step_cross : Rabs t' <= (Rabs t * (1 + kappa * eps) + len uh' * len r) / (1 - omega).
+(** x bounds what the residual turns: kappa eps will do, a shear that errs along itself turns less. *)
+Lemma step_cross_by x : Rabs (cross r z) <= x * (len uh * len uh) ->
+  Rabs t' <= (Rabs t * (1 + x) + len uh' * len r) / (1 - omega).
 Proof.
-  pose proof alpha_bounds as A; pose proof (len_pos _ N) as P; pose proof z_len as Z.
+  intros X; pose proof alpha_bounds as A; pose proof (len_pos _ N) as P.
   assert (E : cross uh' y = - cross uh' r + t * (1 + cross r z / (len uh * len uh))).
   { assert (W : cross uh' z = len uh * len uh + cross r z).
     { rewrite len_sqr; replace (dot uh uh) with (det M * dot uh uh) by (rewrite D; ring).
@@ -117,19 +120,24 @@ Proof.
     replace (cross uh' (add (add uh' (smul (-1) r)) (smul (t / (len uh * len uh)) z)))
       with (- cross uh' r + t / (len uh * len uh) * cross uh' z) by (coordinates; ring).
     rewrite W; field; lra. }
-  assert (B : Rabs (cross uh' y) <= Rabs t * (1 + kappa * eps) + len uh' * len r).
+  assert (B : Rabs (cross uh' y) <= Rabs t * (1 + x) + len uh' * len r).
   { rewrite E; eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_Ropp, Rabs_mult, Rplus_comm.
     apply Rplus_le_compat; [|apply cross_le].
     apply Rmult_le_compat_l; [apply Rabs_pos|].
     eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_R1; apply Rplus_le_compat_l.
     unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (len uh * len uh))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
-    apply Rmult_le_reg_r with (len uh * len uh); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
-    eapply Rle_trans; [apply cross_le|].
-    apply Rle_trans with (eps * len uh * (kappa * len uh)); [|right; ring].
-    apply Rmult_le_compat; try apply len_nonneg; assumption. }
+    apply Rmult_le_reg_r with (len uh * len uh); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; exact X. }
   unfold t', Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ alpha)) by (apply Rlt_le, Rinv_0_lt_compat; lra).
   apply Rmult_le_compat; [apply Rabs_pos | apply Rlt_le, Rinv_0_lt_compat; lra | exact B |].
   apply Rinv_le_contravar; lra.
+Qed.
+
+Lemma step_cross : Rabs t' <= (Rabs t * (1 + kappa * eps) + len uh' * len r) / (1 - omega).
+Proof.
+  apply step_cross_by; pose proof (len_pos _ N) as P; pose proof z_len as Z.
+  eapply Rle_trans; [apply cross_le|].
+  apply Rle_trans with (eps * len uh * (kappa * len uh)); [|right; ring].
+  apply Rmult_le_compat; try apply len_nonneg; assumption.
 Qed.
 End OneStep.
 
@@ -333,10 +341,9 @@ End Orbit.
 (** ** The orbit, each step with its own constants *)
 
 Section Stepwise.
-Variables (M : nat -> mat) (u uh r : nat -> vec) (b w c : nat -> R) (n : nat) (kappa : nat -> R).
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b w c : nat -> R) (n : nat) (kappa x : nat -> R).
 Let tau k := 2 * b k / (len (uh k) * len (uh k)).
 Let omega k := (len (r k) + kappa k * tau k * len (uh k)) / len (uh (S k)).
-Let x k := kappa k * len (r k) / len (uh k).
 
 Hypothesis start : u O = uh O.
 Hypothesis exact : forall k, (k < n)%nat -> u (S k) = M k @ u k.
@@ -348,6 +355,7 @@ Hypothesis b_start : 0 <= b O.
 Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
 Hypotheses (w_start : 0 <= w O) (c_start : 0 <= c O).
 Hypothesis w_step : forall k, (k < n)%nat -> w k + omega k <= w (S k).
+Hypothesis turn : forall k, (k < n)%nat -> Rabs (cross (r k) (M k @ J (uh k))) <= x k * (len (uh k) * len (uh k)).
 Hypothesis c_step : forall k, (k < n)%nat -> c k + x k <= c (S k).
 Hypothesis budget : w n + c n <= 1 / 2.
 
@@ -370,7 +378,8 @@ Proof.
   repeat split; [exact K | exact T | |].
   - unfold omega, Rdiv; apply Rmult_le_pos; [|apply Rlt_le, Rinv_0_lt_compat; exact P'].
     assert (0 <= kappa k * tau k) by (apply Rmult_le_pos; assumption); nra.
-  - unfold x, Rdiv; apply Rmult_le_pos; [nra | apply Rlt_le, Rinv_0_lt_compat; exact P].
+  - pose proof (turn k L); pose proof (Rabs_pos (cross (r k) (M k @ J (uh k)))).
+    apply Rmult_le_reg_r with (len (uh k) * len (uh k)); nra.
 Qed.
 
 Lemma stepwise_budget k : (k <= n)%nat -> 0 <= w k /\ 0 <= c k /\ w k + c k <= 1 / 2.
@@ -447,16 +456,15 @@ Proof.
     assert (G : len (uh k) <= len (uh k) / len (uh (S k)) * len (uh (S k))) by (right; field; lra).
     assert (Om : len (uh k) / len (uh (S k)) * (len (r k) / len (uh k))
       + len (uh k) / len (uh (S k)) * kappa k * tau k = omega k) by (unfold omega; field; lra).
-    assert (Xe : kappa k * (len (r k) / len (uh k)) = x k) by (unfold x; field; lra).
     assert (O1 : omega k < 1) by lra.
     rewrite (computed k Lk) in N', G.
     pose proof (alpha_bounds (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
       (fun y => contained k y Lk) N N' Re G T2) as AB.
     pose proof (fun O => step_frame (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
       (fun y => contained k y Lk) N N' Re G T2 O) as SF.
-    pose proof (fun O => step_cross (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
-      (unimodular k Lk) (fun y => contained k y Lk) N N' Re G T2 O) as SC.
-    rewrite <- (computed k Lk) in AB, SF, SC; rewrite Om in AB, SF, SC; rewrite Xe in SC.
+    pose proof (fun O => step_cross_by (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
+      (unimodular k Lk) (fun y => contained k y Lk) N N' Re G T2 O (x k) (turn k Lk)) as SC.
+    rewrite <- (computed k Lk) in AB, SF, SC; rewrite Om in AB, SF, SC.
     specialize (SF O1); specialize (SC O1).
     set (al := dot (uh (S k)) (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /
         (len (uh (S k)) * len (uh (S k)))) in *.
@@ -481,6 +489,20 @@ Proof.
       assert (0 <= omega k * w k) by (apply Rmult_le_pos; lra); nra.
 Qed.
 End Stepwise.
+
+(** A kick that errs in v and a drift that errs in x turn the error by |r|/|uh| only, however strong they are. *)
+Theorem shear_turn k t e y :
+  Rabs (cross (Vec 0 e) (kick k @ J y)) <= Rabs e * len y /\
+  Rabs (cross (Vec e 0) (drift t @ J y)) <= Rabs e * len y.
+Proof.
+  assert (V : Rabs (velocity y) <= len y /\ Rabs (position y) <= len y).
+  { unfold len; rewrite <- !sqrt_Rsqr_abs; split; apply sqrt_le_1_alt; unfold Rsqr, dot; nra. }
+  destruct V as [V X]; split.
+  - replace (cross (Vec 0 e) (kick k @ J y)) with (e * velocity y) by (unfold kick; coordinates; ring).
+    rewrite Rabs_mult; apply Rmult_le_compat_l; [apply Rabs_pos | exact V].
+  - replace (cross (Vec e 0) (drift t @ J y)) with (e * position y) by (unfold drift; coordinates; ring).
+    rewrite Rabs_mult; apply Rmult_le_compat_l; [apply Rabs_pos | exact X].
+Qed.
 
 (** ** Where kappa and g come from *)
 

@@ -36,8 +36,10 @@ pub(super) struct Function {
     entry: Entry,
 }
 
-/// Bits beyond which the refine tier is not asked before exact arithmetic: four times what the cell's size asks.
-const PATIENCE: u32 = 4;
+/// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size asks. Of a
+/// long period they still cost far less than exact numbers, whose length grows with every kick; and a mode that lives
+/// far from the ends wants twice the digits that its ends are small by.
+const PATIENCE: u32 = 64;
 
 /// Binary digits that the curvature of an entry takes from the secant's: its other zeros are n or so, at distances of
 /// some 1/n of their size. A wrong guess costs two signs.

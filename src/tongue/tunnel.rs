@@ -23,11 +23,11 @@
 //! have positive terms and Δ is a product for each end: where its two terms do not cancel, all is known in doubles to
 //! many digits over the whole interval that holds κ_X and κ_Y, however narrow the tongue.
 //!
-//! **Roundings** and the interval's width are local errors r_k of the computed orbit û, bounded by theorem
-//! `perturbed_orbit_stepwise` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2 b_k/|û_k|², let
+//! **Roundings** and the interval's width are local errors r_k of the computed orbit û, bounded by theorems
+//! `perturbed_orbit_stepwise` and `shear_turn` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2 b_k/|û_k|², let
 //!
 //! ```text
-//!     w_k = Σ (|r_j| + κ_j τ_{j-1} |û_{j-1}|)/|û_j|,     c_k = Σ κ_j |r_j|/|û_{j-1}|,     w_n + c_n <= 1/2.
+//!     w_k = Σ (|r_j| + κ_j τ_{j-1} |û_{j-1}|)/|û_j|,     c_k = Σ |r_j|/|û_{j-1}|,     w_n + c_n <= 1/2.
 //! ```
 //!
 //! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
@@ -153,12 +153,12 @@ impl Orbit {
         self.advance(1.0 + t, U * (way.abs() + self.x.abs()));
     }
 
-    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`. The roundings of this, and the second-order parts of
+    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`, r in the component that the step changes. The roundings of this, and the second-order parts of
     /// the residuals, are below 2^-26 of the sums (fewer than 2^26 steps) and in the margins of [`Orbit::reliable`].
     fn advance(&mut self, norm: f64, residual: f64) {
         let length = self.x.abs() + self.v.abs();
         let inverse = ROOT_TWO / length;
-        self.strain += norm * residual * (ROOT_TWO / self.length);
+        self.strain += residual * (ROOT_TWO / self.length);
         self.stretch += inverse * (residual + norm * self.tilt * self.length);
         self.across += residual * length;
         self.tilt = 2.0 * self.across * inverse * inverse;
