@@ -28,9 +28,9 @@ fn agrees_with_digits(tongues: &mut Tongues, gap: &Gap) {
     assert!(gap.width.1 <= 1.001 * gap.width.0, "{gap:?}");
 }
 
-/// Far thinner than a unit in the last place of its edges, or about as thin.
+/// Far thinner than a unit in the last place of its edges, or about as thin; but within the range of doubles.
 fn is_thin(gap: &Gap) -> bool {
-    !gap.closed && gap.width.1 < 1e-12 * gap.lower.lo
+    !gap.closed && gap.width.0 > 1e-300 && gap.width.1 < 1e-12 * gap.lower.lo
 }
 
 /// Checks at most `limit` thin tongues of one ratio, and tells how many there were.
@@ -110,6 +110,9 @@ fn no_more_digits_of_an_edge_are_asked_for_a_width() {
 
 #[test]
 fn a_long_half_period_is_no_obstacle() {
-    // 200 kicks in a period, and widths down to 1e-200.
+    // 200 kicks in a period, and widths down to 1e-200; then kicks of strength 1e7.
     assert!(check_thin(107, 93, &ratio(1, 40), 3) > 30);
+    let mut tongues = tongues(89, 87, &power_of_ten(-7));
+    let gaps = tongues.all().unwrap();
+    assert!(gaps.iter().any(|gap| gap.width.0 < 1e-200) && tongues.effort().precise < 40);
 }
