@@ -56,6 +56,8 @@ Check Main.tan_criterion_q2. Print Assumptions Main.tan_criterion_q2.
 Check Main.perturbed_orbit. Print Assumptions Main.perturbed_orbit.
 Check Main.sign_certificate. Print Assumptions Main.sign_certificate.
 Check Main.sign_certificate_rounded. Print Assumptions Main.sign_certificate_rounded.
+Check Main.perturbed_orbit_stepwise. Print Assumptions Main.perturbed_orbit_stepwise.
+Check Main.shear_turn. Print Assumptions Main.shear_turn.
 Check Main.update_contained. Print Assumptions Main.update_contained.
 Check Main.contained_inverse. Print Assumptions Main.contained_inverse.
 Check Main.shrink_bound. Print Assumptions Main.shrink_bound.

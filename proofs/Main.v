@@ -306,6 +306,39 @@ Theorem sign_certificate_rounded : forall k v vh delta, (k <= n)%nat ->
 Proof. eapply Perturbation.sign_certificate_rounded; eassumption. Qed.
 End Orbit.
 
+(** The same with each step's own constants: w sums what may stretch, c what may turn the error (x each time). *)
+Section Stepwise.
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b w c : nat -> R) (n : nat) (kappa x : nat -> R).
+Let tau k := 2 * b k / (len (uh k) * len (uh k)).
+Let omega k := (len (r k) + kappa k * tau k * len (uh k)) / len (uh (S k)).
+Hypothesis start : u O = uh O.
+Hypothesis exact_steps : forall k, (k < n)%nat -> u (S k) = M k @ u k.
+Hypothesis computed_steps : forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k).
+Hypothesis unimodular : forall k, (k < n)%nat -> det (M k) = 1.
+Hypothesis contained : forall k y, (k < n)%nat -> len (M k @ y) <= kappa k * len y.
+Hypothesis nonzero : forall k, (k <= n)%nat -> uh k <> zero.
+Hypothesis b_start : 0 <= b O.
+Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
+Hypotheses (w_start : 0 <= w O) (c_start : 0 <= c O).
+Hypothesis w_step : forall k, (k < n)%nat -> w k + omega k <= w (S k).
+Hypothesis turn : forall k, (k < n)%nat -> Rabs (cross (r k) (M k @ J (uh k))) <= x k * (len (uh k) * len (uh k)).
+Hypothesis c_step : forall k, (k < n)%nat -> c k + x k <= c (S k).
+Hypothesis budget : w n + c n <= 1 / 2.
+
+Theorem perturbed_orbit_stepwise : forall k, (k <= n)%nat ->
+  exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t <= 2 * b k /\
+    0 < a /\ 1 - w k <= a <= / (1 - w k).
+Proof. eapply Perturbation.perturbed_orbit_stepwise; eassumption. Qed.
+End Stepwise.
+
+(** So x = |r|/|uh| for a kick that errs in v and a drift that errs in x. *)
+Theorem shear_turn : forall k t e y,
+  Rabs (cross (Vec 0 e) (kick k @ J y)) <= Rabs e * len y /\
+  Rabs (cross (Vec e 0) (drift t @ J y)) <= Rabs e * len y.
+Proof. exact Perturbation.shear_turn. Qed.
+
 (** Where kappa and g come from. *)
 Theorem update_contained : forall k e o y,
   det (update k e o) = 1 /\ len (update k e o @ y) <= (1 + Rabs k * (e * e + o * o)) * len y.

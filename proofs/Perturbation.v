@@ -9,6 +9,9 @@
     long the orbit has become: a sign is certified although the orbit grows.
 
     - [perturbed_orbit]   the bound;
+    - [perturbed_orbit_stepwise]
+                          the same with each step's own constants in place of the worst step's;
+    - [shear_turn]        what c needs for kicks and drifts;
     - [sign_certificate]  a linear form <v, uh_k> that is large enough has the sign of <v, u_k>;
     - [sign_certificate_rounded]
                           the same when the form itself is only known to within delta;
@@ -104,9 +107,11 @@ Proof.
   unfold t'; apply vec_ext; simpl; field; split; nra.
 Qed.
 
-Lemma step_cross : Rabs t' <= (Rabs t * (1 + kappa * eps) + len uh' * len r) / (1 - omega).
+(** x bounds what the residual turns: kappa eps will do, a shear that errs along itself turns less. *)
+Lemma step_cross_by x : Rabs (cross r z) <= x * (len uh * len uh) ->
+  Rabs t' <= (Rabs t * (1 + x) + len uh' * len r) / (1 - omega).
 Proof.
-  pose proof alpha_bounds as A; pose proof (len_pos _ N) as P; pose proof z_len as Z.
+  intros X; pose proof alpha_bounds as A; pose proof (len_pos _ N) as P.
   assert (E : cross uh' y = - cross uh' r + t * (1 + cross r z / (len uh * len uh))).
   { assert (W : cross uh' z = len uh * len uh + cross r z).
     { rewrite len_sqr; replace (dot uh uh) with (det M * dot uh uh) by (rewrite D; ring).
@@ -115,19 +120,24 @@ Proof.
     replace (cross uh' (add (add uh' (smul (-1) r)) (smul (t / (len uh * len uh)) z)))
       with (- cross uh' r + t / (len uh * len uh) * cross uh' z) by (coordinates; ring).
     rewrite W; field; lra. }
-  assert (B : Rabs (cross uh' y) <= Rabs t * (1 + kappa * eps) + len uh' * len r).
+  assert (B : Rabs (cross uh' y) <= Rabs t * (1 + x) + len uh' * len r).
   { rewrite E; eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_Ropp, Rabs_mult, Rplus_comm.
     apply Rplus_le_compat; [|apply cross_le].
     apply Rmult_le_compat_l; [apply Rabs_pos|].
     eapply Rle_trans; [apply Rabs_triang|]; rewrite Rabs_R1; apply Rplus_le_compat_l.
     unfold Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ (len uh * len uh))) by (apply Rlt_le, Rinv_0_lt_compat; nra).
-    apply Rmult_le_reg_r with (len uh * len uh); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra.
-    eapply Rle_trans; [apply cross_le|].
-    apply Rle_trans with (eps * len uh * (kappa * len uh)); [|right; ring].
-    apply Rmult_le_compat; try apply len_nonneg; assumption. }
+    apply Rmult_le_reg_r with (len uh * len uh); [nra|]; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; exact X. }
   unfold t', Rdiv; rewrite Rabs_mult, (Rabs_pos_eq (/ alpha)) by (apply Rlt_le, Rinv_0_lt_compat; lra).
   apply Rmult_le_compat; [apply Rabs_pos | apply Rlt_le, Rinv_0_lt_compat; lra | exact B |].
   apply Rinv_le_contravar; lra.
+Qed.
+
+Lemma step_cross : Rabs t' <= (Rabs t * (1 + kappa * eps) + len uh' * len r) / (1 - omega).
+Proof.
+  apply step_cross_by; pose proof (len_pos _ N) as P; pose proof z_len as Z.
+  eapply Rle_trans; [apply cross_le|].
+  apply Rle_trans with (eps * len uh * (kappa * len uh)); [|right; ring].
+  apply Rmult_le_compat; try apply len_nonneg; assumption.
 Qed.
 End OneStep.
 
@@ -327,6 +337,172 @@ Proof.
   destruct (Rtotal_order (dot v (uh k)) 0) as [X|[X|X]]; nra.
 Qed.
 End Orbit.
+
+(** ** The orbit, each step with its own constants *)
+
+Section Stepwise.
+Variables (M : nat -> mat) (u uh r : nat -> vec) (b w c : nat -> R) (n : nat) (kappa x : nat -> R).
+Let tau k := 2 * b k / (len (uh k) * len (uh k)).
+Let omega k := (len (r k) + kappa k * tau k * len (uh k)) / len (uh (S k)).
+
+Hypothesis start : u O = uh O.
+Hypothesis exact : forall k, (k < n)%nat -> u (S k) = M k @ u k.
+Hypothesis computed : forall k, (k < n)%nat -> uh (S k) = add (M k @ uh k) (r k).
+Hypothesis unimodular : forall k, (k < n)%nat -> det (M k) = 1.
+Hypothesis contained : forall k y, (k < n)%nat -> len (M k @ y) <= kappa k * len y.
+Hypothesis nonzero : forall k, (k <= n)%nat -> uh k <> zero.
+Hypothesis b_start : 0 <= b O.
+Hypothesis b_step : forall k, (k < n)%nat -> b k + len (r k) * len (uh (S k)) <= b (S k).
+Hypotheses (w_start : 0 <= w O) (c_start : 0 <= c O).
+Hypothesis w_step : forall k, (k < n)%nat -> w k + omega k <= w (S k).
+Hypothesis turn : forall k, (k < n)%nat -> Rabs (cross (r k) (M k @ J (uh k))) <= x k * (len (uh k) * len (uh k)).
+Hypothesis c_step : forall k, (k < n)%nat -> c k + x k <= c (S k).
+Hypothesis budget : w n + c n <= 1 / 2.
+
+Lemma stepwise_b k : (k <= n)%nat -> 0 <= b k.
+Proof.
+  induction k as [|k IH]; intros L; [exact b_start|].
+  pose proof (IH ltac:(lia)); pose proof (b_step k ltac:(lia)).
+  pose proof (len_nonneg (r k)); pose proof (len_nonneg (uh (S k))); nra.
+Qed.
+
+Lemma stepwise_grow k : (k < n)%nat -> 0 <= kappa k /\ 0 <= tau k /\ 0 <= omega k /\ 0 <= x k.
+Proof.
+  intros L; pose proof (len_pos _ (nonzero k ltac:(lia))) as P; pose proof (len_pos _ (nonzero (S k) ltac:(lia))) as P'.
+  assert (K : 0 <= kappa k).
+  { pose proof (contained k (uh k) L); pose proof (len_nonneg (M k @ uh k)); nra. }
+  assert (T : 0 <= tau k).
+  { pose proof (stepwise_b k ltac:(lia)); unfold tau, Rdiv; apply Rmult_le_pos; [lra|].
+    apply Rlt_le, Rinv_0_lt_compat; nra. }
+  pose proof (len_nonneg (r k)).
+  repeat split; [exact K | exact T | |].
+  - unfold omega, Rdiv; apply Rmult_le_pos; [|apply Rlt_le, Rinv_0_lt_compat; exact P'].
+    assert (0 <= kappa k * tau k) by (apply Rmult_le_pos; assumption); nra.
+  - pose proof (turn k L); pose proof (Rabs_pos (cross (r k) (M k @ J (uh k)))).
+    apply Rmult_le_reg_r with (len (uh k) * len (uh k)); nra.
+Qed.
+
+Lemma stepwise_budget k : (k <= n)%nat -> 0 <= w k /\ 0 <= c k /\ w k + c k <= 1 / 2.
+Proof.
+  intros L; assert (N : 0 <= w k /\ 0 <= c k).
+  { induction k as [|k IH]; [split; assumption|].
+    destruct IH; [lia|]; destruct (stepwise_grow k ltac:(lia)) as (_ & _ & O & X).
+    pose proof (w_step k ltac:(lia)); pose proof (c_step k ltac:(lia)); lra. }
+  assert (U : forall j, (k + j <= n)%nat -> w k + c k <= w (k + j)%nat + c (k + j)%nat).
+  { induction j as [|j IH]; intros Lj; [rewrite PeanoNat.Nat.add_0_r; lra|].
+    rewrite PeanoNat.Nat.add_succ_r.
+    destruct (stepwise_grow (k + j) ltac:(lia)) as (_ & _ & O & X); pose proof (IH ltac:(lia)).
+    pose proof (w_step (k + j) ltac:(lia)); pose proof (c_step (k + j) ltac:(lia)); lra. }
+  pose proof (U (n - k)%nat ltac:(lia)) as V; replace (k + (n - k))%nat with n in V by lia.
+  destruct N; repeat split; lra.
+Qed.
+
+(** One step of the error across: E is what is spent so far of the budget. *)
+Lemma stepwise_cross t' t b0 b1 rl E E' om y : 0 <= om -> 0 <= y -> 0 <= E -> E + om + y <= E' -> E' <= 1 / 2 ->
+  0 <= t -> 0 <= rl -> t * (1 - E) <= b0 -> b0 + rl <= b1 -> t' <= (t * (1 + y) + rl) / (1 - om) ->
+  t' * (1 - E') <= b1.
+Proof.
+  intros O Y E0 S L T RL B B1 H; set (s := (t * (1 + y) + rl) / (1 - om)) in *.
+  assert (Q : s * (1 - om) = t * (1 + y) + rl) by (unfold s; field; lra).
+  assert (P : 0 <= s) by (unfold s, Rdiv; apply Rmult_le_pos; [nra | apply Rlt_le, Rinv_0_lt_compat; lra]).
+  assert (F : (1 + y) * (1 - E') <= (1 - E) * (1 - om)).
+  { apply Rle_trans with ((1 + y) * (1 - E - om - y)); [apply Rmult_le_compat_l; lra|].
+    assert (0 <= E * om) by (apply Rmult_le_pos; lra); assert (0 <= y * E) by (apply Rmult_le_pos; lra).
+    assert (0 <= y * y) by (apply Rmult_le_pos; lra); assert (0 <= y * om) by (apply Rmult_le_pos; lra); nra. }
+  apply Rle_trans with (s * (1 - E')); [apply Rmult_le_compat_r; lra|].
+  apply Rmult_le_reg_l with (1 + y); [lra|].
+  apply Rle_trans with (s * ((1 - E) * (1 - om))).
+  { replace ((1 + y) * (s * (1 - E'))) with (s * ((1 + y) * (1 - E'))) by ring.
+    apply Rmult_le_compat_l; [exact P | exact F]. }
+  replace (s * ((1 - E) * (1 - om))) with ((1 - E) * (s * (1 - om))) by ring; rewrite Q.
+  replace ((1 - E) * (t * (1 + y) + rl)) with (t * (1 - E) * (1 + y) + (1 - E) * rl) by ring.
+  assert (t * (1 - E) * (1 + y) <= b0 * (1 + y)) by (apply Rmult_le_compat_r; lra).
+  assert ((1 - E) * rl <= rl * (1 + y)) by nra.
+  apply Rle_trans with ((b0 + rl) * (1 + y)); [lra|].
+  rewrite Rmult_comm; apply Rmult_le_compat_l; lra.
+Qed.
+
+(** The exact orbit in the frame of the computed one. *)
+Theorem perturbed_orbit_stepwise k :
+  (k <= n)%nat ->
+  exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t <= 2 * b k /\
+    0 < a /\ 1 - w k <= a <= / (1 - w k).
+Proof.
+  intros L.
+  enough (H : exists a t,
+    u k = smul a (add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /\
+    Rabs t * (1 - (w k + c k)) <= b k /\ 1 - w k <= a /\ a * (1 - w k) <= 1).
+  { destruct H as (a & t & E & T & A1 & A2); exists a, t.
+    destruct (stepwise_budget k L) as (W & C & B); pose proof (Rabs_pos t).
+    split; [exact E|]; repeat split; [nra | lra | lra |].
+    apply Rmult_le_reg_r with (1 - w k); [lra|]; rewrite Rinv_l; lra. }
+  induction k as [|k IH].
+  - destruct (stepwise_budget O L) as (W & C & B).
+    exists 1, 0; rewrite start, Rabs_R0; repeat split; try nra.
+    apply vec_ext; simpl; unfold Rdiv; ring.
+  - destruct IH as (a & t & E & T & A1 & A2); [lia|].
+    assert (Lk : (k < n)%nat) by lia.
+    destruct (stepwise_grow k Lk) as (K & Tau & O & X).
+    destruct (stepwise_budget k ltac:(lia)) as (W & C & B); destruct (stepwise_budget (S k) L) as (W' & C' & B').
+    pose proof (w_step k Lk) as WS; pose proof (c_step k Lk) as CS; pose proof (b_step k Lk) as BS.
+    pose proof (nonzero k ltac:(lia)) as N; pose proof (nonzero (S k) L) as N'.
+    pose proof (len_pos _ N) as P; pose proof (len_pos _ N') as P'.
+    pose proof (len_nonneg (r k)) as R; pose proof (Rabs_pos t) as Pt.
+    assert (T2 : Rabs t <= tau k * (len (uh k) * len (uh k))).
+    { unfold tau, Rdiv; rewrite Rmult_assoc, Rinv_l, Rmult_1_r by nra; nra. }
+    assert (Re : len (r k) <= len (r k) / len (uh k) * len (uh k)) by (right; field; lra).
+    assert (G : len (uh k) <= len (uh k) / len (uh (S k)) * len (uh (S k))) by (right; field; lra).
+    assert (Om : len (uh k) / len (uh (S k)) * (len (r k) / len (uh k))
+      + len (uh k) / len (uh (S k)) * kappa k * tau k = omega k) by (unfold omega; field; lra).
+    assert (O1 : omega k < 1) by lra.
+    rewrite (computed k Lk) in N', G.
+    pose proof (alpha_bounds (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
+      (fun y => contained k y Lk) N N' Re G T2) as AB.
+    pose proof (fun O => step_frame (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
+      (fun y => contained k y Lk) N N' Re G T2 O) as SF.
+    pose proof (fun O => step_cross_by (M k) (uh k) (r k) (kappa k) (len (r k) / len (uh k)) _ (tau k) t
+      (unimodular k Lk) (fun y => contained k y Lk) N N' Re G T2 O (x k) (turn k Lk)) as SC.
+    rewrite <- (computed k Lk) in AB, SF, SC; rewrite Om in AB, SF, SC.
+    specialize (SF O1); specialize (SC O1).
+    set (al := dot (uh (S k)) (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) /
+        (len (uh (S k)) * len (uh (S k)))) in *.
+    set (t' := cross (uh (S k)) (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))) / al) in *.
+    exists (al * a), t'; split; [|split; [|split]].
+    + rewrite (exact k Lk), E.
+      transitivity (smul a (M k @ add (uh k) (smul (t / (len (uh k) * len (uh k))) (J (uh k)))));
+        [apply vec_ext; simpl; ring|].
+      rewrite SF; apply vec_ext; simpl; ring.
+    + apply (stepwise_cross (Rabs t') (Rabs t) (b k) (b (S k)) (len (uh (S k)) * len (r k)) (w k + c k) _ (omega k) (x k));
+        try assumption; try lra; nra.
+    + apply Rle_trans with ((1 - omega k) * (1 - w k)); [|apply Rmult_le_compat; lra].
+      assert (0 <= omega k * w k) by (apply Rmult_le_pos; lra); nra.
+    + (* (1 + omega)(1 - w - omega) <= 1 - w *)
+      assert (0 < 1 - w (S k)) by lra.
+      assert (A : al * a * (1 - w (S k)) <= (1 + omega k) * a * (1 - w k - omega k)).
+      { apply Rmult_le_compat; [apply Rmult_le_pos; lra | lra | apply Rmult_le_compat_r; lra | lra]. }
+      eapply Rle_trans; [exact A|].
+      apply Rle_trans with (a * (1 - w k)); [|exact A2].
+      replace ((1 + omega k) * a * (1 - w k - omega k)) with (a * ((1 + omega k) * (1 - w k - omega k))) by ring.
+      apply Rmult_le_compat_l; [lra|].
+      assert (0 <= omega k * w k) by (apply Rmult_le_pos; lra); nra.
+Qed.
+End Stepwise.
+
+(** A kick that errs in v and a drift that errs in x turn the error by |r|/|uh| only, however strong they are. *)
+Theorem shear_turn k t e y :
+  Rabs (cross (Vec 0 e) (kick k @ J y)) <= Rabs e * len y /\
+  Rabs (cross (Vec e 0) (drift t @ J y)) <= Rabs e * len y.
+Proof.
+  assert (V : Rabs (velocity y) <= len y /\ Rabs (position y) <= len y).
+  { unfold len; rewrite <- !sqrt_Rsqr_abs; split; apply sqrt_le_1_alt; unfold Rsqr, dot; nra. }
+  destruct V as [V X]; split.
+  - replace (cross (Vec 0 e) (kick k @ J y)) with (e * velocity y) by (unfold kick; coordinates; ring).
+    rewrite Rabs_mult; apply Rmult_le_compat_l; [apply Rabs_pos | exact V].
+  - replace (cross (Vec e 0) (drift t @ J y)) with (e * position y) by (unfold drift; coordinates; ring).
+    rewrite Rabs_mult; apply Rmult_le_compat_l; [apply Rabs_pos | exact X].
+Qed.
 
 (** ** Where kappa and g come from *)
 

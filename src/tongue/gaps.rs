@@ -11,24 +11,12 @@ use num_integer::Integer;
 use num_traits::{Signed, Zero};
 
 use super::modular;
-use super::precise::{Enclosure, Function, simplest};
+use super::order::Gap;
+use super::precise::{Enclosure, Function};
 use super::spectrum::Edge;
 use super::string::{Entry, HalfString};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Rational, Sign, rational};
-
-/// A tongue of p/q: the pairs with s between the edges are unstable.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Gap {
-    pub m: u64,
-    /// The edges, `lower` ≤ `upper`, in the right order by proof; `None` above the last tongue.
-    pub lower: Edge,
-    pub upper: Option<Edge>,
-    /// Whether the edges are one point: no instability, Q = ±I there.
-    pub closed: bool,
-    /// hi − lo, enclosed; infinite for the last tongue.
-    pub width: (f64, f64),
-}
+use crate::number::{Ball, Rational, rational};
 
 /// How much work was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -47,7 +35,7 @@ pub struct Tongues {
     rho: Rational,
     string: HalfString,
     /// Whether all tongues of even and of odd m are proven open; `None`: not asked yet.
-    open: [Option<bool>; 2],
+    pub(super) open: [Option<bool>; 2],
     effort: Effort,
 }
 
@@ -218,10 +206,13 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn refine(&mut self, edge: &Edge, digits: u32) -> Result<Enclosure> {
-        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
-        let start = Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) };
+        self.sharpened(edge.entry, &Enclosure::from(edge), digits)
+    }
+
+    /// The same from an enclosure that may hold more digits than an edge.
+    pub(super) fn sharpened(&mut self, entry: Entry, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.effort.precise += 1;
-        Ok(self.function(edge.entry)?.shrink(&start, &tenth_power(digits)))
+        Ok(self.function(entry)?.shrink(start, &tenth_power(digits)))
     }
 
     pub(super) fn function(&self, entry: Entry) -> Result<Function> {
@@ -239,77 +230,6 @@ impl Tongues {
         Err(Error::input("m", m, format!("{}/{} has the tongues 1 to {}", self.p, self.q, self.last())))
     }
 
-    /// Orders two edges, or proves them equal.
-    fn assemble(&mut self, m: u64, edges: [Option<Edge>; 2]) -> Result<Gap> {
-        let (a, b) = match edges {
-            [Some(a), Some(b)] => (a, b),
-            [Some(lower), None] | [None, Some(lower)] => {
-                let width = (f64::INFINITY, f64::INFINITY);
-                return Ok(Gap { m, lower, upper: None, closed: false, width });
-            }
-            [None, None] => unreachable!("tongue {m} has an edge"),
-        };
-        let (lower, upper) = if a.lo <= b.lo { (a, b) } else { (b, a) };
-        let width = ((upper.lo - lower.hi).next_down(), (upper.hi - lower.lo).next_up());
-        // A width is worth a few digits; below that the edges are refined.
-        if width.0 > 0.0 && width.1 <= width.0 * (1.0 + WIDTH_ACCURACY) {
-            return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
-        }
-        self.assemble_thin(m, lower, upper)
-    }
-
-    /// The same for edges within each other's enclosure, or nearly so.
-    fn assemble_thin(&mut self, m: u64, a: Edge, b: Edge) -> Result<Gap> {
-        if self.rho.is_zero() {
-            return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
-        }
-        let open = self.is_open(m % 2 == 1)?;
-        let mut digits = 30;
-        loop {
-            let (x, y) = (self.refine(&a, digits)?, self.refine(&b, digits)?);
-            for (below, above, lower, upper) in [(&x, &y, a, b), (&y, &x, b, a)] {
-                let width = Enclosure { lo: &above.lo - &below.hi, hi: &above.hi - &below.lo };
-                if width.lo.is_positive() && width.width() * Rational::from_integer(1000.into()) <= width.lo {
-                    return Ok(Gap { m, lower, upper: Some(upper), closed: false, width: width.to_f64() });
-                }
-            }
-            if !open && self.coincide(&[(a, &x), (b, &y)])? {
-                return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
-            }
-            digits *= 2;
-        }
-    }
-
-    /// Whether all tongues of one parity of m are proven open.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn is_open(&mut self, odd: bool) -> Result<bool> {
-        if let Some(open) = self.open[usize::from(odd)] {
-            return Ok(open);
-        }
-        let degrees = modular::pair(odd).map(|entry| self.string.dimension(entry));
-        let open = modular::all_open(self.p, self.q, &self.rho, odd, degrees)?;
-        self.open[usize::from(odd)] = Some(open);
-        Ok(open)
-    }
-
-    /// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero there.
-    fn coincide(&self, edges: &[(Edge, &Enclosure); 2]) -> Result<bool> {
-        let [(a, x), (b, y)] = edges;
-        let (lo, hi) = ((&x.lo).max(&y.lo), (&x.hi).min(&y.hi));
-        if lo > hi {
-            return Ok(false);
-        }
-        let candidate = simplest(lo, hi);
-        let (f, g) = (self.function(a.entry)?, self.function(b.entry)?);
-        if f.exact_sign(&candidate) == Sign::Zero && g.exact_sign(&candidate) == Sign::Zero {
-            return Ok(true);
-        }
-        let common = super::elimination::common_factor(self.p, self.q, &self.rho, [a.entry, b.entry]);
-        Ok(common.degree() > Some(0) && common.count_roots(lo, hi) > 0)
-    }
-
     /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
     pub fn resonance(&self, m: u64, bits: u32) -> Ball {
         let angle = Ball::pi(bits + 16)
@@ -317,9 +237,6 @@ impl Tongues {
         angle.sin(bits + 8).square(bits).scale2(2)
     }
 }
-
-/// Relative accuracy of a width below which more bits are asked.
-const WIDTH_ACCURACY: f64 = 1e-3;
 
 /// The indices of an entry's edges in the tongues `from` ..= `upto`.
 fn indices(entry: Entry, from: u64, upto: u64) -> (usize, usize) {

@@ -6,8 +6,9 @@
 //!
 //! ```text
 //!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
-//!       (sturm)      (isolate)    (locate, half, mode) (spectrum)  (gaps)        closings
-//!                                       more bits: precise      open or closed: modular, elimination
+//!       (sturm)      (isolate)    (locate, half, mode) (spectrum) (gaps, order)  closings
+//!                                       more bits: precise      thinner than doubles tell: tunnel
+//!                                                               open or closed: modular, elimination
 //! ```
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
@@ -40,6 +41,7 @@ mod lanes;
 mod locate;
 mod mode;
 mod modular;
+mod order;
 mod peak;
 mod precise;
 mod row;
@@ -48,11 +50,13 @@ mod spectrum;
 mod string;
 mod sturm;
 mod survey;
+mod tunnel;
 mod twofold;
 
 pub use closing::{Closing, ELIMINATION, Found, Search, closings};
 pub use elimination::entries;
-pub use gaps::{Effort, Gap, Tongues};
+pub use gaps::{Effort, Tongues};
+pub use order::Gap;
 pub use peak::Peak;
 pub use precise::Enclosure;
 pub use row::{ExactEdge, Law, Predicted, Row, Side, Wanted};

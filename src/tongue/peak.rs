@@ -4,7 +4,8 @@
 //! unit time at fixed L1 is that over T = p h1 = p √(s/L1). Tr has one extremum in each tongue (it is a polynomial all
 //! of whose crossings of ±2 are real), and the rate one maximum nearby: found by golden section.
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
+use super::order::Gap;
 use super::precise::Enclosure;
 use crate::error::Result;
 use crate::number::{Ball, Rational, rational};
@@ -56,9 +57,8 @@ impl Tongues {
 
     /// An edge, narrower than a thousandth of the tongue.
     fn wide_enough(&mut self, gap: &Gap, edge: &super::Edge) -> Result<Enclosure> {
-        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
         if edge.hi - edge.lo <= 1e-3 * gap.width.0 {
-            return Ok(Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) });
+            return Ok(Enclosure::from(edge));
         }
         let digits = (edge.hi / gap.width.0).log10().ceil().max(0.0) as u32 + 6;
         self.refine(edge, digits)

@@ -2,14 +2,16 @@
 //!
 //! Quadratic interval refinement (Abbott 2006): the interval is cut into N equal cells, the secant says which one
 //! holds the zero, and the entry's signs at the cell's two ends prove it; then N is squared, else its root is
-//! taken. So the number of correct digits doubles with every two or three signs, and the proof is nothing but a
-//! change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
+//! taken. The interval at the start is a few units in the last place of a double, where the entry is straight to
+//! nearly as many digits again: so N begins that large, and the number of correct digits doubles with every two
+//! signs. The proof is nothing but a change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
 //! and from exact arithmetic where that cannot tell: then the point may be the zero itself.
 
 use num_bigint::{BigInt, Sign as IntSign};
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
+use super::spectrum::Edge;
 use super::string::{Entry, HalfString};
 use crate::error::Result;
 use crate::number::{Ball, Rational, Sign, rational};
@@ -28,13 +30,32 @@ pub struct Enclosure {
 pub(super) struct Function {
     p: u64,
     q: u64,
-    rho: Rational,
+    /// The slow clock's mass ρ p/q, in those of the fast one.
+    slow: Rational,
     schedule: Schedule,
     entry: Entry,
 }
 
-/// Bits beyond which the refine tier is not asked before exact arithmetic: four times what the cell's size asks.
-const PATIENCE: u32 = 4;
+/// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size asks. Of a
+/// long period they still cost far less than exact numbers, whose length grows with every kick; and a mode that lives
+/// far from the ends wants twice the digits that its ends are small by.
+const PATIENCE: u32 = 64;
+
+/// Binary digits that the curvature of an entry takes from the secant's: its other zeros are n or so, at distances of
+/// some 1/n of their size. A wrong guess costs two signs.
+const STRAIGHT: u32 = 12;
+
+/// −log2 x, to within 1; 0 for x = 0 or x ≥ 1.
+pub(super) fn negative_log2(x: &Rational) -> u32 {
+    x.denom().bits().saturating_sub(x.numer().bits()) as u32
+}
+
+impl From<&Edge> for Enclosure {
+    fn from(edge: &Edge) -> Self {
+        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
+        Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) }
+    }
+}
 
 impl Enclosure {
     /// The doubles around the enclosure.
@@ -52,6 +73,13 @@ impl Enclosure {
         (&self.lo + &self.hi) / Rational::from_integer(2.into())
     }
 
+    /// −log2 of the relative width, to within 2; 0 for a point.
+    fn digits(&self) -> u32 {
+        let length = |x: &Rational| x.numer().bits() as i64 - x.denom().bits() as i64;
+        let width = self.width();
+        if width.is_zero() { 0 } else { (length(&self.hi) - length(&width)).max(0) as u32 }
+    }
+
     fn is_below(&self, relative: &Rational) -> bool {
         self.width() <= &self.lo * relative
     }
@@ -59,11 +87,12 @@ impl Enclosure {
 
 impl Function {
     pub fn new(p: u64, q: u64, rho: &Rational, entry: Entry) -> Result<Self> {
-        Ok(Function { p, q, rho: rho.clone(), schedule: Schedule::two_clocks(p, q)?, entry })
+        let slow = rho * Rational::new(p.into(), q.into());
+        Ok(Function { p, q, slow, schedule: Schedule::two_clocks(p, q)?, entry })
     }
 
     fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
-        TwoClocks::with_rho(self.p, self.q, s.clone(), self.rho.clone())
+        TwoClocks::new(self.p, self.q, s.clone(), s * &self.slow)
     }
 
     /// The entry's exact sign at s.
@@ -76,13 +105,8 @@ impl Function {
         let clocks = self.clocks(s);
         let mut working = bits;
         while working <= PATIENCE * bits {
-            let ends = refine::run(&clocks, &self.schedule, working);
-            let value = ends.map(|ends| match self.entry {
-                Entry::A => ends.even.x,
-                Entry::B => ends.odd.x,
-                Entry::C => ends.even.v,
-                Entry::D => ends.odd.v,
-            });
+            let end = refine::run_one(&clocks, &self.schedule, working, self.entry.starts_free());
+            let value = end.map(|end| if self.entry.ends_free() { end.v } else { end.x });
             if let Some(value) = value.filter(|value| value.sign().is_some()) {
                 return value;
             }
@@ -108,9 +132,12 @@ impl Function {
     /// Where the entry has one sign at both ends: no interval with one simple zero.
     pub fn shrink(&self, start: &Enclosure, relative: &Rational) -> Enclosure {
         let mut interval = start.clone();
-        let mut cells = 2u32; // log2 N
+        let goal = negative_log2(relative);
+        // log2 N: an interval of relative width 2^-d has its secant right to some d - STRAIGHT digits more.
+        let mut cells = interval.digits().saturating_sub(STRAIGHT).max(2);
         let mut ends: Option<(Ball, Ball)> = None;
         while !interval.is_below(relative) {
+            cells = cells.min(goal.saturating_sub(interval.digits()) + 3);
             let bits = self.bits_for(&interval, cells);
             let (below, above) = ends
                 .take()
@@ -138,9 +165,7 @@ impl Function {
 
     /// Enough bits to tell the entry's sign a cell away from the zero, as a rule.
     fn bits_for(&self, interval: &Enclosure, cells: u32) -> u32 {
-        let ratio = &interval.hi / interval.width();
-        let magnitude = ratio.numer().bits().saturating_sub(ratio.denom().bits()) as u32;
-        (magnitude + cells + 96).next_multiple_of(32)
+        (interval.digits() + cells + 96).next_multiple_of(32)
     }
 
     /// The one of 2^cells equal parts that the secant points to.
@@ -158,7 +183,7 @@ impl Function {
     /// (x, v) carrying the kicks' common denominator as a positive factor.
     fn exact_count(&self, s: &Rational) -> (u64, bool) {
         let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
-        let slow = &kappa * &self.rho * Rational::new(self.p.into(), self.q.into());
+        let slow = &kappa * &self.slow;
         let denominator = kappa.denom().lcm(slow.denom());
         let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
         let half =
@@ -230,15 +255,51 @@ impl Cell {
     }
 }
 
-/// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot).
+/// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot): the terms that the continued fractions of
+/// lo and hi have in common, and the least that fits for the last one. Whole numbers that stay coprime: nothing is
+/// ever reduced.
 pub(super) fn simplest(lo: &Rational, hi: &Rational) -> Rational {
-    let floor = lo.floor();
-    if floor == *lo {
-        return floor;
+    let (mut lo, mut hi) = (lo.clone().into_raw(), hi.clone().into_raw());
+    let (mut before, mut now) = ((BigInt::zero(), BigInt::one()), (BigInt::one(), BigInt::zero()));
+    loop {
+        let (mut term, rest) = lo.0.div_mod_floor(&lo.1);
+        let (top, above) = hi.0.div_mod_floor(&hi.1);
+        let is_last = rest.is_zero() || term < top;
+        if !rest.is_zero() && is_last {
+            term += 1u8;
+        }
+        let next = (&now.0 * &term + before.0, &now.1 * &term + before.1);
+        (before, now) = (now, next);
+        if is_last {
+            return Rational::new_raw(now.0, now.1);
+        }
+        // What is left, rest/lo.1 ≤ x ≤ above/hi.1, upside down.
+        (lo, hi) = ((hi.1, above), (lo.1, rest));
     }
-    if floor < hi.floor() {
-        return floor + Rational::one();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn the_simplest_rational_has_the_least_denominator_of_all() {
+        let mut seen = 0;
+        for (a, b) in (1..60i64).flat_map(|b| (1..4 * b).map(move |a| (a, b))) {
+            for width in [ratio(0, 1), ratio(1, 7 * b), ratio(1, 97), ratio(5, 3)] {
+                let (lo, hi) = (ratio(a, b), ratio(a, b) + width);
+                let found = simplest(&lo, &hi);
+                assert!(lo <= found && found <= hi, "{found} in {lo}..{hi}");
+                let least = (1..).map(BigInt::from).find(|d| {
+                    let numerator = (&lo * Rational::from_integer(d.clone())).ceil();
+                    numerator <= &hi * Rational::from_integer(d.clone())
+                });
+                assert_eq!(Some(found.denom()), least.as_ref(), "{lo}..{hi}");
+                assert_eq!(Rational::new(found.numer().clone(), found.denom().clone()), found);
+                seen += 1;
+            }
+        }
+        assert!(seen > 10_000);
     }
-    let inner = simplest(&(hi - &floor).recip(), &(lo - &floor).recip());
-    floor + inner.recip()
 }

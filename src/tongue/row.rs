@@ -13,9 +13,10 @@
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
+use super::order::Gap;
 use super::peak::Peak;
-use super::precise::simplest;
+use super::precise::{Enclosure, simplest};
 use super::spectrum::Edge;
 use super::string::Entry;
 use crate::error::Result;
@@ -163,8 +164,8 @@ impl Tongues {
     }
 
     fn rational_edge(&self, edge: &Edge) -> Result<Option<Rational>> {
-        let exact = |x: f64| rational::from_f64_exact(x).expect("an edge is finite");
-        let candidate = simplest(&exact(edge.lo), &exact(edge.hi));
+        let around = Enclosure::from(edge);
+        let candidate = simplest(&around.lo, &around.hi);
         // A random enclosure of 2^-52 has its simplest rational at a denominator of some 2^26.
         let simple = candidate.denom().bits() <= 20;
         let is_zero = simple && self.function(edge.entry)?.exact_sign(&candidate) == Sign::Zero;

@@ -10,8 +10,9 @@
 //! assert!(tongues.effort().doubles < 20); // of 99 tongues
 //! ```
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
 use super::lanes::LANES;
+use super::order::Gap;
 use super::row::ExactEdge;
 use crate::error::{Error, Result};
 use crate::number::{Rational, rational};

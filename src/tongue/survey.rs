@@ -14,7 +14,8 @@ use std::collections::BTreeMap;
 use num_integer::Integer;
 use rayon::prelude::*;
 
-use super::gaps::{Gap, Tongues};
+use super::gaps::Tongues;
+use super::order::Gap;
 use super::row::{Row, Wanted};
 use super::select::Selection;
 use crate::error::Result;

@@ -45,12 +45,17 @@ impl Ends {
 /// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
 pub(crate) fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
     let steps = Steps::new(clocks, schedule, bits)?;
-    let end = |x: u8, v: u8| {
-        let mut orbit = Orbit::new(&steps, x, v);
-        schedule.half_period().for_each(|event| orbit.advance(event));
-        orbit.finish()
-    };
-    Some(Ends { even: end(1, 0)?, odd: end(0, 1)? })
+    Some(Ends { even: steps.end(schedule, true)?, odd: steps.end(schedule, false)? })
+}
+
+/// The even or the odd solution alone.
+pub(crate) fn run_one<S: Real>(
+    clocks: &TwoClocks<S>,
+    schedule: &Schedule,
+    bits: u32,
+    even: bool,
+) -> Option<End> {
+    Steps::new(clocks, schedule, bits)?.end(schedule, even)
 }
 
 /// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
@@ -113,6 +118,13 @@ impl Steps {
             count,
             tau: bound.tau(count)?,
         })
+    }
+
+    /// The even or the odd solution at T/2.
+    fn end(&self, schedule: &Schedule, even: bool) -> Option<End> {
+        let mut orbit = Orbit::new(self, u8::from(even), u8::from(!even));
+        schedule.half_period().for_each(|event| orbit.advance(event));
+        orbit.finish()
     }
 
     fn kick(&self, event: Event) -> &BigInt {
