@@ -33,7 +33,7 @@
 //! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
 
 use super::spectrum::Edge;
-use super::string::{HalfString, Step};
+use super::string::{HalfString, KINDS, Step};
 use crate::number::U;
 
 /// √2, rounded up: |x| + |v| is at most this times the vector's length.
@@ -80,8 +80,8 @@ struct Tunnel {
     /// Ticks in the unit of time: a power of two, at least as long as any spring.
     unit: f64,
     /// κ m in that unit, rounded, by kind of node.
-    kicks: [f64; 8],
-    masses: [f64; 8],
+    kicks: [f64; KINDS],
+    masses: [f64; KINDS],
     /// Relative error of the kicks, the interval included.
     uncertainty: f64,
 }
