@@ -171,11 +171,12 @@ impl Tongues {
         let mut edges = Vec::with_capacity(found.len());
         for (edge, index) in found.into_iter().zip(first..) {
             edges.push(match edge {
-                Some(edge) => {
+                Some(edge) if edge.is_narrow() => {
                     self.effort.doubles += 1;
                     edge
                 }
-                None => self.by_more_bits(entry, index)?,
+                Some(edge) => self.by_more_bits(&Enclosure::from(&edge), entry, index)?,
+                None => self.by_more_bits(&self.isolated(entry, index)?, entry, index)?,
             });
         }
         Ok(edges)
@@ -186,19 +187,22 @@ impl Tongues {
         self.string.dimension(entry)
     }
 
-    /// An edge that doubles could not certify.
-    fn by_more_bits(&mut self, entry: Entry, index: usize) -> Result<Edge> {
+    /// An edge that doubles could not certify, from an enclosure that holds no other.
+    fn by_more_bits(&mut self, start: &Enclosure, entry: Entry, index: usize) -> Result<Edge> {
+        let (lo, hi) = self.sharpened(entry, start, 20)?.to_f64();
+        Ok(Edge { entry, index, lo, hi })
+    }
+
+    /// An enclosure of an edge that holds no other.
+    fn isolated(&self, entry: Entry, index: usize) -> Result<Enclosure> {
         let function = self.function(entry)?;
         let start = self.string.bracket(entry, index).and_then(|(lo, hi)| {
             let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
             Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? })
         });
         let start = start.filter(|start| function.changes_sign(start));
-        let start =
-            start.unwrap_or_else(|| function.isolate(&self.string, index, self.string.cluster(entry, index)));
-        self.effort.precise += 1;
-        let (lo, hi) = function.shrink(&start, &tenth_power(20)).to_f64();
-        Ok(Edge { entry, index, lo, hi })
+        let cluster = || function.isolate(&self.string, index, self.string.cluster(entry, index));
+        Ok(start.unwrap_or_else(cluster))
     }
 
     /// The edge to `digits` significant digits: an interval narrower than 10^-digits of itself.

@@ -28,8 +28,18 @@ const HALVINGS: u32 = 4;
 /// A relative uncertainty that hardly ever shows in a double: below it an enclosure is as narrow as doubles get.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// One of a few units in the last place: what strings of many thousand masses allow in doubles.
-const TOLERABLE: f64 = 1e-15;
+/// A trial that leaves more than this part of the uncertainty is the last: doubles allow no better.
+const GAIN: f64 = 0.1;
+
+/// Some units in the last place, as a relative width: no wider is an edge that doubles certify.
+const WIDEST: f64 = 2.5e-15;
+
+impl Edge {
+    /// Whether it is as narrow as an edge shall be.
+    pub(super) fn is_narrow(&self) -> bool {
+        self.hi - self.lo <= WIDEST * self.lo
+    }
+}
 
 /// Memory for searches: a thread keeps it from string to string.
 #[derive(Debug, Default)]
@@ -47,7 +57,7 @@ thread_local! {
 }
 
 impl HalfString {
-    /// The eigenvalues with the given indices, by entry; `None` where doubles cannot certify one.
+    /// The eigenvalues with the given indices, by entry, as narrow as doubles prove them; `None` where that is nothing.
     pub fn eigenvalues(&self, wanted: &Wanted) -> [Vec<Option<Edge>>; 4] {
         SPACE.with_borrow_mut(|space| self.search(wanted, space))
     }
@@ -87,15 +97,13 @@ impl HalfString {
         for (batch, lanes) in tasks.iter() {
             let Proofs { edge: [lo, hi], radius, quotient } = self.prove(batch);
             for i in 0..lanes {
-                let unit = quotient[i];
-                let good = radius[i] <= NEGLIGIBLE * unit
-                    || (radius[i] <= TOLERABLE * unit && radius[i] > 0.1 * batch.radius[i]);
-                if good {
+                let in_vain = radius[i] < f64::INFINITY && radius[i] > GAIN * batch.radius[i];
+                if radius[i] <= NEGLIGIBLE * quotient[i] || in_vain {
                     let (entry, index) = batch.eigenvalue(i);
                     found(Edge { entry, index, lo: lo[i], hi: hi[i] });
                 } else {
                     let (batch, lane) = failed.push_lane(batch, i);
-                    (batch.radius[lane], batch.kappa[lane]) = (radius[i], unit);
+                    (batch.radius[lane], batch.kappa[lane]) = (radius[i], quotient[i]);
                 }
             }
         }
