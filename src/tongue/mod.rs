@@ -33,6 +33,7 @@
 mod batch;
 mod closing;
 mod elimination;
+mod exact_count;
 mod gaps;
 mod half;
 mod isolate;

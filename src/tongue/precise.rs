@@ -7,15 +7,17 @@
 //! signs. The proof is nothing but a change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
 //! and from exact arithmetic where that cannot tell: then the point may be the zero itself.
 
-use num_bigint::{BigInt, Sign as IntSign};
+use std::ops::RangeInclusive;
+
+use num_bigint::BigInt;
 use num_integer::Integer;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 use super::spectrum::Edge;
-use super::string::{Entry, HalfString};
+use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ball, Rational, Sign, rational};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight};
+use crate::propagator::{Schedule, TwoClocks};
 use crate::verdict::{Decidable, refine};
 
 /// An interval with rational ends that holds exactly one zero of an entry; a point where that is known.
@@ -31,9 +33,9 @@ pub(super) struct Function {
     p: u64,
     q: u64,
     /// The slow clock's mass ρ p/q, in those of the fast one.
-    slow: Rational,
-    schedule: Schedule,
-    entry: Entry,
+    pub slow: Rational,
+    pub schedule: Schedule,
+    pub entry: Entry,
 }
 
 /// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size asks. Of a
@@ -72,17 +74,6 @@ impl Enclosure {
     pub fn middle(&self) -> Rational {
         (&self.lo + &self.hi) / Rational::from_integer(2.into())
     }
-
-    /// −log2 of the relative width, to within 2; 0 for a point.
-    fn digits(&self) -> u32 {
-        let length = |x: &Rational| x.numer().bits() as i64 - x.denom().bits() as i64;
-        let width = self.width();
-        if width.is_zero() { 0 } else { (length(&self.hi) - length(&width)).max(0) as u32 }
-    }
-
-    fn is_below(&self, relative: &Rational) -> bool {
-        self.width() <= &self.lo * relative
-    }
 }
 
 impl Function {
@@ -102,7 +93,9 @@ impl Function {
 
     /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0.
     fn value(&self, s: &Rational, bits: u32) -> Ball {
-        let clocks = self.clocks(s);
+        // In no lowest terms: balls do not need them.
+        let slow = Rational::new_raw(s.numer() * self.slow.numer(), s.denom() * self.slow.denom());
+        let clocks = TwoClocks::new(self.p, self.q, s.clone(), slow);
         let mut working = bits;
         while working <= PATIENCE * bits {
             let end = refine::run_one(&clocks, &self.schedule, working, self.entry.starts_free());
@@ -131,127 +124,116 @@ impl Function {
     /// # Panics
     /// Where the entry has one sign at both ends: no interval with one simple zero.
     pub fn shrink(&self, start: &Enclosure, relative: &Rational) -> Enclosure {
-        let mut interval = start.clone();
+        let mut interval = Interval::from(start);
         let goal = negative_log2(relative);
         // log2 N: an interval of relative width 2^-d has its secant right to some d - STRAIGHT digits more.
         let mut cells = interval.digits().saturating_sub(STRAIGHT).max(2);
         let mut ends: Option<(Ball, Ball)> = None;
         while !interval.is_below(relative) {
             cells = cells.min(goal.saturating_sub(interval.digits()) + 3);
-            let bits = self.bits_for(&interval, cells);
-            let (below, above) = ends
-                .take()
-                .unwrap_or_else(|| (self.value(&interval.lo, bits), self.value(&interval.hi, bits)));
+            // Enough bits to tell the entry's sign a cell away from the zero, as a rule.
+            let bits = (interval.digits() + cells + 96).next_multiple_of(32);
+            let value = |at: &BigInt| self.value(&interval.point(at), bits);
+            let (below, above) =
+                ends.take().unwrap_or_else(|| (value(&BigInt::zero()), value(&interval.width)));
             match (below.sign(), above.sign()) {
-                (Some(Sign::Zero), _) => return Enclosure { hi: interval.lo.clone(), lo: interval.lo },
-                (_, Some(Sign::Zero)) => return Enclosure { lo: interval.hi.clone(), hi: interval.hi },
-                (a, b) => assert!(a != b, "no change of sign between {} and {}", interval.lo, interval.hi),
+                (Some(Sign::Zero), _) => return interval.at(&BigInt::zero()),
+                (_, Some(Sign::Zero)) => return interval.at(&interval.width),
+                (a, b) => {
+                    assert!(a != b, "no change of sign between {} and {}", start.lo, start.hi)
+                }
             }
-            let cell = self.cell(&interval, &below, &above, cells);
-            let (x, y) = (self.value(&cell.lo, bits), self.value(&cell.hi, bits));
-            if x.sign() == above.sign() {
-                (interval.hi, ends) = (cell.lo, Some((below, x)));
-                cells = (cells / 2).max(1);
+            let (fine, from) = (interval.cut(cells), interval.secant(&below, &above, cells));
+            let upto = &from + &interval.width;
+            let value = |at: &BigInt| self.value(&fine.point(at), bits);
+            let (x, y) = (value(&from), value(&upto));
+            let all = BigInt::zero()..=fine.width.clone();
+            let (part, signs, is_cell) = if x.sign() == above.sign() {
+                (all.start()..=&from, (below, x), false)
             } else if y.sign() == below.sign() {
-                (interval.lo, ends) = (cell.hi, Some((y, above)));
-                cells = (cells / 2).max(1);
+                (&upto..=all.end(), (y, above), false)
             } else {
-                (interval, ends) = (cell, Some((x, y)));
-                cells = (2 * cells).min(1 << 12);
-            }
+                (&from..=&upto, (x, y), true)
+            };
+            (interval, ends) = (fine.part(part), Some(signs));
+            cells = if is_cell { (2 * cells).min(1 << 12) } else { (cells / 2).max(1) };
         }
-        interval
-    }
-
-    /// Enough bits to tell the entry's sign a cell away from the zero, as a rule.
-    fn bits_for(&self, interval: &Enclosure, cells: u32) -> u32 {
-        (interval.digits() + cells + 96).next_multiple_of(32)
-    }
-
-    /// The one of 2^cells equal parts that the secant points to.
-    fn cell(&self, interval: &Enclosure, below: &Ball, above: &Ball, cells: u32) -> Enclosure {
-        const BITS: u32 = 64;
-        let share = below.div(&below.sub(above, BITS), BITS).unwrap_or_else(|| Ball::one().scale2(-1));
-        let last = (BigInt::one() << cells) - 1u8;
-        let at = share.mid_scaled(i64::from(cells)).0.clamp(BigInt::zero(), last);
-        let step = interval.width() / Rational::from_integer(BigInt::one() << cells);
-        let lo = &interval.lo + &step * Rational::from_integer(at);
-        Enclosure { hi: &lo + step, lo }
-    }
-
-    /// How many zeros lie in (0, s), and whether s is one: by the signs of x along the string in exact integers,
-    /// (x, v) carrying the kicks' common denominator as a positive factor.
-    fn exact_count(&self, s: &Rational) -> (u64, bool) {
-        let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
-        let slow = &kappa * &self.slow;
-        let denominator = kappa.denom().lcm(slow.denom());
-        let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
-        let half =
-            [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
-        let even = self.entry.starts_free();
-        let (mut x, mut v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
-        let (mut last, mut changes) = (IntSign::Plus, 0);
-        for Event { drift, kicks, weight } in self.schedule.half_period() {
-            x += &v * drift;
-            if x.sign() != IntSign::NoSign && x.sign() != last {
-                (last, changes) = (x.sign(), changes + 1);
-            }
-            if kicks != 0 {
-                let parts = if weight == Weight::Half { 1u8 } else { 2 };
-                v = v * &denominator - &half[kicks as usize] * parts * &x;
-                x *= &denominator;
-            }
-        }
-        if !self.entry.ends_free() {
-            return (changes, x.is_zero());
-        }
-        // At a free end the slope's zeros count; the rigid shift of C does not.
-        let falling = x.is_zero() || (!v.is_zero() && x.sign() != v.sign());
-        (changes + u64::from(falling) - u64::from(self.entry == Entry::C), v.is_zero())
-    }
-
-    /// Isolates a zero by halving with exact counts: for zeros so close that counts in doubles cannot tell them
-    /// apart. `around`, if given, is where doubles saw it.
-    pub fn isolate(&self, string: &HalfString, index: usize, around: Option<(f64, f64)>) -> Enclosure {
-        let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
-        let upto = string.dimension(self.entry) as u64;
-        let bound = exact(2.0 * string.upper_bound * string.ticks);
-        let mut cell = Cell { lo: Rational::zero(), hi: bound, below: 0, upto, index: index as u64 };
-        let mut hints = around.map_or(Vec::new(), |(lo, hi)| vec![exact(hi), exact(lo)]);
-        loop {
-            let middle = || (&cell.lo + &cell.hi) / Rational::from_integer(2.into());
-            let cut = hints.pop().filter(|x| cell.lo < *x && *x < cell.hi).unwrap_or_else(middle);
-            let (count, is_zero) = self.exact_count(&cut);
-            if let Some(found) = cell.cut(cut, count, is_zero) {
-                return found;
-            }
-        }
+        Enclosure { lo: interval.point(&BigInt::zero()), hi: interval.point(&interval.width) }
     }
 }
 
-/// An interval with the zeros `below` + 1 ..= `upto`, on the way to the zero `index` alone.
-struct Cell {
-    lo: Rational,
-    hi: Rational,
-    below: u64,
-    upto: u64,
-    index: u64,
+/// From lo to lo + width, in units of 1/(denominator 2^places): whole numbers, so that cutting reduces no fractions.
+#[derive(Clone, Debug)]
+struct Interval {
+    lo: BigInt,
+    width: BigInt,
+    /// 1 where the ends are dyadic, as those of doubles are.
+    denominator: BigInt,
+    places: u64,
 }
 
-impl Cell {
-    /// Cuts at x, with `count` zeros below it and perhaps one on it.
-    fn cut(&mut self, x: Rational, count: u64, is_zero: bool) -> Option<Enclosure> {
-        if is_zero && count + 1 == self.index {
-            return Some(Enclosure { lo: x.clone(), hi: x });
-        }
-        let count = count + u64::from(is_zero);
-        if count < self.index {
-            (self.lo, self.below) = (x, count)
+impl From<&Enclosure> for Interval {
+    fn from(enclosure: &Enclosure) -> Self {
+        let common = enclosure.lo.denom().lcm(enclosure.hi.denom());
+        let numerator = |x: &Rational| x.numer() * (&common / x.denom());
+        let (lo, hi) = (numerator(&enclosure.lo), numerator(&enclosure.hi));
+        let places = common.trailing_zeros().unwrap_or(0);
+        Interval { width: hi - &lo, lo, denominator: common >> places, places }
+    }
+}
+
+impl Interval {
+    /// −log2 of the relative width, to within 2; 0 for a point.
+    fn digits(&self) -> u32 {
+        let length = (&self.lo + &self.width).bits();
+        if self.width.is_zero() { 0 } else { length.saturating_sub(self.width.bits()) as u32 }
+    }
+
+    fn is_below(&self, relative: &Rational) -> bool {
+        &self.width * relative.denom() <= &self.lo * relative.numer()
+    }
+
+    /// The point so many units above lo.
+    fn point(&self, at: &BigInt) -> Rational {
+        let numerator = &self.lo + at;
+        let twos = numerator.trailing_zeros().unwrap_or(self.places).min(self.places);
+        let (numerator, denominator) = (numerator >> twos, &self.denominator << (self.places - twos));
+        if self.denominator.is_one() {
+            Rational::new_raw(numerator, denominator)
         } else {
-            (self.hi, self.upto) = (x, count)
+            Rational::new(numerator, denominator)
         }
-        let alone = self.upto - self.below == 1 && self.lo.is_positive();
-        alone.then(|| Enclosure { lo: self.lo.clone(), hi: self.hi.clone() })
+    }
+
+    /// That point alone.
+    fn at(&self, at: &BigInt) -> Enclosure {
+        let point = self.point(at);
+        Enclosure { lo: point.clone(), hi: point }
+    }
+
+    /// The same in units of 2^cells in what was one.
+    fn cut(&self, cells: u32) -> Interval {
+        Interval {
+            lo: &self.lo << cells,
+            width: &self.width << cells,
+            denominator: self.denominator.clone(),
+            places: self.places + u64::from(cells),
+        }
+    }
+
+    /// A part of it.
+    fn part(&self, part: RangeInclusive<&BigInt>) -> Interval {
+        let (from, upto) = part.into_inner();
+        Interval { lo: &self.lo + from, width: upto - from, ..self.clone() }
+    }
+
+    /// The one of 2^cells equal parts that the secant through the ends' values points to: where it begins, in the units
+    /// of the cut interval, in which it is as wide as this one in its own.
+    fn secant(&self, below: &Ball, above: &Ball, cells: u32) -> BigInt {
+        let bits = cells + 64;
+        let share = below.div(&below.sub(above, bits), bits).unwrap_or_else(|| Ball::one().scale2(-1));
+        let last = (BigInt::one() << cells) - 1u8;
+        share.mid_scaled(i64::from(cells)).0.clamp(BigInt::zero(), last) * &self.width
     }
 }
 
