@@ -57,6 +57,7 @@
 //! | floor | module | what is there |
 //! |---|---|---|
 //! | – | [`error`] | one error with a kind |
+//! | 0 | `vector` | doubles side by side in the processor's registers |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`propagator`] | clocks, schedule, kick, drift, full and half period, the methods |
 //! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
@@ -83,4 +84,5 @@ pub mod resonance;
 pub mod scene;
 pub mod system;
 pub mod tongue;
+mod vector;
 pub mod verdict;

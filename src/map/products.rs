@@ -3,8 +3,8 @@
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
 use crate::resonance::dominant_family;
+use crate::vector::instructions::Instructions;
 use crate::verdict::filter::{Ends, Group};
-use crate::verdict::instructions::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, winding};
 
 /// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.

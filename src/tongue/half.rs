@@ -28,7 +28,7 @@
 use super::batch::Batch;
 use super::lanes::{Lanes, lanes, range};
 use super::string::{HalfString, KINDS, Step};
-use crate::verdict::vector::Vector;
+use crate::vector::Vector;
 
 /// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
 /// of x (sums: of x²).

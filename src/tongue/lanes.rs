@@ -1,6 +1,6 @@
 //! Numbers side by side: one for each eigenvalue that is being looked for.
 
-pub(super) use crate::verdict::vector::LANES;
+pub(super) use crate::vector::LANES;
 
 /// One number for each lane.
 pub(super) type Lanes = [f64; LANES];

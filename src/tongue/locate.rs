@@ -7,8 +7,8 @@
 use super::batch::Batch;
 use super::lanes::{Aligned, LANES, Lanes, power_of_two};
 use super::string::{HalfString, KINDS, Step};
-use crate::verdict::instructions::Kernel;
-use crate::verdict::vector::Vector;
+use crate::vector::Vector;
+use crate::vector::instructions::Kernel;
 
 /// Of all nodes with more than this part of the largest product the one nearest to t = 0 is taken: modes that fill the
 /// string are then all followed from T/2 through most of it, and little is done twice.

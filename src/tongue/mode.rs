@@ -46,8 +46,8 @@ use super::half::{Half, Ways, difference};
 use super::lanes::{LANES, Lanes};
 use super::string::{HalfString, Node};
 use crate::number::U;
-use crate::verdict::instructions::Kernel;
-use crate::verdict::vector::Vector;
+use crate::vector::Vector;
+use crate::vector::instructions::Kernel;
 
 /// 2^-96.
 const SLACK: f64 = f64::from_bits((1023 - 96) << 52);

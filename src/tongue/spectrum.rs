@@ -139,8 +139,8 @@ impl HalfString {
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
-    use crate::verdict::instructions::Instructions;
-    use crate::verdict::vector::LANES;
+    use crate::vector::LANES;
+    use crate::vector::instructions::Instructions;
 
     #[test]
     fn every_instruction_set_finds_the_same_edges() {

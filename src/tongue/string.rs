@@ -23,7 +23,7 @@ use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::propagator::Schedule;
-use crate::verdict::instructions::Instructions;
+use crate::vector::instructions::Instructions;
 
 /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

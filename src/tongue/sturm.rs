@@ -22,8 +22,8 @@ use super::batch::Batch;
 use super::lanes::{LANES, Lanes, lanes, lesser};
 use super::string::{HalfString, KINDS};
 use crate::number::U;
-use crate::verdict::instructions::Kernel;
-use crate::verdict::vector::Vector;
+use crate::vector::Vector;
+use crate::vector::instructions::Kernel;
 
 impl HalfString {
     /// The uncertainty η of a computed count, see the module's theorem.

@@ -24,7 +24,6 @@ mod exact;
 pub(crate) mod filter;
 pub(crate) mod floquet;
 mod growth;
-pub(crate) mod instructions;
 mod kernel;
 mod kind;
 mod ladder;
@@ -32,7 +31,6 @@ mod lone;
 mod plain;
 pub(crate) mod refine;
 mod residue;
-pub(crate) mod vector;
 pub(crate) mod winding;
 
 pub use exact::{Decidable, exact_trace};

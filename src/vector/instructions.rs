@@ -2,7 +2,9 @@
 
 use std::marker::PhantomData;
 
-use super::vector::{self, Vector};
+#[cfg(target_arch = "x86_64")]
+use super::registers::{Avx2, Avx512};
+use super::{LANES, Vector};
 
 /// The instruction sets that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,10 +52,10 @@ impl Instructions {
         match self {
             // Safety: as above.
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx512 => unsafe { avx512(With::<vector::Avx512, K>(kernel, PhantomData)) },
+            Instructions::Avx512 => unsafe { avx512(With::<Avx512, K>(kernel, PhantomData)) },
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2 => unsafe { avx2(With::<vector::Avx2, K>(kernel, PhantomData)) },
-            Instructions::Portable => kernel.run::<[f64; vector::LANES]>(),
+            Instructions::Avx2 => unsafe { avx2(With::<Avx2, K>(kernel, PhantomData)) },
+            Instructions::Portable => kernel.run::<[f64; LANES]>(),
         }
     }
 
@@ -89,7 +91,6 @@ impl<V: Vector, K: Kernel> Task for With<V, K> {
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx2,fma")]
-#[inline(never)]
 fn avx512<T: Task>(task: T) -> T::Output {
     task.run()
 }

@@ -1,0 +1,169 @@
+//! Sixteen doubles in the processor's registers.
+//!
+//! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must not fail: the
+//! few kernels that everything waits for are written for a [`Vector`] instead, and compiled for each kind of registers.
+
+pub(crate) mod instructions;
+mod portable;
+#[cfg(target_arch = "x86_64")]
+mod registers;
+
+/// How many numbers a vector has.
+pub(crate) const LANES: usize = 16;
+
+/// One number for each lane. All instruction sets give the same bits.
+pub(crate) trait Vector: Copy {
+    fn splat(x: f64) -> Self;
+    fn load(from: &[f64; LANES]) -> Self;
+    fn store(self, to: &mut [f64; LANES]);
+    fn add(self, other: Self) -> Self;
+    fn sub(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    /// self · b + c, rounded once.
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// c − self · b, rounded once.
+    fn neg_mul_add(self, b: Self, c: Self) -> Self;
+    /// self · b − c, rounded once.
+    fn mul_sub(self, b: Self, c: Self) -> Self;
+    fn div(self, other: Self) -> Self;
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    /// Whether self > limit in any lane.
+    fn any_above(self, limit: Self) -> bool;
+    /// `this` where self > limit, else `that`.
+    fn if_above(self, limit: Self, this: Self, that: Self) -> Self;
+    /// The next double below, of a positive number.
+    fn below(self) -> Self;
+    /// self, in which whole numbers are held as integers, one more where the signs of a and b differ.
+    fn count_change(self, a: Self, b: Self) -> Self;
+    /// The power of two that brings |self|, not below 2^-1022, to [1, 2).
+    fn normalizing(self) -> Self;
+
+    /// The next double above, of a positive number.
+    #[inline(always)]
+    fn above(self) -> Self {
+        self.count_change(Self::splat(1.0), Self::splat(-1.0))
+    }
+
+    /// The larger one; the other one if this is NaN.
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        self.if_above(other, self, other)
+    }
+
+    /// The lesser one; the other one if this is NaN.
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        other.if_above(self, self, other)
+    }
+
+    /// The rounded sum and what rounding took from it, exactly (Knuth).
+    #[inline(always)]
+    fn two_sum(self, other: Self) -> (Self, Self) {
+        let sum = self.add(other);
+        let part = sum.sub(self);
+        (sum, self.sub(sum.sub(part)).add(other.sub(part)))
+    }
+
+    /// The same of a difference.
+    #[inline(always)]
+    fn two_sub(self, other: Self) -> (Self, Self) {
+        let difference = self.sub(other);
+        let part = difference.sub(self);
+        (difference, self.sub(difference.sub(part)).sub(other.add(part)))
+    }
+
+    /// The rounded product and what rounding took from it, exactly (barring underflow).
+    #[inline(always)]
+    fn two_product(self, other: Self) -> (Self, Self) {
+        let product = self.mul(other);
+        (product, self.mul_sub(other, product))
+    }
+}
+
+/// The bit of a double's sign.
+const SIGN: u64 = 1 << 63;
+/// The exponents of x and 1/x add up to this.
+const EXPONENTS: u64 = 2046;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::instructions::{Instructions, Kernel};
+
+    struct Everything([[f64; LANES]; 3]);
+
+    impl Kernel for Everything {
+        type Output = Vec<[u64; LANES]>;
+
+        fn run<V: Vector>(self) -> Self::Output {
+            let [a, b, c] = [V::load(&self.0[0]), V::load(&self.0[1]), V::load(&self.0[2])];
+            let (sum, rest) = a.two_sum(b);
+            let (difference, left) = a.two_sub(b);
+            let (product, lost) = a.two_product(b);
+            let bits = |x: V| {
+                let mut lanes = [0.0; LANES];
+                x.store(&mut lanes);
+                // NaN has many forms.
+                lanes.map(|x| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() })
+            };
+            let any = V::splat(f64::from(u8::from(a.any_above(b))));
+            let results = [
+                a,
+                any,
+                sum,
+                rest,
+                difference,
+                left,
+                product,
+                lost,
+                a.mul_add(b, c),
+                a.neg_mul_add(b, c),
+                a.div(b),
+                a.abs().sqrt(),
+                a.if_above(b, c, a),
+                a.larger(b),
+                a.lesser(b),
+                c.abs().normalizing(),
+            ];
+            let mut all: Vec<_> = results.into_iter().map(bits).collect();
+            // What is done to bits holds for whole numbers and for positive ones.
+            let unit = V::splat((1u64 << 52) as f64);
+            all.extend([unit.count_change(a, b), c.abs().above(), c.abs().below()].map(bits));
+            all
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_computes_the_same() {
+        let special = [0.0, -0.0, 1.0, -1.5, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, f64::MIN_POSITIVE];
+        let mut state = 20_261_121u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let x = f64::from_bits((state >> 12) | 0x3ff0_0000_0000_0000) - 1.5;
+            x * 2f64.powi((state % 40) as i32 - 20)
+        };
+        for round in 0..1000 {
+            let mut numbers = [(); 3].map(|()| [(); LANES].map(|()| random()));
+            if round % 2 == 1 {
+                numbers[round % 3][round % LANES] = special[round % special.len()];
+                numbers[(round + 1) % 3][round % LANES] = special[round / 7 % special.len()];
+            }
+            // A normal number that is not near an end of the range.
+            numbers[2] = numbers[2].map(|x| if x.is_normal() { x } else { 1.0 });
+            let portable = Instructions::Portable.compute(Everything(numbers));
+            assert!(Instructions::available().all(|set| set.compute(Everything(numbers)) == portable));
+        }
+    }
+
+    #[test]
+    fn operations_are_what_they_say() {
+        let x = [3.0; LANES];
+        assert_eq!(x.neg_mul_add([2.0; LANES], [10.0; LANES]), [4.0; LANES]);
+        assert_eq!(x.mul_sub([2.0; LANES], [10.0; LANES]), [-4.0; LANES]);
+        assert_eq!(x.mul([f64::EPSILON; LANES]).normalizing(), [2f64.powi(51); LANES]);
+        assert_eq!((x.above(), x.below()), ([3f64.next_up(); LANES], [3f64.next_down(); LANES]));
+        assert_eq!(x.two_sum([f64::EPSILON; LANES]), ([3.0; LANES], [f64::EPSILON; LANES]));
+        assert_eq!(x.two_sub([f64::EPSILON; LANES]), ([3.0; LANES], [-f64::EPSILON; LANES]));
+    }
+}

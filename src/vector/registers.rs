@@ -1,0 +1,174 @@
+//! Vectors in the registers of x86-64.
+
+use std::arch::x86_64::*;
+
+use super::{EXPONENTS, LANES, SIGN, Vector};
+
+/// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the processor's
+/// common instructions.
+macro_rules! each {
+    ($vector:ident, $k:ident => $value:expr) => {{
+        let mut all = $vector;
+        for ($k, register) in all.0.iter_mut().enumerate() {
+            // Safety: vectors in registers are used in functions only that are compiled for them.
+            *register = unsafe { $value };
+        }
+        all
+    }};
+}
+
+/// A vector of registers: their type and number, and what its operations are called.
+macro_rules! registers {
+    ($name:ident, $register:ty, $count:literal,
+     memory: $load:ident $store:ident $set:ident $set_integers:ident,
+     doubles: $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident $mul_add:ident $neg_mul_add:ident $mul_sub:ident,
+     bits: $as_integers:ident $as_doubles:ident $and:ident $xor:ident $plus:ident $minus:ident $right:ident $left:ident,
+     choice: $choose:ident $any:ident) => {
+        /// To be used only in functions that are compiled for these registers.
+        #[derive(Clone, Copy)]
+        pub(crate) struct $name([$register; $count]);
+
+        impl Vector for $name {
+            #[inline(always)]
+            fn splat(x: f64) -> Self {
+                // Safety: as for all operations.
+                Self([unsafe { $set(x) }; $count])
+            }
+
+            #[inline(always)]
+            fn load(from: &[f64; LANES]) -> Self {
+                let all = Self::splat(0.0);
+                // The registers together are as long as the array.
+                each!(all, k => $load(from.as_ptr().add(k * (LANES / $count))))
+            }
+
+            #[inline(always)]
+            fn store(self, to: &mut [f64; LANES]) {
+                for (k, &register) in self.0.iter().enumerate() {
+                    // Safety: as for all operations; the registers together are as long as the array.
+                    unsafe { $store(to.as_mut_ptr().add(k * (LANES / $count)), register) }
+                }
+            }
+
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                each!(self, k => $add(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                each!(self, k => $sub(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                each!(self, k => $mul(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                each!(self, k => $mul_add(self.0[k], b.0[k], c.0[k]))
+            }
+
+            #[inline(always)]
+            fn neg_mul_add(self, b: Self, c: Self) -> Self {
+                each!(self, k => $neg_mul_add(self.0[k], b.0[k], c.0[k]))
+            }
+
+            #[inline(always)]
+            fn mul_sub(self, b: Self, c: Self) -> Self {
+                each!(self, k => $mul_sub(self.0[k], b.0[k], c.0[k]))
+            }
+
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                each!(self, k => $div(self.0[k], other.0[k]))
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                each!(self, k => $sqrt(self.0[k]))
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                each!(self, k => $as_doubles($and($as_integers(self.0[k]), $set_integers(!SIGN as i64))))
+            }
+
+            #[inline(always)]
+            fn any_above(self, limit: Self) -> bool {
+                // Safety: as for all operations.
+                (0..$count).fold(0, |any, k| any | unsafe { $any(self.0[k], limit.0[k]) }) != 0
+            }
+
+            #[inline(always)]
+            fn if_above(self, limit: Self, this: Self, that: Self) -> Self {
+                each!(self, k => $choose(self.0[k], limit.0[k], this.0[k], that.0[k]))
+            }
+
+            #[inline(always)]
+            fn below(self) -> Self {
+                each!(self, k => $as_doubles($minus($as_integers(self.0[k]), $set_integers(1))))
+            }
+
+            #[inline(always)]
+            fn count_change(self, a: Self, b: Self) -> Self {
+                each!(self, k => {
+                    let changed = $right::<63>($xor($as_integers(a.0[k]), $as_integers(b.0[k])));
+                    $as_doubles($plus($as_integers(self.0[k]), changed))
+                })
+            }
+
+            #[inline(always)]
+            fn normalizing(self) -> Self {
+                each!(self, k => {
+                    let positive = $and($as_integers(self.0[k]), $set_integers(!SIGN as i64));
+                    let exponent = $minus($set_integers(EXPONENTS as i64), $right::<52>(positive));
+                    $as_doubles($left::<52>(exponent))
+                })
+            }
+        }
+    };
+}
+
+registers!(
+    Avx512, __m512d, 2,
+    memory: _mm512_loadu_pd _mm512_storeu_pd _mm512_set1_pd _mm512_set1_epi64,
+    doubles: _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd
+        _mm512_fmadd_pd _mm512_fnmadd_pd _mm512_fmsub_pd,
+    bits: _mm512_castpd_si512 _mm512_castsi512_pd _mm512_and_si512 _mm512_xor_si512
+        _mm512_add_epi64 _mm512_sub_epi64 _mm512_srli_epi64 _mm512_slli_epi64,
+    choice: choose512 any512
+);
+
+registers!(
+    Avx2, __m256d, 4,
+    memory: _mm256_loadu_pd _mm256_storeu_pd _mm256_set1_pd _mm256_set1_epi64x,
+    doubles: _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd
+        _mm256_fmadd_pd _mm256_fnmadd_pd _mm256_fmsub_pd,
+    bits: _mm256_castpd_si256 _mm256_castsi256_pd _mm256_and_si256 _mm256_xor_si256
+        _mm256_add_epi64 _mm256_sub_epi64 _mm256_srli_epi64 _mm256_slli_epi64,
+    choice: choose256 any256
+);
+
+// Safety of what follows: as for all operations.
+
+#[inline(always)]
+unsafe fn choose512(x: __m512d, limit: __m512d, this: __m512d, that: __m512d) -> __m512d {
+    unsafe { _mm512_mask_blend_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit), that, this) }
+}
+
+#[inline(always)]
+unsafe fn any512(x: __m512d, limit: __m512d) -> u8 {
+    unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(x, limit) }
+}
+
+#[inline(always)]
+unsafe fn choose256(x: __m256d, limit: __m256d, this: __m256d, that: __m256d) -> __m256d {
+    unsafe { _mm256_blendv_pd(that, this, _mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)) }
+}
+
+#[inline(always)]
+unsafe fn any256(x: __m256d, limit: __m256d) -> i32 {
+    unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(x, limit)) }
+}
