@@ -66,7 +66,7 @@ impl Batch {
         self.index[lane] = index as f64;
         // One change for each zero below, the zero s = 0 of C included.
         let changes = index - 1 + usize::from(entry == Entry::C);
-        self.sign[lane] = if changes.is_multiple_of(2) { 1.0 } else { -1.0 };
+        self.sign[lane] = [1.0, -1.0][changes % 2];
         for [low, high] in [&mut self.alone, &mut self.inside] {
             (low[lane], high[lane]) = (lo, hi);
         }

@@ -28,46 +28,57 @@ impl Interval {
         [self.lower.kappa, self.upper.kappa]
     }
 
+    /// The index of a problem's last eigenvalue below the upper end, by the counts.
+    #[inline(always)]
+    pub fn upto(&self, entry: Entry) -> usize {
+        self.upper.counts[entry as usize] as usize
+    }
+
     /// The indices, by the counts, of a problem's eigenvalues inside.
     pub fn inside(&self, entry: Entry) -> RangeInclusive<usize> {
         let [from, upto] = [&self.lower, &self.upper].map(|sample| sample.counts[entry as usize] as usize);
         from + 1..=upto
     }
 
-    /// The index of a problem's eigenvalue that, by the counts, is alone inside: the one before lies below lo (1 + η), the
-    /// one after above hi (1 − η).
-    pub fn alone(&self, entry: Entry) -> Option<usize> {
-        let (from, upto) = (self.lower.counts[entry as usize], self.upper.counts[entry as usize]);
-        (upto == from + 1).then_some(upto as usize)
-    }
-
-    /// Shows the wanted eigenvalues that are alone.
+    /// What is inside of what is wanted.
     #[inline(always)]
-    pub fn each_alone(&self, limits: &Limits, mut found: impl FnMut(Entry, usize)) {
-        // Bits rather than branches: which problems have one is anybody's guess.
-        let mut alone = 0u32;
+    fn contents(&self, limits: &Limits) -> Contents {
+        // Numbers rather than branches: which problems have one is anybody's guess.
+        let mut contents = Contents { most: 0, alone: 0 };
         for entry in 0..4 {
             let (from, upto) = (self.lower.counts[entry], self.upper.counts[entry]);
-            let asked = (limits.first[entry] <= upto) & (upto <= limits.last[entry]);
-            alone |= u32::from(asked & (upto == from + 1)) << entry;
+            let asked = (limits.last[entry] > from) & (limits.first[entry] <= upto);
+            let inside = if asked { upto.saturating_sub(from) } else { 0 };
+            contents.most = contents.most.max(inside);
+            contents.alone |= u32::from(inside == 1) << entry;
         }
+        contents
+    }
+}
+
+/// What an interval holds, by the counts, of what is wanted.
+#[derive(Clone, Copy)]
+pub(super) struct Contents {
+    /// The most eigenvalues of a problem.
+    most: u32,
+    /// A bit for each problem of which there is one: the eigenvalue before it lies below lo (1 + η), the one after above
+    /// hi (1 − η).
+    alone: u32,
+}
+
+impl Contents {
+    /// The problems with a single eigenvalue inside.
+    #[inline(always)]
+    pub fn each_alone(&self, mut found: impl FnMut(Entry)) {
+        let mut alone = self.alone;
         while alone != 0 {
-            let entry = alone.trailing_zeros() as usize;
-            found(Entry::ALL[entry], self.upper.counts[entry] as usize);
+            found(Entry::ALL[alone.trailing_zeros() as usize]);
             alone &= alone - 1;
         }
     }
 
-    /// The most eigenvalues inside of a problem of which one of those is wanted.
-    #[inline(always)]
-    fn most(&self, limits: &Limits) -> u32 {
-        let mut most = 0;
-        for entry in 0..4 {
-            let (from, upto) = (self.lower.counts[entry], self.upper.counts[entry]);
-            let asked = (limits.last[entry] > from) & (limits.first[entry] <= upto);
-            most = most.max(if asked { upto.saturating_sub(from) } else { 0 });
-        }
-        most
+    pub fn is_alone(&self, entry: Entry) -> bool {
+        self.alone & (1 << entry as u32) != 0
     }
 }
 
@@ -107,7 +118,7 @@ const MOST: usize = 64;
 impl HalfString {
     /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot tell them apart, and
     /// shows each interval to `found`.
-    pub fn isolate(&self, limits: &Limits, space: &mut Cutting, mut found: impl FnMut(&Interval)) {
+    pub fn isolate(&self, limits: &Limits, space: &mut Cutting, mut found: impl FnMut(&Interval, Contents)) {
         let least_width = 16.0 * self.eta();
         let counts = self.dimensions.map(|zeros| zeros as u32);
         let (zero, top) = (Sample { kappa: 0.0, counts: [0; 4] }, Sample { kappa: self.upper_bound, counts });
@@ -124,10 +135,11 @@ impl HalfString {
                 for k in 0..=cuts {
                     let upper = *inner.get(k).unwrap_or(&interval.upper);
                     let piece = Interval { lower, upper };
-                    if piece.most(limits) > 1 && upper.kappa - lower.kappa >= least_width * upper.kappa {
+                    let contents = piece.contents(limits);
+                    if contents.most > 1 && upper.kappa - lower.kappa >= least_width * upper.kappa {
                         next.push(piece);
                     } else {
-                        found(&piece);
+                        found(&piece, contents);
                     }
                     lower = upper;
                 }
@@ -143,7 +155,7 @@ impl HalfString {
         let Cutting { open, cuts, points, .. } = space;
         points.clear();
         cuts.clear();
-        cuts.extend(open.iter().map(|interval| (interval.most(limits) as usize).min(MOST)));
+        cuts.extend(open.iter().map(|interval| (interval.contents(limits).most as usize).min(MOST)));
         let all: usize = cuts.iter().sum();
         let spare = all.next_multiple_of(LANES) - all;
         for (i, (interval, cuts)) in open.iter().zip(cuts).enumerate() {

@@ -66,8 +66,8 @@ impl HalfString {
         let Workspace { cutting, walk, tasks, sorted, order } = space;
         tasks.clear();
         let limits = Limits::new(wanted);
-        self.isolate(&limits, cutting, |interval| {
-            interval.each_alone(&limits, |entry, index| tasks.push(entry, index, interval.ends()));
+        self.isolate(&limits, cutting, |interval, contents| {
+            contents.each_alone(|entry| tasks.push(entry, interval.upto(entry), interval.ends()));
         });
         let mut found = Entry::ALL.map(|entry| {
             let (first, last) = (limits.first[entry as usize], limits.last[entry as usize]);
@@ -113,8 +113,8 @@ impl HalfString {
     /// before lies below lo (1 + η), the one after above hi (1 − η). Whether it holds this one, signs must tell.
     pub fn bracket(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
         let mut bracket = None;
-        self.isolate(&Limits::new(&entry.alone(index)), &mut Cutting::default(), |interval| {
-            if interval.alone(entry) == Some(index) {
+        self.isolate(&Limits::new(&entry.alone(index)), &mut Cutting::default(), |interval, contents| {
+            if contents.is_alone(entry) {
                 bracket = Some(interval.ends());
             }
         });
@@ -125,7 +125,7 @@ impl HalfString {
     /// An interval of s in which the eigenvalue lies, perhaps with others.
     pub fn cluster(&self, entry: Entry, index: usize) -> Option<(f64, f64)> {
         let mut cluster = None;
-        self.isolate(&Limits::new(&entry.alone(index)), &mut Cutting::default(), |interval| {
+        self.isolate(&Limits::new(&entry.alone(index)), &mut Cutting::default(), |interval, _| {
             if interval.inside(entry).contains(&index) {
                 cluster = Some(interval.ends());
             }
