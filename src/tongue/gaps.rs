@@ -168,18 +168,19 @@ impl Tongues {
 
     /// The edges `first`, `first` + 1, ... of one problem, those that doubles could not certify by more bits.
     fn completed(&mut self, entry: Entry, first: usize, found: Vec<Option<Edge>>) -> Result<Vec<Edge>> {
-        let mut edges = Vec::with_capacity(found.len());
-        for (edge, index) in found.into_iter().zip(first..) {
-            edges.push(match edge {
-                Some(edge) if edge.is_narrow() => {
-                    self.effort.doubles += 1;
-                    edge
-                }
-                Some(edge) => self.by_more_bits(&Enclosure::from(&edge), entry, index)?,
-                None => self.by_more_bits(&self.isolated(entry, index)?, entry, index)?,
-            });
+        // Without a new list where all are there already.
+        let narrow = |edge: &Option<Edge>| edge.is_some_and(|edge| edge.is_narrow());
+        let good = found.iter().filter(|edge| narrow(edge)).count();
+        self.effort.doubles += good as u64;
+        if good == found.len() {
+            return Ok(found.into_iter().map(|edge| edge.expect("a narrow one")).collect());
         }
-        Ok(edges)
+        let complete = |(edge, index): (Option<Edge>, usize)| match edge {
+            Some(edge) if edge.is_narrow() => Ok(edge),
+            Some(edge) => self.by_more_bits(&Enclosure::from(&edge), entry, index),
+            None => self.by_more_bits(&self.isolated(entry, index)?, entry, index),
+        };
+        found.into_iter().zip(first..).map(complete).collect()
     }
 
     /// How many positive zeros an entry has.
