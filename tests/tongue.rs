@@ -119,7 +119,7 @@ fn roots_are_edges(p: u64, q: u64, rho: &Rational) {
             assert_eq!(sturm.count(&exact(edge.lo), &exact(edge.hi)), 1, "{p}/{q}, rho = {rho}: {edge:?}");
             let below = sturm.count(&Rational::zero(), &exact(edge.lo));
             let on_lo = usize::from(polynomial.eval(&exact(edge.lo)).is_zero());
-            assert_eq!(below - on_lo + 1, edge.index);
+            assert_eq!(below - on_lo + 1, edge.index as usize);
         }
     }
 }

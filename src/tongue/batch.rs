@@ -53,9 +53,9 @@ impl Batch {
 
     /// The problem and the index of a lane's eigenvalue.
     #[inline(always)]
-    pub fn eigenvalue(&self, lane: usize) -> (Entry, usize) {
+    pub fn eigenvalue(&self, lane: usize) -> (Entry, u32) {
         let entry = Entry::of_ends(self.starts_free[lane] > 0.0, self.ends_free[lane] > 0.0);
-        (entry, self.index[lane] as usize)
+        (entry, self.index[lane] as u32)
     }
 
     /// An eigenvalue between lo and hi, alone there, in a lane.

@@ -191,7 +191,7 @@ impl Tongues {
     /// An edge that doubles could not certify, from an enclosure that holds no other.
     fn by_more_bits(&mut self, start: &Enclosure, entry: Entry, index: usize) -> Result<Edge> {
         let (lo, hi) = self.sharpened(entry, start, 20)?.to_f64();
-        Ok(Edge { entry, index, lo, hi })
+        Ok(Edge { entry, index: index as u32, lo, hi })
     }
 
     /// An enclosure of an edge that holds no other.

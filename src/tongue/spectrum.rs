@@ -13,7 +13,7 @@ use super::string::{Entry, HalfString};
 pub struct Edge {
     pub entry: Entry,
     /// 1, 2, ... from below.
-    pub index: usize,
+    pub index: u32,
     /// The enclosure of s = h1² L1.
     pub lo: f64,
     pub hi: f64,
@@ -86,7 +86,7 @@ impl HalfString {
             tasks.clear();
             self.prove_all(sorted, tasks, |edge| {
                 let entry = edge.entry as usize;
-                found[entry][edge.index - limits.first[entry] as usize] = Some(edge);
+                found[entry][(edge.index - limits.first[entry]) as usize] = Some(edge);
             });
         }
         found
