@@ -41,6 +41,9 @@ impl Edge {
     }
 }
 
+/// A thread keeps the memory for strings of no more nodes: some 10 MB.
+const KEPT: usize = 1 << 16;
+
 /// Memory for searches: a thread keeps it from string to string.
 #[derive(Debug, Default)]
 struct Workspace {
@@ -59,7 +62,13 @@ thread_local! {
 impl HalfString {
     /// The eigenvalues with the given indices, by entry, as narrow as doubles prove them; `None` where that is nothing.
     pub fn eigenvalues(&self, wanted: &Wanted) -> [Vec<Option<Edge>>; 4] {
-        SPACE.with_borrow_mut(|space| self.search(wanted, space))
+        SPACE.with_borrow_mut(|space| {
+            let found = self.search(wanted, space);
+            if self.nodes.len() > KEPT {
+                *space = Workspace::default();
+            }
+            found
+        })
     }
 
     fn search(&self, wanted: &Wanted, space: &mut Workspace) -> [Vec<Option<Edge>>; 4] {
