@@ -1,4 +1,4 @@
-//! The two entries of a tongue at a point inside, to twice the digits of a double, with their slopes.
+//! The two entries of a tongue at a point, to twice the digits of a double, with their slopes.
 //!
 //! Run the recurrence from t = 0 to a node r, short of its mass, and from T/2 back to it ([`super::tunnel`] says how):
 //! (x, v) and (y, w), each once free and once pinned at its end. Every entry of the half period is, whatever r,
@@ -161,8 +161,8 @@ impl Table {
         let unit = (longest as u64).next_power_of_two() as f64;
         let kappa = s.over(string.ticks).scaled(unit);
         let mut kicks = [kappa; KINDS];
-        for kind in 0..KINDS {
-            kicks[kind] = kappa.times(Twofold { hi: string.masses[kind], lo: string.rests[kind] });
+        for (kick, (&hi, &lo)) in kicks.iter_mut().zip(string.masses.iter().zip(&string.rests)) {
+            *kick = kappa.times(Twofold { hi, lo });
         }
         Table { kicks, tick: 1.0 / unit }
     }
