@@ -283,7 +283,10 @@ impl Orbit {
         let (x, v, y, w, k) = (x.hi, v.hi, y.hi, w.hi, k.hi);
         let slope = self.dx * w + x * other.dv + self.dv * y + v * other.dx
             - k * (self.dx * y + x * other.dx + x * y);
-        let uncertainty = (1.0 + k) * 2.0 * (self.off() * other.length + other.off() * self.length);
+        // To first order, each amplitude and slope being off by that much; and the roundings of this sum.
+        let strays = self.off() * ((w - k * y).abs() + y.abs()) + other.off() * ((v - k * x).abs() + x.abs());
+        let terms = (x * w).abs() + (v * y).abs() + 2.0 * (k * x * y).abs();
+        let uncertainty = 2.0 * strays + 4.0 * LOSS * terms;
         Value { number, slope, uncertainty, exponent: self.exponent + other.exponent }
     }
 }
