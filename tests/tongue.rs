@@ -328,6 +328,86 @@ fn the_peak_is_a_peak() {
     }
 }
 
+/// Over all zeros s_k of the tongue's two entries: d ln E/d ln s = Σ s/(s − s_k), and 1 for the factor s of C.
+fn rise(tongues: &mut Tongues, m: u64, s: f64) -> f64 {
+    let [a, b, c, d] = tongues.all_edges().unwrap();
+    let (zeros, factor) = if m % 2 == 1 { ([a, d].concat(), 0.0) } else { ([b, c].concat(), 1.0) };
+    zeros.iter().map(|edge| s / (s - 0.5 * (edge.lo + edge.hi))).sum::<f64>() + factor
+}
+
+#[test]
+fn the_peak_is_where_the_zeros_of_the_entries_put_it_for_edges_decades_apart_too() {
+    let wanted = Wanted { growth: true, ..Wanted::default() };
+    let mut seen = 0;
+    for decade in -12..=12 {
+        let rho = Rational::from_integer(10.into()).pow(decade);
+        for (p, q) in [(3, 2), (7, 3), (5, 6), (1, 4), (9, 8)] {
+            let mut tongues = tongues(p, q, &rho);
+            for gap in tongues.all().unwrap() {
+                // Closer edges than that leave no nine digits to this test's differences.
+                let Some(upper) = gap.upper.filter(|upper| upper.lo > 1.1 * gap.lower.hi) else { continue };
+                let peak = tongues.row(&gap, &wanted).unwrap().peak.unwrap();
+                let name = format!("{p}/{q}, m = {}, 10^{decade}: {peak:?}", gap.m);
+                assert!(gap.lower.lo < peak.s && peak.s < upper.hi, "{name}");
+                // The rate is largest where rise = w coth w, w = ln mu/2: nine digits of s, then.
+                let w = 0.5 * peak.ln_multiplier;
+                let balance = |s: f64| rise(&mut tongues.clone(), gap.m, s) - w / w.tanh();
+                assert!(
+                    balance(peak.s * (1.0 - 1e-9)) > 0.0 && balance(peak.s * (1.0 + 1e-9)) < 0.0,
+                    "{name}"
+                );
+                // And that is ln mu there, by the verdict's route.
+                let clocks = TwoClocks::with_rho(p, q, exact(peak.s), rho.clone());
+                let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
+                let ln =
+                    growth(&clocks, verdict, &Limits::default()).unwrap().ln_multiplier.unwrap().mid_f64();
+                assert!((ln - peak.ln_multiplier).abs() < 1e-13 * ln, "{name}: {ln}");
+                let rate = peak.ln_multiplier / (p as f64 * peak.s.sqrt());
+                assert!((rate - peak.rate).abs() <= 2.0 * f64::EPSILON * rate, "{name}");
+                let steps = std::f64::consts::LN_10 * q as f64 / peak.ln_multiplier;
+                assert!((steps - peak.slow_steps_to_tenfold).abs() <= 2.0 * f64::EPSILON * steps, "{name}");
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 250, "{seen}");
+}
+
+#[test]
+fn growth_next_to_a_closing_falls_with_the_width_and_never_to_zero() {
+    // 5/3, m = 4 closes at rho = 114/55; on both sides ln mu is as the distance, to first order in it.
+    let wanted = Wanted { growth: true, ..Wanted::default() };
+    let ln = |hair: &Rational| {
+        let mut tongues = tongues(5, 3, &(ratio(114, 55) + hair));
+        let gap = tongues.gap(4).unwrap();
+        tongues.row(&gap, &wanted).unwrap().peak.unwrap().ln_multiplier
+    };
+    let hair = |k: i32| Rational::from_integer(10.into()).pow(-k);
+    let unit = ln(&hair(12)) / 1e-12;
+    for k in 4..24 {
+        for hair in [hair(k), -hair(k)] {
+            let share = ln(&hair) / to_f64(&hair).abs() / unit;
+            assert!((share - 1.0).abs() < 20.0 * 10f64.powi(-k) + 1e-10, "{k}: {share}");
+        }
+    }
+}
+
+#[test]
+fn the_peak_of_a_tongue_thinner_than_any_double_is_told() {
+    // Large multipliers in tongues of 1e-94 of their place: at their middle, by the digits of the edges.
+    let mut tongues = tongues(47, 51, &ratio(1, 25));
+    let thinnest = |a: &Gap, b: &Gap| a.width.0.total_cmp(&b.width.0);
+    let gap = tongues.all().unwrap().into_iter().min_by(thinnest).unwrap();
+    assert!(gap.width.1 < 1e-94 * gap.lower.lo);
+    let peak = tongues.row(&gap, &Wanted { growth: true, ..Wanted::default() }).unwrap().peak.unwrap();
+    let [lower, upper] = [gap.lower, gap.upper.unwrap()].map(|edge| tongues.refine(&edge, 110).unwrap());
+    let middle = (lower.middle() + upper.middle()) / ratio(2, 1);
+    let clocks = TwoClocks::with_rho(47, 51, middle, ratio(1, 25));
+    let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
+    let ln = growth(&clocks, verdict, &Limits::default()).unwrap().ln_multiplier.unwrap().mid_f64();
+    assert!((ln - peak.ln_multiplier).abs() < 1e-15 * ln, "{ln}: {peak:?}");
+}
+
 #[test]
 fn first_order_widths_become_exact_as_rho_vanishes() {
     for (p, q, m) in [(7, 1, 2), (7, 3, 3), (23, 10, 5)] {

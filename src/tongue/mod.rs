@@ -40,6 +40,7 @@ mod isolate;
 mod jet;
 mod lanes;
 mod locate;
+mod meet;
 mod mode;
 mod modular;
 mod order;
