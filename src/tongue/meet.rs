@@ -30,7 +30,7 @@
 use super::lanes::power_of_two;
 use super::string::{HalfString, KINDS, Step};
 use super::twofold::Twofold;
-use crate::verdict::instructions::Task;
+use crate::vector::instructions::Task;
 
 /// What one operation on two doubles loses, relative to its terms: the kick's own roundings included.
 const LOSS: f64 = f64::from_bits((1023 - 101) << 52);

@@ -10,7 +10,7 @@ use super::gaps::Tongues;
 use super::modular;
 use super::precise::{Enclosure, negative_log2, simplest};
 use super::spectrum::Edge;
-use super::tunnel;
+use super::tunnel::{self, Apart};
 use crate::error::Result;
 use crate::number::{Rational, Sign};
 
@@ -23,7 +23,8 @@ pub struct Gap {
     pub upper: Option<Edge>,
     /// Whether the edges are one point: no instability, Q = ±I there.
     pub closed: bool,
-    /// hi − lo, enclosed; infinite for the last tongue.
+    /// hi − lo, enclosed: proven to about three digits, or to be smaller than all normal doubles; infinite for the last
+    /// tongue.
     pub width: (f64, f64),
 }
 
@@ -60,12 +61,11 @@ impl Tongues {
             return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
         }
         let (free, pinned) = if a.entry.starts_free() { (a, b) } else { (b, a) };
-        let apart = tunnel::splitting(self.string(), &free, &pinned);
-        for (lower, upper, sign) in [(free, pinned, 1.0), (pinned, free, -1.0)] {
-            let width = apart.map(|(x, y)| if sign > 0.0 { (x, y) } else { (-y, -x) });
-            if let Some(width) = width.filter(|&width| is_accurate(width)) {
-                return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
-            }
+        if let Some(Apart { in_order, width }) = tunnel::splitting(self.string(), &free, &pinned)
+            && (is_accurate(width) || width.1 < f64::MIN_POSITIVE)
+        {
+            let (lower, upper) = if in_order { (free, pinned) } else { (pinned, free) };
+            return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
         }
         self.assemble_by_digits(m, a, b)
     }

@@ -49,12 +49,20 @@ const LONG: f64 = f64::from_bits((1023 + 200) << 52);
 /// A term of Δ below this power of two of the other is only bounded.
 const FAINT: i64 = -400;
 
-/// Widths must stay well inside the normal doubles, in powers of two.
+/// Powers of two beyond this are taken in two factors, and below its double make nothing of any number met here.
 const RANGE: i64 = 900;
 
-/// s_Y − s_X, enclosed, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both
+/// Two edges told apart.
+pub(super) struct Apart {
+    /// Whether s_X < s_Y, else s_X > s_Y.
+    pub in_order: bool,
+    /// |s_Y − s_X|, enclosed: by doubles that are not normal where it is too small.
+    pub width: (f64, f64),
+}
+
+/// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both
 /// are wrong by a few units in the last place at most, else the enclosure is poor. `None` where nothing is proven.
-pub(super) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Option<(f64, f64)> {
+pub(super) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Option<Apart> {
     debug_assert!(free.entry.starts_free() && !pinned.entry.starts_free());
     let tunnel = Tunnel::new(string, free.lo.min(pinned.lo), free.hi.max(pinned.hi));
     let ends_free = free.entry.ends_free();
@@ -223,23 +231,22 @@ struct Term {
 }
 
 impl Term {
-    /// This divided by a number in `slope`, times a positive factor; `None` beyond the range of doubles.
-    fn over(&self, slope: (f64, f64), factor: f64) -> Option<(f64, f64)> {
-        let (lo, hi) = (self.value - self.error, self.value + self.error);
-        if self.exponent.abs() > RANGE || !(slope.0 > 0.0 && (lo > 0.0 || hi < 0.0)) {
+    /// This divided by a number in `slope`, times a positive factor; `None` where its sign is not proven.
+    fn over(&self, slope: (f64, f64), factor: f64) -> Option<Apart> {
+        let (lo, hi) = (self.value.abs() - self.error, self.value.abs() + self.error);
+        if !(slope.0 > 0.0 && lo > 0.0 && self.exponent <= RANGE) {
             return None;
         }
-        let power = 2f64.powi(self.exponent as i32);
-        let quotient = |x: f64, slope: f64| x / slope * factor * power;
-        let (lo, hi) = if lo > 0.0 {
-            (quotient(lo, slope.1), quotient(hi, slope.0))
-        } else {
-            (quotient(lo, slope.0), quotient(hi, slope.1))
-        };
-        // Four roundings.
+        // In two factors, each within the range of doubles; four roundings, and two where the result is not normal.
+        let first = (self.exponent / 2).max(-RANGE);
+        let second = (self.exponent - first).max(-RANGE);
+        let quotient =
+            |x: f64, slope: f64| x / slope * factor * 2f64.powi(first as i32) * 2f64.powi(second as i32);
         let margin = 4.0 * U;
-        let (lo, hi) = (lo - margin * lo.abs(), hi + margin * hi.abs());
-        (lo.is_normal() && hi.is_normal()).then_some((lo, hi))
+        let (lo, hi) = (quotient(lo, slope.1) * (1.0 - margin), quotient(hi, slope.0) * (1.0 + margin));
+        let outward = |x: f64, step: fn(f64) -> f64| if x < f64::MIN_POSITIVE { step(step(x)) } else { x };
+        let width = (outward(lo, f64::next_down).max(0.0), outward(hi, f64::next_up));
+        width.1.is_finite().then_some(Apart { in_order: self.value > 0.0, width })
     }
 }
 
