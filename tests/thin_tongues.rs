@@ -116,3 +116,23 @@ fn a_long_half_period_is_no_obstacle() {
     let gaps = tongues.all().unwrap();
     assert!(gaps.iter().any(|gap| gap.width.0 < 1e-200) && tongues.effort().precise < 40);
 }
+
+#[test]
+fn two_edges_of_one_entry_within_one_double_are_told_apart() {
+    let mut tongues = tongues(1999, 1001, &ratio(1, 25));
+    let gaps = tongues.gaps(1918, 1921).unwrap();
+    assert!(gaps.iter().all(|gap| !gap.closed && gap.width.0 > 0.0));
+    let [first, second] = [gaps[0].upper.unwrap(), gaps[2].upper.unwrap()];
+    assert_eq!((first.entry, first.index + 1), (second.entry, second.index));
+    assert_eq!((first.lo, first.hi), (second.lo, second.hi));
+    let [x, y] = [&first, &second].map(|edge| tongues.refine(edge, 40).unwrap());
+    assert!(x.hi < y.lo);
+}
+
+#[test]
+fn tongues_beyond_the_range_of_doubles_are_open_and_listed() {
+    let gaps = tongues(619, 381, &ratio(1, 25)).all().unwrap();
+    assert_eq!(gaps.len(), 999);
+    assert!(gaps.iter().all(|gap| !gap.closed && gap.width.0 <= gap.width.1));
+    assert!(gaps.iter().any(|gap| gap.width.1 < f64::MIN_POSITIVE));
+}

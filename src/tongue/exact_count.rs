@@ -1,5 +1,7 @@
 //! Zeros counted exactly: for those so close that counts in doubles cannot tell them apart.
 
+use std::ops::RangeInclusive;
+
 use num_bigint::{BigInt, Sign as IntSign};
 use num_integer::Integer;
 use num_traits::{Signed, Zero};
@@ -8,9 +10,38 @@ use super::precise::{Enclosure, Function};
 use super::string::{Entry, HalfString};
 use crate::number::{Rational, rational};
 use crate::propagator::{Event, Weight};
+use crate::verdict::refine::{self, End};
+
+/// Bits to begin with, and beyond which counting is left to exact integers.
+const BITS: RangeInclusive<u32> = 128..=1 << 13;
 
 impl Function {
-    /// How many zeros lie in (0, s), and whether s is one: by the signs of x along the string in exact integers,
+    /// How many zeros lie in (0, s), and whether s is one.
+    fn count(&self, s: &Rational) -> (u64, bool) {
+        let clocks = self.unreduced_clocks(s);
+        let mut bits = *BITS.start();
+        while bits <= *BITS.end() {
+            let end = refine::run_one(&clocks, &self.schedule, bits, self.entry.starts_free());
+            if let Some(count) = end.and_then(|end| self.counted(&end)) {
+                return (count, false);
+            }
+            bits *= 2;
+        }
+        self.exact_count(s)
+    }
+
+    /// The zeros below the s of an orbit, where its signs are certain and s is none.
+    pub fn counted(&self, end: &End) -> Option<u64> {
+        let (changes, (x, v)) = (end.nodes?, (end.signs.0?, end.signs.1?));
+        Some(if self.entry.ends_free() { self.free_count(changes, x != v) } else { changes })
+    }
+
+    /// At a free end the slope's zeros count; the rigid shift of C does not.
+    fn free_count(&self, changes: u64, falling: bool) -> u64 {
+        changes + u64::from(falling) - u64::from(self.entry == Entry::C)
+    }
+
+    /// The same by the signs of x along the string in exact integers,
     /// (x, v) carrying the kicks' common denominator as a positive factor.
     fn exact_count(&self, s: &Rational) -> (u64, bool) {
         let kappa = s / Rational::from_integer((2 * self.schedule.clocks()[0].step()).into());
@@ -36,12 +67,11 @@ impl Function {
         if !self.entry.ends_free() {
             return (changes, x.is_zero());
         }
-        // At a free end the slope's zeros count; the rigid shift of C does not.
         let falling = x.is_zero() || (!v.is_zero() && x.sign() != v.sign());
-        (changes + u64::from(falling) - u64::from(self.entry == Entry::C), v.is_zero())
+        (self.free_count(changes, falling), v.is_zero())
     }
 
-    /// Isolates a zero by halving with exact counts: for zeros so close that counts in doubles cannot tell them
+    /// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot tell them
     /// apart. `around`, if given, is where doubles saw it.
     pub fn isolate(&self, string: &HalfString, index: usize, around: Option<(f64, f64)>) -> Enclosure {
         let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
@@ -52,7 +82,7 @@ impl Function {
         loop {
             let middle = || (&cell.lo + &cell.hi) / Rational::from_integer(2.into());
             let cut = hints.pop().filter(|x| cell.lo < *x && *x < cell.hi).unwrap_or_else(middle);
-            let (count, is_zero) = self.exact_count(&cut);
+            let (count, is_zero) = self.count(&cut);
             if let Some(found) = cell.cut(cut, count, is_zero) {
                 return found;
             }

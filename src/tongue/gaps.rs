@@ -190,7 +190,9 @@ impl Tongues {
 
     /// An edge that doubles could not certify, from an enclosure that holds no other.
     fn by_more_bits(&mut self, start: &Enclosure, entry: Entry, index: usize) -> Result<Edge> {
-        let (lo, hi) = self.sharpened(entry, start, 20)?.to_f64();
+        self.effort.precise += 1;
+        let found = self.function(entry)?.shrink(start, &tenth_power(20), true);
+        let (lo, hi) = found.expect("it is isolated").to_f64();
         Ok(Edge { entry, index: index as u32, lo, hi })
     }
 
@@ -211,13 +213,19 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn refine(&mut self, edge: &Edge, digits: u32) -> Result<Enclosure> {
-        self.sharpened(edge.entry, &Enclosure::from(edge), digits)
+        self.sharpened(edge, &Enclosure::from(edge), digits)
     }
 
-    /// The same from an enclosure that may hold more digits than an edge.
-    pub(super) fn sharpened(&mut self, entry: Entry, start: &Enclosure, digits: u32) -> Result<Enclosure> {
+    /// The same from an enclosure that may hold more digits than the edge.
+    pub(super) fn sharpened(&mut self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
         self.effort.precise += 1;
-        Ok(self.function(entry)?.shrink(start, &tenth_power(digits)))
+        let (function, relative) = (self.function(edge.entry)?, tenth_power(digits));
+        if let Some(found) = function.shrink(start, &relative, false) {
+            return Ok(found);
+        }
+        // Others so near that one double holds them too, or one on the enclosure's end.
+        let alone = function.isolate(&self.string, edge.index as usize, Some((edge.lo, edge.hi)));
+        Ok(function.shrink(&alone, &relative, true).expect("it is isolated"))
     }
 
     pub(super) fn function(&self, entry: Entry) -> Result<Function> {

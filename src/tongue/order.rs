@@ -75,7 +75,7 @@ impl Tongues {
         let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
         let mut digits = 20;
         loop {
-            (x, y) = (self.sharpened(a.entry, &x, digits)?, self.sharpened(b.entry, &y, digits)?);
+            (x, y) = (self.sharpened(&a, &x, digits)?, self.sharpened(&b, &y, digits)?);
             let parted =
                 [(&x, &y, a, b), (&y, &x, b, a)].into_iter().find(|(below, above, ..)| below.hi < above.lo);
             if let Some((below, above, lower, upper)) = parted {

@@ -98,7 +98,7 @@ impl Tongues {
         let [mut a, mut b] = [lower, upper].map(Enclosure::from);
         let mut digits = 32;
         while (a.width() + b.width()) * Rational::from_integer(100_000_000.into()) > &b.lo - &a.hi {
-            (a, b) = (self.sharpened(lower.entry, &a, digits)?, self.sharpened(upper.entry, &b, digits)?);
+            (a, b) = (self.sharpened(lower, &a, digits)?, self.sharpened(upper, &b, digits)?);
             digits *= 2;
         }
         Ok([a.middle(), b.middle()])

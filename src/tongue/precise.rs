@@ -91,27 +91,34 @@ impl Function {
         Decidable::half_signs(&self.clocks(s)).all()[self.entry as usize]
     }
 
-    /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0.
-    fn value(&self, s: &Rational, bits: u32) -> Ball {
-        // In no lowest terms: balls do not need them.
+    /// In no lowest terms: balls do not need them.
+    pub fn unreduced_clocks(&self, s: &Rational) -> TwoClocks<Rational> {
         let slow = Rational::new_raw(s.numer() * self.slow.numer(), s.denom() * self.slow.denom());
-        let clocks = TwoClocks::new(self.p, self.q, s.clone(), slow);
+        TwoClocks::new(self.p, self.q, s.clone(), slow)
+    }
+
+    /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie
+    /// below s, if those bits tell.
+    fn value(&self, s: &Rational, bits: u32) -> (Ball, Option<u64>) {
+        let clocks = self.unreduced_clocks(s);
         let mut working = bits;
         while working <= PATIENCE * bits {
-            let end = refine::run_one(&clocks, &self.schedule, working, self.entry.starts_free());
-            let value = end.map(|end| if self.entry.ends_free() { end.v } else { end.x });
-            if let Some(value) = value.filter(|value| value.sign().is_some()) {
-                return value;
+            if let Some(end) = refine::run_one(&clocks, &self.schedule, working, self.entry.starts_free()) {
+                let count = self.counted(&end);
+                let value = if self.entry.ends_free() { end.v } else { end.x };
+                if value.sign().is_some() {
+                    return (value, count);
+                }
             }
             working *= 2;
         }
-        Ball::from_integer(&self.exact_sign(s).to_i8().into())
+        (Ball::from_integer(&self.exact_sign(s).to_i8().into()), None)
     }
 
     /// Whether the entry has different signs at the two ends, neither of them zero.
     pub fn changes_sign(&self, interval: &Enclosure) -> bool {
         const BITS: u32 = 128;
-        let sign = |s: &Rational| self.value(s, BITS).sign();
+        let sign = |s: &Rational| self.value(s, BITS).0.sign();
         interval.lo < interval.hi
             && matches!(
                 (sign(&interval.lo), sign(&interval.hi)),
@@ -119,11 +126,9 @@ impl Function {
             )
     }
 
-    /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself.
-    ///
-    /// # Panics
-    /// Where the entry has one sign at both ends: no interval with one simple zero.
-    pub fn shrink(&self, start: &Enclosure, relative: &Rational) -> Enclosure {
+    /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
+    /// where that there is one is neither known nor told by the sign changes along the two ends' orbits.
+    pub fn shrink(&self, start: &Enclosure, relative: &Rational, is_isolated: bool) -> Option<Enclosure> {
         let mut interval = Interval::from(start);
         let goal = negative_log2(relative);
         // log2 N: an interval of relative width 2^-d has its secant right to some d - STRAIGHT digits more.
@@ -133,19 +138,26 @@ impl Function {
             cells = cells.min(goal.saturating_sub(interval.digits()) + 3);
             // Enough bits to tell the entry's sign a cell away from the zero, as a rule.
             let bits = (interval.digits() + cells + 96).next_multiple_of(32);
-            let value = |at: &BigInt| self.value(&interval.point(at), bits);
-            let (below, above) =
-                ends.take().unwrap_or_else(|| (value(&BigInt::zero()), value(&interval.width)));
-            match (below.sign(), above.sign()) {
-                (Some(Sign::Zero), _) => return interval.at(&BigInt::zero()),
-                (_, Some(Sign::Zero)) => return interval.at(&interval.width),
-                (a, b) => {
-                    assert!(a != b, "no change of sign between {} and {}", start.lo, start.hi)
+            let (below, above) = match ends.take() {
+                Some(ends) => ends,
+                None => {
+                    let value = |at: &BigInt| self.value(&interval.point(at), bits);
+                    let ((below, from), (above, upto)) = (value(&BigInt::zero()), value(&interval.width));
+                    let is_alone = from.zip(upto).is_some_and(|(from, upto)| upto == from + 1);
+                    if !(is_isolated || is_alone) {
+                        return None;
+                    }
+                    (below, above)
                 }
+            };
+            match (below.sign(), above.sign()) {
+                (Some(Sign::Zero), _) => return Some(interval.at(&BigInt::zero())),
+                (_, Some(Sign::Zero)) => return Some(interval.at(&interval.width)),
+                (a, b) => assert!(a != b, "one zero between {} and {}", start.lo, start.hi),
             }
             let (fine, from) = (interval.cut(cells), interval.secant(&below, &above, cells));
             let upto = &from + &interval.width;
-            let value = |at: &BigInt| self.value(&fine.point(at), bits);
+            let value = |at: &BigInt| self.value(&fine.point(at), bits).0;
             let (x, y) = (value(&from), value(&upto));
             let all = BigInt::zero()..=fine.width.clone();
             let (part, signs, is_cell) = if x.sign() == above.sign() {
@@ -158,7 +170,7 @@ impl Function {
             (interval, ends) = (fine.part(part), Some(signs));
             cells = if is_cell { (2 * cells).min(1 << 12) } else { (cells / 2).max(1) };
         }
-        Enclosure { lo: interval.point(&BigInt::zero()), hi: interval.point(&interval.width) }
+        Some(Enclosure { lo: interval.point(&BigInt::zero()), hi: interval.point(&interval.width) })
     }
 }
 

@@ -8,7 +8,8 @@ use super::locate::Walk;
 use super::mode::Proofs;
 use super::string::{Entry, HalfString};
 
-/// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it.
+/// An edge of a tongue: the `index`-th positive zero of an entry, in an interval that holds no other zero of it unless
+/// others are within the last place of a double.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
     pub entry: Entry,

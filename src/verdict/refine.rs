@@ -268,7 +268,8 @@ impl Nodes {
         }
         let changed = self.last.is_some() && self.last != sign;
         self.changes += u64::from(changed);
-        self.unknown |= self.uncertain > 1 || (self.uncertain == 1 && !changed);
+        // An orbit that begins at x = 0 has no sign there, and no change.
+        self.unknown |= self.uncertain > 1 || (self.uncertain == 1 && self.last.is_some() && !changed);
         self.uncertain = 0;
         self.last = sign;
     }
