@@ -177,8 +177,7 @@ impl Tongues {
         }
         let complete = |(edge, index): (Option<Edge>, usize)| match edge {
             Some(edge) if edge.is_narrow() => Ok(edge),
-            Some(edge) => self.by_more_bits(&Enclosure::from(&edge), entry, index),
-            None => self.by_more_bits(&self.isolated(entry, index)?, entry, index),
+            edge => self.by_more_bits(entry, index, edge),
         };
         found.into_iter().zip(first..).map(complete).collect()
     }
@@ -188,24 +187,20 @@ impl Tongues {
         self.string.dimension(entry)
     }
 
-    /// An edge that doubles could not certify, from an enclosure that holds no other.
-    fn by_more_bits(&mut self, start: &Enclosure, entry: Entry, index: usize) -> Result<Edge> {
-        self.effort.precise += 1;
-        let found = self.function(entry)?.shrink(start, &tenth_power(20), true);
-        let (lo, hi) = found.expect("it is isolated").to_f64();
+    /// An edge that doubles could not certify, or left wide.
+    fn by_more_bits(&mut self, entry: Entry, index: usize, wide: Option<Edge>) -> Result<Edge> {
+        const DIGITS: u32 = 20;
+        let found = match wide {
+            Some(edge) => self.refine(&edge, DIGITS)?,
+            None => {
+                let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
+                let bracket = self.string.bracket(entry, index);
+                let start = bracket.and_then(|(lo, hi)| Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? }));
+                self.digits_of((entry, index), start.as_ref(), DIGITS, |string| string.cluster(entry, index))?
+            }
+        };
+        let (lo, hi) = found.to_f64();
         Ok(Edge { entry, index: index as u32, lo, hi })
-    }
-
-    /// An enclosure of an edge that holds no other.
-    fn isolated(&self, entry: Entry, index: usize) -> Result<Enclosure> {
-        let function = self.function(entry)?;
-        let start = self.string.bracket(entry, index).and_then(|(lo, hi)| {
-            let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
-            Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? })
-        });
-        let start = start.filter(|start| function.changes_sign(start));
-        let cluster = || function.isolate(&self.string, index, self.string.cluster(entry, index));
-        Ok(start.unwrap_or_else(cluster))
     }
 
     /// The edge to `digits` significant digits: an interval narrower than 10^-digits of itself.
@@ -218,13 +213,25 @@ impl Tongues {
 
     /// The same from an enclosure that may hold more digits than the edge.
     pub(super) fn sharpened(&mut self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
+        let zero = (edge.entry, edge.index as usize);
+        self.digits_of(zero, Some(start), digits, |_| Some((edge.lo, edge.hi)))
+    }
+
+    /// The same from where there are no other zeros; else, others being so near that one double holds them too, or one on
+    /// the end, from proven counts `around` where doubles see it.
+    fn digits_of(
+        &mut self,
+        (entry, index): (Entry, usize),
+        start: Option<&Enclosure>,
+        digits: u32,
+        around: impl FnOnce(&HalfString) -> Option<(f64, f64)>,
+    ) -> Result<Enclosure> {
         self.effort.precise += 1;
-        let (function, relative) = (self.function(edge.entry)?, tenth_power(digits));
-        if let Some(found) = function.shrink(start, &relative, false) {
+        let (function, relative) = (self.function(entry)?, tenth_power(digits));
+        if let Some(found) = start.and_then(|start| function.shrink(start, &relative, false)) {
             return Ok(found);
         }
-        // Others so near that one double holds them too, or one on the enclosure's end.
-        let alone = function.isolate(&self.string, edge.index as usize, Some((edge.lo, edge.hi)));
+        let alone = function.isolate(&self.string, index, around(&self.string));
         Ok(function.shrink(&alone, &relative, true).expect("it is isolated"))
     }
 

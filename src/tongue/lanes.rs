@@ -1,6 +1,6 @@
 //! Numbers side by side: one for each eigenvalue that is being looked for.
 
-pub(super) use crate::vector::LANES;
+pub(super) use crate::vector::{LANES, each as lanes};
 
 /// One number for each lane.
 pub(super) type Lanes = [f64; LANES];
@@ -9,16 +9,6 @@ pub(super) type Lanes = [f64; LANES];
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Aligned<T>(pub T);
-
-/// f of each lane; a plain loop over an array is what compilers turn into vector instructions.
-#[inline(always)]
-pub(super) fn lanes(f: impl Fn(usize) -> f64) -> Lanes {
-    let mut all = [0.0; LANES];
-    for (i, lane) in all.iter_mut().enumerate() {
-        *lane = f(i);
-    }
-    all
-}
 
 /// The rounded sum and what rounding took from it, exactly (Knuth).
 #[inline(always)]
@@ -46,4 +36,23 @@ pub(super) fn range(x: &Lanes) -> (f64, f64) {
 #[inline(always)]
 pub(super) fn power_of_two(e: i64) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
+}
+
+/// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's straightened.
+#[inline(always)]
+pub(super) fn logarithm(x: f64) -> i64 {
+    (x.abs().to_bits() >> 20) as i64
+}
+
+/// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less than 2^120.
+const LONG: f64 = f64::from_bits((1023 + 200) << 52);
+
+/// The power of two that brings a length back into range, and by how many places.
+#[inline(always)]
+pub(super) fn rescaling(length: f64) -> (f64, i64) {
+    match length {
+        _ if length > LONG => (1.0 / LONG, 200),
+        _ if length < 1.0 / LONG => (LONG, -200),
+        _ => (1.0, 0),
+    }
 }

@@ -27,7 +27,7 @@
 //!
 //! with no difference of the edges in it. Slopes are in ln s throughout.
 
-use super::lanes::power_of_two;
+use super::lanes::{logarithm, power_of_two, rescaling};
 use super::string::{HalfString, KINDS, Step};
 use super::twofold::Twofold;
 use crate::vector::instructions::Task;
@@ -37,9 +37,6 @@ const LOSS: f64 = f64::from_bits((1023 - 101) << 52);
 
 /// Relative accuracy asked of E: twice what ln of the multiplier then has, which is fifteen digits.
 const ACCURACY: f64 = 4.0 * f64::EPSILON;
-
-/// Vectors are scaled down beyond this length and up below its reciprocal: 2^200.
-const LONG: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// A number times 2^exponent, with its slope, to within `uncertainty`, in the same scale.
 #[derive(Clone, Copy, Debug)]
@@ -157,8 +154,7 @@ struct Table {
 impl Table {
     #[inline(always)]
     fn new(string: &HalfString, s: Twofold) -> Table {
-        let longest = string.nodes.iter().fold(1.0, |most: f64, node| most.max(node.length));
-        let unit = (longest as u64).next_power_of_two() as f64;
+        let unit = string.unit();
         let kappa = s.over(string.ticks).scaled(unit);
         let mut kicks = [kappa; KINDS];
         for (kick, (&hi, &lo)) in kicks.iter_mut().zip(string.masses.iter().zip(&string.rests)) {
@@ -197,22 +193,6 @@ impl Table {
                 exponent += places << 32;
             }
         }
-    }
-}
-
-/// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's straightened.
-#[inline(always)]
-fn logarithm(x: f64) -> i64 {
-    (x.abs().to_bits() >> 20) as i64
-}
-
-/// The power of two that brings a length back into range, and by how many places.
-#[inline(always)]
-fn rescaling(length: f64) -> (f64, i64) {
-    match length {
-        _ if length > LONG => (1.0 / LONG, 200),
-        _ if length < 1.0 / LONG => (LONG, -200),
-        _ => (1.0, 0),
     }
 }
 

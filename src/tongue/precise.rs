@@ -115,17 +115,6 @@ impl Function {
         (Ball::from_integer(&self.exact_sign(s).to_i8().into()), None)
     }
 
-    /// Whether the entry has different signs at the two ends, neither of them zero.
-    pub fn changes_sign(&self, interval: &Enclosure) -> bool {
-        const BITS: u32 = 128;
-        let sign = |s: &Rational| self.value(s, BITS).0.sign();
-        interval.lo < interval.hi
-            && matches!(
-                (sign(&interval.lo), sign(&interval.hi)),
-                (Some(Sign::Negative), Some(Sign::Positive)) | (Some(Sign::Positive), Some(Sign::Negative))
-            )
-    }
-
     /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
     /// where that there is one is neither known nor told by the sign changes along the two ends' orbits.
     pub fn shrink(&self, start: &Enclosure, relative: &Rational, is_isolated: bool) -> Option<Enclosure> {

@@ -213,6 +213,16 @@ impl HalfString {
         self.masses[self.nodes[j].kind]
     }
 
+    /// Ticks in a unit of time: a power of two, at least as long as any spring.
+    pub fn unit(&self) -> f64 {
+        (self.longest() as u64).next_power_of_two() as f64
+    }
+
+    /// The longest spring, at least a tick.
+    fn longest(&self) -> f64 {
+        self.nodes.iter().fold(1.0, |most: f64, node| most.max(node.length))
+    }
+
     /// How many positive eigenvalues the problem has.
     pub fn dimension(&self, entry: Entry) -> usize {
         self.dimensions[entry as usize]
@@ -260,8 +270,7 @@ impl HalfString {
     /// lengths below 2^25, is within 1e±48.
     fn nodes_in_range(&self) -> usize {
         let heaviest = self.masses.iter().fold(0.0, |most: f64, &mass| most.max(mass));
-        let longest = self.nodes.iter().fold(0.0, |most: f64, node| most.max(node.length));
-        let growth = (1.0 + 2.0 * self.upper_bound * heaviest) * (1.0 + longest);
+        let growth = (1.0 + 2.0 * self.upper_bound * heaviest) * (1.0 + self.longest());
         ((RANGE / growth.log10()) as usize).max(1)
     }
 }

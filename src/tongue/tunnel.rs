@@ -32,6 +32,7 @@
 //!
 //! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
 
+use super::lanes::{logarithm, rescaling};
 use super::spectrum::Edge;
 use super::string::{HalfString, KINDS, Step};
 use crate::number::U;
@@ -42,9 +43,6 @@ const ROOT_TWO: f64 = 1.4143;
 /// No orbit is used where w + c of the module's theorem, or the relative error of x, exceeds this: below it
 /// |ln(1 ± t)| ≤ 1.03 t, and four such errors of the logarithm change a number by no more than 1.3 times their sum.
 const MOST: f64 = 0.05;
-
-/// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less than 2^120.
-const LONG: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// A term of Δ below this power of two of the other is only bounded.
 const FAINT: i64 = -400;
@@ -97,8 +95,7 @@ struct Tunnel {
 impl Tunnel {
     /// For s in [lo, hi].
     fn new(string: &HalfString, lo: f64, hi: f64) -> Self {
-        let longest = string.nodes.iter().fold(1.0, |most: f64, node| most.max(node.length));
-        let unit = (longest as u64).next_power_of_two() as f64;
+        let unit = string.unit();
         let kappa = 0.5 * (lo + hi) / string.ticks;
         // Rounded: the middle, the quotient, the mass (twice), the product.
         let uncertainty = (hi - lo) / lo + 8.0 * U;
@@ -175,10 +172,10 @@ impl Orbit {
 
     /// By a power of two, exactly.
     fn rescale(&mut self) {
-        if (1.0 / LONG..=LONG).contains(&self.length) {
+        let (factor, exponent) = rescaling(self.length);
+        if exponent == 0 {
             return;
         }
-        let (factor, exponent) = if self.length > LONG { (1.0 / LONG, 200) } else { (LONG, -200) };
         [&mut self.x, &mut self.v, &mut self.length].into_iter().for_each(|x| *x *= factor);
         [&mut self.squares, &mut self.strays, &mut self.across]
             .into_iter()
@@ -186,9 +183,9 @@ impl Orbit {
         self.exponent += exponent;
     }
 
-    /// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's straightened.
+    /// 2^32 log2 |x| up to a constant, to within 2^29.
     fn logarithm(&self) -> i64 {
-        (self.x.abs().to_bits() >> 20) as i64 + (self.exponent << 32)
+        logarithm(self.x) + (self.exponent << 32)
     }
 
     /// τ |v/x|: by how much of itself x may be off across the orbit.

@@ -11,6 +11,16 @@ mod registers;
 /// How many numbers a vector has.
 pub(crate) const LANES: usize = 16;
 
+/// f of each lane; a plain loop over an array is what compilers turn into vector instructions.
+#[inline(always)]
+pub(crate) fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
+    let mut all = [0.0; N];
+    for (i, lane) in all.iter_mut().enumerate() {
+        *lane = f(i);
+    }
+    all
+}
+
 /// One number for each lane. All instruction sets give the same bits.
 pub(crate) trait Vector: Copy {
     fn splat(x: f64) -> Self;

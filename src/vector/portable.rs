@@ -1,6 +1,6 @@
 //! Vectors as plain arrays.
 
-use super::{EXPONENTS, LANES, SIGN, Vector};
+use super::{EXPONENTS, LANES, SIGN, Vector, each};
 
 impl Vector for [f64; LANES] {
     #[inline(always)]
@@ -87,13 +87,4 @@ impl Vector for [f64; LANES] {
     fn normalizing(self) -> Self {
         each(|i| f64::from_bits(EXPONENTS.wrapping_sub((self[i].to_bits() & !SIGN) >> 52) << 52))
     }
-}
-
-#[inline(always)]
-fn each(f: impl Fn(usize) -> f64) -> [f64; LANES] {
-    let mut all = [0.0; LANES];
-    for (i, lane) in all.iter_mut().enumerate() {
-        *lane = f(i);
-    }
-    all
 }

@@ -7,10 +7,11 @@ use std::marker::PhantomData;
 
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Lanes, Orbits, Watch, each};
+use super::kernel::{Lanes, Orbits, Watch};
 use super::kind::PartialSigns;
 use super::winding;
 use crate::number::{Sign, U};
+use crate::vector::each;
 use crate::vector::instructions::{Instructions, Task};
 
 /// Where the even and the odd solution stand at T/2, with proven bounds.

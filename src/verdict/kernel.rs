@@ -15,6 +15,7 @@
 //! far; the certificate of [`super::filter`] needs no more.
 
 use super::floquet::Pair;
+use crate::vector::each;
 
 /// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
@@ -79,15 +80,6 @@ pub(crate) trait Watch {
     const WIND: bool;
     /// Keep the sums that the certificate needs.
     const CERTIFY: bool = true;
-}
-
-#[inline(always)]
-pub(super) fn each<const L: usize>(f: impl Fn(usize) -> f64) -> [f64; L] {
-    let mut lanes = [0.0; L];
-    for (i, lane) in lanes.iter_mut().enumerate() {
-        *lane = f(i);
-    }
-    lanes
 }
 
 impl<const L: usize> Orbits<L> {

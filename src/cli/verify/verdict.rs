@@ -43,13 +43,13 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
             Some(rational) => {
                 let full = full_period(&rational);
                 same(full.kind, full.side)?;
-                exact_trace(row, Some(&full.trace))?;
+                exact_trace(row, || Some(full.trace.clone()))?;
                 numbers(row, &full.trace.enclosure(BITS), ln_of(&full), &oscillator)?;
             }
             None => {
                 let full = full_period(&clocks);
                 same(full.kind, full.side)?;
-                exact_trace(row, None)?;
+                exact_trace(row, || None)?;
                 numbers(row, &full.trace.enclosure(BITS), ln_of(&full), &oscillator)?;
             }
         }
@@ -64,9 +64,7 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
         None => growth(&clocks, verdict, limits)?,
     };
     numbers(row, &growth.trace, growth.ln_multiplier, &oscillator)?;
-    if row.object("trace")?.get("exact").is_some() {
-        exact_trace(row, rational.as_ref().map(crate::verdict::exact_trace).as_ref())?;
-    }
+    exact_trace(row, || rational.as_ref().map(crate::verdict::exact_trace))?;
     label(row, &clocks, limits)
 }
 
@@ -77,14 +75,14 @@ fn ln_of<S: Real>(full: &FullPeriod<S>) -> Option<Ball> {
     (full.kind == Kind::Hyperbolic).then(|| ln_multiplier(&full.trace, BITS).expect("|Tr| > 2"))
 }
 
-/// The exact trace, where it is told.
-fn exact_trace(row: &Row, truth: Option<&Rational>) -> Checked<()> {
+/// The exact trace, found out only where it is told.
+fn exact_trace(row: &Row, truth: impl FnOnce() -> Option<Rational>) -> Checked<()> {
     let trace = row.object("trace")?;
     if trace.get("exact").is_none() {
         return Ok(());
     }
     let told = trace.rational("exact")?;
-    holds(Some(&told) == truth, || "the trace is not what it is told to be exactly".into())
+    holds(Some(told) == truth(), || "the trace is not what it is told to be exactly".into())
 }
 
 /// The trace and the growth rate lie in their enclosures.
