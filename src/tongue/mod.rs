@@ -5,10 +5,13 @@
 //! `string` module). So nothing is searched on a grid:
 //!
 //! ```text
-//!     Sturm counts -> brackets -> Rayleigh quotients -> edges -> tongues -> rows, survey
-//!       (sturm)      (isolate)    (locate, half, mode) (spectrum) (gaps, order)  closings
-//!                                       more bits: precise      thinner than doubles tell: tunnel
-//!                                                               open or closed: modular, elimination
+//!     counts -> brackets -> modes, Rayleigh quotients -> edges -> tongues -> rows, survey, closings
+//!
+//!     counts, brackets     sturm, isolate
+//!     modes                locate, half, mode, side by side in a batch
+//!     edges                spectrum; by more bits: precise, exact_count
+//!     tongues              gaps, order; thinner than doubles tell: tunnel; open or closed: modular, elimination
+//!     largest growth       peak, meet
 //! ```
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
