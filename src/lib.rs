@@ -56,7 +56,7 @@
 //!
 //! | floor | module | what is there |
 //! |---|---|---|
-//! | – | [`error`] | one error with a kind |
+//! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`propagator`] | clocks, schedule, kick, drift, full and half period, the methods |
@@ -76,6 +76,7 @@
 pub mod avi;
 pub mod cli;
 pub mod error;
+pub mod format;
 pub mod map;
 pub mod number;
 pub mod propagator;

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floor of each module; `error` may be used by all.
-const FLOORS: [(&str, u32); 12] = [
+const FLOORS: [(&str, u32); 13] = [
+    ("format", 0),
     ("vector", 0),
     ("number", 0),
     ("propagator", 1),

@@ -3,8 +3,9 @@
 use num_integer::Integer;
 use rayon::prelude::*;
 
-use super::args::{self, Common, Format, echo_grid, whole};
+use super::args::{self, Common, echo_grid, whole};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::Grid;
 use crate::number::Rational;
 use crate::number::parse::{parse, parse_rational};
