@@ -409,18 +409,23 @@ fn the_peak_of_a_tongue_thinner_than_any_double_is_told() {
 }
 
 #[test]
-fn first_order_widths_become_exact_as_rho_vanishes() {
-    for (p, q, m) in [(7, 1, 2), (7, 3, 3), (23, 10, 5)] {
+fn first_order_widths_and_growth_become_exact_as_rho_vanishes() {
+    let wanted = Wanted { first_order: true, growth: true, ..Wanted::default() };
+    let mut seen = 0;
+    for (p, q) in [(7, 1), (7, 2), (7, 3), (23, 10), (19, 8), (16, 9)] {
         let mut tongues = tongues(p, q, &ratio(1, 1_000_000));
-        let gap = tongues.gap(m).unwrap();
-        let law = tongues
-            .row(&gap, &Wanted { first_order: true, ..Wanted::default() })
-            .unwrap()
-            .first_order
-            .unwrap();
-        // The law's relative error is of order rho times the period's length.
-        assert!((law.width_ratio - 1.0).abs() < 1e-3, "{p}/{q}, {m}: {law:?}");
+        for m in 1..p {
+            let gap = tongues.gap(m).unwrap();
+            let row = tongues.row(&gap, &wanted).unwrap();
+            let (law, peak) = (row.first_order.unwrap(), row.peak.unwrap());
+            let growth_ratio = peak.ln_multiplier / law.law.ln_multiplier;
+            // The law's relative error is of order rho times the period's length.
+            assert!((law.width_ratio - 1.0).abs() < 1e-3, "{p}/{q}, {m}: {law:?}");
+            assert!((growth_ratio - 1.0).abs() < 1e-3, "{p}/{q}, {m}: {growth_ratio}");
+            seen += 1;
+        }
     }
+    assert_eq!(seen, 73);
 }
 
 fn found(p: u64, q: u64) -> Vec<Closing> {
