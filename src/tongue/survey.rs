@@ -14,10 +14,8 @@ use std::collections::BTreeMap;
 use num_integer::Integer;
 use rayon::prelude::*;
 
-use super::gaps::Tongues;
-use super::order::Gap;
-use super::row::{Row, Wanted};
-use super::select::Selection;
+use super::row::{Row, Side, Wanted};
+use super::tongues::Tongues;
 use crate::error::Result;
 use crate::number::Rational;
 
@@ -70,17 +68,6 @@ pub struct Spread {
     pub largest: f64,
 }
 
-impl Tongues {
-    /// The tongues whose lower edge lies below s = `limit`.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn below(&mut self, limit: f64) -> Result<Vec<Gap>> {
-        let window = Selection { s: Some((0.0, limit)), ..Selection::default() };
-        Ok(self.select(&window)?.into_iter().filter(|gap| gap.lower.lo < limit).collect())
-    }
-}
-
 /// All coprime (p, q) with p + q ≤ N, by sum, then p.
 pub fn ratios(max_sum: u64) -> Vec<(u64, u64)> {
     (2..=max_sum).flat_map(|sum| (1..sum).map(move |p| (p, sum - p)).filter(|(p, q)| p.gcd(q) == 1)).collect()
@@ -94,8 +81,8 @@ pub fn ratios(max_sum: u64) -> Vec<(u64, u64)> {
 pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
     let wanted = Wanted { family: true, predicted: true, first_order: true, ..Wanted::default() };
     let one = |(p, q): (u64, u64)| -> Result<(Vec<Row>, (u64, u64))> {
-        let mut tongues = Tongues::new(p, q, rho)?;
-        let gaps = tongues.below(4.0)?;
+        let tongues = Tongues::new(p, q, rho)?;
+        let gaps = tongues.below(4)?;
         let rows = gaps.iter().map(|gap| tongues.row(gap, &wanted)).collect::<Result<_>>()?;
         let effort = tongues.effort();
         Ok((rows, (effort.doubles, effort.precise)))
@@ -139,7 +126,6 @@ impl Survey {
     }
 
     fn count(&mut self, row: &Row) {
-        use super::row::Side;
         let (p, q, gap) = (row.p, row.q, &row.gap);
         self.tongues += 1;
         if gap.closed {

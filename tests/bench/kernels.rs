@@ -23,7 +23,7 @@ const KERNELS: [(&str, fn()); 7] = [
     ("map", || map(Products::default())),
     ("map-growth", || map(Products { label: true, growth: true })),
     ("tongues", || {
-        Tongues::new(61, 39, &ratio(1, 25)).and_then(|mut tongues| tongues.all()).expect("a ratio");
+        Tongues::new(61, 39, &ratio(1, 25)).and_then(|tongues| tongues.all()).expect("a ratio");
     }),
 ];
 
