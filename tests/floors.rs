@@ -4,9 +4,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floor of each module; `error` may be used by all.
-const FLOORS: [(&str, u32); 12] = [
+const FLOORS: [(&str, u32); 13] = [
     ("vector", 0),
     ("number", 0),
+    ("parallel", 0),
     ("propagator", 1),
     ("verdict", 2),
     ("resonance", 3),

@@ -1,7 +1,7 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
+use crate::parallel::*;
 use num_integer::Integer;
-use rayon::prelude::*;
 
 use super::args::{self, Common, Format, echo_grid, whole};
 use crate::error::{Error, Result};

@@ -11,8 +11,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::parallel::*;
 use num_integer::Integer;
-use rayon::prelude::*;
 
 use super::gaps::Tongues;
 use super::order::Gap;
