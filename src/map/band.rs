@@ -217,11 +217,8 @@ impl<'a> Work<'a> {
         if kicks <= self.limits.kicks {
             return Ok(());
         }
-        Err(Error::budget(format!(
-            "a pair of the map composes {kicks} kicks, the budget is {}: allow it with --budget {kicks}, or choose \
-             steps with a simpler ratio",
-            self.limits.kicks
-        )))
+        let cost = format!("a pair of the map composes {kicks} kicks, the budget is {}", self.limits.kicks);
+        Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
     }
 
     pub(super) fn grid(&self) -> &Grid {

@@ -71,7 +71,10 @@ impl Shard {
 }
 
 fn pool(threads: usize) -> Result<ThreadPool> {
-    ThreadPoolBuilder::new().num_threads(threads).build().map_err(|cause| Error::io("threads", cause))
+    ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .map_err(|cause| Error::io("threads", &cause).caused_by(cause))
 }
 
 /// A few bands at a time on all threads, handed on in order.

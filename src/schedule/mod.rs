@@ -195,7 +195,7 @@ impl Iterator for Events<'_> {
 }
 
 fn too_long() -> Error {
-    Error::budget("the synchronization period exceeds 2^62 ticks: choose steps with a simpler ratio")
+    Error::too_much("the synchronization period exceeds 2^62 ticks", "choose steps with a simpler ratio")
 }
 
 /// The largest g ≥ 0 of which both a and b are integer multiples: gcd of rationals.

@@ -31,10 +31,10 @@ pub(super) fn check_length(schedule: &Schedule) -> Result<()> {
     if kicks <= MOST_KICKS {
         return Ok(());
     }
-    Err(Error::budget(format!(
-        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS}): \
-         choose steps with simpler ratios"
-    )))
+    let cost = format!(
+        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS})"
+    );
+    Err(Error::too_much(cost, "choose steps with simpler ratios"))
 }
 
 /// The coefficients of one row: (column, value) pairs.

@@ -72,13 +72,11 @@ impl Limits {
             Tier::Exact => "work as long as for",
             _ => "compose",
         };
-        Err(Error::budget(format!(
-            "the {} tier would {work} {kicks} kicks, on the order of {} s; the budget is {}: allow it with \
-             --budget {kicks}, or choose steps with a simpler ratio",
-            tier.name(),
-            seconds.max(1),
-            self.kicks
-        )))
+        let (tier, seconds, limit) = (tier.name(), seconds.max(1), self.kicks);
+        let cost = format!(
+            "the {tier} tier would {work} {kicks} kicks, on the order of {seconds} s; the budget is {limit}"
+        );
+        Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
     }
 }
 
