@@ -24,7 +24,8 @@ impl Pool {
     /// An I/O error where the system does not give them.
     pub(crate) fn new(threads: usize) -> Result<Pool> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        Ok(Pool { threads: pool.map_err(|cause| crate::error::Error::io("threads", cause))? })
+        let refused = |cause| crate::error::Error::io("threads", &cause).caused_by(cause);
+        Ok(Pool { threads: pool.map_err(refused)? })
     }
 
     /// Runs `work`, whose parallel iterators then use these threads.

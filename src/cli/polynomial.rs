@@ -37,8 +37,7 @@ pub fn check(p: u64, q: u64, budget: Option<u64>) -> Result<()> {
     if kicks <= most {
         return Ok(());
     }
-    Err(Error::budget(format!(
-        "polynomials of {p}/{q} have about {} terms each: allow them with --budget {kicks}, or choose p + q <= {most}",
-        u128::from(p) * u128::from(q) / 4 + 1
-    )))
+    let terms = u128::from(p) * u128::from(q) / 4 + 1;
+    let cost = format!("polynomials of {p}/{q} have about {terms} terms each");
+    Err(Error::budget(cost, kicks).or(format!("choose p + q <= {most}")))
 }

@@ -7,9 +7,9 @@ use super::gcd;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
+use crate::orbit::filter::{self, Group};
+use crate::orbit::floquet::{Base, Pair};
 use crate::vector::instructions::Instructions;
-use crate::verdict::filter::{self, Group};
-use crate::verdict::floquet::{Base, Pair};
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
 
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.
@@ -217,11 +217,8 @@ impl<'a> Work<'a> {
         if kicks <= self.limits.kicks {
             return Ok(());
         }
-        Err(Error::budget(format!(
-            "a pair of the map composes {kicks} kicks, the budget is {}: allow it with --budget {kicks}, or choose \
-             steps with a simpler ratio",
-            self.limits.kicks
-        )))
+        let cost = format!("a pair of the map composes {kicks} kicks, the budget is {}", self.limits.kicks);
+        Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
     }
 
     pub(super) fn grid(&self) -> &Grid {

@@ -128,9 +128,8 @@ fn positive(field: &str, x: &Laurent, remedy: &str) -> Result<()> {
 fn multiples(field: &str, step: &Laurent, (lo, hi): (Laurent, Laurent)) -> Result<(u64, u64)> {
     let range = format!("{lo}..{hi}");
     let too_many = || {
-        Error::budget(format!(
-            "{field} = {range} holds 2^26 multiples of {step} and more: choose a larger step"
-        ))
+        let count = format!("{field} = {range} holds 2^26 multiples of {step} and more");
+        Error::too_much(count, "choose a larger step")
     };
     let last = floor(&hi, step).ok_or_else(too_many)?;
     // The first n with n step ≥ lo is one more than the last with n step < lo.

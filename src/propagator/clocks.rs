@@ -163,9 +163,9 @@ fn terms(ratio: &Rational) -> Result<(u64, u64)> {
     let small = |n: &num_bigint::BigInt| n.to_u64().filter(|&n| n < 1 << 62);
     match (small(ratio.numer()), small(ratio.denom())) {
         (Some(p), Some(q)) => Ok((p, q)),
-        _ => Err(Error::budget(
-            "h2/h1 = p/q has more than 18 digits in p or q, so one period holds more kicks than any machine \
-             composes: choose steps with a simpler ratio",
+        _ => Err(Error::too_much(
+            "h2/h1 = p/q has more than 18 digits in p or q, so one period holds more kicks than any machine composes",
+            "choose steps with a simpler ratio",
         )),
     }
 }

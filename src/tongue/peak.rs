@@ -112,7 +112,7 @@ impl Tongues {
         let ln = growth(&clocks, *verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
         ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
             let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
-            Error::budget(format!("{cost} needs more digits than are tried: choose a simpler ratio"))
+            Error::too_much(format!("{cost} needs more digits than are tried"), "choose a simpler ratio")
         })
     }
 }

@@ -22,7 +22,7 @@ use super::isolate::Wanted;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::propagator::Schedule;
+use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 
 /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
@@ -165,9 +165,8 @@ impl HalfString {
             return Err(Error::input("rho", rho, "rho p/q must lie between 1e-16 and 1e16"));
         }
         if p.saturating_add(q) > MOST_KICKS {
-            let cost =
-                format!("{p}/{q} has more than {MOST_KICKS} kicks in a period: choose a simpler ratio");
-            return Err(Error::budget(cost));
+            let cost = format!("{p}/{q} has more than {MOST_KICKS} kicks in a period");
+            return Err(Error::too_much(cost, "choose a simpler ratio"));
         }
         let (nodes, ticks, last) = nodes(p, q, rho.is_zero())?;
         Ok(HalfString::with_nodes(nodes, ticks, mass, last))

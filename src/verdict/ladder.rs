@@ -1,15 +1,14 @@
 //! filter → refine → exact.
 
 use super::exact::Decidable;
-use super::filter;
-use super::floquet::Floquet;
 use super::kind::Verdict;
 use super::lone;
-use super::plain;
-use super::refine;
 use crate::error::{Error, Result};
 use crate::number::Real;
-use crate::propagator::{Schedule, TwoClocks};
+use crate::orbit::floquet::Floquet;
+use crate::orbit::{filter, plain, refine};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -73,13 +72,11 @@ impl Limits {
             Tier::Exact => "work as long as for",
             _ => "compose",
         };
-        Err(Error::budget(format!(
-            "the {} tier would {work} {kicks} kicks, on the order of {} s; the budget is {}: allow it with \
-             --budget {kicks}, or choose steps with a simpler ratio",
-            tier.name(),
-            seconds.max(1),
-            self.kicks
-        )))
+        let (tier, seconds, limit) = (tier.name(), seconds.max(1), self.kicks);
+        let cost = format!(
+            "the {tier} tier would {work} {kicks} kicks, on the order of {seconds} s; the budget is {limit}"
+        );
+        Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
     }
 }
 

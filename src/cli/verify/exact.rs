@@ -19,9 +19,8 @@ pub fn check_ratio(p: u64, q: u64, limits: &Limits) -> Checked<()> {
     if kicks <= limits.kicks && cost <= limits.kicks {
         return Ok(());
     }
-    let told =
-        format!("exact signs at {p}/{q} cost as much as {cost} kicks: allow them with --budget {cost}");
-    Err(Fault::Error(Error::budget(told)))
+    let work = format!("exact signs at {p}/{q} cost as much as {cost} kicks");
+    Err(Fault::Error(Error::budget(work, cost)))
 }
 
 /// The signs of A, B, C, D at s.

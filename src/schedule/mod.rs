@@ -5,7 +5,7 @@
 //! is a palindrome over the period (theorem `two_clocks_palindrome` in proofs/).
 //!
 //! ```
-//! use kickdrift::propagator::{Schedule, Weight};
+//! use kickdrift::schedule::{Schedule, Weight};
 //! // h2/h1 = 3/2: one tick is h1/2 = h2/3, so the steps are 2 and 3 ticks and the period is 6.
 //! let schedule = Schedule::two_clocks(3, 2).unwrap();
 //! let events: Vec<_> = schedule.half_period().map(|e| (e.drift, e.kicks, e.weight)).collect();
@@ -195,7 +195,7 @@ impl Iterator for Events<'_> {
 }
 
 fn too_long() -> Error {
-    Error::budget("the synchronization period exceeds 2^62 ticks: choose steps with a simpler ratio")
+    Error::too_much("the synchronization period exceeds 2^62 ticks", "choose steps with a simpler ratio")
 }
 
 /// The largest g ≥ 0 of which both a and b are integer multiples: gcd of rationals.
