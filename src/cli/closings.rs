@@ -1,6 +1,6 @@
 //! `kickdrift closings`: where tongues close.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::args::{Common, Format, shown_range, whole};
 use super::map::Target;

@@ -1,6 +1,6 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::args::{self, Common, Format, echo_grid, whole};
 use crate::error::{Error, Result};

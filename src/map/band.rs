@@ -7,9 +7,9 @@ use super::gcd;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
+use crate::orbit::filter::{self, Group};
+use crate::orbit::floquet::{Base, Pair};
 use crate::vector::instructions::Instructions;
-use crate::verdict::filter::{self, Group};
-use crate::verdict::floquet::{Base, Pair};
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
 
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.

@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 
 use super::grid::Grid;
 use crate::number::{Ball, Laurent, Real, Ring};
-use crate::verdict::floquet::{Base, Pair, ordinary};
+use crate::orbit::floquet::{Base, Pair, ordinary};
 
 /// Bits of what all bases share.
 const BITS: u32 = 256;

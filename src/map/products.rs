@@ -3,10 +3,10 @@
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
 use crate::number::Ratio;
+use crate::orbit::filter::{Ends, Group};
 use crate::resonance::dominant_family;
 use crate::vector::instructions::Instructions;
-use crate::verdict::filter::{Ends, Group};
-use crate::verdict::{Kind, Tier, Verdict, growth, winding};
+use crate::verdict::{Kind, Tier, Verdict, growth, label};
 
 /// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -87,7 +87,7 @@ impl Work<'_> {
 }
 
 fn quick(n: usize, ends: &Ends, verdict: Verdict, products: Products) -> Growing {
-    let label = if products.label { winding::label(ends, verdict) } else { None };
+    let label = if products.label { label(ends, verdict) } else { None };
     let ln_multiplier = products.growth.then(|| ln_multiplier(ends, verdict));
     Growing { position: n as u32, label, ln_multiplier }
 }

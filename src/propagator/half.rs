@@ -15,9 +15,9 @@ use num_integer::Integer;
 
 use super::TwoClocks;
 use super::elementary::{apply_drift, apply_kick};
-use super::schedule::{Event, Schedule, Weight};
 use crate::error::Result;
 use crate::number::{Rational, Ring};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// H = \[\[A, B\], \[C, D\]\], the propagator over the first half of the time-symmetric period.
 #[derive(Clone, Debug, PartialEq)]

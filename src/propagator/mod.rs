@@ -1,4 +1,4 @@
-//! The algebra: kicks and drifts, the schedule of the clocks, full- and half-period propagators.
+//! The algebra: kicks and drifts, full- and half-period propagators.
 //!
 //! The state is the column (x, v). A kick of strength k and a drift of length t are
 //!
@@ -26,9 +26,9 @@ mod clocks;
 mod elementary;
 mod half;
 pub mod methods;
-mod schedule;
+mod signs;
 
 pub use clocks::{Oscillator, TwoClocks};
 pub use elementary::{apply_drift, apply_kick, drift, kick};
 pub use half::{HalfPeriod, full_period, half_period};
-pub use schedule::{Clock, Event, Schedule, Weight};
+pub use signs::{HalfSigns, PartialSigns};

@@ -19,6 +19,7 @@
 
 mod document;
 mod grid;
+#[cfg(feature = "system")]
 mod system;
 mod want;
 
@@ -29,6 +30,7 @@ use crate::number::{Laurent, Ratio, Rational};
 
 pub use document::Document;
 pub use grid::GridRange;
+#[cfg(feature = "system")]
 pub use system::{Axis, Scan, SystemScene};
 pub use want::{Format, Product, Want};
 

@@ -23,7 +23,8 @@ use num_traits::{One, Zero};
 
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Ratio, Rational, Ring, Sign};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight, apply_drift, apply_kick};
+use crate::propagator::{TwoClocks, apply_drift, apply_kick};
+use crate::schedule::{Event, Schedule, Weight};
 use crate::verdict::{HalfSigns, Kind};
 
 /// K clocks on one oscillator, without dimension: the unit of time is h_1.

@@ -9,8 +9,8 @@ use num_traits::{Signed, Zero};
 use super::precise::{Enclosure, Function};
 use super::string::{Entry, HalfString};
 use crate::number::{Rational, rational};
-use crate::propagator::{Event, Weight};
-use crate::verdict::refine::{self, End};
+use crate::orbit::refine::{self, End};
+use crate::schedule::{Event, Weight};
 
 /// Bits to begin with, and beyond which counting is left to exact integers.
 const BITS: RangeInclusive<u32> = 128..=1 << 13;

@@ -3,7 +3,7 @@
 use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational};
-use crate::propagator::{Schedule, Weight};
+use crate::schedule::{Schedule, Weight};
 
 /// A function's value, its derivative in s and in ρ.
 #[derive(Clone, Debug)]

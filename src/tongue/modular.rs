@@ -12,7 +12,7 @@ use num_traits::{ToPrimitive, Zero};
 use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
-use crate::propagator::{Schedule, Weight};
+use crate::schedule::{Schedule, Weight};
 
 /// 2^61 − 1, a Mersenne prime.
 const PRIME: u64 = (1 << 61) - 1;

@@ -17,8 +17,10 @@ use super::spectrum::Edge;
 use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational, Sign, rational};
-use crate::propagator::{Schedule, TwoClocks};
-use crate::verdict::{Decidable, refine};
+use crate::orbit::refine;
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
+use crate::verdict::Decidable;
 
 /// An interval with rational ends that holds exactly one zero of an entry; a point where that is known.
 #[derive(Clone, Debug, PartialEq)]

@@ -22,7 +22,7 @@ use super::isolate::Wanted;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
-use crate::propagator::Schedule;
+use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 
 /// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.

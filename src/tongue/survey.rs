@@ -11,7 +11,7 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::gaps::Tongues;
 use super::order::Gap;

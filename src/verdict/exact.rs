@@ -18,10 +18,10 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use super::kind::HalfSigns;
-use super::residue;
-use crate::number::{Cyclotomic, ExactSign, Laurent, Rational, Real, Sign};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight, half_period};
+use crate::number::{Cyclotomic, Laurent, Rational, Real, Sign};
+use crate::orbit::residue;
+use crate::propagator::{HalfSigns, TwoClocks, half_period};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Exact real numbers over which the four signs of the half period are decided.
 pub trait Decidable: Real {
@@ -30,8 +30,7 @@ pub trait Decidable: Real {
     /// # Panics
     /// Where the period has 2^62 ticks and more.
     fn half_signs(clocks: &TwoClocks<Self>) -> HalfSigns {
-        let half = half_period(clocks);
-        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+        half_period(clocks).signs()
     }
 
     /// What [`Decidable::half_signs`] costs for a half period of so many kicks, in kicks of the refine tier (about
@@ -53,8 +52,7 @@ impl Decidable for Laurent {
         if let Some(rational) = clocks.as_rational() {
             return Decidable::half_signs(&rational);
         }
-        let half = half_period(clocks);
-        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+        half_period(clocks).signs()
     }
 
     /// As for the rationals where both strengths are rational.
@@ -218,8 +216,7 @@ mod tests {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
             let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, d), ratio(slow, 2 * d + 1));
             let half = half_period(&clocks);
-            let plain = HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign());
-            prop_assert_eq!(Decidable::half_signs(&clocks), plain);
+            prop_assert_eq!(Decidable::half_signs(&clocks), half.signs());
             let trace = exact_trace(&clocks);
             prop_assert_eq!(trace.denom().gcd(trace.numer()), BigInt::one());
             prop_assert_eq!(trace, half.trace());

@@ -1,15 +1,14 @@
 //! filter → refine → exact.
 
 use super::exact::Decidable;
-use super::filter;
-use super::floquet::Floquet;
 use super::kind::Verdict;
 use super::lone;
-use super::plain;
-use super::refine;
 use crate::error::{Error, Result};
 use crate::number::Real;
-use crate::propagator::{Schedule, TwoClocks};
+use crate::orbit::floquet::Floquet;
+use crate::orbit::{filter, plain, refine};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -4,9 +4,9 @@
 //! ±I where nθ is a multiple of π, which is left to the exact tier. For s < 0 and s > 4, θ or θ − π is imaginary:
 //! Tr Q = 2 cosh or (−1)^n 2 cosh.
 
-use super::floquet::turn_signs;
 use super::kind::{Kind, Verdict};
 use crate::number::{Ball, Real, Sign};
+use crate::orbit::floquet::turn_signs;
 use crate::propagator::TwoClocks;
 
 /// Bits of s.

@@ -1,7 +1,7 @@
 //! Which tongues are asked for, and what of them.
 
+use crate::parallel::*;
 use indicatif::ProgressBar;
-use rayon::prelude::*;
 
 use crate::cli::args::{Common, shown_range};
 use crate::cli::progress::progress;

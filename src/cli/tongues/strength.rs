@@ -1,7 +1,7 @@
 //! The figure of measured widths against the first-order law.
 
+use crate::parallel::*;
 use num_traits::{ToPrimitive, Zero};
-use rayon::prelude::*;
 
 use super::Stiffness;
 use super::atlas::share_of_pi;

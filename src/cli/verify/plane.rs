@@ -1,6 +1,6 @@
 //! Maps and comparisons over a grid: pair by pair, kick by kick.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use serde_json::Value;
 
 use super::exact::{affordable, check_ratio, full_period, meets};

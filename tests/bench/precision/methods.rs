@@ -2,7 +2,8 @@
 
 use kickdrift::number::rational::{from_f64_exact, to_f64};
 use kickdrift::number::{Ball, Rational};
-use kickdrift::propagator::{Event, Schedule, TwoClocks, Weight};
+use kickdrift::propagator::TwoClocks;
+use kickdrift::schedule::{Event, Schedule, Weight};
 use kickdrift::verdict::{Limits, decide, exact_trace, filter_trace, growth};
 
 /// A way to compute Tr Q.

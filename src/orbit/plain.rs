@@ -14,9 +14,9 @@
 
 use super::bound::StepBound;
 use super::floquet::ordinary;
-use super::kind::PartialSigns;
 use crate::number::{Ball, Real, Sign, U};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight};
+use crate::propagator::{PartialSigns, TwoClocks};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Bits of the strengths.
 const BITS: u32 = 128;
@@ -29,7 +29,7 @@ const SHRINK: f64 = 1.0 / (1u128 << 127) as f64;
 
 /// The signs of A, B, C, D as far as doubles tell; `None` where the theorem's conditions cannot be met, or a strength
 /// is no comfortable double.
-pub(super) fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<PartialSigns> {
+pub fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<PartialSigns> {
     let steps = Steps::new(clocks, schedule)?;
     let end = |x: f64, y: f64| {
         let mut orbit = Orbit { steps: &steps, x, y, square: x * x + y * y, angle: 0.0, worst: 0.0 };
@@ -133,7 +133,7 @@ mod tests {
     use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
-    use crate::verdict::Decidable;
+    use crate::propagator::half_period;
     use num_integer::Integer;
     use proptest::prelude::*;
 
@@ -149,7 +149,7 @@ mod tests {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
             let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000));
             if let Some(verdict) = signs_of(&clocks).and_then(|signs| signs.verdict()) {
-                prop_assert_eq!(verdict, Decidable::half_signs(&clocks).verdict());
+                prop_assert_eq!(verdict, half_period(&clocks).signs().verdict());
             }
         }
 
@@ -172,7 +172,7 @@ mod tests {
                 ratio(9, 1) * ratio(q as i64, p as i64),
             );
             let verdict = signs_of(&clocks).and_then(|signs| signs.verdict());
-            assert_eq!(verdict, Some(Decidable::half_signs(&clocks).verdict()), "{p}/{q}");
+            assert_eq!(verdict, Some(half_period(&clocks).signs().verdict()), "{p}/{q}");
         }
     }
 }

@@ -5,7 +5,7 @@
 //! is a palindrome over the period (theorem `two_clocks_palindrome` in proofs/).
 //!
 //! ```
-//! use kickdrift::propagator::{Schedule, Weight};
+//! use kickdrift::schedule::{Schedule, Weight};
 //! // h2/h1 = 3/2: one tick is h1/2 = h2/3, so the steps are 2 and 3 ticks and the period is 6.
 //! let schedule = Schedule::two_clocks("3/2".parse().unwrap()).unwrap();
 //! let events: Vec<_> = schedule.half_period().map(|e| (e.drift, e.kicks, e.weight)).collect();

@@ -9,7 +9,8 @@ use num_integer::Integer;
 use num_traits::ToPrimitive;
 
 use crate::number::{Laurent, Rational};
-use crate::propagator::{Schedule, TwoClocks, Weight};
+use crate::propagator::TwoClocks;
+use crate::schedule::{Schedule, Weight};
 
 /// 2^61 − 1, a prime.
 const P: u64 = (1 << 61) - 1;
@@ -18,7 +19,7 @@ const P: u64 = (1 << 61) - 1;
 const G: u64 = 0x0123_4567_89ab_cdef;
 
 /// Whether none of A, B, C, D is zero, as far as residues show.
-pub(super) fn nonzero_entries(clocks: &TwoClocks<Laurent>) -> bool {
+pub fn nonzero_entries(clocks: &TwoClocks<Laurent>) -> bool {
     entries(clocks).is_some_and(|entries| entries.into_iter().flatten().all(|entry| entry != 0))
 }
 
