@@ -1,79 +1,158 @@
-//! One error for the whole crate, with a kind that decides what a caller can do about it.
+//! One error for the whole crate: its kind decides what a caller can do about it, its parts say what to do.
 //!
 //! ```
 //! use kickdrift::error::{Error, Kind};
 //! let error = Error::input("h1", "0", "a step must be positive");
-//! assert_eq!(error.kind(), Kind::Input);
+//! assert_eq!((error.kind(), error.field(), error.value()), (Kind::Input, "h1", Some("0")));
 //! assert_eq!(error.to_string(), "h1 = 0: a step must be positive");
+//!
+//! let error = Error::budget("composing 2000 kicks", 2000).or("choose steps with a simpler ratio");
+//! assert_eq!((error.kind(), error.needed()), (Kind::Budget, Some(2000)));
+//! assert_eq!(error.to_string(), "composing 2000 kicks: allow 2000, or choose steps with a simpler ratio");
 //! ```
 
 use std::fmt;
+use std::sync::Arc;
 
 /// What went wrong, as far as the caller's next move is concerned.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Kind {
-    /// The input is not meaningful; the message names field, value and remedy.
+    /// The input is not meaningful: [`Error::field`], [`Error::value`] and [`Error::remedy`] say what to change.
     Input,
     /// A file or stream could not be read or written.
     Io,
-    /// The work exceeds the stated budget; the message tells the cost and the flag that allows it.
+    /// The work exceeds the stated limit; [`Error::needed`] is the limit that allows it, where one does.
     Budget,
 }
 
-/// An error of any floor: a [`Kind`] and one line for a person.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Error {
+/// An error of any floor: a [`Kind`], what it is about, what was given and what to do instead.
+///
+/// `Display` is one line, `field = value: remedy`, in which long texts are cut in the middle; the parts are whole.
+#[derive(Clone, Debug)]
+pub struct Error(Box<Parts>);
+
+#[derive(Clone, Debug)]
+struct Parts {
     kind: Kind,
-    message: String,
+    /// The field, the path or the work.
+    field: String,
+    value: Option<String>,
+    remedy: String,
+    needed: Option<u64>,
+    source: Option<Source>,
 }
+
+type Source = Arc<dyn std::error::Error + Send + Sync>;
 
 /// The crate's result type.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// The longest value that a message quotes; longer ones are cut in the middle.
-const QUOTED: usize = 60;
+/// The longest value that `Display` quotes, in characters.
+const LONGEST_VALUE: usize = 60;
 
-/// The longest path, cause or remedy, which may quote the user too.
-const TOLD: usize = 400;
+/// The longest path, cause or remedy, which may quote the user too, in characters.
+const LONGEST_TEXT: usize = 400;
 
 impl Error {
+    fn new(kind: Kind, field: impl fmt::Display, remedy: impl fmt::Display) -> Self {
+        let (field, remedy) = (field.to_string(), remedy.to_string());
+        Error(Box::new(Parts { kind, field, value: None, remedy, needed: None, source: None }))
+    }
+
     /// Bad input: the field, its value as it was given, and what to do instead.
     pub fn input(field: &str, value: impl fmt::Display, remedy: impl fmt::Display) -> Self {
-        let value = one_line(&value.to_string(), QUOTED);
-        let message = format!("{field} = {value}: {}", one_line(&remedy.to_string(), TOLD));
-        Error { kind: Kind::Input, message }
+        let mut error = Error::new(Kind::Input, field, remedy);
+        error.0.value = Some(value.to_string());
+        error
     }
 
     /// Bad input: a field that is not there, and how to add it.
     pub fn missing(field: &str, remedy: impl fmt::Display) -> Self {
-        let message = format!("{field} missing: {}", one_line(&remedy.to_string(), TOLD));
-        Error { kind: Kind::Input, message }
+        Error::new(Kind::Input, field, remedy)
     }
 
     /// A file or stream that could not be read or written.
     pub fn io(path: impl fmt::Display, cause: impl fmt::Display) -> Self {
-        let [path, cause] = [path.to_string(), cause.to_string()].map(|text| one_line(&text, TOLD));
-        Error { kind: Kind::Io, message: format!("{path}: {cause}") }
+        Error::new(Kind::Io, path, cause)
     }
 
-    /// More work than the budget allows: what it would cost, and how to allow it.
-    pub fn budget(message: impl fmt::Display) -> Self {
-        Error { kind: Kind::Budget, message: message.to_string() }
+    /// More work than the limit allows: what it would cost, and the limit that allows it.
+    pub fn budget(work: impl fmt::Display, needed: u64) -> Self {
+        let mut error = Error::new(Kind::Budget, work, "");
+        error.0.needed = Some(needed);
+        error
+    }
+
+    /// More work than any limit allows: what it would cost, and what to ask instead.
+    pub fn too_much(work: impl fmt::Display, remedy: impl fmt::Display) -> Self {
+        Error::new(Kind::Budget, work, remedy)
+    }
+
+    /// The same with another remedy, beside the higher limit of a [budget](Error::budget).
+    #[must_use]
+    pub fn or(mut self, remedy: impl fmt::Display) -> Self {
+        self.0.remedy = remedy.to_string();
+        self
+    }
+
+    /// The same with the error that caused it, for [`std::error::Error::source`].
+    #[must_use]
+    pub fn caused_by(mut self, cause: impl std::error::Error + Send + Sync + 'static) -> Self {
+        self.0.source = Some(Arc::new(cause));
+        self
     }
 
     /// The kind, for callers that react.
     pub fn kind(&self) -> Kind {
-        self.kind
+        self.0.kind
+    }
+
+    /// What it is about: a field of the input, a path, or the work that would exceed the limit.
+    pub fn field(&self) -> &str {
+        &self.0.field
+    }
+
+    /// The value that was given, where one was.
+    pub fn value(&self) -> Option<&str> {
+        self.0.value.as_deref()
+    }
+
+    /// What to do instead; empty where only a higher limit helps.
+    pub fn remedy(&self) -> &str {
+        &self.0.remedy
+    }
+
+    /// The limit that would allow the work, in the limit's own unit.
+    pub fn needed(&self) -> Option<u64> {
+        self.0.needed
+    }
+
+    /// `Display`, with the caller's own words for how to raise the limit to [`needed`](Error::needed).
+    pub fn explain(&self, raise: impl FnOnce(u64) -> String) -> String {
+        let Parts { kind, field, value, remedy, needed, .. } = &*self.0;
+        let remedy = one_line(remedy, LONGEST_TEXT);
+        match (needed, value) {
+            (Some(needed), _) if remedy.is_empty() => format!("{field}: {}", raise(*needed)),
+            (Some(needed), _) => format!("{field}: {}, or {remedy}", raise(*needed)),
+            (None, Some(value)) => format!("{field} = {}: {remedy}", one_line(value, LONGEST_VALUE)),
+            (None, None) if *kind == Kind::Input => format!("{field} missing: {remedy}"),
+            (None, None) => format!("{}: {remedy}", one_line(field, LONGEST_TEXT)),
+        }
     }
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.message)
+        f.write_str(&self.explain(|needed| format!("allow {needed}")))
     }
 }
 
-impl std::error::Error for Error {}
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.0.source.as_deref().map(|source| source as _)
+    }
+}
 
 /// `text` on one line, its middle left out where it has more than `most` characters.
 fn one_line(text: &str, most: usize) -> String {
@@ -95,6 +174,14 @@ mod tests {
         let message = Error::input("h1", format!("1\n{}", "0".repeat(100_000)), "too long").to_string();
         assert!(message.len() < 200 && !message.contains('\n'), "{message}");
         assert!(message.contains("100002 characters"), "{message}");
+    }
+
+    #[test]
+    fn the_parts_are_whole_where_the_message_is_cut() {
+        let long = "7".repeat(1000);
+        let error = Error::input("h1", &long, "too long").caused_by(std::fmt::Error);
+        assert_eq!((error.value(), error.remedy(), error.needed()), (Some(&*long), "too long", None));
+        assert!(std::error::Error::source(&error).is_some_and(|source| source.is::<std::fmt::Error>()));
     }
 
     #[test]

@@ -4,19 +4,25 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The floor of each module; `error` may be used by all.
-const FLOORS: [(&str, u32); 12] = [
+const FLOORS: [(&str, u32); 18] = [
     ("vector", 0),
     ("number", 0),
-    ("propagator", 1),
-    ("verdict", 2),
-    ("resonance", 3),
-    ("tongue", 4),
-    ("map", 4),
-    ("system", 4),
-    ("avi", 4),
-    ("scene", 5),
-    ("report", 5),
-    ("cli", 6),
+    ("parallel", 0),
+    ("schedule", 1),
+    ("propagator", 2),
+    ("orbit", 3),
+    ("verdict", 4),
+    ("resonance", 5),
+    ("tongue", 6),
+    ("map", 6),
+    ("system", 6),
+    ("avi", 6),
+    ("advise", 7),
+    ("recheck", 7),
+    ("scene", 8),
+    ("report", 8),
+    ("cli", 9),
+    ("explore", 9),
 ];
 
 fn floor(module: &str) -> u32 {

@@ -48,7 +48,7 @@ impl Clocks {
         }
         tick /= Rational::from_integer(2.into());
         let too_long =
-            || Error::budget("the synchronization period exceeds 2^62 ticks: choose simpler step ratios");
+            || Error::too_much("the synchronization period exceeds 2^62 ticks", "choose simpler step ratios");
         let ticks =
             |x: Rational| (x / &tick).to_integer().to_u64().filter(|&n| n < 1 << 62).ok_or_else(too_long);
         let clock = |(h, phase): (&Rational, &Rational)| {

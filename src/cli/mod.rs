@@ -93,7 +93,7 @@ pub fn main() -> ExitCode {
     };
     match run(&cli) {
         Ok(code) => code,
-        Err(error) => failure(&error.to_string()),
+        Err(error) => failure(&error.explain(|needed| format!("allow it with --budget {needed}"))),
     }
 }
 

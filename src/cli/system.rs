@@ -125,7 +125,7 @@ pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
 fn text(path: &Path) -> Result<String> {
     std::fs::read_to_string(path).map_err(|cause| {
         let remedy = "name a system file, such as data/scenes/diatomic-tether.json";
-        Error::io(path.display(), format!("cannot read the system ({cause}): {remedy}"))
+        Error::io(path.display(), format!("cannot read the system ({cause}): {remedy}")).caused_by(cause)
     })
 }
 

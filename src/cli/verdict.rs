@@ -80,9 +80,10 @@ fn certify(answer: &Answer, path: &Path, budget: Option<u64>) -> Result<()> {
     let clocks = answer.oscillator.clocks();
     let kicks = clocks.p().saturating_add(clocks.q());
     if kicks > budget.unwrap_or(WORTH_CERTIFYING) {
-        return Err(Error::budget(format!(
-            "Coq would need minutes to check a certificate of {kicks} kicks: write it all the same with --budget {kicks}"
-        )));
+        return Err(Error::budget(
+            format!("Coq would need minutes to check a certificate of {kicks} kicks"),
+            kicks,
+        ));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let text = certificate::coq(&answer.oscillator, answer.decision.verdict, &name)?;

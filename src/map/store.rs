@@ -30,10 +30,8 @@ impl Store {
     /// An I/O error that names the directory.
     pub fn open(directory: &Path, grid: &Grid, products: Products) -> Result<Store> {
         fs::create_dir_all(directory).map_err(|cause| {
-            Error::io(
-                directory.display(),
-                format_args!("cannot make this directory ({cause}): name another one"),
-            )
+            let text = format!("cannot make this directory ({cause}): name another one");
+            Error::io(directory.display(), text).caused_by(cause)
         })?;
         let header = format!("kickdrift band 1\n{}; {products:?}\n", grid.fingerprint());
         Ok(Store { directory: directory.to_owned(), header })
@@ -65,7 +63,7 @@ impl Store {
             // Half a draft is of no use; the error that brought us here is the one to report.
             let _ = fs::remove_file(&draft);
             let remedy = "make room, or name another directory";
-            Error::io(path.display(), format_args!("cannot write ({cause}): {remedy}"))
+            Error::io(path.display(), format!("cannot write ({cause}): {remedy}")).caused_by(cause)
         })
     }
 }

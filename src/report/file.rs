@@ -29,7 +29,7 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     match path {
         None => to_stdout(content),
-        Some(path) => to_path(path, content).map_err(|cause| explained(path, &cause)),
+        Some(path) => to_path(path, content).map_err(|cause| explained(path, cause)),
     }
 }
 
@@ -55,7 +55,9 @@ pub fn write_or_stop(
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     let mut sink = BufWriter::new(io::stdout().lock());
     match content(&mut sink).and_then(|()| sink.flush()) {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => Err(Error::io("standard output", cause)),
+        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::io("standard output", &cause).caused_by(cause))
+        }
         _ => {
             // What the buffer still holds has no reader; dropping it must not try again.
             drop(sink.into_parts());
@@ -142,7 +144,8 @@ impl Folder {
         let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
         let folder = Folder { path: path.to_path_buf(), made };
         fs::create_dir_all(path).map_err(|cause| {
-            Error::io(path.display(), format_args!("cannot make this folder ({cause}): name another one"))
+            let text = format!("cannot make this folder ({cause}): name another one");
+            Error::io(path.display(), text).caused_by(cause)
         })?;
         Ok(folder)
     }
@@ -168,7 +171,7 @@ impl Drop for Folder {
 }
 
 /// The cause with a remedy beside it.
-pub(super) fn explained(path: &Path, cause: &io::Error) -> Error {
+pub(super) fn explained(path: &Path, cause: io::Error) -> Error {
     let remedy = match cause.kind() {
         ErrorKind::NotFound => "create the directory first, or name another file",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
@@ -179,7 +182,7 @@ pub(super) fn explained(path: &Path, cause: &io::Error) -> Error {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or name a file on another disk",
         _ => "name another file",
     };
-    Error::io(path.display(), format_args!("cannot write ({cause}): {remedy}"))
+    Error::io(path.display(), format!("cannot write ({cause}): {remedy}")).caused_by(cause)
 }
 
 #[cfg(test)]

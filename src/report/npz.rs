@@ -56,7 +56,7 @@ impl Array {
             file.write_all(&header(element, shape))?;
             Ok(Array { name, file, path: archive.to_owned(), _temporary: temporary })
         };
-        open().map_err(|cause: io::Error| explained(archive, &cause))
+        open().map_err(|cause: io::Error| explained(archive, cause))
     }
 
     /// Appends elements.
@@ -64,7 +64,7 @@ impl Array {
     /// # Errors
     /// An I/O error that names the archive.
     pub fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.file.write_all(bytes).map_err(|cause| explained(&self.path, &cause))
+        self.file.write_all(bytes).map_err(|cause| explained(&self.path, cause))
     }
 
     /// Appends doubles.

@@ -17,7 +17,7 @@ use super::model::System;
 use super::sparse::Symmetric;
 use crate::error::{Error, Result};
 use crate::number::{Rational, Ring};
-use crate::propagator::{Event, Schedule, Weight};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Kicks of a half period that are composed at most: some minutes where each touches few degrees of freedom.
 const MOST_KICKS: u64 = 10_000_000_000;
@@ -31,10 +31,10 @@ pub(super) fn check_length(schedule: &Schedule) -> Result<()> {
     if kicks <= MOST_KICKS {
         return Ok(());
     }
-    Err(Error::budget(format!(
-        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS}): \
-         choose steps with simpler ratios"
-    )))
+    let cost = format!(
+        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS})"
+    );
+    Err(Error::too_much(cost, "choose steps with simpler ratios"))
 }
 
 /// The coefficients of one row: (column, value) pairs.

@@ -75,15 +75,13 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
     let program = IntegerProgram::new(system);
     let cost = estimate(system, &frame, &program);
     if cost > limits.products {
-        return Err(Error::budget(format!(
-            "exact arithmetic on {} degrees of freedom with {} kicks in half a period would cost about {cost:.1e} \
-             products of machine words, the budget is {:.1e}: allow it with --budget {cost}, or choose steps with \
-             simpler ratios",
-            frame.kept.len(),
-            system.schedule().strikes() / 2,
-            limits.products as f64,
-            cost = cost,
-        )));
+        let (size, kicks) = (frame.kept.len(), system.schedule().strikes() / 2);
+        let work = format!(
+            "exact arithmetic on {size} degrees of freedom with {kicks} kicks in half a period would cost about \
+             {cost:.1e} products of machine words, the budget is {:.1e}",
+            limits.products as f64
+        );
+        return Err(Error::budget(work, cost).or("choose steps with simpler ratios"));
     }
     Ok(judge(&program.half_period(system, &frame)))
 }

@@ -175,10 +175,8 @@ fn labelled<S: Decidable>(clocks: &ManyClocks<S>, verdict: Verdict) -> Option<u6
 fn by_signs<S: Decidable>(clocks: &ManyClocks<S>, most: u64) -> Result<Scalar> {
     let kicks = clocks.schedule().strikes() / 2;
     if kicks > most {
-        return Err(Error::budget(format!(
-            "exact signs of {kicks} kicks would take more than minutes (the limit is {most}): choose steps with \
-             simpler ratios"
-        )));
+        let cost = format!("exact signs of {kicks} kicks would take more than minutes (the limit is {most})");
+        return Err(Error::too_much(cost, "choose steps with simpler ratios"));
     }
     let half = clocks.half_period();
     let mu = S::product(&half[(0, 1)], &half[(1, 0)]).enclosure(BITS);

@@ -26,7 +26,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Entry, Tongues};
 //! // 7/2 at rho = 1/25, m = 4: one edge sits on the resonance 4 sin²(2 pi/7).
-//! let tongues = Tongues::new(7, 2, &ratio(1, 25)).unwrap();
+//! let tongues = Tongues::new("7/2".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let gap = tongues.gap(4).unwrap();
 //! let (lower, upper) = (gap.lower, gap.upper.unwrap());
 //! assert!(lower.lo <= 2.3150964145691537 && 2.3150964145691537 <= lower.hi);
@@ -54,5 +54,5 @@ pub use peak::Peak;
 pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
 pub use select::Selection;
 pub use string::Entry;
-pub use survey::{Spread, Survey, Thin, ratios, survey};
+pub use survey::{Spread, Survey, Thin, survey};
 pub use tongues::Tongues;

@@ -3,7 +3,7 @@
 //! ```
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Selection, Tongues};
-//! let tongues = Tongues::new(70, 31, &ratio(1, 25)).unwrap();
+//! let tongues = Tongues::new("70/31".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let window = Selection { s: Some((2.30, 2.32)), ..Selection::default() };
 //! let found: Vec<u64> = tongues.select(&window).unwrap().iter().map(|gap| gap.m).collect();
 //! assert_eq!(found, [39]);
@@ -54,7 +54,7 @@ impl Selection {
         match ranges.flat_map(|&(from, upto)| [from, upto]).find(|m| !(1..=last).contains(m)) {
             None => Ok(()),
             Some(m) => {
-                let remedy = format!("{}/{} has the tongues 1 to {last}", edges.p(), edges.q());
+                let remedy = format!("{} has the tongues 1 to {last}", edges.ratio());
                 Err(Error::input("m", m, remedy))
             }
         }
@@ -69,7 +69,7 @@ impl Selection {
             let any = self.a.is_none() && self.b.is_none();
             listed
                 && (any || {
-                    let (a, b) = dominant_family(edges.p(), edges.q(), m);
+                    let (a, b) = dominant_family(edges.ratio(), m);
                     within(self.a, a) && within(self.b, b)
                 })
         };
@@ -110,6 +110,7 @@ pub(crate) fn runs(labels: &[u64]) -> Vec<(u64, u64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::rational::ratio;
     use crate::tongue::Tongues;
 
@@ -124,13 +125,14 @@ mod tests {
         for (p, q, rho) in
             [(7, 3, ratio(1, 25)), (3, 11, ratio(2, 1)), (40, 1, ratio(1, 2)), (9, 4, ratio(0, 1))]
         {
-            let all = Tongues::new(p, q, &rho).unwrap().all().unwrap();
+            let all = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap();
             for (lo, hi) in [(0.0, 1e300), (1.0, 1.5), (2.4, 2.4), (3.9, 400.0), (-1.0, 1e-9), (2.0, 1.0)] {
                 let meets = |gap: &&Gap| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi);
                 let expected: Vec<u64> =
                     all.iter().filter(meets).map(|gap| gap.m).filter(|_| lo <= hi).collect();
                 let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
-                let found = Tongues::new(p, q, &rho).unwrap().select(&selection).unwrap();
+                let found =
+                    Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().select(&selection).unwrap();
                 assert_eq!(
                     found.iter().map(|gap| gap.m).collect::<Vec<_>>(),
                     expected,
@@ -142,11 +144,11 @@ mod tests {
 
     #[test]
     fn a_family_is_that_of_the_labels() {
-        let tongues = Tongues::new(31, 12, &ratio(1, 25)).unwrap();
+        let tongues = Tongues::new("31/12".parse().unwrap(), &ratio(1, 25)).unwrap();
         let selection = Selection { a: Some((1, 2)), b: Some((-9, -1)), ..Selection::default() };
         let found = tongues.select(&selection).unwrap();
         let expected: Vec<u64> = (1..=tongues.last())
-            .filter(|&m| matches!(dominant_family(31, 12, m), (1..=2, -9..=-1)))
+            .filter(|&m| matches!(dominant_family("31/12".parse().unwrap(), m), (1..=2, -9..=-1)))
             .collect();
         assert!(!expected.is_empty());
         assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected);

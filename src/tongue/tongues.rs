@@ -13,7 +13,7 @@ use super::row::{Row, Wanted};
 use super::select::{Selection, runs};
 use super::string::Entry;
 use crate::error::{Error, Result};
-use crate::number::{Ball, Rational};
+use crate::number::{Ball, Ratio, Rational};
 
 /// All tongues of one p/q and ρ ≥ 0, computed as they are asked for.
 #[derive(Clone, Debug)]
@@ -29,19 +29,24 @@ impl Tongues {
     /// The tongues of h2/h1 = p/q and ρ = L2/L1.
     ///
     /// # Errors
-    /// p/q not in lowest terms, ρ < 0 (then the masses are no string's), ρ p/q beyond 1e±16, too many kicks.
-    pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
-        Ok(Tongues { edges: Edges::new(p, q, rho)?, open: Openness::default() })
+    /// ρ < 0 (then the masses are no string's), ρ p/q beyond 1e±16, too many kicks.
+    pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
+        Ok(Tongues { edges: Edges::new(ratio, rho)?, open: Openness::default() })
+    }
+
+    /// h2/h1 = p/q.
+    pub fn ratio(&self) -> Ratio {
+        self.edges.ratio()
     }
 
     /// The numerator of h2/h1.
     pub fn p(&self) -> u64 {
-        self.edges.p()
+        self.ratio().p()
     }
 
     /// The denominator of h2/h1.
     pub fn q(&self) -> u64 {
-        self.edges.q()
+        self.ratio().q()
     }
 
     /// ρ = L2/L1.
@@ -51,7 +56,7 @@ impl Tongues {
 
     /// m of the last tongue, which is infinite: p + q − 1, or p for ρ = 0.
     pub fn last(&self) -> u64 {
-        if self.rho().is_zero() { self.p() } else { self.p() + self.q() - 1 }
+        if self.rho().is_zero() { self.p() } else { self.ratio().kicks() - 1 }
     }
 
     /// The work done so far.
@@ -203,7 +208,7 @@ impl Tongues {
         if (1..=self.last()).contains(&m) {
             return Ok(());
         }
-        Err(Error::input("m", m, format!("{}/{} has the tongues 1 to {}", self.p(), self.q(), self.last())))
+        Err(Error::input("m", m, format!("{} has the tongues 1 to {}", self.ratio(), self.last())))
     }
 }
 

@@ -103,9 +103,8 @@ impl Output<'_> {
         })?;
         let count = tally.counts.marked();
         if self.target == Target::Latex && count > most {
-            return Err(Error::budget(format!(
-                "{count} rows are too many for a LaTeX table: write csv or npz"
-            )));
+            let cost = format!("{count} rows are too many for a LaTeX table");
+            return Err(Error::too_much(cost, "write csv or npz"));
         }
         let Map { grid, products, .. } = self.map;
         let rows = (count <= most).then(|| Rows::new(grid, *products).table(&pairs));

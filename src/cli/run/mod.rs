@@ -57,6 +57,7 @@ impl Args {
         read().map_err(|cause: std::io::Error| {
             let remedy = "name a scene file, such as data/scenes/figure1.json";
             Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
+                .caused_by(cause)
         })
     }
 

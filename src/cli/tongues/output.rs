@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::Path;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::Question;
 use crate::cli::args::Common;
@@ -136,10 +136,8 @@ fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
 fn latex(question: &Question, common: &Common) -> Result<(String, Tally)> {
     let (tally, document) = told(question, common, MOST_ROWS)?;
     if tally.count > MOST_ROWS {
-        return Err(Error::budget(format!(
-            "{} rows are too many for a LaTeX table: write csv or json",
-            tally.count
-        )));
+        let cost = format!("{} rows are too many for a LaTeX table", tally.count);
+        return Err(Error::too_much(cost, "write csv or json"));
     }
     Ok((document.render(Format::Latex)?, tally))
 }

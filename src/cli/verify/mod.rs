@@ -25,7 +25,7 @@ mod verdict;
 
 use std::path::PathBuf;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use serde_json::{Value, json};
 
 use super::args::{Common, Format};
@@ -99,6 +99,7 @@ impl Args {
         let file = self.file.display();
         let bytes = std::fs::read(&self.file).map_err(|cause| {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
+                .caused_by(cause)
         })?;
         serde_json::from_slice(&bytes).map_err(|cause| {
             Error::input(

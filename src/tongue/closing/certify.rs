@@ -7,7 +7,7 @@ use num_traits::{One, Signed};
 
 use super::jet::{Jet, jets};
 use crate::error::Result;
-use crate::number::{Ball, Rational, Sign, rational};
+use crate::number::{Ball, Ratio, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Enclosure, simplest};
 use crate::tongue::string::Entry;
@@ -17,8 +17,7 @@ use crate::verdict::Decidable;
 /// A closed tongue, certified: the box s × ρ holds exactly one common zero of the two entries, and it is tongue m's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub m: u64,
     pub s: Enclosure,
     pub rho: Enclosure,
@@ -46,8 +45,8 @@ pub(crate) struct Order {
 ///
 /// # Errors
 /// As [`Tongues::new`].
-pub(crate) fn orders(p: u64, q: u64, rho: &Rational, m: Option<u64>) -> Result<Vec<Order>> {
-    let tongues = Tongues::new(p, q, rho)?;
+pub(crate) fn orders(ratio: Ratio, rho: &Rational, m: Option<u64>) -> Result<Vec<Order>> {
+    let tongues = Tongues::new(ratio, rho)?;
     let (from, upto) = m.map_or((1, tongues.last() - 1), |m| (m, m));
     if upto < from {
         return Ok(Vec::new());
@@ -57,11 +56,11 @@ pub(crate) fn orders(p: u64, q: u64, rho: &Rational, m: Option<u64>) -> Result<V
 }
 
 /// Narrows the bracket of ρ, finds the zero by Newton's method, and proves it.
-pub(crate) fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Closing> {
+pub(crate) fn certify(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Closing> {
     let pair = Entry::of_tongue(m % 2 == 1);
     let (mut lo, mut hi) = (lo.clone(), hi.clone());
     loop {
-        let start = Start::new(p, q, m, &lo, &hi)?;
+        let start = Start::new(ratio, m, &lo, &hi)?;
         if let Some(closing) =
             start.newton(pair)?.and_then(|(s, rho)| start.proven(pair, &s, &rho).transpose())
         {
@@ -70,7 +69,7 @@ pub(crate) fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> R
         // Closer still: the middle's order tells which half holds the crossing.
         let two = Rational::from_integer(2.into());
         let middle = (&lo + &hi) / two;
-        let (below, at) = (orders(p, q, &lo, Some(m))?, orders(p, q, &middle, Some(m))?);
+        let (below, at) = (orders(ratio, &lo, Some(m))?, orders(ratio, &middle, Some(m))?);
         match (below[0].lower == at[0].lower, at[0].closed) {
             (_, true) => (lo, hi) = (middle.clone(), middle),
             (true, _) => lo = middle,
@@ -81,23 +80,22 @@ pub(crate) fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> R
 
 /// A bracket of ρ, and of s: all edges fall as ρ grows (masses do), so tongue m's edges at its ends bound s*.
 struct Start {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     m: u64,
     s: (Rational, Rational),
     rho: (Rational, Rational),
 }
 
 impl Start {
-    fn new(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Self> {
+    fn new(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Self> {
         let edges = |rho: &Rational| -> Result<(f64, f64)> {
-            let gap = Tongues::new(p, q, rho)?.gap(m)?;
+            let gap = Tongues::new(ratio, rho)?.gap(m)?;
             let upper = gap.upper.expect("a finite tongue");
             Ok((gap.lower.lo.min(upper.lo), gap.lower.hi.max(upper.hi)))
         };
         let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
         let s = (exact(edges(hi)?.0), exact(edges(lo)?.1));
-        Ok(Start { p, q, m, s, rho: (lo.clone(), hi.clone()) })
+        Ok(Start { ratio, m, s, rho: (lo.clone(), hi.clone()) })
     }
 
     /// Newton's method from the bracket's middle; `None` where it leaves the bracket.
@@ -108,7 +106,7 @@ impl Start {
         let (mut s, mut rho) = (middle(&self.s), middle(&self.rho));
         // Nine squarings of 1/2 pass 2^-500.
         for _ in 0..24 {
-            let jets = jets(self.p, self.q, &point(&s), &point(&rho), pair, BITS)?;
+            let jets = jets(self.ratio, &point(&s), &point(&rho), pair, BITS)?;
             let Some([ds, dr]) = solve(&jets, [&jets[0].0[0], &jets[1].0[0]]) else { return Ok(None) };
             (s, rho) = (point(&s.sub(&ds, BITS)), point(&rho.sub(&dr, BITS)));
         }
@@ -123,7 +121,7 @@ impl Start {
 
     /// Krawczyk's test on the box about (s, ρ), and that the zero belongs to tongue m.
     fn proven(&self, pair: [Entry; 2], s: &Rational, rho: &Rational) -> Result<Option<Closing>> {
-        let (p, q) = (self.p, self.q);
+        let ratio = self.ratio;
         let centre = [s, rho].map(|x| Ball::from_rational(x, BITS));
         let radius = [s, rho].map(|x| x.abs() * rational::scale2(&One::one(), BOX));
         let sides: [Ball; 2] = std::array::from_fn(|i| {
@@ -131,8 +129,8 @@ impl Start {
             end([s, rho][i] - &radius[i]).union(&end([s, rho][i] + &radius[i]), BITS)
         });
         let wide: [Ball; 2] = std::array::from_fn(|i| sides[i].sub(&centre[i], BITS));
-        let at = jets(p, q, &centre[0], &centre[1], pair, BITS)?;
-        let over = jets(p, q, &sides[0], &sides[1], pair, BITS)?;
+        let at = jets(ratio, &centre[0], &centre[1], pair, BITS)?;
+        let over = jets(ratio, &sides[0], &sides[1], pair, BITS)?;
         // K − centre = −Y F(centre) + (1 − Y F'(box)) (box − centre), Y ≈ F'(centre)⁻¹.
         let Some(inverse) = inverse(&at) else { return Ok(None) };
         let mut image = Vec::new();
@@ -161,8 +159,8 @@ impl Start {
     fn belongs(&self, s: &Enclosure, rho: &Enclosure) -> Result<bool> {
         let index = self.m.div_ceil(2) as usize;
         let (lo, hi) = s.to_f64();
-        let early = Tongues::new(self.p, self.q, &rho.lo)?;
-        let late = Tongues::new(self.p, self.q, &rho.hi)?;
+        let early = Tongues::new(self.ratio, &rho.lo)?;
+        let late = Tongues::new(self.ratio, &rho.hi)?;
         let mut mine = true;
         for entry in Entry::of_tongue(self.m % 2 == 1) {
             // Falling in ρ: the zero below is highest early, the zero above lowest late.
@@ -180,8 +178,8 @@ impl Start {
         let exact = self.rational(&s, &rho);
         let four = Rational::from_integer(4.into());
         let below_verlet = exact.as_ref().map_or_else(|| s.hi < four, |(s, _)| *s < four);
-        let (p, q, m) = (self.p, self.q, self.m);
-        Ok(Closing { p, q, m, s, rho, exact, below_verlet })
+        let (ratio, m) = (self.ratio, self.m);
+        Ok(Closing { ratio, m, s, rho, exact, below_verlet })
     }
 
     /// The simplest rationals in the box, if they are the closing: the box holds no other.
@@ -189,8 +187,8 @@ impl Start {
         let (s, rho) = (simplest(&s.lo, &s.hi), simplest(&rho.lo, &rho.hi));
         // Half the box's own digits: a coincidence of that kind would be a wonder, and is checked all the same.
         let short = s.denom().bits() < 100 && rho.denom().bits() < 100;
-        let signs = short
-            .then(|| Decidable::half_signs(&TwoClocks::with_rho(self.p, self.q, s.clone(), rho.clone())))?;
+        let signs =
+            short.then(|| Decidable::half_signs(&TwoClocks::with_rho(self.ratio, s.clone(), rho.clone())))?;
         let closed =
             Entry::of_tongue(self.m % 2 == 1).iter().all(|&entry| signs.all()[entry as usize] == Sign::Zero);
         closed.then_some((s, rho))

@@ -12,7 +12,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Search, closings};
 //! // A resonance that does not destabilize: 5/3, m = 4.
-//! let found = closings(5, 3, &Search { m: Some(4), ..Search::default() }).unwrap();
+//! let found = closings("5/3".parse().unwrap(), &Search { m: Some(4), ..Search::default() }).unwrap();
 //! let closing = &found.closings[0];
 //! assert_eq!(closing.exact, Some((ratio(11, 4), ratio(114, 55))));
 //! assert!(closing.below_verlet && found.closings.len() == 1 && found.complete);
@@ -22,7 +22,7 @@ use num_traits::Signed;
 
 use super::certify::{Closing, Order, certify, orders};
 use crate::error::{Error, Result};
-use crate::number::{Rational, rational};
+use crate::number::{Ratio, Rational, rational};
 use crate::tongue::edge::Enclosure;
 use crate::tongue::gap::count_closings;
 use crate::tongue::string::Entry;
@@ -65,12 +65,12 @@ pub struct Found {
 ///
 /// # Errors
 /// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`].
-pub fn closings(p: u64, q: u64, search: &Search) -> Result<Found> {
+pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let rhos = samples(search)?;
     let mut found = Vec::new();
     let mut before: Option<(Rational, Vec<Order>)> = None;
     for rho in rhos {
-        let orders = orders(p, q, &rho, search.m)?;
+        let orders = orders(ratio, &rho, search.m)?;
         for (k, order) in orders.iter().enumerate() {
             if order.closed {
                 found.push((order.m, rho.clone(), rho.clone()));
@@ -85,8 +85,8 @@ pub fn closings(p: u64, q: u64, search: &Search) -> Result<Found> {
     }
     found.sort();
     let closings: Vec<Closing> =
-        found.into_iter().map(|(m, lo, hi)| certify(p, q, m, &lo, &hi)).collect::<Result<_>>()?;
-    let complete = p + q <= COMPLETE_UP_TO && is_complete(p, q, search, &closings)?;
+        found.into_iter().map(|(m, lo, hi)| certify(ratio, m, &lo, &hi)).collect::<Result<_>>()?;
+    let complete = ratio.kicks() <= COMPLETE_UP_TO && is_complete(ratio, search, &closings)?;
     Ok(Found { closings, complete })
 }
 
@@ -110,14 +110,14 @@ fn samples(search: &Search) -> Result<Vec<Rational>> {
 }
 
 /// Whether the resultants have no more zeros in the range of ρ than closings were found.
-fn is_complete(p: u64, q: u64, search: &Search, closings: &[Closing]) -> Result<bool> {
+fn is_complete(ratio: Ratio, search: &Search, closings: &[Closing]) -> Result<bool> {
     let (lo, hi) = &search.rho;
     let one_parity = |odd: bool| {
         let mut rhos: Vec<&Enclosure> =
             closings.iter().filter(|c| (c.m % 2 == 1) == odd).map(|closing| &closing.rho).collect();
         rhos.sort_by(|a, b| a.lo.cmp(&b.lo));
         let apart = rhos.windows(2).all(|pair| pair[0].hi < pair[1].lo);
-        let Some(count) = count_closings(p, q, Entry::of_tongue(odd), lo, hi) else { return true };
+        let Some(count) = count_closings(ratio, Entry::of_tongue(odd), lo, hi) else { return true };
         apart && count == rhos.len()
     };
     Ok(match search.m {

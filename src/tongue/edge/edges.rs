@@ -3,7 +3,6 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use num_integer::Integer;
 use num_traits::Signed;
 
 use super::eigenvalues::{Sighting, eigenvalues};
@@ -11,7 +10,7 @@ use super::enclosure::{Edge, Enclosure};
 use super::function::EntryFunction;
 use super::{exact_count, precise};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Rational, rational};
+use crate::number::{Ball, Ratio, Rational, rational};
 use crate::tongue::string::{Entry, HalfString, Indices};
 
 /// How much work was done.
@@ -26,8 +25,7 @@ pub struct Effort {
 /// The zeros of the entries A, B, C and D in s > 0, for one p/q and ρ ≥ 0.
 #[derive(Debug)]
 pub(crate) struct Edges {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     rho: Rational,
     string: HalfString,
     doubles: AtomicU64,
@@ -38,7 +36,7 @@ impl Clone for Edges {
     fn clone(&self) -> Self {
         let Effort { doubles, precise } = self.effort();
         let (rho, string) = (self.rho.clone(), self.string.clone());
-        Edges { p: self.p, q: self.q, rho, string, doubles: doubles.into(), precise: precise.into() }
+        Edges { ratio: self.ratio, rho, string, doubles: doubles.into(), precise: precise.into() }
     }
 }
 
@@ -46,25 +44,14 @@ impl Edges {
     /// The edges of h2/h1 = p/q and ρ = L2/L1.
     ///
     /// # Errors
-    /// p/q not in lowest terms, ρ < 0 (no string), ρ p/q beyond 1e±16, too many kicks.
-    pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
-        if p == 0 || q == 0 || p.gcd(&q) != 1 {
-            return Err(Error::input(
-                "ratio",
-                format!("{p}/{q}"),
-                "give a positive fraction in lowest terms",
-            ));
-        }
-        let string = HalfString::new(p, q, rho)?;
-        Ok(Edges { p, q, rho: rho.clone(), string, doubles: 0.into(), precise: 0.into() })
+    /// ρ < 0 (no string), ρ p/q beyond 1e±16, too many kicks.
+    pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
+        let string = HalfString::new(ratio, rho)?;
+        Ok(Edges { ratio, rho: rho.clone(), string, doubles: 0.into(), precise: 0.into() })
     }
 
-    pub fn p(&self) -> u64 {
-        self.p
-    }
-
-    pub fn q(&self) -> u64 {
-        self.q
+    pub fn ratio(&self) -> Ratio {
+        self.ratio
     }
 
     pub fn rho(&self) -> &Rational {
@@ -186,13 +173,15 @@ impl Edges {
     /// # Errors
     /// Where the schedule is too long.
     pub fn function(&self, entry: Entry) -> Result<EntryFunction> {
-        EntryFunction::new(self.p, self.q, &self.rho, entry)
+        EntryFunction::new(self.ratio, &self.rho, entry)
     }
 
     /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
     pub fn resonance(&self, m: u64, bits: u32) -> Ball {
-        let angle = Ball::pi(bits + 16)
-            .mul(&Ball::from_rational(&Rational::new(m.into(), (2 * self.p).into()), bits + 16), bits + 16);
+        let angle = Ball::pi(bits + 16).mul(
+            &Ball::from_rational(&Rational::new(m.into(), (2 * self.ratio.p()).into()), bits + 16),
+            bits + 16,
+        );
         angle.sin(bits + 8).square(bits).scale2(2)
     }
 }

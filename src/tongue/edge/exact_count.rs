@@ -9,7 +9,7 @@ use num_traits::{Signed, Zero};
 use super::enclosure::Enclosure;
 use super::function::EntryFunction;
 use crate::number::{Rational, rational};
-use crate::propagator::{Event, Weight};
+use crate::schedule::{Event, Weight};
 use crate::tongue::string::HalfString;
 
 /// Bits to begin with, and beyond which counting is left to exact integers.

@@ -1,17 +1,17 @@
 //! An entry of the half period as a function of s, at rational points.
 
 use crate::error::Result;
-use crate::number::{Ball, Rational, Sign};
-use crate::propagator::{Schedule, TwoClocks};
+use crate::number::{Ball, Ratio, Rational, Sign};
+use crate::orbit::refine::{self, End};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 use crate::tongue::string::Entry;
 use crate::verdict::Decidable;
-use crate::verdict::refine::{self, End};
 
 /// An entry of the half period as a function of s, for fixed p/q and ρ.
 #[derive(Clone, Debug)]
 pub(crate) struct EntryFunction {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     /// The slow clock's mass ρ p/q, in those of the fast one.
     pub slow: Rational,
     pub schedule: Schedule,
@@ -24,13 +24,13 @@ pub(crate) struct EntryFunction {
 const BITS_BEFORE_EXACT: u32 = 64;
 
 impl EntryFunction {
-    pub fn new(p: u64, q: u64, rho: &Rational, entry: Entry) -> Result<Self> {
-        let slow = rho * Rational::new(p.into(), q.into());
-        Ok(EntryFunction { p, q, slow, schedule: Schedule::two_clocks(p, q)?, entry })
+    pub fn new(ratio: Ratio, rho: &Rational, entry: Entry) -> Result<Self> {
+        let slow = rho * Rational::from(ratio);
+        Ok(EntryFunction { ratio, slow, schedule: Schedule::two_clocks(ratio)?, entry })
     }
 
     fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
-        TwoClocks::new(self.p, self.q, s.clone(), s * &self.slow)
+        TwoClocks::new(self.ratio, s.clone(), s * &self.slow)
     }
 
     /// The entry's exact sign at s.
@@ -42,7 +42,7 @@ impl EntryFunction {
     pub fn orbit(&self, s: &Rational, bits: u32) -> Option<End> {
         // In no lowest terms: balls do not need them.
         let slow = Rational::new_raw(s.numer() * self.slow.numer(), s.denom() * self.slow.denom());
-        let clocks = TwoClocks::new(self.p, self.q, s.clone(), slow);
+        let clocks = TwoClocks::new(self.ratio, s.clone(), slow);
         refine::run_one(&clocks, &self.schedule, bits, self.entry.starts_free())
     }
 

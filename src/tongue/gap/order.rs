@@ -109,6 +109,6 @@ fn coincide(edges: &Edges, pair: &[(Edge, &Enclosure); 2]) -> Result<bool> {
     if f.exact_sign(&candidate) == Sign::Zero && g.exact_sign(&candidate) == Sign::Zero {
         return Ok(true);
     }
-    let common = common_factor(edges.p(), edges.q(), edges.rho(), [a.entry, b.entry]);
+    let common = common_factor(edges.ratio(), edges.rho(), [a.entry, b.entry]);
     Ok(common.degree() > Some(0) && common.count_roots(lo, hi) > 0)
 }

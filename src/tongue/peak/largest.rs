@@ -72,8 +72,8 @@ impl Peak {
         Ok(Some(Peak {
             s,
             ln_multiplier,
-            rate: ln_multiplier / (edges.p() as f64 * s.sqrt()),
-            slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.q() as f64 / ln_multiplier,
+            rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
+            slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
         }))
     }
 }
@@ -109,11 +109,11 @@ fn ln_multiplier_by_bits(edges: &Edges, s: &Rational, m: u64) -> Result<f64> {
     let side = if m.is_multiple_of(2) { 1 } else { -1 };
     let unstable = |verdict: &&Verdict| verdict.kind() == Kind::Hyperbolic && verdict.side() == side;
     let verdict = Verdict::ALL.iter().find(unstable).expect("a row of the table");
-    let clocks = TwoClocks::with_rho(edges.p(), edges.q(), s.clone(), edges.rho().clone());
+    let clocks = TwoClocks::with_rho(edges.ratio(), s.clone(), edges.rho().clone());
     let ln = growth(&clocks, *verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
     ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
         let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
-        Error::budget(format!("{cost} needs more digits than are tried: choose a simpler ratio"))
+        Error::too_much(format!("{cost} needs more digits than are tried"), "choose a simpler ratio")
     })
 }
 
@@ -209,6 +209,7 @@ fn golden(f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::rational::ratio;
     use crate::tongue::Tongues;
 
@@ -219,8 +220,8 @@ mod tests {
         for decade in [-12, -6, -3, -1, 0, 2, 6, 12] {
             for (p, q) in [(2, 1), (1, 2), (7, 3), (5, 6), (4, 9), (19, 16)] {
                 let rho = ratio(7, 5) * power(decade);
-                let edges = Edges::new(p, q, &rho).unwrap();
-                for gap in Tongues::new(p, q, &rho).unwrap().all().unwrap() {
+                let edges = Edges::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
+                for gap in Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;
                     let Some((s, ln)) = Inside::new(edges.string(), &gap, &upper).fastest() else {

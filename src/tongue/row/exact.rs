@@ -3,7 +3,7 @@
 use num_traits::Zero;
 
 use crate::error::Result;
-use crate::number::{Rational, Sign, rational};
+use crate::number::{Ratio, Rational, Sign, rational};
 use crate::tongue::edge::{Edge, Edges, Enclosure, simplest};
 use crate::tongue::string::Entry;
 
@@ -29,10 +29,10 @@ pub(crate) fn exact_edge(edges: &Edges, m: u64, edge: &Edge) -> Result<Option<Ex
     if let Some(s) = rational_edge(edges, edge)? {
         return Ok(Some(ExactEdge::Rational(s)));
     }
-    if (odd_start && silent(edges.q()) && m < edges.p()) || edges.rho().is_zero() {
+    if (odd_start && silent(edges.ratio().q()) && m < edges.ratio().p()) || edges.rho().is_zero() {
         return Ok(Some(ExactEdge::Resonance));
     }
-    Ok((odd_start && silent(edges.p()) && m < edges.q()).then_some(ExactEdge::SlowResonance))
+    Ok((odd_start && silent(edges.ratio().p()) && m < edges.ratio().q()).then_some(ExactEdge::SlowResonance))
 }
 
 fn rational_edge(edges: &Edges, edge: &Edge) -> Result<Option<Rational>> {
@@ -64,17 +64,17 @@ impl Resonance {
 
     /// The resonance on which an edge in closed form sits, if any; a rational edge does where its angle is
     /// π/3, π/2 or 2π/3.
-    pub fn of(p: u64, q: u64, m: u64, rho: &Rational, edge: &ExactEdge) -> Option<Resonance> {
+    pub fn of(ratio: Ratio, m: u64, rho: &Rational, edge: &ExactEdge) -> Option<Resonance> {
         match edge {
             ExactEdge::Resonance => Some(Resonance::Fast),
             ExactEdge::SlowResonance => Some(Resonance::Slow),
             ExactEdge::Rational(s) => {
-                let ratio = Rational::new(p.into(), q.into());
-                let slow = s * rho * &ratio * &ratio;
-                if turns(s, m, p) {
+                let steps = Rational::from(ratio);
+                let slow = s * rho * &steps * &steps;
+                if turns(s, m, ratio.p()) {
                     Some(Resonance::Fast)
                 } else {
-                    turns(&slow, m, q).then_some(Resonance::Slow)
+                    turns(&slow, m, ratio.q()).then_some(Resonance::Slow)
                 }
             }
         }
@@ -95,7 +95,9 @@ mod tests {
 
     #[test]
     fn rational_angles_are_resonances() {
-        let on = |p, q, m, s| Resonance::of(p, q, m, &ratio(1, 4), &ExactEdge::Rational(ratio(s, 1)));
+        let on = |p, q, m, s| {
+            Resonance::of(Ratio::new(p, q).unwrap(), m, &ratio(1, 4), &ExactEdge::Rational(ratio(s, 1)))
+        };
         assert_eq!([on(3, 1, 1, 1), on(4, 1, 2, 2), on(9, 2, 6, 3)], [Some(Resonance::Fast); 3]);
         assert_eq!(on(3, 1, 2, 1), None);
         // s rho (p/q)² = 36/4/9 = 1 and q = 3, m = 1: the slow clock's own.

@@ -4,7 +4,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Side, Tongues, Wanted};
 //! // 7/3, m = 4: the resonance p th = 4 pi lies outside its own tongue.
-//! let tongues = Tongues::new(7, 3, &ratio(1, 25)).unwrap();
+//! let tongues = Tongues::new("7/3".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let gap = tongues.gap(4).unwrap();
 //! let row = tongues.row(&gap, &Wanted::all()).unwrap();
 //! assert_eq!((row.family, row.predicted.unwrap().side), (Some((1, -1)), Side::Above));
@@ -21,6 +21,7 @@ pub use exact::{ExactEdge, Resonance};
 pub use predicted::{Predicted, Side};
 
 use crate::error::Result;
+use crate::number::Ratio;
 use crate::resonance::{FirstOrder, dominant_family, first_order};
 use crate::tongue::edge::Edges;
 use crate::tongue::gap::Gap;
@@ -62,8 +63,7 @@ pub struct Law {
 /// A tongue and the columns asked for; `None` where not asked, or where there is none (said beside each).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub gap: Gap,
     /// (a, b), m = a p + b q, of the strongest family.
     pub family: Option<(i64, i64)>,
@@ -83,8 +83,8 @@ impl Row {
     /// # Errors
     /// Where the schedule is too long.
     pub(crate) fn new(edges: &Edges, gap: &Gap, wanted: &Wanted) -> Result<Row> {
-        let (p, q, m) = (edges.p(), edges.q(), gap.m);
-        let family = (wanted.family && p.max(q).max(m) < 1 << 31).then(|| dominant_family(p, q, m));
+        let (ratio, m) = (edges.ratio(), gap.m);
+        let family = wanted.family.then(|| dominant_family(ratio, m));
         let mut exact = [None, None];
         if wanted.exact {
             exact[0] = exact_edge(edges, m, &gap.lower)?;
@@ -93,14 +93,14 @@ impl Row {
         let peak = if wanted.growth { Peak::new(edges, gap)? } else { None };
         let predicted = if wanted.predicted { Predicted::new(edges, gap)? } else { None };
         let first_order = if wanted.first_order { Law::new(edges, gap) } else { None };
-        Ok(Row { p, q, gap: gap.clone(), family, exact, peak, predicted, first_order })
+        Ok(Row { ratio, gap: gap.clone(), family, exact, peak, predicted, first_order })
     }
 }
 
 impl Law {
     fn new(edges: &Edges, gap: &Gap) -> Option<Law> {
         let rho = edges.rho().to_f64().filter(|_| !edges.rho().is_zero())?;
-        let law = first_order(edges.p(), edges.q(), gap.m, rho)?;
+        let law = first_order(edges.ratio(), gap.m, rho)?;
         let upper = gap.upper.as_ref()?;
         let width = 0.5 * (gap.width.0 + gap.width.1);
         let centre = 0.25 * (gap.lower.lo + gap.lower.hi + upper.lo + upper.hi);

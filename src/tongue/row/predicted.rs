@@ -56,7 +56,7 @@ impl Predicted {
     /// # Errors
     /// Where the schedule is too long.
     pub(crate) fn new(edges: &Edges, gap: &Gap) -> Result<Option<Predicted>> {
-        let Some(upper) = gap.upper.filter(|_| gap.m < edges.p()) else { return Ok(None) };
+        let Some(upper) = gap.upper.filter(|_| gap.m < edges.ratio().p()) else { return Ok(None) };
         let s = edges.resonance(gap.m, 128);
         let (nearest, lower) = (s.mid_f64(), gap.lower);
         let side = match (compare(&s, &lower), compare(&s, &upper)) {
@@ -114,10 +114,10 @@ fn decide_side(edges: &Edges, gap: &Gap, at_lower: bool) -> Result<Side> {
     if exact_edge(edges, gap.m, edge)? == Some(ExactEdge::Resonance) {
         return Ok(on);
     }
-    let p = u32::try_from(edges.p()).expect("a period that is laid out in memory");
+    let p = u32::try_from(edges.ratio().p()).expect("a period that is laid out in memory");
     let s = Cyclotomic::resonant_s(gap.m as i64, p);
     let rho = <Cyclotomic as Ring>::from_rational(edges.rho());
-    let verdict = decide(&TwoClocks::with_rho(edges.p(), edges.q(), s, rho), &Limits::default())?.verdict;
+    let verdict = decide(&TwoClocks::with_rho(edges.ratio(), s, rho), &Limits::default())?.verdict;
     Ok(match verdict.kind() {
         Kind::Hyperbolic => Side::Inside,
         Kind::Elliptic if at_lower => Side::Below,

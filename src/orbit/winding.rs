@@ -1,35 +1,15 @@
-//! The label of a tongue: how many half turns the growing solution makes in one period.
+//! How far the even solution turns over the half period.
 //!
-//! The kernel's shears move the even solution through the plane, never across the axis they keep, so counting
-//! the axes crossed counts its quarter turns: those of the exact solution, whose angle to the computed one stays
-//! small all the way. Inside a tongue m half turns of the growing solution over the period are m/2 over its half,
-//! give or take less than one quarter turn; the signs of x and v at T/2 leave one m for it.
+//! The kernel's shears move it through the plane, never across the axis they keep, so counting the axes crossed
+//! counts its quarter turns: those of the exact solution, whose angle to the computed one stays small all the way.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use super::filter::Ends;
 use super::floquet::Pair;
-use super::kind::{Kind, Verdict};
-
-/// m, or `None` where the pair is not hyperbolic or the even solution's quarter at T/2 is not certain.
-pub(crate) fn label(ends: &Ends, verdict: Verdict) -> Option<u64> {
-    let signs = ends.signs();
-    if verdict.kind() != Kind::Hyperbolic || signs.a.is_none() || signs.c.is_none() {
-        return None;
-    }
-    // The turn Θ lies in the quarter turn after `quarters`. Tr > 2: the nearest number of half turns to Θ/π is
-    // m/2. Tr < -2: m/2 is the middle of the half turn in which Θ lies.
-    let m = if verdict.side() > 0 {
-        2 * (ends.quarters + 1).div_euclid(2)
-    } else {
-        2 * ends.quarters.div_euclid(2) + 1
-    };
-    u64::try_from(m).ok()
-}
 
 /// ⌊Θ/(π/2)⌋ at T/2, Θ the even solution's turn: from the quarters counted up to the last update, the state
 /// (re, im) there, and the turn left with its cosine and sine.
-pub(super) fn at_end(pair: &Pair, counted: i64, [re, im]: [f64; 2], [cos, sin]: [f64; 2]) -> i64 {
+pub fn at_end(pair: &Pair, counted: i64, [re, im]: [f64; 2], [cos, sin]: [f64; 2]) -> i64 {
     // The last shear may have crossed the axis re = 0 once more: the quarter of the same half plane.
     let angle = im.atan2(re);
     let before = nearest_turn(counted as f64 * FRAC_PI_2 + FRAC_PI_2 / 2.0, angle);

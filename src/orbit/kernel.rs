@@ -30,7 +30,7 @@ const fn power_of_two(n: i64) -> f64 {
 
 /// One solution in each lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Orbits<const L: usize> {
+pub struct Orbits<const L: usize> {
     pub re: [f64; L],
     pub w: [f64; L],
     /// Σ |g|² over the block ends, from the start on, in the scale of the latest rescaling.
@@ -46,7 +46,7 @@ pub(super) struct Orbits<const L: usize> {
 
 /// L pairs on their way.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes<const L: usize> {
+pub struct Lanes<const L: usize> {
     pub even: Orbits<L>,
     pub odd: Orbits<L>,
     /// 2r − q, r the remainder of kp mod q: an integer in [−q, q).
@@ -73,7 +73,7 @@ pub(super) struct Lanes<const L: usize> {
 }
 
 /// What a run does beside the updates.
-pub(crate) trait Watch {
+pub trait Watch {
     /// Measure `worst`, not only whether it is within bounds.
     const MEASURE: bool;
     /// Count the even solution's quarter turns.

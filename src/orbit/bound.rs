@@ -18,7 +18,7 @@
 
 /// What one step can do to a vector and to its error: the constants of the theorem.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct StepBound {
+pub struct StepBound {
     /// ‖M_k‖ ≤ κ.
     pub kappa: f64,
     /// |r_k| ≤ ε |û_{k−1}|.

@@ -14,9 +14,9 @@
 
 use super::bound::StepBound;
 use super::floquet::ordinary;
-use super::kind::PartialSigns;
 use crate::number::{Ball, Real, Sign, U};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight};
+use crate::propagator::{PartialSigns, TwoClocks};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Bits of the strengths.
 const BITS: u32 = 128;
@@ -29,7 +29,7 @@ const SHRINK: f64 = 1.0 / (1u128 << 127) as f64;
 
 /// The signs of A, B, C, D as far as doubles tell; `None` where the theorem's conditions cannot be met, or a strength
 /// is no comfortable double.
-pub(super) fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<PartialSigns> {
+pub fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<PartialSigns> {
     let steps = Steps::new(clocks, schedule)?;
     let end = |x: f64, y: f64| {
         let mut orbit = Orbit { steps: &steps, x, y, square: x * x + y * y, angle: 0.0, worst: 0.0 };
@@ -130,14 +130,15 @@ impl Orbit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
-    use crate::verdict::Decidable;
+    use crate::propagator::half_period;
     use num_integer::Integer;
     use proptest::prelude::*;
 
     fn signs_of(clocks: &TwoClocks<Rational>) -> Option<PartialSigns> {
-        signs(clocks, &Schedule::two_clocks(clocks.p(), clocks.q()).unwrap())
+        signs(clocks, &Schedule::two_clocks(clocks.ratio()).unwrap())
     }
 
     proptest! {
@@ -146,9 +147,9 @@ mod tests {
             p in 1u64..50, q in 1u64..50, s in -9000i64..9000, k in -9000i64..9000,
         ) {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
-            let clocks = TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000));
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000));
             if let Some(verdict) = signs_of(&clocks).and_then(|signs| signs.verdict()) {
-                prop_assert_eq!(verdict, Decidable::half_signs(&clocks).verdict());
+                prop_assert_eq!(verdict, half_period(&clocks).signs().verdict());
             }
         }
 
@@ -156,7 +157,7 @@ mod tests {
         fn two_clocks_beyond_their_limits_are_told(p in 1u64..50, q in 1u64..50, s in 4100i64..20000, k in 4100i64..20000) {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
             // Beyond both limits: s > 4, and the slow clock's own strength k p/q > 4.
-            let clocks = TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000) * ratio(q as i64, p as i64));
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000) * ratio(q as i64, p as i64));
             prop_assert!(signs_of(&clocks).is_some_and(|signs| signs.verdict().is_some()));
         }
     }
@@ -165,9 +166,13 @@ mod tests {
     #[test]
     fn long_orbits_stay_in_range() {
         for (p, q) in [(101, 100), (4001, 4000), (1, 3000)] {
-            let clocks = TwoClocks::new(p, q, ratio(9, 1), ratio(9, 1) * ratio(q as i64, p as i64));
+            let clocks = TwoClocks::new(
+                Ratio::new(p, q).unwrap(),
+                ratio(9, 1),
+                ratio(9, 1) * ratio(q as i64, p as i64),
+            );
             let verdict = signs_of(&clocks).and_then(|signs| signs.verdict());
-            assert_eq!(verdict, Some(Decidable::half_signs(&clocks).verdict()), "{p}/{q}");
+            assert_eq!(verdict, Some(half_period(&clocks).signs().verdict()), "{p}/{q}");
         }
     }
 }

@@ -40,7 +40,7 @@ const MOST_STEPS: u64 = 1 << 43;
 
 /// The hardest pair of a group in each respect: strongest kick, steepest slope, most steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Hardest {
+pub struct Hardest {
     /// |β|, to within 64u.
     pub beta: f64,
     /// tan(θ/2).
@@ -51,7 +51,7 @@ pub(super) struct Hardest {
 
 /// The constants of the certification, all dimensionless.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Certificate {
+pub struct Certificate {
     step: StepBound,
     steps: u64,
     /// Updates between two looks at |g|.
@@ -110,7 +110,7 @@ impl Certificate {
 
 /// Makes certificates, and remembers those for groups.
 #[derive(Clone, Debug)]
-pub(super) struct Certificates {
+pub struct Certificates {
     /// None for pairs that run alone.
     made: Vec<Option<(Hardest, Option<Certificate>)>>,
 }

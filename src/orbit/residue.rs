@@ -9,7 +9,8 @@ use num_integer::Integer;
 use num_traits::ToPrimitive;
 
 use crate::number::{Laurent, Rational};
-use crate::propagator::{Schedule, TwoClocks, Weight};
+use crate::propagator::TwoClocks;
+use crate::schedule::{Schedule, Weight};
 
 /// 2^61 − 1, a prime.
 const P: u64 = (1 << 61) - 1;
@@ -18,13 +19,13 @@ const P: u64 = (1 << 61) - 1;
 const G: u64 = 0x0123_4567_89ab_cdef;
 
 /// Whether none of A, B, C, D is zero, as far as residues show.
-pub(super) fn nonzero_entries(clocks: &TwoClocks<Laurent>) -> bool {
+pub fn nonzero_entries(clocks: &TwoClocks<Laurent>) -> bool {
     entries(clocks).is_some_and(|entries| entries.into_iter().flatten().all(|entry| entry != 0))
 }
 
 /// H modulo P in the time unit of one tick; `None` where P divides a denominator.
 fn entries(clocks: &TwoClocks<Laurent>) -> Option<[[u64; 2]; 2]> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q()).ok()?;
+    let schedule = Schedule::two_clocks(clocks.ratio()).ok()?;
     let per_tick = inverse(2 * schedule.clocks()[0].step() % P)?;
     let half = |k: &Laurent| residue(k).map(|k| times(k, per_tick));
     let (fast, slow) = (half(clocks.fast())?, half(clocks.slow())?);
@@ -82,12 +83,13 @@ fn inverse(x: u64) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Ring;
     use crate::number::parse::parse;
     use crate::propagator::half_period;
 
-    fn clocks(p: u64, q: u64, fast: &str, slow: &str) -> TwoClocks<Laurent> {
-        TwoClocks::new(p, q, parse("fast", fast).unwrap(), parse("slow", slow).unwrap())
+    fn clocks(ratio: Ratio, fast: &str, slow: &str) -> TwoClocks<Laurent> {
+        TwoClocks::new(ratio, parse("fast", fast).unwrap(), parse("slow", slow).unwrap())
     }
 
     #[test]
@@ -95,7 +97,7 @@ mod tests {
         for (p, q, fast, slow) in
             [(3, 2, "pi^2/7", "1/pi + 2"), (5, 3, "2/pi", "-pi/3"), (1, 4, "pi", "pi^3/5")]
         {
-            let clocks = clocks(p, q, fast, slow);
+            let clocks = clocks(Ratio::new(p, q).unwrap(), fast, slow);
             let half = half_period(&clocks);
             let [[a, _], [_, d]] = entries(&clocks).unwrap();
             // A and D have no unit of time.
@@ -107,7 +109,7 @@ mod tests {
     #[test]
     fn a_zero_is_never_called_nonzero() {
         // Strength s + slow = pi + (4 − pi) = 4 in one kick: an entry vanishes identically.
-        let clocks = clocks(1, 1, "pi", "4 - pi");
+        let clocks = clocks(Ratio::ONE, "pi", "4 - pi");
         assert!(!nonzero_entries(&clocks));
         assert_eq!(Laurent::product(half_period(&clocks).a(), half_period(&clocks).d()).to_string(), "0");
     }

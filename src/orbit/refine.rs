@@ -10,23 +10,23 @@ use num_bigint::BigInt;
 use num_traits::{FromPrimitive, Signed, ToPrimitive};
 
 use super::bound::StepBound;
-use super::kind::PartialSigns;
 use crate::number::{Ball, Rational, Real, Sign};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight};
+use crate::propagator::{PartialSigns, TwoClocks};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
 const HEADROOM: u64 = 32;
 
 /// The even and the odd solution at T/2, in the time unit h1.
 #[derive(Clone, Debug)]
-pub(crate) struct Ends {
+pub struct Ends {
     pub even: End,
     pub odd: End,
 }
 
 /// One solution at T/2: enclosures, certified signs, and the sign changes of x on the way.
 #[derive(Clone, Debug)]
-pub(crate) struct End {
+pub struct End {
     pub x: Ball,
     pub v: Ball,
     pub signs: (Option<Sign>, Option<Sign>),
@@ -43,23 +43,18 @@ impl Ends {
 }
 
 /// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
-pub(crate) fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
+pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
     let steps = Steps::new(clocks, schedule, bits)?;
     Some(Ends { even: steps.end(schedule, true)?, odd: steps.end(schedule, false)? })
 }
 
 /// The even or the odd solution alone.
-pub(crate) fn run_one<S: Real>(
-    clocks: &TwoClocks<S>,
-    schedule: &Schedule,
-    bits: u32,
-    even: bool,
-) -> Option<End> {
+pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, even: bool) -> Option<End> {
     Steps::new(clocks, schedule, bits)?.end(schedule, even)
 }
 
 /// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
-pub(super) fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
+pub fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
     let (fast, slow) = (clocks.fast().enclosure(bits), clocks.slow().enclosure(bits));
     let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, bits)];
     let ticks = BigInt::from(schedule.clocks()[0].step());

@@ -32,7 +32,7 @@ const BITS: u32 = 192;
 /// What the updates need to know of the base clock alone. Every double has a relative error of at most 2u,
 /// u = 2^-53, unless its comment says otherwise.
 #[derive(Clone, Debug)]
-pub(crate) struct Base {
+pub struct Base {
     /// tan(θ/2).
     pub slope: f64,
     /// sin θ.
@@ -46,7 +46,7 @@ pub(crate) struct Base {
 
 /// The turn by nθ = α + h π with |α| ≤ π/2, up to rounding.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Turn {
+pub struct Turn {
     /// tan(α/2), within 4u; at most 1.
     pub tan: f64,
     /// sin α, within 4u.
@@ -137,7 +137,7 @@ impl Turn {
 
 /// One pair's half period on its base: the other clock's kicks strike at the multiples of p/q base steps.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Pair<'a> {
+pub struct Pair<'a> {
     pub base: &'a Base,
     /// Their strength k in the base's unit of time, relative error at most 3u.
     pub kick: f64,
@@ -169,7 +169,7 @@ impl Pair<'_> {
 
 /// One pair with a base of its own.
 #[derive(Clone, Debug)]
-pub(super) struct Floquet {
+pub struct Floquet {
     base: Base,
     p: u64,
     q: u64,
@@ -214,7 +214,7 @@ impl Floquet {
 }
 
 /// The signs of cos(nθ/2) and sin(nθ/2), as far as they are certain; `None` outside 0 < s < 4.
-pub(super) fn turn_signs(s: &Ball, n: u64) -> Option<[Option<Sign>; 2]> {
+pub fn turn_signs(s: &Ball, n: u64) -> Option<[Option<Sign>; 2]> {
     let turned = Phase::half(s, &below_four(s))?.power(n);
     Some([turned.re.sign(), turned.im.sign()])
 }
@@ -273,7 +273,7 @@ impl Phase {
 
 /// A double next to the midpoint, where that has a relative error of at most 2u: the ball is tight and the
 /// number is not 0 and far from the ends of the double's range.
-pub(crate) fn ordinary(x: &Ball) -> Option<f64> {
+pub fn ordinary(x: &Ball) -> Option<f64> {
     const TINY: f64 = 1e-30;
     let value = x.mid_f64();
     let in_range = value.abs() > TINY && value.abs() < 1.0 / TINY;

@@ -8,15 +8,15 @@ use std::marker::PhantomData;
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
 use super::kernel::{Lanes, Orbits, Watch};
-use super::kind::PartialSigns;
 use super::winding;
 use crate::number::{Sign, U};
+use crate::propagator::PartialSigns;
 use crate::vector::each;
 use crate::vector::instructions::{Instructions, Task};
 
 /// Where the even and the odd solution stand at T/2, with proven bounds.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ends {
+pub struct Ends {
     pub even: End,
     pub odd: End,
     /// ⌊Θ/(π/2)⌋, Θ the even solution's turn over the half period; counted on request.
@@ -26,7 +26,7 @@ pub(crate) struct Ends {
 /// One solution at T/2 in Floquet coordinates: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
 /// with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct End {
+pub struct End {
     /// A or B, in the scale that leaves the products AD and BC as they are.
     pub x: f64,
     /// C or D.
@@ -71,18 +71,18 @@ impl Watch for Bare {
 }
 
 /// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
-pub(super) fn run(floquet: &Floquet) -> Option<Ends> {
+pub fn run(floquet: &Floquet) -> Option<Ends> {
     let mut ends = [None];
     Group::<1>::new(Instructions::best()).everything(&[floquet.pair()], &mut ends);
     ends[0]
 }
 
 /// The filter could not tell.
-pub(crate) const UNDECIDED: u8 = u8::MAX;
+pub const UNDECIDED: u8 = u8::MAX;
 
 /// At most L pairs that run side by side. One certificate serves all: that of the strongest kick, the steepest
 /// slope and the most updates.
-pub(crate) struct Group<const L: usize> {
+pub struct Group<const L: usize> {
     instructions: Instructions,
     lanes: Lanes<L>,
     /// Cosine and sine of the base's last turn.
@@ -265,6 +265,7 @@ impl<const L: usize> Group<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
     use crate::propagator::{TwoClocks, half_period};
@@ -274,7 +275,11 @@ mod tests {
     fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
         let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
             let g = p.gcd(&q);
-            Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
+            Floquet::new(&TwoClocks::new(
+                Ratio::new(p / g, q / g).unwrap(),
+                ratio(s, 1000),
+                ratio(2 * k + 1, 2000),
+            ))
         });
         prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
     }
@@ -317,7 +322,7 @@ mod tests {
             p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
         ) {
             let g = p.gcd(&q);
-            let clocks = TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let clocks = TwoClocks::new(Ratio::new(p / g, q / g).unwrap(), ratio(s, 1000), ratio(2 * k + 1, 2000));
             let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
             let half = half_period(&clocks);
             let exact = |x: f64| Rational::from_float(x).unwrap();
