@@ -58,6 +58,7 @@
 //! |---|---|---|
 //! | – | [`error`] | one error with a kind |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
+//! | 0 | `parallel` | work on all threads, or without them |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
 //! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
@@ -74,18 +75,35 @@
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
 //! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
+//!
+//! # Features
+//!
+//! Without any feature the library is the mathematics of one oscillator and of Algorithm 1, and builds in seconds.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `system` | `system`: many clocks, many degrees of freedom (faer) |
+//! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
+//! | `serde` | `scene` and `report`: input documents and output tables |
+//! | `figure` | `report::figure` and the drawings of results |
+//! | `cli` | the program (default) |
 
 pub mod avi;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
 pub mod map;
 pub mod number;
 mod orbit;
+mod parallel;
 pub mod propagator;
+#[cfg(feature = "serde")]
 pub mod report;
 pub mod resonance;
+#[cfg(feature = "serde")]
 pub mod scene;
 pub mod schedule;
+#[cfg(feature = "system")]
 pub mod system;
 pub mod tongue;
 mod vector;

@@ -1,14 +1,14 @@
 //! Widths of tongues that doubles see as one point, against the digits of their edges.
 
-use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
-use kickdrift::tongue::{Gap, Tongues, ratios};
+use kickdrift::number::{Ratio, Rational};
+use kickdrift::tongue::{Gap, Tongues};
 use num_bigint::BigInt;
 use num_integer::Integer;
 use proptest::prelude::*;
 
 fn tongues(p: u64, q: u64, rho: &Rational) -> Tongues {
-    Tongues::new(p, q, rho).unwrap()
+    Tongues::new(Ratio::new(p, q).unwrap(), rho).unwrap()
 }
 
 fn power_of_ten(n: i32) -> Rational {
@@ -100,7 +100,7 @@ fn no_more_digits_of_an_edge_are_asked_for_a_width() {
     // A bound on how often the way in doubles gives up: never, at this and greater rho. At small rho tongues below
     // the Verlet limit are thin because the slow kicks are weak, not because their modes live far from the ends.
     for rho in [ratio(1, 25), ratio(1, 1), ratio(25, 1)] {
-        for (p, q) in ratios(40) {
+        for (p, q) in Ratio::up_to(40).map(Ratio::terms) {
             let mut tongues = tongues(p, q, &rho);
             tongues.all().unwrap();
             assert_eq!(tongues.effort().precise, 0, "{p}/{q}, rho = {rho}");

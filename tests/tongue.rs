@@ -4,10 +4,10 @@ use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{Grid, Products, Shard, for_each_band};
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
-use kickdrift::number::{Polynomial, Rational};
+use kickdrift::number::{Polynomial, Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::{
-    Closing, Edge, Entry, ExactEdge, Gap, Search, Side, Tongues, Wanted, closings, entries, ratios, survey,
+    Closing, Edge, Entry, ExactEdge, Gap, Search, Side, Tongues, Wanted, closings, entries, survey,
 };
 use kickdrift::verdict::{Decidable, Kind, Limits, decide, growth};
 use num_integer::Integer;
@@ -15,7 +15,7 @@ use num_traits::Zero;
 use proptest::prelude::*;
 
 fn tongues(p: u64, q: u64, rho: &Rational) -> Tongues {
-    Tongues::new(p, q, rho).unwrap()
+    Tongues::new(Ratio::new(p, q).unwrap(), rho).unwrap()
 }
 
 fn lowest_terms(p: u64, q: u64) -> (u64, u64) {
@@ -55,7 +55,7 @@ fn known_edges_at_rho_one_twenty_fifth() {
 
 #[test]
 fn there_are_p_plus_q_minus_2_finite_tongues_and_an_infinite_one_none_overlapping() {
-    for (p, q) in ratios(16) {
+    for (p, q) in Ratio::up_to(16).map(Ratio::terms) {
         for rho in [ratio(1, 25), ratio(7, 10), ratio(9, 2)] {
             let mut tongues = tongues(p, q, &rho);
             let gaps = tongues.all().unwrap();
@@ -94,7 +94,7 @@ fn one_tongue_costs_two_edges_and_is_the_same_as_among_all() {
 #[test]
 fn edges_are_as_narrow_as_doubles_get() {
     let rho = ratio(1, 25);
-    for (p, q) in ratios(40) {
+    for (p, q) in Ratio::up_to(40).map(Ratio::terms) {
         let mut tongues = tongues(p, q, &rho);
         for entry in Entry::ALL {
             for edge in all_edges(&mut tongues, entry) {
@@ -107,7 +107,7 @@ fn edges_are_as_narrow_as_doubles_get() {
 /// Each edge's enclosure holds exactly one root of the entry's polynomial, and they are all its positive roots.
 fn roots_are_edges(p: u64, q: u64, rho: &Rational) {
     let mut tongues = tongues(p, q, rho);
-    let polynomials = entries(p, q, rho);
+    let polynomials = entries(Ratio::new(p, q).unwrap(), rho);
     for (entry, polynomial) in Entry::ALL.into_iter().zip(polynomials) {
         let edges = all_edges(&mut tongues, entry);
         assert_eq!(polynomial.degree(), Some(edges.len()), "{p}/{q}, rho = {rho}, {entry:?}");
@@ -150,7 +150,7 @@ proptest! {
         let (gap, next) = (&gaps[gap % gaps.len()], gaps.get(gap % gaps.len() + 1));
         let blend = |lo: f64, hi: f64| exact(lo) + (exact(hi) - exact(lo)) * ratio(share, 1000);
         let at = |s: Rational| {
-            let clocks = TwoClocks::with_rho(p, q, s, rho.clone());
+            let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s, rho.clone());
             let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
             (verdict, growth(&clocks, verdict, &Limits::default()).unwrap().label)
         };
@@ -179,7 +179,7 @@ proptest! {
         prop_assert!(precise.width() <= goal);
         // The exact signs at both ends differ, or the zero is known exactly.
         let sign = |s: &Rational| {
-            let clocks = TwoClocks::with_rho(p, q, s.clone(), ratio(n, 50));
+            let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s.clone(), ratio(n, 50));
             Decidable::half_signs(&clocks).all()[edge.entry as usize].to_i8()
         };
         prop_assert!(sign(&precise.lo) * sign(&precise.hi) < 0 || sign(&precise.lo) == 0);
@@ -292,7 +292,7 @@ fn without_a_slow_force_every_tongue_is_closed_on_its_resonance() {
 #[test]
 fn a_tongue_lies_at_or_below_its_resonance() {
     // Edges fall as rho grows (masses do) and start on the resonance: the predicted point is never inside.
-    for (p, q) in ratios(14) {
+    for (p, q) in Ratio::up_to(14).map(Ratio::terms) {
         let mut tongues = tongues(p, q, &ratio(3, 4));
         for m in 1..p {
             let gap = tongues.gap(m).unwrap();
@@ -310,7 +310,7 @@ fn the_peak_is_a_peak() {
         let gap = tongues.gap(m).unwrap();
         let peak = tongues.row(&gap, &Wanted { growth: true, ..Wanted::default() }).unwrap().peak.unwrap();
         let rate = |s: f64| {
-            let clocks = TwoClocks::with_rho(p, q, exact(s), rho.clone());
+            let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), exact(s), rho.clone());
             let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
             let ln = growth(&clocks, verdict, &Limits::default())
                 .unwrap()
@@ -357,7 +357,7 @@ fn the_peak_is_where_the_zeros_of_the_entries_put_it_for_edges_decades_apart_too
                     "{name}"
                 );
                 // And that is ln mu there, by the verdict's route.
-                let clocks = TwoClocks::with_rho(p, q, exact(peak.s), rho.clone());
+                let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), exact(peak.s), rho.clone());
                 let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
                 let ln =
                     growth(&clocks, verdict, &Limits::default()).unwrap().ln_multiplier.unwrap().mid_f64();
@@ -402,7 +402,7 @@ fn the_peak_of_a_tongue_thinner_than_any_double_is_told() {
     let peak = tongues.row(&gap, &Wanted { growth: true, ..Wanted::default() }).unwrap().peak.unwrap();
     let [lower, upper] = [gap.lower, gap.upper.unwrap()].map(|edge| tongues.refine(&edge, 110).unwrap());
     let middle = (lower.middle() + upper.middle()) / ratio(2, 1);
-    let clocks = TwoClocks::with_rho(47, 51, middle, ratio(1, 25));
+    let clocks = TwoClocks::with_rho("47/51".parse().unwrap(), middle, ratio(1, 25));
     let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
     let ln = growth(&clocks, verdict, &Limits::default()).unwrap().ln_multiplier.unwrap().mid_f64();
     assert!((ln - peak.ln_multiplier).abs() < 1e-15 * ln, "{ln}: {peak:?}");
@@ -424,7 +424,7 @@ fn first_order_widths_become_exact_as_rho_vanishes() {
 }
 
 fn found(p: u64, q: u64) -> Vec<Closing> {
-    let found = closings(p, q, &Search::default()).unwrap();
+    let found = closings(Ratio::new(p, q).unwrap(), &Search::default()).unwrap();
     assert!(found.complete, "{p}/{q}");
     found.closings
 }
@@ -448,7 +448,7 @@ fn known_closings_come_out() {
 
 #[test]
 fn one_or_two_slow_kicks_never_close() {
-    for (p, q) in ratios(11).into_iter().filter(|(p, q)| p.min(q) <= &2) {
+    for (p, q) in Ratio::up_to(11).map(Ratio::terms).filter(|(p, q)| p.min(q) <= &2) {
         assert!(found(p, q).is_empty(), "{p}/{q}");
     }
 }
@@ -458,7 +458,7 @@ fn swapping_the_clocks_inverts_the_closing_rho() {
     for (p, q) in [(5, 3), (5, 4), (7, 4), (8, 3)] {
         let mut own: Vec<(u64, f64)> = found(p, q).iter().map(|c| (c.m, to_f64(&c.rho.middle()))).collect();
         let wide = Search { rho: (ratio(1, 100), ratio(10_000, 1)), ..Search::default() };
-        let other = closings(q, p, &wide).unwrap().closings;
+        let other = closings(Ratio::new(q, p).unwrap(), &wide).unwrap().closings;
         let mut other: Vec<(u64, f64)> = other.iter().map(|c| (c.m, 1.0 / to_f64(&c.rho.middle()))).collect();
         own.sort_by(|a, b| a.partial_cmp(b).unwrap());
         other.sort_by(|a, b| a.partial_cmp(b).unwrap());
@@ -475,11 +475,13 @@ fn a_closed_tongue_is_proven_closed_and_its_neighbours_open() {
     let gaps = tongues.all().unwrap();
     let closed: Vec<u64> = gaps.iter().filter(|gap| gap.closed).map(|gap| gap.m).collect();
     assert_eq!(closed, [4]);
-    let verdict = Decidable::half_signs(&TwoClocks::with_rho(5, 3, ratio(11, 4), ratio(114, 55))).verdict();
+    let verdict =
+        Decidable::half_signs(&TwoClocks::with_rho("5/3".parse().unwrap(), ratio(11, 4), ratio(114, 55)))
+            .verdict();
     assert_eq!(verdict.kind(), Kind::Coexistence);
     // A hair beside, it is open, and thin.
     let beside = ratio(114, 55) + Rational::new(1.into(), num_bigint::BigInt::from(10).pow(30));
-    let gap: Gap = Tongues::new(5, 3, &beside).unwrap().gap(4).unwrap();
+    let gap: Gap = Tongues::new("5/3".parse().unwrap(), &beside).unwrap().gap(4).unwrap();
     assert!(!gap.closed && gap.width.0 > 0.0 && gap.width.1 < 1e-28, "{gap:?}");
 }
 
@@ -495,7 +497,7 @@ fn tongues_far_thinner_than_doubles_are_open_all_the_same() {
 #[test]
 fn a_survey_decides_every_tongue() {
     let survey = survey(24, &ratio(1, 25), 4).unwrap();
-    assert_eq!(survey.ratios, ratios(24).len() as u64);
+    assert_eq!(survey.ratios, Ratio::up_to(24).count() as u64);
     assert_eq!(survey.tongues, survey.open + survey.closed.len() as u64);
     assert_eq!(
         survey.predicted,
@@ -506,24 +508,24 @@ fn a_survey_decides_every_tongue() {
     let counted: u64 = survey.width_ratios.iter().map(|spread| spread.count).sum();
     assert_eq!(counted, survey.predicted);
     // Every tongue m < p lies below s = 4, and m = p begins there or below.
-    let at_least: u64 = ratios(24).iter().map(|(p, _)| p).sum();
+    let at_least: u64 = Ratio::up_to(24).map(Ratio::p).sum();
     assert!(survey.tongues >= at_least);
 }
 
 #[test]
 fn bad_input_is_told_so() {
-    let negative = Tongues::new(7, 3, &ratio(-1, 25)).unwrap_err();
+    let negative = Tongues::new("7/3".parse().unwrap(), &ratio(-1, 25)).unwrap_err();
     assert_eq!(negative.kind(), ErrorKind::Input);
     assert!(negative.to_string().contains("map"), "{negative}");
-    for (p, q, rho) in [(4, 2, ratio(1, 2)), (0, 1, ratio(1, 2)), (3, 0, ratio(1, 2))] {
-        assert_eq!(Tongues::new(p, q, &rho).unwrap_err().kind(), ErrorKind::Input);
-    }
-    assert_eq!(Tongues::new(1 << 40, 1, &ratio(1, 2)).unwrap_err().kind(), ErrorKind::Budget);
+    assert_eq!(
+        Tongues::new(Ratio::new(1 << 40, 1).unwrap(), &ratio(1, 2)).unwrap_err().kind(),
+        ErrorKind::Budget
+    );
     let mut tongues = tongues(5, 3, &ratio(1, 2));
     assert!(tongues.gap(0).is_err() && tongues.gap(8).is_err());
     assert!(tongues.edges(Entry::B, 0, 1).is_err() && tongues.edges(Entry::B, 1, 9).is_err());
     let empty = Search { rho: (ratio(2, 1), ratio(1, 1)), ..Search::default() };
-    assert!(closings(5, 3, &empty).is_err());
+    assert!(closings("5/3".parse().unwrap(), &empty).is_err());
 }
 
 #[test]
@@ -544,7 +546,7 @@ fn string_edges_are_the_roots_of_the_entries_for_longer_periods() {
 
 #[test]
 fn polynomials_have_the_expected_degrees() {
-    let polynomials: [Polynomial<Rational>; 4] = entries(5, 3, &ratio(2, 7));
+    let polynomials: [Polynomial<Rational>; 4] = entries("5/3".parse().unwrap(), &ratio(2, 7));
     let total: usize = polynomials.iter().map(|f| f.degree().unwrap()).sum();
     assert_eq!(total, 2 * (5 + 3) - 3);
 }

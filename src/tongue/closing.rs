@@ -12,7 +12,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Search, closings};
 //! // A resonance that does not destabilize: 5/3, m = 4.
-//! let found = closings(5, 3, &Search { m: Some(4), ..Search::default() }).unwrap();
+//! let found = closings("5/3".parse().unwrap(), &Search { m: Some(4), ..Search::default() }).unwrap();
 //! let closing = &found.closings[0];
 //! assert_eq!(closing.exact, Some((ratio(11, 4), ratio(114, 55))));
 //! assert!(closing.below_verlet && found.closings.len() == 1 && found.complete);
@@ -27,7 +27,7 @@ use super::modular;
 use super::precise::{Enclosure, simplest};
 use super::string::Entry;
 use crate::error::{Error, Result};
-use crate::number::{Ball, Rational, Sign, rational};
+use crate::number::{Ball, Ratio, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::verdict::Decidable;
 
@@ -59,8 +59,7 @@ impl Default for Search {
 /// A closed tongue, certified: the box s × ρ holds exactly one common zero of the two entries, and it is tongue m's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Closing {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub m: u64,
     pub s: Enclosure,
     pub rho: Enclosure,
@@ -89,12 +88,12 @@ const BOX: i64 = -100;
 ///
 /// # Errors
 /// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`].
-pub fn closings(p: u64, q: u64, search: &Search) -> Result<Found> {
+pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let rhos = samples(search)?;
     let mut found = Vec::new();
     let mut before: Option<(Rational, Vec<Order>)> = None;
     for rho in rhos {
-        let orders = orders(p, q, &rho, search.m)?;
+        let orders = orders(ratio, &rho, search.m)?;
         for (k, order) in orders.iter().enumerate() {
             if order.closed {
                 found.push((order.m, rho.clone(), rho.clone()));
@@ -109,8 +108,8 @@ pub fn closings(p: u64, q: u64, search: &Search) -> Result<Found> {
     }
     found.sort();
     let closings: Vec<Closing> =
-        found.into_iter().map(|(m, lo, hi)| certify(p, q, m, &lo, &hi)).collect::<Result<_>>()?;
-    let complete = p + q <= ELIMINATION && is_complete(p, q, search, &closings)?;
+        found.into_iter().map(|(m, lo, hi)| certify(ratio, m, &lo, &hi)).collect::<Result<_>>()?;
+    let complete = ratio.kicks() <= ELIMINATION && is_complete(ratio, search, &closings)?;
     Ok(Found { closings, complete })
 }
 
@@ -141,8 +140,8 @@ struct Order {
     closed: bool,
 }
 
-fn orders(p: u64, q: u64, rho: &Rational, m: Option<u64>) -> Result<Vec<Order>> {
-    let mut tongues = Tongues::new(p, q, rho)?;
+fn orders(ratio: Ratio, rho: &Rational, m: Option<u64>) -> Result<Vec<Order>> {
+    let mut tongues = Tongues::new(ratio, rho)?;
     let (from, upto) = m.map_or((1, tongues.last() - 1), |m| (m, m));
     if upto < from {
         return Ok(Vec::new());
@@ -152,11 +151,11 @@ fn orders(p: u64, q: u64, rho: &Rational, m: Option<u64>) -> Result<Vec<Order>> 
 }
 
 /// Narrows the bracket of ρ, finds the zero by Newton's method, and proves it.
-fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Closing> {
+fn certify(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Closing> {
     let pair = modular::pair(m % 2 == 1);
     let (mut lo, mut hi) = (lo.clone(), hi.clone());
     loop {
-        let start = Start::new(p, q, m, &lo, &hi)?;
+        let start = Start::new(ratio, m, &lo, &hi)?;
         if let Some(closing) =
             start.newton(pair)?.and_then(|(s, rho)| start.proven(pair, &s, &rho).transpose())
         {
@@ -165,7 +164,7 @@ fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Closi
         // Closer still: the middle's order tells which half holds the crossing.
         let two = Rational::from_integer(2.into());
         let middle = (&lo + &hi) / two;
-        let (below, at) = (orders(p, q, &lo, Some(m))?, orders(p, q, &middle, Some(m))?);
+        let (below, at) = (orders(ratio, &lo, Some(m))?, orders(ratio, &middle, Some(m))?);
         match (below[0].lower == at[0].lower, at[0].closed) {
             (_, true) => (lo, hi) = (middle.clone(), middle),
             (true, _) => lo = middle,
@@ -176,23 +175,22 @@ fn certify(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Closi
 
 /// A bracket of ρ, and of s: all edges fall as ρ grows (masses do), so tongue m's edges at its ends bound s*.
 struct Start {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     m: u64,
     s: (Rational, Rational),
     rho: (Rational, Rational),
 }
 
 impl Start {
-    fn new(p: u64, q: u64, m: u64, lo: &Rational, hi: &Rational) -> Result<Self> {
+    fn new(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Self> {
         let edges = |rho: &Rational| -> Result<(f64, f64)> {
-            let gap = Tongues::new(p, q, rho)?.gap(m)?;
+            let gap = Tongues::new(ratio, rho)?.gap(m)?;
             let upper = gap.upper.expect("a finite tongue");
             Ok((gap.lower.lo.min(upper.lo), gap.lower.hi.max(upper.hi)))
         };
         let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
         let s = (exact(edges(hi)?.0), exact(edges(lo)?.1));
-        Ok(Start { p, q, m, s, rho: (lo.clone(), hi.clone()) })
+        Ok(Start { ratio, m, s, rho: (lo.clone(), hi.clone()) })
     }
 
     /// Newton's method from the bracket's middle; `None` where it leaves the bracket.
@@ -203,7 +201,7 @@ impl Start {
         let (mut s, mut rho) = (middle(&self.s), middle(&self.rho));
         // Nine squarings of 1/2 pass 2^-500.
         for _ in 0..24 {
-            let jets = jets(self.p, self.q, &point(&s), &point(&rho), pair, BITS)?;
+            let jets = jets(self.ratio, &point(&s), &point(&rho), pair, BITS)?;
             let Some([ds, dr]) = solve(&jets, [&jets[0].0[0], &jets[1].0[0]]) else { return Ok(None) };
             (s, rho) = (point(&s.sub(&ds, BITS)), point(&rho.sub(&dr, BITS)));
         }
@@ -218,7 +216,7 @@ impl Start {
 
     /// Krawczyk's test on the box about (s, ρ), and that the zero belongs to tongue m.
     fn proven(&self, pair: [Entry; 2], s: &Rational, rho: &Rational) -> Result<Option<Closing>> {
-        let (p, q) = (self.p, self.q);
+        let ratio = self.ratio;
         let centre = [s, rho].map(|x| Ball::from_rational(x, BITS));
         let radius = [s, rho].map(|x| x.abs() * rational::scale2(&One::one(), BOX));
         let sides: [Ball; 2] = std::array::from_fn(|i| {
@@ -226,8 +224,8 @@ impl Start {
             end([s, rho][i] - &radius[i]).union(&end([s, rho][i] + &radius[i]), BITS)
         });
         let wide: [Ball; 2] = std::array::from_fn(|i| sides[i].sub(&centre[i], BITS));
-        let at = jets(p, q, &centre[0], &centre[1], pair, BITS)?;
-        let over = jets(p, q, &sides[0], &sides[1], pair, BITS)?;
+        let at = jets(ratio, &centre[0], &centre[1], pair, BITS)?;
+        let over = jets(ratio, &sides[0], &sides[1], pair, BITS)?;
         // K − centre = −Y F(centre) + (1 − Y F'(box)) (box − centre), Y ≈ F'(centre)⁻¹.
         let Some(inverse) = inverse(&at) else { return Ok(None) };
         let mut image = Vec::new();
@@ -256,8 +254,8 @@ impl Start {
     fn belongs(&self, s: &Enclosure, rho: &Enclosure) -> Result<bool> {
         let index = self.m.div_ceil(2) as usize;
         let (lo, hi) = s.to_f64();
-        let mut early = Tongues::new(self.p, self.q, &rho.lo)?;
-        let mut late = Tongues::new(self.p, self.q, &rho.hi)?;
+        let mut early = Tongues::new(self.ratio, &rho.lo)?;
+        let mut late = Tongues::new(self.ratio, &rho.hi)?;
         let mut mine = true;
         for entry in modular::pair(self.m % 2 == 1) {
             // Falling in ρ: the zero below is highest early, the zero above lowest late.
@@ -275,8 +273,8 @@ impl Start {
         let exact = self.rational(&s, &rho);
         let four = Rational::from_integer(4.into());
         let below_verlet = exact.as_ref().map_or_else(|| s.hi < four, |(s, _)| *s < four);
-        let (p, q, m) = (self.p, self.q, self.m);
-        Ok(Closing { p, q, m, s, rho, exact, below_verlet })
+        let (ratio, m) = (self.ratio, self.m);
+        Ok(Closing { ratio, m, s, rho, exact, below_verlet })
     }
 
     /// The simplest rationals in the box, if they are the closing: the box holds no other.
@@ -284,8 +282,8 @@ impl Start {
         let (s, rho) = (simplest(&s.lo, &s.hi), simplest(&rho.lo, &rho.hi));
         // Half the box's own digits: a coincidence of that kind would be a wonder, and is checked all the same.
         let short = s.denom().bits() < 100 && rho.denom().bits() < 100;
-        let signs = short
-            .then(|| Decidable::half_signs(&TwoClocks::with_rho(self.p, self.q, s.clone(), rho.clone())))?;
+        let signs =
+            short.then(|| Decidable::half_signs(&TwoClocks::with_rho(self.ratio, s.clone(), rho.clone())))?;
         let closed =
             modular::pair(self.m % 2 == 1).iter().all(|&entry| signs.all()[entry as usize] == Sign::Zero);
         closed.then_some((s, rho))
@@ -317,14 +315,14 @@ fn solve(jets: &[Jet; 2], f: [&Ball; 2]) -> Option<[Ball; 2]> {
 }
 
 /// Whether the resultants have no more zeros in the range of ρ than closings were found.
-fn is_complete(p: u64, q: u64, search: &Search, closings: &[Closing]) -> Result<bool> {
+fn is_complete(ratio: Ratio, search: &Search, closings: &[Closing]) -> Result<bool> {
     let (lo, hi) = &search.rho;
     let one_parity = |odd: bool| {
         let mut rhos: Vec<&Enclosure> =
             closings.iter().filter(|c| (c.m % 2 == 1) == odd).map(|closing| &closing.rho).collect();
         rhos.sort_by(|a, b| a.lo.cmp(&b.lo));
         let apart = rhos.windows(2).all(|pair| pair[0].hi < pair[1].lo);
-        let Some(count) = elimination::closings(p, q, modular::pair(odd), lo, hi) else { return true };
+        let Some(count) = elimination::closings(ratio, modular::pair(odd), lo, hi) else { return true };
         apart && count == rhos.len()
     };
     Ok(match search.m {

@@ -4,15 +4,15 @@ use num_traits::Zero;
 
 use super::string::Entry;
 use crate::number::polynomial::resultant;
-use crate::number::{Polynomial, Rational};
+use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 
 /// Q\[s\].
 type InS = Polynomial<Rational>;
 
 /// A, B, C, D as polynomials in s, for fixed ρ; C without its factor s.
-pub fn entries(p: u64, q: u64, rho: &Rational) -> [InS; 4] {
-    let clocks = TwoClocks::with_rho(p, q, InS::variable(), InS::constant(rho.clone()));
+pub fn entries(ratio: Ratio, rho: &Rational) -> [InS; 4] {
+    let clocks = TwoClocks::with_rho(ratio, InS::variable(), InS::constant(rho.clone()));
     let [a, b, c, d] = of_half(&half_period(&clocks));
     [a, b, without_zero(&c), d]
 }
@@ -28,8 +28,8 @@ fn without_zero(f: &InS) -> InS {
 }
 
 /// The greatest common divisor of two entries.
-pub(super) fn common_factor(p: u64, q: u64, rho: &Rational, pair: [Entry; 2]) -> InS {
-    let entries = entries(p, q, rho);
+pub(super) fn common_factor(ratio: Ratio, rho: &Rational, pair: [Entry; 2]) -> InS {
+    let entries = entries(ratio, rho);
     entries[pair[0] as usize].gcd(&entries[pair[1] as usize])
 }
 
@@ -40,10 +40,10 @@ type InRho = Polynomial<Polynomial<Rational>>;
 ///
 /// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are what
 /// the string has masses: they do not fall.
-pub(super) fn closings(p: u64, q: u64, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
+pub(super) fn closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
     let s = InRho::variable();
     let rho = InRho::constant(Polynomial::variable());
-    let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(p, q, s, rho)));
+    let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(ratio, s, rho)));
     let c = Polynomial::new(c.coefficients()[1..].to_vec());
     let entries = [a, b, c, d];
     let [x, y] = pair.map(|entry| primitive(&entries[entry as usize]));

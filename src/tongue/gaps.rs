@@ -7,7 +7,6 @@
 
 use std::ops::RangeInclusive;
 
-use num_integer::Integer;
 use num_traits::{Signed, Zero};
 
 use super::modular;
@@ -16,7 +15,7 @@ use super::precise::{Enclosure, Function};
 use super::spectrum::Edge;
 use super::string::{Entry, HalfString};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Rational, rational};
+use crate::number::{Ball, Ratio, Rational, rational};
 
 /// How much work was done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,8 +29,7 @@ pub struct Effort {
 /// All tongues of one p/q and ρ ≥ 0, computed as they are asked for.
 #[derive(Clone, Debug)]
 pub struct Tongues {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     rho: Rational,
     string: HalfString,
     /// Whether all tongues of even and of odd m are proven open; `None`: not asked yet.
@@ -43,28 +41,26 @@ impl Tongues {
     /// The tongues of h2/h1 = p/q and ρ = L2/L1.
     ///
     /// # Errors
-    /// p/q not in lowest terms, ρ < 0 (no string: use `map`), ρ p/q beyond 1e±16, too many kicks.
-    pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
-        if p == 0 || q == 0 || p.gcd(&q) != 1 {
-            return Err(Error::input(
-                "ratio",
-                format!("{p}/{q}"),
-                "give a positive fraction in lowest terms",
-            ));
-        }
-        let string = HalfString::new(p, q, rho)?;
+    /// ρ < 0 (no string: use `map`), ρ p/q beyond 1e±16, too many kicks.
+    pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
+        let string = HalfString::new(ratio, rho)?;
         let rho = rho.clone();
-        Ok(Tongues { p, q, rho, string, open: [None; 2], effort: Effort::default() })
+        Ok(Tongues { ratio, rho, string, open: [None; 2], effort: Effort::default() })
+    }
+
+    /// h2/h1 = p/q.
+    pub fn ratio(&self) -> Ratio {
+        self.ratio
     }
 
     /// The numerator of h2/h1.
     pub fn p(&self) -> u64 {
-        self.p
+        self.ratio.p()
     }
 
     /// The denominator of h2/h1.
     pub fn q(&self) -> u64 {
-        self.q
+        self.ratio.q()
     }
 
     /// ρ = L2/L1.
@@ -74,7 +70,7 @@ impl Tongues {
 
     /// m of the last tongue, which is infinite: p + q − 1, or p for ρ = 0.
     pub fn last(&self) -> u64 {
-        if self.rho.is_zero() { self.p } else { self.p + self.q - 1 }
+        if self.rho.is_zero() { self.p() } else { self.ratio.kicks() - 1 }
     }
 
     /// The work done so far.
@@ -236,7 +232,7 @@ impl Tongues {
     }
 
     pub(super) fn function(&self, entry: Entry) -> Result<Function> {
-        Function::new(self.p, self.q, &self.rho, entry)
+        Function::new(self.ratio, &self.rho, entry)
     }
 
     pub(super) fn string(&self) -> &HalfString {
@@ -247,13 +243,13 @@ impl Tongues {
         if (1..=self.last()).contains(&m) {
             return Ok(());
         }
-        Err(Error::input("m", m, format!("{}/{} has the tongues 1 to {}", self.p, self.q, self.last())))
+        Err(Error::input("m", m, format!("{} has the tongues 1 to {}", self.ratio, self.last())))
     }
 
     /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
     pub fn resonance(&self, m: u64, bits: u32) -> Ball {
         let angle = Ball::pi(bits + 16)
-            .mul(&Ball::from_rational(&Rational::new(m.into(), (2 * self.p).into()), bits + 16), bits + 16);
+            .mul(&Ball::from_rational(&Rational::new(m.into(), (2 * self.p()).into()), bits + 16), bits + 16);
         angle.sin(bits + 8).square(bits).scale2(2)
     }
 }

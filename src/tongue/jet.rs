@@ -2,7 +2,7 @@
 
 use super::string::Entry;
 use crate::error::Result;
-use crate::number::{Ball, Rational};
+use crate::number::{Ball, Ratio, Rational};
 use crate::schedule::{Schedule, Weight};
 
 /// A function's value, its derivative in s and in ρ.
@@ -35,12 +35,12 @@ impl Jet {
 
 /// The entries' jets over s × ρ, by plain ball arithmetic: for short periods and small boxes, whose growth over the
 /// period the bits outlast.
-pub(super) fn jets(p: u64, q: u64, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u32) -> Result<[Jet; 2]> {
-    let schedule = Schedule::two_clocks(p, q)?;
+pub(super) fn jets(ratio: Ratio, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u32) -> Result<[Jet; 2]> {
+    let schedule = Schedule::two_clocks(ratio)?;
     let exact = |n: u64, d: u64| Ball::from_rational(&Rational::new(n.into(), d.into()), bits);
     let s = Jet([s.clone(), Ball::one(), Ball::zero()]);
     let rho = Jet([rho.clone(), Ball::zero(), Ball::one()]);
-    let slow = s.times(&rho, bits).scaled(&exact(p, q), bits);
+    let slow = s.times(&rho, bits).scaled(&exact(ratio.p(), ratio.q()), bits);
     let kicks = [Jet::constant(Ball::zero()), s.clone(), slow.clone(), s.plus(&slow, bits)];
     let ticks = schedule.clocks()[0].step();
     let orbit = |even: bool| {

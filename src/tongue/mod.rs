@@ -22,7 +22,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Entry, Tongues};
 //! // 7/2 at rho = 1/25, m = 4: one edge sits on the resonance 4 sin²(2 pi/7).
-//! let mut tongues = Tongues::new(7, 2, &ratio(1, 25)).unwrap();
+//! let mut tongues = Tongues::new("7/2".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let gap = tongues.gap(4).unwrap();
 //! let (lower, upper) = (gap.lower, gap.upper.unwrap());
 //! assert!(lower.lo <= 2.3150964145691537 && 2.3150964145691537 <= lower.hi);
@@ -68,4 +68,4 @@ pub use row::{ExactEdge, Law, Predicted, Row, Side, Wanted};
 pub use select::{Resonance, Selection};
 pub use spectrum::Edge;
 pub use string::Entry;
-pub use survey::{Spread, Survey, Thin, ratios, survey};
+pub use survey::{Spread, Survey, Thin, survey};

@@ -11,7 +11,7 @@ use num_traits::{ToPrimitive, Zero};
 
 use super::string::Entry;
 use crate::error::Result;
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
 use crate::schedule::{Schedule, Weight};
 
 /// 2^61 − 1, a Mersenne prime.
@@ -68,11 +68,11 @@ fn add_multiple(x: &mut Coefficients, c: u64, y: &[u64]) {
 }
 
 /// x and v at T/2 as polynomials in 2κ; `None` where the prime divides a denominator.
-fn ends(p: u64, q: u64, rho: &Rational, even: bool) -> Result<Option<(Coefficients, Coefficients)>> {
-    let Some(slow) = residue(&(rho * Rational::new(p.into(), q.into()))) else { return Ok(None) };
+fn ends(ratio: Ratio, rho: &Rational, even: bool) -> Result<Option<(Coefficients, Coefficients)>> {
+    let Some(slow) = residue(&(rho * Rational::from(ratio))) else { return Ok(None) };
     let half = [0, 1, slow, plus(1, slow)];
     let (mut x, mut v) = if even { (vec![1], vec![]) } else { (vec![], vec![1]) };
-    let schedule = Schedule::two_clocks(p, q)?;
+    let schedule = Schedule::two_clocks(ratio)?;
     for event in schedule.half_period() {
         add_multiple(&mut x, event.drift % PRIME, &v);
         let mass = half[event.kicks as usize];
@@ -102,9 +102,9 @@ fn common_degree(mut a: Coefficients, mut b: Coefficients) -> usize {
 /// Whether both edges of every tongue of the given parity of m are proven different, for ρ > 0.
 ///
 /// `degrees` are the numbers of positive zeros of (B, C) for even m, of (A, D) for odd m.
-pub(super) fn all_open(p: u64, q: u64, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
+pub(super) fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
     debug_assert!(!rho.is_zero());
-    let (Some(even_start), Some(odd_start)) = (ends(p, q, rho, true)?, ends(p, q, rho, false)?) else {
+    let (Some(even_start), Some(odd_start)) = (ends(ratio, rho, true)?, ends(ratio, rho, false)?) else {
         return Ok(false);
     };
     let (first, second) = if odd { (even_start.0, odd_start.1) } else { (odd_start.0, even_start.1) };

@@ -103,7 +103,7 @@ impl Tongues {
             return Ok(open);
         }
         let degrees = modular::pair(odd).map(|entry| self.string().dimension(entry));
-        let open = modular::all_open(self.p(), self.q(), self.rho(), odd, degrees)?;
+        let open = modular::all_open(self.ratio(), self.rho(), odd, degrees)?;
         self.open[usize::from(odd)] = Some(open);
         Ok(open)
     }
@@ -120,7 +120,7 @@ impl Tongues {
         if f.exact_sign(&candidate) == Sign::Zero && g.exact_sign(&candidate) == Sign::Zero {
             return Ok(true);
         }
-        let common = super::elimination::common_factor(self.p(), self.q(), self.rho(), [a.entry, b.entry]);
+        let common = super::elimination::common_factor(self.ratio(), self.rho(), [a.entry, b.entry]);
         Ok(common.degree() > Some(0) && common.count_roots(lo, hi) > 0)
     }
 }

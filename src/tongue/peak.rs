@@ -108,7 +108,7 @@ impl Tongues {
         let side = if m.is_multiple_of(2) { 1 } else { -1 };
         let unstable = |verdict: &&Verdict| verdict.kind() == Kind::Hyperbolic && verdict.side() == side;
         let verdict = Verdict::ALL.iter().find(unstable).expect("a row of the table");
-        let clocks = TwoClocks::with_rho(self.p(), self.q(), s.clone(), self.rho().clone());
+        let clocks = TwoClocks::with_rho(self.ratio(), s.clone(), self.rho().clone());
         let ln = growth(&clocks, *verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
         ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
             let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
@@ -217,7 +217,9 @@ mod tests {
         let (mut seen, mut left) = (0, 0);
         for decade in [-12, -6, -3, -1, 0, 2, 6, 12] {
             for (p, q) in [(2, 1), (1, 2), (7, 3), (5, 6), (4, 9), (19, 16)] {
-                let mut tongues = Tongues::new(p, q, &(ratio(7, 5) * power(decade))).unwrap();
+                let mut tongues =
+                    Tongues::new(crate::number::Ratio::new(p, q).unwrap(), &(ratio(7, 5) * power(decade)))
+                        .unwrap();
                 for gap in tongues.all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;

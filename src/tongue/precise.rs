@@ -16,7 +16,7 @@ use num_traits::{One, Zero};
 use super::spectrum::Edge;
 use super::string::Entry;
 use crate::error::Result;
-use crate::number::{Ball, Rational, Sign, rational};
+use crate::number::{Ball, Ratio, Rational, Sign, rational};
 use crate::orbit::refine;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -32,8 +32,7 @@ pub struct Enclosure {
 /// An entry of the half period as a function of s, for fixed p/q and ρ.
 #[derive(Clone, Debug)]
 pub(super) struct Function {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     /// The slow clock's mass ρ p/q, in those of the fast one.
     pub slow: Rational,
     pub schedule: Schedule,
@@ -79,13 +78,13 @@ impl Enclosure {
 }
 
 impl Function {
-    pub fn new(p: u64, q: u64, rho: &Rational, entry: Entry) -> Result<Self> {
-        let slow = rho * Rational::new(p.into(), q.into());
-        Ok(Function { p, q, slow, schedule: Schedule::two_clocks(p, q)?, entry })
+    pub fn new(ratio: Ratio, rho: &Rational, entry: Entry) -> Result<Self> {
+        let slow = rho * Rational::from(ratio);
+        Ok(Function { ratio, slow, schedule: Schedule::two_clocks(ratio)?, entry })
     }
 
     fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
-        TwoClocks::new(self.p, self.q, s.clone(), s * &self.slow)
+        TwoClocks::new(self.ratio, s.clone(), s * &self.slow)
     }
 
     /// The entry's exact sign at s.
@@ -96,7 +95,7 @@ impl Function {
     /// In no lowest terms: balls do not need them.
     pub fn unreduced_clocks(&self, s: &Rational) -> TwoClocks<Rational> {
         let slow = Rational::new_raw(s.numer() * self.slow.numer(), s.denom() * self.slow.denom());
-        TwoClocks::new(self.p, self.q, s.clone(), slow)
+        TwoClocks::new(self.ratio, s.clone(), slow)
     }
 
     /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie

@@ -4,7 +4,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Side, Tongues, Wanted};
 //! // 7/3, m = 4: the resonance p th = 4 pi lies outside its own tongue.
-//! let mut tongues = Tongues::new(7, 3, &ratio(1, 25)).unwrap();
+//! let mut tongues = Tongues::new("7/3".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let gap = tongues.gap(4).unwrap();
 //! let row = tongues.row(&gap, &Wanted::all()).unwrap();
 //! assert_eq!((row.family, row.predicted.unwrap().side), (Some((1, -1)), Side::Above));
@@ -20,7 +20,7 @@ use super::precise::{Enclosure, simplest};
 use super::spectrum::Edge;
 use super::string::Entry;
 use crate::error::Result;
-use crate::number::{Cyclotomic, Rational, Sign, rational};
+use crate::number::{Cyclotomic, Ratio, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::resonance::{FirstOrder, dominant_family, first_order};
 use crate::verdict::{Kind, Limits, decide};
@@ -112,8 +112,7 @@ pub struct Law {
 /// A tongue and the columns asked for; `None` where not asked, or where there is none (said beside each).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub gap: Gap,
     /// (a, b), m = a p + b q, of the strongest family.
     pub family: Option<(i64, i64)>,
@@ -133,8 +132,8 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn row(&mut self, gap: &Gap, wanted: &Wanted) -> Result<Row> {
-        let (p, q, m) = (self.p(), self.q(), gap.m);
-        let family = (wanted.family && p.max(q).max(m) < 1 << 31).then(|| dominant_family(p, q, m));
+        let (ratio, m) = (self.ratio(), gap.m);
+        let family = wanted.family.then(|| dominant_family(ratio, m));
         let mut exact = [None, None];
         if wanted.exact {
             exact[0] = self.exact_edge(m, &gap.lower)?;
@@ -143,7 +142,7 @@ impl Tongues {
         let peak = if wanted.growth { self.peak(gap)? } else { None };
         let predicted = if wanted.predicted { self.predicted(gap)? } else { None };
         let first_order = if wanted.first_order { self.law(gap) } else { None };
-        Ok(Row { p, q, gap: gap.clone(), family, exact, peak, predicted, first_order })
+        Ok(Row { ratio, gap: gap.clone(), family, exact, peak, predicted, first_order })
     }
 
     /// An edge in closed form, if it has one that we know.
@@ -234,7 +233,7 @@ impl Tongues {
         let p = u32::try_from(self.p()).expect("a period that is laid out in memory");
         let s = Cyclotomic::resonant_s(gap.m as i64, p);
         let rho = <Cyclotomic as crate::number::Ring>::from_rational(self.rho());
-        let verdict = decide(&TwoClocks::with_rho(self.p(), self.q(), s, rho), &Limits::default())?.verdict;
+        let verdict = decide(&TwoClocks::with_rho(self.ratio(), s, rho), &Limits::default())?.verdict;
         Ok(match verdict.kind() {
             Kind::Hyperbolic => Side::Inside,
             Kind::Elliptic if at_lower => Side::Below,
@@ -245,7 +244,7 @@ impl Tongues {
 
     fn law(&self, gap: &Gap) -> Option<Law> {
         let rho = self.rho().to_f64().filter(|_| !self.rho().is_zero())?;
-        let law = first_order(self.p(), self.q(), gap.m, rho)?;
+        let law = first_order(self.ratio(), gap.m, rho)?;
         let upper = gap.upper.as_ref()?;
         let width = 0.5 * (gap.width.0 + gap.width.1);
         let centre = 0.25 * (gap.lower.lo + gap.lower.hi + upper.lo + upper.hi);

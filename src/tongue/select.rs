@@ -3,7 +3,7 @@
 //! ```
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Selection, Tongues};
-//! let mut tongues = Tongues::new(70, 31, &ratio(1, 25)).unwrap();
+//! let mut tongues = Tongues::new("70/31".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let window = Selection { s: Some((2.30, 2.32)), ..Selection::default() };
 //! let found: Vec<u64> = tongues.select(&window).unwrap().iter().map(|gap| gap.m).collect();
 //! assert_eq!(found, [39]);
@@ -15,7 +15,7 @@ use super::lanes::LANES;
 use super::order::Gap;
 use super::row::ExactEdge;
 use crate::error::{Error, Result};
-use crate::number::{Rational, rational};
+use crate::number::{Ratio, Rational, rational};
 use crate::resonance::dominant_family;
 
 /// Conditions that all must hold; what is `None` is no condition.
@@ -63,7 +63,7 @@ impl Tongues {
         match ranges.flat_map(|&(from, upto)| [from, upto]).find(|m| !(1..=self.last()).contains(m)) {
             None => Ok(()),
             Some(m) => {
-                let remedy = format!("{}/{} has the tongues 1 to {}", self.p(), self.q(), self.last());
+                let remedy = format!("{} has the tongues 1 to {}", self.ratio(), self.last());
                 Err(Error::input("m", m, remedy))
             }
         }
@@ -78,7 +78,7 @@ impl Tongues {
             let any = selection.a.is_none() && selection.b.is_none();
             listed
                 && (any || {
-                    let (a, b) = dominant_family(self.p(), self.q(), m);
+                    let (a, b) = dominant_family(self.ratio(), m);
                     within(selection.a, a) && within(selection.b, b)
                 })
         };
@@ -136,17 +136,17 @@ impl Resonance {
 
     /// The resonance on which an edge in closed form sits, if any; a rational edge does where its angle is
     /// π/3, π/2 or 2π/3.
-    pub fn of(p: u64, q: u64, m: u64, rho: &Rational, edge: &ExactEdge) -> Option<Resonance> {
+    pub fn of(ratio: Ratio, m: u64, rho: &Rational, edge: &ExactEdge) -> Option<Resonance> {
         match edge {
             ExactEdge::Resonance => Some(Resonance::Fast),
             ExactEdge::SlowResonance => Some(Resonance::Slow),
             ExactEdge::Rational(s) => {
-                let ratio = Rational::new(p.into(), q.into());
-                let slow = s * rho * &ratio * &ratio;
-                if turns(s, m, p) {
+                let steps = Rational::from(ratio);
+                let slow = s * rho * &steps * &steps;
+                if turns(s, m, ratio.p()) {
                     Some(Resonance::Fast)
                 } else {
-                    turns(&slow, m, q).then_some(Resonance::Slow)
+                    turns(&slow, m, ratio.q()).then_some(Resonance::Slow)
                 }
             }
         }
@@ -176,13 +176,14 @@ mod tests {
         for (p, q, rho) in
             [(7, 3, ratio(1, 25)), (3, 11, ratio(2, 1)), (40, 1, ratio(1, 2)), (9, 4, ratio(0, 1))]
         {
-            let all = Tongues::new(p, q, &rho).unwrap().all().unwrap();
+            let all = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap();
             for (lo, hi) in [(0.0, 1e300), (1.0, 1.5), (2.4, 2.4), (3.9, 400.0), (-1.0, 1e-9), (2.0, 1.0)] {
                 let meets = |gap: &&Gap| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi);
                 let expected: Vec<u64> =
                     all.iter().filter(meets).map(|gap| gap.m).filter(|_| lo <= hi).collect();
                 let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
-                let found = Tongues::new(p, q, &rho).unwrap().select(&selection).unwrap();
+                let found =
+                    Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().select(&selection).unwrap();
                 assert_eq!(
                     found.iter().map(|gap| gap.m).collect::<Vec<_>>(),
                     expected,
@@ -194,11 +195,11 @@ mod tests {
 
     #[test]
     fn a_family_is_that_of_the_labels() {
-        let mut tongues = Tongues::new(31, 12, &ratio(1, 25)).unwrap();
+        let mut tongues = Tongues::new("31/12".parse().unwrap(), &ratio(1, 25)).unwrap();
         let selection = Selection { a: Some((1, 2)), b: Some((-9, -1)), ..Selection::default() };
         let found = tongues.select(&selection).unwrap();
         let expected: Vec<u64> = (1..=tongues.last())
-            .filter(|&m| matches!(dominant_family(31, 12, m), (1..=2, -9..=-1)))
+            .filter(|&m| matches!(dominant_family("31/12".parse().unwrap(), m), (1..=2, -9..=-1)))
             .collect();
         assert!(!expected.is_empty());
         assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected);
@@ -206,7 +207,9 @@ mod tests {
 
     #[test]
     fn rational_angles_are_resonances() {
-        let on = |p, q, m, s| Resonance::of(p, q, m, &ratio(1, 4), &ExactEdge::Rational(ratio(s, 1)));
+        let on = |p, q, m, s| {
+            Resonance::of(Ratio::new(p, q).unwrap(), m, &ratio(1, 4), &ExactEdge::Rational(ratio(s, 1)))
+        };
         assert_eq!([on(3, 1, 1, 1), on(4, 1, 2, 2), on(9, 2, 6, 3)], [Some(Resonance::Fast); 3]);
         assert_eq!(on(3, 1, 2, 1), None);
         // s rho (p/q)² = 36/4/9 = 1 and q = 3, m = 1: the slow clock's own.

@@ -148,6 +148,7 @@ impl HalfString {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::rational::ratio;
     use crate::vector::LANES;
     use crate::vector::instructions::Instructions;
@@ -155,10 +156,10 @@ mod tests {
     #[test]
     fn every_instruction_set_finds_the_same_edges() {
         let rhos = [ratio(1, 1000), ratio(1, 25), ratio(1, 2), ratio(40, 1)];
-        let ratios = super::super::survey::ratios(14).into_iter().chain([(23, 20), (5, 31), (61, 38)]);
+        let ratios = Ratio::up_to(14).map(Ratio::terms).chain([(23, 20), (5, 31), (61, 38)]);
         for ((p, q), rho) in ratios.flat_map(|pair| rhos.iter().map(move |rho| (pair, rho))) {
             let edges = |instructions: Instructions| {
-                let mut string = HalfString::new(p, q, rho).unwrap();
+                let mut string = HalfString::new(Ratio::new(p, q).unwrap(), rho).unwrap();
                 string.instructions = instructions;
                 let wanted =
                     Entry::ALL.map(|entry| string.dimension(entry)).map(|n| (n > 0).then_some(1..=n));
@@ -172,7 +173,7 @@ mod tests {
     #[test]
     fn counts_far_above_all_eigenvalues_are_complete() {
         // Four hundred nodes, each of which multiplies x by up to 1e15 at this κ: no product may overflow.
-        let string = HalfString::new(1, 801, &ratio(1_000_000_000, 1)).unwrap();
+        let string = HalfString::new("1/801".parse().unwrap(), &ratio(1_000_000_000, 1)).unwrap();
         let counts = string.counts(&[1e9 * string.upper_bound; LANES]);
         for (entry, count) in Entry::ALL.into_iter().zip(counts) {
             assert_eq!(count, [string.dimension(entry) as f64; LANES]);

@@ -21,7 +21,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::isolate::Wanted;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
 use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 
@@ -150,25 +150,25 @@ const FAST_ALONE: u64 = 1;
 const MOST_KICKS: u64 = 1 << 24;
 
 impl HalfString {
-    /// The string of h2/h1 = p/q (lowest terms) and ρ = L2/L1 > 0.
+    /// The string of h2/h1 = p/q and ρ = L2/L1 > 0.
     ///
     /// # Errors
     /// ρ < 0 (no string), ρ beyond 1e±16, or more than 2^24 kicks in a period.
-    pub fn new(p: u64, q: u64, rho: &Rational) -> Result<Self> {
+    pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
         if rho.is_negative() {
             let remedy = "a string has no negative masses, so the unstable set is not a list of its eigenvalues; \
                           use `map` or `verdict`, which take any sign";
             return Err(Error::input("rho", rho, remedy));
         }
-        let mass = slow_mass(p, q, rho);
+        let mass = slow_mass(ratio, rho);
         if !rho.is_zero() && !(1.0 / EXTREME..=EXTREME).contains(&mass.hi) {
             return Err(Error::input("rho", rho, "rho p/q must lie between 1e-16 and 1e16"));
         }
-        if p.saturating_add(q) > MOST_KICKS {
-            let cost = format!("{p}/{q} has more than {MOST_KICKS} kicks in a period");
+        if ratio.kicks() > MOST_KICKS {
+            let cost = format!("{ratio} has more than {MOST_KICKS} kicks in a period");
             return Err(Error::too_much(cost, "choose a simpler ratio"));
         }
-        let (nodes, ticks, last) = nodes(p, q, rho.is_zero())?;
+        let (nodes, ticks, last) = nodes(ratio, rho.is_zero())?;
         Ok(HalfString::with_nodes(nodes, ticks, mass, last))
     }
 
@@ -275,19 +275,19 @@ impl HalfString {
 }
 
 /// R = ρ p/q.
-fn slow_mass(p: u64, q: u64, rho: &Rational) -> Twofold {
+fn slow_mass(ratio: Ratio, rho: &Rational) -> Twofold {
     let term = |big: &num_bigint::BigInt, small: u64| big.to_u64()?.checked_mul(small);
-    term(rho.numer(), p)
-        .zip(term(rho.denom(), q))
+    term(rho.numer(), ratio.p())
+        .zip(term(rho.denom(), ratio.q()))
         .and_then(|(a, b)| Twofold::quotient(a, b))
-        .unwrap_or_else(|| Twofold::from_rational(&(rho * Rational::new(p.into(), q.into()))))
+        .unwrap_or_else(|| Twofold::from_rational(&(rho * Rational::from(ratio))))
 }
 
 /// The nodes, how many ticks h1 has, and the clocks that strike at T/2.
-fn nodes(p: u64, q: u64, slow_is_silent: bool) -> Result<(Vec<Node>, f64, u64)> {
-    let schedule = Schedule::two_clocks(p, q)?;
+fn nodes(ratio: Ratio, slow_is_silent: bool) -> Result<(Vec<Node>, f64, u64)> {
+    let schedule = Schedule::two_clocks(ratio)?;
     let end = schedule.period() / 2;
-    let mut nodes = Vec::with_capacity((p + q) as usize / 2 + 2);
+    let mut nodes = Vec::with_capacity(ratio.kicks() as usize / 2 + 2);
     let (mut now, mut skipped, mut last) = (0, 0, 0);
     for event in schedule.half_period() {
         now += event.drift;

@@ -43,7 +43,7 @@ fn main() {
             seconds / base
         );
     }
-    let clocks = TwoClocks::with_rho(3499, 631, ratio(1, 3), ratio(1, 25));
+    let clocks = TwoClocks::with_rho("3499/631".parse().unwrap(), ratio(1, 3), ratio(1, 25));
     let limits = Limits::default();
     let (base, decision) = timed(|| decide(&clocks, &limits).expect("short"));
     println!("| verdict at p + q = 4130 | 316 updates, {} | 1.00 |", decision.decided_by.name());
@@ -55,7 +55,7 @@ fn main() {
 }
 
 fn tongues() {
-    let new = || Tongues::new(97, 61, &ratio(1, 25)).expect("a ratio");
+    let new = || Tongues::new("97/61".parse().unwrap(), &ratio(1, 25)).expect("a ratio");
     let (base, edges) = timed(|| {
         let mut tongues = new();
         tongues.gap(50).expect("a tongue");

@@ -8,9 +8,10 @@ use std::path::Path;
 use sources::Sources;
 
 /// The floor of each module; `error` lies below them all.
-const FLOORS: [(&str, u32); 17] = [
+const FLOORS: [(&str, u32); 18] = [
     ("vector", 0),
     ("number", 0),
+    ("parallel", 0),
     ("schedule", 1),
     ("propagator", 2),
     ("orbit", 3),
