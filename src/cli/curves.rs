@@ -1,6 +1,6 @@
 //! `kickdrift curves`: the (a, b) families as tables.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::args::{Common, echo_grid, shown_range, whole};
 use crate::error::{Error, Result};

@@ -48,9 +48,9 @@ impl Answer {
     /// m and its dominant family.
     fn resonance(&self) -> Option<(u64, i64, i64)> {
         let clocks = self.oscillator.clocks();
-        let (p, q, m) = (clocks.p(), clocks.q(), self.growth.label?);
-        let small = p.max(q).max(m) < 1 << 31;
-        small.then(|| dominant_family(p, q, m)).map(|(a, b)| (m, a, b))
+        let m = self.growth.label?;
+        let (a, b) = dominant_family(clocks.ratio(), m);
+        Some((m, a, b))
     }
 
     /// The document `kickdrift/verdict/1`.

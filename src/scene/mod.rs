@@ -19,16 +19,18 @@
 
 mod document;
 mod grid;
+#[cfg(feature = "system")]
 mod system;
 mod want;
 
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Ratio, Rational};
 
 pub use document::{Document, Quantity};
 pub use grid::GridRange;
+#[cfg(feature = "system")]
 pub use system::{Axis, Scan, SystemScene};
 pub use want::{Product, Want};
 
@@ -161,7 +163,7 @@ impl Scene {
     ///
     /// # Errors
     /// Where the field is missing or is no positive ratio.
-    pub fn ratio(&self) -> Result<(u64, u64)> {
+    pub fn ratio(&self) -> Result<Ratio> {
         let text = self.document.ratio.as_ref().ok_or_else(|| missing("ratio", "\"7/2\""))?;
         parse_ratio("ratio", &text.0)
     }

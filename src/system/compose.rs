@@ -17,7 +17,7 @@ use super::model::System;
 use super::sparse::Symmetric;
 use crate::error::{Error, Result};
 use crate::number::{Rational, Ring};
-use crate::propagator::{Event, Schedule, Weight};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Kicks of a half period that are composed at most: some minutes where each touches few degrees of freedom.
 const MOST_KICKS: u64 = 10_000_000_000;

@@ -117,9 +117,9 @@ impl<'a> Work<'a> {
             }
             Product::Proposition => proposition::document(scene.max()),
             Product::Polynomial => {
-                let (p, q) = scene.ratio()?;
-                polynomial::check_default(p, q)?;
-                Ok(crate::report::polynomial::document(p, q))
+                let ratio = scene.ratio()?;
+                polynomial::check_default(ratio)?;
+                Ok(crate::report::polynomial::document(ratio))
             }
             Product::Closings => {
                 closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?

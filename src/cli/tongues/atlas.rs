@@ -104,7 +104,7 @@ impl<'a> Atlas<'a> {
     fn title(&self) -> String {
         let rho = &self.question.stiffness.rho;
         match self.question.ratios {
-            Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
+            Ratios::One(ratio) => format!("Tongues of *h*_2/*h*_1 = {ratio}, *ρ* = {rho}"),
             Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }
@@ -113,7 +113,7 @@ impl<'a> Atlas<'a> {
     fn segment(&self, told: &Told) -> Segment {
         let middle = |q: &Quantity| 0.5 * (q.lo + q.hi);
         let place = |edge: &ToldEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
-        let ratio = told.row.p as f64 / told.row.q as f64;
+        let ratio = told.row.ratio.p() as f64 / told.row.ratio.q() as f64;
         let from = place(&told.lower);
         let to = told.upper.as_ref().map_or([self.window.h1.1, self.window.h1.1 * ratio], place);
         let a = told.row.family.map_or(0, |(a, _)| a);

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::Question;
 use crate::cli::args::Common;

@@ -25,7 +25,7 @@ mod verdict;
 
 use std::path::PathBuf;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use serde_json::{Value, json};
 
 use super::args::Common;
