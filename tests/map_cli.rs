@@ -244,7 +244,7 @@ fn bad_flags_are_told_in_one_line() {
         ("--colour growth", "--output FILE.svg"),
         ("--curves --output map.csv", "--output FILE.svg"),
         ("--a 0..1 --output map.png", "add --curves"),
-        ("--curves --a 1..x --output map.png", "--a"),
+        ("--curves --a 1..x --output map.png", "a = 1..x"),
         ("--colour pink --output map.png", "pink"),
         ("--shard 1/2", "--resume DIR"),
         ("--shard 3/2 --resume nowhere", "shard = 3/2"),

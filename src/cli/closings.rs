@@ -2,7 +2,7 @@
 
 use crate::parallel::*;
 
-use super::args::{Common, shown_range, whole};
+use super::args::{Common, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
 use super::tongues::{parse_list, shown_list};
@@ -13,6 +13,7 @@ use crate::number::{Laurent, Ratio, Rational};
 use crate::report::closings::{self, DIGITS, OfRatio};
 use crate::report::document::Document;
 use crate::report::file::write_output;
+use crate::scene::shown_range;
 use crate::tongue::{Found, Search, closings as search};
 
 /// Flags of `closings`: a ratio or all of them.
@@ -141,10 +142,8 @@ impl Question {
             Some(list) => document.input("m", shown_list(list)),
             None => document,
         };
-        let range = [&self.rho.0, &self.rho.1].map(|x| Laurent::from_rational(x.clone()));
-        let [lo, hi] = range;
         document
-            .input("rho_range", shown_range(&(lo, hi)))
+            .input("rho_range", shown_range(&self.rho))
             .input("samples", self.samples)
             .input("digits", self.digits)
     }

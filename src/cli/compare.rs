@@ -2,12 +2,12 @@
 
 use crate::parallel::*;
 
-use super::args::{self, Common, echo_grid, whole};
+use super::args::{self, Common, of, whole};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_rational};
-use crate::number::{Ratio, Rational};
+use crate::number::{Laurent, Ratio, Rational};
 use crate::propagator::TwoClocks;
 use crate::report::compare::{self, Offender};
 use crate::report::document::Document;
@@ -19,40 +19,39 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The stiffness of the fast force (with a grid).
-    #[arg(long, value_name = "X", allow_hyphen_values = true)]
-    lambda1: Option<String>,
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda1: Option<Laurent>,
     /// The stiffness of the slow force (with a grid).
-    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
-    lambda2: Option<String>,
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda2: Option<Laurent>,
     #[command(flatten)]
     grid: args::Grid,
     /// Instead of a grid: all coprime p + q up to this number.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
-    #[arg(long, value_name = "R", allow_hyphen_values = true)]
-    rho: Option<String>,
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    rho: Option<Rational>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
     #[arg(long, value_name = "K", default_value_t = 99, allow_negative_numbers = true, value_parser = whole::<u64>)]
     samples: u64,
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
-    #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true)]
-    tolerance: String,
+    #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    tolerance: Rational,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let tolerance = parse_rational("tolerance", &self.tolerance)?;
-        check(&tolerance)?;
+        let tolerance = &self.tolerance;
+        check(tolerance)?;
         let limits = common.limits();
         let document = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
             (Some(lambda1), Some(lambda2), None, None) => {
-                let (lambda1, lambda2) = (parse("lambda1", lambda1)?, parse("lambda2", lambda2)?);
                 let range = self.grid.range()?;
-                over_grid(&range.of(lambda1, lambda2)?, &range, &tolerance, &limits)?
+                over_grid(&range.of(lambda1.clone(), lambda2.clone())?, &range, tolerance, &limits)?
             }
             (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
-                over_ratios(max_sum, &parse_rational("rho", rho)?, self.samples, &tolerance, &limits)?
+                over_ratios(max_sum, rho, self.samples, tolerance, &limits)?
             }
             _ => {
                 let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
@@ -91,7 +90,7 @@ pub fn over_grid(grid: &Grid, range: &GridRange, tolerance: &Rational, limits: &
     let all = gather(columns, column)?;
     let document = compare::document(&all.tally, tolerance, ["h1", "h2"], &all.offenders);
     let (lambda1, lambda2) = grid.lambdas();
-    Ok(echo_grid(document.input("lambda1", lambda1).input("lambda2", lambda2), range))
+    Ok(document.input("lambda1", lambda1).input("lambda2", lambda2).inputs(range.given()))
 }
 
 /// The comparison over all coprime p + q ≤ max_sum at s = 4k/(samples + 1).

@@ -25,7 +25,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::Result;
 use crate::format::Format;
@@ -94,7 +94,7 @@ pub fn main() -> ExitCode {
             let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
             return ExitCode::SUCCESS;
         }
-        Err(error) => return failure(&usage::explained(&error)),
+        Err(error) => return failure(&usage::explained(&error, &Cli::command())),
     };
     match run(&cli) {
         Ok(code) => code,

@@ -49,6 +49,12 @@ impl Document {
         self
     }
 
+    /// Echoes inputs, in order.
+    #[must_use]
+    pub fn inputs<'a>(self, given: impl IntoIterator<Item = (&'a str, String)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.input(key, value))
+    }
+
     /// Adds one entry to the JSON body.
     #[must_use]
     pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {

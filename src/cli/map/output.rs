@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use super::{Drawing, Map, Source};
-use crate::cli::args::echo_grid;
 use crate::cli::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -73,12 +72,8 @@ impl Output<'_> {
     fn echo(&self, document: Document) -> Document {
         let document = echo(document, &self.map.grid, &self.map.range);
         let Products { label, growth } = self.map.products;
-        let mut flags = vec![("label", label.then_some("true")), ("growth", growth.then_some("true"))];
-        flags.push(("shard", self.part));
-        flags.into_iter().fold(document, |document, (key, value)| match value {
-            Some(value) => document.input(key, value),
-            None => document,
-        })
+        let flags = [("label", label.then_some("true")), ("growth", growth.then_some("true")), ("shard", self.part)];
+        document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?.to_string()))))
     }
 
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {
@@ -123,5 +118,5 @@ pub fn document(grid: &Grid, range: &GridRange, tally: &Tally, pairs: &[Marked])
 
 fn echo(document: Document, grid: &Grid, range: &GridRange) -> Document {
     let (lambda1, lambda2) = grid.lambdas();
-    echo_grid(document.input("lambda1", lambda1).input("lambda2", lambda2), range)
+    document.input("lambda1", lambda1).input("lambda2", lambda2).inputs(range.given())
 }

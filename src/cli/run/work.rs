@@ -11,6 +11,7 @@ use crate::cli::{closings, compare, curves, map, polynomial, proposition};
 use crate::error::Result;
 use crate::format::Format;
 use crate::map::Products;
+use crate::number::rational::ratio;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
@@ -19,7 +20,7 @@ use crate::report::map::MapArrays;
 use crate::report::plane;
 use crate::report::tongues::Tally;
 use crate::resonance::{Curve, Window};
-use crate::scene::{Product, Scene, Want};
+use crate::scene::{Families, Product, Scene, Want};
 use crate::tongue::Wanted;
 use crate::verdict::Limits;
 
@@ -44,7 +45,7 @@ pub struct Work<'a> {
 impl<'a> Work<'a> {
     pub fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
-        let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
+        let arrays = scene.want.iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
             common,
@@ -110,23 +111,27 @@ impl<'a> Work<'a> {
                 Ok(map::document(&scene.grid()?, scene.range()?, tally, marked))
             }
             Product::Curves => {
-                Ok(curves::document(&scene.lambda1()?, scene.range()?, &scene.families()?, self.curves()?))
+                Ok(curves::document(scene.lambda1()?, scene.range()?, &self.families(), self.curves()?))
             }
             Product::Compare => {
-                compare::over_grid(&scene.grid()?, scene.range()?, &scene.tolerance()?, &self.limits)
+                {
+                let tolerance = scene.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
+                compare::over_grid(&scene.grid()?, scene.range()?, &tolerance, &self.limits)
             }
-            Product::Proposition => proposition::document(scene.max()),
+            }
+            Product::Proposition => proposition::document(scene.max.unwrap_or(60)),
             Product::Polynomial => {
                 let ratio = scene.ratio()?;
-                polynomial::check_default(ratio)?;
+                polynomial::check(ratio, None)?;
                 Ok(crate::report::polynomial::document(ratio))
             }
             Product::Closings => {
-                closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?
+                let range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
+                closings::Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?
                     .document(self.common, false)
             }
             Product::Survey => {
-                let max_sum = scene.document().max_sum.expect("the scene was checked");
+                let max_sum = scene.max_sum.expect("the scene was checked");
                 answers::survey(max_sum, &tongues::stiffness(scene)?.rho, answers::THINNEST)
             }
             Product::Tongues => unreachable!("tongues are streamed"),
@@ -145,13 +150,13 @@ impl<'a> Work<'a> {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
+            Ok(draw(&window, &cloud, self.curves()?, &self.scene.title).svg())
         })
     }
 
     /// The tongues' bytes in one format.
     fn tongues(&self, format: Format) -> Result<Vec<u8>> {
-        let growth = self.scene.document().max_sum.is_none();
+        let growth = self.scene.max_sum.is_none();
         let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
         let (bytes, tally) = answers::bytes(&question, self.common, format)?;
         // Every format tells the same.
@@ -184,8 +189,12 @@ impl<'a> Work<'a> {
 
     fn curves(&self) -> Result<&Vec<Curve>> {
         once(&self.curves, || {
-            curves::sample(&self.scene.lambda1()?, &self.scene.families()?, &self.window()?)
+            curves::sample(self.scene.lambda1()?, &self.families(), &self.window()?)
         })
+    }
+
+    fn families(&self) -> Families {
+        self.scene.families.unwrap_or_default()
     }
 
     fn window(&self) -> Result<Window> {

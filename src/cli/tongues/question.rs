@@ -3,7 +3,7 @@
 use crate::parallel::*;
 use indicatif::ProgressBar;
 
-use crate::cli::args::{Common, shown_range};
+use crate::cli::args::Common;
 use crate::cli::progress::progress;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
@@ -11,6 +11,7 @@ use crate::number::ExactSign;
 use crate::number::{Laurent, Ratio, Rational, Sign};
 use crate::report::document::Document;
 use crate::report::tongues::{Frame, Told};
+use crate::scene::shown_range;
 use crate::tongue::{Gap, Selection, Tongues};
 
 /// ρ, and the stiffnesses where they are given.
@@ -177,10 +178,7 @@ impl Question {
             ("b", integers(*b)),
             ("digits", self.frame.digits.map(|digits| digits.to_string())),
         ];
-        given.into_iter().fold(self.ratios.echo(document), |document, (key, value)| match value {
-            Some(value) => document.input(key, value),
-            None => document,
-        })
+        self.ratios.echo(document).inputs(given.into_iter().filter_map(|(key, value)| Some((key, value?))))
     }
 
     /// The question in words.
