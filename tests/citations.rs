@@ -37,11 +37,7 @@ fn every_cited_theorem_exists() {
     let mut all = BTreeSet::new();
     for path in sources(&root.join("src")) {
         for name in cited(&fs::read_to_string(&path).unwrap()) {
-            assert!(
-                proven.contains(&name),
-                "{} cites `{name}`, which proofs/ does not have",
-                path.display()
-            );
+            assert!(proven.contains(&name), "{} cites `{name}`, which proofs/ does not have", path.display());
             all.insert(name);
         }
     }
