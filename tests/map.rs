@@ -1,7 +1,7 @@
 //! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Band, Counters, Grid, Products, Shard, Store, for_each_band, merge, resume};
+use kickdrift::map::{Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, merge};
 use kickdrift::number::parse::parse;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
 use rayon::prelude::*;
@@ -23,7 +23,8 @@ fn figure_1(d: &str) -> Grid {
 
 fn bands(grid: &Grid, products: Products, shard: Shard, threads: usize) -> (Vec<(u64, Band)>, Counters) {
     let mut bands = Vec::new();
-    let counters = for_each_band(grid, products, shard, threads, &Limits::default(), |n, band| {
+    let resources = Resources { threads, ..Resources::default() };
+    let counters = Map::of(grid).with(products).shard(shard).within(resources).for_each_band(|n, band| {
         bands.push((n, band));
         Ok(())
     });
@@ -251,13 +252,15 @@ fn threads_and_shards_change_nothing() {
 
 #[test]
 fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
-    let (grid, limits) = (figure_1("1/150"), Limits::default());
+    let grid = figure_1("1/150");
     let directory = std::env::temp_dir().join(format!("kickdrift-map-{}", std::process::id()));
     let store = Store::open(&directory, &grid, BOTH).unwrap();
     let shard = |k| Shard::new(k, 2).unwrap();
     // Stopped after the first band of the first shard; the second is missing.
     let stop = |_, _| Err(kickdrift::error::Error::io("output", "stopped"));
-    resume(&grid, BOTH, shard(1), 1, &limits, &store, stop).unwrap_err();
+    let one = Resources { threads: 1, ..Resources::default() };
+    let kept = Map::of(&grid).with(BOTH).kept_in(&store);
+    kept.shard(shard(1)).within(one).for_each_band(stop).unwrap_err();
     assert!(
         merge(&grid, std::slice::from_ref(&store), |_, _| Ok(()))
             .unwrap_err()
@@ -265,7 +268,7 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
             .contains("is in no part")
     );
     for k in [1, 2] {
-        resume(&grid, BOTH, shard(k), 2, &limits, &store, |_, _| Ok(())).unwrap();
+        kept.shard(shard(k)).for_each_band(|_, _| Ok(())).unwrap();
     }
     // A damaged file is not there, nor is that of another map.
     let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 0);
@@ -275,9 +278,9 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
     std::fs::write(&file, bytes).unwrap();
     assert!(store.load(1).is_none() && store.load(0).is_some());
     assert!(Store::open(&directory, &grid, Products::default()).unwrap().load(0).is_none());
-    resume(&grid, BOTH, Shard::WHOLE, 2, &limits, &store, |_, _| Ok(())).unwrap();
+    kept.for_each_band(|_, _| Ok(())).unwrap();
     let mut joined = Vec::new();
-    let sums = merge(&grid, &[store], |n, band| {
+    let sums = merge(&grid, std::slice::from_ref(&store), |n, band| {
         joined.push((n, band));
         Ok(())
     });

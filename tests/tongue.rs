@@ -1,7 +1,7 @@
 //! Tongues: by strings, by polynomials, by verdicts; known values; every corner of the input.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Grid, Products, Shard, for_each_band};
+use kickdrift::map::{Grid, Map, Products};
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Polynomial, Ratio, Rational};
@@ -216,7 +216,7 @@ fn the_map_labels_each_pair_by_the_tongue_that_holds_it() {
         let (d, h1, h2) = (x("1/24"), (x("1/24"), x("4/5")), (x("1/24"), x("5/2")));
         let grid = Grid::new(x("10"), x(lambda2), [d.clone(), d], h1, h2).unwrap();
         let mut unstable = 0;
-        for_each_band(&grid, products, Shard::WHOLE, 0, &Limits::default(), |_, band| {
+        Map::of(&grid).with(products).for_each_band(|_, band| {
             let mut labels = vec![None; band.verdicts.len()];
             band.growing.iter().for_each(|pair| labels[pair.position as usize] = pair.label);
             for (n, label) in labels.into_iter().enumerate() {
