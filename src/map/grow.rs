@@ -17,7 +17,7 @@ impl Work<'_> {
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
         let order: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
         let mut growing = Vec::with_capacity(order.len());
-        let mut group = Group::<LANES>::new(Instructions::best());
+        let mut group = Group::<LANES>::precise(Instructions::best());
         let mut ends = [None; LANES];
         let mut seen = vec![false; band.verdicts.len()];
         let kicks = self.side_by_side(&order, |pairs, positions| {
