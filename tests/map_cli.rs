@@ -204,7 +204,7 @@ fn a_row_says_what_the_verdict_command_says() {
 fn a_rate_next_to_an_edge_is_the_verdicts() {
     let steps = "--h1-range 2..2 --h2-range 3..3 --step 1";
     for k in [4, 8, 12, 15] {
-        let stiffness = format!("--lambda1 (1-10^-{k})/4 --lambda2 1/25");
+        let stiffness = format!("--lambda1 3*(1-10^-{k})/4 --lambda2 1/25");
         let map: Value =
             serde_json::from_slice(&done(&format!("map {stiffness} {steps} --growth"), &[])).unwrap();
         let words = format!("verdict {stiffness} --h1 2 --h2 3 --format json");
