@@ -18,7 +18,8 @@ fn main() -> Result<()> {
     let verdicts = Map::of(&grid).verdicts()?;
     let (columns, rows) = grid.shape();
     for row in (0..rows).rev() {
-        let line = (0..columns).map(|column| if verdicts[column * rows + row].is_stable() { '.' } else { '#' });
+        let line =
+            (0..columns).map(|column| if verdicts[column * rows + row].is_stable() { '.' } else { '#' });
         println!("{}", line.collect::<String>());
     }
 

@@ -2,8 +2,8 @@
 
 use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, merge};
-use kickdrift::number::parse::parse;
 use kickdrift::number::Ratio;
+use kickdrift::number::parse::parse;
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
 use kickdrift::verdict::{Kind, Limits, Tier, decide, decide_from, growth};
@@ -231,7 +231,8 @@ fn labels_and_growth_are_those_of_the_single_pair() {
             let ratio = grid.ratio(i, j);
             let ((p, q), (a, b)) = (ratio.terms(), found.family(ratio).unwrap());
             assert_eq!(a * p as i64 + b * q as i64, found.label.unwrap() as i64);
-            let (ours, exact) = (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().to_f64_enclosure());
+            let (ours, exact) =
+                (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().to_f64_enclosure());
             // The single pair's is known to 60 bits.
             assert!(ours.lo <= exact.0 && exact.1 <= ours.hi, "{ours:?} {exact:?} at ({i}, {j})");
             assert!(ours.width() <= 1e-6 * ours.lo, "{ours:?} at ({i}, {j})");
@@ -252,7 +253,8 @@ fn growth_next_to_an_edge_is_enclosed() {
             let (all, _) = bands(&grid, Products { growth: true, label: false }, Shard::WHOLE, 1);
             let [found] = all[0].1.growing[..] else { panic!("{lambda1}: a pair in a tongue") };
             let (i, j) = (grid.columns().0, grid.rows().0);
-            let single = growth(&grid.clocks(i, j).unwrap(), all[0].1.decision(0).verdict, &Limits::default());
+            let single =
+                growth(&grid.clocks(i, j).unwrap(), all[0].1.decision(0).verdict, &Limits::default());
             let (ours, exact) =
                 (found.ln_multiplier.unwrap(), single.unwrap().ln_multiplier.unwrap().to_f64_enclosure());
             assert!(ours.lo <= exact.0 && exact.1 <= ours.hi, "{lambda1}: {ours:?} {exact:?}");
@@ -341,7 +343,8 @@ fn the_cost_is_told_before_the_work_begins() {
     let x = |text: &str| parse("x", text).unwrap();
     for (d1, d2) in [("1/150", "1/150"), ("1/200", "3/400"), ("1/100", "1/130")] {
         let range = |lo, hi| (x(lo), x(hi));
-        let grid = Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("1/100", "0.66"), range("1/100", "3")).unwrap();
+        let grid =
+            Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("1/100", "0.66"), range("1/100", "3")).unwrap();
         let (told, counters) = (grid.kicks(), Map::of(&grid).for_each_band(|_, _| Ok(())).unwrap());
         assert!((told / counters.kicks as f64 - 1.0).abs() < 0.02, "{told} for {}", counters.kicks);
     }
@@ -394,7 +397,11 @@ fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
         // Beyond Verlet's limit, with no force and with a repelling one too.
         let part = |n: u64, over: i64, less: i64| ratio(n as i64 - less, over);
         let s = part(numbers.below(4500), 1000, 200);
-        TwoClocks::with_rho(Ratio::new(p / common, q / common).unwrap(), s, part(numbers.below(1000), 500, 100))
+        TwoClocks::with_rho(
+            Ratio::new(p / common, q / common).unwrap(),
+            s,
+            part(numbers.below(1000), 500, 100),
+        )
     };
     let pairs: Vec<_> = (0..3000).map(|_| pair()).collect();
     let found = decide_all(&pairs, &Resources::default()).unwrap();

@@ -54,7 +54,8 @@ pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
     }
     // A kick takes a core a nanosecond or less.
     let hours = (kicks * 1e-9 / 3600.0).ceil();
-    let cost = format!("a map of {pairs} pairs composes about {kicks:.1e} kicks, some {hours} hours of one core");
+    let cost =
+        format!("a map of {pairs} pairs composes about {kicks:.1e} kicks, some {hours} hours of one core");
     let needed = (kicks / TIMES_A_PAIR as f64).ceil() as u64;
     Err(Error::budget(cost, needed).or("choose a larger step, a smaller window, or a part of the map"))
 }

@@ -26,7 +26,8 @@ const SECOND_ORDER: f64 = 1.01;
 pub(super) fn ln_multiplier(ends: &Ends, side: i8) -> Option<Enclosure> {
     let (even, odd) = (&ends.even, &ends.odd);
     let ([a, c], [b, d]) = (components(even), components(odd));
-    let rho = if side > 0 { (odd.x / odd.v) * (even.v / even.x) } else { (odd.v / odd.x) * (even.x / even.v) };
+    let rho =
+        if side > 0 { (odd.x / odd.v) * (even.v / even.x) } else { (odd.v / odd.x) * (even.x / even.v) };
     let [one, two] = if side > 0 { [b, c] } else { [a, d] };
     let z = if side > 0 { (odd.x * even.v).abs() } else { (even.x * odd.v).abs() };
     let by_direction = by_direction(rho, a + b + c + d);

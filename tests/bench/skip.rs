@@ -19,9 +19,7 @@ fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
 
 fn map(products: Products) -> (f64, Counters) {
     let grid = figure_1(500);
-    timed(|| {
-        Map::of(&grid).with(products).for_each_band(|_, _| Ok(())).expect("within the budget")
-    })
+    timed(|| Map::of(&grid).with(products).for_each_band(|_, _| Ok(())).expect("within the budget"))
 }
 
 fn main() {
