@@ -18,69 +18,16 @@
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::isolate::Wanted;
+use super::entry::Entry;
 use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
 use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 
-/// An entry of the half-period propagator, as the problem whose eigenvalues are its zeros.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Entry {
-    /// Even at 0 (free), odd at T/2 (pinned).
-    A,
-    /// Odd at both ends.
-    B,
-    /// Even at both ends; its zero s = 0, a rigid shift, is not counted.
-    C,
-    /// Odd at 0, even at T/2.
-    D,
-}
-
-impl Entry {
-    /// All four.
-    pub const ALL: [Entry; 4] = [Entry::A, Entry::B, Entry::C, Entry::D];
-
-    /// Whether the string is free at t = 0.
-    pub(super) fn starts_free(self) -> bool {
-        matches!(self, Entry::A | Entry::C)
-    }
-
-    /// Whether the string is free at t = T/2.
-    pub(super) fn ends_free(self) -> bool {
-        matches!(self, Entry::C | Entry::D)
-    }
-
-    /// The problem with such ends.
-    pub(super) fn of_ends(starts_free: bool, ends_free: bool) -> Entry {
-        match (starts_free, ends_free) {
-            (true, false) => Entry::A,
-            (false, false) => Entry::B,
-            (true, true) => Entry::C,
-            (false, true) => Entry::D,
-        }
-    }
-
-    /// One eigenvalue alone wanted.
-    pub(super) fn alone(self, index: usize) -> Wanted {
-        Entry::ALL.map(|entry| (entry == self).then_some(index..=index))
-    }
-
-    /// The entry's name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Entry::A => "A",
-            Entry::B => "B",
-            Entry::C => "C",
-            Entry::D => "D",
-        }
-    }
-}
-
 /// What strikes at a kick time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Ticks since the node before.
     pub length: f64,
     /// Index of the mass among [`HalfString::masses`].
@@ -91,7 +38,7 @@ pub(super) struct Node {
 
 /// So many kinds of nodes there are: that at t = 0, where both clocks strike, those of the fast clock alone and of the
 /// slow one, and that at T/2. In between the clocks never strike together.
-pub(super) const KINDS: usize = 4;
+pub(crate) const KINDS: usize = 4;
 
 const START: usize = 0;
 const FAST: usize = 1;
@@ -100,7 +47,7 @@ const END: usize = 3;
 
 /// The kick at a node and the spring to the next one on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
+pub(crate) struct Step {
     pub kind: usize,
     pub length: f64,
     /// The node's mass.
@@ -114,7 +61,7 @@ const RANGE: f64 = 140.0;
 
 /// The half period of p/q as nodes 0, 1, ..., n at the kick times; node n stands at T/2, kick or none.
 #[derive(Clone, Debug)]
-pub(super) struct HalfString {
+pub(crate) struct HalfString {
     pub nodes: Vec<Node>,
     /// The steps from t = 0 to T/2, and those back.
     pub forward: Vec<Step>,

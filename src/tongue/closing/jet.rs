@@ -1,13 +1,13 @@
 //! The half period's entries with their derivatives in s and ρ, enclosed over a box.
 
-use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational};
 use crate::schedule::{Schedule, Weight};
+use crate::tongue::string::Entry;
 
 /// A function's value, its derivative in s and in ρ.
 #[derive(Clone, Debug)]
-pub(super) struct Jet(pub [Ball; 3]);
+pub(crate) struct Jet(pub [Ball; 3]);
 
 impl Jet {
     fn constant(value: Ball) -> Jet {
@@ -35,7 +35,7 @@ impl Jet {
 
 /// The entries' jets over s × ρ, by plain ball arithmetic: for short periods and small boxes, whose growth over the
 /// period the bits outlast.
-pub(super) fn jets(ratio: Ratio, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u32) -> Result<[Jet; 2]> {
+pub(crate) fn jets(ratio: Ratio, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u32) -> Result<[Jet; 2]> {
     let schedule = Schedule::two_clocks(ratio)?;
     let exact = |n: u64, d: u64| Ball::from_rational(&Rational::new(n.into(), d.into()), bits);
     let s = Jet([s.clone(), Ball::one(), Ball::zero()]);

@@ -1,12 +1,12 @@
 //! Eigenvalues that are being looked for, side by side.
 
-use super::lanes::{LANES, Lanes, lanes};
-use super::string::Entry;
+use crate::tongue::string::Entry;
+use crate::tongue::string::lanes::{LANES, Lanes, lanes};
 
 /// An eigenvalue in each lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Batch {
+pub(crate) struct Batch {
     /// The problem: 1 where the end is free, else 0.
     pub starts_free: Lanes,
     pub ends_free: Lanes,
@@ -91,7 +91,7 @@ impl Batch {
 
 /// A list of them, which keeps its memory.
 #[derive(Debug, Default)]
-pub(super) struct Batches {
+pub(crate) struct Batches {
     memory: Vec<Batch>,
     /// How many eigenvalues there are.
     len: usize,
@@ -180,7 +180,7 @@ impl Batches {
 
 /// Memory for sorting.
 #[derive(Debug, Default)]
-pub(super) struct Order {
+pub(crate) struct Order {
     /// Where the modes of a node begin among all.
     starts: Vec<u32>,
     sorted: Vec<u32>,

@@ -2,10 +2,10 @@
 
 use num_traits::Zero;
 
-use super::string::Entry;
 use crate::number::polynomial::resultant;
 use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
+use crate::tongue::string::Entry;
 
 /// Q\[s\].
 type InS = Polynomial<Rational>;
@@ -28,7 +28,7 @@ fn without_zero(f: &InS) -> InS {
 }
 
 /// The greatest common divisor of two entries.
-pub(super) fn common_factor(ratio: Ratio, rho: &Rational, pair: [Entry; 2]) -> InS {
+pub(crate) fn common_factor(ratio: Ratio, rho: &Rational, pair: [Entry; 2]) -> InS {
     let entries = entries(ratio, rho);
     entries[pair[0] as usize].gcd(&entries[pair[1] as usize])
 }
@@ -40,7 +40,7 @@ type InRho = Polynomial<Polynomial<Rational>>;
 ///
 /// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are what
 /// the string has masses: they do not fall.
-pub(super) fn closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
+pub(crate) fn count_closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
     let s = InRho::variable();
     let rho = InRho::constant(Polynomial::variable());
     let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(ratio, s, rho)));

@@ -1,6 +1,6 @@
 //! The two entries of a tongue at a point, to twice the digits of a double, with their slopes.
 //!
-//! Run the recurrence from t = 0 to a node r, short of its mass, and from T/2 back to it ([`super::tunnel`] says how):
+//! Run the recurrence from t = 0 to a node r, short of its mass, and from T/2 back to it (`gap::tunnel` says how):
 //! (x, v) and (y, w), each once free and once pinned at its end. Every entry of the half period is, whatever r,
 //!
 //! ```text
@@ -27,9 +27,8 @@
 //!
 //! with no difference of the edges in it. Slopes are in ln s throughout.
 
-use super::lanes::{logarithm, power_of_two, rescaling};
-use super::string::{HalfString, KINDS, Step};
-use super::twofold::Twofold;
+use crate::tongue::string::lanes::{logarithm, power_of_two, rescaling};
+use crate::tongue::string::{HalfString, KINDS, Step, Twofold};
 use crate::vector::instructions::Task;
 
 /// What one operation on two doubles loses, relative to its terms: the kick's own roundings included.
@@ -40,7 +39,7 @@ const ACCURACY: f64 = 4.0 * f64::EPSILON;
 
 /// A number times 2^exponent, with its slope, to within `uncertainty`, in the same scale.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Value {
+pub(crate) struct Value {
     number: f64,
     slope: f64,
     uncertainty: f64,
@@ -61,7 +60,7 @@ impl Value {
 
 /// The pair at one s.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Meeting {
+pub(crate) struct Meeting {
     /// X and Y: the entry that starts free, and the other one.
     pub pair: [Value; 2],
     /// ε.
@@ -112,10 +111,10 @@ impl Meeting {
 
 /// 2 asinh √(number 2^exponent).
 fn ln_multiplier(number: f64, exponent: i64) -> f64 {
-    const FAR: i64 = 400;
+    const WITHIN_DOUBLES: i64 = 400;
     let log = number.ln() + exponent as f64 * std::f64::consts::LN_2;
     match () {
-        () if exponent.abs() <= FAR => 2.0 * (number * power_of_two(exponent)).sqrt().asinh(),
+        () if exponent.abs() <= WITHIN_DOUBLES => 2.0 * (number * power_of_two(exponent)).sqrt().asinh(),
         () if log > 0.0 => log + 2.0 * std::f64::consts::LN_2,
         () => 2.0 * (0.5 * log).exp(),
     }
@@ -204,7 +203,7 @@ struct Orbit {
     dv: f64,
     exponent: i64,
     length: f64,
-    /// Σ |r| |u| and Σ |r|/|u| over the steps' roundings r: across the orbit and along it ([`super::tunnel`]).
+    /// Σ |r| |u| and Σ |r|/|u| over the steps' roundings r: across the orbit and along it (`gap::tunnel`).
     across: f64,
     along: f64,
 }

@@ -1,6 +1,6 @@
 //! A vibration mode near κ, and what its Rayleigh quotient proves about the eigenvalue.
 //!
-//! **The vector.** Run the recurrence from both ends to the node r where the mode lives (see [`super::locate`]), and
+//! **The vector.** Run the recurrence from both ends to the node r where the mode lives (see `locate`), and
 //! join the two halves there: z_j = x_j/x_r on the left, y_j/y_r on the right, so z_r = 1. All equations
 //!
 //! ```text
@@ -26,7 +26,7 @@
 //! ```
 //!
 //! **The residual**, with S = Σ m z², W = Σ (1/ℓ + 1/ℓ')² z²/m and λ the largest 1/(m ℓ) of a node and a spring at it. By
-//! [`super::half`] each row holds but for u (4 κ m |z| + (1/ℓ + 1/ℓ') |z| + 3 |F| + 3 |F'|) and, at r, the mismatch; and
+//! `half` each row holds but for u (4 κ m |z| + (1/ℓ + 1/ℓ') |z| + 3 |F| + 3 |F'|) and, at r, the mismatch; and
 //! Σ (3 |F| + 3 |F'|)²/m ≤ 36 λ Σ F² ℓ = 36 λ μ S, μ ≤ κ + ε. With p = |mismatch|/√(m_r S):
 //!
 //! ```text
@@ -42,29 +42,30 @@
 //! masses in S, |μ − κ| being at most ε, by (n + 64) u ε. The terms e²/ℓ left out of e F add less than 4 u² (κ + λ).
 
 use super::batch::Batch;
+use super::count::uncertainty;
 use super::half::{Half, Ways, difference};
-use super::lanes::{LANES, Lanes};
-use super::string::{HalfString, Node};
 use crate::number::U;
+use crate::tongue::string::lanes::{LANES, Lanes};
+use crate::tongue::string::{HalfString, Node};
 use crate::vector::Vector;
 use crate::vector::instructions::Kernel;
 
-/// 2^-96.
+/// 2^-96, which covers what the products of [`Mode::new`] in two doubles round off.
 const SLACK: f64 = f64::from_bits((1023 - 96) << 52);
 
-/// Steps at most: as a rule three are enough.
+/// Newton steps at most: as a rule three are enough.
 const PASSES: u32 = 6;
 
 /// A step shorter than this part of the distance to the neighbours is the last: what is left is about its square, in
 /// units of the distance. So is one whose product with the step before is: what is left is about the product's square.
-const CLOSE: f64 = 1e-4;
+const LAST_STEP: f64 = 1e-4;
 
 /// What part of the way to an end of the bracket is made where a step would lead beyond it.
 const NEARLY: f64 = 0.875;
 
 /// What the modes prove.
 #[repr(align(64))]
-pub(super) struct Proofs {
+pub(crate) struct Proofs {
     /// The eigenvalue's enclosure, times the ticks: an edge in s.
     pub edge: [Lanes; 2],
     /// The enclosure's radius before it is rounded to doubles, in κ; infinite where nothing is proven.
@@ -73,10 +74,10 @@ pub(super) struct Proofs {
     pub quotient: Lanes,
 }
 
-impl HalfString {
-    /// Steps from each κ towards the eigenvalue, and the modes where they end.
-    pub fn prove(&self, batch: &Batch) -> Proofs {
-        self.instructions.compute(Proving { string: self, batch })
+impl Proofs {
+    /// Steps from each κ of a batch towards the eigenvalue, and what the modes prove where they end.
+    pub fn of(string: &HalfString, batch: &Batch) -> Proofs {
+        string.instructions.compute(Proving { string, batch })
     }
 }
 
@@ -93,12 +94,12 @@ impl Kernel for Proving<'_> {
         let Proving { string, batch } = self;
         let (node, ways) = (Nodes::new(string, &batch.at), Ways::new(string, batch));
         let inner = [V::load(&batch.inside[0]), V::load(&batch.inside[1])];
-        let eta = 2.0 * string.eta();
+        let eta = 2.0 * uncertainty(string);
         let others = [
             V::load(&batch.alone[0]).mul(V::splat(1.0 + eta)),
             V::load(&batch.alone[1]).mul(V::splat(1.0 - eta)),
         ];
-        let (zero, one, close) = (V::splat(0.0), V::splat(1.0), V::splat(CLOSE));
+        let (zero, one, last_step) = (V::splat(0.0), V::splat(1.0), V::splat(LAST_STEP));
         let mut kappa = V::load(&batch.kappa);
         let mut before = Point { kappa, mismatch: zero, slope: zero };
         // The step before: the first is plain Newton's, as long as a neighbour is far.
@@ -113,7 +114,7 @@ impl Kernel for Proving<'_> {
             let short = V::splat(NEARLY).mul_add(end.sub(kappa), kappa);
             kappa = inside.if_above(zero, next, short);
             // By how much the step, and its product with the step before, are too long.
-            let reach = close.mul(distance);
+            let reach = last_step.mul(distance);
             let excess = step.sub(reach).lesser(step.mul(last).sub(reach.mul(distance)));
             if !inside.if_above(zero, excess, one).any_above(zero) {
                 break;

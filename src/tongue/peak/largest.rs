@@ -23,16 +23,13 @@
 //! **Nothing is guessed.** Each value comes with a bound of what rounding can have done to it, and where that shows in a
 //! double, as where the two edges all but meet (near a closing), big numbers take over.
 
-use super::gaps::Tongues;
 use super::meet::Meeting;
-use super::order::Gap;
-use super::precise::Enclosure;
-use super::spectrum::Edge;
-use super::string::HalfString;
-use super::twofold::Twofold;
 use crate::error::{Error, Result};
 use crate::number::{Rational, rational};
 use crate::propagator::TwoClocks;
+use crate::tongue::edge::{Edge, Edges, Enclosure};
+use crate::tongue::gap::Gap;
+use crate::tongue::string::{HalfString, Twofold};
 use crate::verdict::{Limits, Side, Verdict, growth};
 
 /// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a place which is s
@@ -61,58 +58,61 @@ const STEP: f64 = 1e-10;
 /// Steps at most; regula falsi needs three to ten.
 const STEPS: u32 = 100;
 
-impl Tongues {
-    /// The peak of an open, finite tongue.
-    pub(super) fn peak(&mut self, gap: &Gap) -> Result<Option<Peak>> {
+impl Peak {
+    /// The peak of an open, finite tongue; `None` of any other.
+    ///
+    /// # Errors
+    /// Where the schedule is too long, or more digits are needed than are tried.
+    pub(crate) fn new(edges: &Edges, gap: &Gap) -> Result<Option<Peak>> {
         let Some(upper) = gap.upper.filter(|_| !gap.closed) else { return Ok(None) };
-        let (s, ln_multiplier) = match Inside::new(self.string(), gap, &upper).fastest() {
+        let (s, ln_multiplier) = match Inside::new(edges.string(), gap, &upper).fastest() {
             Some(found) => found,
-            None => self.fastest_by_bits(gap, &upper)?,
+            None => fastest_by_bits(edges, gap, &upper)?,
         };
         Ok(Some(Peak {
             s,
             ln_multiplier,
-            rate: ln_multiplier / (self.p() as f64 * s.sqrt()),
-            slow_steps_to_tenfold: std::f64::consts::LN_10 * self.q() as f64 / ln_multiplier,
+            rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
+            slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
         }))
     }
+}
 
-    /// s and ln μ by golden section and certified enclosures: slow, and always right.
-    fn fastest_by_bits(&mut self, gap: &Gap, upper: &Edge) -> Result<(f64, f64)> {
-        let [a, b] = self.parted(&gap.lower, upper)?;
-        let width = &b - &a;
-        let ratio = rational::to_f64(&(&width / &a));
-        let at = |u: f64| {
-            let part = if ratio > THIN { (u * ratio.ln_1p()).exp_m1() / ratio } else { u };
-            &a + &width * rational::from_f64_exact(part).expect("finite")
-        };
-        let ln = |s: &Rational| self.ln_multiplier_by_bits(s, gap.m);
-        let rate = |u: f64| Ok(ln(&at(u))? / rational::to_f64(&at(u)).sqrt());
-        // Below that the middle is the place, to within the square of it.
-        let u = if ratio > 1e-10 { golden(rate)? } else { 0.5 };
-        Ok((rational::to_f64(&at(u)), ln(&at(u))?))
-    }
+/// s and ln μ by golden section and certified enclosures: slow, and always right.
+fn fastest_by_bits(edges: &Edges, gap: &Gap, upper: &Edge) -> Result<(f64, f64)> {
+    let [a, b] = parted(edges, &gap.lower, upper)?;
+    let width = &b - &a;
+    let ratio = rational::to_f64(&(&width / &a));
+    let at = |u: f64| {
+        let part = if ratio > THIN { (u * ratio.ln_1p()).exp_m1() / ratio } else { u };
+        &a + &width * rational::from_f64_exact(part).expect("finite")
+    };
+    let ln = |s: &Rational| ln_multiplier_by_bits(edges, s, gap.m);
+    let rate = |u: f64| Ok(ln(&at(u))? / rational::to_f64(&at(u)).sqrt());
+    // Below that the middle is the place, to within the square of it.
+    let u = if ratio > 1e-10 { golden(rate)? } else { 0.5 };
+    Ok((rational::to_f64(&at(u)), ln(&at(u))?))
+}
 
-    /// Points at the edges, to within 1e-8 of their distance.
-    fn parted(&mut self, lower: &Edge, upper: &Edge) -> Result<[Rational; 2]> {
-        let [mut a, mut b] = [lower, upper].map(Enclosure::from);
-        let mut digits = 32;
-        while (a.width() + b.width()) * Rational::from_integer(100_000_000.into()) > &b.lo - &a.hi {
-            (a, b) = (self.sharpened(lower, &a, digits)?, self.sharpened(upper, &b, digits)?);
-            digits *= 2;
-        }
-        Ok([a.middle(), b.middle()])
+/// Points at the edges, to within 1e-8 of their distance.
+fn parted(edges: &Edges, lower: &Edge, upper: &Edge) -> Result<[Rational; 2]> {
+    let [mut a, mut b] = [lower, upper].map(Enclosure::from);
+    let mut digits = 32;
+    while (a.width() + b.width()) * Rational::from_integer(100_000_000.into()) > &b.lo - &a.hi {
+        (a, b) = (edges.sharpened(lower, &a, digits)?, edges.sharpened(upper, &b, digits)?);
+        digits *= 2;
     }
+    Ok([a.middle(), b.middle()])
+}
 
-    fn ln_multiplier_by_bits(&self, s: &Rational, m: u64) -> Result<f64> {
-        let verdict = Verdict::Hyperbolic(Side::of_half_turns(m));
-        let clocks = TwoClocks::with_rho(self.ratio(), s.clone(), self.rho().clone());
-        let ln = growth(&clocks, verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
-        ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
-            let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
-            Error::too_much(format!("{cost} needs more digits than are tried"), "choose a simpler ratio")
-        })
-    }
+fn ln_multiplier_by_bits(edges: &Edges, s: &Rational, m: u64) -> Result<f64> {
+    let verdict = Verdict::Hyperbolic(Side::of_half_turns(m));
+    let clocks = TwoClocks::with_rho(edges.ratio(), s.clone(), edges.rho().clone());
+    let ln = growth(&clocks, verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
+    ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
+        let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
+        Error::too_much(format!("{cost} needs more digits than are tried"), "choose a simpler ratio")
+    })
 }
 
 /// A tongue in doubles.
@@ -207,7 +207,9 @@ fn golden(f: impl Fn(f64) -> Result<f64>) -> Result<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::rational::ratio;
+    use crate::tongue::Tongues;
 
     #[test]
     fn doubles_and_big_numbers_agree() {
@@ -215,17 +217,16 @@ mod tests {
         let (mut seen, mut left) = (0, 0);
         for decade in [-12, -6, -3, -1, 0, 2, 6, 12] {
             for (p, q) in [(2, 1), (1, 2), (7, 3), (5, 6), (4, 9), (19, 16)] {
-                let mut tongues =
-                    Tongues::new(crate::number::Ratio::new(p, q).unwrap(), &(ratio(7, 5) * power(decade)))
-                        .unwrap();
-                for gap in tongues.all().unwrap() {
+                let rho = ratio(7, 5) * power(decade);
+                let edges = Edges::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
+                for gap in Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;
-                    let Some((s, ln)) = Inside::new(tongues.string(), &gap, &upper).fastest() else {
+                    let Some((s, ln)) = Inside::new(edges.string(), &gap, &upper).fastest() else {
                         left += 1;
                         continue;
                     };
-                    let (t, exact) = tongues.fastest_by_bits(&gap, &upper).unwrap();
+                    let (t, exact) = fastest_by_bits(&edges, &gap, &upper).unwrap();
                     let rate = |s: f64, ln: f64| ln / s.sqrt();
                     // Golden section sees a maximum to the root of a rounding.
                     assert!((s - t).abs() < 1e-7 * t, "{p}/{q}, 10^{decade}: {s}, {t}, {gap:?}");

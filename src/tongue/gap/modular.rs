@@ -6,13 +6,16 @@
 //! a common factor mean that no tongue of even m is closed, however thin; A and D likewise for odd m. The other
 //! answer, a common factor, may be an accident of the prime and is left to exact arithmetic.
 
+use std::sync::OnceLock;
+
 use num_bigint::BigInt;
 use num_traits::{ToPrimitive, Zero};
 
-use super::string::Entry;
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
 use crate::schedule::{Schedule, Weight};
+use crate::tongue::edge::Edges;
+use crate::tongue::string::Entry;
 
 /// 2^61 − 1, a Mersenne prime.
 const PRIME: u64 = (1 << 61) - 1;
@@ -102,7 +105,7 @@ fn common_degree(mut a: Coefficients, mut b: Coefficients) -> usize {
 /// Whether both edges of every tongue of the given parity of m are proven different, for ρ > 0.
 ///
 /// `degrees` are the numbers of positive zeros of (B, C) for even m, of (A, D) for odd m.
-pub(super) fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
+fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Result<bool> {
     debug_assert!(!rho.is_zero());
     let (Some(even_start), Some(odd_start)) = (ends(ratio, rho, true)?, ends(ratio, rho, false)?) else {
         return Ok(false);
@@ -114,7 +117,22 @@ pub(super) fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize;
     Ok(survived && common_degree(first, second) == 0)
 }
 
-/// The entries compared for the given parity of m.
-pub(super) fn pair(odd: bool) -> [Entry; 2] {
-    if odd { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] }
+/// What is known of all tongues of even and of all of odd m; asked for once each.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Openness([OnceLock<bool>; 2]);
+
+impl Openness {
+    /// Whether all tongues of one parity of m are proven open, ρ being positive.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn is_proven(&self, edges: &Edges, odd: bool) -> Result<bool> {
+        let known = &self.0[usize::from(odd)];
+        if let Some(&open) = known.get() {
+            return Ok(open);
+        }
+        let degrees = Entry::of_tongue(odd).map(|entry| edges.string().dimension(entry));
+        let open = all_open(edges.ratio(), edges.rho(), odd, degrees)?;
+        Ok(*known.get_or_init(|| open))
+    }
 }

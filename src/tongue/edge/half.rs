@@ -23,17 +23,17 @@
 //!     |ρ| <= u (4 κ m |x| + (1/ℓ + 1/ℓ') |x| + |F| + 3 |F'|),
 //! ```
 //!
-//! and at r, but for the mismatch there, u ((1/ℓ + 1/ℓ') |x| + |F| + |F'|). See [`super::mode`] for what follows.
+//! and at r, but for the mismatch there, u ((1/ℓ + 1/ℓ') |x| + |F| + |F'|). See `mode` for what follows.
 
 use super::batch::Batch;
-use super::lanes::{Lanes, lanes, range};
-use super::string::{HalfString, KINDS, Step};
+use crate::tongue::string::lanes::{Lanes, lanes, range};
+use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::Vector;
 
 /// A half on its way to r: the node's amplitude, the slope before it, and the sums over the nodes passed, in the scale
 /// of x (sums: of x²).
 #[derive(Clone, Copy)]
-pub(super) struct Half<V> {
+pub(crate) struct Half<V> {
     pub x: V,
     pub v: V,
     /// Σ m x².
@@ -45,7 +45,7 @@ pub(super) struct Half<V> {
 }
 
 /// The ways of a batch's modes from either end to the nodes where they live.
-pub(super) struct Ways<'a> {
+pub(crate) struct Ways<'a> {
     string: &'a HalfString,
     left: Way<'a>,
     right: Way<'a>,
@@ -88,7 +88,7 @@ impl<'a> Way<'a> {
 
 /// k − κ m for the rounded kick, the mass being m and what rounding took from it: to within 2^-50 of itself and 2^-103 κ m.
 #[inline(always)]
-pub(super) fn difference<V: Vector>(kappa: V, mass: V, lost: V, kick: V) -> V {
+pub(crate) fn difference<V: Vector>(kappa: V, mass: V, lost: V, kick: V) -> V {
     kappa.neg_mul_add(lost, kappa.neg_mul_add(mass, kick))
 }
 

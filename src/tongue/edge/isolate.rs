@@ -2,11 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::lanes::{LANES, lanes};
-use super::string::{Entry, HalfString};
-
-/// The indices wanted of each of the four problems.
-pub(super) type Wanted = [Option<RangeInclusive<usize>>; 4];
+use super::count::{counts, uncertainty};
+use crate::tongue::string::lanes::{LANES, lanes};
+use crate::tongue::string::{Entry, HalfString, Indices};
 
 /// κ and the computed counts there, of the four problems.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +15,7 @@ struct Sample {
 
 /// An interval of κ between two samples.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Interval {
+pub(crate) struct Interval {
     lower: Sample,
     upper: Sample,
 }
@@ -58,7 +56,7 @@ impl Interval {
 
 /// What an interval holds, by the counts, of what is wanted.
 #[derive(Clone, Copy)]
-pub(super) struct Contents {
+pub(crate) struct Contents {
     /// The most eigenvalues of a problem.
     most: u32,
     /// A bit for each problem of which there is one: the eigenvalue before it lies below lo (1 + η), the one after above
@@ -83,13 +81,13 @@ impl Contents {
 }
 
 /// The first and the last index wanted of each problem.
-pub(super) struct Limits {
+pub(crate) struct Limits {
     pub first: [u32; 4],
     pub last: [u32; 4],
 }
 
 impl Limits {
-    pub fn new(wanted: &Wanted) -> Self {
+    pub fn new(wanted: &Indices) -> Self {
         let mut limits = Limits { first: [1; 4], last: [0; 4] };
         for (entry, range) in wanted.iter().enumerate() {
             if let Some(range) = range {
@@ -102,7 +100,7 @@ impl Limits {
 
 /// Memory for the search.
 #[derive(Debug, Default)]
-pub(super) struct Cutting {
+pub(crate) struct Cutting {
     /// The intervals to cut, from below; those of the next round; in how many points they are cut; the points; what is found
     /// there.
     open: Vec<Interval>,
@@ -112,22 +110,28 @@ pub(super) struct Cutting {
     samples: Vec<Sample>,
 }
 
-/// At most so many points in an interval at a time.
-const MOST: usize = 64;
+/// At most so many points cut an interval at a time.
+const POINTS_AT_A_TIME: usize = 64;
 
-impl HalfString {
+impl Cutting {
     /// Cuts the range of all eigenvalues until those wanted are alone, or counts in doubles cannot tell them apart, and
     /// shows each interval to `found`.
-    pub fn isolate(&self, limits: &Limits, space: &mut Cutting, mut found: impl FnMut(&Interval, Contents)) {
-        let least_width = 16.0 * self.eta();
-        let counts = self.dimensions.map(|zeros| zeros as u32);
-        let (zero, top) = (Sample { kappa: 0.0, counts: [0; 4] }, Sample { kappa: self.upper_bound, counts });
-        space.open.clear();
-        space.open.push(Interval { lower: zero, upper: top });
-        while !space.open.is_empty() {
-            self.cut(limits, space);
-            self.count_at(&space.points, &mut space.samples);
-            let Cutting { open, next, cuts, samples, .. } = space;
+    pub fn isolate(
+        &mut self,
+        string: &HalfString,
+        limits: &Limits,
+        mut found: impl FnMut(&Interval, Contents),
+    ) {
+        let least_width = 16.0 * uncertainty(string);
+        let counts = string.dimensions.map(|zeros| zeros as u32);
+        let (zero, top) =
+            (Sample { kappa: 0.0, counts: [0; 4] }, Sample { kappa: string.upper_bound, counts });
+        self.open.clear();
+        self.open.push(Interval { lower: zero, upper: top });
+        while !self.open.is_empty() {
+            self.cut(limits);
+            self.count_at_points(string);
+            let Cutting { open, next, cuts, samples, .. } = self;
             let mut samples = samples.as_slice();
             for (interval, &cuts) in open.iter().zip(&*cuts) {
                 let (inner, after) = samples.split_at(cuts);
@@ -145,17 +149,19 @@ impl HalfString {
                 }
                 samples = after;
             }
-            std::mem::swap(&mut space.open, &mut space.next);
-            space.next.clear();
+            std::mem::swap(&mut self.open, &mut self.next);
+            self.next.clear();
         }
     }
 
     /// Points that cut the open intervals evenly in √κ: as many as there are eigenvalues inside, and as cost nothing more.
-    fn cut(&self, limits: &Limits, space: &mut Cutting) {
-        let Cutting { open, cuts, points, .. } = space;
+    fn cut(&mut self, limits: &Limits) {
+        let Cutting { open, cuts, points, .. } = self;
         points.clear();
         cuts.clear();
-        cuts.extend(open.iter().map(|interval| (interval.contents(limits).most as usize).min(MOST)));
+        cuts.extend(
+            open.iter().map(|interval| (interval.contents(limits).most as usize).min(POINTS_AT_A_TIME)),
+        );
         let all: usize = cuts.iter().sum();
         let spare = all.next_multiple_of(LANES) - all;
         for (i, (interval, cuts)) in open.iter().zip(cuts).enumerate() {
@@ -170,10 +176,11 @@ impl HalfString {
     }
 
     /// The samples at the points.
-    fn count_at(&self, points: &[f64], samples: &mut Vec<Sample>) {
+    fn count_at_points(&mut self, string: &HalfString) {
+        let Cutting { points, samples, .. } = self;
         samples.clear();
         for kappa in points.chunks(LANES) {
-            let [a, b, c, d] = self.counts(&lanes(|i| kappa[i.min(kappa.len() - 1)]));
+            let [a, b, c, d] = counts(string, &lanes(|i| kappa[i.min(kappa.len() - 1)]));
             for (i, &kappa) in kappa.iter().enumerate() {
                 let counts = [a[i] as u32, b[i] as u32, c[i] as u32, d[i] as u32];
                 samples.push(Sample { kappa, counts });

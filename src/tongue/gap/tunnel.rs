@@ -32,17 +32,17 @@
 //!
 //! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
 
-use super::lanes::{logarithm, rescaling};
-use super::spectrum::Edge;
-use super::string::{HalfString, KINDS, Step};
 use crate::number::U;
+use crate::tongue::edge::Edge;
+use crate::tongue::string::lanes::{logarithm, rescaling};
+use crate::tongue::string::{HalfString, KINDS, Step};
 
 /// √2, rounded up: |x| + |v| is at most this times the vector's length.
 const ROOT_TWO: f64 = 1.4143;
 
 /// No orbit is used where w + c of the module's theorem, or the relative error of x, exceeds this: below it
 /// |ln(1 ± t)| ≤ 1.03 t, and four such errors of the logarithm change a number by no more than 1.3 times their sum.
-const MOST: f64 = 0.05;
+const LARGEST_STRAIN: f64 = 0.05;
 
 /// A term of Δ below this power of two of the other is only bounded.
 const FAINT: i64 = -400;
@@ -51,7 +51,7 @@ const FAINT: i64 = -400;
 const RANGE: i64 = 900;
 
 /// Two edges told apart.
-pub(super) struct Apart {
+pub(crate) struct Apart {
     /// Whether s_X < s_Y, else s_X > s_Y.
     pub in_order: bool,
     /// |s_Y − s_X|, enclosed: by doubles that are not normal where it is too small.
@@ -60,7 +60,7 @@ pub(super) struct Apart {
 
 /// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both
 /// are wrong by a few units in the last place at most, else the enclosure is poor. `None` where nothing is proven.
-pub(super) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Option<Apart> {
+pub(crate) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Option<Apart> {
     debug_assert!(free.entry.starts_free() && !pinned.entry.starts_free());
     let tunnel = Tunnel::new(string, free.lo.min(pinned.lo), free.hi.max(pinned.hi));
     let ends_free = free.entry.ends_free();
@@ -195,7 +195,7 @@ impl Orbit {
 
     /// Whether the theorem holds and x is far from 0 (NaN is not).
     fn reliable(&self) -> bool {
-        self.stretch + self.strain <= MOST && self.lean() <= MOST
+        self.stretch + self.strain <= LARGEST_STRAIN && self.lean() <= LARGEST_STRAIN
     }
 
     /// 1/(x x') at one end, with the sign + where the first orbit starts free; `None` where x or x' may be 0.
@@ -205,7 +205,7 @@ impl Orbit {
         }
         let sign = if free { 1.0 } else { -1.0 };
         let value = sign / (self.x * other.x);
-        // ln |x| is off by at most 1.03 (w + τ |v/x|): see MOST.
+        // ln |x| is off by at most 1.03 (w + τ |v/x|): see LARGEST_STRAIN.
         let error = 1.3 * (self.stretch + self.lean() + other.stretch + other.lean()) + 8.0 * U;
         Some(Term { value, error: error * value.abs(), exponent: -(self.exponent + other.exponent) })
     }

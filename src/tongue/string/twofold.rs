@@ -7,7 +7,7 @@ use crate::number::{Rational, rational};
 
 /// hi + lo, |lo| ≤ ulp(hi)/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Twofold {
+pub(crate) struct Twofold {
     pub hi: f64,
     pub lo: f64,
 }

@@ -5,26 +5,26 @@
 //! the region where rounding errors outgrow it. (Twisted factorization: Parlett and Dhillon.)
 
 use super::batch::Batch;
-use super::lanes::{Aligned, LANES, Lanes, power_of_two};
-use super::string::{HalfString, KINDS, Step};
+use crate::tongue::string::lanes::{Aligned, LANES, Lanes, power_of_two};
+use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::Vector;
 use crate::vector::instructions::Kernel;
 
 /// Of all nodes with more than this part of the largest product the one nearest to t = 0 is taken: modes that fill the
 /// string are then all followed from T/2 through most of it, and little is done twice.
-const ENOUGH: f64 = 1.0 / 16.0;
+const NEARLY_LARGEST: f64 = 1.0 / 16.0;
 
 /// The recurrence from t = 0 at every node, its exponents by block.
 #[derive(Debug, Default)]
-pub(super) struct Walk {
+pub(crate) struct Walk {
     x: Vec<Aligned<Lanes>>,
     exponents: Vec<[i64; LANES]>,
 }
 
-impl HalfString {
+impl Walk {
     /// Finds a node for each lane where the mode near κ is near its largest.
-    pub fn locate(&self, batch: &mut Batch, walk: &mut Walk) {
-        self.instructions.compute(Locating { string: self, batch, walk });
+    pub fn locate(&mut self, string: &HalfString, batch: &mut Batch) {
+        string.instructions.compute(Locating { string, batch, walk: self });
     }
 }
 
@@ -93,7 +93,7 @@ impl Walk {
                 // No mode lives where there is no mass, as there may be none at T/2.
                 if j < n || string.masses[string.nodes[n].kind] > 0.0 {
                     let here = V::load(&x.0).mul(front.x).abs();
-                    at = here.if_above(V::splat(ENOUGH).mul(product), V::splat(j as f64), at);
+                    at = here.if_above(V::splat(NEARLY_LARGEST).mul(product), V::splat(j as f64), at);
                     product = here.larger(product);
                 }
                 if j > 0 {

@@ -15,34 +15,32 @@
 //! operations being fused. Divide x̂_j by X_j = Π (1 + δ') and v̂_j by V_j = Π (1 + δ'') up to j: no sign changes, and
 //! what is left is the exact recurrence with ℓ_j V_{j−1}/X_{j−1} and m_j (1 + δ) X_j/V_{j−1}, where m_j itself is
 //! within two more roundings of the string's mass. Each is off by a factor within (1 ± u)^±(2n + 5), so by
-//! monotonicity (see [`super::string`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
+//! monotonicity (see [`HalfString`]) the eigenvalues are by one within (1 ± u)^±(4n + 10). An underflowing result is
 //! off by less than u/4 of the larger one of |x| and |v|, which rescaling by powers of two keeps above 2^-500. ∎
 
 use super::batch::Batch;
-use super::lanes::{LANES, Lanes, lanes, lesser};
-use super::string::{HalfString, KINDS};
 use crate::number::U;
+use crate::tongue::string::lanes::{LANES, Lanes, lanes, lesser};
+use crate::tongue::string::{HalfString, KINDS};
 use crate::vector::Vector;
 use crate::vector::instructions::Kernel;
 
-impl HalfString {
-    /// The uncertainty η of a computed count, see the module's theorem.
-    pub fn eta(&self) -> f64 {
-        (4.0 * self.nodes.len() as f64 + 16.0) * U
-    }
+/// The uncertainty η of a computed count, see the module's theorem.
+pub(crate) fn uncertainty(string: &HalfString) -> f64 {
+    (4.0 * string.nodes.len() as f64 + 16.0) * U
+}
 
-    /// N̂(κ) of positive eigenvalues, whole numbers: of the four problems, for the κ of each lane. Above all eigenvalues
-    /// every κ counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
-    pub fn counts(&self, kappa: &Lanes) -> [Lanes; 4] {
-        let kappa = lanes(|i| lesser(kappa[i], 2.0 * self.upper_bound));
-        self.instructions.compute(Counting { string: self, kappa: &kappa })
-    }
+/// N̂(κ) of positive eigenvalues, whole numbers: of the four problems, for the κ of each lane. Above all eigenvalues every
+/// κ counts alike, so none is taken where numbers grow faster than [`HalfString::block`] allows for.
+pub(crate) fn counts(string: &HalfString, kappa: &Lanes) -> [Lanes; 4] {
+    let kappa = lanes(|i| lesser(kappa[i], 2.0 * string.upper_bound));
+    string.instructions.compute(Counting { string, kappa: &kappa })
+}
 
-    /// Halves the intervals in which the eigenvalues are so many times, by the entries' signs.
-    pub fn narrow(&self, batches: &mut [Batch], halvings: u32) {
-        for pair in batches.chunks_mut(2) {
-            self.instructions.compute(Narrowing { string: self, pair, halvings });
-        }
+/// Halves the intervals in which the eigenvalues are so many times, by the entries' signs.
+pub(crate) fn narrow(string: &HalfString, batches: &mut [Batch], halvings: u32) {
+    for pair in batches.chunks_mut(2) {
+        string.instructions.compute(Narrowing { string, pair, halvings });
     }
 }
 

@@ -1,18 +1,18 @@
 //! Numbers side by side: one for each eigenvalue that is being looked for.
 
-pub(super) use crate::vector::{LANES, each as lanes};
+pub(crate) use crate::vector::{LANES, each as lanes};
 
 /// One number for each lane.
-pub(super) type Lanes = [f64; LANES];
+pub(crate) type Lanes = [f64; LANES];
 
 /// On a cache line's boundary, which no vector then straddles.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub(super) struct Aligned<T>(pub T);
+pub(crate) struct Aligned<T>(pub T);
 
 /// The rounded sum and what rounding took from it, exactly (Knuth).
 #[inline(always)]
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let s = a + b;
     let t = s - a;
     (s, (a - (s - t)) + (b - t))
@@ -20,13 +20,13 @@ pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The lesser one; b if one is NaN.
 #[inline(always)]
-pub(super) fn lesser(a: f64, b: f64) -> f64 {
+pub(crate) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// The smallest and the largest.
 #[inline(always)]
-pub(super) fn range(x: &Lanes) -> (f64, f64) {
+pub(crate) fn range(x: &Lanes) -> (f64, f64) {
     x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &x| {
         (if x < least { x } else { least }, if x > most { x } else { most })
     })
@@ -34,13 +34,13 @@ pub(super) fn range(x: &Lanes) -> (f64, f64) {
 
 /// 2^e, clipped to the range of normal doubles.
 #[inline(always)]
-pub(super) fn power_of_two(e: i64) -> f64 {
+pub(crate) fn power_of_two(e: i64) -> f64 {
     f64::from_bits(((e.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
 
 /// 2^32 log2 |x| up to a constant, to within 2^29: a double's bits are its logarithm, the mantissa's straightened.
 #[inline(always)]
-pub(super) fn logarithm(x: f64) -> i64 {
+pub(crate) fn logarithm(x: f64) -> i64 {
     (x.abs().to_bits() >> 20) as i64
 }
 
@@ -49,7 +49,7 @@ const LONG: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// The power of two that brings a length back into range, and by how many places.
 #[inline(always)]
-pub(super) fn rescaling(length: f64) -> (f64, i64) {
+pub(crate) fn rescaling(length: f64) -> (f64, i64) {
     match length {
         _ if length > LONG => (1.0 / LONG, 200),
         _ if length < 1.0 / LONG => (LONG, -200),
