@@ -55,7 +55,7 @@ fn together<S: Decidable>(clocks: &[TwoClocks<S>], limits: &Limits) -> Result<Ve
         positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
     }
     let decided = |(verdict, clocks)| match verdict {
-        UNDECIDED => decide(clocks, limits),
+        UNDECIDED => decide(clocks, limits).map(|answer| answer.decision()),
         verdict => Ok(Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter }),
     };
     found.into_iter().zip(clocks).map(decided).collect()
