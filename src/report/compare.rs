@@ -62,7 +62,9 @@ fn record(places: [&str; 2]) -> Record<'static, Offender> {
         .field(Column::math("q", "q"), |of| of.ratio.q().into())
         .field(Column::new("offence").left(), |of| offence(&of.comparison).into())
         .field(Column::new("kind").left(), |of| of.comparison.trace.verdict.kind().name().into())
-        .field(Column::new("tan").in_words("tan criterion").left(), |of| of.comparison.tan.kind().name().into())
+        .field(Column::new("tan").in_words("tan criterion").left(), |of| {
+            of.comparison.tan.kind().name().into()
+        })
         .field(Column::new("m").titled("nearest m", "nearest $m$"), move |of| nearest(of).map(|n| n.m).into())
         .field(Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(), move |of| {
             nearest(of).map(|n| n.distance.to_f64_enclosure()).into()

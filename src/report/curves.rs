@@ -14,7 +14,8 @@ type Point<'a> = (&'a Curve, usize, &'a CurvePoint);
 pub fn document(curves: &[Curve]) -> Document {
     let curves: Vec<&Curve> = curves.iter().filter(|curve| !curve.pieces.is_empty()).collect();
     let points: Vec<Point> = curves.iter().flat_map(|curve| points(curve)).collect();
-    let summary = format!("{} curves 1/T½ = a/h1 + b/h2 in the window, {} points", curves.len(), points.len());
+    let summary =
+        format!("{} curves 1/T½ = a/h1 + b/h2 in the window, {} points", curves.len(), points.len());
     let values: Vec<Value> = curves.iter().map(|curve| value(curve)).collect();
     Document::new("curves").entry("curves", values).rows(table(&points)).summary(&[summary])
 }

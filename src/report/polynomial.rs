@@ -48,7 +48,9 @@ fn table(polynomials: &[(&'static str, Bivariate)]) -> Table {
     Record::new()
         .field(Column::new("entry").left(), |(name, ..): &Term| (*name).into())
         .field(Column::new("s").titled("power of s", "power of $s$"), |(_, s, ..)| (*s as u64).into())
-        .field(Column::new("rho").titled("power of rho", "power of $\\rho$"), |(_, _, rho, _)| (*rho as u64).into())
+        .field(Column::new("rho").titled("power of rho", "power of $\\rho$"), |(_, _, rho, _)| {
+            (*rho as u64).into()
+        })
         .field(Column::new("coefficient"), |(.., coefficient)| Cell::exact(coefficient))
         .table("terms", "Half period and trace as polynomials in s and rho", &terms)
 }

@@ -89,8 +89,7 @@ impl Drawing {
             return Ok(Vec::new());
         }
         let default = Families::default();
-        let families =
-            Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
+        let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
         curves::sample_within(map.grid.lambdas().0, &families, &window(&map.grid))
     }
 }

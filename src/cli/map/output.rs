@@ -72,7 +72,8 @@ impl Output<'_> {
     fn echo(&self, document: Document) -> Document {
         let document = echo(document, &self.map.grid, &self.map.range);
         let Products { label, growth } = self.map.products;
-        let flags = [("label", label.then_some("true")), ("growth", growth.then_some("true")), ("shard", self.part)];
+        let flags =
+            [("label", label.then_some("true")), ("growth", growth.then_some("true")), ("shard", self.part)];
         document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?.to_string()))))
     }
 

@@ -23,7 +23,11 @@ pub struct Map {
 impl Map {
     /// # Errors
     /// As [`Grid::new`].
-    pub fn new(Stiffness { lambda1, lambda2 }: Stiffness, range: GridRange, products: Products) -> Result<Map> {
+    pub fn new(
+        Stiffness { lambda1, lambda2 }: Stiffness,
+        range: GridRange,
+        products: Products,
+    ) -> Result<Map> {
         Ok(Map { grid: range.of(lambda1, lambda2)?, range, products })
     }
 }
@@ -63,8 +67,10 @@ impl Written {
         }
         let ranges = [parse_range("h1_range", &self.h1_range)?, parse_range("h2_range", &self.h2_range)?];
         let steps = [parse("step1", &self.step1)?, parse("step2", &self.step2)?];
-        let lambdas =
-            Stiffness { lambda1: parse("lambda1", &self.lambda1)?, lambda2: parse("lambda2", &self.lambda2)? };
+        let lambdas = Stiffness {
+            lambda1: parse("lambda1", &self.lambda1)?,
+            lambda2: parse("lambda2", &self.lambda2)?,
+        };
         Map::new(lambdas, GridRange::new(steps, ranges), Products { label: self.label, growth: self.growth })
     }
 

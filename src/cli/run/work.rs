@@ -114,10 +114,8 @@ impl<'a> Work<'a> {
                 Ok(curves::document(scene.lambda1()?, scene.range()?, &self.families(), self.curves()?))
             }
             Product::Compare => {
-                {
                 let tolerance = scene.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
                 compare::over_grid(&scene.grid()?, scene.range()?, &tolerance, &self.limits)
-            }
             }
             Product::Proposition => proposition::document(scene.max.unwrap_or(60)),
             Product::Polynomial => {
@@ -188,9 +186,7 @@ impl<'a> Work<'a> {
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
-        once(&self.curves, || {
-            curves::sample(self.scene.lambda1()?, &self.families(), &self.window()?)
-        })
+        once(&self.curves, || curves::sample(self.scene.lambda1()?, &self.families(), &self.window()?))
     }
 
     fn families(&self) -> Families {

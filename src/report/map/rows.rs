@@ -1,6 +1,6 @@
 //! The pairs that are not plainly stable, as rows.
 
-use crate::map::{Band, Grid, Growing, Products};
+use crate::map::{Band, Enclosure, Grid, Growing, Products};
 use crate::number::Ratio;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
@@ -39,10 +39,10 @@ pub struct Found {
     pub m: Option<u64>,
     /// Its dominant family.
     pub family: Option<(i64, i64)>,
-    /// The growth rate per unit time, rounded.
-    pub rate: Option<f64>,
-    /// Slow steps until the amplitude has grown tenfold, rounded.
-    pub tenfold: Option<f64>,
+    /// The growth rate per unit time.
+    pub rate: Option<Enclosure>,
+    /// Slow steps until the amplitude has grown tenfold.
+    pub tenfold: Option<Enclosure>,
 }
 
 impl Marked {
@@ -79,7 +79,8 @@ struct Written {
 /// More texts than these are not kept.
 const MOST_TEXTS: usize = 1 << 16;
 
-/// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate, steps_until_tenfold`.
+/// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate` and
+/// `steps_until_tenfold`, both enclosed.
 fn record(products: Products) -> Record<'static, Written> {
     type Of<'a> = &'a Written;
     let mut record = Record::new()
@@ -99,10 +100,11 @@ fn record(products: Products) -> Record<'static, Written> {
             .field(Column::math("b", "b"), |of| of.found.family.map(|(_, b)| b).into());
     }
     if products.growth {
-        let tenfold = Column::new("steps_until_tenfold").in_words("steps until tenfold");
+        let ends = |found: Option<Enclosure>| Cell::from(found.map(|Enclosure { lo, hi }| (lo, hi)));
+        let enclosed = |key, title| Column::new(key).in_words(title).enclosure();
         record = record
-            .field(Column::new("growth_rate").in_words("growth rate"), |of| of.found.rate.into())
-            .field(tenfold, |of| of.found.tenfold.into());
+            .field(enclosed("growth_rate", "growth rate"), move |of| ends(of.found.rate))
+            .field(enclosed("steps_until_tenfold", "steps until tenfold"), move |of| ends(of.found.tenfold));
     }
     record
 }
