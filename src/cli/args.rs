@@ -19,7 +19,7 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form [default: by the file name; else text, but json for tables that are not shown at a terminal].
+    /// The form [default: by the file name; else text, or json for piped tables].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.

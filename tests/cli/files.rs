@@ -53,10 +53,10 @@ fn the_extension_of_the_output_is_its_form_unless_a_format_is_asked_for() {
 #[test]
 fn two_results_do_not_share_a_file() {
     let desk = Desk::new();
-    let line = words(VERDICT, &["--certificate", "a.v", "--output", "a.v"]);
+    let line = words(VERDICT, &["--certificate", "a.txt", "--output", "a.txt"]);
     let ended = desk.run(&line);
     assert_eq!(ended.code, Some(2));
-    assert!(ended.stderr.contains("certificate = a.v") && desk.is_empty(), "{}", ended.stderr);
+    assert!(ended.stderr.contains("certificate = a.txt") && desk.is_empty(), "{}", ended.stderr);
 }
 
 /// Some seconds of work, its arrays growing beside the output from the beginning.

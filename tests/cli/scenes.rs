@@ -122,7 +122,7 @@ fn a_json_number_is_the_exact_number_that_stands_there() {
         desk.write("text.json", &text.replace("NUMBER", &format!("\"{exact}\"")));
         let echo = |file| desk.run(&["run", file, "--format", "json"]).stdout;
         assert!(
-            echo("number.json").contains(r#""rho": ""#) && echo("number.json") == echo("text.json"),
+            echo("number.json").contains(r#""rho":""#) && echo("number.json") == echo("text.json"),
             "{number}"
         );
     }
