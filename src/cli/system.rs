@@ -10,7 +10,7 @@ use super::map::Target;
 use super::plane::DPI;
 use crate::error::{Error, Result};
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::system::{self as report, Colouring, SystemMap};
 use crate::scene::{Axis, Scan, SystemScene};
@@ -113,10 +113,9 @@ fn drawing(common: &Common) -> Option<&Path> {
 
 /// Writes a figure to FILE.svg or FILE.png.
 pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
-    let svg = figure.svg();
     let drawn = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("svg") => svg.into_bytes(),
-        Some("png") => png::raster(&svg, DPI)?,
+        Some("svg") => figure.svg().into_bytes(),
+        Some("png") => figure.png(DPI)?,
         _ => return Err(Error::input(field, path.display(), "name a file that ends in .svg or .png")),
     };
     write_output(Some(path), &drawn)

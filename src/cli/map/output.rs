@@ -10,7 +10,6 @@ use crate::error::{Error, Result};
 use crate::map::{Band, Grid, Products};
 use crate::report::csv;
 use crate::report::document::Document;
-use crate::report::figure::png;
 use crate::report::file::{write_output, write_with};
 use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
 use crate::report::plane::Chart;
@@ -170,8 +169,8 @@ impl Output<'_> {
             counts.add(band);
             Ok(())
         })?;
-        let svg = chart.figure(grid, &counts, &curves).svg();
-        let bytes = if self.target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let figure = chart.figure(grid, &counts, &curves);
+        let bytes = if self.target == Target::Png { figure.png(DPI)? } else { figure.svg().into_bytes() };
         write_output(path, &bytes)
     }
 }

@@ -12,7 +12,7 @@ use crate::error::Result;
 use crate::map::Products;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::map::MapArrays;
 use crate::report::tongues::Tally;
@@ -37,7 +37,7 @@ pub struct Work<'a> {
     documents: [OnceCell<Document>; 7],
     /// What the tongues told, once they were written.
     tongues: OnceCell<Tally>,
-    figures: [OnceCell<String>; 3],
+    figures: [OnceCell<Figure>; 3],
 }
 
 impl<'a> Work<'a> {
@@ -79,8 +79,8 @@ impl<'a> Work<'a> {
             return self.tongues(want.format);
         }
         match want.format {
-            Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
-            Format::Png => png::raster(self.figure(want.product)?, DPI),
+            Format::Svg => Ok(self.figure(want.product)?.svg().into_bytes()),
+            Format::Png => self.figure(want.product)?.png(DPI),
             Format::Json => text(document::Format::Json),
             Format::Csv => text(document::Format::Csv),
             Format::Latex => text(document::Format::Latex),
@@ -136,8 +136,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The SVG of a figure.
-    fn figure(&self, product: Product) -> Result<&String> {
+    /// A figure.
+    fn figure(&self, product: Product) -> Result<&Figure> {
         let slot = match product {
             Product::Figure => 0,
             Product::Overlay => 1,
@@ -147,7 +147,7 @@ impl<'a> Work<'a> {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
+            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()))
         })
     }
 

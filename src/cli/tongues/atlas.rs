@@ -10,7 +10,7 @@ use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::Laurent;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::plane::{self, Segment};
 use crate::report::tongues::{Quantity, Told, ToldEdge};
@@ -77,8 +77,8 @@ impl<'a> Atlas<'a> {
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
     pub fn write(&self, common: &Common, target: Target) -> Result<()> {
-        let svg = self.figure(common)?.svg();
-        let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let figure = self.figure(common)?;
+        let bytes = if target == Target::Png { figure.png(DPI)? } else { figure.svg().into_bytes() };
         write_output(common.output.as_deref(), &bytes)
     }
 

@@ -11,7 +11,6 @@ use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, rational};
-use crate::report::figure::png;
 use crate::report::file::write_output;
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
@@ -55,8 +54,8 @@ pub fn run(
         stiffness.rho
     )
     .replace("π1/", "π/");
-    let svg = figure(rational::to_f64(&share), &title, &measured).svg();
-    let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    let figure = figure(rational::to_f64(&share), &title, &measured);
+    let bytes = if target == Target::Png { figure.png(DPI)? } else { figure.svg().into_bytes() };
     write_output(common.output.as_deref(), &bytes)
 }
 
