@@ -2,6 +2,7 @@
 
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
+use crate::number::Ratio;
 use crate::orbit::filter::{Ends, Group};
 use crate::resonance::dominant_family;
 use crate::vector::instructions::Instructions;
@@ -35,9 +36,9 @@ pub struct Growing {
 }
 
 impl Growing {
-    /// (a, b), the dominant family of the tongue, where the label was asked for; p/q in lowest terms.
-    pub fn family(&self, (p, q): (u64, u64)) -> Option<(i64, i64)> {
-        self.label.map(|m| dominant_family(p, q, m))
+    /// (a, b), the dominant family of the tongue, where the label was asked for.
+    pub fn family(&self, ratio: Ratio) -> Option<(i64, i64)> {
+        self.label.map(|m| dominant_family(ratio, m))
     }
 
     /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period.

@@ -265,6 +265,7 @@ impl<const L: usize> Group<L> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
     use crate::propagator::{TwoClocks, half_period};
@@ -274,7 +275,11 @@ mod tests {
     fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
         let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
             let g = p.gcd(&q);
-            Floquet::new(&TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000)))
+            Floquet::new(&TwoClocks::new(
+                Ratio::new(p / g, q / g).unwrap(),
+                ratio(s, 1000),
+                ratio(2 * k + 1, 2000),
+            ))
         });
         prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
     }
@@ -317,7 +322,7 @@ mod tests {
             p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
         ) {
             let g = p.gcd(&q);
-            let clocks = TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let clocks = TwoClocks::new(Ratio::new(p / g, q / g).unwrap(), ratio(s, 1000), ratio(2 * k + 1, 2000));
             let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
             let half = half_period(&clocks);
             let exact = |x: f64| Rational::from_float(x).unwrap();

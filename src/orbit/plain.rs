@@ -130,6 +130,7 @@ impl Orbit<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
     use crate::propagator::half_period;
@@ -137,7 +138,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn signs_of(clocks: &TwoClocks<Rational>) -> Option<PartialSigns> {
-        signs(clocks, &Schedule::two_clocks(clocks.p(), clocks.q()).unwrap())
+        signs(clocks, &Schedule::two_clocks(clocks.ratio()).unwrap())
     }
 
     proptest! {
@@ -146,7 +147,7 @@ mod tests {
             p in 1u64..50, q in 1u64..50, s in -9000i64..9000, k in -9000i64..9000,
         ) {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
-            let clocks = TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000));
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000));
             if let Some(verdict) = signs_of(&clocks).and_then(|signs| signs.verdict()) {
                 prop_assert_eq!(verdict, half_period(&clocks).signs().verdict());
             }
@@ -156,7 +157,7 @@ mod tests {
         fn two_clocks_beyond_their_limits_are_told(p in 1u64..50, q in 1u64..50, s in 4100i64..20000, k in 4100i64..20000) {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
             // Beyond both limits: s > 4, and the slow clock's own strength k p/q > 4.
-            let clocks = TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000) * ratio(q as i64, p as i64));
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000) * ratio(q as i64, p as i64));
             prop_assert!(signs_of(&clocks).is_some_and(|signs| signs.verdict().is_some()));
         }
     }
@@ -165,7 +166,11 @@ mod tests {
     #[test]
     fn long_orbits_stay_in_range() {
         for (p, q) in [(101, 100), (4001, 4000), (1, 3000)] {
-            let clocks = TwoClocks::new(p, q, ratio(9, 1), ratio(9, 1) * ratio(q as i64, p as i64));
+            let clocks = TwoClocks::new(
+                Ratio::new(p, q).unwrap(),
+                ratio(9, 1),
+                ratio(9, 1) * ratio(q as i64, p as i64),
+            );
             let verdict = signs_of(&clocks).and_then(|signs| signs.verdict());
             assert_eq!(verdict, Some(half_period(&clocks).signs().verdict()), "{p}/{q}");
         }

@@ -25,7 +25,7 @@ pub fn nonzero_entries(clocks: &TwoClocks<Laurent>) -> bool {
 
 /// H modulo P in the time unit of one tick; `None` where P divides a denominator.
 fn entries(clocks: &TwoClocks<Laurent>) -> Option<[[u64; 2]; 2]> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q()).ok()?;
+    let schedule = Schedule::two_clocks(clocks.ratio()).ok()?;
     let per_tick = inverse(2 * schedule.clocks()[0].step() % P)?;
     let half = |k: &Laurent| residue(k).map(|k| times(k, per_tick));
     let (fast, slow) = (half(clocks.fast())?, half(clocks.slow())?);
@@ -83,12 +83,13 @@ fn inverse(x: u64) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Ring;
     use crate::number::parse::parse;
     use crate::propagator::half_period;
 
-    fn clocks(p: u64, q: u64, fast: &str, slow: &str) -> TwoClocks<Laurent> {
-        TwoClocks::new(p, q, parse("fast", fast).unwrap(), parse("slow", slow).unwrap())
+    fn clocks(ratio: Ratio, fast: &str, slow: &str) -> TwoClocks<Laurent> {
+        TwoClocks::new(ratio, parse("fast", fast).unwrap(), parse("slow", slow).unwrap())
     }
 
     #[test]
@@ -96,7 +97,7 @@ mod tests {
         for (p, q, fast, slow) in
             [(3, 2, "pi^2/7", "1/pi + 2"), (5, 3, "2/pi", "-pi/3"), (1, 4, "pi", "pi^3/5")]
         {
-            let clocks = clocks(p, q, fast, slow);
+            let clocks = clocks(Ratio::new(p, q).unwrap(), fast, slow);
             let half = half_period(&clocks);
             let [[a, _], [_, d]] = entries(&clocks).unwrap();
             // A and D have no unit of time.
@@ -108,7 +109,7 @@ mod tests {
     #[test]
     fn a_zero_is_never_called_nonzero() {
         // Strength s + slow = pi + (4 − pi) = 4 in one kick: an entry vanishes identically.
-        let clocks = clocks(1, 1, "pi", "4 - pi");
+        let clocks = clocks(Ratio::ONE, "pi", "4 - pi");
         assert!(!nonzero_entries(&clocks));
         assert_eq!(Laurent::product(half_period(&clocks).a(), half_period(&clocks).d()).to_string(), "0");
     }

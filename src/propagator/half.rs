@@ -84,7 +84,7 @@ pub fn full_period<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
 
 /// The schedule of the pair.
 pub(super) fn schedule<S: Ring>(clocks: &TwoClocks<S>) -> Result<Schedule> {
-    Schedule::two_clocks(clocks.p(), clocks.q())
+    Schedule::two_clocks(clocks.ratio())
 }
 
 /// The product over `events`, the first event rightmost.

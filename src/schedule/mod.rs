@@ -7,7 +7,7 @@
 //! ```
 //! use kickdrift::schedule::{Schedule, Weight};
 //! // h2/h1 = 3/2: one tick is h1/2 = h2/3, so the steps are 2 and 3 ticks and the period is 6.
-//! let schedule = Schedule::two_clocks(3, 2).unwrap();
+//! let schedule = Schedule::two_clocks("3/2".parse().unwrap()).unwrap();
 //! let events: Vec<_> = schedule.half_period().map(|e| (e.drift, e.kicks, e.weight)).collect();
 //! // Both clocks at 0 (half a kick each), the first at 2, the second at T/2 = 3 (half a kick).
 //! assert_eq!(events, [(0, 0b11, Weight::Half), (2, 0b01, Weight::Full), (1, 0b10, Weight::Half)]);
@@ -18,7 +18,7 @@ use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
 use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
 
 /// As many clocks as the bit set of an [`Event`] holds.
 const MAX_CLOCKS: usize = 64;
@@ -55,13 +55,13 @@ pub struct Schedule {
 }
 
 impl Schedule {
-    /// The paper's pair, h2/h1 = p/q in lowest terms, phases 0: the steps are to each other as q to p
+    /// The paper's pair, h2/h1 = p/q, phases 0: the steps are to each other as q to p
     /// and the period is T = q h2 = p h1. One tick is h1/q = h2/p, or half of it where p and q are both odd.
     ///
     /// # Errors
     /// Where the period reaches 2^63 ticks.
-    pub fn two_clocks(p: u64, q: u64) -> Result<Self> {
-        debug_assert!(p > 0 && q > 0 && p.gcd(&q) == 1, "{p}/{q} is not in lowest terms");
+    pub fn two_clocks(ratio: Ratio) -> Result<Self> {
+        let (p, q) = ratio.terms();
         Schedule::from_ticks(vec![Clock { step: q, offset: 0 }, Clock { step: p, offset: 0 }])
     }
 
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn one_period_holds_p_fast_and_q_slow_kicks_at_p_plus_q_minus_1_times() {
         for (p, q) in [(1, 1), (2, 1), (1, 3), (7, 5), (12, 35), (3499, 631)] {
-            let schedule = Schedule::two_clocks(p, q).unwrap();
+            let schedule = Schedule::two_clocks(Ratio::new(p, q).unwrap()).unwrap();
             let times = kicks(schedule.staggered_period());
             assert_eq!(times.len() as u64, p + q - 1);
             assert_eq!(times.iter().filter(|t| t.1 & 1 != 0).count() as u64, p);
@@ -268,7 +268,7 @@ mod tests {
     #[test]
     fn a_kick_stands_at_half_time_iff_p_or_q_is_even() {
         for (p, q) in [(3, 2), (2, 3), (5, 3), (1, 1), (4, 1)] {
-            let schedule = Schedule::two_clocks(p, q).unwrap();
+            let schedule = Schedule::two_clocks(Ratio::new(p, q).unwrap()).unwrap();
             let last = schedule.half_period().last().unwrap();
             assert_eq!(last.kicks != 0, p % 2 == 0 || q % 2 == 0, "{p}/{q}");
         }
@@ -279,6 +279,6 @@ mod tests {
         assert!(Schedule::new(&[], &[]).is_err());
         assert!(Schedule::new(&[r(0, 1)], &[r(0, 1)]).is_err());
         assert!(Schedule::new(&[r(1, 1)], &[r(1, 1)]).is_err());
-        assert!(Schedule::two_clocks((1 << 40) + 1, 1 << 40).is_err());
+        assert!(Schedule::two_clocks(Ratio::new((1 << 40) + 1, 1 << 40).unwrap()).is_err());
     }
 }

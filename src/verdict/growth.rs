@@ -42,7 +42,7 @@ const ACCURACY: i64 = 60;
 /// # Errors
 /// A budget error where more kicks would have to be composed than `limits` allows.
 pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let schedule = Schedule::two_clocks(clocks.ratio())?;
     let floquet = Floquet::new(clocks);
     let filtered = floquet.as_ref().and_then(filter::run);
     let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
@@ -62,7 +62,7 @@ pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Li
 /// ```
 /// use kickdrift::number::rational::ratio;
 /// use kickdrift::propagator::{TwoClocks, half_period};
-/// let clocks = TwoClocks::with_rho(7, 2, ratio(1, 3), ratio(1, 25));
+/// let clocks = TwoClocks::with_rho("7/2".parse().unwrap(), ratio(1, 3), ratio(1, 25));
 /// let trace = kickdrift::verdict::filter_trace(&clocks).unwrap();
 /// assert!(trace.contains(&half_period(&clocks).trace()) && trace.radius_log2() < Some(-40));
 /// ```

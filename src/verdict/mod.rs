@@ -10,7 +10,7 @@
 //! use kickdrift::propagator::TwoClocks;
 //! use kickdrift::verdict::{decide, Kind, Limits, Tier};
 //! // r-RESPA, h2 = 3 h1 at s = 1: the resonance 3 th = pi. A step below it is stable ...
-//! let verdict_at = |s| decide(&TwoClocks::with_rho(3, 1, s, ratio(1, 25)), &Limits::default()).unwrap();
+//! let verdict_at = |s| decide(&TwoClocks::with_rho("3/1".parse().unwrap(), s, ratio(1, 25)), &Limits::default()).unwrap();
 //! assert_eq!(verdict_at(ratio(8, 10)).verdict.kind(), Kind::Elliptic);
 //! // ... close below the resonance is not, and on it sits the edge of the tongue.
 //! assert_eq!(verdict_at(ratio(99, 100)).verdict.kind(), Kind::Hyperbolic);

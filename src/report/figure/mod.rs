@@ -52,7 +52,8 @@ pub use canvas::Anchor;
 pub use layer::{Cells, Dash, Layer, Picture, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::format::Format;
 use canvas::Canvas;
 
 /// A sheet of panels.

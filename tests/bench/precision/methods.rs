@@ -189,7 +189,7 @@ fn start<T: Float>() -> [[T; 2]; 2] {
 }
 
 fn schedule(clocks: &TwoClocks<Rational>) -> Schedule {
-    Schedule::two_clocks(clocks.p(), clocks.q()).expect("a short period")
+    Schedule::two_clocks(clocks.ratio()).expect("a short period")
 }
 
 fn full<T: Float>(clocks: &TwoClocks<Rational>) -> T {
