@@ -94,3 +94,32 @@ fn a_bar_gives_each_value_the_colour_beside_its_number() {
     assert_eq!(bar.colour(1e-2), Gradient::on_white().at(0.5));
     assert_eq!([1e-9, 1e-4, 1.1e-2, 1.0, 9.0, 0.0].map(|rate| bar.class(rate, 8)), [0, 0, 4, 7, 7, 0]);
 }
+
+#[test]
+fn the_pdf_has_the_size_asked_for_and_its_letters_can_be_searched() {
+    let pdf = tiny().pdf();
+    assert_eq!(pdf, tiny().pdf());
+    let text = String::from_utf8_lossy(&pdf);
+    assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
+    // 40 and 30 mm in points.
+    assert!(text.contains("/MediaBox [0 0 113.38583 85.03937]"), "{text}");
+    for letter in "Tinyleh01".chars() {
+        let meaning = format!("<{:04X}>", u32::from(letter));
+        assert!(text.contains(&meaning), "{letter} has no meaning");
+    }
+    assert_eq!(text.matches("/Subtype /CIDFontType0C").count(), 3, "roman, italic, semibold");
+}
+
+#[test]
+fn strange_letters_and_pictures_make_a_sound_pdf() {
+    let picture = Picture::new([0.0, 1.0], [0.0, 1.0], 2, vec![family(3); 4]);
+    let panel = Panel::new(Axis::linear("\u{10ffff} *x* Ж", 0.0, 1.0), Axis::linear("", 0.0, 1.0))
+        .with(Layer::picture(picture))
+        .with(Layer::areas(vec![vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]], family(2), 0.5))
+        .note(Note::new([0.5, 0.5], "note"));
+    let pdf = Figure::new(60.0, 50.0).named("(a\\b)").with(panel).pdf();
+    let text = String::from_utf8_lossy(&pdf);
+    for piece in ["/Subtype /Image", "/ca 0.5", "<DBFFDFFF>", "<0416>"] {
+        assert!(text.contains(piece), "no {piece} in {text}");
+    }
+}

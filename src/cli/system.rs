@@ -19,7 +19,7 @@ use crate::system::{Limits, Route};
 
 /// Flags of `system`.
 ///
-/// --output FILE.svg or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
+/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -116,7 +116,7 @@ fn drawing(common: &Common) -> Result<Option<&Path>> {
     Ok(common.output.as_deref().filter(|_| format.is_figure()))
 }
 
-/// Writes a figure to FILE.svg or FILE.png.
+/// Writes a figure to FILE.svg, FILE.pdf or FILE.png.
 pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
     let extension = path.extension().and_then(|extension| extension.to_str());
     let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());

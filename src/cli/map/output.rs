@@ -36,7 +36,7 @@ impl Output<'_> {
             (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path),
             (Format::Csv, _) => self.csv(source, path),
             (Format::Npz, Some(path)) => self.npz(source, path),
-            (Format::Svg | Format::Png, _) => self.figure(source, path),
+            (Format::Svg | Format::Pdf | Format::Png, _) => self.figure(source, path),
             (Format::Npz, None) => unreachable!("an extension is that of a path"),
         }
     }

@@ -5,6 +5,7 @@
 
 use std::sync::LazyLock;
 
+use subsetter::GlyphRemapper;
 use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
 use ttf_parser::{GlyphId, OutlineBuilder};
 
@@ -86,9 +87,40 @@ impl Face {
         pen.curves
     }
 
+    /// The glyphs numbered by `numbers` as a font program for embedding (CFF).
+    pub(super) fn outlines(self, numbers: &GlyphRemapper) -> Vec<u8> {
+        let part = subsetter::subset(self.file(), 0, numbers).expect("a built-in font is sound");
+        let face = ttf_parser::RawFace::parse(&part, 0).expect("a part of a sound font is sound");
+        face.table(ttf_parser::Tag::from_bytes(b"CFF ")).expect("the outlines are CFF").to_vec()
+    }
+
+    /// How large its glyphs are.
+    pub(super) fn shape(self) -> Shape {
+        let (font, em) = (self.font(), self.em());
+        let length = |units: i16| 1000.0 * f64::from(units) / em;
+        let bounds = font.global_bounding_box();
+        Shape {
+            bounds: [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(length),
+            slant: f64::from(font.italic_angle()),
+            ascent: length(font.ascender()),
+            descent: length(font.descender()),
+            capital: font.capital_height().map_or(700.0, length),
+        }
+    }
+
     fn em(self) -> f64 {
         f64::from(self.font().units_per_em())
     }
+}
+
+/// The measures of a face in 1/1000 em, y pointing up; the slant in degrees, counterclockwise.
+pub(super) struct Shape {
+    /// Left, bottom, right, top of all glyphs put on one another.
+    pub bounds: [f64; 4],
+    pub slant: f64,
+    pub ascent: f64,
+    pub descent: f64,
+    pub capital: f64,
 }
 
 /// The change of the left glyph's advance, if the table knows the pair.

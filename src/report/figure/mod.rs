@@ -29,21 +29,26 @@
 //! | `clip` | what lies in the frame |
 //! | `font`, `label` | glyphs, and words made of them |
 //! | `canvas` | paths, rectangles, pictures, words: what every format draws |
+//! | `outline` | its lines and curves, for formats that draw by themselves |
 //! | `svg` | the canvas as SVG |
 //! | `png` | the canvas as pixels |
+//! | `pdf`, `embed` | the canvas as PDF, and the letters in it |
 
 mod axis;
 mod canvas;
 mod clip;
 mod draw;
+mod embed;
 mod font;
 mod key;
 mod label;
 mod layer;
 mod layout;
 mod marks;
+mod outline;
 pub mod palette;
 mod panel;
+mod pdf;
 mod png;
 mod svg;
 
@@ -114,6 +119,27 @@ impl Figure {
     /// [`Kind::Input`](crate::error::Kind::Input) if `dpi` is not a positive number or makes more than 2^28 pixels.
     pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
         png::raster(&self.drawn(), dpi)
+    }
+
+    /// The figure as a PDF file of one page, its words searchable: same figure, same bytes.
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::document(&self.drawn())
+    }
+
+    /// The figure as the bytes of a file; `dpi` is for PNG alone.
+    ///
+    /// # Errors
+    /// A format that is none of figures, and as [`Figure::png`].
+    pub fn file(&self, format: Format, dpi: f64) -> Result<Vec<u8>> {
+        match format {
+            Format::Svg => Ok(self.svg().into_bytes()),
+            Format::Pdf => Ok(self.pdf()),
+            Format::Png => self.png(dpi),
+            other => {
+                let remedy = format!("a figure is written as {}", Format::extensions(&Format::FIGURE));
+                Err(Error::input("format", other.name(), remedy))
+            }
+        }
     }
 
     fn drawn(&self) -> Canvas {

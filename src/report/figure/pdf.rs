@@ -44,7 +44,7 @@ pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
     named.finish();
     let mut states = resources.ext_g_states();
     for (opacity, name) in &veils {
-        let share = f32::from(*opacity) / 255.0;
+        let share = f32::from(*opacity) / 100.0;
         states.insert(Name(name.as_bytes())).dict().pair(Name(b"ca"), share);
     }
     states.finish();
@@ -78,7 +78,7 @@ struct Drawing<'a> {
     content: Content,
     fonts: &'a Fonts,
     images: Vec<&'a Image>,
-    /// Opacities in use, in 1/255, with their names.
+    /// Opacities in use, in hundredths as in the SVG, with their names.
     veils: BTreeMap<u8, String>,
 }
 
@@ -123,9 +123,9 @@ impl<'a> Drawing<'a> {
     }
 
     fn fill(&mut self, colour: Colour, opacity: Option<f64>, trace: impl FnOnce(&mut Content)) {
-        let opacity = (255.0 * opacity.unwrap_or(1.0)).round() as u8;
+        let opacity = (100.0 * opacity.unwrap_or(1.0)).round() as u8;
         self.content.save_state();
-        if opacity < u8::MAX {
+        if opacity < 100 {
             let name = self.veils.entry(opacity).or_insert_with(|| format!("v{opacity}"));
             self.content.set_parameters(Name(name.as_bytes()));
         }

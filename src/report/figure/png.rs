@@ -6,16 +6,14 @@ use tiny_skia::{
     PixmapPaint, Rect as Area, Stroke, StrokeDash, Transform,
 };
 
-use super::canvas::{Canvas, Element, HALO, Image, Paint, Patch, Path, Pen, Step, Words};
+use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
 use super::clip::Rect;
-use super::font::Curve;
+use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
 use crate::error::{Error, Result};
 
 /// The most pixels of one image; at four bytes each this is 1 GiB.
 const MOST_PIXELS: f64 = (1u64 << 28) as f64;
-/// Control points of a quarter of a circle of radius 1, from its ends: with them a cubic is off by 0.03 %.
-const QUARTER: f32 = 0.552_285;
 
 /// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file.
 ///
@@ -68,7 +66,7 @@ impl Brush {
     fn draw(&mut self, element: &Element) {
         match element {
             Element::Path(path, paint) => {
-                if let Some(path) = outline(path) {
+                if let Some(path) = traced(|pen| outline::path(path, pen)) {
                     match paint {
                         Paint::Fill { colour, opacity } => {
                             self.fill(&path, &shade(*colour, *opacity), self.page);
@@ -78,7 +76,7 @@ impl Brush {
                 }
             }
             Element::Patch(patch) => {
-                if let Some(path) = rounded(patch) {
+                if let Some(path) = traced(|pen| outline::patch(patch, pen)) {
                     self.fill(&path, &shade(patch.colour, patch.opacity), self.page);
                 }
             }
@@ -137,7 +135,8 @@ impl Brush {
             let [x, y] = words.offset(placed).map(|at| at as f32);
             let scale = placed.scale as f32;
             let place = frame.pre_translate(x, y).pre_scale(scale, scale).post_concat(self.page);
-            Some((letter(placed.face.outline(placed.glyph))?, place))
+            let curves = placed.face.outline(placed.glyph);
+            Some((traced(|pen| outline::glyph(&curves, pen))?, place))
         });
         let glyphs: Vec<_> = glyphs.collect();
         if set.halo {
@@ -159,83 +158,28 @@ fn shade(Colour(r, g, b): Colour, opacity: Option<f64>) -> Shade<'static> {
     shade
 }
 
-/// A path in points; none where nothing is left of it.
-fn outline(path: &Path) -> Option<tiny_skia::Path> {
-    let mut builder = PathBuilder::new();
-    let at = |hundredths: i64| (hundredths as f64 / 100.0) as f32;
-    let (mut x, mut y) = (0, 0);
-    for &step in &path.steps {
-        match step {
-            Step::Move(to_x, to_y) => {
-                (x, y) = (to_x, to_y);
-                builder.move_to(at(x), at(y));
-                continue;
-            }
-            Step::Line(to_x, to_y) => (x, y) = (to_x, to_y),
-            Step::Across(to) => x = to,
-            Step::Along(to) => y = to,
-            Step::Dot => {}
-            Step::Close(to_x, to_y) => {
-                (x, y) = (to_x, to_y);
-                builder.close();
-                continue;
-            }
-        }
-        builder.line_to(at(x), at(y));
-    }
-    builder.finish()
-}
-
-/// A rectangle, its corners quarters of a circle where it has a radius.
-fn rounded(patch: &Patch) -> Option<tiny_skia::Path> {
-    let [left, top, width, height] = [patch.x, patch.y, patch.width, patch.height].map(|x| x as f32);
-    let (right, bottom) = (left + width, top + height);
-    let Some(radius) = patch.radius.map(|radius| radius as f32) else {
-        return Area::from_ltrb(left, top, right, bottom).map(PathBuilder::from_rect);
-    };
+/// What is drawn by `trace`; none where nothing is left of it.
+fn traced(trace: impl FnOnce(&mut PathBuilder)) -> Option<tiny_skia::Path> {
     let mut path = PathBuilder::new();
-    // Each corner with the direction in which the outline, clockwise, comes to it, and goes from it.
-    let corners = [
-        ([right, top], [1.0, 0.0], [0.0, 1.0]),
-        ([right, bottom], [0.0, 1.0], [-1.0, 0.0]),
-        ([left, bottom], [-1.0, 0.0], [0.0, -1.0]),
-        ([left, top], [0.0, -1.0], [1.0, 0.0]),
-    ];
-    path.move_to(left + radius, top);
-    for ([x, y], [in_x, in_y], [out_x, out_y]) in corners {
-        let near = radius * (1.0 - QUARTER);
-        path.line_to(x - radius * in_x, y - radius * in_y);
-        path.cubic_to(
-            x - near * in_x,
-            y - near * in_y,
-            x + near * out_x,
-            y + near * out_y,
-            x + radius * out_x,
-            y + radius * out_y,
-        );
-    }
-    path.close();
+    trace(&mut path);
     path.finish()
 }
 
-/// A glyph in units of 1/1000 em; none for a space.
-fn letter(curves: Vec<Curve>) -> Option<tiny_skia::Path> {
-    let mut path = PathBuilder::new();
-    let at = |point: [i32; 2]| point.map(|x| x as f32);
-    for curve in curves {
-        match curve {
-            Curve::Move(to) => path.move_to(at(to)[0], at(to)[1]),
-            Curve::Line(to) => path.line_to(at(to)[0], at(to)[1]),
-            Curve::Quad(control, to) => {
-                let ([a, b], [x, y]) = (at(control), at(to));
-                path.quad_to(a, b, x, y);
-            }
-            Curve::Cubic(first, second, to) => {
-                let ([a, b], [c, d], [x, y]) = (at(first), at(second), at(to));
-                path.cubic_to(a, b, c, d, x, y);
-            }
-            Curve::Close => path.close(),
-        }
+impl Outline for PathBuilder {
+    fn begin(&mut self, [x, y]: [f64; 2]) {
+        self.move_to(x as f32, y as f32);
     }
-    path.finish()
+
+    fn line(&mut self, [x, y]: [f64; 2]) {
+        self.line_to(x as f32, y as f32);
+    }
+
+    fn cubic(&mut self, first: [f64; 2], second: [f64; 2], to: [f64; 2]) {
+        let [[a, b], [c, d], [x, y]] = [first, second, to].map(|point| point.map(|x| x as f32));
+        self.cubic_to(a, b, c, d, x, y);
+    }
+
+    fn end(&mut self) {
+        self.close();
+    }
 }
