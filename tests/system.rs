@@ -186,10 +186,9 @@ fn by_the_ladder(springs: &[(i64, i64)]) -> Kind {
         springs.iter().map(|s| s.1).collect::<std::collections::BTreeSet<_>>().into_iter().collect();
     let strength =
         |h: &i64| ratio(springs.iter().filter(|s| s.1 == *h).map(|s| s.0).sum::<i64>() * h * steps[0], 10);
-    let g = |a: i64, b: i64| num_integer::gcd(a, b);
     let two = match steps.as_slice() {
-        [one] => TwoClocks::new(1, 1, strength(one), Rational::zero()),
-        [a, b] => TwoClocks::new((b / g(*a, *b)) as u64, (a / g(*a, *b)) as u64, strength(a), strength(b)),
+        [one] => TwoClocks::new("1/1".parse().unwrap(), strength(one), Rational::zero()),
+        [a, b] => TwoClocks::new((&ratio(*b, *a)).try_into().unwrap(), strength(a), strength(b)),
         _ => unreachable!("two steps"),
     };
     kickdrift::verdict::decide(&two, &Default::default()).unwrap().verdict.kind()
