@@ -35,4 +35,10 @@ refuse "a theorem on matrices that is not listed" "$here/tools/listed.sh" "$here
 
 sed 's/^Theorem/Notation verdict := (fun _ _ _ _ _ _ _ => True).\n&/' "$here/certificates/elliptic.v" > "$work/meaning.v"
 refuse "a certificate that redefines its words" "$here/tools/certificate.sh" "$work/meaning.v"
+sed '1s/--h1 [^ ]*/--h1 77/' "$here/certificates/elliptic.v" > "$work/comment.v"
+refuse "a comment of another input" "$here/tools/certificate.sh" "$work/comment.v"
+grep -q "not of the theorem's input" "$work/out" || { cat "$work/out"; exit 1; }
+fresh
+refuse "a certificate without the theory" "$work/p/tools/certificate.sh" "$work/p/certificates/elliptic.v"
+grep -q "make theory" "$work/out" || { cat "$work/out"; exit 1; }
 echo "guards: every broken input was refused"
