@@ -83,7 +83,7 @@ impl Args {
     ) -> Result<Run> {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
-        let period = simulation.clocks().period;
+        let period = simulation.clocks().period();
         if !simulation.energy().is_finite() {
             let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
             return Err(Error::input("displace", &self.displace, remedy));

@@ -10,7 +10,7 @@ use num_traits::ToPrimitive;
 
 use crate::number::{Laurent, Rational};
 use crate::propagator::TwoClocks;
-use crate::schedule::{Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// 2^61 − 1, a prime.
 const P: u64 = (1 << 61) - 1;
@@ -29,18 +29,25 @@ fn entries(clocks: &TwoClocks<Laurent>) -> Option<[[u64; 2]; 2]> {
     let per_tick = inverse(2 * schedule.clocks()[0].step() % P)?;
     let half = |k: &Laurent| residue(k).map(|k| times(k, per_tick));
     let (fast, slow) = (half(clocks.fast())?, half(clocks.slow())?);
-    let strengths = [0, fast, slow, (fast + slow) % P];
-    let mut m = [[1, 0], [0, 1]];
-    for event in schedule.half_period() {
-        let halves = if event.weight == Weight::Full { 2 } else { 1 };
-        let strength = times(strengths[event.kicks as usize], halves);
-        let [xs, vs] = &mut m;
-        for (x, v) in xs.iter_mut().zip(vs) {
-            *x = (*x + times(event.drift % P, *v)) % P;
-            *v = (*v + P - times(strength, *x)) % P;
-        }
+    let kicks = Kicks::of_two_clocks([fast, slow, (fast + slow) % P], |half| [2 * half % P, half]);
+    let mut residues = Residues([[1, 0], [0, 1]]);
+    kicks.lead(schedule.half_period(), &mut residues);
+    Some(residues.0)
+}
+
+/// The product so far.
+struct Residues([[u64; 2]; 2]);
+
+impl KickDrift<u64> for Residues {
+    fn drift(&mut self, ticks: u64) {
+        let [xs, vs] = &mut self.0;
+        xs.iter_mut().zip(vs).for_each(|(x, v)| *x = (*x + times(ticks % P, *v)) % P);
     }
-    Some(m)
+
+    fn kick(&mut self, strength: &u64) {
+        let [xs, vs] = &mut self.0;
+        xs.iter_mut().zip(vs).for_each(|(x, v)| *v = (*v + P - times(*strength, *x)) % P);
+    }
 }
 
 /// The image of Σ c_k π^k.

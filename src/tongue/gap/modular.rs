@@ -13,7 +13,7 @@ use num_traits::{ToPrimitive, Zero};
 
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
-use crate::schedule::{Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::tongue::edge::Edges;
 use crate::tongue::string::Entry;
 
@@ -73,17 +73,28 @@ fn add_multiple(x: &mut Coefficients, c: u64, y: &[u64]) {
 /// x and v at T/2 as polynomials in 2κ; `None` where the prime divides a denominator.
 fn ends(ratio: Ratio, rho: &Rational, even: bool) -> Result<Option<(Coefficients, Coefficients)>> {
     let Some(slow) = residue(&(rho * Rational::from(ratio))) else { return Ok(None) };
-    let half = [0, 1, slow, plus(1, slow)];
-    let (mut x, mut v) = if even { (vec![1], vec![]) } else { (vec![], vec![1]) };
-    let schedule = Schedule::two_clocks(ratio)?;
-    for event in schedule.half_period() {
-        add_multiple(&mut x, event.drift % PRIME, &v);
-        let mass = half[event.kicks as usize];
-        let mass = if event.weight == Weight::Half { mass } else { plus(mass, mass) };
-        let raised: Coefficients = std::iter::once(0).chain(x.iter().copied()).collect();
-        add_multiple(&mut v, minus(0, mass), &raised);
+    let kicks = Kicks::of_two_clocks([1, slow, plus(1, slow)], |half| [plus(half, half), half]);
+    let (x, v) = if even { (vec![1], vec![]) } else { (vec![], vec![1]) };
+    let mut orbit = PolynomialOrbit { x, v };
+    kicks.lead(Schedule::two_clocks(ratio)?.half_period(), &mut orbit);
+    Ok(Some((trim(orbit.x), trim(orbit.v))))
+}
+
+/// A solution on its way.
+struct PolynomialOrbit {
+    x: Coefficients,
+    v: Coefficients,
+}
+
+impl KickDrift<u64> for PolynomialOrbit {
+    fn drift(&mut self, ticks: u64) {
+        add_multiple(&mut self.x, ticks % PRIME, &self.v);
     }
-    Ok(Some((trim(x), trim(v))))
+
+    fn kick(&mut self, mass: &u64) {
+        let raised: Coefficients = std::iter::once(0).chain(self.x.iter().copied()).collect();
+        add_multiple(&mut self.v, minus(0, *mass), &raised);
+    }
 }
 
 /// The degree of the greatest common divisor.
