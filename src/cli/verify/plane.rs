@@ -85,8 +85,8 @@ fn recount(grid: &Grid, context: &Context) -> Result<[(&'static str, u64); 5]> {
 
 fn again(clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Verdict> {
     let decision = match clocks.as_rational() {
-        Some(rational) => decide_from(Tier::Refine, &rational, limits),
-        None => decide_from(Tier::Refine, clocks, limits),
+        Some(rational) => decide_from(Tier::Refine, &rational, limits).map(|answer| answer.decision()),
+        None => decide_from(Tier::Refine, clocks, limits).map(|answer| answer.decision()),
     };
     decision.map(|decision| decision.verdict)
 }
