@@ -19,8 +19,6 @@ mod tests;
 
 pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 
-use std::str::FromStr;
-
 use num_traits::ToPrimitive;
 
 use super::{Laurent, Ratio, Rational};
@@ -52,14 +50,6 @@ pub fn parse_integer(field: &str, text: &str) -> Result<i64> {
 pub fn parse_ratio(field: &str, text: &str) -> Result<Ratio> {
     let x = parse_rational(field, text)?;
     Ratio::try_from(&x).map_err(|error| Error::input(field, text.trim(), error.remedy()))
-}
-
-impl FromStr for Ratio {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        parse_ratio("ratio", text)
-    }
 }
 
 /// The closed range `LO..HI`, LO ≤ HI.
