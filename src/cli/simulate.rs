@@ -29,7 +29,7 @@ pub struct Args {
     /// which makes the run symmetric in time.
     #[arg(long)]
     staggered: bool,
-    /// Also draw energy, momentum and amplitude: FILE.svg or FILE.png.
+    /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
