@@ -4,18 +4,19 @@ use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
 use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
 use crate::error::Result;
+use crate::report::figure::Figure;
 use crate::report::tongues::Frame;
 use crate::scene::Scene;
 use crate::tongue::{Selection, Wanted};
 
-/// The atlas's SVG.
-pub fn atlas(scene: &Scene, common: &Common) -> Result<String> {
+/// The atlas.
+pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
     let colour = match scene.colour.as_deref() {
         Some("growth") => Colour::Growth,
         _ => Colour::Family,
     };
     let question = question(scene, colour.needs())?;
-    Ok(Atlas::new(&question, colour, Some(scene.families.unwrap_or_default()))?.figure(common)?.svg())
+    Atlas::new(&question, colour, Some(scene.families.unwrap_or_default()))?.figure(common)
 }
 
 /// The question that tongues and atlas answer.
