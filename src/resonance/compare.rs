@@ -1,7 +1,7 @@
 //! The trace condition against the resonance predictions, pair by pair.
 //!
 //! Two questions are asked of every pair. Does the tan criterion say what the trace says? (It must, for every
-//! q: both are exact.) And does the rule of thumb "unstable whenever q h2 is near an integer multiple of T½" say
+//! q: both are exact, each by arithmetic of its own.) And does the rule of thumb "unstable whenever q h2 is near an integer multiple of T½" say
 //! so, "near" meaning |p θ/π − m| ≤ tolerance for some m ≥ 1? (It need not.)
 //!
 //! ```
@@ -66,9 +66,10 @@ impl Outcome {
 /// Both predictions beside the trace's verdict.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// By kicks and drifts (the refine and exact tiers), which share nothing with the tan criterion.
+    /// Rests on kicks and drifts one by one, in multiple precision or exactly (the refine and exact tiers).
     pub trace: Decision,
-    /// By the tan criterion.
+    /// Rests on turns of the fast clock by θ with the slow kicks between them, in balls or exactly
+    /// ([`tan::criterion`]): the two sides share the numbers and the table of signs, and no arithmetic beyond.
     pub tan: Verdict,
     /// The nearest resonance; `None` beyond the fast clock's Verlet limit s = 4, where there is no θ.
     pub nearest: Option<Nearest>,

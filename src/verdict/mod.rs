@@ -32,5 +32,4 @@ pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, filter_trace, growth};
 pub use kind::{Kind, Side, Verdict};
 pub(crate) use label::label;
-pub(crate) use ladder::filter_only;
 pub use ladder::{Limits, Tier, decide, decide_from};
