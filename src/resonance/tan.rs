@@ -273,10 +273,13 @@ mod tests {
                 let clocks = TwoClocks::new(ratio_of_steps, ratio(s, 10), ratio(k, 10));
                 let signs = crate::propagator::half_period(&clocks).signs();
                 assert_eq!(exact_forms(&clocks).all(), signs.all(), "{ratio_of_steps}, {s}/10, {k}/10");
-                // 512 bits tell all but the edges.
+                // 512 bits tell all but the edges, and of those nothing false.
                 let enclosed = enclosed_forms::<_, 512>(&clocks);
                 let edge = matches!(signs.verdict(), Verdict::Parabolic(_) | Verdict::Coexistence(_));
-                assert_eq!(enclosed, (!edge).then_some(signs.verdict()), "{ratio_of_steps}, {s}/10, {k}/10");
+                assert!(
+                    enclosed.map_or(edge, |found| found == signs.verdict()),
+                    "{ratio_of_steps}, {s}/10, {k}/10"
+                );
             }
         }
     }
