@@ -2,9 +2,9 @@
 //!
 //!     tests/bench/instructions.sh
 //!
-//! `cargo bench --bench kernels` lists the names.
+//! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces that form.
 
-use kickdrift::map::{Products, Shard, for_each_band};
+use kickdrift::map::{Map, Products, Resources};
 use kickdrift::number::Ratio;
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
@@ -40,12 +40,17 @@ fn map(products: Products) {
         std::hint::black_box(band);
         Ok(())
     };
-    for_each_band(&figure_1(100), products, Shard::WHOLE, 1, &Limits::default(), see)
-        .expect("within the budget");
+    let one = Resources { threads: 1, ..Resources::default() };
+    Map::of(&figure_1(100)).with(products).within(one).for_each_band(see).expect("within the budget");
 }
 
 fn main() {
-    let name = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
+    let mut words = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
+    let (name, form) = (words.next(), words.next());
+    if let Some(form) = form.filter(|form| !kickdrift::force_instructions(form)) {
+        eprintln!("this processor lacks {form}");
+        std::process::exit(2);
+    }
     match KERNELS.iter().find(|(kernel, _)| Some(*kernel) == name.as_deref()) {
         Some((_, work)) => work(),
         None => KERNELS.iter().for_each(|(kernel, _)| println!("{kernel}")),
