@@ -5,21 +5,13 @@ use serde_json::json;
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column};
-use crate::number::{Ratio, Rational};
-use crate::resonance::compare::{Comparison, Tally};
-
-/// A pair at which a prediction is wrong.
-#[derive(Clone, Debug)]
-pub struct Offender {
-    /// Two exact quantities that name the pair: h1 and h2 on a grid, s and rho for ratios.
-    pub place: [String; 2],
-    pub ratio: Ratio,
-    pub comparison: Comparison,
-}
+use crate::number::Rational;
+use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally};
 
 /// The document `kickdrift/compare/1`; `places` are the names of an offender's two quantities. The caller
 /// adds the rest of the input.
-pub fn document(tally: &Tally, tolerance: &Rational, places: [&str; 2], offenders: &[Offender]) -> Document {
+pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> Document {
+    let Comparisons { tally, offenders } = all;
     Document::new("compare")
         .input("tolerance", tolerance)
         .entry("pairs", tally.pairs)

@@ -27,6 +27,7 @@ use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
 use crate::number::{Laurent, Ratio, Rational};
+use crate::resonance::Families;
 
 pub use document::{Document, Quantity};
 pub use grid::{GridRange, shown_range};
@@ -68,38 +69,24 @@ pub struct Scene {
     pub want: Vec<Want>,
 }
 
-/// The curves wanted: closed ranges of a and b, and the number of samples in 0 < θ < π.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Families {
-    pub a: (i64, i64),
-    pub b: (i64, i64),
-    pub samples: usize,
+/// The curves unless a scene or a person says otherwise: a from 0 to 3 and |b| up to 12.
+pub const FAMILIES: Families = Families { a: (0, 3), b: (-12, 12), samples: 400 };
+
+fn read_families(document: &document::Families) -> Result<Families> {
+    let range = |field, given: &Option<_>, default| {
+        Ok(Quantity::read(given.as_ref(), field, parse_integer_range)?.unwrap_or(default))
+    };
+    Ok(Families {
+        a: range("families.a", &document.a, FAMILIES.a)?,
+        b: range("families.b", &document.b, FAMILIES.b)?,
+        samples: document.samples.map_or(FAMILIES.samples, |samples| samples as usize),
+    })
 }
 
-impl Default for Families {
-    /// a from 0 to 3 and |b| up to 12.
-    fn default() -> Self {
-        Families { a: (0, 3), b: (-12, 12), samples: 400 }
-    }
-}
-
-impl Families {
-    fn read(document: &document::Families) -> Result<Self> {
-        let default = Families::default();
-        let range = |field, given: &Option<_>, default| {
-            Ok(Quantity::read(given.as_ref(), field, parse_integer_range)?.unwrap_or(default))
-        };
-        Ok(Families {
-            a: range("families.a", &document.a, default.a)?,
-            b: range("families.b", &document.b, default.b)?,
-            samples: document.samples.map_or(default.samples, |samples| samples as usize),
-        })
-    }
-
-    /// The fields by which a document echoes them.
-    pub fn given(&self) -> [(&'static str, String); 3] {
-        [("a", shown_range(&self.a)), ("b", shown_range(&self.b)), ("samples", self.samples.to_string())]
-    }
+/// The fields by which a document echoes families.
+pub fn given_families(families: &Families) -> [(&'static str, String); 3] {
+    let Families { a, b, samples } = families;
+    [("a", shown_range(a)), ("b", shown_range(b)), ("samples", samples.to_string())]
 }
 
 /// A closed range of steps.
@@ -138,7 +125,7 @@ impl Scene {
             lambda1: Quantity::read(document.lambda1.as_ref(), "lambda1", parse)?,
             lambda2: Quantity::read(document.lambda2.as_ref(), "lambda2", parse)?,
             grid: document.grid.as_ref().map(GridRange::read).transpose()?,
-            families: document.families.as_ref().map(Families::read).transpose()?,
+            families: document.families.as_ref().map(read_families).transpose()?,
             tolerance: rational("tolerance", &document.tolerance)?,
             ratio: Quantity::read(document.ratio.as_ref(), "ratio", parse_ratio)?,
             max: document.max,
@@ -201,7 +188,7 @@ impl Scene {
         given.extend(text("lambda1", self.lambda1.as_ref()));
         given.extend(text("lambda2", self.lambda2.as_ref()));
         given.extend(self.grid.iter().flat_map(GridRange::given));
-        given.extend(self.families.iter().flat_map(Families::given));
+        given.extend(self.families.iter().flat_map(given_families));
         given.extend(text("tolerance", self.tolerance.as_ref()));
         given.extend(text("ratio", self.ratio.as_ref()));
         given.extend(text("max", self.max.as_ref()));

@@ -4,14 +4,14 @@ use clap::ValueEnum;
 
 use super::Map;
 use crate::cli::args::of;
-use crate::cli::curves;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::parse::parse_integer_range;
 use crate::report::plane::{Colouring, window};
 use crate::resonance::Curve;
-use crate::scene::Families;
+use crate::resonance::Families;
+use crate::scene::FAMILIES;
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
@@ -88,8 +88,8 @@ impl Drawing {
         if !self.curves {
             return Ok(Vec::new());
         }
-        let default = Families::default();
+        let default = FAMILIES;
         let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
-        curves::sample_within(map.grid.lambdas().0, &families, &window(&map.grid))
+        families.curves_within(map.grid.lambdas().0, &window(&map.grid))
     }
 }

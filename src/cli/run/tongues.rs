@@ -6,7 +6,7 @@ use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
 use crate::error::Result;
 use crate::report::figure::Figure;
 use crate::report::tongues::Frame;
-use crate::scene::Scene;
+use crate::scene::{FAMILIES, Scene};
 use crate::tongue::{Selection, Wanted};
 
 /// The atlas.
@@ -16,7 +16,7 @@ pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
         _ => Colour::Family,
     };
     let question = question(scene, colour.needs())?;
-    Atlas::new(&question, colour, Some(scene.families.unwrap_or_default()))?.figure(common)
+    Atlas::new(&question, colour, Some(scene.families.unwrap_or(FAMILIES)))?.figure(common)
 }
 
 /// The question that tongues and atlas answer.

@@ -19,8 +19,8 @@ use crate::report::file::write_output;
 use crate::report::map::MapArrays;
 use crate::report::plane;
 use crate::report::tongues::Tally;
-use crate::resonance::{Curve, Window};
-use crate::scene::{Families, Product, Scene, Want};
+use crate::resonance::{Curve, Families, Window};
+use crate::scene::{FAMILIES, Product, Scene, Want};
 use crate::tongue::Wanted;
 use crate::verdict::Limits;
 
@@ -185,16 +185,16 @@ impl<'a> Work<'a> {
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
-        once(&self.curves, || curves::sample(self.scene.lambda1()?, &self.families(), &self.window()?))
+        once(&self.curves, || self.families().curves(self.scene.lambda1()?, &self.window()?))
     }
 
     fn families(&self) -> Families {
-        self.scene.families.unwrap_or_default()
+        self.scene.families.unwrap_or(FAMILIES)
     }
 
     fn window(&self) -> Result<Window> {
         let [h1, h2] = self.scene.range()?.ranges();
-        Ok(curves::window(h1, h2))
+        Ok(Window::new(h1, h2))
     }
 }
 
