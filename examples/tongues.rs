@@ -4,7 +4,7 @@
 
 use kickdrift::error::Result;
 use kickdrift::number::Ratio;
-use kickdrift::number::rational::ratio;
+use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::tongue::{Question, Request, Search, Selection, Stiffness, Tongues, Wanted, Window, closings};
 
 fn main() -> Result<()> {
@@ -19,10 +19,10 @@ fn main() -> Result<()> {
         );
     }
 
-    // One edge to thirty digits, as a rational interval.
+    // One edge to thirty digits: an interval with rational ends.
     let edge = tongues.gap(4)?.lower;
     let precise = tongues.refine(&edge, 30)?;
-    println!("its fourth tongue begins within {} of {}", precise.width(), edge.lo);
+    println!("m = 4 begins at {}, known to within {:.0e}", edge.lo, to_f64(&precise.width()));
 
     // Where that tongue closes: a resonance that does not destabilize.
     let found = closings("5/3".parse()?, &Search { m: Some(4), ..Search::default() })?;
