@@ -109,3 +109,6 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+
+#[doc(hidden)]
+pub use vector::instructions::force_instructions;
