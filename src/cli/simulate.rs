@@ -86,11 +86,11 @@ impl Args {
     ) -> Result<Run> {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
-        let period = simulation.clocks().period;
+        let period = simulation.clocks().period();
         // The series, the measurement of growth, and one period forward and back.
         let runs = 2 * u64::from(self.periods) + 2;
         limits.allow(simulation.cost(period).saturating_mul(runs), || {
-            format!("{} periods of {} kicks", self.periods, simulation.clocks().kicks())
+            format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes())
         })?;
         if !simulation.energy().is_finite() {
             let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
