@@ -2,12 +2,11 @@
 
 use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
-use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
+use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question};
 use crate::error::Result;
 use crate::report::figure::Figure;
-use crate::report::tongues::Frame;
 use crate::scene::{FAMILIES, Scene};
-use crate::tongue::{Selection, Wanted};
+use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 
 /// The atlas.
 pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
@@ -23,8 +22,8 @@ pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
 pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
     let [h1, h2] = scene.window.clone().map_or([None, None], |window| window.map(Some));
     let window = Window { h1, h2 };
-    let frame = Frame { wanted, ..Frame::default() };
-    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), frame)
+    let request = Request { wanted, ..Request::default() };
+    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), request)
 }
 
 /// All ratios where a sum is given, else the one.
