@@ -53,6 +53,12 @@ pub(super) fn closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Ratio
     Some(resultant(&x, &y).count_roots(lo, hi))
 }
 
+/// How many tongues of one parity of m close at a ρ in \[lo, hi\], 0 < lo: the distinct zeros of a resultant, exactly. Its
+/// cost grows like the fifth power of p + q.
+pub fn count_closings(ratio: Ratio, odd: bool, lo: &Rational, hi: &Rational) -> usize {
+    closings(ratio, super::modular::pair(odd), lo, hi).unwrap_or(0)
+}
+
 /// The polynomial with integer coefficients: a positive rational factor taken out, which keeps the zeros.
 fn primitive(f: &InRho) -> InRho {
     use num_integer::Integer;

@@ -59,7 +59,7 @@ mod tunnel;
 mod twofold;
 
 pub use closing::{Closing, ELIMINATION, Found, Search, closings};
-pub use elimination::entries;
+pub use elimination::{count_closings, entries};
 pub use gaps::{Effort, Tongues};
 pub use order::Gap;
 pub use peak::Peak;

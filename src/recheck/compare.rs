@@ -1,0 +1,306 @@
+//! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
+
+use crate::parallel::*;
+use serde::Deserialize;
+
+use super::exact::{affordable, again, full_period, lowest};
+use super::written::{Ends, Range, Written, nullable, ratios};
+use super::{Checked, Context, Outcome, Place, holds, same};
+use crate::error::{Error, Result};
+use crate::map::Grid;
+use crate::number::{Ball, Laurent, Ratio, Rational};
+use crate::propagator::TwoClocks;
+use crate::resonance::compare::Outcome as Rule;
+use crate::verdict::{Kind, Verdict, decide};
+
+const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
+                     enclosed; the tan criterion and the trace give one verdict by a theorem";
+
+/// `kickdrift/compare/1`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    #[serde(rename = "schema")]
+    _schema: String,
+    #[serde(rename = "kickdrift")]
+    _written_by: Option<serde_json::Value>,
+    input: Input,
+    pairs: u64,
+    unstable: u64,
+    tan: Tan,
+    resonance: Counts,
+    offenders: Vec<Offender>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    tolerance: Written<Rational>,
+    lambda1: Option<Written<Laurent>>,
+    lambda2: Option<Written<Laurent>>,
+    step1: Option<Written<Laurent>>,
+    step2: Option<Written<Laurent>>,
+    h1_range: Option<Written<Range>>,
+    h2_range: Option<Written<Range>>,
+    max_sum: Option<Written<u64>>,
+    rho: Option<Written<Rational>>,
+    samples: Option<Written<u64>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Tan {
+    agree: u64,
+    disagree: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Counts {
+    hits: u64,
+    quiet: u64,
+    misses: u64,
+    false_alarms: u64,
+    beyond_verlet: u64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Offender {
+    h1: Option<Written<Laurent>>,
+    h2: Option<Written<Laurent>>,
+    s: Option<Written<Rational>>,
+    rho: Option<Written<Rational>>,
+    p: u64,
+    q: u64,
+    offence: String,
+    kind: Written<Kind>,
+    tan: Written<Kind>,
+    #[serde(deserialize_with = "nullable")]
+    m: Option<u64>,
+    #[serde(deserialize_with = "nullable")]
+    distance: Option<Ends>,
+}
+
+impl Place for Offender {
+    fn place(&self) -> String {
+        let exact = |name: &str, x: Option<String>| x.map(|x| format!(", {name} = {x}")).unwrap_or_default();
+        let written = |x: &Option<Written<Laurent>>| x.as_ref().map(|x| x.to_string());
+        let s = exact("s", self.s.as_ref().map(|s| s.to_string()));
+        let steps = exact("h1", written(&self.h1)) + &exact("h2", written(&self.h2));
+        format!("p = {}, q = {}{s}{steps}", self.p, self.q)
+    }
+}
+
+/// What is compared, line by line.
+enum Pairs {
+    Grid(Grid),
+    /// All ratios at s = 4 k/(samples + 1).
+    Ratios {
+        list: Vec<Ratio>,
+        rho: Rational,
+        samples: u64,
+    },
+}
+
+/// The counts of a line, and its offenders in their order.
+type Line = (u64, Counts, Vec<(usize, u64)>);
+
+impl Claim {
+    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+        let pairs = self.input.pairs()?;
+        let lines: Vec<Line> = (0..pairs.lines())
+            .into_par_iter()
+            .map(|line| self.line(&pairs, line, context))
+            .collect::<Result<_>>()?;
+        let whole = self.whole(&pairs, &lines);
+        context
+            .outcome(ROUTE, ("the counts", whole), &self.offenders, |row| self.offender(&pairs, row, context))
+    }
+
+    /// Line by line: unstable pairs, the rule's outcomes, offenders.
+    fn line(&self, pairs: &Pairs, line: usize, context: &Context) -> Result<Line> {
+        let (mut unstable, mut counts, mut offenders) = (0, Counts::default(), Vec::new());
+        for k in 0..pairs.length() {
+            let clocks = pairs.clocks(line, k)?;
+            let verdict = match clocks.as_rational() {
+                Some(rational) => decide(&rational, context.limits())?.verdict,
+                None => decide(&clocks, context.limits())?.verdict,
+            };
+            unstable += u64::from(!verdict.is_stable());
+            let rule = self.rule(&clocks, verdict);
+            *match rule {
+                Some(Rule::Hit) => &mut counts.hits,
+                Some(Rule::Quiet) => &mut counts.quiet,
+                Some(Rule::Miss) => &mut counts.misses,
+                Some(Rule::FalseAlarm) => &mut counts.false_alarms,
+                None => &mut counts.beyond_verlet,
+            } += 1;
+            if rule.is_some_and(Rule::is_offence) {
+                offenders.push((line, k));
+            }
+        }
+        Ok((unstable, counts, offenders))
+    }
+
+    fn rule(&self, clocks: &TwoClocks<Laurent>, verdict: Verdict) -> Option<Rule> {
+        let near = |p| match clocks.as_rational() {
+            Some(rational) => rational.angle().map(|angle| angle.is_resonant(p, &self.input.tolerance)),
+            None => clocks.angle().map(|angle| angle.is_resonant(p, &self.input.tolerance)),
+        };
+        near(clocks.p()).map(|near| Rule::of(verdict.is_stable(), near))
+    }
+
+    fn whole(&self, pairs: &Pairs, lines: &[Line]) -> Checked {
+        let sum = |count: fn(&Counts) -> u64| lines.iter().map(|(_, counts, _)| count(counts)).sum::<u64>();
+        let all = pairs.lines() as u64 * pairs.length();
+        same("pairs", self.pairs, all)?;
+        same("unstable", self.unstable, lines.iter().map(|(unstable, ..)| unstable).sum())?;
+        same("tan.disagree", self.tan.disagree, 0)?;
+        same("tan.agree", self.tan.agree, all)?;
+        let told = &self.resonance;
+        same("hits", told.hits, sum(|c| c.hits))?;
+        same("quiet", told.quiet, sum(|c| c.quiet))?;
+        same("misses", told.misses, sum(|c| c.misses))?;
+        same("false_alarms", told.false_alarms, sum(|c| c.false_alarms))?;
+        same("beyond_verlet", told.beyond_verlet, sum(|c| c.beyond_verlet))?;
+        let places: Vec<(usize, u64)> =
+            lines.iter().flat_map(|(.., places)| places.iter().copied()).collect();
+        same("the number of offenders", self.offenders.len(), places.len())?;
+        for (i, (row, &(line, k))) in self.offenders.iter().zip(&places).enumerate() {
+            holds(pairs.is_at(row, line, k), || format!("row {} is not the next offender", i + 1))?;
+        }
+        Ok(())
+    }
+
+    fn offender(&self, pairs: &Pairs, row: &Offender, context: &Context) -> Checked {
+        let clocks = pairs.of(row)?;
+        let ratio = (clocks.p(), clocks.q());
+        holds((row.p, row.q) == ratio, || format!("h2/h1 is {}/{}", ratio.0, ratio.1))?;
+        let verdict = match (affordable(&clocks), clocks.as_rational()) {
+            (true, Some(rational)) => full_period(&rational).verdict,
+            (true, None) => full_period(&clocks).verdict,
+            _ => again(&clocks, context.limits())?.verdict,
+        };
+        let kind = verdict.kind();
+        same("its kind", row.kind.name(), kind.name())?;
+        same("its kind by the tan criterion", row.tan.name(), kind.name())?;
+        let rule = self.rule(&clocks, verdict);
+        same("its offence", row.offence.as_str(), rule.map_or("none", Rule::name))?;
+        const BITS: u32 = 96;
+        let (Some(angle), Some(m), Some(told)) = (clocks.angle(), row.m, row.distance) else {
+            return holds(rule.is_none() && row.m.is_none() && row.distance.is_none(), || {
+                "its angle is missing".into()
+            });
+        };
+        let integer = |n: u64| Ball::from_integer(&n.into());
+        let turns = angle.over_pi(BITS).mul(&integer(clocks.p()), BITS);
+        let distance = turns.sub(&integer(m), BITS);
+        let half = Rational::new(1.into(), 2.into());
+        let nearest = distance.lower() <= half && (distance.upper() >= -half || m == 1) && m > 0;
+        holds(nearest, || format!("m = {m} is not the nearest to {}", turns.mid_f64()))?;
+        holds(told.holds(&distance), || format!("its distance is {}", distance.mid_f64()))
+    }
+}
+
+impl Input {
+    fn pairs(&self) -> Result<Pairs> {
+        let Input { lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples, .. } = self;
+        let mixed = || {
+            Error::input("input", "incomplete or mixed", "a grid with both stiffnesses, or ratios with rho")
+        };
+        if self.tolerance.0 < Rational::default() {
+            return Err(Error::input("tolerance", &self.tolerance.0, "must not be negative"));
+        }
+        match (max_sum, rho, samples) {
+            (None, None, None) => {
+                let all = (|| {
+                    let steps = [step1.as_ref()?.0.clone(), step2.as_ref()?.0.clone()];
+                    let ranges = (h1_range.as_ref()?.0.clone(), h2_range.as_ref()?.0.clone());
+                    Some((lambda1.as_ref()?.0.clone(), lambda2.as_ref()?.0.clone(), steps, ranges))
+                })();
+                let (lambda1, lambda2, steps, (h1, h2)) = all.ok_or_else(mixed)?;
+                Grid::new(lambda1, lambda2, steps, h1, h2).map(Pairs::Grid)
+            }
+            (Some(_), Some(rho), Some(samples)) if lambda1.is_none() && step1.is_none() => {
+                let list = ratios(None, max_sum.as_ref()).map_err(|_| mixed())?;
+                if !(1..=1_000_000).contains(&samples.0) {
+                    return Err(Error::input("samples", samples.0, "must be 1 to 1000000"));
+                }
+                Ok(Pairs::Ratios { list, rho: rho.0.clone(), samples: samples.0 })
+            }
+            _ => Err(mixed()),
+        }
+    }
+}
+
+impl Pairs {
+    fn lines(&self) -> usize {
+        match self {
+            Pairs::Grid(grid) => grid.shape().0,
+            Pairs::Ratios { list, .. } => list.len(),
+        }
+    }
+
+    fn length(&self) -> u64 {
+        match self {
+            Pairs::Grid(grid) => grid.shape().1 as u64,
+            Pairs::Ratios { samples, .. } => *samples,
+        }
+    }
+
+    fn s(k: u64, samples: u64) -> Rational {
+        Rational::new((4 * (k + 1)).into(), (samples + 1).into())
+    }
+
+    fn clocks(&self, line: usize, k: u64) -> Result<TwoClocks<Laurent>> {
+        match self {
+            Pairs::Grid(grid) => grid.clocks(grid.columns().0 + line as u64, grid.rows().0 + k),
+            Pairs::Ratios { list, rho, samples } => {
+                let strengths = [Pairs::s(k, *samples), rho.clone()].map(Laurent::from_rational);
+                let [s, rho] = strengths;
+                Ok(TwoClocks::with_rho(list[line], s, rho))
+            }
+        }
+    }
+
+    /// Whether a row is pair k of a line.
+    fn is_at(&self, row: &Offender, line: usize, k: u64) -> bool {
+        match self {
+            Pairs::Grid(grid) => {
+                let steps = (grid.h1(grid.columns().0 + line as u64), grid.h2(grid.rows().0 + k));
+                row.h1.as_deref() == Some(&steps.0) && row.h2.as_deref() == Some(&steps.1)
+            }
+            Pairs::Ratios { list, samples, .. } => {
+                (row.p, row.q) == list[line].terms() && row.s.as_deref() == Some(&Pairs::s(k, *samples))
+            }
+        }
+    }
+
+    /// The clocks of a row, by what stands in it.
+    fn of(&self, row: &Offender) -> Checked<TwoClocks<Laurent>> {
+        let wrong = |what: &str| super::Fault::Wrong(format!("it is not named by {what}"));
+        match self {
+            Pairs::Grid(grid) => {
+                let (Some(h1), Some(h2), None, None) = (&row.h1, &row.h2, &row.s, &row.rho) else {
+                    return Err(wrong("h1 and h2"));
+                };
+                let (lambda1, lambda2) = grid.lambdas();
+                let steps = (h1.0.clone(), h2.0.clone());
+                let pair =
+                    crate::propagator::Oscillator::new(lambda1.clone(), lambda2.clone(), steps.0, steps.1);
+                Ok(pair.map_err(|error| super::Fault::Wrong(error.to_string()))?.clocks())
+            }
+            Pairs::Ratios { list, rho, .. } => {
+                let (Some(s), Some(own), None, None) = (&row.s, &row.rho, &row.h1, &row.h2) else {
+                    return Err(wrong("s and rho"));
+                };
+                holds(own.0 == *rho, || format!("rho = {} is not that of the input", own.0))?;
+                let ratio = lowest(row.p, row.q)?;
+                holds(list.contains(&ratio), || "its ratio is not one of the input".into())?;
+                let [s, rho] = [s.0.clone(), rho.clone()].map(Laurent::from_rational);
+                Ok(TwoClocks::with_rho(ratio, s, rho))
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
+
+use serde::Deserialize;
+
+use super::exact::{FullPeriod, affordable, full_period, ln_multiplier};
+use super::written::{Ends, Written, nullable};
+use super::{Checked, Context, Fault, Outcome, Place, holds, same};
+use crate::error::Result;
+use crate::number::{Ball, Laurent, Rational, Real};
+use crate::propagator::{Oscillator, TwoClocks};
+use crate::resonance::dominant_family;
+use crate::verdict::{Decidable, Growth, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth};
+
+const ROUTE: &str =
+    "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
+
+/// `kickdrift/verdict/1`.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    #[serde(rename = "schema")]
+    _schema: String,
+    #[serde(rename = "kickdrift")]
+    _written_by: Option<serde_json::Value>,
+    input: Input,
+    p: u64,
+    q: u64,
+    kind: Written<Kind>,
+    stable: bool,
+    side: i8,
+    trace: Trace,
+    growth_rate: Ends,
+    #[serde(deserialize_with = "nullable")]
+    resonance: Option<Resonance>,
+    decided_by: Written<Tier>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Input {
+    lambda1: Written<Laurent>,
+    lambda2: Written<Laurent>,
+    h1: Written<Laurent>,
+    h2: Written<Laurent>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Trace {
+    #[serde(deserialize_with = "nullable")]
+    lo: Option<f64>,
+    #[serde(deserialize_with = "nullable")]
+    hi: Option<f64>,
+    exact: Option<Written<Rational>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Resonance {
+    m: u64,
+    a: i64,
+    b: i64,
+}
+
+impl Place for Claim {
+    fn place(&self) -> String {
+        format!("p = {}, q = {}", self.p, self.q)
+    }
+}
+
+/// What the other route finds.
+struct Truth {
+    verdict: Verdict,
+    trace: Ball,
+    ln_multiplier: Option<Ball>,
+    exact: Option<Rational>,
+}
+
+const BITS: u32 = 192;
+
+impl Claim {
+    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+        let row = std::slice::from_ref(self);
+        let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, |row| row.holds(context.limits()))?;
+        outcome.not_rechecked.push("decided_by: the tier depends on the version of the program");
+        Ok(outcome)
+    }
+
+    fn holds(&self, limits: &Limits) -> Checked {
+        let Input { lambda1, lambda2, h1, h2 } = &self.input;
+        let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())
+            .map_err(|error| Fault::Wrong(error.to_string()))?;
+        let clocks = oscillator.clocks();
+        let ratio = (self.p, self.q);
+        holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
+        match clocks.as_rational() {
+            Some(rational) => self.against(&oscillator, &rational, affordable(&clocks), limits),
+            None => self.against(&oscillator, &clocks, affordable(&clocks), limits),
+        }
+    }
+
+    fn against<S: Decidable + AsRational>(
+        &self,
+        oscillator: &Oscillator,
+        clocks: &TwoClocks<S>,
+        affordable: bool,
+        limits: &Limits,
+    ) -> Checked {
+        let truth = if affordable {
+            Truth::of(&full_period(clocks))
+        } else {
+            let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
+            let verdict = decide_from(tier, clocks, limits)?.verdict;
+            let Growth { trace, ln_multiplier, .. } = growth(clocks, verdict, limits)?;
+            let exact = self.trace.exact.as_ref().and_then(|_| S::trace_of(clocks));
+            Truth { verdict, trace, ln_multiplier, exact }
+        };
+        let (kind, side) = (*self.kind, self.side);
+        let true_to = (truth.verdict.kind(), truth.verdict.side());
+        holds((kind, side) == true_to, || {
+            format!("is {}, side {}, not {}, side {side}", true_to.0.name(), true_to.1, kind.name())
+        })?;
+        same("stable", self.stable, matches!(kind, Kind::Elliptic | Kind::Coexistence))?;
+        self.numbers(oscillator, &truth)?;
+        self.label(clocks, limits)
+    }
+
+    /// The trace and the growth rate lie in their enclosures.
+    fn numbers(&self, oscillator: &Oscillator, truth: &Truth) -> Checked {
+        let Trace { lo, hi, exact: told } = &self.trace;
+        let ends = Ends::new(*lo, *hi);
+        holds(ends.is_some_and(|ends| ends.holds(&truth.trace)), || {
+            "the trace lies outside its enclosure".into()
+        })?;
+        let right = told.is_none() || told.as_deref() == truth.exact.as_ref();
+        holds(right, || "the trace is not what it is told to be exactly".into())?;
+        let Some(ln) = &truth.ln_multiplier else {
+            let Ends { lo, hi } = self.growth_rate;
+            return holds((lo, hi) == (0.0, 0.0), || "grows though it is not hyperbolic".into());
+        };
+        let rate = ln.div(&oscillator.period().enclosure(BITS), BITS).expect("T > 0");
+        holds(self.growth_rate.holds(&rate), || format!("the growth rate is {}", rate.mid_f64()))
+    }
+
+    /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
+    fn label<S: Decidable>(&self, clocks: &TwoClocks<S>, limits: &Limits) -> Checked {
+        let (p, q) = clocks.ratio().terms();
+        // Families beyond 31 bits are not written.
+        let due = *self.kind == Kind::Hyperbolic && p.max(q) < 1 << 31;
+        let Some(Resonance { m, a, b }) = self.resonance else {
+            return holds(!due, || "what grows has a label".into());
+        };
+        holds(due && m < 1 << 31, || "has no label".into())?;
+        let verdict = decide_from(Tier::Refine, clocks, limits)?.verdict;
+        let turns = growth(clocks, verdict, limits)?.label;
+        holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))?;
+        let family = dominant_family(clocks.ratio(), m);
+        holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))
+    }
+}
+
+impl Truth {
+    fn of<S: Real + AsRational>(full: &FullPeriod<S>) -> Truth {
+        let grows = full.verdict.kind() == Kind::Hyperbolic;
+        Truth {
+            verdict: full.verdict,
+            trace: full.trace.enclosure(BITS),
+            ln_multiplier: grows.then(|| ln_multiplier(&full.trace, BITS).expect("|Tr| > 2")),
+            exact: full.trace.as_rational(),
+        }
+    }
+}
+
+/// A ring whose rational elements can be told.
+trait AsRational: Sized {
+    fn as_rational(&self) -> Option<Rational>;
+
+    /// The exact trace, where it is rational and asked for.
+    fn trace_of(clocks: &TwoClocks<Self>) -> Option<Rational>;
+}
+
+impl AsRational for Rational {
+    fn as_rational(&self) -> Option<Rational> {
+        Some(self.clone())
+    }
+
+    fn trace_of(clocks: &TwoClocks<Rational>) -> Option<Rational> {
+        Some(exact_trace(clocks))
+    }
+}
+
+impl AsRational for Laurent {
+    fn as_rational(&self) -> Option<Rational> {
+        Laurent::as_rational(self)
+    }
+
+    fn trace_of(_: &TwoClocks<Laurent>) -> Option<Rational> {
+        None
+    }
+}
