@@ -17,19 +17,12 @@ mod grammar;
 #[cfg(test)]
 mod tests;
 
+pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
+
 use num_traits::ToPrimitive;
 
 use super::{Laurent, Ratio, Rational};
 use crate::error::{Error, Result};
-
-/// The longest text that is read, in characters.
-pub const MAX_CHARACTERS: usize = 20_000;
-
-/// The largest value that is held: bits of all numerators and denominators together.
-pub const MAX_BITS: u64 = 200_000;
-
-/// The largest |k| in π^k.
-pub const MAX_PI_EXPONENT: u32 = 1000;
 
 /// The element of ℚ[π, 1/π] that `text` denotes, exactly.
 ///

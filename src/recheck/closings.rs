@@ -5,14 +5,14 @@
 use num_traits::Signed;
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
 use super::written::{Decimal, Range, Written, exact, nullable, ratios};
-use super::{Checked, Context, Fault, Outcome, Place, holds};
 use crate::error::Result;
 use crate::number::{Ratio, Rational, Sign};
 use crate::propagator::TwoClocks;
-use crate::tongue::{ELIMINATION, Entry, Tongues, count_closings};
+use crate::tongue::{COMPLETE_UP_TO, Entry, Tongues, count_closings};
 use crate::verdict::{Limits, decide, growth};
 
 const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exchange their order, the label between \
@@ -79,7 +79,7 @@ impl Place for Closing {
 }
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let whole = self.complete(context.limits());
         let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, |row| {
             row.holds(&self.input, context.limits())
@@ -160,7 +160,7 @@ impl Input {
             }
             return Ok(());
         }
-        holds(ratio.kicks() <= ELIMINATION, || {
+        holds(ratio.kicks() <= COMPLETE_UP_TO, || {
             format!("{ratio} is too long for elimination: it cannot be complete")
         })?;
         for odd in [true, false] {
@@ -168,7 +168,8 @@ impl Input {
             let asked = labels.iter().any(|m| (m % 2 == 1) == odd);
             let whole = self.m.is_none() || told > 0;
             // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period.
-            let truth = count_closings(ratio.inverse(), odd, &hi.recip(), &lo.recip());
+            let truth =
+                count_closings(ratio.inverse(), Entry::of_tongue(odd), &hi.recip(), &lo.recip()).unwrap_or(0);
             let others = labels.len() as u64 != finite;
             let right = if others { told <= truth } else { told == truth };
             holds(right || !(asked && whole || told > 0), || {
@@ -218,7 +219,7 @@ impl Closing {
         let (p, q, m) = (self.p, self.q, self.m);
         let ratio = check_ratio(p, q, limits)?;
         holds((1..p + q - 1).contains(&m), || format!("{ratio} has the finite tongues 1 to {}", p + q - 2))?;
-        let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
+        let pair = Entry::of_tongue(m % 2 == 1);
         let (s, rho) = (Interval::new(&self.s, "s", input)?, Interval::new(&self.rho, "rho", input)?);
         let four = fraction(4, 1);
         let below = if self.below_verlet { s.lo < four } else { s.hi >= four };

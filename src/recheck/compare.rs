@@ -3,9 +3,9 @@
 use crate::parallel::*;
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period, lowest};
 use super::written::{Ends, Range, Written, nullable, ratios};
-use super::{Checked, Context, Outcome, Place, holds, same};
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
@@ -107,7 +107,7 @@ enum Pairs {
 type Line = (u64, Counts, Vec<(usize, u64)>);
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let pairs = self.input.pairs()?;
         let lines: Vec<Line> = (0..pairs.lines())
             .into_par_iter()
@@ -279,7 +279,7 @@ impl Pairs {
 
     /// The clocks of a row, by what stands in it.
     fn of(&self, row: &Offender) -> Checked<TwoClocks<Laurent>> {
-        let wrong = |what: &str| super::Fault::Wrong(format!("it is not named by {what}"));
+        let wrong = |what: &str| super::context::Fault::Wrong(format!("it is not named by {what}"));
         match self {
             Pairs::Grid(grid) => {
                 let (Some(h1), Some(h2), None, None) = (&row.h1, &row.h2, &row.s, &row.rho) else {
@@ -289,7 +289,7 @@ impl Pairs {
                 let steps = (h1.0.clone(), h2.0.clone());
                 let pair =
                     crate::propagator::Oscillator::new(lambda1.clone(), lambda2.clone(), steps.0, steps.1);
-                Ok(pair.map_err(|error| super::Fault::Wrong(error.to_string()))?.clocks())
+                Ok(pair.map_err(|error| super::context::Fault::Wrong(error.to_string()))?.clocks())
             }
             Pairs::Ratios { list, rho, .. } => {
                 let (Some(s), Some(own), None, None) = (&row.s, &row.rho, &row.h1, &row.h2) else {

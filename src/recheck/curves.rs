@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::written::{Range, Written};
-use super::{Checked, Context, Fault, Outcome, Place, holds};
 use crate::error::Result;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
 use crate::resonance::Angle;
@@ -71,7 +71,7 @@ const MOST: i128 = 20_000_000;
 const NEAR: f64 = 1e-9;
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let window = Window::new(&self.input);
         let whole = self.complete(&window);
         let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.curves, |curve| {

@@ -2,7 +2,7 @@
 
 use num_traits::One;
 
-use super::{Checked, Fault, holds};
+use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
 use crate::number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;

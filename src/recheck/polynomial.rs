@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use num_traits::{One, Zero};
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{check_ratio, fraction};
 use super::written::Written;
-use super::{Checked, Context, Fault, Outcome, Place, holds, same};
 use crate::error::{Error, Result};
 use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::methods::avi;
@@ -65,7 +65,7 @@ impl Place for Entry {
 }
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let (kicks, most) = (self.input.ratio.kicks(), MOST_KICKS.max(context.limits().kicks / 1_000_000));
         if kicks > most {
             return Err(Error::budget(

@@ -3,8 +3,8 @@
 use num_integer::Integer;
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::written::Written;
-use super::{Checked, Context, Outcome, Place, holds, same};
 use crate::error::Result;
 
 const ROUTE: &str =
@@ -52,7 +52,7 @@ impl Place for Witness {
 }
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let max = *self.input.max;
         context.outcome(ROUTE, (&format!("max = {max}"), self.whole(max)), &self.witnesses, Witness::holds)
     }

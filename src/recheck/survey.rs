@@ -3,11 +3,11 @@
 use num_traits::Zero;
 use serde::Deserialize;
 
+use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::sample::sample;
 use super::tongues::{Input as Question, Tongue};
 use super::written::{Ends, Written, ratios};
-use super::{Checked, Context, Fault, Outcome, Place, holds, same};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
 use crate::resonance::dominant_family;
@@ -104,7 +104,7 @@ impl Place for Thin {
 }
 
 impl Claim {
-    pub(super) fn check(&self, context: &Context) -> Result<Outcome> {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
         let rho = &self.input.rho.0;
         let list = ratios(None, Some(&self.input.max_sum)).map_err(|fault| match fault {
             Fault::Wrong(why) => Error::input("max_sum", self.input.max_sum.0, why),
@@ -120,7 +120,9 @@ impl Claim {
         let drawn: Vec<Ratio> =
             sample(&name, list.len() as u64, most).into_iter().map(|n| list[n as usize]).collect();
         let failures = context.rows(&drawn, |&ratio| exact_signs(ratio, rho, context.limits()))?;
-        outcome.failures.extend(failures.into_iter().map(|failure| super::Failure { row: 0, ..failure }));
+        outcome
+            .failures
+            .extend(failures.into_iter().map(|failure| super::context::Failure { row: 0, ..failure }));
         outcome.sample = Some((drawn.len() as u64, list.len() as u64));
         outcome.not_rechecked.push("edges: how many needed more bits depends on the version of the program");
         Ok(outcome)
@@ -177,7 +179,7 @@ impl Thin {
         holds(p.max(q).max(m) < 1 << 31 && m > 0 && m < p + q - 1, || "is no finite tongue".into())?;
         let family = dominant_family(ratio, m);
         holds((self.a, self.b) == family, || format!("its dominant family is {family:?}"))?;
-        let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
+        let pair = Entry::of_tongue(m % 2 == 1);
         let (least, most) = self.width.exact()?;
         // From a double below the lower edge, a few doubles and the width up.
         let exact = |s: f64| rational::from_f64_exact(s).unwrap_or_else(Rational::zero);
@@ -211,7 +213,7 @@ impl Place for Ratio {
 
 /// The middle one of a ratio's tongues below s = 4 by exact signs.
 fn exact_signs(ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked {
-    let mut tongues = Tongues::new(ratio, rho)?;
+    let tongues = Tongues::new(ratio, rho)?;
     let below = tongues.below(4.0)?;
     let Some(gap) = below.get(below.len() / 2).filter(|gap| gap.upper.is_some()) else { return Ok(()) };
     Tongue::bare(ratio, gap).holds(&Question::bare(rho), limits)

@@ -5,7 +5,7 @@ use std::ops::Deref;
 use num_traits::ToPrimitive;
 use serde::de::{Deserialize, Deserializer, Error as _};
 
-use super::{Checked, Fault, holds};
+use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
 use crate::number::{Ball, Laurent, Ratio, Rational, rational};

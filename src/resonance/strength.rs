@@ -7,7 +7,8 @@
 //!     S0 = mean |P(sigma_k)|²,   S = mean P(sigma_k)² e^{2 i n_k th}   over the q slow kicks, k p/q = n_k + sigma_k,
 //! ```
 //!
-//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. On a fixed family
+//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. A phase δ off the middle lets the
+//! amplitude grow by √((q α |S|)² − δ²) per period, so by q α |S| in the middle. On a fixed family
 //! (a, b), as q grows, S0 → 1 − s/6 and |S| → |S_a(θ)|,
 //!
 //! ```text
@@ -55,7 +56,7 @@ pub struct FirstOrder {
     pub centre: f64,
     /// Its width.
     pub width: f64,
-    /// ln of the multiplier at the middle, per period: 2 q alpha |S|.
+    /// ln of the multiplier at the middle, per period: q alpha |S|, half the width in the phase p θ.
     pub ln_multiplier: f64,
 }
 
@@ -77,7 +78,7 @@ pub fn first_order(ratio: Ratio, m: u64, rho: f64) -> Option<FirstOrder> {
     Some(FirstOrder {
         centre: s - phase * s0 * per_phase,
         width: 2.0 * phase * s1 * per_phase,
-        ln_multiplier: 2.0 * phase * s1,
+        ln_multiplier: phase * s1,
     })
 }
 

@@ -11,14 +11,11 @@
 
 use std::collections::BTreeMap;
 
-use crate::parallel::*;
-
-use super::gaps::Tongues;
-use super::order::Gap;
-use super::row::{Row, Wanted};
-use super::select::Selection;
+use super::row::{Row, Side, Wanted};
+use super::tongues::Tongues;
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
+use crate::parallel::*;
 
 /// What all coprime p + q ≤ N have to say at one ρ, about the tongues whose lower edge has s < 4.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +26,7 @@ pub struct Survey {
     /// Tongues with lower edge s < 4, each certified open or closed.
     pub tongues: u64,
     pub open: u64,
-    /// (p, q, m) of the closed ones.
+    /// The ratio and m of the closed ones.
     pub closed: Vec<(Ratio, u64)>,
     /// Edges certified in doubles, and with more bits.
     pub edges: (u64, u64),
@@ -68,17 +65,6 @@ pub struct Spread {
     pub largest: f64,
 }
 
-impl Tongues {
-    /// The tongues whose lower edge lies below s = `limit`.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn below(&mut self, limit: f64) -> Result<Vec<Gap>> {
-        let window = Selection { s: Some((0.0, limit)), ..Selection::default() };
-        Ok(self.select(&window)?.into_iter().filter(|gap| gap.lower.lo < limit).collect())
-    }
-}
-
 /// The survey of all p + q ≤ `max_sum` at ρ > 0, with the `keep` thinnest tongues. The same whatever the number of
 /// threads.
 ///
@@ -87,8 +73,8 @@ impl Tongues {
 pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
     let wanted = Wanted { family: true, predicted: true, first_order: true, ..Wanted::default() };
     let one = |ratio: Ratio| -> Result<(Vec<Row>, (u64, u64))> {
-        let mut tongues = Tongues::new(ratio, rho)?;
-        let gaps = tongues.below(4.0)?;
+        let tongues = Tongues::new(ratio, rho)?;
+        let gaps = tongues.below(4)?;
         let rows = gaps.iter().map(|gap| tongues.row(gap, &wanted)).collect::<Result<_>>()?;
         let effort = tongues.effort();
         Ok((rows, (effort.doubles, effort.precise)))
@@ -132,7 +118,6 @@ impl Survey {
     }
 
     fn count(&mut self, row: &Row) {
-        use super::row::Side;
         let (ratio, gap) = (row.ratio, &row.gap);
         self.tongues += 1;
         if gap.closed {

@@ -25,7 +25,7 @@ const KERNELS: [(&str, fn()); 7] = [
     ("map-growth", || map(Products { label: true, growth: true })),
     ("tongues", || {
         Tongues::new("61/39".parse().unwrap(), &ratio(1, 25))
-            .and_then(|mut tongues| tongues.all())
+            .and_then(|tongues| tongues.all())
             .expect("a ratio");
     }),
 ];

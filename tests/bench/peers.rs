@@ -70,7 +70,7 @@ fn long_period(folder: &Path) {
 /// Every edge of all coprime p + q <= max_sum at rho = 1/25, one a line; thirty digits of those of 13/7.
 fn edges(folder: &Path, max_sum: u64) {
     let (rho, ratios) = (ratio(1, 25), Ratio::up_to(max_sum).collect::<Vec<_>>());
-    let one = |&ratio: &Ratio| Tongues::new(ratio, &rho).and_then(|mut x| x.all_edges()).expect("edges");
+    let one = |&ratio: &Ratio| Tongues::new(ratio, &rho).and_then(|x| x.all_edges()).expect("edges");
     timed(&format!("edges_{max_sum}_one_thread"), || ratios.iter().map(one).collect::<Vec<_>>());
     let all = timed(&format!("edges_{max_sum}"), || ratios.par_iter().map(one).collect::<Vec<_>>());
     let mut text = String::new();
@@ -79,7 +79,7 @@ fn edges(folder: &Path, max_sum: u64) {
     }
     write(folder, &format!("edges_{max_sum}"), &text);
     let digits = timed("edges_30_digits", || {
-        let mut tongues = Tongues::new("13/7".parse().unwrap(), &rho).expect("a string");
+        let tongues = Tongues::new("13/7".parse().unwrap(), &rho).expect("a string");
         let edges: Vec<Edge> = tongues.all_edges().expect("edges").concat();
         edges.iter().map(|edge| tongues.refine(edge, 30).expect("digits").middle()).collect::<Vec<_>>()
     });

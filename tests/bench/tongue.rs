@@ -11,13 +11,13 @@ use rayon::prelude::*;
 
 /// How many tongues one ratio has, and how many edges needed more bits than doubles have.
 fn all(ratio: Ratio, rho: &Rational) -> (usize, u64) {
-    let mut tongues = Tongues::new(ratio, rho).unwrap();
+    let tongues = Tongues::new(ratio, rho).unwrap();
     (tongues.all().unwrap().len(), tongues.effort().precise)
 }
 
 /// The edges of one ratio, all four problems, and how many needed more bits than doubles have.
 fn edges(ratio: Ratio, rho: &Rational) -> (Vec<Edge>, u64) {
-    let mut tongues = Tongues::new(ratio, rho).unwrap();
+    let tongues = Tongues::new(ratio, rho).unwrap();
     let all = tongues.all_edges().unwrap().concat();
     (all, tongues.effort().precise)
 }

@@ -22,7 +22,7 @@ fn verdicts_flip_at_certified_edges() {
     for (p, q, m, rho) in
         [(7, 2, 4, ratio(1, 25)), (5, 3, 2, ratio(1, 3)), (11, 8, 9, ratio(7, 5)), (3, 7, 2, ratio(1, 2))]
     {
-        let mut tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
+        let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
         let gap = tongues.gap(m).unwrap();
         let edges = [gap.lower, gap.upper.unwrap()].map(|edge| tongues.refine(&edge, 50).unwrap());
         let width = &edges[1].lo - &edges[0].hi;

@@ -143,15 +143,14 @@ impl Question {
     }
 
     fn of_ratio(&self, ratio: Ratio, bar: Option<&ProgressBar>) -> Result<Vec<Told>> {
-        let mut tongues = Tongues::new(ratio, &self.stiffness.rho)?;
+        let tongues = Tongues::new(ratio, &self.stiffness.rho)?;
         let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(ratio, lambda1));
         let gaps = tongues.select(&Selection { s: window, ..self.selection.clone() })?;
         if let Some(bar) = bar {
             bar.set_length(gaps.len() as u64);
         }
         let chunk = |gaps: &[Gap]| {
-            let mut own = tongues.clone();
-            let told = gaps.iter().map(|gap| self.frame.told(&mut own, gap)).collect();
+            let told = gaps.iter().map(|gap| self.frame.told(&tongues, gap)).collect();
             if let Some(bar) = bar {
                 bar.inc(gaps.len() as u64);
             }

@@ -77,7 +77,7 @@ fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<
         if from > upto {
             return Ok(Vec::new());
         }
-        let mut tongues = Tongues::new(ratio, &stiffness.rho)?;
+        let tongues = Tongues::new(ratio, &stiffness.rho)?;
         let gaps = tongues.gaps(from, upto)?;
         let measured = |gap: &Gap| {
             let s = tongues.resonance(gap.m, 64).mid_f64();

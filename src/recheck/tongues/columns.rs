@@ -3,49 +3,15 @@
 use std::f64::consts::{LN_10, PI};
 
 use num_traits::{Signed, Zero as _};
-use serde::Deserialize;
 
 use super::edge::Zero;
-use super::{Input, Tongue};
+use super::rows::{FirstOrder, Growth, Input, Predicted, Tongue};
 use crate::number::{Ball, Rational, rational};
 use crate::propagator::{TwoClocks, half_period};
+use crate::recheck::context::{Checked, Fault, holds};
 use crate::recheck::exact::{ZeroOf, fraction, ln_multiplier_at, resonance};
-use crate::recheck::written::{Ends, Written};
-use crate::recheck::{Checked, Fault, holds};
+use crate::recheck::written::Ends;
 use crate::tongue::{Resonance, Side};
-
-/// The fastest growth inside.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Growth {
-    s: f64,
-    ln_multiplier: f64,
-    rate: f64,
-    steps_until_tenfold: f64,
-    growth_rate: Option<f64>,
-}
-
-/// The point p θ = m π against the tongue.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Predicted {
-    s: f64,
-    pub side: String,
-    position: Written<Side>,
-    distance: f64,
-}
-
-/// The law of first order, and the tongue minus the law.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FirstOrder {
-    centre: f64,
-    width: f64,
-    ln_multiplier: f64,
-    centre_error: f64,
-    width_error: f64,
-    width_ratio: f64,
-}
 
 /// Rounded numbers are right to nine digits: some are the end of a few hundred operations in doubles.
 const ROUNDED: f64 = 1e-9;

@@ -1,40 +1,15 @@
 //! One edge of a tongue.
 
 use num_traits::Signed;
-use serde::Deserialize;
 
-use super::Input;
+use super::rows::{Edge, Input};
 use crate::number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::TwoClocks;
+use crate::recheck::context::{Checked, Fault, holds};
 use crate::recheck::exact::{ZeroOf, fraction, resonance};
-use crate::recheck::written::{Column, Decimal, Written, exact};
-use crate::recheck::{Checked, Fault, holds};
+use crate::recheck::written::exact;
 use crate::tongue::{Entry, Resonance};
 use crate::verdict::Decidable;
-
-/// An edge as it is written.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Edge {
-    pub lo: f64,
-    pub hi: f64,
-    decimal: Option<Decimal>,
-    entry: Written<Entry>,
-    #[serde(default)]
-    pub exact: Column<Written<Rational>>,
-    #[serde(default)]
-    pub on: Column<Written<Resonance>>,
-    h1: Option<Quantity>,
-    h2: Option<Quantity>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Quantity {
-    lo: f64,
-    hi: f64,
-    decimal: Option<Decimal>,
-}
 
 /// An edge found again: the zero of an entry between two rationals.
 pub struct Zero<'a> {
@@ -49,21 +24,6 @@ const MOST_TERMS: u64 = 64;
 const BITS: u32 = 128;
 
 impl Edge {
-    /// An edge as it is computed.
-    pub fn bare(edge: &crate::tongue::Edge) -> Edge {
-        let entry = Written(edge.entry);
-        Edge {
-            lo: edge.lo,
-            hi: edge.hi,
-            decimal: None,
-            entry,
-            exact: Column::Absent,
-            on: Column::Absent,
-            h1: None,
-            h2: None,
-        }
-    }
-
     /// The zero of its entry that the edge encloses; all that it says of it holds.
     pub fn zero<'a>(
         &self,
@@ -72,7 +32,7 @@ impl Edge {
         input: &'a Input,
     ) -> Checked<Zero<'a>> {
         let entry = *self.entry;
-        let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
+        let pair = Entry::of_tongue(m % 2 == 1);
         holds(pair.contains(&entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
         holds(self.lo > 0.0, || format!("{name}: s is positive"))?;
         let mut zero = ZeroOf::new((ratio, &input.rho), entry, exact(self.lo, self.hi)?, name)?;

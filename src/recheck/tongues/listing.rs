@@ -1,10 +1,10 @@
-//! Tongues as a list: none left out.
+//! Tongues as a list: none left out, and counted as they are.
 
-use super::{Claim, Input, Tongue};
+use super::rows::{Claim, Input, Points, Tongue};
 use crate::number::{Laurent, Ratio, Rational};
+use crate::recheck::context::{Checked, Fault, Place, holds, same};
 use crate::recheck::exact::check_ratio;
 use crate::recheck::written::{Range, ratios};
-use crate::recheck::{Checked, Fault, Place, holds};
 use crate::resonance::dominant_family;
 use crate::tongue::{Selection, Tongues};
 use crate::verdict::Limits;
@@ -33,6 +33,34 @@ impl Claim {
         }
         let next = rows.next();
         holds(next.is_none(), || format!("row {} is one tongue too many", next.map_or(0, |(_, i)| i)))
+    }
+}
+
+impl Claim {
+    /// The counts behind the rows are those of the rows, and all rows have the same columns.
+    pub(super) fn counted(&self) -> Checked {
+        let rows = &self.tongues;
+        let closed = rows.iter().filter(|row| row.closed).count() as u64;
+        same("count", self.count, rows.len() as u64)?;
+        same("closed", self.closed, closed)?;
+        same("open", self.open, rows.len() as u64 - closed)?;
+        let columns = |row: &Tongue| {
+            let edges = row.upper.iter().chain([&row.lower]);
+            let exact: Vec<bool> =
+                edges.flat_map(|edge| [edge.exact.is_absent(), edge.on.is_absent()]).collect();
+            let of_row = [row.growth.is_absent(), row.predicted.is_absent(), row.first_order.is_absent()];
+            (of_row, exact[0], exact.iter().all(|&absent| absent == exact[0]))
+        };
+        for (i, row) in rows.iter().enumerate() {
+            let uniform = columns(row) == columns(&rows[0]) && columns(row).2;
+            holds(uniform, || format!("row {} has other columns than row 1", i + 1))?;
+        }
+        let side = |wanted: &str| {
+            rows.iter().filter_map(|row| row.predicted.value()).filter(|p| p.side == wanted).count()
+        };
+        let [inside, on_edge, outside] = ["inside", "on the edge", "outside"].map(|name| side(name) as u64);
+        let truth = Some(Points { inside, on_edge, outside }).filter(|_| inside + on_edge + outside > 0);
+        holds(self.predicted_points == truth, || format!("predicted_points are {truth:?}"))
     }
 }
 

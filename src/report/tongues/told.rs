@@ -54,7 +54,7 @@ impl Frame {
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn told(&self, tongues: &mut Tongues, gap: &Gap) -> Result<Told> {
+    pub fn told(&self, tongues: &Tongues, gap: &Gap) -> Result<Told> {
         let row = tongues.row(gap, &self.wanted)?;
         let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
         let upper = match &gap.upper {
@@ -65,7 +65,7 @@ impl Frame {
         Ok(Told { row, lower, upper, growth_rate, closed_forms: self.wanted.exact })
     }
 
-    fn edge(&self, tongues: &mut Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<ToldEdge> {
+    fn edge(&self, tongues: &Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<ToldEdge> {
         let on = form.as_ref().and_then(|form| Resonance::of(tongues.ratio(), m, tongues.rho(), form));
         let rational = match form {
             Some(ExactEdge::Rational(s)) => Some(s.clone()),

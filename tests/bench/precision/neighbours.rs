@@ -25,7 +25,7 @@ pub struct Picture {
 pub fn picture() -> Picture {
     let (p, q, m) = RATIO;
     let rho = 0.04;
-    let mut tongues = Tongues::new(Ratio::new(p, q).unwrap(), &exact(rho)).expect("a ratio");
+    let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &exact(rho)).expect("a ratio");
     let edge = tongues.gap(m).expect("a tongue").lower.lo;
     let neighbour = |x: f64, n: i64| f64::from_bits((x.to_bits() as i64 + n) as u64);
     let side = (2 * AROUND + 1) as u32;

@@ -33,7 +33,7 @@ pub fn edges() -> Vec<Row> {
         let width = (edge.hi - edge.lo) / edge.lo;
         rows.push(Row { what: what.clone(), method: "doubles, certified".into(), seconds, error: width });
         for digits in [20, 50, 100].into_iter().filter(|_| p < 10_000) {
-            let mut own = tongues();
+            let own = tongues();
             let (seconds, fine) = timed(|| own.refine(&edge, digits).expect("digits"));
             let error = to_f64(&(fine.width() / &fine.lo));
             rows.push(Row {

@@ -33,7 +33,7 @@ fn edges() -> Vec<(u64, u64, Rational, Rational)> {
     let mut edges = Vec::new();
     for (p, q, m) in [(7, 3, 4), (13, 8, 9), (61, 39, 40), (97, 31, 20), (89, 144, 51), (619, 381, 300)] {
         for rho in [ratio(1, 25), ratio(1, 2)] {
-            let mut tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).expect("a ratio");
+            let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).expect("a ratio");
             let gap = tongues.gap(m).expect("a tongue");
             for edge in [Some(gap.lower), gap.upper].into_iter().flatten() {
                 let digits = tongues.refine(&edge, 60).expect("digits");
