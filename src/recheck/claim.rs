@@ -1,7 +1,7 @@
 //! A document of any kind in typed rows, and its check.
 
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 
 use super::context::{Context, Options, Outcome, See};
 use super::{closings, compare, curves, map, polynomial, proposition, survey, tongues, verdict};
@@ -26,9 +26,14 @@ macro_rules! claims {
             /// A text that is no JSON, a schema that cannot be rechecked, a field that is missing, unknown or not
             /// what the schema says; named by its path.
             pub fn read(text: &str) -> Result<Claim> {
-                let Head { schema } = typed(text)?;
-                match schema.strip_prefix("kickdrift/").and_then(|rest| rest.strip_suffix("/1")) {
-                    $(Some($name) => Ok(Claim::$variant(Box::new(typed(text)?))),)*
+                let mut document: Map<String, Value> = serde_json::from_str(text)
+                    .map_err(|cause| Error::input("document", "no JSON", format!("{cause}; {REMEDY}")))?;
+                // Who wrote it is no claim.
+                document.remove("kickdrift");
+                let schema = document.remove("schema").unwrap_or_default();
+                let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));
+                match name {
+                    $(Some($name) => Ok(Claim::$variant(Box::new(typed(document)?))),)*
                     _ => {
                         let known = Claim::NAMES.join(", ");
                         let remedy = format!("can be rechecked: kickdrift/NAME/1, NAME one of {known}");
@@ -86,21 +91,12 @@ impl Claim {
     }
 }
 
-/// The only field that all documents have.
-#[derive(Deserialize)]
-struct Head {
-    schema: String,
-}
+const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
-fn typed<T: DeserializeOwned>(text: &str) -> Result<T> {
-    let read = serde_path_to_error::deserialize(&mut serde_json::Deserializer::from_str(text));
-    read.map_err(|fault| {
-        let (path, cause) = (fault.path().to_string(), fault.inner());
-        let remedy = "whole documents, as kickdrift wrote them, can be rechecked";
-        if cause.is_data() {
-            Error::input(&path, "not what the schema says", format!("{cause}; {remedy}"))
-        } else {
-            Error::input("document", "no JSON", format!("{cause}; {remedy}"))
-        }
+/// All fields by their types; one that is wrong is named by its path.
+fn typed<T: DeserializeOwned>(document: Map<String, Value>) -> Result<T> {
+    serde_path_to_error::deserialize(Value::Object(document)).map_err(|fault| {
+        let why = format!("{}; {REMEDY}", fault.inner());
+        Error::input(&fault.path().to_string(), "not what the schema says", why)
     })
 }

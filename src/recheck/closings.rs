@@ -2,9 +2,6 @@
 //! rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose tongues close at
 //! 1/ρ: by another resultant.
 
-use num_traits::Signed;
-use serde::Deserialize;
-
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
@@ -14,62 +11,51 @@ use crate::number::{Ratio, Rational, Sign};
 use crate::propagator::TwoClocks;
 use crate::tongue::{COMPLETE_UP_TO, Entry, Tongues, count_closings};
 use crate::verdict::{Limits, decide, growth};
+use num_traits::Signed;
 
 const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exchange their order, the label between \
                      them is m; rational closings: both entries vanish; complete lists by the mirror ratio's resultant";
 
-/// `kickdrift/closings/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    closings: Vec<Closing>,
-    ratios: Vec<Searched>,
-}
+rows! {
+    /// `kickdrift/closings/1`.
+    pub struct Claim {
+        input: Input,
+        closings: Vec<Closing>,
+        ratios: Vec<Searched>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    ratio: Option<Written<Ratio>>,
-    max_sum: Option<Written<u64>>,
-    m: Option<Written<Vec<(u64, u64)>>>,
-    rho_range: Written<Range>,
-    #[serde(rename = "samples")]
-    _samples: Written<u64>,
-    digits: Written<u64>,
-}
+    struct Input {
+        ratio: Option<Written<Ratio>>,
+        max_sum: Option<Written<u64>>,
+        m: Option<Written<Vec<(u64, u64)>>>,
+        rho_range: Written<Range>,
+        #[serde(rename = "samples")]
+        _samples: Written<u64>,
+        digits: Written<u64>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Closing {
-    p: u64,
-    q: u64,
-    m: u64,
-    s: Side,
-    rho: Side,
-    below_verlet: bool,
-}
+    struct Closing {
+        p: u64,
+        q: u64,
+        m: u64,
+        s: Side,
+        rho: Side,
+        below_verlet: bool,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Side {
-    lo: f64,
-    hi: f64,
-    #[serde(deserialize_with = "nullable")]
-    exact: Option<Written<Rational>>,
-    decimal: Decimal,
-}
+    struct Side {
+        lo: f64,
+        hi: f64,
+        #[serde(deserialize_with = "nullable")]
+        exact: Option<Written<Rational>>,
+        decimal: Decimal,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Searched {
-    p: u64,
-    q: u64,
-    complete: bool,
+    struct Searched {
+        p: u64,
+        q: u64,
+        complete: bool,
+    }
 }
 
 impl Place for Closing {

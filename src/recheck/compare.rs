@@ -1,14 +1,12 @@
 //! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
 
-use crate::parallel::*;
-use serde::Deserialize;
-
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period, lowest};
 use super::written::{Ends, Range, Written, nullable, ratios};
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
+use crate::parallel::*;
 use crate::propagator::TwoClocks;
 use crate::resonance::compare::Outcome as Rule;
 use crate::verdict::{Kind, Verdict, decide};
@@ -16,70 +14,59 @@ use crate::verdict::{Kind, Verdict, decide};
 const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
                      enclosed; the tan criterion and the trace give one verdict by a theorem";
 
-/// `kickdrift/compare/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    pairs: u64,
-    unstable: u64,
-    tan: Tan,
-    resonance: Counts,
-    offenders: Vec<Offender>,
-}
+rows! {
+    /// `kickdrift/compare/1`.
+    pub struct Claim {
+        input: Input,
+        pairs: u64,
+        unstable: u64,
+        tan: Tan,
+        resonance: Counts,
+        offenders: Vec<Offender>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    tolerance: Written<Rational>,
-    lambda1: Option<Written<Laurent>>,
-    lambda2: Option<Written<Laurent>>,
-    step1: Option<Written<Laurent>>,
-    step2: Option<Written<Laurent>>,
-    h1_range: Option<Written<Range>>,
-    h2_range: Option<Written<Range>>,
-    max_sum: Option<Written<u64>>,
-    rho: Option<Written<Rational>>,
-    samples: Option<Written<u64>>,
-}
+    struct Input {
+        tolerance: Written<Rational>,
+        lambda1: Option<Written<Laurent>>,
+        lambda2: Option<Written<Laurent>>,
+        step1: Option<Written<Laurent>>,
+        step2: Option<Written<Laurent>>,
+        h1_range: Option<Written<Range>>,
+        h2_range: Option<Written<Range>>,
+        max_sum: Option<Written<u64>>,
+        rho: Option<Written<Rational>>,
+        samples: Option<Written<u64>>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Tan {
-    agree: u64,
-    disagree: u64,
-}
+    struct Tan {
+        agree: u64,
+        disagree: u64,
+    }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Counts {
-    hits: u64,
-    quiet: u64,
-    misses: u64,
-    false_alarms: u64,
-    beyond_verlet: u64,
-}
+    #[derive(Copy, Default, PartialEq, Eq)]
+    struct Counts {
+        hits: u64,
+        quiet: u64,
+        misses: u64,
+        false_alarms: u64,
+        beyond_verlet: u64,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Offender {
-    h1: Option<Written<Laurent>>,
-    h2: Option<Written<Laurent>>,
-    s: Option<Written<Rational>>,
-    rho: Option<Written<Rational>>,
-    p: u64,
-    q: u64,
-    offence: String,
-    kind: Written<Kind>,
-    tan: Written<Kind>,
-    #[serde(deserialize_with = "nullable")]
-    m: Option<u64>,
-    #[serde(deserialize_with = "nullable")]
-    distance: Option<Ends>,
+    struct Offender {
+        h1: Option<Written<Laurent>>,
+        h2: Option<Written<Laurent>>,
+        s: Option<Written<Rational>>,
+        rho: Option<Written<Rational>>,
+        p: u64,
+        q: u64,
+        offence: String,
+        kind: Written<Kind>,
+        tan: Written<Kind>,
+        #[serde(deserialize_with = "nullable")]
+        m: Option<u64>,
+        #[serde(deserialize_with = "nullable")]
+        distance: Option<Ends>,
+    }
 }
 
 impl Place for Offender {

@@ -3,8 +3,6 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use serde::Deserialize;
-
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::written::{Range, Written};
 use crate::error::Result;
@@ -14,48 +12,39 @@ use crate::resonance::Angle;
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which samples lie \
                      in the window, in doubles";
 
-/// `kickdrift/curves/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    curves: Vec<Curve>,
-}
+rows! {
+    /// `kickdrift/curves/1`.
+    pub struct Claim {
+        input: Input,
+        curves: Vec<Curve>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    lambda1: Written<Laurent>,
-    #[serde(rename = "step1")]
-    _step1: Option<Written<Laurent>>,
-    #[serde(rename = "step2")]
-    _step2: Option<Written<Laurent>>,
-    h1_range: Written<Range>,
-    h2_range: Written<Range>,
-    a: Written<(i64, i64)>,
-    b: Written<(i64, i64)>,
-    samples: Written<u64>,
-}
+    struct Input {
+        lambda1: Written<Laurent>,
+        #[serde(rename = "step1")]
+        _step1: Option<Written<Laurent>>,
+        #[serde(rename = "step2")]
+        _step2: Option<Written<Laurent>>,
+        h1_range: Written<Range>,
+        h2_range: Written<Range>,
+        a: Written<(i64, i64)>,
+        b: Written<(i64, i64)>,
+        samples: Written<u64>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Curve {
-    a: i64,
-    b: i64,
-    points: Vec<Point>,
-}
+    struct Curve {
+        a: i64,
+        b: i64,
+        points: Vec<Point>,
+    }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Point {
-    h1: f64,
-    h2: f64,
-    theta_over_pi: f64,
-    piece: u64,
+    #[derive(Copy)]
+    struct Point {
+        h1: f64,
+        h2: f64,
+        theta_over_pi: f64,
+        piece: u64,
+    }
 }
 
 impl Place for Curve {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::parallel::*;
-use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds, same};
 use super::exact::again;
@@ -21,74 +21,52 @@ const ALL: &str = "the counts by the map's own certified route again; every pair
 /// Pairs that are decided kick by kick, unless all are asked for.
 const SAMPLE: u64 = 2000;
 
-/// `kickdrift/map/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    pairs: u64,
-    stable: u64,
-    unstable: u64,
-    parabolic: u64,
-    coexistence: u64,
-    decided_by: DecidedBy,
-    #[serde(rename = "work")]
-    _work: Work,
-    families: Option<Vec<Family>>,
-    fastest: Option<Fastest>,
-}
+rows! {
+    /// `kickdrift/map/1`.
+    pub struct Claim {
+        input: Input,
+        pairs: u64,
+        stable: u64,
+        unstable: u64,
+        parabolic: u64,
+        coexistence: u64,
+        decided_by: DecidedBy,
+        #[serde(rename = "work")]
+        _work: IgnoredAny,
+        families: Option<Vec<Family>>,
+        fastest: Option<Fastest>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    lambda1: Written<Laurent>,
-    lambda2: Written<Laurent>,
-    step1: Written<Laurent>,
-    step2: Written<Laurent>,
-    h1_range: Written<Range>,
-    h2_range: Written<Range>,
-    label: Option<Written<bool>>,
-    growth: Option<Written<bool>>,
-    shard: Option<String>,
-}
+    struct Input {
+        lambda1: Written<Laurent>,
+        lambda2: Written<Laurent>,
+        step1: Written<Laurent>,
+        step2: Written<Laurent>,
+        h1_range: Written<Range>,
+        h2_range: Written<Range>,
+        label: Option<Written<bool>>,
+        growth: Option<Written<bool>>,
+        shard: Option<String>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DecidedBy {
-    filter: u64,
-    refine: u64,
-    exact: u64,
-}
+    struct DecidedBy {
+        filter: u64,
+        refine: u64,
+        exact: u64,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Work {
-    #[serde(rename = "kicks")]
-    _kicks: u64,
-    #[serde(rename = "kicks_again")]
-    _kicks_again: u64,
-    #[serde(rename = "escalated")]
-    _escalated: u64,
-}
+    #[derive(PartialEq)]
+    struct Family {
+        a: i64,
+        pairs: u64,
+    }
 
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Family {
-    a: i64,
-    pairs: u64,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Fastest {
-    h1: Written<Laurent>,
-    h2: Written<Laurent>,
-    growth_rate: f64,
-    steps_until_tenfold: f64,
+    struct Fastest {
+        h1: Written<Laurent>,
+        h2: Written<Laurent>,
+        growth_rate: f64,
+        steps_until_tenfold: f64,
+    }
 }
 
 /// What the map's own route finds.

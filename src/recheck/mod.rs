@@ -24,6 +24,13 @@
 //! assert!(Claim::read(&text.replace("\"b\": 1", "\"b\": 0")).unwrap().recheck(&Options::default(), None).unwrap().failures[0].row == 1);
 //! ```
 
+/// Rows of documents: every field is known, none is left over.
+macro_rules! rows {
+    ($($row:item)*) => {
+        $(#[derive(Clone, Debug, serde::Deserialize)] #[serde(deny_unknown_fields)] $row)*
+    };
+}
+
 mod claim;
 mod closings;
 mod compare;

@@ -18,25 +18,19 @@ const ROUTE: &str = "the full period, kick by kick, at more rational points than
 /// The largest p + q unless more work is allowed: the points are some p q, of p + q kicks each.
 const MOST_KICKS: u64 = 120;
 
-/// `kickdrift/polynomial/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    p: u64,
-    q: u64,
-    polynomials: BTreeMap<Entry, String>,
-    terms: Vec<Term>,
-}
+rows! {
+    /// `kickdrift/polynomial/1`.
+    pub struct Claim {
+        input: Input,
+        p: u64,
+        q: u64,
+        polynomials: BTreeMap<Entry, String>,
+        terms: Vec<Term>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    ratio: Written<Ratio>,
+    struct Input {
+        ratio: Written<Ratio>,
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
@@ -49,13 +43,13 @@ enum Entry {
     Trace,
 }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Term {
-    entry: Entry,
-    s: u32,
-    rho: u32,
-    coefficient: Written<Rational>,
+rows! {
+    struct Term {
+        entry: Entry,
+        s: u32,
+        rho: u32,
+        coefficient: Written<Rational>,
+    }
 }
 
 impl Place for Entry {

@@ -1,11 +1,9 @@
 //! The Proposition's witnesses, in integers: no analysis.
 
-use num_integer::Integer;
-use serde::Deserialize;
-
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::written::Written;
 use crate::error::Result;
+use num_integer::Integer;
 
 const ROUTE: &str =
     "eq. (10) with m = a p + b q in integers, b not 0; every coprime (p, q, m) once; curves counted";
@@ -13,36 +11,29 @@ const ROUTE: &str =
 /// The largest bound: its witnesses fill some hundred megabytes.
 const MOST: u64 = 400;
 
-/// `kickdrift/proposition/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    holds: bool,
-    resonant_points: u64,
-    curves: u64,
-    failures: Vec<Witness>,
-    witnesses: Vec<Witness>,
-}
+rows! {
+    /// `kickdrift/proposition/1`.
+    pub struct Claim {
+        input: Input,
+        holds: bool,
+        resonant_points: u64,
+        curves: u64,
+        failures: Vec<Witness>,
+        witnesses: Vec<Witness>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    max: Written<u64>,
-}
+    struct Input {
+        max: Written<u64>,
+    }
 
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Witness {
-    p: u64,
-    q: u64,
-    m: u64,
-    a: i64,
-    b: i64,
+    #[derive(Copy)]
+    struct Witness {
+        p: u64,
+        q: u64,
+        m: u64,
+        a: i64,
+        b: i64,
+    }
 }
 
 impl Place for Witness {

@@ -1,7 +1,7 @@
 //! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by exact signs.
 
 use num_traits::Zero;
-use serde::Deserialize;
+use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
@@ -20,81 +20,58 @@ const ROUTE: &str = "thin tongues, and a random sample of the others, by exact s
 /// Ratios of which one tongue each is rechecked by exact signs.
 const SAMPLE: u64 = 200;
 
-/// `kickdrift/survey/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    ratios: u64,
-    tongues: u64,
-    open: u64,
-    closed: Vec<Label>,
-    #[serde(rename = "edges")]
-    _edges: Edges,
-    predicted: Predicted,
-    width_ratios: Vec<Widths>,
-    thinnest: Vec<Thin>,
-}
+rows! {
+    /// `kickdrift/survey/1`.
+    pub struct Claim {
+        input: Input,
+        ratios: u64,
+        tongues: u64,
+        open: u64,
+        closed: Vec<Label>,
+        #[serde(rename = "edges")]
+        _edges: IgnoredAny,
+        predicted: Predicted,
+        width_ratios: Vec<Widths>,
+        thinnest: Vec<Thin>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    max_sum: Written<u64>,
-    rho: Written<Rational>,
-}
+    struct Input {
+        max_sum: Written<u64>,
+        rho: Written<Rational>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Label {
-    p: u64,
-    q: u64,
-    m: u64,
-}
+    struct Label {
+        p: u64,
+        q: u64,
+        m: u64,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Edges {
-    #[serde(rename = "doubles")]
-    _doubles: u64,
-    #[serde(rename = "more_bits")]
-    _more_bits: u64,
-}
+    struct Predicted {
+        points: u64,
+        outside: u64,
+        on_edge: u64,
+        inside: u64,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Predicted {
-    points: u64,
-    outside: u64,
-    on_edge: u64,
-    inside: u64,
-}
+    struct Widths {
+        abs_a: u64,
+        count: u64,
+        least: f64,
+        lower_quartile: f64,
+        median: f64,
+        upper_quartile: f64,
+        largest: f64,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Widths {
-    abs_a: u64,
-    count: u64,
-    least: f64,
-    lower_quartile: f64,
-    median: f64,
-    upper_quartile: f64,
-    largest: f64,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Thin {
-    p: u64,
-    q: u64,
-    m: u64,
-    a: i64,
-    b: i64,
-    s: f64,
-    width: Ends,
+    struct Thin {
+        p: u64,
+        q: u64,
+        m: u64,
+        a: i64,
+        b: i64,
+        s: f64,
+        width: Ends,
+    }
 }
 
 impl Place for Thin {

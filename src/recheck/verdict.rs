@@ -1,7 +1,5 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
-use serde::Deserialize;
-
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, full_period, ln_multiplier};
 use super::written::{Ends, Written, nullable};
@@ -14,52 +12,42 @@ use crate::verdict::{Decidable, Growth, Kind, Limits, Tier, Verdict, decide_from
 const ROUTE: &str =
     "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
 
-/// `kickdrift/verdict/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    input: Input,
-    p: u64,
-    q: u64,
-    kind: Written<Kind>,
-    stable: bool,
-    side: i8,
-    trace: Trace,
-    growth_rate: Ends,
-    #[serde(deserialize_with = "nullable")]
-    resonance: Option<Resonance>,
-    decided_by: Written<Tier>,
-}
+rows! {
+    /// `kickdrift/verdict/1`.
+    pub struct Claim {
+        input: Input,
+        p: u64,
+        q: u64,
+        kind: Written<Kind>,
+        stable: bool,
+        side: i8,
+        trace: Trace,
+        growth_rate: Ends,
+        #[serde(deserialize_with = "nullable")]
+        resonance: Option<Resonance>,
+        decided_by: Written<Tier>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Input {
-    lambda1: Written<Laurent>,
-    lambda2: Written<Laurent>,
-    h1: Written<Laurent>,
-    h2: Written<Laurent>,
-}
+    struct Input {
+        lambda1: Written<Laurent>,
+        lambda2: Written<Laurent>,
+        h1: Written<Laurent>,
+        h2: Written<Laurent>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Trace {
-    #[serde(deserialize_with = "nullable")]
-    lo: Option<f64>,
-    #[serde(deserialize_with = "nullable")]
-    hi: Option<f64>,
-    exact: Option<Written<Rational>>,
-}
+    struct Trace {
+        #[serde(deserialize_with = "nullable")]
+        lo: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        hi: Option<f64>,
+        exact: Option<Written<Rational>>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Resonance {
-    m: u64,
-    a: i64,
-    b: i64,
+    struct Resonance {
+        m: u64,
+        a: i64,
+        b: i64,
+    }
 }
 
 impl Place for Claim {

@@ -8,74 +8,68 @@ use crate::recheck::written::{Column, Decimal, Ends, Range, Written, nullable};
 use crate::resonance::dominant_family;
 use crate::tongue::{self, Entry, Gap, Resonance, Side};
 
-/// `kickdrift/tongues/1`.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Claim {
-    #[serde(rename = "schema")]
-    _schema: String,
-    #[serde(rename = "kickdrift")]
-    _written_by: Option<serde_json::Value>,
-    pub input: Input,
-    pub tongues: Vec<Tongue>,
-    pub count: u64,
-    pub open: u64,
-    pub closed: u64,
-    pub predicted_points: Option<Points>,
-}
+rows! {
+    /// `kickdrift/tongues/1`.
+    pub struct Claim {
+        pub input: Input,
+        pub tongues: Vec<Tongue>,
+        pub count: u64,
+        pub open: u64,
+        pub closed: u64,
+        pub predicted_points: Option<Points>,
+    }
 
-#[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Input {
-    pub ratio: Option<Written<Ratio>>,
-    pub max_sum: Option<Written<u64>>,
-    #[serde(deserialize_with = "given_rho")]
-    pub rho: Rational,
-    pub lambda1: Option<Written<Laurent>>,
-    pub lambda2: Option<Written<Laurent>>,
-    pub h1_range: Option<Written<Range>>,
-    pub h2_range: Option<Written<Range>>,
-    pub m: Option<Written<Vec<(u64, u64)>>>,
-    pub a: Option<Written<(i64, i64)>>,
-    pub b: Option<Written<(i64, i64)>>,
-    pub digits: Option<Written<u64>>,
+    #[derive(Default)]
+    pub struct Input {
+        pub ratio: Option<Written<Ratio>>,
+        pub max_sum: Option<Written<u64>>,
+        #[serde(deserialize_with = "given_rho")]
+        pub rho: Rational,
+        pub lambda1: Option<Written<Laurent>>,
+        pub lambda2: Option<Written<Laurent>>,
+        pub h1_range: Option<Written<Range>>,
+        pub h2_range: Option<Written<Range>>,
+        pub m: Option<Written<Vec<(u64, u64)>>>,
+        pub a: Option<Written<(i64, i64)>>,
+        pub b: Option<Written<(i64, i64)>>,
+        pub digits: Option<Written<u64>>,
+    }
 }
 
 fn given_rho<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Rational, D::Error> {
     Written::deserialize(deserializer).map(|rho| rho.0)
 }
 
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Points {
-    pub inside: u64,
-    pub on_edge: u64,
-    pub outside: u64,
-}
+rows! {
+    #[derive(PartialEq)]
+    pub struct Points {
+        pub inside: u64,
+        pub on_edge: u64,
+        pub outside: u64,
+    }
 
-/// A row.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Tongue {
-    pub p: u64,
-    pub q: u64,
-    pub m: u64,
-    #[serde(deserialize_with = "nullable")]
-    pub a: Option<i64>,
-    #[serde(deserialize_with = "nullable")]
-    pub b: Option<i64>,
-    pub lower: Edge,
-    #[serde(deserialize_with = "nullable")]
-    pub upper: Option<Edge>,
-    pub closed: bool,
-    #[serde(deserialize_with = "nullable")]
-    pub width: Option<Ends>,
-    #[serde(default)]
-    pub growth: Column<Growth>,
-    #[serde(default)]
-    pub predicted: Column<Predicted>,
-    #[serde(default)]
-    pub first_order: Column<FirstOrder>,
+    /// A row.
+    pub struct Tongue {
+        pub p: u64,
+        pub q: u64,
+        pub m: u64,
+        #[serde(deserialize_with = "nullable")]
+        pub a: Option<i64>,
+        #[serde(deserialize_with = "nullable")]
+        pub b: Option<i64>,
+        pub lower: Edge,
+        #[serde(deserialize_with = "nullable")]
+        pub upper: Option<Edge>,
+        pub closed: bool,
+        #[serde(deserialize_with = "nullable")]
+        pub width: Option<Ends>,
+        #[serde(default)]
+        pub growth: Column<Growth>,
+        #[serde(default)]
+        pub predicted: Column<Predicted>,
+        #[serde(default)]
+        pub first_order: Column<FirstOrder>,
+    }
 }
 
 impl Place for Tongue {
@@ -84,61 +78,55 @@ impl Place for Tongue {
     }
 }
 
-/// An edge as it is written.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Edge {
-    pub lo: f64,
-    pub hi: f64,
-    pub decimal: Option<Decimal>,
-    pub entry: Written<Entry>,
-    #[serde(default)]
-    pub exact: Column<Written<Rational>>,
-    #[serde(default)]
-    pub on: Column<Written<Resonance>>,
-    pub h1: Option<Quantity>,
-    pub h2: Option<Quantity>,
-}
+rows! {
+    /// An edge as it is written.
+    pub struct Edge {
+        pub lo: f64,
+        pub hi: f64,
+        pub decimal: Option<Decimal>,
+        pub entry: Written<Entry>,
+        #[serde(default)]
+        pub exact: Column<Written<Rational>>,
+        #[serde(default)]
+        pub on: Column<Written<Resonance>>,
+        pub h1: Option<Quantity>,
+        pub h2: Option<Quantity>,
+    }
 
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Quantity {
-    pub lo: f64,
-    pub hi: f64,
-    pub decimal: Option<Decimal>,
-}
+    pub struct Quantity {
+        pub lo: f64,
+        pub hi: f64,
+        pub decimal: Option<Decimal>,
+    }
 
-/// The fastest growth inside.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Growth {
-    pub s: f64,
-    pub ln_multiplier: f64,
-    pub rate: f64,
-    pub steps_until_tenfold: f64,
-    pub growth_rate: Option<f64>,
-}
+    /// The fastest growth inside.
+    #[derive(Copy)]
+    pub struct Growth {
+        pub s: f64,
+        pub ln_multiplier: f64,
+        pub rate: f64,
+        pub steps_until_tenfold: f64,
+        pub growth_rate: Option<f64>,
+    }
 
-/// The point p θ = m π against the tongue.
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Predicted {
-    pub s: f64,
-    pub side: String,
-    pub position: Written<Side>,
-    pub distance: f64,
-}
+    /// The point p θ = m π against the tongue.
+    pub struct Predicted {
+        pub s: f64,
+        pub side: String,
+        pub position: Written<Side>,
+        pub distance: f64,
+    }
 
-/// The law of first order, and the tongue minus the law.
-#[derive(Clone, Copy, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FirstOrder {
-    pub centre: f64,
-    pub width: f64,
-    pub ln_multiplier: f64,
-    pub centre_error: f64,
-    pub width_error: f64,
-    pub width_ratio: f64,
+    /// The law of first order, and the tongue minus the law.
+    #[derive(Copy)]
+    pub struct FirstOrder {
+        pub centre: f64,
+        pub width: f64,
+        pub ln_multiplier: f64,
+        pub centre_error: f64,
+        pub width_error: f64,
+        pub width_ratio: f64,
+    }
 }
 
 impl Tongue {
