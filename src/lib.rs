@@ -56,7 +56,7 @@
 //!
 //! | floor | module | what is there |
 //! |---|---|---|
-//! | – | [`error`] | one error with a kind |
+//! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
 //! | 0 | `parallel` | work on all threads, or without them |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
@@ -93,6 +93,7 @@ pub mod avi;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
+pub mod format;
 pub mod map;
 pub mod number;
 mod orbit;

@@ -2,12 +2,12 @@
 
 use crate::parallel::*;
 
-use super::args::{Common, Format, shown_range, whole};
-use super::map::Target;
+use super::args::{Common, shown_range, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
 use super::tongues::{parse_list, shown_list};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::parse::parse_range;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::report::closings::{self, DIGITS, OfRatio};
@@ -52,21 +52,9 @@ const MOST_DIGITS: u32 = 28;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let format = match Target::of(common) {
-            Target::Json => Format::Json,
-            Target::Text => Format::Text,
-            Target::Csv => Format::Csv,
-            Target::Latex => Format::Latex,
-            _ => {
-                return Err(Error::input(
-                    "output",
-                    "a figure",
-                    "closings are a table: json, txt, csv or tex",
-                ));
-            }
-        };
-        let document = self.question()?.document(common, matches!(format, Format::Csv))?;
-        write_output(common.output.as_deref(), document.render(format.into())?.as_bytes())
+        let format = common.format_of_table(&Format::DOCUMENT)?;
+        let document = self.question()?.document(common, format == Format::Csv)?;
+        write_output(common.output.as_deref(), document.render(format)?.as_bytes())
     }
 
     fn question(&self) -> Result<Question> {

@@ -2,8 +2,9 @@
 
 use crate::parallel::*;
 
-use super::args::{self, Common, Format, echo_grid, whole};
+use super::args::{self, Common, echo_grid, whole};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Ratio, Rational};

@@ -1,7 +1,8 @@
 //! `kickdrift polynomial`: the half period of one ratio in s and rho.
 
-use super::args::{Common, Format};
+use super::args::Common;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
 use crate::report::polynomial;

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
-use super::args::{Common, Format};
+use super::args::Common;
 use super::progress::progress;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::recheck::{Claim, Options, Outcome};
 use crate::report::document::Document;
 

@@ -8,7 +8,8 @@ use std::path::Path;
 use sources::Sources;
 
 /// The floor of each module; `error` lies below them all.
-const FLOORS: [(&str, u32); 18] = [
+const FLOORS: [(&str, u32); 19] = [
+    ("format", 0),
     ("vector", 0),
     ("number", 0),
     ("parallel", 0),

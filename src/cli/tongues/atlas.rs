@@ -5,10 +5,10 @@ use clap::ValueEnum;
 use super::Question;
 use crate::cli::args::Common;
 use crate::cli::curves;
-use crate::cli::map::Target;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::Laurent;
 use crate::report::figure::{Figure, png};
 use crate::report::file::write_output;
@@ -76,9 +76,9 @@ impl<'a> Atlas<'a> {
     ///
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
-    pub fn write(&self, common: &Common, target: Target) -> Result<()> {
+    pub fn write(&self, common: &Common, format: Format) -> Result<()> {
         let svg = self.figure(common)?.svg();
-        let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
         write_output(common.output.as_deref(), &bytes)
     }
 

@@ -6,10 +6,10 @@ use num_traits::{ToPrimitive, Zero};
 use super::Stiffness;
 use super::atlas::share_of_pi;
 use crate::cli::args::Common;
-use crate::cli::map::Target;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::{Laurent, Ratio, Rational, rational};
 use crate::report::figure::png;
 use crate::report::file::write_output;
@@ -29,7 +29,7 @@ pub fn run(
     stiffness: &Stiffness,
     theta: &Laurent,
     common: &Common,
-    target: Target,
+    format: Format,
 ) -> Result<()> {
     let Ratios::UpTo(max_sum) = ratios else {
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
@@ -56,7 +56,7 @@ pub fn run(
     )
     .replace("π1/", "π/");
     let svg = figure(rational::to_f64(&share), &title, &measured).svg();
-    let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
     write_output(common.output.as_deref(), &bytes)
 }
 
