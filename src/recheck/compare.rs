@@ -1,7 +1,7 @@
 //! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
 
-use super::context::{Checked, Context, Outcome, Place, holds, same};
-use super::exact::{affordable, again, full_period, lowest};
+use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
+use super::exact::{affordable, again, full_period};
 use super::written::{Ends, Range, Written, nullable, ratios};
 use crate::error::{Error, Result};
 use crate::map::Grid;
@@ -9,7 +9,7 @@ use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::parallel::*;
 use crate::propagator::TwoClocks;
 use crate::resonance::compare::Outcome as Rule;
-use crate::verdict::{Kind, Verdict, decide};
+use crate::verdict::{Kind, Tier, Verdict};
 
 const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
                      enclosed; the tan criterion and the trace give one verdict by a theorem";
@@ -93,6 +93,18 @@ enum Pairs {
 /// The counts of a line, and its offenders in their order.
 type Line = (u64, Counts, Vec<(usize, u64)>);
 
+/// A row, and the place of the offender that belongs there.
+struct Placed<'a> {
+    row: &'a Offender,
+    at: Option<(usize, u64)>,
+}
+
+impl Place for Placed<'_> {
+    fn place(&self) -> String {
+        self.row.place()
+    }
+}
+
 impl Claim {
     pub fn check(&self, context: &Context) -> Result<Outcome> {
         let pairs = self.input.pairs()?;
@@ -100,9 +112,12 @@ impl Claim {
             .into_par_iter()
             .map(|line| self.line(&pairs, line, context))
             .collect::<Result<_>>()?;
-        let whole = self.whole(&pairs, &lines);
-        context
-            .outcome(ROUTE, ("the counts", whole), &self.offenders, |row| self.offender(&pairs, row, context))
+        let mut places = lines.iter().flat_map(|(.., places)| places.iter().copied());
+        let rows: Vec<Placed> = self.offenders.iter().map(|row| Placed { row, at: places.next() }).collect();
+        let missing = places.count();
+        let whole = holds(missing == 0, || format!("{missing} offenders are missing"));
+        let whole = whole.and_then(|()| self.counts(&pairs, &lines));
+        context.outcome(ROUTE, ("the counts", whole), &rows, |row| self.offender(&pairs, row, context))
     }
 
     /// Line by line: unstable pairs, the rule's outcomes, offenders.
@@ -110,10 +125,7 @@ impl Claim {
         let (mut unstable, mut counts, mut offenders) = (0, Counts::default(), Vec::new());
         for k in 0..pairs.length() {
             let clocks = pairs.clocks(line, k)?;
-            let verdict = match clocks.as_rational() {
-                Some(rational) => decide(&rational, context.limits())?.verdict,
-                None => decide(&clocks, context.limits())?.verdict,
-            };
+            let verdict = again(Tier::Filter, &clocks, context.limits())?.verdict;
             unstable += u64::from(!verdict.is_stable());
             let rule = self.rule(&clocks, verdict);
             *match rule {
@@ -138,7 +150,7 @@ impl Claim {
         near(clocks.p()).map(|near| Rule::of(verdict.is_stable(), near))
     }
 
-    fn whole(&self, pairs: &Pairs, lines: &[Line]) -> Checked {
+    fn counts(&self, pairs: &Pairs, lines: &[Line]) -> Checked {
         let sum = |count: fn(&Counts) -> u64| lines.iter().map(|(_, counts, _)| count(counts)).sum::<u64>();
         let all = pairs.lines() as u64 * pairs.length();
         same("pairs", self.pairs, all)?;
@@ -150,24 +162,19 @@ impl Claim {
         same("quiet", told.quiet, sum(|c| c.quiet))?;
         same("misses", told.misses, sum(|c| c.misses))?;
         same("false_alarms", told.false_alarms, sum(|c| c.false_alarms))?;
-        same("beyond_verlet", told.beyond_verlet, sum(|c| c.beyond_verlet))?;
-        let places: Vec<(usize, u64)> =
-            lines.iter().flat_map(|(.., places)| places.iter().copied()).collect();
-        same("the number of offenders", self.offenders.len(), places.len())?;
-        for (i, (row, &(line, k))) in self.offenders.iter().zip(&places).enumerate() {
-            holds(pairs.is_at(row, line, k), || format!("row {} is not the next offender", i + 1))?;
-        }
-        Ok(())
+        same("beyond_verlet", told.beyond_verlet, sum(|c| c.beyond_verlet))
     }
 
-    fn offender(&self, pairs: &Pairs, row: &Offender, context: &Context) -> Checked {
-        let clocks = pairs.of(row)?;
-        let ratio = (clocks.p(), clocks.q());
-        holds((row.p, row.q) == ratio, || format!("h2/h1 is {}/{}", ratio.0, ratio.1))?;
-        let verdict = match (affordable(&clocks), clocks.as_rational()) {
-            (true, Some(rational)) => full_period(&rational).verdict,
-            (true, None) => full_period(&clocks).verdict,
-            _ => again(&clocks, context.limits())?.verdict,
+    fn offender(&self, pairs: &Pairs, placed: &Placed, context: &Context) -> Checked {
+        let row = placed.row;
+        let (line, k) = placed.at.ok_or_else(|| Fault::Wrong("is one offender too many".into()))?;
+        let clocks = pairs.clocks(line, k)?;
+        let here = pairs.is_at(row, line, k) && (row.p, row.q) == clocks.ratio().terms();
+        holds(here, || format!("is not the next offender, which has h2/h1 = {}", clocks.ratio()))?;
+        let verdict = if affordable(&clocks) {
+            full_period(&clocks).verdict
+        } else {
+            again(Tier::Refine, &clocks, context.limits())?.verdict
         };
         let kind = verdict.kind();
         same("its kind", row.kind.name(), kind.name())?;
@@ -256,37 +263,12 @@ impl Pairs {
         match self {
             Pairs::Grid(grid) => {
                 let steps = (grid.h1(grid.columns().0 + line as u64), grid.h2(grid.rows().0 + k));
-                row.h1.as_deref() == Some(&steps.0) && row.h2.as_deref() == Some(&steps.1)
+                let told = (row.h1.as_deref(), row.h2.as_deref());
+                told == (Some(&steps.0), Some(&steps.1)) && row.s.is_none() && row.rho.is_none()
             }
-            Pairs::Ratios { list, samples, .. } => {
-                (row.p, row.q) == list[line].terms() && row.s.as_deref() == Some(&Pairs::s(k, *samples))
-            }
-        }
-    }
-
-    /// The clocks of a row, by what stands in it.
-    fn of(&self, row: &Offender) -> Checked<TwoClocks<Laurent>> {
-        let wrong = |what: &str| super::context::Fault::Wrong(format!("it is not named by {what}"));
-        match self {
-            Pairs::Grid(grid) => {
-                let (Some(h1), Some(h2), None, None) = (&row.h1, &row.h2, &row.s, &row.rho) else {
-                    return Err(wrong("h1 and h2"));
-                };
-                let (lambda1, lambda2) = grid.lambdas();
-                let steps = (h1.0.clone(), h2.0.clone());
-                let pair =
-                    crate::propagator::Oscillator::new(lambda1.clone(), lambda2.clone(), steps.0, steps.1);
-                Ok(pair.map_err(|error| super::context::Fault::Wrong(error.to_string()))?.clocks())
-            }
-            Pairs::Ratios { list, rho, .. } => {
-                let (Some(s), Some(own), None, None) = (&row.s, &row.rho, &row.h1, &row.h2) else {
-                    return Err(wrong("s and rho"));
-                };
-                holds(own.0 == *rho, || format!("rho = {} is not that of the input", own.0))?;
-                let ratio = lowest(row.p, row.q)?;
-                holds(list.contains(&ratio), || "its ratio is not one of the input".into())?;
-                let [s, rho] = [s.0.clone(), rho.clone()].map(Laurent::from_rational);
-                Ok(TwoClocks::with_rho(ratio, s, rho))
+            Pairs::Ratios { rho, samples, .. } => {
+                let told = (row.s.as_deref(), row.rho.as_deref());
+                told == (Some(&Pairs::s(k, *samples)), Some(rho)) && row.h1.is_none() && row.h2.is_none()
             }
         }
     }

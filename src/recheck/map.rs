@@ -6,13 +6,13 @@ use crate::parallel::*;
 use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds, same};
-use super::exact::again;
+use super::exact::{again, growth_again};
 use super::sample::sample;
 use super::written::{Range, Written};
 use crate::error::{Error, Result};
 use crate::map::{Band, Grid, Products, Shard, for_each_band};
 use crate::number::{Laurent, Real};
-use crate::verdict::{Kind, Verdict, growth};
+use crate::verdict::{Kind, Tier, Verdict};
 
 const ROUTE: &str =
     "the counts by the map's own certified route again; the pairs of a random sample kick by kick";
@@ -136,8 +136,10 @@ impl Claim {
                 let row = (n - done) as usize;
                 let (i, j) = band.multipliers(grid, row);
                 let name = || format!("h1 = {}, h2 = {}", grid.h1(i), grid.h2(j));
-                let (told, truth) =
-                    (band.decision(row).verdict, again(&grid.clocks(i, j)?, context.limits())?.verdict);
+                let (told, truth) = (
+                    band.decision(row).verdict,
+                    again(Tier::Refine, &grid.clocks(i, j)?, context.limits())?.verdict,
+                );
                 let wrong = || format!("is {}, side {}, kick by kick", truth.kind().name(), truth.side());
                 context.failure(1, name, holds(told == truth, wrong))
             };
@@ -187,7 +189,7 @@ impl Claim {
         let j = inside((&told.h2, step2), grid.rows())?;
         let (clocks, limits) = (grid.clocks(i, j)?, context.limits());
         const BITS: u32 = 128;
-        let ln = growth(&clocks, again(&clocks, limits)?.verdict, limits)?.ln_multiplier;
+        let ln = growth_again(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
         let ln = ln.ok_or_else(|| Fault::Wrong("the fastest pair does not grow".into()))?;
         let period =
             told.h1.enclosure(BITS).mul(&crate::number::Ball::from_integer(&clocks.p().into()), BITS);

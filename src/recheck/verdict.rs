@@ -1,13 +1,13 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
-use super::exact::{FullPeriod, affordable, full_period, ln_multiplier};
+use super::exact::{FullPeriod, affordable, again, full_period, growth_again, ln_multiplier};
 use super::written::{Ends, Written, nullable};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::resonance::dominant_family;
-use crate::verdict::{Decidable, Growth, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth};
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace};
 
 const ROUTE: &str =
     "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
@@ -81,36 +81,38 @@ impl Claim {
         let clocks = oscillator.clocks();
         let ratio = (self.p, self.q);
         holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
-        match clocks.as_rational() {
-            Some(rational) => self.against(&oscillator, &rational, affordable(&clocks), limits),
-            None => self.against(&oscillator, &clocks, affordable(&clocks), limits),
-        }
+        let truth = self.truth(&clocks, limits)?;
+        self.against(&truth)?;
+        self.numbers(&oscillator, &truth)?;
+        self.label(&clocks, limits)
     }
 
-    fn against<S: Decidable + AsRational>(
-        &self,
-        oscillator: &Oscillator,
-        clocks: &TwoClocks<S>,
-        affordable: bool,
-        limits: &Limits,
-    ) -> Checked {
-        let truth = if affordable {
-            Truth::of(&full_period(clocks))
-        } else {
-            let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
-            let verdict = decide_from(tier, clocks, limits)?.verdict;
-            let Growth { trace, ln_multiplier, .. } = growth(clocks, verdict, limits)?;
-            let exact = self.trace.exact.as_ref().and_then(|_| S::trace_of(clocks));
-            Truth { verdict, trace, ln_multiplier, exact }
-        };
-        let (kind, side) = (*self.kind, self.side);
-        let true_to = (truth.verdict.kind(), truth.verdict.side());
-        holds((kind, side) == true_to, || {
-            format!("is {}, side {}, not {}, side {side}", true_to.0.name(), true_to.1, kind.name())
+    /// The full period where that is affordable, else a tier that did not decide.
+    fn truth(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Truth> {
+        if affordable(clocks) {
+            let FullPeriod { verdict, trace } = full_period(clocks);
+            let grows = verdict.kind() == Kind::Hyperbolic;
+            let ln_multiplier = grows.then(|| ln_multiplier(&trace, BITS).expect("|Tr| > 2"));
+            return Ok(Truth {
+                verdict,
+                trace: trace.enclosure(BITS),
+                ln_multiplier,
+                exact: trace.as_rational(),
+            });
+        }
+        let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
+        let verdict = again(tier, clocks, limits)?.verdict;
+        let Growth { trace, ln_multiplier, .. } = growth_again(clocks, verdict, limits)?;
+        let rational = clocks.as_rational().filter(|_| self.trace.exact.is_some());
+        Ok(Truth { verdict, trace, ln_multiplier, exact: rational.map(|clocks| exact_trace(&clocks)) })
+    }
+
+    fn against(&self, truth: &Truth) -> Checked {
+        let (kind, side, verdict) = (*self.kind, self.side, truth.verdict);
+        holds((kind, side) == (verdict.kind(), verdict.side()), || {
+            format!("is {}, side {}, not {}, side {side}", verdict.kind().name(), verdict.side(), kind.name())
         })?;
-        same("stable", self.stable, matches!(kind, Kind::Elliptic | Kind::Coexistence))?;
-        self.numbers(oscillator, &truth)?;
-        self.label(clocks, limits)
+        same("stable", self.stable, verdict.is_stable())
     }
 
     /// The trace and the growth rate lie in their enclosures.
@@ -131,7 +133,7 @@ impl Claim {
     }
 
     /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
-    fn label<S: Decidable>(&self, clocks: &TwoClocks<S>, limits: &Limits) -> Checked {
+    fn label(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Checked {
         let (p, q) = clocks.ratio().terms();
         // Families beyond 31 bits are not written.
         let due = *self.kind == Kind::Hyperbolic && p.max(q) < 1 << 31;
@@ -139,50 +141,10 @@ impl Claim {
             return holds(!due, || "what grows has a label".into());
         };
         holds(due && m < 1 << 31, || "has no label".into())?;
-        let verdict = decide_from(Tier::Refine, clocks, limits)?.verdict;
-        let turns = growth(clocks, verdict, limits)?.label;
+        let verdict = again(Tier::Refine, clocks, limits)?.verdict;
+        let turns = growth_again(clocks, verdict, limits)?.label;
         holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))?;
         let family = dominant_family(clocks.ratio(), m);
         holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))
-    }
-}
-
-impl Truth {
-    fn of<S: Real + AsRational>(full: &FullPeriod<S>) -> Truth {
-        let grows = full.verdict.kind() == Kind::Hyperbolic;
-        Truth {
-            verdict: full.verdict,
-            trace: full.trace.enclosure(BITS),
-            ln_multiplier: grows.then(|| ln_multiplier(&full.trace, BITS).expect("|Tr| > 2")),
-            exact: full.trace.as_rational(),
-        }
-    }
-}
-
-/// A ring whose rational elements can be told.
-trait AsRational: Sized {
-    fn as_rational(&self) -> Option<Rational>;
-
-    /// The exact trace, where it is rational and asked for.
-    fn trace_of(clocks: &TwoClocks<Self>) -> Option<Rational>;
-}
-
-impl AsRational for Rational {
-    fn as_rational(&self) -> Option<Rational> {
-        Some(self.clone())
-    }
-
-    fn trace_of(clocks: &TwoClocks<Rational>) -> Option<Rational> {
-        Some(exact_trace(clocks))
-    }
-}
-
-impl AsRational for Laurent {
-    fn as_rational(&self) -> Option<Rational> {
-        Laurent::as_rational(self)
-    }
-
-    fn trace_of(_: &TwoClocks<Laurent>) -> Option<Rational> {
-        None
     }
 }
