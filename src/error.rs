@@ -24,6 +24,8 @@ pub enum Kind {
     Io,
     /// The work exceeds the stated limit; [`Error::needed`] is the limit that allows it, where one does.
     Budget,
+    /// The caller stopped the work before its end.
+    Stopped,
 }
 
 /// An error of any floor: a [`Kind`], what it is about, what was given and what to do instead.
@@ -87,6 +89,11 @@ impl Error {
     /// More work than any limit allows: what it would cost, and what to ask instead.
     pub fn too_much(work: impl fmt::Display, remedy: impl fmt::Display) -> Self {
         Error::new(Kind::Budget, work, remedy)
+    }
+
+    /// Work that its caller stopped before its end.
+    pub fn stopped(work: impl fmt::Display) -> Self {
+        Error::new(Kind::Stopped, work, "stopped before its end")
     }
 
     /// An error of a stream, for whoever knows where it goes to name the path by [`Error::at`].

@@ -1,9 +1,12 @@
 //! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Band, Counters, Grid, Products, Shard, Store, for_each_band, merge, resume};
+use kickdrift::map::{Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, merge};
+use kickdrift::number::Ratio;
 use kickdrift::number::parse::parse;
-use kickdrift::verdict::{Kind, Limits, Tier, decide_from, growth};
+use kickdrift::number::rational::ratio;
+use kickdrift::propagator::TwoClocks;
+use kickdrift::verdict::{Kind, Limits, Tier, decide, decide_from, growth};
 use rayon::prelude::*;
 
 #[path = "stress/random.rs"]
@@ -23,7 +26,8 @@ fn figure_1(d: &str) -> Grid {
 
 fn bands(grid: &Grid, products: Products, shard: Shard, threads: usize) -> (Vec<(u64, Band)>, Counters) {
     let mut bands = Vec::new();
-    let counters = for_each_band(grid, products, shard, threads, &Limits::default(), |n, band| {
+    let resources = Resources { threads, ..Resources::default() };
+    let counters = Map::of(grid).with(products).shard(shard).within(resources).for_each_band(|n, band| {
         bands.push((n, band));
         Ok(())
     });
@@ -227,13 +231,36 @@ fn labels_and_growth_are_those_of_the_single_pair() {
             let ratio = grid.ratio(i, j);
             let ((p, q), (a, b)) = (ratio.terms(), found.family(ratio).unwrap());
             assert_eq!(a * p as i64 + b * q as i64, found.label.unwrap() as i64);
-            let (ours, exact) = (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().mid_f64());
-            // The enclosure is tight to 60 bits; ours loses digits only where |Tr| - 2 is tiny.
-            assert!((ours - exact).abs() <= 1e-9 * (1.0 + exact), "{ours} {exact} at ({i}, {j})");
+            let (ours, exact) =
+                (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().to_f64_enclosure());
+            // The single pair's is known to 60 bits.
+            assert!(ours.lo <= exact.0 && exact.1 <= ours.hi, "{ours:?} {exact:?} at ({i}, {j})");
+            assert!(ours.width() <= 1e-6 * ours.lo, "{ours:?} at ({i}, {j})");
             seen += 1;
         }
     }
     assert!(seen > 100);
+}
+
+/// Growth next to edges, where BC or AD loses its digits in doubles: the enclosures hold and are narrow all the same.
+#[test]
+fn growth_next_to_an_edge_is_enclosed() {
+    // Edges that sit on p th = m pi: s = 1, th = pi/3 for 3/1; s = 3, th = 2 pi/3 for 3/2.
+    for (h1, h2, s) in [("1", "3", 1), ("2", "3", 3)] {
+        for k in 3..16 {
+            let lambda1 = format!("{s}*(1 - 1/10^{k})/{h1}^2");
+            let grid = grid(&lambda1, "1/25", "1", ((h1, h1), (h2, h2)));
+            let (all, _) = bands(&grid, Products { growth: true, label: false }, Shard::WHOLE, 1);
+            let [found] = all[0].1.growing[..] else { panic!("{lambda1}: a pair in a tongue") };
+            let (i, j) = (grid.columns().0, grid.rows().0);
+            let single =
+                growth(&grid.clocks(i, j).unwrap(), all[0].1.decision(0).verdict, &Limits::default());
+            let (ours, exact) =
+                (found.ln_multiplier.unwrap(), single.unwrap().ln_multiplier.unwrap().to_f64_enclosure());
+            assert!(ours.lo <= exact.0 && exact.1 <= ours.hi, "{lambda1}: {ours:?} {exact:?}");
+            assert!(ours.width() <= 1e-6 * ours.lo, "{lambda1}: {ours:?}");
+        }
+    }
 }
 
 #[test]
@@ -251,13 +278,15 @@ fn threads_and_shards_change_nothing() {
 
 #[test]
 fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
-    let (grid, limits) = (figure_1("1/150"), Limits::default());
+    let grid = figure_1("1/150");
     let directory = std::env::temp_dir().join(format!("kickdrift-map-{}", std::process::id()));
     let store = Store::open(&directory, &grid, BOTH).unwrap();
     let shard = |k| Shard::new(k, 2).unwrap();
     // Stopped after the first band of the first shard; the second is missing.
     let stop = |_, _| Err(kickdrift::error::Error::io("output", "stopped"));
-    resume(&grid, BOTH, shard(1), 1, &limits, &store, stop).unwrap_err();
+    let one = Resources { threads: 1, ..Resources::default() };
+    let kept = Map::of(&grid).with(BOTH).kept_in(&store);
+    kept.shard(shard(1)).within(one).for_each_band(stop).unwrap_err();
     assert!(
         merge(&grid, std::slice::from_ref(&store), |_, _| Ok(()))
             .unwrap_err()
@@ -265,7 +294,7 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
             .contains("is in no part")
     );
     for k in [1, 2] {
-        resume(&grid, BOTH, shard(k), 2, &limits, &store, |_, _| Ok(())).unwrap();
+        kept.shard(shard(k)).for_each_band(|_, _| Ok(())).unwrap();
     }
     // A damaged file is not there, nor is that of another map.
     let (whole, counters) = bands(&grid, BOTH, Shard::WHOLE, 0);
@@ -275,9 +304,9 @@ fn stopped_work_goes_on_and_parts_join_to_the_same_map() {
     std::fs::write(&file, bytes).unwrap();
     assert!(store.load(1).is_none() && store.load(0).is_some());
     assert!(Store::open(&directory, &grid, Products::default()).unwrap().load(0).is_none());
-    resume(&grid, BOTH, Shard::WHOLE, 2, &limits, &store, |_, _| Ok(())).unwrap();
+    kept.for_each_band(|_, _| Ok(())).unwrap();
     let mut joined = Vec::new();
-    let sums = merge(&grid, &[store], |n, band| {
+    let sums = merge(&grid, std::slice::from_ref(&store), |n, band| {
         joined.push((n, band));
         Ok(())
     });
@@ -307,4 +336,79 @@ fn impossible_grids_are_refused_by_name() {
     assert!(grid("1", "1", "pi/9", "2").to_string().starts_with("step2/step1 = (pi/9)/(1)"));
     assert!(grid("1", "3", "3", "2").to_string().starts_with("h1-range = 1..2"));
     assert_eq!(grid("1", "10^-9", "1", "2").kind(), ErrorKind::Budget);
+}
+
+#[test]
+fn the_cost_is_told_before_the_work_begins() {
+    let x = |text: &str| parse("x", text).unwrap();
+    for (d1, d2) in [("1/150", "1/150"), ("1/200", "3/400"), ("1/100", "1/130")] {
+        let range = |lo, hi| (x(lo), x(hi));
+        let grid =
+            Grid::new(x("9"), x("1/3"), [x(d1), x(d2)], range("1/100", "0.66"), range("1/100", "3")).unwrap();
+        let (told, counters) = (grid.kicks(), Map::of(&grid).for_each_band(|_, _| Ok(())).unwrap());
+        assert!((told / counters.kicks as f64 - 1.0).abs() < 0.02, "{told} for {}", counters.kicks);
+    }
+    // The law in pairs and kicks: 2.2 million pairs take 2.45e8 kicks, a million times as many 2.4e17.
+    let fine = figure_1("1/1000000");
+    assert!((fine.kicks() / 2.43e17 - 1.0).abs() < 0.02, "{:e}", fine.kicks());
+    let refused = Map::of(&fine).for_each_band(|_, _| panic!("no band is computed")).unwrap_err();
+    assert_eq!(refused.kind(), ErrorKind::Budget);
+    assert!(refused.to_string().contains("2228166500000 pairs"), "{refused}");
+    // What it asks for is enough.
+    let needed = refused.needed().unwrap();
+    assert!(needed as f64 * 1e4 >= fine.kicks() && (needed as f64) < 1.01e-4 * fine.kicks(), "{needed}");
+}
+
+#[test]
+fn a_map_is_a_vector_and_stops_when_told() {
+    let grid = figure_1("1/150");
+    let all = Map::of(&grid).verdicts().unwrap();
+    let verdict = verdicts(&grid);
+    let rows = grid.shape().1 as u64;
+    assert!((0..).zip(&all).all(|(n, found)| found.index() == verdict((1 + n / rows, 1 + n % rows))));
+    // A part into a slice of the caller's, with progress.
+    let part = Map::of(&grid).shard(Shard::new(2, 2).unwrap());
+    let mut slice = vec![all[0]; Shard::new(2, 2).unwrap().pairs(&grid) as usize];
+    let mut done = Vec::new();
+    part.fill(&mut slice, |pairs| done.push(pairs)).unwrap();
+    assert_eq!(done.last(), Some(&(slice.len() as u64)));
+    assert!(all.windows(slice.len().min(1000)).any(|window| *window == slice[..window.len()]));
+    assert!(part.fill(&mut slice[1..], |_| ()).unwrap_err().to_string().contains("must hold"));
+    let stopped = std::sync::atomic::AtomicBool::new(false);
+    let resources = Resources { threads: 1, stopped: Some(&stopped), ..Resources::default() };
+    let mut seen = 0;
+    let error = Map::of(&grid).within(resources).for_each_band(|_, _| {
+        seen += 1;
+        stopped.store(true, std::sync::atomic::Ordering::Relaxed);
+        Ok(())
+    });
+    // The bands that were under way are handed on.
+    assert!(seen >= 1, "{seen}");
+    assert!(error.is_ok() || error.unwrap_err().kind() == ErrorKind::Stopped);
+    assert_eq!(Map::of(&grid).within(resources).verdicts().unwrap_err().kind(), ErrorKind::Stopped);
+}
+
+#[test]
+fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
+    let mut numbers = random::Random::new(20_261_122);
+    let mut pair = || {
+        let (p, q) = (1 + numbers.below(200), 1 + numbers.below(200));
+        let common = num_integer::gcd(p, q);
+        // Beyond Verlet's limit, with no force and with a repelling one too.
+        let part = |n: u64, over: i64, less: i64| ratio(n as i64 - less, over);
+        let s = part(numbers.below(4500), 1000, 200);
+        TwoClocks::with_rho(
+            Ratio::new(p / common, q / common).unwrap(),
+            s,
+            part(numbers.below(1000), 500, 100),
+        )
+    };
+    let pairs: Vec<_> = (0..3000).map(|_| pair()).collect();
+    let found = decide_all(&pairs, &Resources::default()).unwrap();
+    assert_eq!(found.len(), pairs.len());
+    for (clocks, found) in pairs.iter().zip(found) {
+        assert_eq!(found.verdict, decide(clocks, &Limits::default()).unwrap().verdict, "{clocks:?}");
+    }
+    let few = Resources { limits: Limits { kicks: 3 }, ..Resources::default() };
+    assert_eq!(decide_all(&pairs, &few).unwrap_err().kind(), ErrorKind::Budget);
 }

@@ -1,7 +1,7 @@
 //! Tongues: by strings, by polynomials, by verdicts; known values; every corner of the input.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Grid, Products, Shard, for_each_band};
+use kickdrift::map::{Grid, Map, Products};
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Polynomial, Ratio, Rational};
@@ -216,20 +216,22 @@ fn the_map_labels_each_pair_by_the_tongue_that_holds_it() {
         let (d, h1, h2) = (x("1/24"), (x("1/24"), x("4/5")), (x("1/24"), x("5/2")));
         let grid = Grid::new(x("10"), x(lambda2), [d.clone(), d], h1, h2).unwrap();
         let mut unstable = 0;
-        for_each_band(&grid, products, Shard::WHOLE, 0, &Limits::default(), |_, band| {
-            let mut labels = vec![None; band.verdicts.len()];
-            band.growing.iter().for_each(|pair| labels[pair.position as usize] = pair.label);
-            for (n, label) in labels.into_iter().enumerate() {
-                let (i, j) = band.multipliers(&grid, n);
-                let (p, q) = lowest_terms(j, i);
-                let s = ratio((i * i) as i64, 24 * 24) * ratio(10, 1);
-                let gaps = tongues(p, q, &rho).all()?;
-                assert_eq!(label, tongue_around(&gaps, &s), "{p}/{q}, rho = {rho}, s = {s}");
-                unstable += u64::from(label.is_some());
-            }
-            Ok(())
-        })
-        .unwrap();
+        Map::of(&grid)
+            .with(products)
+            .for_each_band(|_, band| {
+                let mut labels = vec![None; band.verdicts.len()];
+                band.growing.iter().for_each(|pair| labels[pair.position as usize] = pair.label);
+                for (n, label) in labels.into_iter().enumerate() {
+                    let (i, j) = band.multipliers(&grid, n);
+                    let (p, q) = lowest_terms(j, i);
+                    let s = ratio((i * i) as i64, 24 * 24) * ratio(10, 1);
+                    let gaps = tongues(p, q, &rho).all()?;
+                    assert_eq!(label, tongue_around(&gaps, &s), "{p}/{q}, rho = {rho}, s = {s}");
+                    unstable += u64::from(label.is_some());
+                }
+                Ok(())
+            })
+            .unwrap();
         assert!(unstable > 50, "{unstable}");
     }
 }

@@ -22,8 +22,17 @@ line 6 'Theorem kickdrift_verdict :'
 line 7 "  verdict $kind $int $int $frac_R $frac_R $frac_R $frac_R\\."
 line 8 "Proof\\. certify $frac_Q $frac_Q $frac_Q $frac_Q\\. Qed\\."
 line 9 'Print Assumptions kickdrift_verdict\.'
+# The comment must name the theorem's own input: h1, lambda1, h2, lambda2 of line 7, fractions as the program writes them.
+input=$(sed -n 7p "$file" | grep -oE -- "$frac_R" | tr -d '() ' | sed 's|/1$||')
+set -- $input
+own="--lambda1 $2 --lambda2 $4 --h1 $1 --h2 $3"
+case $(sed -n 1p "$file") in
+  *"verdict $own --certificate"*) ;;
+  *) echo "$file:1: the comment is not of the theorem's input, which is $own"; exit 1 ;;
+esac
 [ "$(wc -l < "$file")" -eq 9 ] || { echo "$file: a certificate has nine lines"; exit 1; }
 
+[ -e "$here/Certificate.vo" ] || { echo "the theory is not compiled: run 'make theory' in $here first"; exit 1; }
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cp "$file" "$work/" || exit 1

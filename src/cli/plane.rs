@@ -1,7 +1,7 @@
 //! The verdicts of a grid, computed once for all products of a scene that show them.
 
 use crate::error::Result;
-use crate::map::{Band, Grid, Products, Shard, for_each_band};
+use crate::map::{Band, Grid, Map, Resources};
 use crate::report::map::{MapArrays, Marked, Tally, marked};
 use crate::report::plane::Cloud;
 use crate::verdict::Limits;
@@ -26,7 +26,8 @@ impl Verdicts {
         mut arrays: Option<&mut MapArrays>,
     ) -> Result<Verdicts> {
         let mut verdicts = Verdicts::default();
-        for_each_band(grid, Products::default(), Shard::WHOLE, threads, limits, |_, band| {
+        let resources = Resources { threads, limits: *limits, stopped: None };
+        Map::of(grid).within(resources).for_each_band(|_, band| {
             verdicts.add(grid, &band);
             arrays.as_mut().map_or(Ok(()), |arrays| arrays.add(grid, &band))
         })?;

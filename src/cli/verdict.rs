@@ -6,13 +6,13 @@ use std::process::ExitCode;
 use super::args::{Common, Stiffness};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::Laurent;
 use crate::number::parse::parse;
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::report::certificate;
+use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::verdict::Answer;
-use crate::verdict::{Decidable, Limits, Tier, decide_from, growth};
+use crate::verdict::{Decidable, Tier, Verdict, decide_from};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]
@@ -31,7 +31,7 @@ pub struct Args {
     /// Also write a Coq proof of the verdict, for rational input; check it with proofs/tools/certificate.sh.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// Exit with 0 if stable, 1 if unstable.
+    /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
     #[arg(long)]
     exit_code: bool,
 }
@@ -41,45 +41,44 @@ impl Args {
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
         let (lambda1, lambda2) = self.stiffness.quantities()?;
         let oscillator = Oscillator::new(lambda1, lambda2, parse("h1", &self.h1)?, parse("h2", &self.h2)?)?;
-        let answer = self.answer(oscillator, &common.limits())?;
-        let unstable = !answer.decision.verdict.is_stable();
-        if let Some(path) = &self.certificate {
-            certify(&answer, path, common.budget)?;
-        }
-        common.write(&answer.document(), Format::Text)?;
-        Ok(ExitCode::from(u8::from(self.exit_code && unstable)))
-    }
-
-    fn answer(&self, oscillator: Oscillator, limits: &Limits) -> Result<Answer> {
         let clocks = oscillator.clocks();
         // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
-        match clocks.as_rational() {
-            Some(rational) => self.decided(oscillator, &rational, &clocks, limits),
-            None => self.decided(oscillator, &clocks, &clocks, limits),
-        }
+        let stable = match clocks.as_rational() {
+            Some(rational) => self.answer(&oscillator, &rational, common)?,
+            None => self.answer(&oscillator, &clocks, common)?,
+        };
+        Ok(ExitCode::from(u8::from(self.exit_code && !stable)))
     }
 
-    fn decided<S: Decidable>(
+    /// Whether the pair is stable; the rest of the answer is computed only where it is shown.
+    fn answer<S: Decidable>(
         &self,
-        oscillator: Oscillator,
+        oscillator: &Oscillator,
         clocks: &TwoClocks<S>,
-        given: &TwoClocks<Laurent>,
-        limits: &Limits,
-    ) -> Result<Answer> {
+        common: &Common,
+    ) -> Result<bool> {
         let first = if self.exact { Tier::Exact } else { Tier::Filter };
-        let decision = decide_from(first, clocks, limits)?;
-        let growth = growth(clocks, decision.verdict, limits)?;
-        let exact_trace = Answer::exact_trace(given, self.exact);
-        Ok(Answer { oscillator, decision, growth, exact_trace })
+        let answer = decide_from(first, clocks, &common.limits())?;
+        let silent = self.exit_code && common.quiet && common.output.is_none();
+        let document = (!silent).then(|| -> Result<Document> {
+            let (decision, growth) = (answer.decision(), answer.growth()?.clone());
+            let exact_trace = Answer::exact_trace(&oscillator.clocks(), self.exact);
+            Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace }.document())
+        });
+        let document = document.transpose()?;
+        if let Some(path) = &self.certificate {
+            certify(oscillator, answer.verdict, path, common.budget)?;
+        }
+        document.map_or(Ok(()), |document| common.write(&document, Format::Text))?;
+        Ok(answer.verdict.is_stable())
     }
 }
 
 /// Checking a certificate costs Coq about (p + q)² steps: some 2 s at 400 kicks, 90 s at 4,000.
 const WORTH_CERTIFYING: u64 = 5000;
 
-fn certify(answer: &Answer, path: &Path, budget: Option<u64>) -> Result<()> {
-    let clocks = answer.oscillator.clocks();
-    let kicks = clocks.p().saturating_add(clocks.q());
+fn certify(oscillator: &Oscillator, verdict: Verdict, path: &Path, budget: Option<u64>) -> Result<()> {
+    let kicks = oscillator.ratio().kicks();
     if kicks > budget.unwrap_or(WORTH_CERTIFYING) {
         return Err(Error::budget(
             format!("Coq would need minutes to check a certificate of {kicks} kicks"),
@@ -87,6 +86,6 @@ fn certify(answer: &Answer, path: &Path, budget: Option<u64>) -> Result<()> {
         ));
     }
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let text = certificate::coq(&answer.oscillator, answer.decision.verdict, &name)?;
+    let text = certificate::coq(oscillator, verdict, &name)?;
     write_output(Some(path), text.as_bytes())
 }

@@ -5,33 +5,31 @@
 //! of the base clock's turns made once a column and once a row. What the filter cannot certify goes up the ladder
 //! as any single pair does. Bands come in order and depend on the grid alone, not on threads, shards or the machine.
 //!
-//! ```
-//! use kickdrift::map::{for_each_band, Grid, Products, Shard};
-//! use kickdrift::number::parse::parse;
-//! use kickdrift::verdict::Limits;
-//! // Figure 1 of the paper with steps of 1/25.
-//! let x = |text| parse("x", text).unwrap();
-//! let (h1, h2) = ((x("1/25"), x("2/pi")), (x("1/25"), x("7/2")));
-//! let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/25"), x("1/25")], h1, h2).unwrap();
-//! let mut unstable = 0;
-//! let counters = for_each_band(&grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
-//!     unstable += (0..band.verdicts.len()).filter(|&n| !band.decision(n).verdict.is_stable()).count();
-//!     Ok(())
-//! });
-//! assert_eq!((grid.shape(), counters.unwrap().pairs), ((15, 87), 1305));
-//! assert!(unstable > 50 && unstable < 300);
-//! ```
+//! [`Map`] computes all of it into one vector, into a slice, or band by band; [`decide_all`] takes pairs that lie on no
+//! grid.
 
 mod band;
 mod bases;
+mod cost;
+mod enclosure;
 mod gcd;
 mod grid;
+mod grow;
+mod growth;
 mod products;
+mod resources;
 mod run;
+mod scattered;
+mod shard;
 mod store;
+mod work;
 
 pub use band::{Band, Counters};
+pub use enclosure::Enclosure;
 pub use grid::Grid;
 pub use products::{Growing, Products};
-pub use run::{Shard, for_each_band, merge, resume, uncertified_unstable};
+pub use resources::Resources;
+pub use run::{Map, merge, uncertified_unstable};
+pub use scattered::decide_all;
+pub use shard::Shard;
 pub use store::Store;

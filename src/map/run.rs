@@ -1,116 +1,143 @@
 //! All bands of a grid, or of one shard of it, in order, on all threads.
 
-use super::band::{Band, Counters, Work, bands};
+use super::band::{Band, Counters};
 use super::bases::Bases;
+use super::cost::allow;
 use super::grid::Grid;
 use super::products::Products;
+use super::resources::Resources;
+use super::shard::{Numbered, Shard, bands};
 use super::store::Store;
+use super::work::Work;
 use crate::error::{Error, Result};
 use crate::parallel::*;
-use crate::verdict::Limits;
+use crate::verdict::{Limits, Verdict};
 
-/// Part k of n of a map, k = 1..n: every n-th band.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    k: u64,
-    n: u64,
+/// A grid whose pairs are to be decided, and what else is asked of them.
+///
+/// ```
+/// use kickdrift::map::{Grid, Map};
+/// use kickdrift::number::parse::parse;
+/// // Figure 1 of the paper with steps of 1/25.
+/// let x = |text| parse("x", text).unwrap();
+/// let (h1, h2) = ((x("1/25"), x("2/pi")), (x("1/25"), x("7/2")));
+/// let grid = Grid::new(x("pi^2"), x("pi^2/25"), [x("1/25"), x("1/25")], h1, h2).unwrap();
+/// let verdicts = Map::of(&grid).verdicts().unwrap();
+/// assert_eq!((grid.shape(), verdicts.len()), ((15, 87), 1305));
+/// let unstable = verdicts.iter().filter(|verdict| !verdict.is_stable()).count();
+/// assert!(unstable > 50 && unstable < 300);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Map<'a> {
+    grid: &'a Grid,
+    products: Products,
+    shard: Shard,
+    resources: Resources<'a>,
+    store: Option<&'a Store>,
 }
 
-impl Shard {
-    /// The whole map.
-    pub const WHOLE: Shard = Shard { k: 1, n: 1 };
+impl<'a> Map<'a> {
+    /// The verdicts of the whole grid and nothing else, with the default resources.
+    pub fn of(grid: &'a Grid) -> Self {
+        let (products, resources) = (Products::default(), Resources::default());
+        Map { grid, products, shard: Shard::WHOLE, resources, store: None }
+    }
 
-    /// Part k of n.
+    /// The same with these products beside the verdicts.
+    #[must_use]
+    pub fn with(self, products: Products) -> Self {
+        Map { products, ..self }
+    }
+
+    /// This part of it only.
+    #[must_use]
+    pub fn shard(self, shard: Shard) -> Self {
+        Map { shard, ..self }
+    }
+
+    /// The same with these resources.
+    #[must_use]
+    pub fn within(self, resources: Resources<'a>) -> Self {
+        Map { resources, ..self }
+    }
+
+    /// The same with a store for its bands: those that the store holds are taken from there, new ones are put there.
+    /// Interrupted work goes on where it stopped and ends the same; a kill loses the bands under way.
+    #[must_use]
+    pub fn kept_in(self, store: &'a Store) -> Self {
+        Map { store: Some(store), ..self }
+    }
+
+    /// Computes the bands and hands them on in order with their numbers: the same bands whatever the threads.
     ///
     /// # Errors
-    /// Unless 1 ≤ k ≤ n.
-    pub fn new(k: u64, n: u64) -> Result<Shard> {
-        if 1 <= k && k <= n {
-            return Ok(Shard { k, n });
+    /// A budget error, before the work begins where the map as a whole exceeds it; `Stopped`; an I/O error where a band
+    /// cannot be stored; or what `see` returns: then the map ends there.
+    pub fn for_each_band(&self, mut see: impl FnMut(u64, Band) -> Result<()>) -> Result<Counters> {
+        let Map { grid, products, shard, resources, store } = self;
+        allow(grid, *shard, &resources.limits)?;
+        let (pool, bases) = (resources.pool()?, Bases::new(grid));
+        let compute = |columns| {
+            resources.go_on()?;
+            let work = Work::new(grid, &bases, &resources.limits, columns);
+            let mut band = work.run()?;
+            if products.growing() {
+                work.grow(&mut band, *products)?;
+            }
+            Ok(band)
+        };
+        let obtain = |&(n, columns): &Numbered| match store.and_then(|store| store.load(n)) {
+            Some(band) => Ok((n, band)),
+            None => {
+                let band = compute(columns)?;
+                store.map_or(Ok(()), |store| store.save(n, &band)).map(|()| (n, band))
+            }
+        };
+        let mut counters = Counters::default();
+        for group in shard.bands(grid).chunks(AHEAD * pool.size()) {
+            let done: Vec<(u64, Band)> =
+                pool.install(|| group.par_iter().map(obtain).collect::<Result<_>>())?;
+            for (n, band) in done {
+                counters.add(&band.counters);
+                see(n, band)?;
+            }
         }
-        Err(Error::input("shard", format!("{k}/{n}"), "the parts of n are 1/n, 2/n, ..., n/n"))
+        Ok(counters)
+    }
+
+    /// The verdicts, column by column, in each by increasing row: that of (i, j) in a grid of r rows, counted from the
+    /// first ones, is at i r + j.
+    ///
+    /// # Errors
+    /// As [`Map::for_each_band`].
+    pub fn verdicts(&self) -> Result<Vec<Verdict>> {
+        let mut verdicts = vec![Verdict::ALL[0]; self.shard.pairs(self.grid) as usize];
+        self.fill(&mut verdicts, |_| {})?;
+        Ok(verdicts)
+    }
+
+    /// The same into a slice as long as there are pairs; `progress` is called with the number of pairs done.
+    ///
+    /// # Errors
+    /// As [`Map::for_each_band`], and where the slice has another length.
+    pub fn fill(&self, verdicts: &mut [Verdict], mut progress: impl FnMut(u64)) -> Result<Counters> {
+        let (pairs, mut rest, mut done) = (self.shard.pairs(self.grid), verdicts, 0);
+        if rest.len() as u64 != pairs {
+            return Err(Error::input("verdicts", rest.len(), format!("the slice must hold {pairs}")));
+        }
+        self.for_each_band(|_, band| {
+            let (own, others) = std::mem::take(&mut rest).split_at_mut(band.verdicts.len());
+            rest = others;
+            own.iter_mut().zip(&band.verdicts).for_each(|(to, &n)| *to = Verdict::ALL[usize::from(n)]);
+            done += own.len() as u64;
+            progress(done);
+            Ok(())
+        })
     }
 }
 
 /// Bands that are computed before the first of them is handed on, per thread.
 const AHEAD: usize = 4;
-
-/// Computes the bands of a shard on `threads` threads (0: as many as there are processors) and hands them on
-/// in order: the same bands whatever the threads. `limits` bounds the kicks of a single pair.
-///
-/// # Errors
-/// A budget error, or what `see` returns: then the map ends there.
-pub fn for_each_band(
-    grid: &Grid,
-    products: Products,
-    shard: Shard,
-    threads: usize,
-    limits: &Limits,
-    mut see: impl FnMut(u64, Band) -> Result<()>,
-) -> Result<Counters> {
-    let pool = Pool::new(threads)?;
-    let bases = Bases::new(grid);
-    let work = |&(n, columns): &Numbered| Ok((n, Work::new(grid, &bases, limits, columns).run(products)?));
-    in_order(&pool, &shard.bands(grid), work, &mut see)
-}
-
-/// A band's number and its columns.
-type Numbered = (u64, (u64, usize));
-
-impl Shard {
-    fn bands(self, grid: &Grid) -> Vec<Numbered> {
-        (0..).zip(bands(grid)).filter(|(n, _)| n % self.n == self.k - 1).collect()
-    }
-
-    /// The number of pairs in this part of the grid.
-    pub fn pairs(self, grid: &Grid) -> u64 {
-        self.bands(grid).iter().map(|(_, (_, columns))| *columns as u64 * grid.shape().1 as u64).sum()
-    }
-}
-
-/// A few bands at a time on all threads, handed on in order.
-fn in_order(
-    pool: &Pool,
-    bands: &[Numbered],
-    work: impl Fn(&Numbered) -> Result<(u64, Band)> + Sync,
-    see: &mut impl FnMut(u64, Band) -> Result<()>,
-) -> Result<Counters> {
-    let mut counters = Counters::default();
-    for group in bands.chunks(AHEAD * pool.size()) {
-        let done: Vec<(u64, Band)> = pool.install(|| group.par_iter().map(&work).collect::<Result<_>>())?;
-        for (n, band) in done {
-            counters.add(&band.counters);
-            see(n, band)?;
-        }
-    }
-    Ok(counters)
-}
-
-/// As [`for_each_band`], but bands that the store holds are taken from there and new ones are put there: interrupted
-/// work goes on where it stopped and ends the same; a kill loses the bands under way.
-///
-/// # Errors
-/// As [`for_each_band`], and where a band cannot be written.
-pub fn resume(
-    grid: &Grid,
-    products: Products,
-    shard: Shard,
-    threads: usize,
-    limits: &Limits,
-    store: &Store,
-    mut see: impl FnMut(u64, Band) -> Result<()>,
-) -> Result<Counters> {
-    let pool = Pool::new(threads)?;
-    let bases = Bases::new(grid);
-    let obtain = |&(n, columns): &Numbered| match store.load(n) {
-        Some(band) => Ok((n, band)),
-        None => {
-            let band = Work::new(grid, &bases, limits, columns).run(products)?;
-            store.save(n, &band).map(|()| (n, band))
-        }
-    };
-    in_order(&pool, &shard.bands(grid), obtain, &mut see)
-}
 
 /// Joins the bands that the shards of a map have put into the stores: those of one run, in order.
 ///
@@ -141,7 +168,7 @@ pub fn merge(
 /// to tell what certification costs.
 #[doc(hidden)]
 pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
-    let pool = Pool::new(threads)?;
+    let pool = Resources { threads, ..Resources::default() }.pool()?;
     let (bases, limits) = (Bases::new(grid), Limits::default());
     let all: Vec<(u64, usize)> = bands(grid).collect();
     let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &limits, columns).uncertified_unstable();

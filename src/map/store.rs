@@ -2,7 +2,7 @@
 //! on later, be shared out, and be joined to the bytes of a single run.
 //!
 //! ```text
-//!     file = "kickdrift band 1\n" fingerprint "\n" payload check
+//!     file = "kickdrift band 2\n" fingerprint "\n" payload check
 //! ```
 //!
 //! The fingerprint names grid and products exactly; the payload is the band in little-endian fields; the check is a
@@ -12,6 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::band::{Band, Counters};
+use super::enclosure::Enclosure;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
@@ -33,7 +34,7 @@ impl Store {
             let text = format!("cannot make this directory ({cause}): name another one");
             Error::io(directory.display(), text).caused_by(cause)
         })?;
-        let header = format!("kickdrift band 1\n{}; {products:?}\n", grid.fingerprint());
+        let header = format!("kickdrift band 2\n{}; {products:?}\n", grid.fingerprint());
         Ok(Store { directory: directory.to_owned(), header })
     }
 
@@ -86,7 +87,8 @@ fn encode(band: &Band, bytes: &mut Vec<u8>) {
     for found in &band.growing {
         bytes.extend(u64::from(found.position).to_le_bytes());
         bytes.extend(found.label.map_or(0, |label| label + 1).to_le_bytes());
-        bytes.extend(found.ln_multiplier.map_or(u64::MAX, f64::to_bits).to_le_bytes());
+        let ends = found.ln_multiplier.map_or([u64::MAX; 2], |ln| [ln.lo.to_bits(), ln.hi.to_bits()]);
+        ends.iter().for_each(|end| bytes.extend(end.to_le_bytes()));
     }
 }
 
@@ -114,8 +116,9 @@ fn decode(reader: &mut Reader) -> Option<Band> {
     let (verdicts, tiers) = (reader.bytes(columns * rows)?, reader.bytes(columns * rows)?);
     let mut found = Vec::new();
     for _ in 0..growing {
-        let [position, label, ln] = [reader.number()?, reader.number()?, reader.number()?];
-        let ln_multiplier = (ln != u64::MAX).then(|| f64::from_bits(ln));
+        let [position, label, lo, hi] = read_four(reader)?;
+        let ln = || Enclosure { lo: f64::from_bits(lo), hi: f64::from_bits(hi) };
+        let ln_multiplier = (lo != u64::MAX).then(ln);
         found.push(Growing { position: position as u32, label: label.checked_sub(1), ln_multiplier });
     }
     let counters = Counters { pairs, kicks, kicks_again, escalated };

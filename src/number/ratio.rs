@@ -13,12 +13,11 @@
 
 use std::cmp::Ordering;
 use std::fmt;
-use std::str::FromStr;
 
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 
-use super::{Rational, parse};
+use super::Rational;
 use crate::error::{Error, Result};
 
 /// h2/h1 = p/q > 0 in lowest terms, p and q below 2^62: a period holds p fast and q slow kicks.
@@ -93,14 +92,6 @@ impl TryFrom<&Rational> for Ratio {
         terms
             .and_then(|(p, q)| Ratio::new(p, q).ok())
             .ok_or_else(|| Error::input("ratio", x, "must be p/q with positive integers of at most 62 bits"))
-    }
-}
-
-impl FromStr for Ratio {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self> {
-        parse::parse_ratio("ratio", text)
     }
 }
 

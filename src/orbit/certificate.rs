@@ -111,6 +111,8 @@ impl Certificate {
 /// Makes certificates, and remembers those for groups.
 #[derive(Clone, Debug)]
 pub struct Certificates {
+    /// The most updates between two looks.
+    most: u64,
     /// None for pairs that run alone.
     made: Vec<Option<(Hardest, Option<Certificate>)>>,
 }
@@ -125,19 +127,24 @@ const SLOPES: f64 = 4.0;
 impl Certificates {
     /// For pairs that run alone, watched at every update: the sharpest bound.
     pub fn alone() -> Self {
-        Certificates { made: Vec::new() }
+        Certificates { most: 1, made: Vec::new() }
     }
 
     /// For groups: certificates for slightly harder pairs serve many groups. They do not depend on the groups before.
     pub fn of_groups() -> Self {
-        Certificates { made: vec![None; REMEMBERED] }
+        Certificates { most: BLOCK, made: vec![None; REMEMBERED] }
+    }
+
+    /// The same for groups that are watched at every update.
+    pub fn of_precise_groups() -> Self {
+        Certificates { most: 1, ..Certificates::of_groups() }
     }
 
     /// The certificate.
     #[inline(always)]
     pub fn get(&mut self, hardest: Hardest) -> Option<Certificate> {
         if self.made.is_empty() {
-            return Certificate::new(hardest, 1);
+            return Certificate::new(hardest, self.most);
         }
         let up = |x: f64, grid: f64| (x * grid).ceil() / grid;
         let (beta, slope) = (up(hardest.beta, BETAS), up(hardest.slope, SLOPES));
@@ -146,7 +153,7 @@ impl Certificates {
         if let Some((_, made)) = place.as_ref().filter(|(of, _)| *of == harder) {
             return *made;
         }
-        let made = Certificate::new(harder, BLOCK);
+        let made = Certificate::new(harder, self.most);
         *place = Some((harder, made));
         made
     }

@@ -22,12 +22,14 @@
 //! assert_eq!(half.trace(), rational(2, 1)); // Q = I: the tongue is closed here
 //! ```
 
+mod builder;
 mod clocks;
 mod elementary;
 mod half;
 pub mod methods;
 mod signs;
 
+pub use builder::OscillatorBuilder;
 pub use clocks::{Oscillator, TwoClocks};
 pub use elementary::{apply_drift, apply_kick, drift, kick};
 pub use half::{HalfPeriod, full_period, half_period};

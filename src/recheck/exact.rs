@@ -173,8 +173,8 @@ pub fn ln_multiplier_at(clocks: &TwoClocks<Rational>, bits: u32) -> Option<Ball>
 /// The verdict without the tiers below `first`.
 pub fn again(first: Tier, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Decision> {
     match clocks.as_rational() {
-        Some(rational) => decide_from(first, &rational, limits),
-        None => decide_from(first, clocks, limits),
+        Some(rational) => decide_from(first, &rational, limits).map(|answer| answer.decision()),
+        None => decide_from(first, clocks, limits).map(|answer| answer.decision()),
     }
 }
 

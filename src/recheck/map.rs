@@ -8,10 +8,10 @@ use serde::de::IgnoredAny;
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds, same};
 use super::exact::{again, growth_again};
 use super::sample::sample;
-use super::written::{Range, Written};
+use super::written::{Ends, Range, Written};
 use crate::error::{Error, Result};
-use crate::map::{Band, Grid, Products, Shard, for_each_band};
-use crate::number::{Laurent, Real};
+use crate::map::{Band, Grid, Map, Products, Resources};
+use crate::number::{Ball, Laurent, Real};
 use crate::verdict::{Kind, Tier, Verdict};
 
 const ROUTE: &str =
@@ -64,8 +64,8 @@ rows! {
     struct Fastest {
         h1: Written<Laurent>,
         h2: Written<Laurent>,
-        growth_rate: f64,
-        steps_until_tenfold: f64,
+        growth_rate: Ends,
+        steps_until_tenfold: Ends,
     }
 }
 
@@ -74,6 +74,7 @@ rows! {
 struct Found {
     verdicts: [u64; Verdict::ALL.len()],
     families: BTreeMap<i64, u64>,
+    /// No pair is proven to grow faster.
     rate: f64,
     failures: Vec<Failure>,
 }
@@ -129,7 +130,8 @@ impl Claim {
         let products = Products { label: self.input.label.is_some(), growth: self.input.growth.is_some() };
         let drawn = sample(&grid.fingerprint(), grid.pairs(), most);
         let (mut found, mut next, mut done) = (Found::default(), drawn.as_slice(), 0);
-        for_each_band(grid, products, Shard::WHOLE, 0, context.limits(), |_, band| {
+        let resources = Resources { limits: *context.limits(), ..Resources::default() };
+        Map::of(grid).with(products).within(resources).for_each_band(|_, band| {
             let pairs = band.verdicts.len() as u64;
             let (own, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
             let one = |&n: &u64| {
@@ -191,15 +193,16 @@ impl Claim {
         const BITS: u32 = 128;
         let ln = growth_again(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
         let ln = ln.ok_or_else(|| Fault::Wrong("the fastest pair does not grow".into()))?;
-        let period =
-            told.h1.enclosure(BITS).mul(&crate::number::Ball::from_integer(&clocks.p().into()), BITS);
-        let rate = ln.div(&period, BITS).expect("T > 0").mid_f64();
-        let tenfold = clocks.q() as f64 * std::f64::consts::LN_10 / ln.mid_f64();
-        // Doubles of the filter: rounded, with a bound of some thousand units in the last place.
-        let near = |x: f64, y: f64| (x - y).abs() <= 1e-9 * y.abs();
-        holds(near(told.growth_rate, rate), || format!("the fastest growth rate is {rate}"))?;
-        holds(near(told.steps_until_tenfold, tenfold), || format!("tenfold takes {tenfold} slow steps"))?;
-        holds(near(told.growth_rate, largest), || format!("another pair grows faster, at the rate {largest}"))
+        let period = told.h1.enclosure(BITS).mul(&Ball::from_integer(&clocks.p().into()), BITS);
+        let rate = ln.div(&period, BITS).expect("T > 0");
+        let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
+        let tenfold = ten.mul(&Ball::from_integer(&clocks.q().into()), BITS).div(&ln, BITS);
+        holds(told.growth_rate.holds(&rate), || format!("the fastest growth rate is {}", rate.mid_f64()))?;
+        let right = tenfold.is_some_and(|steps| told.steps_until_tenfold.holds(&steps));
+        holds(right, || "steps_until_tenfold does not belong to this growth rate".into())?;
+        holds(largest <= rate.to_f64_enclosure().1, || {
+            format!("another pair grows faster, at a rate of {largest}")
+        })
     }
 }
 
@@ -216,7 +219,7 @@ impl Found {
                 *self.families.entry(a).or_default() += 1;
             }
             let period = p as f64 * i as f64 * grid.steps().0.to_f64();
-            self.rate = self.rate.max(growing.rate(period).unwrap_or(0.0));
+            self.rate = self.rate.max(growing.rate(period).map_or(0.0, |rate| rate.lo));
         }
     }
 }

@@ -127,15 +127,11 @@ impl Answer {
 
     fn headline(&self) -> String {
         let verdict = self.decision.verdict;
-        let side = if verdict.side() > 0 { "" } else { "-" };
         match verdict.kind() {
-            Kind::Elliptic => "stable: elliptic, |Tr Q| < 2".into(),
-            Kind::Coexistence => format!("stable: coexistence, Q = {side}I; a tongue is closed here"),
-            Kind::Parabolic => format!("unstable: parabolic, Tr Q = {side}2; linear growth"),
-            Kind::Hyperbolic if verdict.side() > 0 => {
-                "unstable: hyperbolic, Tr Q > 2; exponential growth".into()
-            }
-            Kind::Hyperbolic => "unstable: hyperbolic, Tr Q < -2; exponential growth".into(),
+            Kind::Elliptic => format!("stable: {verdict}"),
+            Kind::Coexistence => format!("stable: {verdict}; a tongue is closed here"),
+            Kind::Parabolic => format!("unstable: {verdict}; linear growth"),
+            Kind::Hyperbolic => format!("unstable: {verdict}; exponential growth"),
         }
     }
 

@@ -93,7 +93,7 @@ pub fn compare<S: Decidable>(
     limits: &Limits,
 ) -> Result<Comparison> {
     const BITS: u32 = 64;
-    let trace = decide_from(Tier::Refine, clocks, limits)?;
+    let trace = decide_from(Tier::Refine, clocks, limits)?.decision();
     let tan = tan::criterion(clocks).verdict();
     let angle = clocks.angle();
     let outcome = angle

@@ -3,7 +3,9 @@
 use num_integer::Integer;
 
 use super::strength;
+use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational};
+use crate::verdict::{Answer, Decidable};
 
 /// The families through a resonance: one pair (a0, b0) with a0 p + b0 q = m and 0 ≤ a0 < q; all others are
 /// (a0 + q k, b0 − p k).
@@ -35,6 +37,16 @@ pub fn dominant_family(ratio: Ratio, m: u64) -> (i64, i64) {
         return if above.0 - 1 < 1 - below.0 { above } else { below };
     }
     if stronger(above.0, below.0, ratio.p(), m) { above } else { below }
+}
+
+impl<S: Decidable> Answer<S> {
+    /// The dominant family (a, b) of the tongue, m = a p + b q; `None` unless hyperbolic.
+    ///
+    /// # Errors
+    /// As [`Answer::growth`].
+    pub fn family(&self) -> Result<Option<(i64, i64)>> {
+        Ok(self.label()?.map(|m| dominant_family(self.clocks().ratio(), m)))
+    }
 }
 
 /// Whether |S_a| > |S_b| at θ = m π/p: in doubles where they are clearly apart, else in as many bits as needed.

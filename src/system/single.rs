@@ -14,7 +14,7 @@ use super::scalar::{shortest_families, shortest_family};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Ball, Laurent, Rational, Sign};
-use crate::verdict::{self, Decidable, Kind, Limits, PartialSigns, Tier, Verdict, growth};
+use crate::verdict::{self, Decidable, Kind, Limits, PartialSigns, Tier, Verdict};
 
 /// A trace, a label: what the kernels tell of one oscillator.
 struct Scalar {
@@ -126,10 +126,9 @@ fn decide_clocks<S: Decidable>(
 fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>) -> Result<Option<Scalar>> {
     let Some(two) = clocks.as_two_clocks() else { return Ok(None) };
     let limits = Limits::default();
-    let decision = verdict::decide(&two, &limits)?;
-    let growth = growth(&two, decision.verdict, &limits)?;
-    let mu = growth.trace.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
-    Ok(Some(Scalar { verdict: decision.verdict, tier: decision.decided_by, mu, label: growth.label }))
+    let answer = verdict::decide(&two, &limits)?;
+    let mu = answer.trace()?.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
+    Ok(Some(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, label: answer.label()? }))
 }
 
 /// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.

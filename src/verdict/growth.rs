@@ -10,7 +10,7 @@
 //! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in proofs/).
 
 use super::exact::Decidable;
-use super::kind::{Kind, Verdict};
+use super::kind::{Side, Verdict};
 use super::label::{from_nodes, label};
 use super::ladder::Limits;
 use crate::error::Result;
@@ -42,17 +42,72 @@ const ACCURACY: i64 = 60;
 /// # Errors
 /// A budget error where more kicks would have to be composed than `limits` allows.
 pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
-    let schedule = Schedule::two_clocks(clocks.ratio())?;
-    let floquet = Floquet::new(clocks);
-    let filtered = floquet.as_ref().and_then(filter::run);
-    let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
-    if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
-        return Ok(from_products(products(&ends), verdict, label));
+    Runs::default().growth(clocks, verdict, limits)
+}
+
+/// The runs through the half period that a decision has made.
+#[derive(Debug, Default)]
+pub(super) struct Runs {
+    /// `Some(None)` where the filter ran and its bound did not hold.
+    pub filtered: Option<Option<filter::Ends>>,
+    /// The last one, and its bits.
+    pub refined: Option<(refine::Ends, u32)>,
+}
+
+impl Runs {
+    /// The label, where the filter's run tells it.
+    pub fn label(&self, verdict: Verdict) -> Option<u64> {
+        label(self.filtered.as_ref()?.as_ref()?, verdict)
     }
-    limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
-    let (ends, bits) = refined(clocks, &schedule, verdict);
-    let label = label.or_else(|| from_nodes(&ends, verdict));
-    Ok(from_products(ends.products(bits), verdict, label))
+
+    /// As [`growth`], from these runs as far as they reach.
+    pub fn growth<S: Decidable>(
+        &self,
+        clocks: &TwoClocks<S>,
+        verdict: Verdict,
+        limits: &Limits,
+    ) -> Result<Growth> {
+        if let Verdict::Parabolic(side) | Verdict::Coexistence(side) = verdict {
+            let trace = Ball::from_integer(&(2 * i64::from(side.sign())).into());
+            return Ok(Growth { trace, ln_multiplier: None, label: None });
+        }
+        let schedule = Schedule::two_clocks(clocks.ratio())?;
+        let filtered = self.filtered.unwrap_or_else(|| filter::run(&Floquet::new(clocks)?));
+        let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
+        if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
+            return Ok(from_products(products(&ends), verdict, label));
+        }
+        limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
+        let (products, nodes) = self.refined(clocks, &schedule, verdict);
+        Ok(from_products(products, verdict, label.or(nodes)))
+    }
+
+    /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes tell it.
+    fn refined<S: Decidable>(
+        &self,
+        clocks: &TwoClocks<S>,
+        schedule: &Schedule,
+        verdict: Verdict,
+    ) -> (Products, Option<u64>) {
+        let mut bits = 128;
+        if let Some((ends, known)) = &self.refined {
+            if let Some(found) = accurate(ends, *known, verdict) {
+                return found;
+            }
+            bits = 2 * known;
+        }
+        loop {
+            let ends = if bits <= MOST_BOUNDED {
+                refine::run(clocks, schedule, bits)
+            } else {
+                Some(refine::run_balls(clocks, schedule, bits))
+            };
+            if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict)) {
+                return found;
+            }
+            bits *= 2;
+        }
+    }
 }
 
 /// Tr Q as the first tier alone encloses it: min(p, q)/2 updates in doubles. `None` where it proves nothing: both
@@ -68,8 +123,7 @@ pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Li
 /// ```
 pub fn filter_trace<S: Real>(clocks: &TwoClocks<S>) -> Option<Ball> {
     let ends = filter::run(&Floquet::new(clocks)?)?;
-    let elliptic = Verdict::ALL[0];
-    Some(from_products(products(&ends), elliptic, None).trace)
+    Some(from_products(products(&ends), Verdict::Elliptic, None).trace)
 }
 
 /// BC and AD, as enclosures; AD − BC = 1.
@@ -85,14 +139,12 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
     let (above, below) = (products.bc.scale2(2), products.ad.scale2(2));
     // The smaller product knows its distance from ±2 better.
     let near_two = above.mid_f64().abs() <= below.mid_f64().abs();
-    let mut trace = if near_two { two.add(&above, BITS) } else { below.sub(&two, BITS) };
-    if verdict.kind() != Kind::Hyperbolic {
-        if verdict.side() != 0 {
-            trace = Ball::from_integer(&(2 * i64::from(verdict.side())).into());
-        }
-        return Growth { trace, ln_multiplier: None, label: None };
-    }
-    let excess = if verdict.side() > 0 { products.bc } else { products.ad.neg() };
+    let trace = if near_two { two.add(&above, BITS) } else { below.sub(&two, BITS) };
+    let excess = match verdict {
+        Verdict::Hyperbolic(Side::Plus) => products.bc,
+        Verdict::Hyperbolic(Side::Minus) => products.ad.neg(),
+        _ => return Growth { trace, ln_multiplier: None, label: None },
+    };
     let ln_multiplier = excess.sqrt_clipped(BITS).map(|root| root.asinh(BITS).scale2(1));
     Growth { trace, ln_multiplier, label }
 }
@@ -102,28 +154,11 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
 /// bits of the strongest kick every step but ask for nothing else.
 const MOST_BOUNDED: u32 = 4096;
 
-/// Refines until the distance from ±2 is known to [`ACCURACY`] bits, or, on an edge, once.
-fn refined<S: Decidable>(
-    clocks: &TwoClocks<S>,
-    schedule: &Schedule,
-    verdict: Verdict,
-) -> (refine::Ends, u32) {
-    let mut bits = 128;
-    loop {
-        let ends = if bits <= MOST_BOUNDED {
-            refine::run(clocks, schedule, bits)
-        } else {
-            Some(refine::run_balls(clocks, schedule, bits))
-        };
-        bits *= 2;
-        let Some(ends) = ends else { continue };
-        let products = ends.products(bits);
-        let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
-        let on_edge = matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence);
-        if on_edge || accuracy >= ACCURACY {
-            return (ends, bits);
-        }
-    }
+/// The products and the label, where `bits` bits were enough.
+fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict) -> Option<(Products, Option<u64>)> {
+    let products = ends.products(2 * bits);
+    let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
+    (accuracy >= ACCURACY).then(|| (products, from_nodes(ends, verdict)))
 }
 
 impl refine::Ends {

@@ -15,25 +15,28 @@
 //!
 //! ```
 //! use kickdrift::number::Sign::*;
-//! use kickdrift::verdict::{HalfSigns, Kind};
+//! use kickdrift::verdict::{HalfSigns, Side, Verdict};
 //! let verdict = HalfSigns::new(Positive, Zero, Negative, Positive).verdict();
-//! assert_eq!((verdict.kind(), verdict.side()), (Kind::Parabolic, 1));
-//! assert!(!verdict.is_stable());
+//! assert_eq!(verdict, Verdict::Parabolic(Side::Plus));
+//! assert_eq!((verdict.is_stable(), verdict.to_string().as_str()), (false, "parabolic, Tr Q = 2"));
 //! ```
+
+use std::fmt;
 
 use crate::number::Sign::{self, Negative, Positive, Zero};
 use crate::propagator::{HalfSigns, PartialSigns};
 
-/// What the powers of Q do.
+/// What the powers of Q do: a [`Verdict`] without its side, which many clocks do not have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Kind {
-    /// |Tr Q| < 2: powers bounded.
+    /// Powers bounded, no eigenvalue ±1.
     Elliptic,
-    /// |Tr Q| > 2: exponential growth.
+    /// Exponential growth.
     Hyperbolic,
-    /// |Tr Q| = 2, Q ≠ ±I: a Jordan block, linear growth.
+    /// Linear growth: a Jordan block.
     Parabolic,
-    /// Q = ±I: powers bounded; a tongue is closed here.
+    /// Powers bounded, an eigenvalue ±1.
     Coexistence,
 }
 
@@ -49,53 +52,105 @@ impl Kind {
     }
 }
 
-/// The answer to "is this pair stable?".
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Verdict {
-    kind: Kind,
-    side: i8,
+/// On which side of the stable band −2 < Tr Q < 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Side {
+    /// Tr Q ≥ 2.
+    Plus,
+    /// Tr Q ≤ −2.
+    Minus,
 }
 
-const fn verdict(kind: Kind, side: i8) -> Verdict {
-    Verdict { kind, side }
+/// The answer to "is this pair stable?": the rows of the table above, as `kind` in proofs/Vocabulary.v.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Verdict {
+    /// |Tr Q| < 2: powers bounded.
+    Elliptic,
+    /// |Tr Q| > 2: exponential growth.
+    Hyperbolic(Side),
+    /// |Tr Q| = 2, Q ≠ ±I: a Jordan block, linear growth.
+    Parabolic(Side),
+    /// Q = ±I: powers bounded; a tongue is closed here.
+    Coexistence(Side),
 }
 
 impl Verdict {
     /// The seven verdicts, the rows of the table above: tables of many verdicts store indices into this one.
     pub const ALL: [Verdict; 7] = [
-        verdict(Kind::Elliptic, 0),
-        verdict(Kind::Hyperbolic, 1),
-        verdict(Kind::Hyperbolic, -1),
-        verdict(Kind::Parabolic, 1),
-        verdict(Kind::Parabolic, -1),
-        verdict(Kind::Coexistence, 1),
-        verdict(Kind::Coexistence, -1),
+        Verdict::Elliptic,
+        Verdict::Hyperbolic(Side::Plus),
+        Verdict::Hyperbolic(Side::Minus),
+        Verdict::Parabolic(Side::Plus),
+        Verdict::Parabolic(Side::Minus),
+        Verdict::Coexistence(Side::Plus),
+        Verdict::Coexistence(Side::Minus),
     ];
 
     /// The position in [`Verdict::ALL`].
     pub fn index(self) -> u8 {
-        let minus = u8::from(self.side < 0);
-        match self.kind {
-            Kind::Elliptic => 0,
-            Kind::Hyperbolic => 1 + minus,
-            Kind::Parabolic => 3 + minus,
-            Kind::Coexistence => 5 + minus,
+        match self {
+            Verdict::Elliptic => 0,
+            Verdict::Hyperbolic(side) => 1 + side as u8,
+            Verdict::Parabolic(side) => 3 + side as u8,
+            Verdict::Coexistence(side) => 5 + side as u8,
         }
     }
 
-    /// What the powers of Q do.
+    /// The verdict without its side.
     pub fn kind(self) -> Kind {
-        self.kind
+        match self {
+            Verdict::Elliptic => Kind::Elliptic,
+            Verdict::Hyperbolic(_) => Kind::Hyperbolic,
+            Verdict::Parabolic(_) => Kind::Parabolic,
+            Verdict::Coexistence(_) => Kind::Coexistence,
+        }
     }
 
     /// 1 for Tr Q ≥ 2, −1 for Tr Q ≤ −2, else 0.
     pub fn side(self) -> i8 {
-        self.side
+        match self {
+            Verdict::Elliptic => 0,
+            Verdict::Hyperbolic(side) | Verdict::Parabolic(side) | Verdict::Coexistence(side) => side.sign(),
+        }
     }
 
     /// Whether the powers of Q are bounded (theorem `bounded_iff` in proofs/).
     pub fn is_stable(self) -> bool {
-        matches!(self.kind, Kind::Elliptic | Kind::Coexistence)
+        matches!(self, Verdict::Elliptic | Verdict::Coexistence(_))
+    }
+}
+
+impl Side {
+    /// The side of the tongue m: a solution that makes m half turns a period returns with the sign (−1)^m.
+    pub fn of_half_turns(m: u64) -> Side {
+        if m.is_multiple_of(2) { Side::Plus } else { Side::Minus }
+    }
+
+    /// 1 or −1: the sign of Tr Q.
+    pub fn sign(self) -> i8 {
+        if self == Side::Plus { 1 } else { -1 }
+    }
+}
+
+impl fmt::Display for Verdict {
+    /// The kind and what it says of Q: `hyperbolic, Tr Q < -2`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let minus = if self.side() < 0 { "-" } else { "" };
+        match self {
+            Verdict::Elliptic => f.write_str("elliptic, |Tr Q| < 2"),
+            Verdict::Hyperbolic(Side::Plus) => f.write_str("hyperbolic, Tr Q > 2"),
+            Verdict::Hyperbolic(Side::Minus) => f.write_str("hyperbolic, Tr Q < -2"),
+            Verdict::Parabolic(_) => write!(f, "parabolic, Tr Q = {minus}2"),
+            Verdict::Coexistence(_) => write!(f, "coexistence, Q = {minus}I"),
+        }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -103,16 +158,15 @@ impl HalfSigns {
     /// The table above.
     pub fn verdict(self) -> Verdict {
         let [a, b, c, d] = self.all();
-        let (kind, side) = match (b * c, a * d) {
-            (Positive, _) => (Kind::Hyperbolic, 1),
-            (_, Negative) => (Kind::Hyperbolic, -1),
-            (Negative, Positive) => (Kind::Elliptic, 0),
-            (Zero, _) if b == c => (Kind::Coexistence, 1),
-            (Zero, _) => (Kind::Parabolic, 1),
-            (_, Zero) if a == d => (Kind::Coexistence, -1),
-            (_, Zero) => (Kind::Parabolic, -1),
-        };
-        Verdict { kind, side }
+        match (b * c, a * d) {
+            (Positive, _) => Verdict::Hyperbolic(Side::Plus),
+            (_, Negative) => Verdict::Hyperbolic(Side::Minus),
+            (Negative, Positive) => Verdict::Elliptic,
+            (Zero, _) if b == c => Verdict::Coexistence(Side::Plus),
+            (Zero, _) => Verdict::Parabolic(Side::Plus),
+            (_, Zero) if a == d => Verdict::Coexistence(Side::Minus),
+            (_, Zero) => Verdict::Parabolic(Side::Minus),
+        }
     }
 }
 
@@ -121,8 +175,8 @@ impl PartialSigns {
     pub fn verdict(self) -> Option<Verdict> {
         let product = |x: Option<Sign>, y: Option<Sign>| Some(x? * y?);
         match (product(self.b, self.c), product(self.a, self.d)) {
-            (Some(Positive), _) => Some(Verdict { kind: Kind::Hyperbolic, side: 1 }),
-            (_, Some(Negative)) => Some(Verdict { kind: Kind::Hyperbolic, side: -1 }),
+            (Some(Positive), _) => Some(Verdict::Hyperbolic(Side::Plus)),
+            (_, Some(Negative)) => Some(Verdict::Hyperbolic(Side::Minus)),
             _ => self.complete().map(HalfSigns::verdict),
         }
     }

@@ -1,6 +1,10 @@
 //! filter → refine → exact.
 
+use std::sync::OnceLock;
+
+use super::answer::Answer;
 use super::exact::Decidable;
+use super::growth::Runs;
 use super::kind::Verdict;
 use super::lone;
 use crate::error::{Error, Result};
@@ -12,6 +16,7 @@ use crate::schedule::Schedule;
 
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tier {
     /// Doubles in Floquet coordinates, min(p, q)/2 updates, with a proven bound; where there are none, kick by kick,
     /// and a closed form where only one clock kicks.
@@ -34,13 +39,6 @@ impl Tier {
             Tier::Exact => "exact",
         }
     }
-}
-
-/// A proven answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Decision {
-    pub verdict: Verdict,
-    pub decided_by: Tier,
 }
 
 /// How much work one verdict may cost.
@@ -87,7 +85,7 @@ const PRECISIONS: [u32; 3] = [128, 256, 512];
 ///
 /// # Errors
 /// A budget error, before the work begins, where a tier would need more than `limits` allows.
-pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Decision> {
+pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     decide_from(Tier::Filter, clocks, limits)
 }
 
@@ -95,15 +93,23 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<De
 ///
 /// # Errors
 /// As [`decide`].
-pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Decision> {
+pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
+    let mut runs = Runs::default();
     for decided_by in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
         let verdict = match decided_by {
-            Tier::Filter => by_filter(clocks, limits)?,
-            Tier::Refine => by_refine(clocks, limits)?,
+            Tier::Filter => by_filter(clocks, limits, &mut runs)?,
+            Tier::Refine => by_refine(clocks, limits, &mut runs)?,
             Tier::Exact => Some(by_exact(clocks, limits)?),
         };
         if let Some(verdict) = verdict {
-            return Ok(Decision { verdict, decided_by });
+            return Ok(Answer {
+                verdict,
+                decided_by,
+                clocks: clocks.clone(),
+                limits: *limits,
+                runs,
+                growth: OnceLock::new(),
+            });
         }
     }
     unreachable!("the exact tier decides every pair")
@@ -114,10 +120,19 @@ pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
     filter::run(&Floquet::new(clocks)?)?.signs().verdict()
 }
 
-fn by_filter<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
-    let Some(floquet) = Floquet::new(clocks) else { return without_floquet(clocks, limits) };
+fn by_filter<S: Decidable>(
+    clocks: &TwoClocks<S>,
+    limits: &Limits,
+    runs: &mut Runs,
+) -> Result<Option<Verdict>> {
+    let Some(floquet) = Floquet::new(clocks) else {
+        runs.filtered = Some(None);
+        return without_floquet(clocks, limits);
+    };
     limits.allow(floquet.updates(), Tier::Filter)?;
-    Ok(filter::run(&floquet).and_then(|ends| ends.signs().verdict()))
+    let ends = filter::run(&floquet);
+    runs.filtered = Some(ends);
+    Ok(ends.and_then(|ends| ends.signs().verdict()))
 }
 
 /// One clock alone in closed form, or kick by kick.
@@ -130,11 +145,20 @@ fn without_floquet<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Resu
     Ok(plain::signs(clocks, &schedule).and_then(|signs| signs.verdict()))
 }
 
-fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
+fn by_refine<S: Decidable>(
+    clocks: &TwoClocks<S>,
+    limits: &Limits,
+    runs: &mut Runs,
+) -> Result<Option<Verdict>> {
     let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(schedule.strikes() / 2, Tier::Refine)?;
-    let verdict = |bits: u32| refine::run(clocks, &schedule, bits)?.signs().verdict();
-    let found = PRECISIONS.into_iter().find_map(verdict);
+    let mut verdict = |bits: u32| {
+        let ends = refine::run(clocks, &schedule, bits)?;
+        let verdict = ends.signs().verdict();
+        runs.refined = Some((ends, bits));
+        verdict
+    };
+    let found = PRECISIONS.into_iter().find_map(&mut verdict);
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }

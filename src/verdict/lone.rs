@@ -4,7 +4,7 @@
 //! ±I where nθ is a multiple of π, which is left to the exact tier. For s < 0 and s > 4, θ or θ − π is imaginary:
 //! Tr Q = 2 cosh or (−1)^n 2 cosh.
 
-use super::kind::{Kind, Verdict};
+use super::kind::{Side, Verdict};
 use crate::number::{Ball, Real, Sign};
 use crate::orbit::floquet::turn_signs;
 use crate::propagator::TwoClocks;
@@ -27,16 +27,13 @@ pub(super) fn verdict<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
 
 fn alone(s: &Ball, n: u64) -> Option<Verdict> {
     let beyond = s.sub(&Ball::from_integer(&4.into()), BITS).sign()?;
-    let growing = |side: i8| {
-        Verdict::ALL.into_iter().find(|verdict| verdict.kind() == Kind::Hyperbolic && verdict.side() == side)
-    };
     match (s.sign()?, beyond) {
-        (Sign::Negative, _) => growing(1),
-        (_, Sign::Positive) => growing(if n.is_multiple_of(2) { 1 } else { -1 }),
+        (Sign::Negative, _) => Some(Verdict::Hyperbolic(Side::Plus)),
+        (_, Sign::Positive) => Some(Verdict::Hyperbolic(Side::of_half_turns(n))),
         (Sign::Positive, Sign::Negative) => {
             let certain =
                 turn_signs(s, n)?.iter().all(|sign| matches!(sign, Some(sign) if *sign != Sign::Zero));
-            certain.then_some(Verdict::ALL[0])
+            certain.then_some(Verdict::Elliptic)
         }
         _ => None,
     }

@@ -18,6 +18,7 @@
 //! assert_eq!((edge.verdict.kind(), edge.decided_by), (Kind::Parabolic, Tier::Exact));
 //! ```
 
+mod answer;
 mod exact;
 mod growth;
 mod kind;
@@ -26,9 +27,10 @@ mod ladder;
 mod lone;
 
 pub use crate::propagator::{HalfSigns, PartialSigns};
+pub use answer::{Answer, Decision};
 pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, filter_trace, growth};
-pub use kind::{Kind, Verdict};
+pub use kind::{Kind, Side, Verdict};
 pub(crate) use label::label;
 pub(crate) use ladder::filter_only;
-pub use ladder::{Decision, Limits, Tier, decide, decide_from};
+pub use ladder::{Limits, Tier, decide, decide_from};

@@ -4,7 +4,7 @@
 //!
 //! `cargo bench --bench kernels` lists the names.
 
-use kickdrift::map::{Products, Shard, for_each_band};
+use kickdrift::map::{Map, Products, Resources};
 use kickdrift::number::Ratio;
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
@@ -40,8 +40,8 @@ fn map(products: Products) {
         std::hint::black_box(band);
         Ok(())
     };
-    for_each_band(&figure_1(100), products, Shard::WHOLE, 1, &Limits::default(), see)
-        .expect("within the budget");
+    let one = Resources { threads: 1, ..Resources::default() };
+    Map::of(&figure_1(100)).with(products).within(one).for_each_band(see).expect("within the budget");
 }
 
 fn main() {

@@ -6,8 +6,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use kickdrift::map::{Counters, Grid, Products, Shard, for_each_band, uncertified_unstable};
-use kickdrift::verdict::Limits;
+use kickdrift::map::{Counters, Grid, Map, uncertified_unstable};
 
 mod common;
 
@@ -24,11 +23,10 @@ fn main() {
 
 fn certified(grid: &Grid) -> (u64, Counters) {
     let mut unstable = 0;
-    let counters =
-        for_each_band(grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
-            unstable += band.verdicts.iter().filter(|&&verdict| verdict != 0).count() as u64;
-            Ok(())
-        });
+    let counters = Map::of(grid).for_each_band(|_, band| {
+        unstable += band.verdicts.iter().filter(|&&verdict| verdict != 0).count() as u64;
+        Ok(())
+    });
     (unstable, counters.expect("within the budget"))
 }
 

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use kickdrift::map::{Products, Shard, for_each_band};
+use kickdrift::map::Map;
 use kickdrift::number::Ratio;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::propagator::TwoClocks;
@@ -45,11 +45,11 @@ fn write(folder: &Path, name: &str, text: &str) {
 fn figure(n: u64) -> String {
     let grid = figure_1(n);
     let map = |see: &mut dyn FnMut(&[u8])| {
-        for_each_band(&grid, Products::default(), Shard::WHOLE, 0, &Limits::default(), |_, band| {
+        let bands = Map::of(&grid).for_each_band(|_, band| {
             see(&band.verdicts);
             Ok(())
-        })
-        .expect("within the budget");
+        });
+        bands.expect("within the budget");
     };
     timed(&format!("figure_{n}"), || map(&mut |_| {}));
     let mut text = String::new();

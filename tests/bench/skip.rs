@@ -2,7 +2,7 @@
 //!
 //!     cargo bench --bench skip
 
-use kickdrift::map::{Counters, Products, Shard, for_each_band};
+use kickdrift::map::{Counters, Map, Products};
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::{Tongues, Wanted};
@@ -19,10 +19,7 @@ fn timed<T>(work: impl FnMut() -> T) -> (f64, T) {
 
 fn map(products: Products) -> (f64, Counters) {
     let grid = figure_1(500);
-    timed(|| {
-        for_each_band(&grid, products, Shard::WHOLE, 0, &Limits::default(), |_, _| Ok(()))
-            .expect("within the budget")
-    })
+    timed(|| Map::of(&grid).with(products).for_each_band(|_, _| Ok(())).expect("within the budget"))
 }
 
 fn main() {

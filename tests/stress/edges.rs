@@ -9,7 +9,7 @@ use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive};
 
 fn at(clocks: &TwoClocks<Rational>) -> Decision {
-    decide(clocks, &Limits::default()).unwrap()
+    decide(clocks, &Limits::default()).unwrap().decision()
 }
 
 fn hair(k: u32) -> Rational {
@@ -70,7 +70,7 @@ fn units_of_time_do_not_matter() {
             let stiffness = |l: &str| Ring::product(&x(l), &x(&format!("10^{}", -2 * exponent)));
             let (h1, h2) = (Ring::product(&x(h1), &unit), Ring::product(&x(h2), &unit));
             let clocks = Oscillator::new(stiffness("10"), stiffness("2/5"), h1, h2).unwrap().clocks();
-            decide(&clocks, &Limits::default()).unwrap()
+            decide(&clocks, &Limits::default()).unwrap().decision()
         };
         let here = decide_at(0);
         for exponent in [-324, -308, -300, -16, 16, 300, 308] {

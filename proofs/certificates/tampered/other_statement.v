@@ -1,4 +1,4 @@
-(* kickdrift verdict --lambda1 10 --lambda2 2/5 --h1 3/10 --h2 7/10 --certificate elliptic.v *)
+(* kickdrift verdict --lambda1 100 --lambda2 2/5 --h1 3/10 --h2 7/10 --certificate elliptic.v *)
 From Coq Require Import Reals QArith.
 From Kickdrift Require Import Vocabulary Certificate.
 

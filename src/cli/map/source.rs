@@ -4,7 +4,7 @@ use super::Map;
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
 use crate::error::Result;
-use crate::map::{Band, Shard, Store, for_each_band, merge, resume};
+use crate::map::{self, Band, Resources, Shard, Store, merge};
 use crate::verdict::Limits;
 
 /// Bands in order.
@@ -23,7 +23,7 @@ impl Source {
     /// Hands the bands on in order.
     ///
     /// # Errors
-    /// As [`for_each_band`], [`resume`] and [`merge`].
+    /// As [`map::Map::for_each_band`] and [`merge`].
     pub fn each(&self, map: &Map, see: &mut dyn FnMut(&Band) -> Result<()>) -> Result<()> {
         let Map { grid, products, .. } = map;
         match self {
@@ -35,10 +35,9 @@ impl Source {
                     bar.inc(band.counters.pairs);
                     Ok(())
                 };
-                let done = match store {
-                    None => for_each_band(grid, *products, *shard, *threads, limits, see),
-                    Some(store) => resume(grid, *products, *shard, *threads, limits, store, see),
-                };
+                let resources = Resources { threads: *threads, limits: *limits, stopped: None };
+                let whole = map::Map::of(grid).with(*products).shard(*shard).within(resources);
+                let done = store.as_ref().map_or(whole, |store| whole.kept_in(store)).for_each_band(see);
                 bar.finish_and_clear();
                 done.map(drop)
             }

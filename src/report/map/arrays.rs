@@ -8,7 +8,8 @@
 //! | `verdict_names` | S12 \[7\] | kind, and sign of the trace where it is ±2 or beyond |
 //! | `tier_names` | S6 \[3\] | filter, refine, exact |
 //! | `m`, `a`, `b` | i8 \[columns, rows\] | with labels: m and its dominant family; -1, 0, 0 where there is none |
-//! | `growth_rate` | f8 \[columns, rows\] | with growth: per unit time, rounded; NaN unless hyperbolic |
+//! | `growth_rate` | f8 \[columns, rows\] | with growth: per unit time; NaN unless hyperbolic |
+//! | `growth_rate_error` | f8 \[columns, rows\] | with growth: `growth_rate` is off by at most that, proven |
 
 use std::path::{Path, PathBuf};
 
@@ -30,7 +31,7 @@ pub struct MapArrays {
     tier: Array,
     names: Vec<Array>,
     labels: Vec<Array>,
-    rate: Vec<Array>,
+    rates: Vec<Array>,
 }
 
 impl MapArrays {
@@ -64,7 +65,7 @@ impl MapArrays {
             tier: of_pairs("tier", Element::U8)?,
             names: legends,
             labels: asked(products.label, &["m", "a", "b"], Element::I64)?,
-            rate: asked(products.growth, &["growth_rate"], Element::F64)?,
+            rates: asked(products.growth, &["growth_rate", "growth_rate_error"], Element::F64)?,
         })
     }
 
@@ -75,23 +76,25 @@ impl MapArrays {
     pub fn add(&mut self, grid: &Grid, band: &Band) -> Result<()> {
         self.verdict.put(&band.verdicts)?;
         self.tier.put(&band.tiers)?;
-        if self.labels.is_empty() && self.rate.is_empty() {
+        if self.labels.is_empty() && self.rates.is_empty() {
             return Ok(());
         }
         let pairs = band.verdicts.len();
         let mut labels = [vec![-1; pairs], vec![0; pairs], vec![0; pairs]];
-        let mut rates = vec![f64::NAN; pairs];
+        let mut rates = [vec![f64::NAN; pairs], vec![f64::NAN; pairs]];
         for pair in marked(grid, band) {
             let Some(growing) = pair.growing else { continue };
             let (n, found) = (growing.position as usize, pair.found());
             labels[0][n] = found.m.map_or(-1, |m| m as i64);
             (labels[1][n], labels[2][n]) = found.family.unwrap_or_default();
-            rates[n] = found.rate.unwrap_or(f64::NAN);
+            if let Some(rate) = found.rate {
+                (rates[0][n], rates[1][n]) = (rate.middle(), rate.error());
+            }
         }
         for (array, values) in self.labels.iter_mut().zip(labels) {
             array.put_i64(values)?;
         }
-        self.rate.iter_mut().try_for_each(|array| array.put_f64(rates.iter().copied()))
+        self.rates.iter_mut().zip(rates).try_for_each(|(array, values)| array.put_f64(values))
     }
 
     /// Writes the archive.
@@ -99,8 +102,8 @@ impl MapArrays {
     /// # Errors
     /// An I/O error that names it.
     pub fn finish(self) -> Result<()> {
-        let MapArrays { path, steps, verdict, tier, names, labels, rate } = self;
-        let parts = [steps, vec![verdict, tier], names, labels, rate];
+        let MapArrays { path, steps, verdict, tier, names, labels, rates } = self;
+        let parts = [steps, vec![verdict, tier], names, labels, rates];
         npz::write(&path, parts.into_iter().flatten().collect())
     }
 }

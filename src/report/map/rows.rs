@@ -1,6 +1,6 @@
 //! The pairs that are not plainly stable, as rows.
 
-use crate::map::{Band, Grid, Growing, Products};
+use crate::map::{Band, Enclosure, Grid, Growing, Products};
 use crate::number::Ratio;
 use crate::report::table::{Cell, Column, Table};
 use crate::verdict::Decision;
@@ -38,10 +38,10 @@ pub struct Found {
     pub m: Option<u64>,
     /// Its dominant family.
     pub family: Option<(i64, i64)>,
-    /// The growth rate per unit time, rounded.
-    pub rate: Option<f64>,
-    /// Slow steps until the amplitude has grown tenfold, rounded.
-    pub tenfold: Option<f64>,
+    /// The growth rate per unit time.
+    pub rate: Option<Enclosure>,
+    /// Slow steps until the amplitude has grown tenfold.
+    pub tenfold: Option<Enclosure>,
 }
 
 impl Marked {
@@ -77,8 +77,8 @@ impl<'a> Rows<'a> {
         Rows { grid, products, h1: (0, String::new()), h2: vec![None; kept] }
     }
 
-    /// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate,
-    /// steps_until_tenfold`.
+    /// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate` and
+    /// `steps_until_tenfold`, both enclosed.
     pub fn columns(&self) -> Vec<Column> {
         let mut columns = vec![
             Column::new("h1").titled("h1", "$h_1$"),
@@ -93,10 +93,9 @@ impl<'a> Rows<'a> {
             columns.extend(["m", "a", "b"].map(|key| Column::new(key).titled(key, &format!("${key}$"))));
         }
         if self.products.growth {
-            columns.push(Column::new("growth_rate").titled("growth rate", "growth rate"));
-            columns.push(
-                Column::new("steps_until_tenfold").titled("steps until tenfold", "steps until tenfold"),
-            );
+            let enclosed = |key: &str, title: &str| Column::new(key).titled(title, title).enclosure();
+            columns.push(enclosed("growth_rate", "growth rate"));
+            columns.push(enclosed("steps_until_tenfold", "steps until tenfold"));
         }
         columns
     }
@@ -121,7 +120,8 @@ impl<'a> Rows<'a> {
             cells.extend(family.map(integer));
         }
         if self.products.growth {
-            cells.extend([found.rate, found.tenfold].map(|x| x.map_or(Cell::Missing, Cell::Float)));
+            let enclosure = |Enclosure { lo, hi }| Cell::Enclosure { lo, hi };
+            cells.extend([found.rate, found.tenfold].map(|x| x.map_or(Cell::Missing, enclosure)));
         }
         cells
     }

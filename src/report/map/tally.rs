@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use super::rows::{Found, marked};
-use crate::map::{Band, Counters, Grid};
+use crate::map::{Band, Counters, Enclosure, Grid};
+use crate::report::decimal::enclosure;
 use crate::verdict::{Kind, Verdict};
 
 /// Counts over a grid.
@@ -52,15 +53,15 @@ pub struct Tally {
     counters: Counters,
     /// Pairs by the a of their dominant family, where labels were asked for.
     families: BTreeMap<i64, u64>,
-    /// The pair that grows fastest, the first of equals, where growth was asked for.
+    /// The pair that grows fastest where growth was asked for: no other one is proven to grow faster.
     fastest: Option<Fastest>,
 }
 
 #[derive(Clone, Debug)]
 struct Fastest {
     steps: [String; 2],
-    rate: f64,
-    tenfold: f64,
+    rate: Enclosure,
+    tenfold: Enclosure,
 }
 
 impl Tally {
@@ -77,7 +78,7 @@ impl Tally {
                 *self.families.entry(a).or_default() += 1;
             }
             if let (Some(rate), Some(tenfold)) = (rate, tenfold)
-                && self.fastest.as_ref().is_none_or(|fastest| rate > fastest.rate)
+                && self.fastest.as_ref().is_none_or(|fastest| rate.middle() > fastest.rate.middle())
             {
                 let steps = [grid.h1(pair.i).to_string(), grid.h2(pair.j).to_string()];
                 self.fastest = Some(Fastest { steps, rate, tenfold });
@@ -99,6 +100,8 @@ impl Tally {
             entries.push(("families", self.families.iter().map(count).collect()));
         }
         if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+            let enclosure = |x: &Enclosure| json!({"lo": x.lo, "hi": x.hi});
+            let (rate, tenfold) = (enclosure(rate), enclosure(tenfold));
             let value = json!({"h1": h1, "h2": h2, "growth_rate": rate, "steps_until_tenfold": tenfold});
             entries.push(("fastest", value));
         }
@@ -117,8 +120,9 @@ impl Tally {
             lines.push(format!("  dominant families {}{others}", told.join(", ")));
         }
         if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
+            let [rate, tenfold] = [rate, tenfold].map(|x| enclosure(x.lo, x.hi));
             lines.push(format!(
-                "  fastest growth {rate:.4e} per unit time at h1 = {h1}, h2 = {h2}: tenfold in {tenfold:.3e} slow steps"
+                "  fastest growth {rate} per unit time at h1 = {h1}, h2 = {h2}: tenfold in {tenfold} slow steps"
             ));
         }
         lines

@@ -2,7 +2,7 @@
 
 use super::raster::Raster;
 use super::{lines, stroke};
-use crate::map::{Band, Grid, Products};
+use crate::map::{Band, Enclosure, Grid, Products};
 use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient, HYPERBOLIC, PARABOLIC};
 use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place};
 use crate::report::map::{Counts, Found, marked};
@@ -38,8 +38,8 @@ impl Colouring {
         let positive = |x: Option<f64>| x.filter(|&x| x > 0.0).unwrap_or(f64::MIN_POSITIVE);
         match self {
             Colouring::Verdict => 1.0,
-            Colouring::Growth => positive(found.rate),
-            Colouring::Tenfold => positive(found.tenfold.map(f64::recip)),
+            Colouring::Growth => positive(found.rate.map(Enclosure::middle)),
+            Colouring::Tenfold => positive(found.tenfold.map(|steps| steps.middle().recip())),
             Colouring::Family => found.family.map_or(f64::NEG_INFINITY, |(a, _)| -rank(a)),
         }
     }

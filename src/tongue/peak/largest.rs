@@ -30,7 +30,7 @@ use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Edge, Edges, Enclosure};
 use crate::tongue::gap::Gap;
 use crate::tongue::string::{HalfString, Twofold};
-use crate::verdict::{Kind, Limits, Verdict, growth};
+use crate::verdict::{Limits, Side, Verdict, growth};
 
 /// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a place which is s
 /// before rounding.
@@ -106,11 +106,9 @@ fn parted(edges: &Edges, lower: &Edge, upper: &Edge) -> Result<[Rational; 2]> {
 }
 
 fn ln_multiplier_by_bits(edges: &Edges, s: &Rational, m: u64) -> Result<f64> {
-    let side = if m.is_multiple_of(2) { 1 } else { -1 };
-    let unstable = |verdict: &&Verdict| verdict.kind() == Kind::Hyperbolic && verdict.side() == side;
-    let verdict = Verdict::ALL.iter().find(unstable).expect("a row of the table");
+    let verdict = Verdict::Hyperbolic(Side::of_half_turns(m));
     let clocks = TwoClocks::with_rho(edges.ratio(), s.clone(), edges.rho().clone());
-    let ln = growth(&clocks, *verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
+    let ln = growth(&clocks, verdict, &Limits::default())?.ln_multiplier.map(|ln| ln.mid_f64());
     ln.filter(|&ln| ln > 0.0).ok_or_else(|| {
         let cost = format!("the growth of tongue {m} at s = {}", rational::to_f64(s));
         Error::too_much(format!("{cost} needs more digits than are tried"), "choose a simpler ratio")

@@ -1,0 +1,10 @@
+(** What the theorems of MatrixSigns.v say and rest on; this output is kept in MatrixAssumptions.golden. *)
+
+Set Warnings "-notation-overridden,-ambiguous-paths".
+From mathcomp Require Import all_ssreflect all_algebra.
+From Kickdrift Require MatrixSigns.
+Set Printing Width 110.
+
+Check MatrixSigns.both_definite. Print Assumptions MatrixSigns.both_definite.
+Check MatrixSigns.both_negative. Print Assumptions MatrixSigns.both_negative.
+Check MatrixSigns.one_definite. Print Assumptions MatrixSigns.one_definite.

@@ -1,0 +1,33 @@
+//! What a map may take.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::{Error, Result};
+use crate::parallel::Pool;
+use crate::verdict::Limits;
+
+/// What a map or a list of pairs may take.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resources<'a> {
+    /// Threads to run on; 0 for as many as there are processors.
+    pub threads: usize,
+    /// `kicks` bounds those of a single pair; a map as a whole may compose 10^4 times as many.
+    pub limits: Limits,
+    /// The work ends with an error of the kind `Stopped` soon after this is set: it is looked at once a band.
+    pub stopped: Option<&'a AtomicBool>,
+}
+
+impl Resources<'_> {
+    pub(super) fn pool(&self) -> Result<Pool> {
+        Pool::new(self.threads)
+    }
+
+    /// # Errors
+    /// Where the work was stopped.
+    pub(super) fn go_on(&self) -> Result<()> {
+        match self.stopped {
+            Some(stopped) if stopped.load(Ordering::Relaxed) => Err(Error::stopped("the map")),
+            _ => Ok(()),
+        }
+    }
+}

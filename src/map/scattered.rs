@@ -1,0 +1,62 @@
+//! Pairs that lie on no grid, side by side all the same.
+
+use super::resources::Resources;
+use super::work::LANES;
+use crate::error::Result;
+use crate::orbit::filter::{Group, UNDECIDED};
+use crate::orbit::floquet::{Floquet, Pair};
+use crate::parallel::*;
+use crate::propagator::TwoClocks;
+use crate::vector::instructions::Instructions;
+use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
+
+/// Pairs that are sorted by their numbers of updates together: enough for each to find company.
+const TOGETHER: usize = 1 << 14;
+
+/// The verdicts of any pairs, in their order: those of [`decide`], with pairs of about the same number of updates run
+/// side by side.
+///
+/// ```
+/// use kickdrift::map::{Resources, decide_all};
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::propagator::TwoClocks;
+/// use kickdrift::verdict::{Limits, decide};
+/// let pairs: Vec<_> = (1..200).map(|n| TwoClocks::with_rho(7, 3, ratio(n, 60), ratio(1, 25))).collect();
+/// let decisions = decide_all(&pairs, &Resources::default()).unwrap();
+/// assert_eq!(decisions[70].verdict, decide(&pairs[70], &Limits::default()).unwrap().verdict);
+/// ```
+///
+/// # Errors
+/// A budget error where a pair would compose more kicks than the limits allow, and `Stopped`.
+pub fn decide_all<S: Decidable + Sync>(
+    pairs: &[TwoClocks<S>],
+    resources: &Resources,
+) -> Result<Vec<Decision>> {
+    let some = |pairs: &[TwoClocks<S>]| {
+        resources.go_on()?;
+        together(pairs, &resources.limits)
+    };
+    let done: Vec<Vec<Decision>> =
+        resources.pool()?.install(|| pairs.par_chunks(TOGETHER).map(some).collect::<Result<_>>())?;
+    Ok(done.concat())
+}
+
+fn together<S: Decidable>(clocks: &[TwoClocks<S>], limits: &Limits) -> Result<Vec<Decision>> {
+    let floquets: Vec<Option<Floquet>> = clocks.iter().map(Floquet::new).collect();
+    // Longer ones than the limits allow are left to `decide`, which says so.
+    let allowed = |floquet: &Floquet| floquet.updates() <= limits.kicks;
+    let mut order: Vec<usize> =
+        (0..clocks.len()).filter(|&n| floquets[n].as_ref().is_some_and(allowed)).collect();
+    order.sort_by_key(|&n| floquets[n].as_ref().map(Floquet::updates));
+    let (mut found, mut group) = (vec![UNDECIDED; clocks.len()], Group::<LANES>::new(Instructions::best()));
+    for positions in order.chunks(LANES) {
+        let pairs: Vec<Pair> =
+            positions.iter().filter_map(|&n| floquets[n].as_ref().map(Floquet::pair)).collect();
+        positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
+    }
+    let decided = |(verdict, clocks)| match verdict {
+        UNDECIDED => decide(clocks, limits).map(|answer| answer.decision()),
+        verdict => Ok(Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter }),
+    };
+    found.into_iter().zip(clocks).map(decided).collect()
+}

@@ -1,0 +1,55 @@
+//! A grid cut into bands of columns, and its bands dealt out to the parts of a map.
+
+use super::grid::Grid;
+use crate::error::{Error, Result};
+
+/// Part k of n of a map, k = 1..n: every n-th band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shard {
+    k: u64,
+    n: u64,
+}
+
+impl Shard {
+    /// The whole map.
+    pub const WHOLE: Shard = Shard { k: 1, n: 1 };
+
+    /// Part k of n.
+    ///
+    /// # Errors
+    /// Unless 1 ≤ k ≤ n.
+    pub fn new(k: u64, n: u64) -> Result<Shard> {
+        if 1 <= k && k <= n {
+            return Ok(Shard { k, n });
+        }
+        Err(Error::input("shard", format!("{k}/{n}"), "the parts of n are 1/n, 2/n, ..., n/n"))
+    }
+}
+
+/// About as many pairs make a band: enough to find company for each number of updates.
+const PAIRS: usize = 1 << 15;
+
+/// The columns of each band of a grid: (first, count). Depends on the grid alone.
+pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> + use<> {
+    let (columns, rows) = grid.shape();
+    let width = (PAIRS / rows).clamp(1, columns);
+    let first = grid.columns().0;
+    (0..columns.div_ceil(width)).map(move |n| {
+        let start = n * width;
+        (first + start as u64, width.min(columns - start))
+    })
+}
+
+/// A band's number and its columns: the first one and how many.
+pub(super) type Numbered = (u64, (u64, usize));
+
+impl Shard {
+    pub(super) fn bands(self, grid: &Grid) -> Vec<Numbered> {
+        (0..).zip(bands(grid)).filter(|(n, _)| n % self.n == self.k - 1).collect()
+    }
+
+    /// The number of pairs in this part of the grid.
+    pub fn pairs(self, grid: &Grid) -> u64 {
+        self.bands(grid).iter().map(|(_, (_, columns))| *columns as u64 * grid.shape().1 as u64).sum()
+    }
+}

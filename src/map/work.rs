@@ -1,0 +1,186 @@
+//! A band at work: its pairs sorted by their number of updates, run side by side, the rest sent up the ladder.
+
+use std::cell::OnceCell;
+
+use super::band::{Band, Counters};
+use super::bases::Bases;
+use super::gcd;
+use super::grid::Grid;
+use crate::error::{Error, Result};
+use crate::orbit::filter::{self, Group};
+use crate::orbit::floquet::{Base, Pair};
+use crate::vector::instructions::Instructions;
+use crate::verdict::{Limits, decide};
+
+/// Pairs that run side by side: two AVX-512 registers hide each other's latency.
+pub(super) const LANES: usize = 16;
+
+/// A band at work.
+pub(super) struct Work<'a> {
+    grid: &'a Grid,
+    bases: &'a Bases<'a>,
+    limits: &'a Limits,
+    first: u64,
+    /// The columns' bases, as they are asked for.
+    firsts: Vec<OnceCell<Option<Base>>>,
+    seconds: Vec<Option<Base>>,
+    gcds: Vec<u32>,
+    /// Positions in the order of the number of updates.
+    order: Vec<u32>,
+}
+
+impl<'a> Work<'a> {
+    pub fn new(
+        grid: &'a Grid,
+        bases: &'a Bases<'a>,
+        limits: &'a Limits,
+        (first, columns): (u64, usize),
+    ) -> Self {
+        let (rows, first_row) = (grid.shape().1, grid.rows().0);
+        let (a, b) = grid.step_ratio();
+        let mut gcds = vec![0; columns * rows];
+        for (i, gcds) in (first..).zip(gcds.chunks_mut(rows)) {
+            // gcd(ib, ja) = gcd(i, a) gcd(i b / gcd(i, a), j), a and b being coprime.
+            let common = num_integer::gcd(i, a);
+            gcd::with_run(&[i / common, b], first_row, gcds);
+            gcds.iter_mut().for_each(|g| *g *= common as u32);
+        }
+        let firsts = (0..columns).map(|_| OnceCell::new()).collect();
+        let seconds = bases.rows_within(first, first + columns as u64 - 1);
+        let mut work = Work { grid, bases, limits, first, firsts, seconds, gcds, order: Vec::new() };
+        work.order = work.sorted();
+        work
+    }
+
+    pub(super) fn multipliers(&self, n: usize) -> (u64, u64) {
+        let rows = self.grid.shape().1;
+        (self.first + (n / rows) as u64, self.grid.rows().0 + (n % rows) as u64)
+    }
+
+    /// Positions by min(p, q)/2: equal numbers run together.
+    fn sorted(&self) -> Vec<u32> {
+        let (a, b) = self.grid.step_ratio();
+        let (rows, first_row) = (self.grid.shape().1, self.grid.rows().0);
+        let mut keys = Vec::with_capacity(self.gcds.len());
+        for (i, gcds) in (self.first..).zip(self.gcds.chunks(rows)) {
+            let updates = |(j, &gcd): (u64, &u32)| (i * b).min(j * a) / u64::from(gcd) / 2;
+            keys.extend((first_row..).zip(gcds).map(updates).map(|n| n.min(u64::from(u32::MAX)) as u32));
+        }
+        by_counting(&keys)
+    }
+
+    /// The band's verdicts.
+    pub fn run(&self) -> Result<Band> {
+        let (pairs, rows) = (self.gcds.len(), self.grid.shape().1);
+        let mut band = Band {
+            first: self.first,
+            columns: pairs / rows,
+            rows,
+            verdicts: vec![filter::UNDECIDED; pairs],
+            tiers: vec![0; pairs],
+            growing: Vec::new(),
+            counters: Counters { pairs: pairs as u64, ..Counters::default() },
+        };
+        let mut group = Group::<LANES>::new(Instructions::best());
+        band.counters.kicks = self.side_by_side(&self.order, |pairs, positions| {
+            let verdicts = group.verdicts(pairs);
+            for (&n, &verdict) in positions.iter().zip(&verdicts) {
+                band.verdicts[n] = verdict;
+            }
+        })?;
+        let undecided = |&n: &usize| band.verdicts[n] == filter::UNDECIDED;
+        let rest: Vec<usize> = (0..pairs).filter(undecided).collect();
+        band.counters.escalated = rest.len() as u64;
+        for n in rest {
+            let (i, j) = self.multipliers(n);
+            let decision = decide(&self.grid.clocks(i, j)?, self.limits)?;
+            (band.verdicts[n], band.tiers[n]) = (decision.verdict.index(), decision.decided_by as u8);
+        }
+        Ok(band)
+    }
+
+    pub(super) fn uncertified_unstable(&self) -> Result<u64> {
+        let (mut group, mut unstable) = (Group::<LANES>::new(Instructions::best()), 0);
+        self.side_by_side(&self.order, |pairs, _| {
+            let verdicts = group.uncertified(pairs);
+            unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
+        })?;
+        Ok(unstable)
+    }
+
+    /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,
+    /// and counts the kicks they compose.
+    pub(super) fn side_by_side(&self, order: &[u32], mut run: impl FnMut(&[Pair], &[usize])) -> Result<u64> {
+        let mut kicks = 0;
+        let (mut pairs, mut positions) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
+        for group in order.chunks(LANES) {
+            pairs.clear();
+            positions.clear();
+            for n in group.iter().map(|&n| n as usize) {
+                let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
+                let pair = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd);
+                if let Some(pair) = pair {
+                    self.allow(pair.updates + 1)?;
+                    kicks += pair.updates + 1;
+                    pairs.push(pair);
+                    positions.push(n);
+                }
+            }
+            if !pairs.is_empty() {
+                run(&pairs, &positions);
+            }
+        }
+        Ok(kicks)
+    }
+
+    /// The base of a column of this band.
+    fn first(&self, column: u64) -> Option<&Base> {
+        self.firsts[(column - self.first) as usize].get_or_init(|| self.bases.column(column)).as_ref()
+    }
+
+    /// The base of a row: of this band or, as a rule, of all.
+    fn second(&self, row: u64) -> Option<&Base> {
+        let own = self.seconds.get((row - self.grid.rows().0) as usize);
+        own.map_or_else(|| self.bases.row(row), Option::as_ref)
+    }
+
+    fn allow(&self, kicks: u64) -> Result<()> {
+        if kicks <= self.limits.kicks {
+            return Ok(());
+        }
+        let cost = format!("a pair of the map composes {kicks} kicks, the budget is {}", self.limits.kicks);
+        Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        self.grid
+    }
+
+    pub(super) fn limits(&self) -> &Limits {
+        self.limits
+    }
+
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
+    }
+}
+
+/// The positions of the keys in increasing order, equal keys in order of position.
+fn by_counting(keys: &[u32]) -> Vec<u32> {
+    let largest = keys.iter().copied().max().unwrap_or(0) as usize;
+    if largest > 8 * keys.len() + 1024 {
+        let mut order: Vec<u32> = (0..keys.len() as u32).collect();
+        order.sort_by_key(|&n| keys[n as usize]);
+        return order;
+    }
+    let mut starts = vec![0u32; largest + 2];
+    keys.iter().for_each(|&key| starts[key as usize + 1] += 1);
+    (1..starts.len()).for_each(|key| starts[key] += starts[key - 1]);
+    let mut order = vec![0; keys.len()];
+    for (n, &key) in (0..).zip(keys) {
+        let place = &mut starts[key as usize];
+        order[*place as usize] = n;
+        *place += 1;
+    }
+    order
+}

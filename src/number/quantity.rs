@@ -1,0 +1,171 @@
+//! What a quantity can be given as: text, an integer, a rational, an element of ℚ[π, 1/π].
+//!
+//! A double is rarely the number that its writer meant (0.3 is not 3/10), so it has to be asked for by name.
+//!
+//! ```
+//! use kickdrift::number::{Laurent, Quantity};
+//! assert_eq!("0.3".quantity("h1")?, Laurent::try_from("3/10")?);
+//! assert_eq!(2.quantity("h1")?.to_string(), "2");
+//! assert_eq!(Laurent::try_from(0.3)?.to_string(), "5404319552844595/18014398509481984");
+//! assert_eq!("0,3".quantity("h1").unwrap_err().field(), "h1");
+//! assert!(Laurent::try_from(f64::NAN).is_err());
+//! # Ok::<(), kickdrift::error::Error>(())
+//! ```
+
+use std::str::FromStr;
+
+use super::{Laurent, Ratio, Rational, parse, rational};
+use crate::error::{Error, Result};
+
+/// An exact number, or text that denotes one.
+pub trait Quantity {
+    /// The number, exactly.
+    ///
+    /// # Errors
+    /// Text that denotes none; the error names `field`.
+    fn quantity(self, field: &str) -> Result<Laurent>;
+}
+
+impl Quantity for &str {
+    fn quantity(self, field: &str) -> Result<Laurent> {
+        parse::parse(field, self)
+    }
+}
+
+impl Quantity for &String {
+    fn quantity(self, field: &str) -> Result<Laurent> {
+        parse::parse(field, self)
+    }
+}
+
+macro_rules! exact {
+    ($($type:ty: $x:ident => $laurent:expr),* $(,)?) => {$(
+        impl From<$type> for Laurent {
+            fn from($x: $type) -> Laurent {
+                $laurent
+            }
+        }
+
+        impl Quantity for $type {
+            fn quantity(self, _field: &str) -> Result<Laurent> {
+                Ok(self.into())
+            }
+        }
+    )*};
+}
+
+exact! {
+    i32: n => Laurent::from_integer(n.into()),
+    i64: n => Laurent::from_integer(n),
+    u64: n => Laurent::from_rational(Rational::from_integer(n.into())),
+    Ratio: ratio => Laurent::from_rational(ratio.into()),
+    Rational: x => Laurent::from_rational(x),
+    &Rational: x => Laurent::from_rational(x.clone()),
+    &Laurent: x => x.clone(),
+}
+
+impl Quantity for Laurent {
+    fn quantity(self, _field: &str) -> Result<Laurent> {
+        Ok(self)
+    }
+}
+
+impl FromStr for Laurent {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Laurent> {
+        parse::parse("number", text)
+    }
+}
+
+impl FromStr for Ratio {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Ratio> {
+        parse::parse_ratio("ratio", text)
+    }
+}
+
+impl TryFrom<&str> for Laurent {
+    type Error = Error;
+
+    fn try_from(text: &str) -> Result<Laurent> {
+        text.parse()
+    }
+}
+
+impl TryFrom<f64> for Laurent {
+    type Error = Error;
+
+    /// The number that the double is, to its last bit; infinities and NaN are none.
+    fn try_from(x: f64) -> Result<Laurent> {
+        let exact = rational::from_f64_exact(x).ok_or_else(|| Error::input("number", x, "must be finite"))?;
+        Ok(exact.into())
+    }
+}
+
+impl TryFrom<f64> for Ratio {
+    type Error = Error;
+
+    /// The ratio that the double is, to its last bit.
+    fn try_from(x: f64) -> Result<Ratio> {
+        let exact = rational::from_f64_exact(x).ok_or_else(|| Error::input("ratio", x, "must be finite"))?;
+        Ratio::try_from(&exact)
+    }
+}
+
+/// Exact numbers are strings in documents, as people write them.
+#[cfg(feature = "serde")]
+mod text {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::{Serialize, Serializer};
+
+    macro_rules! text {
+        ($($type:ty),*) => {$(
+            impl Serialize for $type {
+                fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                    serializer.collect_str(self)
+                }
+            }
+
+            impl<'de> Deserialize<'de> for $type {
+                fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                    String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+                }
+            }
+        )*};
+    }
+
+    text!(super::Laurent, super::Ratio);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn doubles_are_taken_to_their_last_bit_or_refused() {
+        for x in [0.1, -1e-300, f64::MAX, f64::from_bits(1), 0.0] {
+            assert_eq!(Laurent::try_from(x).unwrap().as_rational(), Rational::from_float(x));
+        }
+        for x in [f64::NAN, f64::INFINITY, -f64::INFINITY] {
+            assert!(Laurent::try_from(x).is_err() && Ratio::try_from(x).is_err());
+        }
+        assert_eq!(Ratio::try_from(2.5).unwrap().terms(), (5, 2));
+        assert!(
+            Ratio::try_from(0.0).is_err()
+                && Ratio::try_from(-1.5).is_err()
+                && Ratio::try_from(1e300).is_err()
+        );
+    }
+
+    #[cfg(feature = "serde")]
+    #[test]
+    fn exact_numbers_survive_a_document() {
+        let (x, ratio): (Laurent, Ratio) = ("pi^2/25 - 3".parse().unwrap(), "7/2".parse().unwrap());
+        let text = serde_json::to_string(&(&x, ratio)).unwrap();
+        assert_eq!(text, r#"["-3 + pi^2/25","7/2"]"#);
+        assert_eq!(serde_json::from_str::<(Laurent, Ratio)>(&text).unwrap(), (x, ratio));
+        assert!(serde_json::from_str::<Ratio>("\"1/0\"").is_err());
+    }
+}
