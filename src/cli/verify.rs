@@ -24,7 +24,7 @@ pub struct Args {
 
 /// Work that is told before it begins, in kicks, and kicks a second: some tens of seconds.
 const LONG: u64 = 20_000_000;
-const KICKS_A_SECOND: u64 = 500_000;
+const KICKS_A_SECOND: u64 = 400_000;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
