@@ -59,6 +59,11 @@ impl Clocks {
         let period = clocks.iter().try_fold(1, lcm).filter(|&t| t < 1 << 62).ok_or_else(too_long)?;
         Ok(Clocks { tick, clocks, period })
     }
+
+    /// The number of kicks in a period.
+    pub fn kicks(&self) -> u64 {
+        self.clocks.iter().map(|clock| self.period / clock.step).fold(0, u64::saturating_add)
+    }
 }
 
 /// The largest g ≥ 0 of which both are integer multiples.

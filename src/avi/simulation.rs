@@ -192,6 +192,17 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
         (self.state.x, self.state.p) = (x, p);
     }
 
+    /// The multiplications of a run of `ticks`, roughly: those of every force as a dense matrix on its particles, and
+    /// what the queue and the drifts cost.
+    pub fn cost(&self, ticks: u64) -> u64 {
+        const OVERHEAD: u64 = 16;
+        let kicks = self.clocks.clocks.iter().map(|clock| ticks / clock.step + 1);
+        let one = |force: &F| (force.particles().len() as u64).pow(2) + OVERHEAD;
+        kicks
+            .zip(&self.forces)
+            .fold(0, |sum: u64, (n, force)| sum.saturating_add(n.saturating_mul(one(force))))
+    }
+
     /// Turns all momenta round: a symmetric run of whole periods then leads back.
     pub fn reverse(&mut self) {
         self.state.p.iter_mut().for_each(|p| *p = -p.clone());

@@ -98,12 +98,13 @@ impl Args {
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {
         let document = document
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
-            .input("title", scene.title());
+            .input("title", scene.title())
+            .input_json("system", scene.source().clone());
         if self.exact { document.input("exact", "true") } else { document }
     }
 }
 
-fn limits(common: &Common) -> Limits {
+pub fn limits(common: &Common) -> Limits {
     common.budget.map_or_else(Limits::default, |products| Limits { products })
 }
 

@@ -49,6 +49,13 @@ impl Document {
         self
     }
 
+    /// Echoes one input that has parts of its own, as JSON.
+    #[must_use]
+    pub fn input_json(mut self, key: &str, value: Value) -> Self {
+        self.input.insert(key.into(), value);
+        self
+    }
+
     /// Adds one entry to the JSON body.
     #[must_use]
     pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {

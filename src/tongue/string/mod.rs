@@ -15,4 +15,4 @@ mod twofold;
 pub use entry::Entry;
 pub(crate) use entry::Indices;
 pub(crate) use half_string::{HalfString, KINDS, Node, Step};
-pub(crate) use twofold::Twofold;
+pub(crate) use twofold::{Digits, Twofold};
