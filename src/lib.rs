@@ -50,6 +50,18 @@
 //! assert_eq!(decision.verdict.kind(), Kind::Hyperbolic);
 //! ```
 //!
+//! # Glossary
+//!
+//! * *period*: T = q h2 = p h1, after which the clocks strike together again; *half period*: the first half of it, with
+//!   half of each kick at its two ends.
+//! * *base*: the clock that an orbit is followed along in closed form; *foreign kick*: a kick of the other clock.
+//! * *tongue*: an interval of s in which a pair p/q is unstable with exponential growth, between two zeros (*edges*) of
+//!   A, B, C or D; it is *closed* where the two coincide.
+//! * *label*: the number m of half turns that the growing solution of a tongue makes in one period.
+//! * *family*: the integers (a, b) with m = a p + b q, one curve of resonance across all ratios.
+//! * *look*: the moment at which a run in doubles measures its orbit's length, on which the proven bound rests.
+//! * *refine*: to follow the orbit again kick by kick, in more bits.
+//!
 //! # The floors of the house
 //!
 //! Imports go down only, and siblings on one floor do not import each other (a test keeps it so).
@@ -112,3 +124,6 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+
+#[doc(hidden)]
+pub use vector::instructions::force_instructions;

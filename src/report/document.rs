@@ -123,7 +123,7 @@ impl Document {
                 Ok(all.collect::<Vec<_>>().join("\n"))
             }
             Format::Text => Ok(self.text()),
-            Format::Svg | Format::Png | Format::Npz => {
+            Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
                 let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
                 Err(Error::input("format", format.name(), remedy))
             }

@@ -72,7 +72,7 @@ impl Drawing {
                 Some((flag, _)) => Err(Error::input(
                     flag,
                     "given",
-                    "is for figures: write one with --output FILE.svg or FILE.png",
+                    "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png",
                 )),
             };
         }

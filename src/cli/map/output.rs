@@ -10,7 +10,6 @@ use crate::format::Format;
 use crate::map::{Band, Grid, Products};
 use crate::report::csv;
 use crate::report::document::Document;
-use crate::report::figure::png;
 use crate::report::file::{write_output, write_with};
 use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
 use crate::report::plane::Chart;
@@ -37,7 +36,7 @@ impl Output<'_> {
             (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path),
             (Format::Csv, _) => self.csv(source, path),
             (Format::Npz, Some(path)) => self.npz(source, path),
-            (Format::Svg | Format::Png, _) => self.figure(source, path),
+            (Format::Svg | Format::Pdf | Format::Png, _) => self.figure(source, path),
             (Format::Npz, None) => unreachable!("an extension is that of a path"),
         }
     }
@@ -109,8 +108,7 @@ impl Output<'_> {
             counts.add(band);
             Ok(())
         })?;
-        let svg = chart.figure(grid, &counts, &curves).svg();
-        let bytes = if self.format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = chart.figure(grid, &counts, &curves).file(self.format, DPI)?;
         write_output(path, &bytes)
     }
 }

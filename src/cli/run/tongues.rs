@@ -4,19 +4,20 @@ use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
 use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
 use crate::error::{Error, Result};
+use crate::report::figure::Figure;
 use crate::report::tongues::Frame;
 use crate::scene::Scene;
 use crate::tongue::{Selection, Wanted};
 
-/// The atlas's SVG.
-pub fn atlas(scene: &Scene, common: &Common) -> Result<String> {
+/// The atlas.
+pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
     let colour = match scene.document().colour.as_deref() {
         None | Some("family") => Colour::Family,
         Some("growth") => Colour::Growth,
         Some(other) => return Err(Error::input("colour", other, "choose family or growth")),
     };
     let question = question(scene, colour.needs())?;
-    Ok(Atlas::new(&question, colour, Some(scene.families()?))?.figure(common)?.svg())
+    Ok(Atlas::new(&question, colour, Some(scene.families()?))?.figure(common)?)
 }
 
 /// The question that tongues and atlas answer.

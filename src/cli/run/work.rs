@@ -13,7 +13,7 @@ use crate::format::Format;
 use crate::map::Products;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::map::MapArrays;
 use crate::report::plane;
@@ -38,7 +38,7 @@ pub struct Work<'a> {
     documents: [OnceCell<Document>; 7],
     /// What the tongues told, once they were written.
     tongues: OnceCell<Tally>,
-    figures: [OnceCell<String>; 3],
+    figures: [OnceCell<Figure>; 3],
 }
 
 impl<'a> Work<'a> {
@@ -80,8 +80,7 @@ impl<'a> Work<'a> {
             return self.tongues(want.format);
         }
         match want.format {
-            Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
-            Format::Png => png::raster(self.figure(want.product)?, DPI),
+            drawn if drawn.is_figure() => self.figure(want.product)?.file(drawn, DPI),
             Format::Npz => unreachable!("arrays are streamed"),
             of_document => text(of_document),
         }
@@ -134,8 +133,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The SVG of a figure.
-    fn figure(&self, product: Product) -> Result<&String> {
+    /// A figure.
+    fn figure(&self, product: Product) -> Result<&Figure> {
         let slot = match product {
             Product::Figure => 0,
             Product::Overlay => 1,
@@ -145,7 +144,7 @@ impl<'a> Work<'a> {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
+            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()))
         })
     }
 

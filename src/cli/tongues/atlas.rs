@@ -10,7 +10,7 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::plane::{self, Segment};
 use crate::report::tongues::{Quantity, Told, ToldEdge};
@@ -77,8 +77,7 @@ impl<'a> Atlas<'a> {
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
     pub fn write(&self, common: &Common, format: Format) -> Result<()> {
-        let svg = self.figure(common)?.svg();
-        let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = self.figure(common)?.file(format, DPI)?;
         write_output(common.output.as_deref(), &bytes)
     }
 

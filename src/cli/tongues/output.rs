@@ -30,7 +30,9 @@ pub fn write(question: &Question, common: &Common, target: Format) -> Result<()>
         Format::Csv => stream(question, common, path, rows),
         Format::Text => write_output(path, text(question, common)?.0.as_bytes()),
         Format::Latex => write_output(path, latex(question, common)?.0.as_bytes()),
-        Format::Svg | Format::Png | Format::Npz => unreachable!("neither a figure nor arrays are rows"),
+        Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
+            unreachable!("neither a figure nor arrays are rows")
+        }
     }
 }
 

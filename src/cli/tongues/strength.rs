@@ -11,7 +11,6 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::{Laurent, Ratio, Rational, rational};
-use crate::report::figure::png;
 use crate::report::file::write_output;
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
@@ -55,8 +54,7 @@ pub fn run(
         stiffness.rho
     )
     .replace("π1/", "π/");
-    let svg = figure(rational::to_f64(&share), &title, &measured).svg();
-    let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    let bytes = figure(rational::to_f64(&share), &title, &measured).file(format, DPI)?;
     write_output(common.output.as_deref(), &bytes)
 }
 
