@@ -145,3 +145,16 @@ fn a_full_disk_is_an_error() {
     let status = desk.command(&["verdict"]).stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(2));
 }
+
+#[test]
+fn packagers_get_a_page_of_each_command_and_completions_for_each_shell() {
+    let desk = Desk::new();
+    assert_eq!(desk.run(&["generate", "man", "--output", "man"]).code, Some(0));
+    let page = |name: &str| String::from_utf8(desk.read(name)).unwrap();
+    assert!(page("man/kickdrift.1").contains(".TH kickdrift 1"));
+    assert!(page("man/kickdrift-verdict.1").contains("\\-\\-lambda1"));
+    assert!(desk.files().len() >= 15, "{:?}", desk.files());
+    assert_eq!(desk.run(&["generate", "completions"]).code, Some(0));
+    let shells = desk.files().into_iter().filter(|file| file.starts_with("out/completions/"));
+    assert!(shells.map(|file| page(&file)).filter(|script| script.contains("lambda1")).count() == 5);
+}
