@@ -102,7 +102,7 @@ fn the_pdf_has_the_size_asked_for_and_its_letters_can_be_searched() {
     let text = String::from_utf8_lossy(&pdf);
     assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
     // 40 and 30 mm in points.
-    assert!(text.contains("/MediaBox [0 0 113.38583 85.03937]"), "{text}");
+    assert!(text.contains("/MediaBox [0 0 113.385826 85.03937]"), "{text}");
     for letter in "Tinyleh01".chars() {
         let meaning = format!("<{:04X}>", u32::from(letter));
         assert!(text.contains(&meaning), "{letter} has no meaning");

@@ -1,7 +1,5 @@
 //! `kickdrift curves`: the (a, b) families as tables.
 
-use crate::parallel::*;
-
 use super::args::{Common, echo_grid, shown_range, whole};
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -9,8 +7,8 @@ use crate::number::parse::{parse, parse_integer_range, parse_range};
 use crate::number::{ExactSign, Laurent, Sign};
 use crate::report::curves;
 use crate::report::document::Document;
-use crate::resonance::{Curve, Window, curve, curve_within};
-use crate::scene::{Families, GridRange};
+use crate::resonance::{Curve, Families, Window};
+use crate::scene::GridRange;
 
 /// Flags of `curves`.
 #[derive(Debug, clap::Args)]
@@ -51,7 +49,7 @@ impl Args {
         }
         let (a, b) = (parse_integer_range("a", &self.a)?, parse_integer_range("b", &self.b)?);
         let families = Families { a, b, samples: self.samples };
-        let curves = sample(&lambda1, &families, &window(&h1, &h2))?;
+        let curves = families.curves(&lambda1, &Window::new(&h1, &h2))?;
         let document = curves::document(&curves)
             .input("lambda1", &lambda1)
             .input("h1_range", shown_range(&h1))
@@ -70,48 +68,4 @@ pub fn document(lambda1: &Laurent, range: &GridRange, families: &Families, curve
 pub fn echo(document: Document, families: &Families) -> Document {
     let range = |(lo, hi): (i64, i64)| format!("{lo}..{hi}");
     document.input("a", range(families.a)).input("b", range(families.b)).input("samples", families.samples)
-}
-
-/// The most curves drawn at once: beyond it the range is a mistake.
-const MOST_CURVES: i128 = 100_000;
-
-/// The most points of all curves together: some gigabytes of rows.
-const MOST_POINTS: i128 = 20_000_000;
-
-/// All curves of the families that pass through the window.
-pub fn sample(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
-    each(families, |a, b| curve(a, b, lambda1, window, families.samples))
-}
-
-/// The same, all samples in the window.
-pub fn sample_within(lambda1: &Laurent, families: &Families, window: &Window) -> Result<Vec<Curve>> {
-    each(families, |a, b| curve_within(a, b, lambda1, window, families.samples))
-}
-
-fn each(families: &Families, sample: impl Fn(i64, i64) -> Result<Curve> + Sync) -> Result<Vec<Curve>> {
-    let count = |(lo, hi): (i64, i64)| i128::from(hi) - i128::from(lo) + 1;
-    let curves = count(families.a) * count(families.b);
-    if curves > MOST_CURVES {
-        let value = format!("{:?} by {:?}", families.a, families.b);
-        return Err(Error::input(
-            "a, b",
-            value,
-            format!("at most {MOST_CURVES} curves: choose smaller ranges"),
-        ));
-    }
-    if curves * families.samples as i128 > MOST_POINTS {
-        let remedy = format!("{curves} curves of so many points are more than {MOST_POINTS}: choose fewer");
-        return Err(Error::input("samples", families.samples, remedy));
-    }
-    let pairs: Vec<(i64, i64)> = (families.a.0..=families.a.1)
-        .flat_map(|a| (families.b.0..=families.b.1).map(move |b| (a, b)))
-        .collect();
-    let curves: Result<Vec<Curve>> = pairs.into_par_iter().map(|(a, b)| sample(a, b)).collect();
-    Ok(curves?.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
-}
-
-/// The window of two closed ranges, widened to doubles.
-pub fn window(h1: &(Laurent, Laurent), h2: &(Laurent, Laurent)) -> Window {
-    let ends = |(lo, hi): &(Laurent, Laurent)| (lo.enclose_f64().0, hi.enclose_f64().1);
-    Window { h1: ends(h1), h2: ends(h2) }
 }

@@ -26,6 +26,7 @@
 
 pub mod ball;
 pub mod cyclotomic;
+mod enclosed;
 mod float;
 pub mod laurent;
 mod operators;
@@ -40,6 +41,7 @@ mod sign;
 
 pub use ball::Ball;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
+pub(crate) use enclosed::Enclosed;
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;
 pub use prime_field::{PrimeField, prime_fields};

@@ -4,21 +4,13 @@ use serde_json::json;
 
 use super::document::Document;
 use super::table::{Cell, Column, Table};
-use crate::number::{Ratio, Rational};
-use crate::resonance::compare::{Comparison, Tally};
-
-/// A pair at which a prediction is wrong.
-#[derive(Clone, Debug)]
-pub struct Offender {
-    /// Two exact quantities that name the pair: h1 and h2 on a grid, s and rho for ratios.
-    pub place: [String; 2],
-    pub ratio: Ratio,
-    pub comparison: Comparison,
-}
+use crate::number::Rational;
+use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally};
 
 /// The document `kickdrift/compare/1`; `places` are the names of an offender's two quantities. The caller
 /// adds the rest of the input.
-pub fn document(tally: &Tally, tolerance: &Rational, places: [&str; 2], offenders: &[Offender]) -> Document {
+pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> Document {
+    let Comparisons { tally, offenders } = all;
     Document::new("compare")
         .input("tolerance", tolerance)
         .entry("pairs", tally.pairs)
@@ -73,7 +65,7 @@ fn table(places: [&str; 2], offenders: &[Offender]) -> Table {
 fn row(offender: &Offender) -> Vec<Cell> {
     let Comparison { trace, tan, nearest, outcome } = &offender.comparison;
     let offence = if offender.comparison.tan_agrees() { outcome.map_or("none", |o| o.name()) } else { "tan" };
-    let [first, second] = offender.place.clone().map(Cell::Exact);
+    let [first, second] = offender.place.each_ref().map(|x| Cell::Exact(x.to_string()));
     vec![
         first,
         second,

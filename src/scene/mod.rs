@@ -27,6 +27,7 @@ use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
 use crate::number::{Laurent, Ratio, Rational};
+use crate::resonance::Families;
 
 pub use document::{Document, Quantity};
 pub use grid::GridRange;
@@ -40,14 +41,6 @@ pub struct Scene {
     document: Document,
     range: Option<GridRange>,
     want: Vec<Want>,
-}
-
-/// The curves wanted: closed ranges of a and b, and the number of samples in 0 < θ < π.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Families {
-    pub a: (i64, i64),
-    pub b: (i64, i64),
-    pub samples: usize,
 }
 
 /// A closed range of steps.

@@ -9,7 +9,6 @@ use super::kind::Verdict;
 use super::lone;
 use super::tier::{Limits, Tier};
 use crate::error::Result;
-use crate::number::Real;
 use crate::orbit::floquet::Floquet;
 use crate::orbit::{filter, plain, refine};
 use crate::propagator::TwoClocks;
@@ -50,11 +49,6 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
         }
     }
     unreachable!("the exact tier decides every pair")
-}
-
-/// The verdict where doubles in Floquet coordinates certify it, for routes that have their own exact form.
-pub(crate) fn filter_only<S: Real>(clocks: &TwoClocks<S>) -> Option<Verdict> {
-    filter::run(&Floquet::new(clocks)?)?.signs().verdict()
 }
 
 fn by_filter<S: Decidable>(

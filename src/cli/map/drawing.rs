@@ -3,14 +3,13 @@
 use clap::ValueEnum;
 
 use super::Map;
-use crate::cli::curves;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::parse::parse_integer_range;
 use crate::report::plane::{Colouring, window};
 use crate::resonance::Curve;
-use crate::scene::Families;
+use crate::resonance::Families;
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
@@ -98,6 +97,6 @@ impl Drawing {
             b: range("--b", &self.b, (-12, 12))?,
             samples: SAMPLES,
         };
-        curves::sample_within(map.grid.lambdas().0, &families, &window(&map.grid))
+        families.curves_within(map.grid.lambdas().0, &window(&map.grid))
     }
 }

@@ -182,14 +182,12 @@ impl<'a> Work<'a> {
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
-        once(&self.curves, || {
-            curves::sample(&self.scene.lambda1()?, &self.scene.families()?, &self.window()?)
-        })
+        once(&self.curves, || self.scene.families()?.curves(&self.scene.lambda1()?, &self.window()?))
     }
 
     fn window(&self) -> Result<Window> {
         let [h1, h2] = self.scene.range()?.ranges();
-        Ok(curves::window(h1, h2))
+        Ok(Window::new(h1, h2))
     }
 }
 

@@ -4,7 +4,6 @@ use clap::ValueEnum;
 
 use super::Question;
 use crate::cli::args::Common;
-use crate::cli::curves;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
@@ -14,8 +13,8 @@ use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::plane::{self, Segment};
 use crate::report::tongues::{Quantity, Told, ToldEdge};
+use crate::resonance::Families;
 use crate::resonance::{Curve, Window};
-use crate::scene::Families;
 use crate::tongue::Wanted;
 
 /// What the colours tell.
@@ -57,7 +56,7 @@ impl<'a> Atlas<'a> {
             question.stiffness.lambda1.as_ref().ok_or_else(|| missing("lambda1", "--lambda1 pi^2"))?;
         let h1 = question.window.h1.as_ref().ok_or_else(|| missing("h1-range", "--h1-range 0..2/pi"))?;
         let h2 = question.window.h2.as_ref().ok_or_else(|| missing("h2-range", "--h2-range 0..7/2"))?;
-        let window = curves::window(h1, h2);
+        let window = Window::new(h1, h2);
         for (field, (lo, hi)) in [("h1-range", window.h1), ("h2-range", window.h2)] {
             if hi <= lo.max(0.0) {
                 return Err(Error::input(field, format!("{lo}..{hi}"), "holds no positive step to draw"));
@@ -68,7 +67,7 @@ impl<'a> Atlas<'a> {
             b: question.selection.b.unwrap_or((-12, 12)),
             samples: SAMPLES,
         });
-        let curves = curves::sample_within(lambda1, &families, &window)?;
+        let curves = families.curves_within(lambda1, &window)?;
         Ok(Atlas { question, colour, window, curves })
     }
 
