@@ -2,12 +2,11 @@
 
 use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
-use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
+use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question};
 use crate::error::{Error, Result};
 use crate::report::figure::Figure;
-use crate::report::tongues::Frame;
 use crate::scene::Scene;
-use crate::tongue::{Selection, Wanted};
+use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 
 /// The atlas.
 pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
@@ -24,8 +23,8 @@ pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
 pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
     let window =
         scene.window()?.map_or_else(Window::default, |[h1, h2]| Window { h1: Some(h1), h2: Some(h2) });
-    let frame = Frame { wanted, ..Frame::default() };
-    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), frame)
+    let request = Request { wanted, ..Request::default() };
+    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), request)
 }
 
 /// All ratios where a sum is given, else the one.

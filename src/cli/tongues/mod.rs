@@ -13,11 +13,10 @@ use super::ratios::{Flags, Ratios};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer, parse_integer_range, parse_range, parse_rational};
-use crate::report::tongues::Frame;
-use crate::tongue::{Selection, Wanted};
+use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::bytes;
-pub use question::{MOST_SUM, Question, Stiffness, Window, shown_list};
+pub use question::{MOST_SUM, Question, shown_list};
 pub use survey::{THINNEST, document as survey};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
@@ -194,8 +193,8 @@ impl Args {
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
-        let frame = Frame { wanted, lambda1: None, digits: self.digits };
-        Question::new(self.ratios()?, self.stiffness()?, window, selection, frame)
+        let request = Request { wanted, lambda1: None, digits: self.digits };
+        Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
     fn wanted(&self) -> Wanted {

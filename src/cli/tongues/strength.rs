@@ -3,7 +3,6 @@
 use crate::parallel::*;
 use num_traits::{ToPrimitive, Zero};
 
-use super::Stiffness;
 use super::atlas::share_of_pi;
 use crate::cli::args::Common;
 use crate::cli::plane::DPI;
@@ -14,7 +13,7 @@ use crate::number::{Laurent, Ratio, Rational, rational};
 use crate::report::file::write_output;
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
-use crate::tongue::{Gap, Tongues};
+use crate::tongue::{Gap, Stiffness, Tongues};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
 const AROUND: (i64, i64) = (1, 50);
