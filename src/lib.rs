@@ -81,6 +81,7 @@
 //! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
+//! | 7 | [`recheck`] | every document's claims found again by another route |
 //! | 8 | [`scene`] | input documents → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
 //! | 9 | [`cli`] | arguments → a scene → the library → a report |
@@ -96,7 +97,7 @@
 //! |---|---|
 //! | `system` | `system`: many clocks, many degrees of freedom (faer) |
 //! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
-//! | `serde` | `scene` and `report`: input documents and output tables |
+//! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
 //! | `figure` | `report::figure` and the drawings of results |
 //! | `cli` | the program (default) |
 
@@ -110,6 +111,8 @@ pub mod number;
 mod orbit;
 mod parallel;
 pub mod propagator;
+#[cfg(feature = "serde")]
+pub mod recheck;
 #[cfg(feature = "serde")]
 pub mod report;
 pub mod resonance;

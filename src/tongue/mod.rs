@@ -53,7 +53,7 @@ mod tongues;
 
 pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings, closings_of};
 pub use edge::{Edge, Effort, Enclosure};
-pub use gap::{Gap, entries};
+pub use gap::{Gap, count_closings, entries};
 pub use peak::Peak;
 pub use question::{Progress, Question, Range, Stiffness, Window};
 pub use request::{Quantity, Request, Tongue, TongueEdge};
