@@ -79,6 +79,25 @@ fn the_exit_code_tells_stable_from_unstable_only_when_asked() {
     assert_eq!(nonsense.code, Some(2));
 }
 
+/// One update decides; trace and label, which nobody sees, would take half a million kicks more.
+#[test]
+fn a_quiet_exit_code_is_the_verdict_alone() {
+    for (line, code) in [(STABLE, 0), (CLOSED, 0), (UNSTABLE, 1), (EDGE, 1)] {
+        let quiet = run(&words(line, &["--exit-code", "--quiet"]));
+        assert_eq!(
+            (quiet.code, quiet.stdout.as_str(), quiet.stderr.as_str()),
+            (Some(code), "", ""),
+            "{line}"
+        );
+    }
+    let long = "verdict --lambda1 1/7 --lambda2 1/175000000 --h1 1 --h2 1000001 --budget 1000 --exit-code";
+    let quiet = run(&words(long, &["--quiet"]));
+    assert!(matches!(quiet.code, Some(0 | 1)), "{}", quiet.stderr);
+    let asked = run(&words(long, &[]));
+    assert_eq!(asked.code, Some(2));
+    assert!(asked.stderr.contains("500001"), "{}", asked.stderr);
+}
+
 #[test]
 fn people_get_text_from_verdict_and_scripts_get_json_from_tables() {
     assert!(stdout(&words(UNSTABLE, &[])).starts_with("unstable: hyperbolic, Tr Q < -2"));
