@@ -1,9 +1,10 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
 use std::marker::PhantomData;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx512};
+use super::registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 use super::{LANES, Vector};
 
 /// The instruction sets that kernels are compiled for.
@@ -59,10 +60,43 @@ impl Instructions {
         }
     }
 
-    /// The best that this processor has.
-    pub fn best() -> Instructions {
-        Instructions::available().next().unwrap_or(Instructions::Portable)
+    /// The same with vectors of a single register, for kernels that hold many vectors at a time.
+    pub fn compute_by_register<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            // Safety: as above.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => unsafe { avx512(With::<Avx512Single, K>(kernel, PhantomData)) },
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => unsafe { avx2(With::<Avx2Single, K>(kernel, PhantomData)) },
+            Instructions::Portable => kernel.run::<[f64; 4]>(),
+        }
     }
+
+    /// The kernel on one lane.
+    pub fn compute_alone<K: Kernel>(self, kernel: K) -> K::Output {
+        self.perform(With::<[f64; 1], K>(kernel, PhantomData))
+    }
+
+    /// The best that this processor has, or those that were [forced](force).
+    pub fn best() -> Instructions {
+        Instructions::available().nth(FORCED.load(Ordering::Relaxed)).unwrap_or(Instructions::Portable)
+    }
+}
+
+/// Which of the available instruction sets counts as the best.
+static FORCED: AtomicUsize = AtomicUsize::new(0);
+
+/// The names of the instruction sets that this processor has, the best first.
+#[doc(hidden)]
+pub fn names() -> Vec<String> {
+    Instructions::available().map(|set| format!("{set:?}")).collect()
+}
+
+/// Makes all later work use the n-th of the [`names`]: so that one machine measures, and compares, several kinds. For
+/// benchmarks and tests.
+#[doc(hidden)]
+pub fn force(n: usize) {
+    FORCED.store(n, Ordering::Relaxed);
 }
 
 /// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.
