@@ -84,7 +84,9 @@ impl SystemScene {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        SystemScene::from_json(serde_json::from_str(text).map_err(no_system)?)
+        // From the text, for an error to name its line.
+        let document = serde_json::from_str(text).map_err(no_system)?;
+        SystemScene::new(document, serde_json::from_str(text).map_err(no_system)?)
     }
 
     /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
@@ -92,7 +94,10 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::read`].
     pub fn from_json(source: Value) -> Result<SystemScene> {
-        let document: Document = Document::deserialize(&source).map_err(no_system)?;
+        SystemScene::new(Document::deserialize(&source).map_err(no_system)?, source)
+    }
+
+    fn new(document: Document, source: Value) -> Result<SystemScene> {
         if document.schema != SCHEMA {
             return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
         }
