@@ -180,6 +180,111 @@ proptest! {
     }
 }
 
+/// The verdict by `verdict`'s own ladder, on the sums of springs of one step.
+fn by_the_ladder(springs: &[(i64, i64)]) -> Kind {
+    let steps: Vec<i64> =
+        springs.iter().map(|s| s.1).collect::<std::collections::BTreeSet<_>>().into_iter().collect();
+    let strength =
+        |h: &i64| ratio(springs.iter().filter(|s| s.1 == *h).map(|s| s.0).sum::<i64>() * h * steps[0], 10);
+    let two = match steps.as_slice() {
+        [one] => TwoClocks::new("1/1".parse().unwrap(), strength(one), Rational::zero()),
+        [a, b] => TwoClocks::new((&ratio(*b, *a)).try_into().unwrap(), strength(a), strength(b)),
+        _ => unreachable!("two steps"),
+    };
+    kickdrift::verdict::decide(&two, &Default::default()).unwrap().verdict.kind()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn one_mass_has_the_verdict_of_verdict_cancelling_springs_included(
+        springs in prop::collection::vec((-4i64..=4, 1i64..=2), 1..5), mass_first in any::<bool>(),
+    ) {
+        // Springs that cancel leave a drift, not a rigid mode; only a mass without any spring is one.
+        prop_assume!(springs.iter().any(|s| s.0 != 0));
+        let single = |&(k, h): &(i64, i64)| potential(Symmetric::diagonal(&[ratio(k, 10)]), ratio(h, 1), ratio(0, 1));
+        let system = System::new(Symmetric::diagonal(&[ratio(1, 1)]), springs.iter().map(single).collect()).unwrap();
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        prop_assert_eq!(analysis.kind, by_the_ladder(&springs));
+        prop_assert_eq!(analysis.rigid_modes.len(), 0);
+        prop_assert_eq!(decide_exact(&system, &Limits::default()).unwrap().kind, analysis.kind);
+        // Beside another mass that is stable, coupled by what cancels.
+        let place = usize::from(mass_first);
+        let beside = |&(k, h): &(i64, i64)| {
+            let mut stiffness = Symmetric::zero(2);
+            stiffness.add(place, place, &ratio(k, 10));
+            potential(stiffness, ratio(h, 1), ratio(0, 1))
+        };
+        let mut coupling = Symmetric::zero(2);
+        coupling.add(0, 1, &ratio(1, 1));
+        let mut other = Symmetric::zero(2);
+        other.add(1 - place, 1 - place, &ratio(1, 10));
+        let extra = [coupling.clone(), coupling.scaled(&ratio(-1, 1)), other].map(|k| potential(k, ratio(1, 1), ratio(0, 1)));
+        let all = springs.iter().map(beside).chain(extra).collect();
+        let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), all).unwrap();
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        prop_assert_eq!(analysis.kind, by_the_ladder(&springs));
+        prop_assert_eq!(analysis.rigid_modes.len(), 0);
+        prop_assert_eq!(decide_exact(&system, &Limits::default()).unwrap().kind, analysis.kind);
+    }
+
+    #[test]
+    fn random_systems_of_potentials_that_may_cancel_have_the_verdict_of_the_full_period(
+        (n, entries) in (2usize..=3).prop_flat_map(|n| {
+            (Just(n), prop::collection::vec((0..n, 0..n, -3i64..=6, 1i64..=2), 1..6))
+        }),
+    ) {
+        let one = |&(i, j, k, h): &(usize, usize, i64, i64)| {
+            let mut stiffness = Symmetric::zero(n);
+            stiffness.add_spring(i, (i != j).then_some(j), &ratio(k, 12));
+            potential(stiffness, ratio(h, 1), ratio(0, 1))
+        };
+        // Every other spring is taken back by a potential of its own.
+        let back = entries.iter().step_by(2).map(|&(i, j, k, h)| (i, j, -k, h)).collect::<Vec<_>>();
+        let potentials: Vec<_> = entries.iter().chain(&back).map(one).collect();
+        let system = System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials.clone()).unwrap();
+        let analysis = decide_system(&system, &Limits::default()).unwrap();
+        // Rigid: null vectors of the matrix of all potentials, one below the other.
+        let rows = potentials.iter().flat_map(|p| (0..n).map(|i| (0..n).map(|j| to_f64(&p.stiffness.get(i, j))).collect::<Vec<_>>())).collect::<Vec<_>>();
+        let stacked = DMatrix::from_fn(rows.len(), n, |i, j| rows[i][j]);
+        prop_assert_eq!(analysis.rigid_modes.len(), n - stacked.rank(1e-9));
+        // Each rigid mode is one Jordan block of Q at 1, ker (Q - 1)^2 = 2 rigid; what is left decides.
+        let q = full_period::<Rational>(&system);
+        let hyperbolic = q.map(|x| to_f64(&x)).complex_eigenvalues().iter().any(|z| z.norm() > 1.0 + 1e-3);
+        if hyperbolic {
+            prop_assert_eq!(analysis.kind, Kind::Hyperbolic);
+        } else if analysis.kind != Kind::Hyperbolic {
+            let minus = |q: &DMatrix<Rational>, x: i64| q - DMatrix::<Rational>::identity(2 * n, 2 * n).map(|e| e * ratio(x, 1));
+            let jordan = |x: i64| {
+                let m = minus(&q, x);
+                let square = &m * &m;
+                exact_rank(&m) - exact_rank(&square)
+            };
+            let defects = jordan(1) + jordan(-1);
+            prop_assert_eq!(analysis.kind == Kind::Parabolic, defects > analysis.rigid_modes.len(), "{}", defects);
+        }
+    }
+}
+
+/// The rank over the rationals.
+fn exact_rank(m: &DMatrix<Rational>) -> usize {
+    let (mut m, mut rank) = (m.clone(), 0);
+    for column in 0..m.ncols() {
+        let Some(pivot) = (rank..m.nrows()).find(|&i| !m[(i, column)].is_zero()) else { continue };
+        m.swap_rows(rank, pivot);
+        for i in rank + 1..m.nrows() {
+            let factor = &m[(i, column)] / &m[(rank, column)];
+            for j in column..m.ncols() {
+                let product = &factor * &m[(rank, j)];
+                m[(i, j)] -= product;
+            }
+        }
+        rank += 1;
+    }
+    rank
+}
+
 #[test]
 fn rigid_motion_is_set_apart_and_not_called_unstable() {
     // Three free masses: one rigid mode; velocity Verlet well inside its limit.
@@ -310,7 +415,8 @@ fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
     for n in [18, 40, LARGE, 200] {
         let analysis = decide_system(
             &ring(n, [&ratio(4, 1), &ratio(1, 1)], steps(), ratio(0, 1)),
-            &Limits { products: 0 },
+            // Enough to compose, and not for exact arithmetic.
+            &Limits { products: 30_000_000 },
         );
         let analysis = analysis.unwrap();
         let part = &analysis.parts[0];

@@ -46,7 +46,7 @@ fn growth_of_small_deviations_is_that_of_the_hessians() {
         let start: Vec<f64> = centre.iter().enumerate().map(|(i, x)| x + 1e-6 * (i as f64 - 0.4)).collect();
         for ends in [Ends::Symmetric, Ends::Staggered] {
             let mut run = scene.nonlinear_simulation(start.clone(), vec![0.0; start.len()]).unwrap().unwrap();
-            let time = 2000.0 * to_f64(&run.clocks().tick) * run.clocks().period as f64;
+            let time = 2000.0 * to_f64(run.clocks().tick()) * run.clocks().period() as f64;
             let measured = avi::growth_rate(&mut run, centre, 1e-6, (4000, ends));
             // The shape turns with a collision's beat: its length changes by a factor of some units over the time.
             let off = (measured - predicted).abs();
@@ -328,4 +328,61 @@ fn modes_are_drawn_and_flags_that_do_nothing_refused() {
         assert_eq!(output.status.code(), Some(2), "{line}");
         assert!(error.contains(message), "{error}");
     }
+}
+
+/// The program on a system that is written to a file of its own.
+fn on_a_file(system: &str, command: &str, flags: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("system.json");
+    std::fs::write(&path, system).unwrap();
+    let output = kickdrift(&format!("{command} {} {flags}", path.display()));
+    let text =
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    (output.status.code(), text)
+}
+
+#[test]
+fn a_stiffness_with_pi_beyond_doubles_is_decided_and_not_a_panic() {
+    for (stiffness, verdict) in [("pi^2/1e400", "stable: elliptic"), ("pi^2*1e400", "unstable: hyperbolic")] {
+        let system = format!(
+            r#"{{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+                {{"step": "1/10", "stiffness": [["{stiffness}"]]}}, {{"step": "1/4", "stiffness": [["2"]]}}]}}"#
+        );
+        let (code, text) = on_a_file(&system, "system", "");
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.starts_with(verdict), "{text}");
+        let (code, text) = on_a_file(&system, "simulate", "--periods 3");
+        assert!(code == Some(0) || code == Some(2), "{text}");
+        assert!(!text.contains("panicked"), "{text}");
+    }
+}
+
+#[test]
+fn cancelling_potentials_are_no_rigid_mode() {
+    let system = r#"{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+        {"step": "1", "stiffness": [["4"]]}, {"step": "1", "stiffness": [["-4"]]}]}"#;
+    let (_, text) = on_a_file(system, "system", "");
+    assert!(text.starts_with("unstable: parabolic (proven)") && !text.contains("rigid"), "{text}");
+    assert!(text.contains("  1 degree of freedom, 1 clock, period T = 1"), "{text}");
+}
+
+#[test]
+fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
+    let scene = |name: &str, from: &str, to: &str| {
+        let text =
+            std::fs::read_to_string(format!("{}/data/scenes/{name}", env!("CARGO_MANIFEST_DIR"))).unwrap();
+        assert!(text.contains(from), "{name} has no {from}");
+        text.replacen(from, to, 1)
+    };
+    let long = scene("diatomic-tether.json", "\"3/10\"", "\"3/4294967296\"");
+    for command in ["system", "simulate"] {
+        let (code, text) = on_a_file(&long, command, "");
+        assert_eq!(code, Some(2), "{text}");
+        assert!(text.contains("products of machine words, the limit is 1.0e11"), "{text}");
+    }
+    let (_, fine) = on_a_file(&scene("fpu.json", "2500", "2500"), "system", "--budget 1");
+    assert!(fine.contains("the limit is 1.0e0"), "{fine}");
+    let (code, text) =
+        on_a_file(&scene("fpu.json", "2500", "2500"), "simulate", "--periods 1000000 --budget 100000");
+    assert!(code == Some(2) && text.contains("1000000 periods of"), "{text}");
 }

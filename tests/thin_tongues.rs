@@ -136,3 +136,39 @@ fn tongues_beyond_the_range_of_doubles_are_open_and_listed() {
     assert!(gaps.iter().all(|gap| !gap.closed && gap.width.0 <= gap.width.1));
     assert!(gaps.iter().any(|gap| gap.width.1 < f64::MIN_POSITIVE));
 }
+
+#[test]
+fn twenty_five_digits_by_counts_hold_sixty_by_signs() {
+    let cases = [
+        (7, 4, ratio(1, 25)),
+        (40, 39, power_of_ten(12)),
+        (43, 55, power_of_ten(-12)),
+        (19, 16, ratio(7, 1)),
+    ];
+    for (p, q, rho) in cases {
+        let tongues = tongues(p, q, &rho);
+        for gap in tongues.all().unwrap() {
+            for edge in [Some(gap.lower), gap.upper].into_iter().flatten() {
+                let [wide, narrow] = [25, 60].map(|digits| tongues.refine(&edge, digits).unwrap());
+                assert!(wide.lo <= narrow.lo && narrow.hi <= wide.hi, "{p}/{q}, {rho}: {edge:?}");
+                assert!(wide.width() <= &wide.lo * power_of_ten(-25), "{p}/{q}, {rho}: {edge:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn weak_coupling_and_dense_clusters_are_as_quick_as_any() {
+    // A second in all, tests running side by side; by long digits of both edges each took the better part of a minute.
+    let at = std::time::Instant::now();
+    for (p, q, rho) in
+        [(40, 39, power_of_ten(12)), (43, 55, ratio(13, 10) * power_of_ten(-12)), (1389, 1450, ratio(7, 1))]
+    {
+        let gaps = tongues(p, q, &rho).all().unwrap();
+        let narrow = |gap: &Gap| {
+            gap.width.0 > 0.0 && gap.width.1 <= 1.001 * gap.width.0 || gap.width.1 < f64::MIN_POSITIVE
+        };
+        assert!(gaps.iter().filter(|gap| gap.upper.is_some()).all(narrow), "{p}/{q}, rho = {rho}");
+    }
+    assert!(at.elapsed().as_secs() < 20, "{:?}", at.elapsed());
+}

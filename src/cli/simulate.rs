@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::args::{Common, whole};
-use super::system::{draw, read};
+use super::system::{draw, limits, read};
 use crate::avi::{Ends, Force, Simulation, growth_rate, irreversibility, series};
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -29,7 +29,7 @@ pub struct Args {
     /// which makes the run symmetric in time.
     #[arg(long)]
     staggered: bool,
-    /// Also draw energy, momentum and amplitude: FILE.svg or FILE.png.
+    /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
@@ -54,6 +54,7 @@ impl Args {
         let document = report::document(&run)
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
             .input("title", scene.title())
+            .input_json("system", scene.source().clone())
             .input("periods", self.periods)
             .input("displace", &self.displace)
             .input("form", if self.staggered { "staggered" } else { "symmetric" });
@@ -61,7 +62,7 @@ impl Args {
     }
 
     fn simulate(&self, scene: &SystemScene, common: &Common) -> Result<Run> {
-        let limits = common.budget.map_or_else(Limits::default, |products| Limits { products });
+        let limits = limits(common);
         let predicted = scene.decide(Route::Cheapest, &limits)?.growth_rate();
         let shift = self.shift(scene.system().size())?;
         let rest = vec![0.0; shift.len()];
@@ -70,9 +71,10 @@ impl Args {
             let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
             let make =
                 || Ok(scene.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
-            return self.measured(make, centre, scene.is_linear(), predicted);
+            return self.measured(make, centre, scene.is_linear(), (predicted, &limits));
         }
-        self.measured(|| scene.linear_simulation(shift.clone(), rest.clone()), &rest, true, predicted)
+        let make = || scene.linear_simulation(shift.clone(), rest.clone());
+        self.measured(make, &rest, true, (predicted, &limits))
     }
 
     fn measured<F: Force<f64>>(
@@ -80,11 +82,16 @@ impl Args {
         make: impl Fn() -> Result<Simulation<f64, F>>,
         centre: &[f64],
         linear: bool,
-        predicted: f64,
+        (predicted, limits): (f64, &Limits),
     ) -> Result<Run> {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
-        let period = simulation.clocks().period;
+        let period = simulation.clocks().period();
+        // The series, the measurement of growth, and one period forward and back.
+        let runs = 2 * u64::from(self.periods) + 2;
+        limits.allow(simulation.cost(period).saturating_mul(runs), || {
+            format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes())
+        })?;
         if !simulation.energy().is_finite() {
             let remedy = "the energy there is beyond all doubles: choose a smaller displacement";
             return Err(Error::input("displace", &self.displace, remedy));

@@ -10,7 +10,7 @@ use super::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::system::{self as report, Colouring, SystemMap};
 use crate::scene::{Axis, Scan, SystemScene};
@@ -19,7 +19,7 @@ use crate::system::{Limits, Route};
 
 /// Flags of `system`.
 ///
-/// --output FILE.svg or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
+/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -98,12 +98,13 @@ impl Args {
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {
         let document = document
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
-            .input("title", scene.title());
+            .input("title", scene.title())
+            .input_json("system", scene.source().clone());
         if self.exact { document.input("exact", "true") } else { document }
     }
 }
 
-fn limits(common: &Common) -> Limits {
+pub fn limits(common: &Common) -> Limits {
     common.budget.map_or_else(Limits::default, |products| Limits { products })
 }
 
@@ -116,15 +117,13 @@ fn drawing(common: &Common) -> Result<Option<&Path>> {
     Ok(common.output.as_deref().filter(|_| format.is_figure()))
 }
 
-/// Writes a figure to FILE.svg or FILE.png.
+/// Writes a figure to FILE.svg, FILE.pdf or FILE.png.
 pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
-    let svg = figure.svg();
-    let drawn = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("svg") => svg.into_bytes(),
-        Some("png") => png::raster(&svg, DPI)?,
-        _ => return Err(Error::input(field, path.display(), "name a file that ends in .svg or .png")),
-    };
-    write_output(Some(path), &drawn)
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
+    let remedy = || format!("name a file that ends in {}", Format::extensions(&Format::FIGURE));
+    let format = format.ok_or_else(|| Error::input(field, path.display(), remedy()))?;
+    write_output(Some(path), &figure.file(format, DPI)?)
 }
 
 fn text(path: &Path) -> Result<String> {

@@ -35,4 +35,4 @@ pub use shard::Shard;
 pub use store::Store;
 
 #[doc(hidden)]
-pub use crate::vector::instructions::{force as force_instructions, names as instruction_sets};
+pub use crate::vector::instructions::names as instruction_sets;

@@ -13,28 +13,32 @@
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
-use super::model::System;
+use super::limits::Limits;
+use super::model::{Potential, System};
 use super::sparse::Symmetric;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number::{Rational, Ring};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{Event, Weight};
 
-/// Kicks of a half period that are composed at most: some minutes where each touches few degrees of freedom.
-const MOST_KICKS: u64 = 10_000_000_000;
+/// What an event costs beside its multiplications, in columns of the half period.
+const OVERHEAD: u64 = 16;
 
-/// That a half period can be composed kick by kick.
+/// The multiplications of a half period with all 2n columns, roughly.
+pub(super) fn cost(system: &System) -> u64 {
+    let entries = |k: &Symmetric| (0..k.size()).map(|i| k.row(i).len() + 1).sum::<usize>() as u64;
+    let kick = |(k, clock): (usize, &Potential)| {
+        (system.strikes(k) / 2 + 1).saturating_mul(entries(&clock.stiffness))
+    };
+    let rows = system.clocks().iter().enumerate().map(kick).fold(0, u64::saturating_add);
+    rows.saturating_mul(2 * system.size() as u64 + OVERHEAD)
+}
+
+/// That a half period may be composed kick by kick.
 ///
 /// # Errors
-/// A budget error, before any work, where it holds too many kicks.
-pub(super) fn check_length(schedule: &Schedule) -> Result<()> {
-    let kicks = schedule.strikes() / 2;
-    if kicks <= MOST_KICKS {
-        return Ok(());
-    }
-    let cost = format!(
-        "half a period holds {kicks} kicks, to compose which would take more than minutes (the limit is {MOST_KICKS})"
-    );
-    Err(Error::too_much(cost, "choose steps with simpler ratios"))
+/// A budget error, before any work.
+pub(super) fn check_length(system: &System, limits: &Limits) -> Result<()> {
+    limits.allow(cost(system), || format!("half a period of {} kicks", system.schedule().strikes() / 2))
 }
 
 /// The coefficients of one row: (column, value) pairs.
@@ -68,7 +72,7 @@ impl Program<Rational> {
             island.iter().for_each(|&i| island_of[i] = k);
         }
         let inverse_mass = inverse(system.mass(), &islands);
-        let kick = |(clock, ticks): (&super::Potential, u64)| {
+        let kick = |(clock, ticks): (&Potential, u64)| {
             let factor = system.tick() * system.tick() * Rational::from_integer(ticks.into());
             let rows: Vec<_> = clock
                 .stiffness
@@ -107,6 +111,12 @@ impl<S> Program<S> {
         self.inverse_mass.len()
     }
 
+    /// All coefficients, of M⁻¹ and of the F_k.
+    pub fn entries(&self) -> impl Iterator<Item = &S> {
+        let kicks = self.kicks.iter().flat_map(|kick| &kick.rows).map(|(_, row)| row);
+        self.inverse_mass.iter().chain(kicks).flatten().map(|(_, x)| x)
+    }
+
     /// Sends `events` to the state: drifts of islands up to date before the kicks that look at them, and at
     /// the end all to the same time.
     pub fn run(&self, events: impl Iterator<Item = Event>, state: &mut impl State<S>) {
@@ -114,7 +124,7 @@ impl<S> Program<S> {
         let mut now = 0;
         for event in events {
             now += event.drift;
-            for (_, kick) in self.kicks.iter().enumerate().filter(|(k, _)| event.kicks >> k & 1 == 1) {
+            for kick in event.clocks().map(|clock| &self.kicks[clock]) {
                 for &island in &kick.islands {
                     state.drift(self, island, now - at[island]);
                     at[island] = now;

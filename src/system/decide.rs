@@ -13,8 +13,8 @@
 
 use super::analysis::Analysis;
 use super::compose::connected;
-use super::exact::Limits;
 use super::frame::Frame;
+use super::limits::Limits;
 use super::model::System;
 use super::piece::{pieces, unit};
 use crate::error::Result;
@@ -52,7 +52,7 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
             "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
         );
     }
-    let graphs = system.clocks().iter().map(|clock| &clock.stiffness).chain([system.mass()]);
+    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
     let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
     for dofs in connected(system.size(), graphs) {
         let Some(component) = system.component(&dofs) else {

@@ -14,28 +14,16 @@ use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
+use super::analysis::degrees_of_freedom;
 use super::frame::Frame;
 use super::integers::{IntegerBlocks, IntegerProgram};
+use super::limits::Limits;
 use super::model::System;
-use super::modular::Field;
+use super::modular;
 use super::roots::{self, RootCount};
-use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::error::Result;
+use crate::number::{PrimeField, Rational};
 use crate::verdict::Kind;
-
-/// How much exact work one verdict may cost.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// The most products of 64-bit words.
-    pub products: u64,
-}
-
-impl Default for Limits {
-    /// 10^11: some minutes at worst.
-    fn default() -> Self {
-        Limits { products: 100_000_000_000 }
-    }
-}
 
 /// What exact arithmetic says of a system without rigid modes.
 #[derive(Clone, Debug)]
@@ -74,15 +62,10 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
     let frame = Frame::new(system);
     let program = IntegerProgram::new(system);
     let cost = estimate(system, &frame, &program);
-    if cost > limits.products {
+    limits.allow(cost, || {
         let (size, kicks) = (frame.kept.len(), system.schedule().strikes() / 2);
-        let work = format!(
-            "exact arithmetic on {size} degrees of freedom with {kicks} kicks in half a period would cost about \
-             {cost:.1e} products of machine words, the budget is {:.1e}",
-            limits.products as f64
-        );
-        return Err(Error::budget(work, cost).or("choose steps with simpler ratios"));
-    }
+        format!("exact arithmetic on {} with {kicks} kicks in half a period", degrees_of_freedom(size))
+    })?;
     Ok(judge(&program.half_period(system, &frame)))
 }
 
@@ -128,7 +111,7 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
 
 fn nullity(m: &DMatrix<BigInt>) -> usize {
     let bound = m.iter().map(Signed::abs).max().unwrap_or_default();
-    m.nrows() - roots::rank(m.nrows(), &bound, |field| field.matrix(m))
+    m.nrows() - roots::rank(m.nrows(), &bound, |field| modular::matrix(field, m))
 }
 
 /// rank f(m).
@@ -137,7 +120,7 @@ fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
     let norm = roots::row_sum(m);
     let bound = f.iter().rev().fold(BigInt::zero(), |value, c| value * &norm + c.abs()) + BigInt::one();
     roots::rank(n, &bound, |field| {
-        let m = field.matrix(m);
+        let m = modular::matrix(field, m);
         f.iter().rev().fold(DMatrix::from_element(n, n, 0), |value, c| {
             let mut next = times(field, &value, &m);
             let c = field.of_big(c);
@@ -147,7 +130,7 @@ fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
     })
 }
 
-fn times(field: &Field, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
+fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
     DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
         (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
     })

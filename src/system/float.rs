@@ -150,9 +150,13 @@ pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
     let mut program = Program::new(system).map(f64::from_rational);
     let scales = scales(&program, middle_frequency(system, frame));
     rescale(&mut program, &scales);
+    let is_rounded_well = program.entries().all(|x| x.abs() > 1e-290 && x.is_finite());
     let mut rows = Rows::identity(system.size());
     program.run(system.schedule().half_period(), &mut rows);
-    finish(rows, &frame.scaled(&scales), frame.kept.iter().map(|&i| scales[i]).collect())
+    let mut blocks = finish(rows, &frame.scaled(&scales), frame.kept.iter().map(|&i| scales[i]).collect());
+    // An entry that underflows or overflows has no relative error to speak of.
+    blocks.error = blocks.error.filter(|_| is_rounded_well);
+    blocks
 }
 
 /// Projects rows of positions and columns of momenta, y_i = x_i − Σ n_J\[i\] x_J.

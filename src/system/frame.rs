@@ -31,6 +31,11 @@ impl Frame {
         Frame { rigid, kept }
     }
 
+    /// That of n degrees of freedom without rigid modes.
+    pub fn whole(n: usize) -> Self {
+        Frame { rigid: Vec::new(), kept: (0..n).collect() }
+    }
+
     /// The momentum that starts column `k`: the rows of its entries that are not 0.
     pub fn momentum(&self, k: usize) -> Vec<(usize, Rational)> {
         let i = self.kept[k];

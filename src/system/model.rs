@@ -1,6 +1,7 @@
 //! A linear system with a clock for each of its potentials.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use num_traits::{Signed, Zero};
 
@@ -22,10 +23,11 @@ pub struct Potential {
 
 /// M x'' + Σ K_k x = 0, each K_k kicking by its own clock.
 ///
-/// Potentials of equal step and phase are one potential, their sum.
+/// Potentials of equal step and phase share a clock, whose stiffness is their sum.
 #[derive(Clone, Debug)]
 pub struct System {
     mass: Symmetric,
+    potentials: Vec<Potential>,
     clocks: Vec<Potential>,
     schedule: Schedule,
     tick: Rational,
@@ -42,16 +44,17 @@ impl System {
         for (k, potential) in potentials.iter().enumerate() {
             check_potential(k, potential, mass.size())?;
         }
-        System::of_clocks(mass, merged(potentials))
+        System::of_checked(mass, potentials)
     }
 
-    /// From checked parts, one clock each.
-    fn of_clocks(mass: Symmetric, clocks: Vec<Potential>) -> Result<Self> {
+    /// From a mass matrix and potentials that were checked, at least one of these.
+    fn of_checked(mass: Symmetric, potentials: Vec<Potential>) -> Result<Self> {
+        let clocks = merged(&potentials);
         let steps: Vec<_> = clocks.iter().map(|clock| clock.step.clone()).collect();
         let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
         let schedule = Schedule::new(&steps, &phases)?;
         let tick = &steps[0] / Rational::from_integer(schedule.clocks()[0].step().into());
-        Ok(System { mass, clocks, schedule, tick })
+        Ok(System { mass, potentials, clocks, schedule, tick })
     }
 
     /// The number of degrees of freedom.
@@ -64,7 +67,13 @@ impl System {
         &self.mass
     }
 
-    /// The potentials, one for each (step, phase), by increasing step.
+    /// The potentials as they were given.
+    pub fn potentials(&self) -> &[Potential] {
+        &self.potentials
+    }
+
+    /// The sums of the potentials that share a step and a phase, by increasing step; sums that vanish are left out,
+    /// unless all do.
     pub fn clocks(&self) -> &[Potential] {
         &self.clocks
     }
@@ -96,13 +105,15 @@ impl System {
         total
     }
 
-    /// The common null vectors of all K_k, which move freely: (coordinate where it alone is 1, vector) pairs.
+    /// The common null vectors of all potentials as they were given, which move freely: (coordinate where it alone is
+    /// 1, vector) pairs. A direction in which potentials of one clock cancel is none of them: it drifts, but only as
+    /// long as they cancel, and is called what it is, parabolic.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
         let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
         let mut conditions = Vec::new();
-        for clock in &self.clocks {
-            let images: Vec<_> = candidates.iter().map(|z| clock.stiffness.times(z)).collect();
+        for potential in &self.potentials {
+            let images: Vec<_> = candidates.iter().map(|z| potential.stiffness.times(z)).collect();
             for i in 0..self.size() {
                 let row: BTreeMap<_, _> = images.iter().map(|z| z[i].clone()).enumerate().collect();
                 conditions.push(row.into_iter().filter(|(_, x)| !x.is_zero()).collect());
@@ -117,21 +128,21 @@ impl System {
     }
 
     /// The same dynamics in the coordinates y, x = Z y, where the columns of Z span an invariant subspace.
-    /// Clocks that do not act there are left out; `None` where none is left.
-    pub(super) fn restricted(&self, columns: &[Vec<Rational>]) -> Option<System> {
+    pub(super) fn restricted(&self, columns: &[Vec<Rational>]) -> System {
         self.mapped(self.mass.congruent(columns), |k| k.congruent(columns))
     }
 
-    /// The degrees of freedom in `indices` alone.
+    /// The degrees of freedom in `indices` alone; `None` where no potential acts on them.
     pub(super) fn component(&self, indices: &[usize]) -> Option<System> {
-        self.mapped(self.mass.restricted(indices), |k| k.restricted(indices))
+        let part = self.mapped(self.mass.restricted(indices), |k| k.restricted(indices));
+        part.potentials.iter().any(|own| !own.stiffness.is_zero()).then_some(part)
     }
 
-    fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> Option<System> {
-        let clock = |clock: &Potential| Potential { stiffness: map(&clock.stiffness), ..clock.clone() };
-        let clocks: Vec<_> = self.clocks.iter().map(clock).filter(|c| !c.stiffness.is_zero()).collect();
+    fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> System {
+        let mapped = |own: &Potential| Potential { stiffness: map(&own.stiffness), ..own.clone() };
         // A part of a schedule has no longer a period than the whole.
-        (!clocks.is_empty()).then(|| System::of_clocks(mass, clocks).expect("a part of a checked system"))
+        System::of_checked(mass, self.potentials.iter().map(mapped).collect())
+            .expect("a part of a checked system")
     }
 }
 
@@ -189,15 +200,13 @@ fn check_potential(k: usize, potential: &Potential, n: usize) -> Result<()> {
     Ok(())
 }
 
-/// One potential for each (step, phase), by increasing step; those that vanish are kept if nothing else is.
-fn merged(potentials: Vec<Potential>) -> Vec<Potential> {
-    let mut clocks: BTreeMap<(Rational, Rational), Potential> = BTreeMap::new();
+/// One clock for each (step, phase), by increasing step; those whose stiffness vanishes are kept if nothing else is.
+fn merged(potentials: &[Potential]) -> Vec<Potential> {
+    let mut clocks: BTreeMap<(&Rational, &Rational), Potential> = BTreeMap::new();
     for potential in potentials {
-        match clocks.entry((potential.step.clone(), potential.phase.clone())) {
-            std::collections::btree_map::Entry::Vacant(place) => drop(place.insert(potential)),
-            std::collections::btree_map::Entry::Occupied(mut place) => {
-                place.get_mut().stiffness.add_all(&potential.stiffness);
-            }
+        match clocks.entry((&potential.step, &potential.phase)) {
+            Entry::Vacant(place) => drop(place.insert(potential.clone())),
+            Entry::Occupied(mut place) => place.get_mut().stiffness.add_all(&potential.stiffness),
         }
     }
     let (moving, still): (Vec<_>, Vec<_>) = clocks.into_values().partition(|c| !c.stiffness.is_zero());

@@ -1,11 +1,13 @@
 //! Invariant parts of a component, and the verdict on each.
 
+use super::analysis::degrees_of_freedom;
 use super::analysis::{Evidence, Part};
 use super::compose::check_length;
 use super::decide::Route;
-use super::exact::{Limits, MuCount, decide_exact};
+use super::exact::{MuCount, decide_exact};
 use super::float;
 use super::frame::Frame;
+use super::limits::Limits;
 use super::model::System;
 use super::single;
 use super::sparse::{dot, null_space};
@@ -43,20 +45,23 @@ pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
     });
     let complement: Subspace =
         null_space(conditions.collect(), component.size()).into_iter().map(|(_, z)| z).collect();
-    let Some(vibrating) = component.restricted(&complement) else { return Vec::new() };
+    if complement.is_empty() {
+        return Vec::new();
+    }
+    let vibrating = component.restricted(&complement);
     let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
     let subspaces = invariant_subspaces(&vibrating).unwrap_or_else(whole);
     let piece = |space: Subspace| {
-        let system = vibrating.restricted(&space)?;
-        let frame = Frame::new(&system);
+        let system = vibrating.restricted(&space);
+        let frame = Frame::whole(system.size());
         let lifted = |y: &Vec<Rational>| {
             let rows =
                 (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
             rows.map(|row| dot(&row, y)).collect()
         };
-        Some(Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) })
+        Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) }
     };
-    subspaces.into_iter().filter_map(piece).collect()
+    subspaces.into_iter().map(piece).collect()
 }
 
 impl Piece {
@@ -69,7 +74,7 @@ impl Piece {
         warnings: &mut Vec<String>,
     ) -> Result<Part> {
         let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
-            single::decide(&self.system)?
+            single::decide(&self.system, how.1)?
         } else {
             self.decide_many(how, warnings)?
         };
@@ -85,7 +90,7 @@ impl Piece {
     fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
         // What may be refused is asked for before anything else is computed.
         let asked = (how.0 == Route::Exact).then(|| decide_exact(&self.system, how.1)).transpose()?;
-        check_length(self.system.schedule())?;
+        check_length(&self.system, how.1)?;
         let blocks = float::half_period(&self.system, &self.frame);
         let spectrum = Spectrum::new(&blocks);
         let certified = || spectrum.as_ref().and_then(|spectrum| spectrum.certified(&blocks));
@@ -117,9 +122,9 @@ impl Piece {
             (Err(error), _) => return Err(error),
         };
         warnings.push(format!(
-            "doubles do not prove the verdict on {} degrees of freedom (eigenvalues too close together or to the edge \
+            "doubles do not prove the verdict on {} (eigenvalues too close together or to the edge \
              of stability): it is an estimate; {error}",
-            self.frame.kept.len()
+            degrees_of_freedom(self.frame.kept.len())
         ));
         Ok((estimate(spectrum.expect("just seen")), Evidence::Estimate, None))
     }

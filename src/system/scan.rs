@@ -3,7 +3,6 @@
 use crate::parallel::*;
 
 use super::analysis::Analysis;
-use super::model::System;
 use crate::error::Result;
 use crate::number::Rational;
 use crate::verdict::Kind;
@@ -50,32 +49,4 @@ pub fn scan(
         see(group.len());
     }
     Ok(points)
-}
-
-impl System {
-    /// The same system with clock `clock`'s step replaced: for maps over steps.
-    ///
-    /// # Errors
-    /// As [`System::new`].
-    ///
-    /// # Panics
-    /// Where there is no such clock.
-    pub fn with_step(&self, clock: usize, step: &Rational) -> Result<System> {
-        let mut clocks = self.clocks().to_vec();
-        clocks[clock].step = step.clone();
-        System::new(self.mass().clone(), clocks)
-    }
-
-    /// The same system with clock `clock`'s stiffness times a factor: for maps over a stiffness.
-    ///
-    /// # Errors
-    /// As [`System::new`].
-    ///
-    /// # Panics
-    /// Where there is no such clock.
-    pub fn with_stiffness(&self, clock: usize, factor: &Rational) -> Result<System> {
-        let mut clocks = self.clocks().to_vec();
-        clocks[clock].stiffness = clocks[clock].stiffness.scaled(factor);
-        System::new(self.mass().clone(), clocks)
-    }
 }

@@ -8,13 +8,14 @@ use super::compose::check_length;
 use super::enclose;
 use super::float;
 use super::frame::Frame;
+use super::limits::Limits;
 use super::model::System;
 use super::modes::{Origin, Resonance};
 use super::scalar::{shortest_families, shortest_family};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number::rational::to_f64;
 use crate::number::{Ball, Laurent, Rational, Sign};
-use crate::verdict::{self, Decidable, Kind, Limits, PartialSigns, Tier, Verdict};
+use crate::verdict::{self, Decidable, Kind, PartialSigns, Tier, Verdict};
 
 /// A trace, a label: what the kernels tell of one oscillator.
 struct Scalar {
@@ -51,27 +52,34 @@ impl System {
 }
 
 /// The verdict on a system of one degree of freedom; shapes are (1).
-pub(super) fn decide(system: &System) -> Result<Part> {
+pub(super) fn decide(system: &System, limits: &Limits) -> Result<Part> {
     let clocks = system.as_many_clocks().expect("one degree of freedom");
     // In fractions each kick makes the numbers longer.
-    decide_clocks(&clocks, system, Laurent::from_rational(system.period()), 50_000)
+    let exact = |kicks: f64| 40.0 * kicks.powi(2);
+    decide_clocks(&clocks, system, Laurent::from_rational(system.period()), exact, limits)
 }
 
 /// The verdict on K clocks with stiffnesses that may involve π, as the one part of a system.
 ///
-/// `rounded` is the same oscillator with each stiffness/mass rounded to the nearest double, mass 1; `unit` is h_1, the
+/// `rounded` is the same oscillator with each stiffness/mass rounded to a rational of 64 bits, mass 1; `unit` is h_1, the
 /// unit of time of `clocks`.
 ///
 /// # Errors
-/// A budget error where only more exact arithmetic than some minutes' worth would tell.
+/// A budget error where what would tell exceeds the limits.
 ///
 /// # Panics
 /// Where `rounded` has not the clocks of `clocks`.
-pub fn decide_oscillator(clocks: &ManyClocks<Laurent>, rounded: &System, unit: &Laurent) -> Result<Analysis> {
+pub fn decide_oscillator(
+    clocks: &ManyClocks<Laurent>,
+    rounded: &System,
+    unit: &Laurent,
+    limits: &Limits,
+) -> Result<Analysis> {
     assert_eq!(clocks.strikes().len(), rounded.clocks().len(), "one stiffness a clock");
     let period = Laurent::from_rational(clocks.period()) * unit.clone();
-    // Over Q[π] the degree grows with each kick.
-    let part = decide_clocks(clocks, rounded, period.clone(), 900)?;
+    // Over Q[π] the degree grows with each kick too.
+    let exact = |kicks: f64| 0.15 * kicks.powi(4);
+    let part = decide_clocks(clocks, rounded, period.clone(), exact, limits)?;
     let warnings = if rounded.total_stiffness().is_positive_semidefinite() {
         Vec::new()
     } else {
@@ -81,20 +89,21 @@ pub fn decide_oscillator(clocks: &ManyClocks<Laurent>, rounded: &System, unit: &
     Ok(Analysis { size, clocks, period, kind, rigid_modes: Vec::new(), parts: vec![part], warnings })
 }
 
-/// By the ladder, by doubles, by balls, or by exact signs of at most `exact` kicks.
+/// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.
 fn decide_clocks<S: Decidable>(
     clocks: &ManyClocks<S>,
     rounded: &System,
     period: Laurent,
-    exact: u64,
+    exact: impl Fn(f64) -> f64,
+    limits: &Limits,
 ) -> Result<Part> {
-    let scalar = match by_ladder(clocks)? {
+    let scalar = match by_ladder(clocks, limits)? {
         Some(scalar) => scalar,
         None => {
-            check_length(clocks.schedule())?;
+            check_length(rounded, limits)?;
             match by_doubles(rounded, clocks).or_else(|| by_balls(clocks)) {
                 Some(scalar) => scalar,
-                None => by_signs(clocks, exact)?,
+                None => by_signs(clocks, exact, limits)?,
             }
         }
     };
@@ -123,9 +132,9 @@ fn decide_clocks<S: Decidable>(
 }
 
 /// One or two clocks of phase 0: the certified ladder.
-fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>) -> Result<Option<Scalar>> {
+fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>, limits: &Limits) -> Result<Option<Scalar>> {
     let Some(two) = clocks.as_two_clocks() else { return Ok(None) };
-    let limits = Limits::default();
+    let limits = limits.of_ladder();
     let answer = verdict::decide(&two, &limits)?;
     let mu = answer.trace()?.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
     Ok(Some(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, label: answer.label()? }))
@@ -171,12 +180,13 @@ fn labelled<S: Decidable>(clocks: &ManyClocks<S>, verdict: Verdict) -> Option<u6
 }
 
 /// Any clocks: exact signs.
-fn by_signs<S: Decidable>(clocks: &ManyClocks<S>, most: u64) -> Result<Scalar> {
+fn by_signs<S: Decidable>(
+    clocks: &ManyClocks<S>,
+    cost: impl Fn(f64) -> f64,
+    limits: &Limits,
+) -> Result<Scalar> {
     let kicks = clocks.schedule().strikes() / 2;
-    if kicks > most {
-        let cost = format!("exact signs of {kicks} kicks would take more than minutes (the limit is {most})");
-        return Err(Error::too_much(cost, "choose steps with simpler ratios"));
-    }
+    limits.allow(cost(kicks as f64) as u64, || format!("exact signs of {kicks} kicks"))?;
     let half = clocks.half_period();
     let mu = S::product(&half[(0, 1)], &half[(1, 0)]).enclosure(BITS);
     Ok(Scalar { verdict: clocks.half_signs().verdict(), tier: Tier::Exact, mu, label: clocks.label() })

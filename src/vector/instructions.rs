@@ -77,7 +77,7 @@ impl Instructions {
         self.perform(With::<[f64; 1], K>(kernel, PhantomData))
     }
 
-    /// The best that this processor has, or those that were [forced](force).
+    /// The best that this processor has, or those that were [forced](force_instructions).
     pub fn best() -> Instructions {
         Instructions::available().nth(FORCED.load(Ordering::Relaxed)).unwrap_or(Instructions::Portable)
     }
@@ -92,12 +92,17 @@ pub fn names() -> Vec<String> {
     Instructions::available().map(|set| format!("{set:?}")).collect()
 }
 
-/// Makes all later work use the n-th of the [`names`]: so that one machine measures, and compares, several kinds. For
-/// benchmarks and tests.
+/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine measures, and
+/// compares, several. False where the processor lacks it.
 #[doc(hidden)]
-pub fn force(n: usize) {
-    FORCED.store(n, Ordering::Relaxed);
+pub fn force_instructions(name: &str) -> bool {
+    let meant = Instructions::available().position(|set| format!("{set:?}").eq_ignore_ascii_case(name));
+    if let Some(n) = meant {
+        FORCED.store(n, Ordering::Relaxed);
+    }
+    meant.is_some()
 }
+
 
 /// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.
 pub(crate) trait Task {

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use kickdrift::map::{
-    Counters, Grid, Map, Resources, force_instructions, instruction_sets, uncertified_unstable,
+    Counters, Grid, Map, Resources, instruction_sets, uncertified_unstable,
 };
 
 mod common;
@@ -45,7 +45,7 @@ fn side_by_side(n: u64) {
     for round in 0..8 {
         // Without fused operations in hardware the portable form takes minutes.
         for set in (0..sets.len()).filter(|&set| sets[set] != "Portable") {
-            force_instructions(set);
+            assert!(kickdrift::force_instructions(&sets[set]));
             ours[set] = ours[set].min(processor_time(|| certified(&grid, one)));
             bare[set] = bare[set].min(processor_time(|| uncertified_unstable(&grid, 1)));
         }

@@ -89,21 +89,30 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
+/// A number with its noun.
+fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
 fn lines(analysis: &Analysis) -> Vec<String> {
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
         format!("{stable}: {} ({proven})", analysis.kind.name()),
         format!(
-            "  {} degrees of freedom, {} clocks, period T = {}",
-            analysis.size, analysis.clocks, analysis.period
-        ),
-        format!(
-            "  {} rigid modes set apart, {} independent parts",
-            analysis.rigid_modes.len(),
-            analysis.parts.len()
+            "  {}, {}, period T = {}",
+            counted(analysis.size, "degree of freedom", "degrees of freedom"),
+            counted(analysis.clocks, "clock", "clocks"),
+            analysis.period
         ),
     ];
+    let (rigid, parts) = (analysis.rigid_modes.len(), analysis.parts.len());
+    if rigid > 0 {
+        lines.push(format!("  {} set apart", counted(rigid, "rigid mode", "rigid modes")));
+    }
+    if parts > 1 {
+        lines.push(format!("  {parts} independent parts"));
+    }
     if !analysis.is_stable() {
         lines.push(format!("  largest growth rate {:.6} per unit time", analysis.growth_rate()));
     }

@@ -41,6 +41,9 @@ mod linear;
 mod oscillator;
 mod scan;
 
+use serde::Deserialize;
+use serde_json::Value;
+
 use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -63,6 +66,7 @@ const LARGEST: usize = 4096;
 /// A system file, read and checked.
 #[derive(Clone, Debug)]
 pub struct SystemScene {
+    source: Value,
     title: String,
     system: System,
     nonlinear: Option<Nonlinear>,
@@ -80,27 +84,37 @@ impl SystemScene {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        SystemScene::of(serde_json::from_str(text).map_err(no_system)?)
+        // From the text, for an error to name its line.
+        let document = serde_json::from_str(text).map_err(no_system)?;
+        SystemScene::new(document, serde_json::from_str(text).map_err(no_system)?)
     }
 
-    fn of(document: Document) -> Result<SystemScene> {
+    /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
+    ///
+    /// # Errors
+    /// As [`SystemScene::read`].
+    pub fn from_json(source: Value) -> Result<SystemScene> {
+        SystemScene::new(Document::deserialize(&source).map_err(no_system)?, source)
+    }
+
+    fn new(document: Document, source: Value) -> Result<SystemScene> {
         if document.schema != SCHEMA {
             return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
         }
         let title = document.title.clone().unwrap_or_default();
         match &document.build {
             Some(build) if document.masses.is_none() && document.potentials.is_none() => {
-                Ok(SystemScene { title, system: build.system()?, nonlinear: None, oscillator: None })
+                Ok(SystemScene { source, title, system: build.system()?, nonlinear: None, oscillator: None })
             }
             Some(_) => Err(Error::input("build", "given", "give either build, or masses and potentials")),
-            None => SystemScene::explicit(title, &document),
+            None => SystemScene::explicit(source, title, &document),
         }
     }
 
-    fn explicit(title: String, document: &Document) -> Result<SystemScene> {
+    fn explicit(source: Value, title: String, document: &Document) -> Result<SystemScene> {
         if let Some(oscillator) = document.oscillator()? {
             let system = oscillator.rounded.clone();
-            return Ok(SystemScene { title, system, nonlinear: None, oscillator: Some(oscillator) });
+            return Ok(SystemScene { source, title, system, nonlinear: None, oscillator: Some(oscillator) });
         }
         let (mass, potentials) = (document.mass()?, document.potentials()?);
         let n = mass.size();
@@ -111,7 +125,12 @@ impl SystemScene {
             let (system, nonlinear) = document.at_equilibrium(mass, potentials, linear)?;
             (system, Some(nonlinear))
         };
-        Ok(SystemScene { title, system, nonlinear, oscillator: None })
+        Ok(SystemScene { source, title, system, nonlinear, oscillator: None })
+    }
+
+    /// The whole input, as it was read.
+    pub fn source(&self) -> &Value {
+        &self.source
     }
 
     /// The title, or nothing.
@@ -131,7 +150,7 @@ impl SystemScene {
     /// As [`decide_by`] and [`decide_oscillator`].
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         match &self.oscillator {
-            Some(own) => decide_oscillator(&own.clocks, &own.rounded, &own.unit),
+            Some(own) => decide_oscillator(&own.clocks, &own.rounded, &own.unit, limits),
             None => decide_by(route, &self.system, limits),
         }
     }

@@ -6,8 +6,7 @@ use num_traits::Zero;
 
 use super::document::{Document, PotentialDocument, ends};
 use crate::error::{Error, Result};
-use crate::number::rational::from_f64_exact;
-use crate::number::{ExactSign, Laurent, Rational, Sign};
+use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
 use crate::system::{ManyClocks, Potential, Symmetric, System};
 
 /// The clocks in units of h_1, the shortest step.
@@ -16,7 +15,7 @@ pub(super) struct Oscillator {
     pub clocks: ManyClocks<Laurent>,
     /// h_1.
     pub unit: Laurent,
-    /// The same with every stiffness/mass rounded to the nearest double; in the unit of time h_1 where
+    /// The same with every stiffness/mass rounded to a rational of some 60 bits; in the unit of time h_1 where
     /// steps are irrational.
     pub rounded: System,
     pub has_rational_steps: bool,
@@ -96,6 +95,17 @@ fn merged(clocks: Vec<(Laurent, Rational, Laurent)>) -> Merged {
     merged
 }
 
+/// A rational within 2^-60 |x| of x, and 0 for 0 alone: unlike doubles it neither vanishes nor overflows.
+fn rounded(x: &Laurent) -> Rational {
+    if x.is_zero() {
+        return Rational::zero();
+    }
+    let balls = (7..).map(|log2| x.enclosure(1 << log2));
+    let close = |ball: &Ball| ball.relative_accuracy_bits() > 60;
+    // Powers of π are independent over ℚ: x is not 0, so some precision tells its leading bits.
+    balls.into_iter().find(close).expect("precisions without end").lower()
+}
+
 /// The clocks by increasing step, exactly and rounded.
 fn assembled(mass: &Laurent, clocks: Vec<(Laurent, Rational, Laurent)>) -> Result<Oscillator> {
     let merged = merged(clocks);
@@ -113,10 +123,7 @@ fn assembled(mass: &Laurent, clocks: Vec<(Laurent, Rational, Laurent)>) -> Resul
         })?;
         strengths.push(&(&base * &step) * &over_mass);
         let scaled = if rational_base.is_some() { over_mass } else { &(&base * &base) * &over_mass };
-        let stiffness = from_f64_exact(scaled.to_f64()).ok_or_else(|| {
-            Error::input(&format!("potentials[{k}]"), &scaled, "is beyond the range of doubles")
-        })?;
-        let stiffness = Symmetric::diagonal(&[stiffness]);
+        let stiffness = Symmetric::diagonal(&[rounded(&scaled)]);
         potentials.push(Potential { stiffness, step: &unit * &ratio, phase: phase.clone() });
         steps.push(ratio);
         phases.push(phase);

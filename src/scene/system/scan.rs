@@ -5,7 +5,7 @@
 
 use serde_json::Value;
 
-use super::{Document, SystemScene, no_system};
+use super::{SystemScene, no_system};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
@@ -106,8 +106,7 @@ impl Scan {
         for (axis, value) in [(&self.x, x), (&self.y, y)] {
             *place(&mut file, &axis.path)? = Value::String(value.to_string());
         }
-        let document: Document = serde_json::from_value(file).map_err(no_system)?;
-        SystemScene::of(document)
+        SystemScene::from_json(file)
     }
 }
 

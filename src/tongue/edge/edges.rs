@@ -3,14 +3,13 @@
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use num_traits::Signed;
-
-use super::eigenvalues::{Sighting, eigenvalues};
+use super::eigenvalues::{eigenvalues, sighting};
 use super::enclosure::{Edge, Enclosure};
+use super::fine_count::{self, TWO_DOUBLES};
 use super::function::EntryFunction;
 use super::{exact_count, precise};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Ratio, Rational, rational};
+use crate::number::{Ball, Ratio, Rational};
 use crate::tongue::string::{Entry, HalfString, Indices};
 
 /// How much work was done.
@@ -114,26 +113,17 @@ impl Edges {
         }
         let complete = |(edge, index): (Option<Edge>, usize)| match edge {
             Some(edge) if edge.is_narrow() => Ok(edge),
-            edge => self.by_more_bits(entry, index, edge),
+            edge => Ok(self.by_more_bits(entry, index, edge)),
         };
         found.into_iter().zip(first..).map(complete).collect()
     }
 
     /// An edge that doubles could not certify, or left wide.
-    fn by_more_bits(&self, entry: Entry, index: usize, wide: Option<Edge>) -> Result<Edge> {
-        const DIGITS: u32 = 20;
-        let found = match wide {
-            Some(edge) => self.refine(&edge, DIGITS)?,
-            None => {
-                let seen = Sighting::of(&self.string, entry, index);
-                let exact = |x: f64| rational::from_f64_exact(x).filter(Signed::is_positive);
-                let start =
-                    seen.alone.and_then(|(lo, hi)| Some(Enclosure { lo: exact(lo)?, hi: exact(hi)? }));
-                self.digits_of((entry, index), start.as_ref(), DIGITS, seen.around)?
-            }
-        };
-        let (lo, hi) = found.to_f64();
-        Ok(Edge { entry, index: index as u32, lo, hi })
+    fn by_more_bits(&self, entry: Entry, index: usize, wide: Option<Edge>) -> Edge {
+        self.precise.fetch_add(1, Ordering::Relaxed);
+        let seen = wide.map(|edge| (edge.lo, edge.hi)).or_else(|| sighting(&self.string, entry, index));
+        let (lo, hi) = fine_count::enclose(&self.string, entry, index, seen).to_f64();
+        Edge { entry, index: index as u32, lo, hi }
     }
 
     /// The edge to `digits` significant digits: an interval narrower than 10^-digits of itself.
@@ -144,24 +134,16 @@ impl Edges {
         self.sharpened(edge, &Enclosure::from(edge), digits)
     }
 
-    /// The same from an enclosure that may hold more digits than the edge.
+    /// The same from an enclosure that may hold more digits than the edge. Where it holds another zero, or one on its
+    /// end, proven counts find out which is which.
     pub fn sharpened(&self, edge: &Edge, start: &Enclosure, digits: u32) -> Result<Enclosure> {
-        let zero = (edge.entry, edge.index as usize);
-        self.digits_of(zero, Some(start), digits, Some((edge.lo, edge.hi)))
-    }
-
-    /// The same from `start`, where there are no other zeros; else, others being so near that one double holds them too,
-    /// or one on the end, from proven counts `around` where doubles see it.
-    fn digits_of(
-        &self,
-        (entry, index): (Entry, usize),
-        start: Option<&Enclosure>,
-        digits: u32,
-        around: Option<(f64, f64)>,
-    ) -> Result<Enclosure> {
         self.precise.fetch_add(1, Ordering::Relaxed);
+        let (entry, index, around) = (edge.entry, edge.index as usize, Some((edge.lo, edge.hi)));
+        if digits <= TWO_DOUBLES {
+            return Ok(fine_count::enclose(&self.string, entry, index, around));
+        }
         let (function, relative) = (self.function(entry)?, tenth_power(digits));
-        if let Some(found) = start.and_then(|start| precise::shrink(&function, start, &relative, false)) {
+        if let Some(found) = precise::shrink(&function, start, &relative, false) {
             return Ok(found);
         }
         let alone = exact_count::isolate(&function, &self.string, index, around);

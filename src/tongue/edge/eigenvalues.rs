@@ -100,33 +100,16 @@ fn prove_all(string: &HalfString, tasks: &Batches, failed: &mut Batches, mut fou
     }
 }
 
-/// Where computed counts see an eigenvalue.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sighting {
-    /// An interval of s that holds no other eigenvalue of the problem: the one before lies below lo (1 + η), the one
-    /// after above hi (1 − η). Whether it holds this one, signs must decide.
-    pub alone: Option<(f64, f64)>,
-    /// An interval of s in which the eigenvalue lies, perhaps with others.
-    pub around: Option<(f64, f64)>,
-}
-
-impl Sighting {
-    /// One eigenvalue of a problem, by counts in doubles.
-    pub fn of(string: &HalfString, entry: Entry, index: usize) -> Sighting {
-        let slack = 2.0 * uncertainty(string) + 4.0 * f64::EPSILON;
-        let mut seen = Sighting::default();
-        let limits = Limits::new(&entry.only(index));
-        Cutting::default().isolate(string, &limits, |interval, contents| {
-            let [lo, hi] = interval.ends().map(|kappa| kappa * string.ticks);
-            if contents.is_alone(entry) {
-                seen.alone = Some((lo * (1.0 + slack), hi * (1.0 - slack)));
-            }
-            if interval.inside(entry).contains(&index) {
-                seen.around = Some((lo * (1.0 - slack), hi * (1.0 + slack)));
-            }
-        });
-        seen
-    }
+/// An interval of s in which counts in doubles see the eigenvalue, perhaps with others.
+pub(crate) fn sighting(string: &HalfString, entry: Entry, index: usize) -> Option<(f64, f64)> {
+    let mut seen = None;
+    Cutting::default().isolate(string, &Limits::new(&entry.only(index)), |interval, _| {
+        if interval.inside(entry).contains(&index) {
+            seen = Some(interval.ends());
+        }
+    });
+    let slack = 2.0 * uncertainty(string) + 4.0 * f64::EPSILON;
+    seen.map(|[lo, hi]| (lo * (1.0 - slack) * string.ticks, hi * (1.0 + slack) * string.ticks))
 }
 
 #[cfg(test)]

@@ -74,10 +74,6 @@ impl Contents {
             alone &= alone - 1;
         }
     }
-
-    pub fn is_alone(&self, entry: Entry) -> bool {
-        self.alone & (1 << entry as u32) != 0
-    }
 }
 
 /// The first and the last index wanted of each problem.

@@ -11,7 +11,8 @@
 //! | `eigenvalues` | the way from counts to enclosures in doubles |
 //! | `enclosure` | an edge in doubles, and by rational ends |
 //! | `function` | an entry of the half period at rational points |
-//! | `precise`, `exact_count` | any number of digits; counts where doubles tell nothing apart |
+//! | `fine_count` | 25 digits by counts in two doubles |
+//! | `precise`, `exact_count` | any number of digits; counts where two doubles tell nothing apart |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
 
 mod batch;
@@ -20,6 +21,7 @@ mod edges;
 mod eigenvalues;
 mod enclosure;
 mod exact_count;
+mod fine_count;
 mod function;
 mod half;
 mod isolate;
@@ -32,3 +34,4 @@ pub(crate) use edges::Edges;
 pub use edges::Effort;
 pub use enclosure::{Edge, Enclosure};
 pub(crate) use enclosure::{negative_log2, simplest};
+pub(crate) use fine_count::TWO_DOUBLES;

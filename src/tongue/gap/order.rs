@@ -11,7 +11,8 @@ use super::modular::Openness;
 use super::tunnel::{self, Apart};
 use crate::error::Result;
 use crate::number::{Rational, Sign};
-use crate::tongue::edge::{Edge, Edges, Enclosure, negative_log2, simplest};
+use crate::tongue::edge::{Edge, Edges, Enclosure, TWO_DOUBLES, negative_log2, simplest};
+use crate::tongue::string::{Digits, Twofold};
 
 /// A tongue of p/q: the pairs with s between the edges are unstable.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,19 +64,18 @@ impl Gap {
             return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
         }
         let (free, pinned) = if a.entry.starts_free() { (a, b) } else { (b, a) };
-        if let Some(Apart { in_order, width }) = tunnel::splitting(edges.string(), &free, &pinned)
-            && (is_accurate(width) || width.1 < f64::MIN_POSITIVE)
-        {
-            let (lower, upper) = if in_order { (free, pinned) } else { (pinned, free) };
-            return Ok(Gap { m, lower, upper: Some(upper), closed: false, width });
+        let between = [free.lo.min(pinned.lo), free.hi.max(pinned.hi)];
+        match by_tunnelling(edges, m, &free, &pinned, between) {
+            Some(gap) => Ok(gap),
+            None => Gap::by_digits(edges, open, m, free, pinned),
         }
-        Gap::by_digits(edges, open, m, a, b)
     }
 
     /// By more and more digits of both edges, until they part or are proven one.
-    fn by_digits(edges: &Edges, open: &Openness, m: u64, a: Edge, b: Edge) -> Result<Gap> {
+    fn by_digits(edges: &Edges, open: &Openness, m: u64, free: Edge, pinned: Edge) -> Result<Gap> {
+        let (a, b) = (free, pinned);
         let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
-        let mut digits = 20;
+        let mut digits = TWO_DOUBLES;
         loop {
             (x, y) = (edges.sharpened(&a, &x, digits)?, edges.sharpened(&b, &y, digits)?);
             let parted =
@@ -88,6 +88,11 @@ impl Gap {
                 // A bit is 0.30 decimal digits: so many that the width has five, more than there are.
                 let places = 3 * negative_log2(&(width.lo / &above.hi)) / 10 + 6;
                 digits = places.max(digits + 1);
+            } else if digits == TWO_DOUBLES
+                && let between = [(&x.lo).min(&y.lo), (&x.hi).max(&y.hi)].map(Twofold::from_rational)
+                && let Some(gap) = by_tunnelling(edges, m, &a, &b, between)
+            {
+                return Ok(gap);
             } else if !open.is_proven(edges, m % 2 == 1)? && coincide(edges, &[(a, &x), (b, &y)])? {
                 return Ok(Gap { m, lower: a, upper: Some(b), closed: true, width: (0.0, 0.0) });
             } else {
@@ -95,6 +100,25 @@ impl Gap {
             }
         }
     }
+}
+
+/// The tongue, if orbits over an interval that holds both edges tell its width.
+fn by_tunnelling<D: Digits>(
+    edges: &Edges,
+    m: u64,
+    free: &Edge,
+    pinned: &Edge,
+    between: [D; 2],
+) -> Option<Gap> {
+    let Apart { in_order, width } = tunnel::splitting(edges.string(), free.entry, between)?;
+    let (lower, upper) = if in_order { (*free, *pinned) } else { (*pinned, *free) };
+    (is_accurate(width) || width.1 < f64::MIN_POSITIVE).then_some(Gap {
+        m,
+        lower,
+        upper: Some(upper),
+        closed: false,
+        width,
+    })
 }
 
 /// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero there.

@@ -23,6 +23,9 @@
 //! have positive terms and Δ is a product for each end: where its two terms do not cancel, all is known in doubles to
 //! many digits over the whole interval that holds κ_X and κ_Y, however narrow the tongue.
 //!
+//! The orbits are followed in doubles, or in two doubles each over an interval that is narrower by as much: where kicks
+//! are 1e12 strong an error of 1e-16 in x is one of 1e-4 in v.
+//!
 //! **Roundings** and the interval's width are local errors r_k of the computed orbit û, bounded by theorems
 //! `perturbed_orbit_stepwise` and `shear_turn` in proofs/. With ‖M_k‖ ≤ κ_k, b_k = Σ |r_j| |û_j| and τ_k = 2 b_k/|û_k|², let
 //!
@@ -33,9 +36,8 @@
 //! Then u_k = a_k (û_k + (t_k/|û_k|²) J û_k), J the rotation by a right angle, |t_k| ≤ 2 b_k and 1 − w_k ≤ a_k ≤ 1/(1 − w_k).
 
 use crate::number::U;
-use crate::tongue::edge::Edge;
 use crate::tongue::string::lanes::{logarithm, rescaling};
-use crate::tongue::string::{HalfString, KINDS, Step};
+use crate::tongue::string::{Digits, Entry, HalfString, KINDS, Step};
 
 /// √2, rounded up: |x| + |v| is at most this times the vector's length.
 const ROOT_TWO: f64 = 1.4143;
@@ -58,14 +60,14 @@ pub(crate) struct Apart {
     pub width: (f64, f64),
 }
 
-/// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both
-/// are wrong by a few units in the last place at most, else the enclosure is poor. `None` where nothing is proven.
-pub(crate) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Option<Apart> {
-    debug_assert!(free.entry.starts_free() && !pinned.entry.starts_free());
-    let tunnel = Tunnel::new(string, free.lo.min(pinned.lo), free.hi.max(pinned.hi));
-    let ends_free = free.entry.ends_free();
-    let from_left: Vec<Orbit> = tunnel.orbit(&string.forward, true).collect();
-    let from_right: Vec<Orbit> = tunnel.orbit(&string.backward, ends_free).collect();
+/// s_Y − s_X, for the edge X whose string is free at t = 0 and the edge Y whose string is pinned there; both lie in
+/// `between`, which is narrow, else the enclosure is poor. `None` where nothing is proven.
+pub(crate) fn splitting<D: Digits>(string: &HalfString, free: Entry, between: [D; 2]) -> Option<Apart> {
+    debug_assert!(free.starts_free());
+    let tunnel = Tunnel::new(string, between);
+    let ends_free = free.ends_free();
+    let from_left: Vec<Orbit<D>> = tunnel.orbit(&string.forward, true).collect();
+    let from_right: Vec<Orbit<D>> = tunnel.orbit(&string.backward, ends_free).collect();
     let last = string.last();
     // The mode's square, up to a factor: x y is Green's function at the node.
     let height = |r: usize| from_left[r].logarithm() + from_right[last - r].logarithm();
@@ -82,28 +84,32 @@ pub(crate) fn splitting(string: &HalfString, free: &Edge, pinned: &Edge) -> Opti
 }
 
 /// The recurrence at one κ, for all κ of an interval about it.
-struct Tunnel {
+struct Tunnel<D> {
     /// Ticks in the unit of time: a power of two, at least as long as any spring.
     unit: f64,
     /// κ m in that unit, rounded, by kind of node.
-    kicks: [f64; KINDS],
+    kicks: [D; KINDS],
     masses: [f64; KINDS],
     /// Relative error of the kicks, the interval included.
     uncertainty: f64,
 }
 
-impl Tunnel {
+impl<D: Digits> Tunnel<D> {
     /// For s in [lo, hi].
-    fn new(string: &HalfString, lo: f64, hi: f64) -> Self {
+    fn new(string: &HalfString, [lo, hi]: [D; 2]) -> Self {
         let unit = string.unit();
-        let kappa = 0.5 * (lo + hi) / string.ticks;
-        // Rounded: the middle, the quotient, the mass (twice), the product.
-        let uncertainty = (hi - lo) / lo + 8.0 * U;
-        Tunnel { unit, kicks: string.masses.map(|m| kappa * m * unit), masses: string.masses, uncertainty }
+        let kappa = lo.plus(hi).scaled(0.5).over(string.ticks);
+        // Rounded: the ends, the middle, the quotient, the mass (twice), the product.
+        let uncertainty = hi.minus(lo).double() / lo.double() + 8.0 * D::LOSS;
+        let mut kicks = [kappa; KINDS];
+        for (kick, (&mass, &rest)) in kicks.iter_mut().zip(string.masses.iter().zip(&string.rests)) {
+            *kick = kappa.times(D::sum(mass, rest)).scaled(unit);
+        }
+        Tunnel { unit, kicks, masses: string.masses, uncertainty }
     }
 
     /// The orbit at the start and after each step, short of the node's own kick.
-    fn orbit<'a>(&'a self, steps: &'a [Step], free: bool) -> impl Iterator<Item = Orbit> + 'a {
+    fn orbit<'a>(&'a self, steps: &'a [Step], free: bool) -> impl Iterator<Item = Orbit<D>> + 'a {
         let mut orbit = Orbit::start(free);
         std::iter::once(orbit).chain(steps.iter().map(move |step| {
             orbit.kick(self.kicks[step.kind], self.masses[step.kind], self.uncertainty);
@@ -116,10 +122,10 @@ impl Tunnel {
 
 /// A computed orbit û and how far the exact ones may be.
 #[derive(Clone, Copy)]
-struct Orbit {
+struct Orbit<D> {
     /// û = (x, v) 2^exponent; what follows is in units of that, too.
-    x: f64,
-    v: f64,
+    x: D,
+    v: D,
     exponent: i64,
     /// |x| + |v|: at least |û|, at most √2 |û|.
     length: f64,
@@ -133,35 +139,38 @@ struct Orbit {
     strain: f64,
 }
 
-impl Orbit {
+impl<D: Digits> Orbit<D> {
     fn start(free: bool) -> Self {
         let (x, v) = if free { (1.0, 0.0) } else { (0.0, 1.0) };
         let (squares, strays, across, tilt, stretch, strain) = Default::default();
+        let [x, v] = [x, v].map(|x| D::sum(x, 0.0));
         Orbit { x, v, exponent: 0, length: 1.0, squares, strays, across, tilt, stretch, strain }
     }
 
     /// v −= k x, k known to within `uncertainty` of itself. (Where a product underflows, the other component is far
     /// longer than 2^-200, and its rounding covers that.)
-    fn kick(&mut self, k: f64, mass: f64, uncertainty: f64) {
-        let stray = self.tilt * self.v;
-        self.squares += mass * self.x * self.x;
+    fn kick(&mut self, k: D, mass: f64, uncertainty: f64) {
+        let (x, stray) = (self.x.double(), self.tilt * self.v.double());
+        self.squares += mass * x * x;
         self.strays += mass * stray * stray;
-        let pull = k * self.x;
-        self.v -= pull;
-        self.advance(1.0 + k, (uncertainty + 2.0 * U) * pull.abs() + U * self.v.abs());
+        let pull = k.times(self.x);
+        self.v = self.v.minus(pull);
+        let residual = (uncertainty + 2.0 * D::LOSS) * pull.double().abs() + D::LOSS * self.v.double().abs();
+        self.advance(1.0 + k.double(), residual);
     }
 
     /// x += v t, 0 ≤ t ≤ 1 exactly.
     fn drift(&mut self, t: f64) {
-        let way = t * self.v;
-        self.x += way;
-        self.advance(1.0 + t, U * (way.abs() + self.x.abs()));
+        let way = self.v.scaled(t);
+        self.x = self.x.plus(way);
+        self.advance(1.0 + t, D::LOSS * (way.double().abs() + self.x.double().abs()));
     }
 
-    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`, r in the component that the step changes. The roundings of this, and the second-order parts of
-    /// the residuals, are below 2^-26 of the sums (fewer than 2^26 steps) and in the margins of [`Orbit::reliable`].
+    /// Accounts for a step with ‖M‖ ≤ `norm` and |r| ≤ `residual`, r in the component that the step changes. The
+    /// roundings of this, and the second-order parts of the residuals, are below 2^-26 of the sums (fewer than 2^26
+    /// steps) and in the margins of [`Orbit::reliable`].
     fn advance(&mut self, norm: f64, residual: f64) {
-        let length = self.x.abs() + self.v.abs();
+        let length = self.x.double().abs() + self.v.double().abs();
         let inverse = ROOT_TWO / length;
         self.strain += residual * (ROOT_TWO / self.length);
         self.stretch += inverse * (residual + norm * self.tilt * self.length);
@@ -176,7 +185,7 @@ impl Orbit {
         if exponent == 0 {
             return;
         }
-        [&mut self.x, &mut self.v, &mut self.length].into_iter().for_each(|x| *x *= factor);
+        (self.x, self.v, self.length) = (self.x.scaled(factor), self.v.scaled(factor), self.length * factor);
         [&mut self.squares, &mut self.strays, &mut self.across]
             .into_iter()
             .for_each(|x| *x *= factor * factor);
@@ -185,12 +194,12 @@ impl Orbit {
 
     /// 2^32 log2 |x| up to a constant, to within 2^29.
     fn logarithm(&self) -> i64 {
-        logarithm(self.x) + (self.exponent << 32)
+        logarithm(self.x.double()) + (self.exponent << 32)
     }
 
     /// τ |v/x|: by how much of itself x may be off across the orbit.
     fn lean(&self) -> f64 {
-        self.tilt * (self.v / self.x).abs()
+        self.tilt * (self.v.double() / self.x.double()).abs()
     }
 
     /// Whether the theorem holds and x is far from 0 (NaN is not).
@@ -199,21 +208,22 @@ impl Orbit {
     }
 
     /// 1/(x x') at one end, with the sign + where the first orbit starts free; `None` where x or x' may be 0.
-    fn reciprocal(&self, other: &Orbit, free: bool) -> Option<Term> {
+    fn reciprocal(&self, other: &Orbit<D>, free: bool) -> Option<Term> {
         if !(self.reliable() && other.reliable()) {
             return None;
         }
         let sign = if free { 1.0 } else { -1.0 };
-        let value = sign / (self.x * other.x);
-        // ln |x| is off by at most 1.03 (w + τ |v/x|): see LARGEST_STRAIN.
+        let value = sign / (self.x.double() * other.x.double());
+        // ln |x| is off by at most 1.03 (w + τ |v/x|), where the orbit is reliable.
         let error = 1.3 * (self.stretch + self.lean() + other.stretch + other.lean()) + 8.0 * U;
         Some(Term { value, error: error * value.abs(), exponent: -(self.exponent + other.exponent) })
     }
 
     /// Σ m x_j²/x², enclosed: by Minkowski's inequality √(Σ m x_j²) is off by the root of `strays`.
     fn share(&self) -> (f64, f64) {
+        let x = self.x.double();
         let (root, stray) = (self.squares.sqrt(), 1.01 * self.strays.sqrt());
-        let square = |root: f64| (root / self.x) * (root / self.x);
+        let square = |root: f64| (root / x) * (root / x);
         // Twice the logarithm's: w once for the sum, once for x.
         let error = 2.6 * (2.0 * self.stretch + self.lean());
         (square((root - stray).max(0.0)) * (1.0 - error).max(0.0), square(root + stray) * (1.0 + error))

@@ -9,7 +9,10 @@
 mod entry;
 mod half_string;
 pub(crate) mod lanes;
+mod twofold;
 
 pub use entry::Entry;
 pub(crate) use entry::Indices;
 pub(crate) use half_string::{HalfString, KINDS, Node, Step};
+pub(crate) use crate::number::Twofold;
+pub(crate) use twofold::Digits;

@@ -1,0 +1,41 @@
+//! What one answer may cost.
+
+use crate::error::{Error, Result};
+use crate::verdict;
+
+/// The most work that one verdict may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Products of doubles or of 64-bit words.
+    pub products: u64,
+}
+
+impl Default for Limits {
+    /// 10^11 products: some minutes at worst.
+    fn default() -> Self {
+        Limits { products: 100_000_000_000 }
+    }
+}
+
+impl Limits {
+    /// That work of this cost may begin; `work` is its description.
+    ///
+    /// # Errors
+    /// A budget error with the cost where it exceeds the limit.
+    pub fn allow(&self, cost: u64, work: impl FnOnce() -> String) -> Result<()> {
+        if cost <= self.products {
+            return Ok(());
+        }
+        let (cost_told, most) = (cost as f64, self.products as f64);
+        let work = format!(
+            "{} would cost about {cost_told:.1e} products of machine words, the limit is {most:.1e}",
+            work()
+        );
+        Err(Error::budget(work, cost).or("choose steps with simpler ratios"))
+    }
+
+    /// The same limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
+    pub(super) fn of_ladder(&self) -> verdict::Limits {
+        verdict::Limits { kicks: self.products / 1000 }
+    }
+}
