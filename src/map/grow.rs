@@ -23,7 +23,11 @@ impl Work<'_> {
             let (mut group, mut ends) = (Group::<LANES>::watched(Instructions::best(), most), [None; LANES]);
             kicks += self.side_by_side(&rest, |pairs, positions| {
                 let ends = &mut ends[..pairs.len()];
-                if products.label { group.everything(pairs, ends) } else { group.measured(pairs, ends) }
+                if products.label {
+                    group.everything(pairs, ends)
+                } else {
+                    group.measured(pairs, ends)
+                }
                 for (&n, ends) in positions.iter().zip(ends) {
                     let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
                     let found = ends.and_then(|ends| quick(n, ends, verdict(n), products));

@@ -91,7 +91,8 @@ impl Certificate {
         let ratio = 2.0 * b * away;
         let across = 2.0 * b + SECOND_ORDER * U * (FORM + FORM_SLOPE * slope);
         let strong = steps as f64 * growth.log2() > 400.0;
-        let certificate = Certificate { step, steps, block, ratio, worst: 0.99 * tau / ratio, across, strong };
+        let certificate =
+            Certificate { step, steps, block, ratio, worst: 0.99 * tau / ratio, across, strong };
         (steps < MOST_STEPS && ratio.is_finite()).then_some(certificate)
     }
 

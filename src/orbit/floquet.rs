@@ -67,7 +67,8 @@ impl Base {
         }
         let half = Phase { re: root_of_quarter(&rest)?, im: root_of_quarter(s)? };
         let theta = 2.0 * half.im.hi.atan2(half.re.hi);
-        let start = if last < LONGEST { half.power(first) } else { Phase::of(&Sharp::half(s, &rest)?.power(first))? };
+        let start =
+            if last < LONGEST { half.power(first) } else { Phase::of(&Sharp::half(s, &rest)?.power(first))? };
         Some(Base {
             slope: comfortable(half.im.divided_by(half.re))?,
             sin: comfortable(half.im.times(half.re).scaled(2.0))?,
@@ -296,8 +297,8 @@ pub fn ordinary(x: &Ball) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::number::Rational;
-    use crate::number::rational::ratio;
     use crate::number::U;
+    use crate::number::rational::ratio;
     use proptest::prelude::*;
 
     fn ball(x: f64) -> Ball {

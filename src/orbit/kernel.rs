@@ -469,7 +469,11 @@ impl<const L: usize> Lanes<L> {
         let (shortest, longest) = self.updates.iter().fold((f64::INFINITY, 0.0), min_max);
         let (updates, longest) = (shortest as u64, longest as u64);
         let together = Together { lanes: &mut *self, updates, block, watch: PhantomData::<W> };
-        if L == 1 { instructions.compute_alone(together) } else { instructions.compute_by_register(together) }
+        if L == 1 {
+            instructions.compute_alone(together)
+        } else {
+            instructions.compute_by_register(together)
+        }
         if longest > updates {
             instructions.perform(Apart { lanes: self, updates, longest, watch: PhantomData::<W> });
         }

@@ -103,7 +103,6 @@ pub fn force_instructions(name: &str) -> bool {
     meant.is_some()
 }
 
-
 /// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.
 pub(crate) trait Task {
     type Output;

@@ -103,7 +103,9 @@ impl<const N: usize> Vector for [f64; N] {
 
     #[inline(always)]
     fn count_change_below(self, a: Self, b: Self, c: Self) -> Self {
-        each(|i| f64::from_bits(self[i].to_bits() + (((a[i].to_bits() ^ b[i].to_bits()) & c[i].to_bits()) >> 63)))
+        each(|i| {
+            f64::from_bits(self[i].to_bits() + (((a[i].to_bits() ^ b[i].to_bits()) & c[i].to_bits()) >> 63))
+        })
     }
 
     #[inline(always)]

@@ -7,9 +7,7 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use kickdrift::map::{
-    Counters, Grid, Map, Resources, instruction_sets, uncertified_unstable,
-};
+use kickdrift::map::{Counters, Grid, Map, Resources, instruction_sets, uncertified_unstable};
 
 mod common;
 
@@ -38,7 +36,8 @@ fn side_by_side(n: u64) {
     // Processor time of one thread each, so that a busy machine tells the same: minima over rounds that alternate.
     let one = Resources { threads: 1, ..Resources::default() };
     let sets = instruction_sets();
-    let (mut ours, mut bare, mut loops) = (vec![f64::INFINITY; sets.len()], vec![f64::INFINITY; sets.len()], f64::INFINITY);
+    let (mut ours, mut bare, mut loops) =
+        (vec![f64::INFINITY; sets.len()], vec![f64::INFINITY; sets.len()], f64::INFINITY);
     let (unstable, counters) = certified(&grid, one);
     println!("{} pairs, {unstable} unstable, {} kicks composed", counters.pairs, counters.kicks);
     println!("{} pairs left the groups for the ladder", counters.escalated);
@@ -61,7 +60,14 @@ fn side_by_side(n: u64) {
         println!(
             "{:8} certified {:7.1} ms, {:.3} ns a kick, C / {:.1}; certification costs a factor {:.2}; {:.2} times the {:.1} ms \
              of fused operations alone, the kernel {:.2}",
-            sets[set], ours * 1e3, ours / kicks * 1e9, loops / ours, ours / bare, ours / limit, limit * 1e3, bare / limit
+            sets[set],
+            ours * 1e3,
+            ours / kicks * 1e9,
+            loops / ours,
+            ours / bare,
+            ours / limit,
+            limit * 1e3,
+            bare / limit
         );
     }
 }
@@ -70,7 +76,9 @@ fn curve() {
     println!("{:>6} {:>12} {:>14} {:>10} {:>12}", "1/d", "pairs", "kicks", "seconds", "ns a kick");
     for n in [250, 500, 1000, 2000, 4000] {
         let grid = figure_1(n);
-        let best = (0..3).map(|_| least(1, 0.0, || certified(&grid, Resources::default()))).min_by(|a, b| a.0.total_cmp(&b.0));
+        let best = (0..3)
+            .map(|_| least(1, 0.0, || certified(&grid, Resources::default())))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
         let (seconds, (_, counters)) = best.expect("three runs");
         let each = seconds / counters.kicks as f64 * 1e9;
         println!("{n:>6} {:>12} {:>14} {seconds:>10.3} {each:>12.4}", counters.pairs, counters.kicks);

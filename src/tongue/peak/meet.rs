@@ -27,8 +27,8 @@
 //!
 //! with no difference of the edges in it. Slopes are in ln s throughout.
 
-use crate::tongue::string::lanes::{logarithm, power_of_two, rescaling};
 use crate::number::Twofold;
+use crate::tongue::string::lanes::{logarithm, power_of_two, rescaling};
 use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::instructions::Task;
 

@@ -11,8 +11,8 @@ mod half_string;
 pub(crate) mod lanes;
 mod twofold;
 
+pub(crate) use crate::number::Twofold;
 pub use entry::Entry;
 pub(crate) use entry::Indices;
 pub(crate) use half_string::{HalfString, KINDS, Node, Step};
-pub(crate) use crate::number::Twofold;
 pub(crate) use twofold::Digits;
