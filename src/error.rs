@@ -11,8 +11,8 @@
 //! assert_eq!(error.to_string(), "composing 2000 kicks: allow 2000, or choose steps with a simpler ratio");
 //! ```
 
-use std::fmt;
 use std::sync::Arc;
+use std::{fmt, io};
 
 /// What went wrong, as far as the caller's next move is concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -89,10 +89,22 @@ impl Error {
         Error::new(Kind::Budget, work, remedy)
     }
 
+    /// An error of a stream, for whoever knows where it goes to name the path by [`Error::at`].
+    pub fn stream(cause: io::Error) -> Self {
+        Error::io("", &cause).caused_by(cause)
+    }
+
     /// The same with another remedy, beside the higher limit of a [budget](Error::budget).
     #[must_use]
     pub fn or(mut self, remedy: impl fmt::Display) -> Self {
         self.0.remedy = remedy.to_string();
+        self
+    }
+
+    /// The same about something else: a stream's error about the path that the stream goes to.
+    #[must_use]
+    pub fn at(mut self, field: impl fmt::Display) -> Self {
+        self.0.field = field.to_string();
         self
     }
 
@@ -126,6 +138,11 @@ impl Error {
     /// The limit that would allow the work, in the limit's own unit.
     pub fn needed(&self) -> Option<u64> {
         self.0.needed
+    }
+
+    /// The cause, where it is a stream's and nobody has said yet where the stream goes.
+    pub(crate) fn lost_stream(&self) -> Option<&io::Error> {
+        self.0.source.as_deref().filter(|_| self.0.field.is_empty())?.downcast_ref()
     }
 
     /// `Display`, with the caller's own words for how to raise the limit to [`needed`](Error::needed).

@@ -56,32 +56,55 @@
 //!
 //! | floor | module | what is there |
 //! |---|---|---|
-//! | – | [`error`] | one error with a kind |
+//! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
+//! | 0 | `parallel` | work on all threads, or without them |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
-//! | 1 | [`propagator`] | clocks, schedule, kick, drift, full and half period, the methods |
-//! | 2 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
-//! | 3 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
-//! | 4 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
-//! | 4 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
-//! | 4 | [`system`] | many clocks, many degrees of freedom |
-//! | 4 | [`avi`] | Algorithm 1 run as a simulation |
-//! | 5 | [`scene`] | input documents → library types |
-//! | 5 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
-//! | 6 | [`cli`] | arguments → a scene → the library → a report |
+//! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
+//! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
+//! | 3 | `orbit` | orbits followed with proven bounds: Floquet coordinates, filter, refine |
+//! | 4 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
+//! | 5 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
+//! | 6 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
+//! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
+//! | 6 | [`system`] | many clocks, many degrees of freedom |
+//! | 6 | [`avi`] | Algorithm 1 run as a simulation |
+//! | 8 | [`scene`] | input documents → library types |
+//! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
+//! | 9 | [`cli`] | arguments → a scene → the library → a report |
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
 //! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
+//!
+//! # Features
+//!
+//! Without any feature the library is the mathematics of one oscillator and of Algorithm 1, and builds in seconds.
+//!
+//! | feature | adds |
+//! |---|---|
+//! | `system` | `system`: many clocks, many degrees of freedom (faer) |
+//! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
+//! | `serde` | `scene` and `report`: input documents and output tables |
+//! | `figure` | `report::figure` and the drawings of results |
+//! | `cli` | the program (default) |
 
 pub mod avi;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
+pub mod format;
 pub mod map;
 pub mod number;
+mod orbit;
+mod parallel;
 pub mod propagator;
+#[cfg(feature = "serde")]
 pub mod report;
 pub mod resonance;
+#[cfg(feature = "serde")]
 pub mod scene;
+pub mod schedule;
+#[cfg(feature = "system")]
 pub mod system;
 pub mod tongue;
 mod vector;

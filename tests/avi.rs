@@ -1,8 +1,8 @@
 //! Algorithm 1 against the propagators.
 
 use kickdrift::avi::{self, Bond, Clocks, Ends, Force, Form, Linear, Simulation, State};
-use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::{Ratio, Rational};
 use kickdrift::propagator::{TwoClocks, methods};
 use kickdrift::system::{Limits, Potential, Symmetric, System, builders, decide_system, full_period};
 use num_traits::Zero;
@@ -82,7 +82,7 @@ proptest! {
     fn the_staggered_form_is_the_staggered_product(p in 1u64..9, q in 1u64..9, s in 1i64..90, k in 1i64..50) {
         let g = num_integer::gcd(p, q);
         let (p, q) = (p / g, q / g);
-        let two = TwoClocks::new(p, q, ratio(s, 20), ratio(k, 30));
+        let two = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 20), ratio(k, 30));
         let h2 = ratio(p as i64, q as i64);
         let springs = || vec![Linear::tether(0, ratio(s, 20)), Linear::tether(0, ratio(k, 30) / &h2)];
         let matrix = methods::avi::staggered(&two);

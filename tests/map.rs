@@ -224,7 +224,8 @@ fn labels_and_growth_are_those_of_the_single_pair() {
                 growth(&grid.clocks(i, j).unwrap(), band.decision(n).verdict, &Limits::default()).unwrap();
             assert_eq!(found.label, single.label);
             // m = a p + b q.
-            let ((p, q), (a, b)) = (grid.terms(i, j), found.family(grid.terms(i, j)).unwrap());
+            let ratio = grid.ratio(i, j);
+            let ((p, q), (a, b)) = (ratio.terms(), found.family(ratio).unwrap());
             assert_eq!(a * p as i64 + b * q as i64, found.label.unwrap() as i64);
             let (ours, exact) = (found.ln_multiplier.unwrap(), single.ln_multiplier.unwrap().mid_f64());
             // The enclosure is tight to 60 bits; ours loses digits only where |Tr| - 2 is tiny.

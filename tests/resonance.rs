@@ -1,7 +1,7 @@
 //! The resonance predictions against the trace, each by its own route.
 
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Cyclotomic, Rational, Ring, Sign};
+use kickdrift::number::{Cyclotomic, Ratio, Rational, Ring, Sign};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::resonance::{proposition, tan};
 use kickdrift::verdict::{Decidable, Kind, Limits, Tier, decide, decide_from};
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 fn pair(p: u64, q: u64, s: i64, k: i64) -> TwoClocks<Rational> {
     let g = p.gcd(&q);
-    TwoClocks::new(p / g, q / g, ratio(s, 1000), ratio(k, 1000))
+    TwoClocks::new(Ratio::new(p / g, q / g).unwrap(), ratio(s, 1000), ratio(k, 1000))
 }
 
 /// The trace's verdict by kicks and drifts, without Floquet coordinates.
@@ -50,7 +50,7 @@ proptest! {
 fn criteria_agree_on_exact_edges() {
     for (s, p) in [(1, 3), (2, 2), (2, 4), (3, 3), (1, 9), (2, 1), (2, 3)] {
         for k in [-100, 0, 100] {
-            let clocks = TwoClocks::new(p, 1, ratio(s, 1), ratio(k, 1000));
+            let clocks = TwoClocks::new(Ratio::new(p, 1).unwrap(), ratio(s, 1), ratio(k, 1000));
             let verdict = Decidable::half_signs(&clocks).verdict();
             assert_eq!(tan::exact_criterion(&clocks).verdict(), verdict);
             assert_eq!(
@@ -68,7 +68,8 @@ fn criteria_agree_on_exact_edges() {
 fn resonant_points_are_decided_in_the_cyclotomic_field() {
     let rho = <Cyclotomic as Ring>::from_rational(&ratio(1, 25));
     for (p, q, m) in [(5, 1, 2), (7, 1, 3), (7, 2, 4), (9, 2, 4)] {
-        let clocks = TwoClocks::with_rho(p, q, Cyclotomic::resonant_s(m, p as u32), rho.clone());
+        let clocks =
+            TwoClocks::with_rho(Ratio::new(p, q).unwrap(), Cyclotomic::resonant_s(m, p as u32), rho.clone());
         let decision = decide(&clocks, &Limits::default()).unwrap();
         assert_eq!(
             (decision.verdict.kind(), decision.decided_by),
@@ -76,7 +77,7 @@ fn resonant_points_are_decided_in_the_cyclotomic_field() {
             "{p}/{q} {m}"
         );
     }
-    let outside = TwoClocks::with_rho(7, 3, Cyclotomic::resonant_s(4, 7), rho);
+    let outside = TwoClocks::with_rho("7/3".parse().unwrap(), Cyclotomic::resonant_s(4, 7), rho);
     assert_eq!(decide(&outside, &Limits::default()).unwrap().verdict.kind(), Kind::Elliptic);
 }
 

@@ -195,7 +195,7 @@ fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
         ("want", json!(["map.png"])),
         ("want", json!("map")),
         ("want", Value::Null),
-        ("lambda1", json!(0.3)),
+        ("lambda1", json!(true)),
         ("lambda1", json!("")),
         ("grid", json!({"h1": "1..2", "h2": "1..2"})),
         ("grid", json!({"step1": "1", "h1": "1..2", "h2": "1..2"})),
@@ -205,7 +205,7 @@ fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
         ("families", json!({"samples": -1})),
         ("max", json!("60")),
         ("max_sum", json!(-1)),
-        ("rho", json!(0.04)),
+        ("rho", json!([0.04])),
         ("window", json!({"h1": "1..2"})),
         ("colour", json!("red")),
     ] {

@@ -108,9 +108,8 @@ proptest! {
             let ratio_of_steps = &h2 / &h1;
             let strength = |h: &Rational, k: Rational| &h1 * h * k / ratio(o.2, 1);
             let (s, k) = (strength(&h1, ratio(o.0, 8)), strength(&h2, ratio(o.1, 30)));
-            if h1 == h2 { return Decidable::half_signs(&TwoClocks::new(1, 1, s + k, Rational::zero())).verdict().kind(); }
-            let part = |x: &num_bigint::BigInt| u64::try_from(x).unwrap();
-            Decidable::half_signs(&TwoClocks::new(part(ratio_of_steps.numer()), part(ratio_of_steps.denom()), s, k)).verdict().kind()
+            if h1 == h2 { return Decidable::half_signs(&TwoClocks::new("1/1".parse().unwrap(), s + k, Rational::zero())).verdict().kind(); }
+            Decidable::half_signs(&TwoClocks::new((&ratio_of_steps).try_into().unwrap(), s, k)).verdict().kind()
         };
         let severity = |kind: &Kind| [Kind::Elliptic, Kind::Coexistence, Kind::Parabolic, Kind::Hyperbolic].iter().position(|k| k == kind).unwrap();
         let expected = oscillators.iter().map(scalar).max_by_key(severity).unwrap();

@@ -1,7 +1,7 @@
 //! The ladder: every tier right, every tier's certificate honest.
 
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Rational, Real, Sign, parse};
+use kickdrift::number::{Ratio, Rational, Real, Sign, parse};
 use kickdrift::propagator::{Oscillator, TwoClocks, full_period, half_period};
 use kickdrift::verdict::{Decidable, Kind, Limits, Tier, decide, decide_from, growth};
 use num_integer::Integer;
@@ -17,12 +17,13 @@ fn pair() -> impl Strategy<Value = TwoClocks<Rational>> {
     let stiffness = prop_oneof![1i64..100, 100i64..3999, 3999i64..9000];
     (1u64..80, 1u64..80, stiffness, prop_oneof![-20i64..20, -3000i64..3000]).prop_map(|(p, q, s, k)| {
         let (p, q) = lowest(p, q);
-        TwoClocks::new(p, q, ratio(s, 1000), ratio(k, 1000))
+        TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 1000), ratio(k, 1000))
     })
 }
 
 fn kind_at(p: u64, q: u64, s: Rational, rho: Rational) -> (Kind, i8) {
-    let decision = decide(&TwoClocks::with_rho(p, q, s, rho), &Limits::default()).unwrap();
+    let decision =
+        decide(&TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s, rho), &Limits::default()).unwrap();
     (decision.verdict.kind(), decision.verdict.side())
 }
 
@@ -107,7 +108,7 @@ fn velocity_verlet_ends_at_s_equal_4() {
 fn the_closing_of_5_3_is_the_identity_and_a_hair_off_it_is_not() {
     let (s, rho) = (ratio(11, 4), ratio(114, 55));
     assert_eq!(kind_at(5, 3, s.clone(), rho.clone()), (Kind::Coexistence, 1));
-    let half = half_period(&TwoClocks::with_rho(5, 3, s.clone(), rho.clone()));
+    let half = half_period(&TwoClocks::with_rho("5/3".parse().unwrap(), s.clone(), rho.clone()));
     assert_eq!((half.a(), half.d()), (&ratio(9, 4), &ratio(4, 9)));
     assert_eq!(kind_at(5, 3, s + hair(), rho).0, Kind::Elliptic);
 }
@@ -157,7 +158,7 @@ fn labels_count_half_turns() {
     // r-RESPA below its m-th resonance p th = m pi.
     for (p, m, s) in [(3, 1, 0.99), (3, 2, 2.99), (2, 1, 1.98)] {
         let s = Rational::from_float(s).unwrap();
-        let clocks = TwoClocks::with_rho(p, 1, s, ratio(1, 10));
+        let clocks = TwoClocks::with_rho(Ratio::new(p, 1).unwrap(), s, ratio(1, 10));
         let verdict = decide(&clocks, &Limits::default()).unwrap().verdict;
         assert_eq!(growth(&clocks, verdict, &Limits::default()).unwrap().label, Some(m));
     }
@@ -165,7 +166,8 @@ fn labels_count_half_turns() {
 
 #[test]
 fn a_period_beyond_the_budget_is_refused_before_it_begins() {
-    let clocks = TwoClocks::with_rho(1_000_000_001, 1_000_000_000, ratio(1, 7), ratio(1, 25));
+    let clocks =
+        TwoClocks::with_rho(Ratio::new(1_000_000_001, 1_000_000_000).unwrap(), ratio(1, 7), ratio(1, 25));
     let error = decide(&clocks, &Limits::default()).unwrap_err();
     assert_eq!(error.needed(), Some(500_000_001), "{error}");
 }

@@ -14,7 +14,7 @@
 //! let start = State::new(vec![ratio(1, 1)], vec![ratio(0, 1)]);
 //! let mut simulation = Simulation::new(&[ratio(1, 1)], springs, clocks, start).unwrap();
 //! assert_eq!(simulation.run(period, Ends::Symmetric), 3 + 2 + 2); // the kicks at both ends in halves
-//! let q = full_period(&TwoClocks::with_rho(3, 2, ratio(1, 1), ratio(1, 25)));
+//! let q = full_period(&TwoClocks::with_rho("3/2".parse().unwrap(), ratio(1, 1), ratio(1, 25)));
 //! assert_eq!((&simulation.state().x[0], &simulation.state().p[0]), (&q[(0, 0)], &q[(1, 0)]));
 //! ```
 

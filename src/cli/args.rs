@@ -1,13 +1,16 @@
 //! Flags that several commands share.
 
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
-use crate::report::document::{self, Document};
+use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::scene::GridRange;
 use crate::verdict::Limits;
@@ -16,7 +19,7 @@ use crate::verdict::Limits;
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form [default: by the file name; json for tables, text else].
+    /// The form [default: by the file name; else text, but json for tables that are not shown at a terminal].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.
@@ -39,23 +42,14 @@ pub fn whole<T: TryFrom<u64>>(text: &str) -> std::result::Result<T, String> {
     T::try_from(number).map_err(|_| "choose a smaller number".into())
 }
 
-/// Output formats of documents.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Format {
-    Text,
-    Json,
-    Csv,
-    Latex,
-}
+/// The formats that can be asked for by name; figures and arrays are asked for by the file's extension.
+impl ValueEnum for Format {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Format::Text, Format::Json, Format::Csv, Format::Latex]
+    }
 
-impl From<Format> for document::Format {
-    fn from(format: Format) -> Self {
-        match format {
-            Format::Text => document::Format::Text,
-            Format::Json => document::Format::Json,
-            Format::Csv => document::Format::Csv,
-            Format::Latex => document::Format::Latex,
-        }
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
     }
 }
 
@@ -65,32 +59,32 @@ const MOST_THREADS: usize = 1024;
 impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
-        let text = document.render(self.format_or(default)?.into())?;
+        let text = document.render(self.format(&Format::DOCUMENT, default)?)?;
         write_output(self.output.as_deref(), text.as_bytes())
     }
 
     /// `--format`, else what the extension of `--output` says, else `default`.
     ///
     /// # Errors
-    /// Where the extension is that of a figure or of arrays.
-    pub fn format_or(&self, default: Format) -> Result<Format> {
-        let (Some(path), None) = (&self.output, self.format) else {
+    /// Where the extension is not that of one of the `forms` that the result has.
+    pub fn format(&self, forms: &[Format], default: Format) -> Result<Format> {
+        let extension = self.output.as_ref().and_then(|path| path.extension());
+        let (Some(path), Some(extension), None) = (&self.output, extension, self.format) else {
             return Ok(self.format.unwrap_or(default));
         };
-        let extension =
-            path.extension().and_then(|extension| extension.to_str()).map(str::to_ascii_lowercase);
-        match extension.as_deref() {
-            Some("txt") => Ok(Format::Text),
-            Some("json") => Ok(Format::Json),
-            Some("csv") => Ok(Format::Csv),
-            Some("tex") => Ok(Format::Latex),
-            Some("svg" | "png" | "npz") => {
-                let remedy =
-                    "this result is no figure and no arrays: end the name in .json, .csv, .tex or .txt";
-                Err(Error::input("output", path.display(), remedy))
-            }
-            _ => Ok(default),
-        }
+        let format =
+            extension.to_str().and_then(Format::of_extension).filter(|format| forms.contains(format));
+        format.ok_or_else(|| {
+            let remedy =
+                format!("this result has other forms: end the name in {}", Format::extensions(forms));
+            Error::input("output", path.display(), remedy)
+        })
+    }
+
+    /// The same for a table, which people read as text at a terminal and programs as JSON elsewhere.
+    pub fn format_of_table(&self, forms: &[Format]) -> Result<Format> {
+        let read = self.output.is_none() && std::io::stdout().is_terminal();
+        self.format(forms, if read { Format::Text } else { Format::Json })
     }
 
     /// That a second file is not the one of `--output`, which would replace it.

@@ -1,15 +1,15 @@
 //! `kickdrift closings`: where tongues close.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
-use super::args::{Common, Format, shown_range, whole};
-use super::map::Target;
+use super::args::{Common, shown_range, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
 use super::tongues::{parse_list, shown_list};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::parse::parse_range;
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Ratio, Rational};
 use crate::report::closings::{self, DIGITS, OfRatio};
 use crate::report::document::Document;
 use crate::report::file::write_output;
@@ -52,21 +52,9 @@ const MOST_DIGITS: u32 = 28;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let format = match Target::of(common) {
-            Target::Json => Format::Json,
-            Target::Text => Format::Text,
-            Target::Csv => Format::Csv,
-            Target::Latex => Format::Latex,
-            _ => {
-                return Err(Error::input(
-                    "output",
-                    "a figure",
-                    "closings are a table: json, txt, csv or tex",
-                ));
-            }
-        };
-        let document = self.question()?.document(common, matches!(format, Format::Csv))?;
-        write_output(common.output.as_deref(), document.render(format.into())?.as_bytes())
+        let format = common.format_of_table(&Format::DOCUMENT)?;
+        let document = self.question()?.document(common, format == Format::Csv)?;
+        write_output(common.output.as_deref(), document.render(format)?.as_bytes())
     }
 
     fn question(&self) -> Result<Question> {
@@ -113,8 +101,8 @@ impl Question {
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = self.ratios.list();
         let bar = progress(common.quiet, list.len() as u64, "ratios");
-        let one = |(p, q): (u64, u64)| {
-            let found = self.of_ratio(p, q);
+        let one = |ratio: Ratio| {
+            let found = self.of_ratio(ratio);
             bar.inc(1);
             found
         };
@@ -126,21 +114,25 @@ impl Question {
     }
 
     /// The labels one by one where some are asked for: a search for one costs two edges a sample.
-    fn of_ratio(&self, p: u64, q: u64) -> Result<OfRatio> {
-        let of = |m| search(p, q, &Search { m, rho: self.rho.clone(), samples: self.samples });
+    fn of_ratio(&self, ratio: Ratio) -> Result<OfRatio> {
+        let of = |m| search(ratio, &Search { m, rho: self.rho.clone(), samples: self.samples });
         let Some(list) = &self.m else {
             let Found { closings, complete } = of(None)?;
-            return Ok(OfRatio { p, q, closings, complete });
+            return Ok(OfRatio { ratio, closings, complete });
         };
         // The last tongue has no upper edge, and never closes.
-        let last = p + q - 2;
+        let last = ratio.kicks() - 2;
         if let Some(m) = list.iter().map(|run| run.1).find(|&m| m > last) {
-            return Err(Error::input("m", m, format!("{p}/{q} has the finite tongues 1 to {last}")));
+            return Err(Error::input("m", m, format!("{ratio} has the finite tongues 1 to {last}")));
         }
         let labels: Vec<u64> = (1..=last).filter(|m| list.iter().any(|(a, b)| a <= m && m <= b)).collect();
         let found: Vec<Found> = labels.into_par_iter().map(|m| of(Some(m))).collect::<Result<_>>()?;
         let complete = found.iter().all(|found| found.complete);
-        Ok(OfRatio { p, q, closings: found.into_iter().flat_map(|found| found.closings).collect(), complete })
+        Ok(OfRatio {
+            ratio,
+            closings: found.into_iter().flat_map(|found| found.closings).collect(),
+            complete,
+        })
     }
 
     fn echo(&self, document: Document) -> Document {

@@ -1,13 +1,13 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
-use num_integer::Integer;
-use rayon::prelude::*;
+use crate::parallel::*;
 
-use super::args::{self, Common, Format, echo_grid, whole};
+use super::args::{self, Common, echo_grid, whole};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::Grid;
-use crate::number::Rational;
 use crate::number::parse::{parse, parse_rational};
+use crate::number::{Ratio, Rational};
 use crate::propagator::TwoClocks;
 use crate::report::compare::{self, Offender};
 use crate::report::document::Document;
@@ -83,7 +83,7 @@ pub fn over_grid(grid: &Grid, range: &GridRange, tolerance: &Rational, limits: &
                 None => compare(&clocks, tolerance, limits)?,
             };
             let place = || [grid.h1(i).to_string(), grid.h2(j).to_string()];
-            part.add(clocks.p(), clocks.q(), comparison, place);
+            part.add(clocks.ratio(), comparison, place);
         }
         Ok(part)
     };
@@ -108,24 +108,19 @@ fn over_ratios(
     if !(1..=1_000_000).contains(&samples) {
         return Err(Error::input("samples", samples, "choose 1 to 1000000"));
     }
-    let ratio = |(p, q): (u64, u64)| {
+    let of_ratio = |ratio: Ratio| {
         let mut part = Part::default();
         for k in 1..=samples {
             let s = Rational::new((4 * k).into(), (samples + 1).into());
             let place = || [s.to_string(), rho.to_string()];
-            let comparison = compare(&TwoClocks::with_rho(p, q, s.clone(), rho.clone()), tolerance, limits)?;
-            part.add(p, q, comparison, place);
+            let comparison = compare(&TwoClocks::with_rho(ratio, s.clone(), rho.clone()), tolerance, limits)?;
+            part.add(ratio, comparison, place);
         }
         Ok(part)
     };
-    let all = gather(coprime(max_sum), ratio)?;
+    let all = gather(Ratio::up_to(max_sum).collect(), of_ratio)?;
     let document = compare::document(&all.tally, tolerance, ["s", "rho"], &all.offenders);
     Ok(document.input("max_sum", max_sum).input("rho", rho).input("samples", samples))
-}
-
-/// All coprime (p, q) with p + q ≤ n, by sum, then by p.
-fn coprime(n: u64) -> Vec<(u64, u64)> {
-    (2..=n).flat_map(|sum| (1..sum).map(move |p| (p, sum - p))).filter(|(p, q)| p.gcd(q) == 1).collect()
 }
 
 /// Counts and offenders of a set of pairs.
@@ -136,10 +131,10 @@ struct Part {
 }
 
 impl Part {
-    fn add(&mut self, p: u64, q: u64, comparison: Comparison, place: impl FnOnce() -> [String; 2]) {
+    fn add(&mut self, ratio: Ratio, comparison: Comparison, place: impl FnOnce() -> [String; 2]) {
         self.tally.add(&comparison);
         if !comparison.tan_agrees() || comparison.outcome.is_some_and(|outcome| outcome.is_offence()) {
-            self.offenders.push(Offender { place: place(), p, q, comparison });
+            self.offenders.push(Offender { place: place(), ratio, comparison });
         }
     }
 }

@@ -1,9 +1,10 @@
 //! `kickdrift curves`: the (a, b) families as tables.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
-use super::args::{Common, Format, echo_grid, shown_range, whole};
+use super::args::{Common, echo_grid, shown_range, whole};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range};
 use crate::number::{ExactSign, Laurent, Sign};
 use crate::report::curves;
@@ -36,6 +37,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        let format = common.format_of_table(&Format::DOCUMENT)?;
         let lambda1 = parse("lambda1", &self.lambda1)?;
         let (h1, h2) = (parse_range("h1-range", &self.h1_range)?, parse_range("h2-range", &self.h2_range)?);
         for (field, (lo, hi)) in [("h1-range", &h1), ("h2-range", &h2)] {
@@ -54,7 +56,7 @@ impl Args {
             .input("lambda1", &lambda1)
             .input("h1_range", shown_range(&h1))
             .input("h2_range", shown_range(&h2));
-        common.write(&echo(document, &families), Format::Json)
+        common.write(&echo(document, &families), format)
     }
 }
 

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use super::args::Common;
-use super::map::{Drawing, Map, Output, Part, Source, Target};
+use super::map::{Drawing, Map, Output, Part, Source};
 use crate::error::{Error, Result};
+use crate::format::Format;
 
 /// Flags of `merge`.
 #[derive(Debug, clap::Args)]
@@ -18,18 +19,18 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let target = Target::of(common);
+        let format = common.format_of_table(&Format::ALL)?;
         let parts = self.parts.iter().map(|directory| Part::open(directory)).collect::<Result<Vec<_>>>()?;
         let map = Part::common_map(&parts)?;
-        self.check(target, &map)?;
+        self.check(format, &map)?;
         let source = Source::Joined(parts.into_iter().map(Part::into_store).collect());
-        let output = Output { map: &map, target, drawing: &self.drawing, part: None };
+        let output = Output { map: &map, format, drawing: &self.drawing, part: None };
         output.write(&source, common.output.as_deref())
     }
 
     /// The parts hold what the colours tell.
-    fn check(&self, target: Target, map: &Map) -> Result<()> {
-        let (needs, held) = (self.drawing.products(target)?, map.products);
+    fn check(&self, format: Format, map: &Map) -> Result<()> {
+        let (needs, held) = (self.drawing.products(format)?, map.products);
         for (flag, missing) in
             [("--label", needs.label && !held.label), ("--growth", needs.growth && !held.growth)]
         {

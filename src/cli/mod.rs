@@ -28,7 +28,10 @@ use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 
 use crate::error::Result;
-use args::{Common, Format};
+use crate::format::Format;
+#[cfg(unix)]
+use crate::report::file::abandon;
+use args::Common;
 
 /// Exact, certified linear stability of multiple-time-step integrators.
 ///
@@ -82,6 +85,8 @@ impl Command {
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
+    // Without it the next run in the same folder tidies up.
+    let _ = tidy_up_when_stopped();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
@@ -97,12 +102,31 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// An interrupted or terminated process leaves no unfinished file behind, and ends as one without this would.
+#[cfg(unix)]
+fn tidy_up_when_stopped() -> std::io::Result<()> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::low_level::emulate_default_handler;
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    std::thread::spawn(move || {
+        for signal in signals.forever() {
+            abandon(|| drop(emulate_default_handler(signal)));
+        }
+    });
+    Ok(())
+}
+
+#[cfg(not(unix))]
+fn tidy_up_when_stopped() -> std::io::Result<()> {
+    Ok(())
+}
+
 fn run(cli: &Cli) -> Result<ExitCode> {
     let common = &cli.common;
     common.set_threads()?;
     if !cli.command.draws() {
         // Refused before the work, not after it.
-        common.format_or(Format::Text)?;
+        common.format(&Format::DOCUMENT, Format::Text)?;
     }
     match &cli.command {
         Command::Verdict(args) => return args.run(common),

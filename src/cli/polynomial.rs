@@ -1,7 +1,9 @@
 //! `kickdrift polynomial`: the half period of one ratio in s and rho.
 
-use super::args::{Common, Format};
+use super::args::Common;
 use crate::error::{Error, Result};
+use crate::format::Format;
+use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
 use crate::report::polynomial;
 
@@ -19,25 +21,25 @@ const MOST_KICKS: u64 = 120;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let (p, q) = parse_ratio("ratio", &self.ratio)?;
-        check(p, q, common.budget)?;
-        common.write(&polynomial::document(p, q), Format::Text)
+        let ratio = parse_ratio("ratio", &self.ratio)?;
+        check(ratio, common.budget)?;
+        common.write(&polynomial::document(ratio), Format::Text)
     }
 }
 
 /// The default bound for scenes.
-pub fn check_default(p: u64, q: u64) -> Result<()> {
-    check(p, q, None)
+pub fn check_default(ratio: Ratio) -> Result<()> {
+    check(ratio, None)
 }
 
 /// That the polynomials are worth their cost, or allowed by a budget.
-pub fn check(p: u64, q: u64, budget: Option<u64>) -> Result<()> {
+pub fn check(ratio: Ratio, budget: Option<u64>) -> Result<()> {
     let most = budget.unwrap_or(MOST_KICKS);
-    let kicks = p.saturating_add(q);
+    let kicks = ratio.kicks();
     if kicks <= most {
         return Ok(());
     }
-    let terms = u128::from(p) * u128::from(q) / 4 + 1;
-    let cost = format!("polynomials of {p}/{q} have about {terms} terms each");
+    let terms = u128::from(ratio.p()) * u128::from(ratio.q()) / 4 + 1;
+    let cost = format!("polynomials of {ratio} have about {terms} terms each");
     Err(Error::budget(cost, kicks).or(format!("choose p + q <= {most}")))
 }

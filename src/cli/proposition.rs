@@ -1,7 +1,8 @@
 //! `kickdrift proposition`: the exhaustive exact check.
 
-use super::args::{Common, Format, whole};
+use super::args::{Common, whole};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::report::document::Document;
 use crate::report::proposition;
 use crate::resonance::proposition::check;

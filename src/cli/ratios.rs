@@ -2,9 +2,9 @@
 
 use super::args::whole;
 use crate::error::{Error, Result};
+use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
 use crate::report::document::Document;
-use crate::tongue::ratios;
 
 /// The flags that say which.
 #[derive(Debug, clap::Args)]
@@ -29,7 +29,7 @@ impl Flags {
     /// Neither flag or both, or a ratio that is none.
     pub fn ratios(&self) -> Result<Ratios> {
         match (&self.ratio, self.max_sum) {
-            (Some(text), None) => parse_ratio("ratio", text).map(|(p, q)| Ratios::One(p, q)),
+            (Some(text), None) => parse_ratio("ratio", text).map(Ratios::One),
             (None, Some(max_sum)) => Ok(Ratios::UpTo(max_sum)),
             (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
             (None, None) => {
@@ -42,7 +42,7 @@ impl Flags {
 /// One ratio, or all coprime p + q up to a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ratios {
-    One(u64, u64),
+    One(Ratio),
     UpTo(u64),
 }
 
@@ -60,18 +60,18 @@ impl Ratios {
         }
     }
 
-    /// (p, q), by sum, then p.
-    pub fn list(self) -> Vec<(u64, u64)> {
+    /// All of them, by p + q, then p.
+    pub fn list(self) -> Vec<Ratio> {
         match self {
-            Ratios::One(p, q) => vec![(p, q)],
-            Ratios::UpTo(max_sum) => ratios(max_sum),
+            Ratios::One(ratio) => vec![ratio],
+            Ratios::UpTo(max_sum) => Ratio::up_to(max_sum).collect(),
         }
     }
 
     /// In words.
     pub fn words(self) -> String {
         match self {
-            Ratios::One(p, q) => format!("h2/h1 = {p}/{q}"),
+            Ratios::One(ratio) => format!("h2/h1 = {ratio}"),
             Ratios::UpTo(max_sum) => format!("all h2/h1 = p/q, p + q <= {max_sum}"),
         }
     }
@@ -79,7 +79,7 @@ impl Ratios {
     /// Echoed as input.
     pub fn echo(self, document: Document) -> Document {
         match self {
-            Ratios::One(p, q) => document.input("ratio", format!("{p}/{q}")),
+            Ratios::One(ratio) => document.input("ratio", ratio.to_string()),
             Ratios::UpTo(max_sum) => document.input("max_sum", max_sum),
         }
     }

@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::args::{Common, Format, whole};
+use super::args::{Common, whole};
 use super::system::{draw, limits, read};
 use crate::avi::{Ends, Force, Simulation, growth_rate, irreversibility, series};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::report::simulate::{self as report, Run};

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::args::{Common, Format};
-use super::map::Target;
+use super::args::Common;
 use super::plane::DPI;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
 use crate::report::file::write_output;
@@ -47,6 +47,8 @@ enum Colour {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        // Refused before the work, not after it.
+        drawing(common)?;
         let text = text(&self.file)?;
         let scene = SystemScene::read(&text)?;
         match self.scan.as_slice() {
@@ -67,7 +69,7 @@ impl Args {
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
         let analysis = scene.decide(self.route(), &limits(common))?;
-        match drawing(common) {
+        match drawing(common)? {
             Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
             None => common.write(&self.echo(report::document(&analysis), scene), Format::Text),
         }
@@ -85,13 +87,12 @@ impl Args {
             Some(Colour::Verdict) => Colouring::Verdict,
             Some(Colour::Growth) | None => Colouring::Growth,
         };
-        if let Some(path) = drawing(common) {
+        if let Some(path) = drawing(common)? {
             return draw("output", path, &map.figure(colouring, scene.title()));
         }
-        let format = if Target::of(common) == Target::Csv { Format::Csv } else { Format::Json };
         let document =
             self.echo(map.document(), scene).input("scan_x", &self.scan[0]).input("scan_y", &self.scan[1]);
-        common.write(&document, format)
+        common.write(&document, common.format_of_table(&Format::DOCUMENT)?)
     }
 
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {
@@ -108,8 +109,12 @@ pub fn limits(common: &Common) -> Limits {
 }
 
 /// The file to draw, where the output is one.
-fn drawing(common: &Common) -> Option<&Path> {
-    common.output.as_deref().filter(|_| Target::of(common).is_figure())
+///
+/// # Errors
+/// A name that ends otherwise than those of documents and figures.
+fn drawing(common: &Common) -> Result<Option<&Path>> {
+    let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
+    Ok(common.output.as_deref().filter(|_| format.is_figure()))
 }
 
 /// Writes a figure to FILE.svg or FILE.png.

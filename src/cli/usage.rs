@@ -45,10 +45,18 @@ fn bad_value(error: &clap::Error) -> Option<Error> {
 }
 
 fn suggestion(error: &clap::Error) -> String {
-    match shown(error, ContextKind::SuggestedArg) {
-        Some(flag) => format!("unknown; did you mean {flag}?"),
-        None => "unknown; see --help for those that there are".into(),
+    let [given, known] = [ContextKind::InvalidArg, ContextKind::SuggestedArg].map(|kind| shown(error, kind));
+    match given.zip(known) {
+        Some((given, known)) if is_like(&given, &known) => format!("unknown; did you mean {known}?"),
+        _ => "unknown; see --help for those that there are".into(),
     }
+}
+
+/// Whether a flag may be a slip of the fingers for another: one letter in three is wrong, missing or too much.
+fn is_like(given: &str, known: &str) -> bool {
+    let letters = |flag: &str| flag.trim_start_matches('-').to_string();
+    let (given, known) = (letters(given), letters(known));
+    3 * strsim::damerau_levenshtein(&given, &known) <= given.len().max(known.len())
 }
 
 /// Anything else, in the parser's own words.

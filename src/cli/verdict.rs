@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::args::{Common, Format, Stiffness};
+use super::args::{Common, Stiffness};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::parse::parse;
 use crate::propagator::{Oscillator, TwoClocks};

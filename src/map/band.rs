@@ -7,9 +7,9 @@ use super::gcd;
 use super::grid::Grid;
 use super::products::{Growing, Products};
 use crate::error::{Error, Result};
+use crate::orbit::filter::{self, Group};
+use crate::orbit::floquet::{Base, Pair};
 use crate::vector::instructions::Instructions;
-use crate::verdict::filter::{self, Group};
-use crate::verdict::floquet::{Base, Pair};
 use crate::verdict::{Decision, Limits, Tier, Verdict, decide};
 
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.
@@ -103,7 +103,7 @@ impl<'a> Work<'a> {
         (first, columns): (u64, usize),
     ) -> Self {
         let (rows, first_row) = (grid.shape().1, grid.rows().0);
-        let (a, b) = grid.ratio();
+        let (a, b) = grid.step_ratio();
         let mut gcds = vec![0; columns * rows];
         for (i, gcds) in (first..).zip(gcds.chunks_mut(rows)) {
             // gcd(ib, ja) = gcd(i, a) gcd(i b / gcd(i, a), j), a and b being coprime.
@@ -125,7 +125,7 @@ impl<'a> Work<'a> {
 
     /// Positions by min(p, q)/2: equal numbers run together.
     fn sorted(&self) -> Vec<u32> {
-        let (a, b) = self.grid.ratio();
+        let (a, b) = self.grid.step_ratio();
         let (rows, first_row) = (self.grid.shape().1, self.grid.rows().0);
         let mut keys = Vec::with_capacity(self.gcds.len());
         for (i, gcds) in (self.first..).zip(self.gcds.chunks(rows)) {

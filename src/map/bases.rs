@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 
 use super::grid::Grid;
 use crate::number::{Ball, Laurent, Real, Ring};
-use crate::verdict::floquet::{Base, Pair, ordinary};
+use crate::orbit::floquet::{Base, Pair, ordinary};
 
 /// Bits of what all bases share.
 const BITS: u32 = 256;
@@ -42,7 +42,7 @@ impl<'a> Bases<'a> {
 
     /// The first clock of column i as the base of all its pairs.
     pub fn column(&self, column: u64) -> Option<Base> {
-        let (a, b) = self.grid.ratio();
+        let (a, b) = self.grid.step_ratio();
         Base::new(&self.strength(0, column), 0, self.grid.rows().1 * a / (column * b) + 1)
     }
 
@@ -68,7 +68,7 @@ impl<'a> Bases<'a> {
 
     /// ⌊h1/h2⌋: pairs turn by that many steps of the row's clock at a time, one less or one more.
     fn turns(&self, column: u64, row: u64) -> u64 {
-        let (a, b) = self.grid.ratio();
+        let (a, b) = self.grid.step_ratio();
         column * b / (row * a)
     }
 
@@ -87,7 +87,7 @@ impl<'a> Bases<'a> {
         (column, row): (u64, u64),
         gcd: u64,
     ) -> Option<Pair<'b>> {
-        let (a, b) = self.grid.ratio();
+        let (a, b) = self.grid.step_ratio();
         let (steps, product) = ((column * b, row * a), (column * row) as f64);
         let on_first = || Some(pair(first(column)?, self.kicks[0]? * product, (steps.1, steps.0), gcd));
         let on_second = || Some(pair(second(row)?, self.kicks[1]? * product, steps, gcd));

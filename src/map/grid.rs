@@ -1,9 +1,7 @@
 //! The grid: all pairs (i d1, j d2) in a window, exactly.
 
-use num_traits::ToPrimitive;
-
 use crate::error::{Error, Result};
-use crate::number::{ExactSign, Laurent, Rational, Ring, Sign};
+use crate::number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::{Oscillator, TwoClocks};
 
 /// The most columns or rows: their products are then exact in doubles.
@@ -17,7 +15,7 @@ pub struct Grid {
     step1: Laurent,
     step2: Laurent,
     /// d2/d1 in lowest terms.
-    ratio: (u64, u64),
+    ratio: Ratio,
     columns: (u64, u64),
     rows: (u64, u64),
 }
@@ -40,7 +38,7 @@ impl Grid {
         positive("step2", &step2, "a grid step must be positive")?;
         let columns = multiples("h1-range", &step1, h1_range)?;
         let rows = multiples("h2-range", &step2, h2_range)?;
-        let ratio = terms(&step1, &step2)?;
+        let ratio = ratio(&step1, &step2)?;
         Ok(Grid { lambda1, lambda2, step1, step2, ratio, columns, rows })
     }
 
@@ -87,15 +85,13 @@ impl Grid {
     }
 
     /// d2/d1 in lowest terms.
-    pub(super) fn ratio(&self) -> (u64, u64) {
-        self.ratio
+    pub(super) fn step_ratio(&self) -> (u64, u64) {
+        self.ratio.terms()
     }
 
-    /// p and q of h2/h1 = p/q in lowest terms at (i, j).
-    pub fn terms(&self, column: u64, row: u64) -> (u64, u64) {
-        let (p, q) = (self.ratio.0 * row, self.ratio.1 * column);
-        let common = num_integer::gcd(p, q);
-        (p / common, q / common)
+    /// h2/h1 = p/q at (i, j): both below 2^50.
+    pub fn ratio(&self, column: u64, row: u64) -> Ratio {
+        Ratio::new(self.ratio.p() * row, self.ratio.q() * column).expect("24 and 26 bits, none 0")
     }
 
     /// The pair of clocks at (i, j).
@@ -152,16 +148,13 @@ fn floor(x: &Laurent, step: &Laurent) -> Option<u64> {
 }
 
 /// step2/step1 in lowest terms.
-fn terms(step1: &Laurent, step2: &Laurent) -> Result<(u64, u64)> {
+fn ratio(step1: &Laurent, step2: &Laurent) -> Result<Ratio> {
     let field = "step2/step1";
     let value = || format!("({step2})/({step1})");
     let remedy = "is not rational: no pair's clocks ever meet again; choose commensurable steps";
     let ratio = Laurent::ratio(step2, step1).ok_or_else(|| Error::input(field, value(), remedy))?;
-    let small = |n: &num_bigint::BigInt| n.to_u64().filter(|&n| n < 1 << 24);
-    match (small(ratio.numer()), small(ratio.denom())) {
-        (Some(a), Some(b)) => Ok((a, b)),
-        _ => {
-            Err(Error::input(field, value(), "has more than 24 bits above or below: choose a simpler ratio"))
-        }
-    }
+    let small = Ratio::try_from(&ratio).ok().filter(|ratio| ratio.p().max(ratio.q()) < 1 << 24);
+    small.ok_or_else(|| {
+        Error::input(field, value(), "has more than 24 bits above or below: choose a simpler ratio")
+    })
 }

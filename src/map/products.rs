@@ -2,10 +2,11 @@
 
 use super::band::{Band, LANES, Work};
 use crate::error::Result;
+use crate::number::Ratio;
+use crate::orbit::filter::{Ends, Group};
 use crate::resonance::dominant_family;
 use crate::vector::instructions::Instructions;
-use crate::verdict::filter::{Ends, Group};
-use crate::verdict::{Kind, Tier, Verdict, growth, winding};
+use crate::verdict::{Kind, Tier, Verdict, growth, label};
 
 /// What is asked for. Verdicts and tiers come always; nothing else is computed unasked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,9 +36,9 @@ pub struct Growing {
 }
 
 impl Growing {
-    /// (a, b), the dominant family of the tongue, where the label was asked for; p/q in lowest terms.
-    pub fn family(&self, (p, q): (u64, u64)) -> Option<(i64, i64)> {
-        self.label.map(|m| dominant_family(p, q, m))
+    /// (a, b), the dominant family of the tongue, where the label was asked for.
+    pub fn family(&self, ratio: Ratio) -> Option<(i64, i64)> {
+        self.label.map(|m| dominant_family(ratio, m))
     }
 
     /// The growth rate per unit time: ln μ / T, T = p h1 the synchronization period.
@@ -86,7 +87,7 @@ impl Work<'_> {
 }
 
 fn quick(n: usize, ends: &Ends, verdict: Verdict, products: Products) -> Growing {
-    let label = if products.label { winding::label(ends, verdict) } else { None };
+    let label = if products.label { label(ends, verdict) } else { None };
     let ln_multiplier = products.growth.then(|| ln_multiplier(ends, verdict));
     Growing { position: n as u32, label, ln_multiplier }
 }

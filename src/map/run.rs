@@ -1,14 +1,12 @@
 //! All bands of a grid, or of one shard of it, in order, on all threads.
 
-use rayon::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
-
 use super::band::{Band, Counters, Work, bands};
 use super::bases::Bases;
 use super::grid::Grid;
 use super::products::Products;
 use super::store::Store;
 use crate::error::{Error, Result};
+use crate::parallel::*;
 use crate::verdict::Limits;
 
 /// Part k of n of a map, k = 1..n: every n-th band.
@@ -50,7 +48,7 @@ pub fn for_each_band(
     limits: &Limits,
     mut see: impl FnMut(u64, Band) -> Result<()>,
 ) -> Result<Counters> {
-    let pool = pool(threads)?;
+    let pool = Pool::new(threads)?;
     let bases = Bases::new(grid);
     let work = |&(n, columns): &Numbered| Ok((n, Work::new(grid, &bases, limits, columns).run(products)?));
     in_order(&pool, &shard.bands(grid), work, &mut see)
@@ -70,22 +68,15 @@ impl Shard {
     }
 }
 
-fn pool(threads: usize) -> Result<ThreadPool> {
-    ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|cause| Error::io("threads", &cause).caused_by(cause))
-}
-
 /// A few bands at a time on all threads, handed on in order.
 fn in_order(
-    pool: &ThreadPool,
+    pool: &Pool,
     bands: &[Numbered],
     work: impl Fn(&Numbered) -> Result<(u64, Band)> + Sync,
     see: &mut impl FnMut(u64, Band) -> Result<()>,
 ) -> Result<Counters> {
     let mut counters = Counters::default();
-    for group in bands.chunks(AHEAD * pool.current_num_threads()) {
+    for group in bands.chunks(AHEAD * pool.size()) {
         let done: Vec<(u64, Band)> = pool.install(|| group.par_iter().map(&work).collect::<Result<_>>())?;
         for (n, band) in done {
             counters.add(&band.counters);
@@ -109,7 +100,7 @@ pub fn resume(
     store: &Store,
     mut see: impl FnMut(u64, Band) -> Result<()>,
 ) -> Result<Counters> {
-    let pool = pool(threads)?;
+    let pool = Pool::new(threads)?;
     let bases = Bases::new(grid);
     let obtain = |&(n, columns): &Numbered| match store.load(n) {
         Some(band) => Ok((n, band)),
@@ -150,7 +141,7 @@ pub fn merge(
 /// to tell what certification costs.
 #[doc(hidden)]
 pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
-    let pool = pool(threads)?;
+    let pool = Pool::new(threads)?;
     let (bases, limits) = (Bases::new(grid), Limits::default());
     let all: Vec<(u64, usize)> = bands(grid).collect();
     let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &limits, columns).uncertified_unstable();

@@ -130,6 +130,37 @@ impl Cyclotomic {
     }
 }
 
+impl CyclotomicField {
+    /// The number f(2cos(π/n)).
+    pub fn element(&self, f: Polynomial<Rational>) -> Cyclotomic {
+        Cyclotomic::made(Some(self.clone()), self.reduce(f))
+    }
+
+    /// 2cos(m π/n), exactly: T_m(c), by T_2k = T_k² − 2 and T_{2k+1} = T_k T_{k+1} − c.
+    pub fn two_cos(&self, m: i64) -> Cyclotomic {
+        let period = 2 * i64::from(self.n());
+        let m = m.rem_euclid(period).min((-m).rem_euclid(period));
+        let integer = |n: i64| Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(n.into())));
+        let (two, c) = (integer(2), self.element(Polynomial::variable()));
+        let (mut low, mut high) = (two.clone(), c.clone()); // T_k, T_{k+1}
+        for bit in (0..64 - m.leading_zeros()).rev() {
+            let middle = &(&low * &high) - &c;
+            if m >> bit & 1 == 1 {
+                (low, high) = (middle, &(&high * &high) - &two);
+            } else {
+                (low, high) = (&(&low * &low) - &two, middle);
+            }
+        }
+        low
+    }
+
+    /// s = 2 − 2cos(m π/n) = 4 sin²(m π/(2n)): the dimensionless stiffness at which n θ = m π.
+    pub fn resonant_s(&self, m: i64) -> Cyclotomic {
+        let two = Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(2.into())));
+        &two - &self.two_cos(m)
+    }
+}
+
 ring_operators!([] Cyclotomic);
 
 impl PartialEq for Cyclotomic {

@@ -31,6 +31,7 @@ pub mod laurent;
 mod operators;
 pub mod parse;
 pub mod polynomial;
+mod ratio;
 pub mod rational;
 mod ring;
 mod sign;
@@ -39,6 +40,7 @@ pub use ball::Ball;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;
+pub use ratio::Ratio;
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;
 

@@ -10,26 +10,19 @@
 //! assert_eq!(parse::parse("h1", "0.30").unwrap().to_string(), "3/10");
 //! let error = parse::parse("h1", "1/(1 + pi)").unwrap_err().to_string();
 //! assert!(error.starts_with("h1 = 1/(1 + pi): a divisor"), "{error}");
-//! assert_eq!(parse::parse_ratio("ratio", "14/4").unwrap(), (7, 2));
+//! assert_eq!(parse::parse_ratio("ratio", "14/4").unwrap().terms(), (7, 2));
 //! ```
 
 mod grammar;
 #[cfg(test)]
 mod tests;
 
-use num_traits::{Signed, ToPrimitive};
+pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 
-use super::{Laurent, Rational};
+use num_traits::ToPrimitive;
+
+use super::{Laurent, Ratio, Rational};
 use crate::error::{Error, Result};
-
-/// The longest text that is read, in characters.
-pub const MAX_CHARACTERS: usize = 20_000;
-
-/// The largest value that is held: bits of all numerators and denominators together.
-pub const MAX_BITS: u64 = 200_000;
-
-/// The largest |k| in π^k.
-pub const MAX_PI_EXPONENT: u32 = 1000;
 
 /// The element of ℚ[π, 1/π] that `text` denotes, exactly.
 ///
@@ -53,13 +46,10 @@ pub fn parse_integer(field: &str, text: &str) -> Result<i64> {
     integer.ok_or_else(|| Error::input(field, text.trim(), "must be an integer of at most 63 bits"))
 }
 
-/// A positive ratio in lowest terms, as (p, q): `14/4` is (7, 2), `3` is (3, 1).
-pub fn parse_ratio(field: &str, text: &str) -> Result<(u64, u64)> {
+/// A positive ratio: `14/4` is 7/2, `3` is 3/1.
+pub fn parse_ratio(field: &str, text: &str) -> Result<Ratio> {
     let x = parse_rational(field, text)?;
-    let parts = || Some((x.numer().to_u64()?, x.denom().to_u64()?));
-    parts().filter(|_| x.is_positive()).ok_or_else(|| {
-        Error::input(field, text.trim(), "must be p/q with positive integers of at most 64 bits")
-    })
+    Ratio::try_from(&x).map_err(|error| Error::input(field, text.trim(), error.remedy()))
 }
 
 /// The closed range `LO..HI`, LO ≤ HI.

@@ -9,46 +9,8 @@
 //! ```
 
 use num_bigint::BigInt;
-use num_traits::{Signed, Zero};
 
-use super::{Ball, ExactSign, Rational, Real, Ring, Sign, float};
-
-impl Ring for Rational {
-    fn from_rational(x: &Rational) -> Self {
-        x.clone()
-    }
-
-    fn add_product(&mut self, a: &Self, b: &Self) {
-        *self += a * b;
-    }
-
-    fn sub_product(&mut self, a: &Self, b: &Self) {
-        *self -= a * b;
-    }
-
-    fn product(a: &Self, b: &Self) -> Self {
-        a * b
-    }
-}
-
-impl ExactSign for Rational {
-    /// The numerator's sign, the denominator being positive.
-    fn sign(&self) -> Sign {
-        if self.is_zero() {
-            Sign::Zero
-        } else if self.is_positive() {
-            Sign::Positive
-        } else {
-            Sign::Negative
-        }
-    }
-}
-
-impl Real for Rational {
-    fn enclosure(&self, bits: u32) -> Ball {
-        Ball::from_rational(self, bits + 2)
-    }
-}
+use super::{Rational, float};
 
 /// The rational p/q of two machine integers.
 ///
@@ -88,6 +50,7 @@ pub fn scale2(x: &BigInt, k: i64) -> Rational {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use num_traits::{Signed, Zero};
     use proptest::prelude::*;
 
     /// Nearest with ties to even, straight from the definition.

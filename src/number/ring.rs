@@ -6,9 +6,9 @@
 use std::fmt::Debug;
 use std::ops::{AddAssign, MulAssign, Neg, SubAssign};
 
-use num_traits::{One, Zero};
+use num_traits::{One, Signed, Zero};
 
-use super::{Ball, Rational, Sign};
+use super::{Ball, Rational, Sign, rational};
 
 /// A commutative ring that contains the rationals (for `f64`: their nearest doubles).
 ///
@@ -57,7 +57,7 @@ pub trait Real: ExactSign {
 impl Ring for f64 {
     /// The double nearest to x (ties to even); infinite beyond the largest double.
     fn from_rational(x: &Rational) -> f64 {
-        super::rational::to_f64(x)
+        rational::to_f64(x)
     }
 
     fn add_product(&mut self, a: &f64, b: &f64) {
@@ -66,5 +66,42 @@ impl Ring for f64 {
 
     fn sub_product(&mut self, a: &f64, b: &f64) {
         *self -= a * b;
+    }
+}
+
+impl Ring for Rational {
+    fn from_rational(x: &Rational) -> Self {
+        x.clone()
+    }
+
+    fn add_product(&mut self, a: &Self, b: &Self) {
+        *self += a * b;
+    }
+
+    fn sub_product(&mut self, a: &Self, b: &Self) {
+        *self -= a * b;
+    }
+
+    fn product(a: &Self, b: &Self) -> Self {
+        a * b
+    }
+}
+
+impl ExactSign for Rational {
+    /// The numerator's sign, the denominator being positive.
+    fn sign(&self) -> Sign {
+        if self.is_zero() {
+            Sign::Zero
+        } else if self.is_positive() {
+            Sign::Positive
+        } else {
+            Sign::Negative
+        }
+    }
+}
+
+impl Real for Rational {
+    fn enclosure(&self, bits: u32) -> Ball {
+        Ball::from_rational(self, bits + 2)
     }
 }

@@ -11,11 +11,8 @@
 //! assert_eq!(clocks.slow().to_string(), "2*pi^2/125"); // h1 h2 L2
 //! ```
 
-use num_integer::Integer;
-use num_traits::ToPrimitive;
-
 use crate::error::{Error, Result};
-use crate::number::{ExactSign, Laurent, Rational, Ring, Sign};
+use crate::number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
 
 /// x'' + (L1 + L2) x = 0 with the force of L1 at the multiples of h1 and that of L2 at those of h2:
 /// the paper's section 3, its Lambda_1, Lambda_2. Unit mass; L in 1/time², h in time.
@@ -25,16 +22,14 @@ pub struct Oscillator {
     lambda2: Laurent,
     h1: Laurent,
     h2: Laurent,
-    p: u64,
-    q: u64,
+    ratio: Ratio,
 }
 
 /// The same without dimension, all that a verdict depends on: with h1 as the unit of time a fast kick
 /// has strength s = h1² L1, a slow one h1 h2 L2, and h2/h1 = p/q in lowest terms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TwoClocks<S> {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     fast: S,
     slow: S,
 }
@@ -55,15 +50,15 @@ impl Oscillator {
             Error::input("h2/h1", format!("({h2})/({h1})"), remedy)
         };
         let ratio = Laurent::ratio(&h2, &h1).ok_or_else(irrational)?;
-        let (p, q) = terms(&ratio)?;
-        Ok(Oscillator { lambda1, lambda2, h1, h2, p, q })
+        let ratio = Ratio::try_from(&ratio).map_err(|_| endless())?;
+        Ok(Oscillator { lambda1, lambda2, h1, h2, ratio })
     }
 
     /// The dimensionless pair.
     pub fn clocks(&self) -> TwoClocks<Laurent> {
         let fast = Laurent::product(&Laurent::product(&self.h1, &self.h1), &self.lambda1);
         let slow = Laurent::product(&Laurent::product(&self.h1, &self.h2), &self.lambda2);
-        TwoClocks { p: self.p, q: self.q, fast, slow }
+        TwoClocks { ratio: self.ratio, fast, slow }
     }
 
     /// The fast stiffness L1.
@@ -86,40 +81,42 @@ impl Oscillator {
         &self.h2
     }
 
+    /// h2/h1 = p/q.
+    pub fn ratio(&self) -> Ratio {
+        self.ratio
+    }
+
     /// T = p h1 = q h2.
     pub fn period(&self) -> Laurent {
-        Laurent::product(&self.h1, &Laurent::from_rational(Rational::from_integer(self.p.into())))
+        Laurent::product(&self.h1, &Laurent::from_rational(Rational::from_integer(self.ratio.p().into())))
     }
 }
 
 impl<S: Ring> TwoClocks<S> {
     /// h2/h1 = p/q, s = h1² L1 and h1 h2 L2.
-    ///
-    /// # Panics
-    /// Where p/q is not a positive fraction in lowest terms.
-    pub fn new(p: u64, q: u64, fast: S, slow: S) -> Self {
-        assert!(p > 0 && q > 0 && p.gcd(&q) == 1, "{p}/{q} is not a positive fraction in lowest terms");
-        TwoClocks { p, q, fast, slow }
+    pub fn new(ratio: Ratio, fast: S, slow: S) -> Self {
+        TwoClocks { ratio, fast, slow }
     }
 
     /// From s and rho = L2/L1: the slow kick is s rho p/q.
-    ///
-    /// # Panics
-    /// Where p/q is not a positive fraction in lowest terms.
-    pub fn with_rho(p: u64, q: u64, s: S, rho: S) -> Self {
-        let ratio = S::from_rational(&Rational::new(p.into(), q.into()));
-        let slow = S::product(&S::product(&s, &rho), &ratio);
-        TwoClocks::new(p, q, s, slow)
+    pub fn with_rho(ratio: Ratio, s: S, rho: S) -> Self {
+        let slow = S::product(&S::product(&s, &rho), &S::from_rational(&ratio.into()));
+        TwoClocks { ratio, fast: s, slow }
+    }
+
+    /// h2/h1 = p/q.
+    pub fn ratio(&self) -> Ratio {
+        self.ratio
     }
 
     /// The numerator of h2/h1: the number of fast kicks in a period.
     pub fn p(&self) -> u64 {
-        self.p
+        self.ratio.p()
     }
 
     /// The denominator of h2/h1: the number of slow kicks in a period.
     pub fn q(&self) -> u64 {
-        self.q
+        self.ratio.q()
     }
 
     /// s = h1² L1, the strength of a fast kick in the time unit h1.
@@ -135,14 +132,14 @@ impl<S: Ring> TwoClocks<S> {
     /// The same system with the clocks' roles exchanged, in the time unit h2: s' = h2² L2 and so on.
     /// No verdict changes (theorem `swap_clocks` in proofs/).
     pub fn swapped(&self) -> Self {
-        let ratio = S::from_rational(&Rational::new(self.p.into(), self.q.into()));
+        let ratio = S::from_rational(&self.ratio.into());
         let (fast, slow) = (S::product(&self.slow, &ratio), S::product(&self.fast, &ratio));
-        TwoClocks { p: self.q, q: self.p, fast, slow }
+        TwoClocks { ratio: self.ratio.inverse(), fast, slow }
     }
 
     /// The same pair with its strengths in another ring.
     pub fn map<U: Ring>(&self, convert: impl Fn(&S) -> U) -> TwoClocks<U> {
-        TwoClocks { p: self.p, q: self.q, fast: convert(&self.fast), slow: convert(&self.slow) }
+        TwoClocks { ratio: self.ratio, fast: convert(&self.fast), slow: convert(&self.slow) }
     }
 }
 
@@ -150,7 +147,7 @@ impl TwoClocks<Laurent> {
     /// The pair over the rationals, where both strengths are rational.
     pub fn as_rational(&self) -> Option<TwoClocks<Rational>> {
         let (fast, slow) = (self.fast.as_rational()?.clone(), self.slow.as_rational()?.clone());
-        Some(TwoClocks { p: self.p, q: self.q, fast, slow })
+        Some(TwoClocks { ratio: self.ratio, fast, slow })
     }
 }
 
@@ -158,14 +155,9 @@ fn positive(field: &str, x: &Laurent, remedy: &str) -> Result<()> {
     if x.sign() == Sign::Positive { Ok(()) } else { Err(Error::input(field, x, remedy)) }
 }
 
-/// p and q of a positive ratio.
-fn terms(ratio: &Rational) -> Result<(u64, u64)> {
-    let small = |n: &num_bigint::BigInt| n.to_u64().filter(|&n| n < 1 << 62);
-    match (small(ratio.numer()), small(ratio.denom())) {
-        (Some(p), Some(q)) => Ok((p, q)),
-        _ => Err(Error::too_much(
-            "h2/h1 = p/q has more than 18 digits in p or q, so one period holds more kicks than any machine composes",
-            "choose steps with a simpler ratio",
-        )),
-    }
+fn endless() -> Error {
+    Error::too_much(
+        "h2/h1 = p/q has more than 18 digits in p or q, so one period holds more kicks than any machine composes",
+        "choose steps with a simpler ratio",
+    )
 }

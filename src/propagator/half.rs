@@ -15,9 +15,9 @@ use num_integer::Integer;
 
 use super::TwoClocks;
 use super::elementary::{apply_drift, apply_kick};
-use super::schedule::{Event, Schedule, Weight};
 use crate::error::Result;
 use crate::number::{Rational, Ring};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// H = \[\[A, B\], \[C, D\]\], the propagator over the first half of the time-symmetric period.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,7 +84,7 @@ pub fn full_period<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
 
 /// The schedule of the pair.
 pub(super) fn schedule<S: Ring>(clocks: &TwoClocks<S>) -> Result<Schedule> {
-    Schedule::two_clocks(clocks.p(), clocks.q())
+    Schedule::two_clocks(clocks.ratio())
 }
 
 /// The product over `events`, the first event rightmost.

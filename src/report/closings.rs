@@ -5,14 +5,13 @@ use serde_json::{Value, json};
 use super::digits::outward;
 use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
 use crate::tongue::{Closing, Enclosure};
 
 /// The closings of one ratio, and whether elimination proves that there are no others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OfRatio {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub closings: Vec<Closing>,
     pub complete: bool,
 }
@@ -26,8 +25,10 @@ pub const DIGITS: u32 = 25;
 pub fn document(found: &[OfRatio], digits: u32, what: &str, all_columns: bool) -> Document {
     let rows: Vec<Value> =
         found.iter().flat_map(|of| &of.closings).map(|closing| row(closing, digits)).collect();
-    let complete: Vec<Value> =
-        found.iter().map(|of| json!({"p": of.p, "q": of.q, "complete": of.complete})).collect();
+    let complete: Vec<Value> = found
+        .iter()
+        .map(|of| json!({"p": of.ratio.p(), "q": of.ratio.q(), "complete": of.complete}))
+        .collect();
     Document::new("closings")
         .entry("closings", rows)
         .entry("ratios", complete)
@@ -38,8 +39,8 @@ pub fn document(found: &[OfRatio], digits: u32, what: &str, all_columns: bool) -
 fn row(closing: &Closing, digits: u32) -> Value {
     let exact = closing.exact.as_ref();
     json!({
-        "p": closing.p,
-        "q": closing.q,
+        "p": closing.ratio.p(),
+        "q": closing.ratio.q(),
         "m": closing.m,
         "s": quantity(&closing.s, exact.map(|(s, _)| s), digits),
         "rho": quantity(&closing.rho, exact.map(|(_, rho)| rho), digits),
@@ -100,7 +101,8 @@ fn short_table(found: &[OfRatio]) -> Table {
             let (lo, hi) = x.to_f64();
             exact.map_or(Cell::Enclosure { lo, hi }, |x| Cell::Exact(x.to_string()))
         };
-        let mut cells: Vec<Cell> = [closing.p, closing.q, closing.m].map(|n| Cell::Integer(n as i64)).into();
+        let mut cells: Vec<Cell> =
+            [closing.ratio.p(), closing.ratio.q(), closing.m].map(|n| Cell::Integer(n as i64)).into();
         cells.push(shown(&closing.s, exact.map(|e| &e.0)));
         cells.push(shown(&closing.rho, exact.map(|e| &e.1)));
         cells.push(Cell::Flag(closing.below_verlet));
@@ -119,7 +121,8 @@ fn table(found: &[OfRatio], digits: u32) -> Table {
     columns.push(Column::new("below_verlet").titled("s < 4", "$s < 4$"));
     let mut table = Table::new("closings", CAPTION, columns);
     for closing in found.iter().flat_map(|of| &of.closings) {
-        let mut cells: Vec<Cell> = [closing.p, closing.q, closing.m].map(|n| Cell::Integer(n as i64)).into();
+        let mut cells: Vec<Cell> =
+            [closing.ratio.p(), closing.ratio.q(), closing.m].map(|n| Cell::Integer(n as i64)).into();
         let exact = closing.exact.as_ref();
         for (x, exact) in [(&closing.s, exact.map(|e| &e.0)), (&closing.rho, exact.map(|e| &e.1))] {
             let (lo, hi) = x.to_f64();

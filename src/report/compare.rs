@@ -4,7 +4,7 @@ use serde_json::json;
 
 use super::document::Document;
 use super::table::{Cell, Column, Table};
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
 use crate::resonance::compare::{Comparison, Tally};
 
 /// A pair at which a prediction is wrong.
@@ -12,8 +12,7 @@ use crate::resonance::compare::{Comparison, Tally};
 pub struct Offender {
     /// Two exact quantities that name the pair: h1 and h2 on a grid, s and rho for ratios.
     pub place: [String; 2],
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub comparison: Comparison,
 }
 
@@ -78,8 +77,8 @@ fn row(offender: &Offender) -> Vec<Cell> {
     vec![
         first,
         second,
-        Cell::Integer(offender.p as i64),
-        Cell::Integer(offender.q as i64),
+        Cell::Integer(offender.ratio.p() as i64),
+        Cell::Integer(offender.ratio.q() as i64),
         Cell::Text(offence.into()),
         Cell::Text(trace.verdict.kind().name().into()),
         Cell::Text(tan.kind().name().into()),

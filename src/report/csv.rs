@@ -5,9 +5,10 @@
 //! `KEY_lo` and `KEY_hi`; an exact value in it stands in both, being its own enclosure.
 
 use std::borrow::Cow;
-use std::io::{self, Write};
+use std::io::Write;
 
 use super::table::{Cell, Column, Table, check};
+use crate::error::{Error, Result};
 
 /// The end of a line as the RFC has it.
 const LINE_END: &str = "\r\n";
@@ -31,7 +32,7 @@ pub fn write<R: AsRef<[Cell]>>(
     sink: &mut dyn Write,
     columns: &[Column],
     rows: impl IntoIterator<Item = R>,
-) -> io::Result<()> {
+) -> Result<()> {
     write_header(sink, columns)?;
     write_rows(sink, columns, rows)
 }
@@ -40,7 +41,7 @@ pub fn write<R: AsRef<[Cell]>>(
 ///
 /// # Errors
 /// Those of `sink`.
-pub fn write_header(sink: &mut dyn Write, columns: &[Column]) -> io::Result<()> {
+pub fn write_header(sink: &mut dyn Write, columns: &[Column]) -> Result<()> {
     let mut line = String::new();
     for column in columns {
         let key = &column.key;
@@ -65,7 +66,7 @@ pub fn write_rows<R: AsRef<[Cell]>>(
     sink: &mut dyn Write,
     columns: &[Column],
     rows: impl IntoIterator<Item = R>,
-) -> io::Result<()> {
+) -> Result<()> {
     let mut line = String::new();
     for row in rows {
         check(columns, row.as_ref());
@@ -108,10 +109,10 @@ fn put(line: &mut String, field: &str) {
 }
 
 /// Ends the line in place of its last comma and hands it over.
-fn finish(sink: &mut dyn Write, line: &mut String) -> io::Result<()> {
+fn finish(sink: &mut dyn Write, line: &mut String) -> Result<()> {
     line.pop();
     line.push_str(LINE_END);
-    sink.write_all(line.as_bytes())?;
+    sink.write_all(line.as_bytes()).map_err(Error::stream)?;
     line.clear();
     Ok(())
 }

@@ -1,23 +1,15 @@
 //! A result on its way out: one document, four formats.
 //!
-//! JSON carries everything: the schema's name, the input as exact strings, the summary, the rows. CSV is the
+//! JSON carries everything: the schema's name, the program's version and command, the input as exact strings, the summary, the rows. CSV is the
 //! rows alone, LaTeX the rows as a table for a paper, text the summary and (where there are few) the rows for
 //! a person at a terminal.
 
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use super::table::Table;
 use super::{csv, latex, text};
 use crate::error::{Error, Result};
-
-/// The form in which a document is shown.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Text,
-    Json,
-    Csv,
-    Latex,
-}
+use crate::format::Format;
 
 /// A named result.
 #[derive(Clone, Debug)]
@@ -117,7 +109,7 @@ impl Document {
     /// The document in one format, ending in a newline.
     ///
     /// # Errors
-    /// CSV or LaTeX of a document without rows.
+    /// CSV or LaTeX of a document without rows, and the forms that are not of documents.
     pub fn render(&self, format: Format) -> Result<String> {
         let table = |format: &str| {
             let remedy = "this result has no rows; use --format text or json";
@@ -131,6 +123,10 @@ impl Document {
                 Ok(all.collect::<Vec<_>>().join("\n"))
             }
             Format::Text => Ok(self.text()),
+            Format::Svg | Format::Png | Format::Npz => {
+                let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
+                Err(Error::input("format", format.name(), remedy))
+            }
         }
     }
 
@@ -138,9 +134,22 @@ impl Document {
     pub fn value(&self) -> Value {
         let mut all = Map::new();
         all.insert("schema".into(), format!("kickdrift/{}/1", self.name).into());
+        all.insert(
+            "kickdrift".into(),
+            json!({"version": env!("CARGO_PKG_VERSION"), "command": self.command()}),
+        );
         all.insert("input".into(), Value::Object(self.input.clone()));
         all.extend(self.body.clone());
         Value::Object(all)
+    }
+
+    /// The command that makes the document, alone or as a part of a larger one.
+    fn command(&self) -> &'static str {
+        match self.name {
+            "system-verdict" | "system-map" => "system",
+            "survey" => "tongues",
+            name => name,
+        }
     }
 
     fn json(&self) -> String {

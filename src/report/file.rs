@@ -3,11 +3,16 @@
 //! The bytes go to a temporary file in the *same directory* (a rename across file systems would be a copy),
 //! are flushed to the disk, and only then take the final name in one step. Whoever looks at that name sees
 //! the old content or the new one, never a half.
+//!
+//! A temporary file is called `.NAME.PID-N.part` and is locked as long as it is open. What a process leaves behind that
+//! is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one left is known by its
+//! missing lock, and the next process that writes to the directory removes it.
 
-use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::error::{Error, Result};
 
@@ -17,7 +22,7 @@ use crate::error::{Error, Result};
 /// [`Kind::Io`](crate::error::Kind::Io) naming the path and a remedy. A closed pipe on standard output is not an
 /// error: the reader has had what it wanted.
 pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
-    write_with(path, |sink| sink.write_all(bytes))
+    write_with(path, |sink| sink.write_all(bytes).map_err(Error::stream))
 }
 
 /// As [`write_output`], for content that is produced piece by piece.
@@ -25,48 +30,30 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// `content` writes to a buffered sink; when it fails, no file appears.
 ///
 /// # Errors
-/// As [`write_output`].
-pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+/// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`], as
+/// [`write_output`].
+pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     match path {
         None => to_stdout(content),
-        Some(path) => to_path(path, content).map_err(|cause| explained(path, cause)),
+        Some(path) => to_path(path, content).map_err(|error| explained(path, error)),
     }
 }
 
-/// As [`write_with`], for content that may fail by itself: the outer error is its own and comes back as it is, the
-/// inner one is the sink's.
-///
-/// # Errors
-/// Those of the content, and as [`write_output`].
-pub fn write_or_stop(
-    path: Option<&Path>,
-    content: impl FnOnce(&mut dyn Write) -> Result<io::Result<()>>,
-) -> Result<()> {
-    let mut stopped = None;
-    let written = write_with(path, |sink| {
-        content(sink).unwrap_or_else(|error| {
-            stopped = Some(error);
-            Err(io::Error::other("the content was not finished"))
-        })
-    });
-    stopped.map_or(written, Err)
-}
-
-fn to_stdout(content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
+fn to_stdout(content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let mut sink = BufWriter::new(io::stdout().lock());
-    match content(&mut sink).and_then(|()| sink.flush()) {
-        Err(cause) if cause.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::io("standard output", &cause).caused_by(cause))
-        }
-        _ => {
-            // What the buffer still holds has no reader; dropping it must not try again.
-            drop(sink.into_parts());
+    let written = content(&mut sink).and_then(|()| sink.flush().map_err(Error::stream));
+    // What the buffer still holds has no reader, or is an error's; dropping it must not try again.
+    drop(sink.into_parts());
+    match written {
+        Err(error) if error.lost_stream().is_some_and(|cause| cause.kind() == ErrorKind::BrokenPipe) => {
             Ok(())
         }
+        Err(error) if error.lost_stream().is_some() => Err(error.at("standard output")),
+        other => other,
     }
 }
 
-fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     // A link keeps pointing where it points: the file behind it is what gets replaced.
     let target = path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
     let old = fs::metadata(&target).ok();
@@ -74,57 +61,103 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
         && !old.is_file()
     {
         // A device or a pipe cannot be renamed over; a directory fails right here.
-        let mut sink = BufWriter::new(OpenOptions::new().write(true).open(&target)?);
-        return content(&mut sink).and_then(|()| sink.flush());
+        let file = OpenOptions::new().write(true).open(&target).map_err(Error::stream)?;
+        let mut sink = BufWriter::new(file);
+        return content(&mut sink).and_then(|()| sink.flush().map_err(Error::stream));
     }
-    let (temporary, file) = Temporary::beside(&target)?;
+    let (temporary, file) = Temporary::beside(&target).map_err(Error::stream)?;
     let mut sink = BufWriter::new(file);
     content(&mut sink)?;
-    let file = sink.into_inner().map_err(io::IntoInnerError::into_error)?;
-    if let Some(old) = old {
-        file.set_permissions(old.permissions())?;
+    let finish = || {
+        let file = sink.into_inner().map_err(io::IntoInnerError::into_error)?;
+        if let Some(old) = old {
+            file.set_permissions(old.permissions())?;
+        }
+        file.sync_all()?;
+        // The file is open, and so locked, until it has its name.
+        temporary.take_name(&target)
+    };
+    finish().map_err(Error::stream)
+}
+
+/// The files and folders of this process that are not finished, those within others behind them.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the files and folders that are not finished, then calls `end`, which is to end the process: meanwhile no file
+/// begins and none takes its name. For whoever has caught a signal.
+pub fn abandon(end: impl FnOnce()) {
+    let unfinished = unfinished();
+    for path in unfinished.iter().rev() {
+        // It is one of the two, and there is nobody left to report an error to.
+        let _ = fs::remove_file(path).or_else(|_| fs::remove_dir(path));
     }
-    file.sync_all()?;
-    drop(file);
-    temporary.take_name(&target)
+    end();
 }
 
 /// A temporary file that is removed again unless it takes its final name.
-pub(super) struct Temporary(Option<PathBuf>);
+pub(super) struct Temporary(PathBuf);
 
 impl Temporary {
     /// A new file in the directory of `target`, under a name that nobody else has.
     pub(super) fn beside(target: &Path) -> io::Result<(Self, File)> {
         let name = target.file_name().ok_or(ErrorKind::IsADirectory)?;
+        sweep(target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+        let mut unfinished = unfinished();
         for attempt in 0..1000 {
             let mut hidden = OsString::from(".");
             hidden.push(name);
             hidden.push(format!(".{}-{attempt}.part", std::process::id()));
             let path = target.with_file_name(hidden);
-            match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
+            let file = match OpenOptions::new().read(true).write(true).create_new(true).open(&path) {
                 Err(cause) if cause.kind() == ErrorKind::AlreadyExists => continue,
-                file => return Ok((Temporary(Some(path)), file?)),
+                file => file?,
+            };
+            // Another process's sweep may have come between, which has the lock or has removed the file.
+            if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) || !path.exists() {
+                continue;
             }
+            unfinished.push(path.clone());
+            return Ok((Temporary(path), file));
         }
         Err(ErrorKind::AlreadyExists.into())
     }
 
-    fn take_name(mut self, target: &Path) -> io::Result<()> {
-        if let Some(path) = &self.0 {
-            fs::rename(path, target)?;
-        }
-        self.0 = None;
-        Ok(())
+    fn take_name(self, target: &Path) -> io::Result<()> {
+        let _unfinished = unfinished();
+        fs::rename(&self.0, target)
     }
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        if let Some(path) = &self.0 {
-            // The error that brought us here is the one to report, not this one.
-            let _ = fs::remove_file(path);
+        // It has its name by now, or the error that brought us here is the one to report.
+        let _ = fs::remove_file(&self.0);
+        unfinished().retain(|path| *path != self.0);
+    }
+}
+
+/// Removes the temporary files of processes that are no more from a folder.
+fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        // Whatever cannot be opened, locked or removed is somebody else's.
+        if is_temporary(&entry.file_name())
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(entry.path());
         }
     }
+}
+
+/// Whether a file's name is `.NAME.PID-N.part`.
+fn is_temporary(name: &OsStr) -> bool {
+    let hidden = name.to_str().and_then(|name| name.strip_prefix('.')?.strip_suffix(".part"));
+    let numbers = hidden.and_then(|name| name.rsplit_once('.')?.1.split_once('-'));
+    numbers.is_some_and(|(pid, n)| pid.parse::<u32>().is_ok() && n.parse::<u32>().is_ok())
 }
 
 /// A folder for files to come; what of it was not there before goes again unless it is kept.
@@ -141,7 +174,8 @@ impl Folder {
     /// [`Kind::Io`](crate::error::Kind::Io) naming the path and a remedy.
     pub fn make(path: &Path) -> Result<Self> {
         let missing = |part: &&Path| !part.as_os_str().is_empty() && !part.exists();
-        let made = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        let made: Vec<_> = path.ancestors().take_while(missing).map(Path::to_path_buf).collect();
+        unfinished().extend(made.iter().rev().cloned());
         let folder = Folder { path: path.to_path_buf(), made };
         fs::create_dir_all(path).map_err(|cause| {
             let text = format!("cannot make this folder ({cause}): name another one");
@@ -157,7 +191,8 @@ impl Folder {
 
     /// Leaves it where it is.
     pub fn keep(mut self) {
-        self.made.clear();
+        let made = std::mem::take(&mut self.made);
+        unfinished().retain(|path| !made.contains(path));
     }
 }
 
@@ -167,11 +202,13 @@ impl Drop for Folder {
             // Only an empty folder goes; the error that brought us here is the one to report.
             let _ = fs::remove_dir(path);
         }
+        unfinished().retain(|path| !self.made.contains(path));
     }
 }
 
-/// The cause with a remedy beside it.
-pub(super) fn explained(path: &Path, cause: io::Error) -> Error {
+/// An error of a stream that goes to this path, with the path and a remedy; any other error as it is.
+pub(super) fn explained(path: &Path, error: Error) -> Error {
+    let Some(cause) = error.lost_stream() else { return error };
     let remedy = match cause.kind() {
         ErrorKind::NotFound => "create the directory first, or name another file",
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
@@ -182,7 +219,8 @@ pub(super) fn explained(path: &Path, cause: io::Error) -> Error {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "make room, or name a file on another disk",
         _ => "name another file",
     };
-    Error::io(path.display(), format!("cannot write ({cause}): {remedy}")).caused_by(cause)
+    let text = format!("cannot write ({cause}): {remedy}");
+    error.at(path.display()).or(text)
 }
 
 #[cfg(test)]
@@ -190,68 +228,51 @@ mod tests {
     use super::*;
     use crate::error::Kind;
 
-    /// A fresh directory that goes away with its owner.
-    struct Folder(PathBuf);
-
-    impl Folder {
-        fn new(name: &str) -> Self {
-            let path = std::env::temp_dir().join(format!("kickdrift-{name}-{}", std::process::id()));
-            fs::create_dir_all(&path).unwrap();
-            Folder(path)
-        }
-
-        fn names(&self) -> Vec<OsString> {
-            fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().file_name()).collect()
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            fs::remove_dir_all(&self.0).unwrap();
-        }
+    fn names(folder: &Path) -> Vec<OsString> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
     }
 
     #[test]
     fn a_file_is_written_and_replaced_and_nothing_else_is_left() {
-        let folder = Folder::new("replaced");
-        let path = folder.0.join("table.csv");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
         for text in ["first", "a second, longer one", "third"] {
             write_output(Some(&path), text.as_bytes()).unwrap();
             assert_eq!(fs::read_to_string(&path).unwrap(), text);
         }
-        assert_eq!(folder.names(), ["table.csv"]);
+        assert_eq!(names(folder.path()), ["table.csv"]);
     }
 
     #[test]
     fn content_that_fails_leaves_the_old_file_and_no_fragment() {
-        let folder = Folder::new("fails");
-        let path = folder.0.join("map.svg");
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.svg");
         write_output(Some(&path), b"old").unwrap();
         let failed = write_with(Some(&path), |sink| {
-            sink.write_all(&[b'x'; 100_000])?;
-            Err(ErrorKind::StorageFull.into())
+            sink.write_all(&[b'x'; 100_000]).map_err(Error::stream)?;
+            Err(Error::stream(ErrorKind::StorageFull.into()))
         });
         assert_eq!(failed.unwrap_err().kind(), Kind::Io);
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert_eq!(folder.names(), ["map.svg"]);
+        assert_eq!(names(folder.path()), ["map.svg"]);
     }
 
     #[test]
     fn an_unwritable_place_is_named_with_a_remedy() {
-        let folder = Folder::new("unwritable");
-        let missing = write_output(Some(&folder.0.join("no/such/file")), b"x").unwrap_err().to_string();
+        let folder = tempfile::tempdir().unwrap();
+        let missing = write_output(Some(&folder.path().join("no/such/file")), b"x").unwrap_err().to_string();
         assert!(missing.contains("no/such/file") && missing.contains("create the directory"), "{missing}");
-        let directory = write_output(Some(&folder.0), b"x").unwrap_err().to_string();
+        let directory = write_output(Some(folder.path()), b"x").unwrap_err().to_string();
         assert!(directory.contains("name a file in it"), "{directory}");
-        assert!(folder.names().is_empty());
+        assert!(names(folder.path()).is_empty());
     }
 
     #[cfg(unix)]
     #[test]
     fn a_link_and_the_permissions_of_the_old_file_survive() {
         use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = Folder::new("link");
-        let (real, link) = (folder.0.join("real"), folder.0.join("link"));
+        let folder = tempfile::tempdir().unwrap();
+        let (real, link) = (folder.path().join("real"), folder.path().join("link"));
         write_output(Some(&real), b"old").unwrap();
         fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
         symlink(&real, &link).unwrap();
@@ -266,5 +287,18 @@ mod tests {
     fn a_device_is_written_through() {
         write_output(Some(Path::new("/dev/null")), b"gone").unwrap();
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
+    }
+
+    #[test]
+    fn a_file_in_the_making_is_left_alone_and_what_a_dead_process_left_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, stale) in [(".a.npz.4194305-0.part", true), (".a.part", false), ("a.1-0.part", false)] {
+            fs::write(folder.path().join(name), "x").unwrap();
+            let (temporary, _file) = Temporary::beside(&folder.path().join("b")).unwrap();
+            let (_other, _second) = Temporary::beside(&folder.path().join("b")).unwrap();
+            assert!(temporary.0.exists());
+            assert_eq!(folder.path().join(name).exists(), !stale, "{name}");
+        }
+        assert_eq!(names(folder.path()).len(), 2);
     }
 }

@@ -12,7 +12,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::file::{Temporary, explained, write_with};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The type of an array's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl Array {
             file.write_all(&header(element, shape))?;
             Ok(Array { name, file, path: archive.to_owned(), _temporary: temporary })
         };
-        open().map_err(|cause: io::Error| explained(archive, cause))
+        open().map_err(|cause: io::Error| explained(archive, Error::stream(cause)))
     }
 
     /// Appends elements.
@@ -64,7 +64,7 @@ impl Array {
     /// # Errors
     /// An I/O error that names the archive.
     pub fn put(&mut self, bytes: &[u8]) -> Result<()> {
-        self.file.write_all(bytes).map_err(|cause| explained(&self.path, cause))
+        self.file.write_all(bytes).map_err(|cause| explained(&self.path, Error::stream(cause)))
     }
 
     /// Appends doubles.
@@ -115,8 +115,8 @@ impl Array {
 pub fn write(archive: &Path, arrays: Vec<Array>) -> Result<()> {
     write_with(Some(archive), |sink| {
         let mut zip = ZipWriter::new_stream(sink);
-        arrays.into_iter().try_for_each(|array| array.archive(&mut zip))?;
-        zip.finish().map(drop).map_err(io::Error::other)
+        let parts = arrays.into_iter().try_for_each(|array| array.archive(&mut zip));
+        parts.and_then(|()| zip.finish().map(drop).map_err(io::Error::other)).map_err(Error::stream)
     })
 }
 

@@ -4,33 +4,33 @@ use serde_json::{Map, Value};
 
 use super::document::Document;
 use super::table::{Cell, Column, Table};
-use crate::number::{Polynomial, Rational};
+use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 
 /// Polynomials in s whose coefficients are polynomials in rho.
 type Bivariate = Polynomial<Polynomial<Rational>>;
 
 /// A, B, C, D and the trace of h2/h1 = p/q, in the time unit h1: B in h1, C in 1/h1.
-pub fn polynomials(p: u64, q: u64) -> [(&'static str, Bivariate); 5] {
+pub fn polynomials(ratio: Ratio) -> [(&'static str, Bivariate); 5] {
     let s = Polynomial::variable();
     let rho = Polynomial::constant(Polynomial::variable());
-    let half: HalfPeriod<Bivariate> = half_period(&TwoClocks::with_rho(p, q, s, rho));
+    let half: HalfPeriod<Bivariate> = half_period(&TwoClocks::with_rho(ratio, s, rho));
     let entries = [("A", half.a()), ("B", half.b()), ("C", half.c()), ("D", half.d())];
     let [a, b, c, d] = entries.map(|(name, entry)| (name, entry.clone()));
     [a, b, c, d, ("trace", half.trace())]
 }
 
 /// The document `kickdrift/polynomial/1`.
-pub fn document(p: u64, q: u64) -> Document {
-    let polynomials = polynomials(p, q);
+pub fn document(ratio: Ratio) -> Document {
+    let polynomials = polynomials(ratio);
     let text = |f: &Bivariate| f.text(&["s", "rho"]);
     let lines: Vec<String> = polynomials.iter().map(|(name, f)| format!("{name:<5} = {}", text(f))).collect();
     let values: Map<String, Value> =
         polynomials.iter().map(|(name, f)| ((*name).to_string(), Value::String(text(f)))).collect();
     Document::new("polynomial")
-        .input("ratio", format!("{p}/{q}"))
-        .entry("p", p)
-        .entry("q", q)
+        .input("ratio", ratio.to_string())
+        .entry("p", ratio.p())
+        .entry("q", ratio.q())
         .entry("polynomials", Value::Object(values))
         .rows(table(&polynomials))
         .told(&lines)

@@ -16,8 +16,10 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
         format!("  curves (a, b) at a ratio p/q, each resonant with m = a p + b q  {backward:>9}"),
         format!("  failures                                                        {:>9}", failures.len()),
     ];
-    let failed: Vec<_> =
-        failures.iter().map(|w| json!({"p": w.p, "q": w.q, "m": w.m, "a": w.a, "b": w.b})).collect();
+    let failed: Vec<_> = failures
+        .iter()
+        .map(|w| json!({"p": w.ratio.p(), "q": w.ratio.q(), "m": w.m, "a": w.a, "b": w.b}))
+        .collect();
     Document::new("proposition")
         .input("max", max)
         .entry("holds", failures.is_empty())
@@ -33,7 +35,7 @@ fn table(witnesses: &[Witness]) -> Table {
     let caption = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
     let mut table = Table::new("witnesses", caption, columns.to_vec());
     for w in witnesses {
-        let cells = [w.p as i64, w.q as i64, w.m as i64, w.a, w.b];
+        let cells = [w.ratio.p() as i64, w.ratio.q() as i64, w.m as i64, w.a, w.b];
         table.push(cells.map(Cell::Integer).to_vec());
     }
     table

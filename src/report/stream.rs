@@ -1,11 +1,13 @@
 //! JSON documents with more rows than memory should hold: written row by row, in the shape that
 //! [`Document`] gives them.
 
-use std::io::{self, Write};
+use std::fmt::Display;
+use std::io::Write;
 
 use serde_json::Value;
 
 use super::document::Document;
+use crate::error::{Error, Result};
 
 /// A document on its way out; its rows come between what is known before them and what is known after.
 pub struct JsonRows<'a> {
@@ -18,44 +20,48 @@ impl<'a> JsonRows<'a> {
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn begin(sink: &'a mut dyn Write, head: &Document, key: &str) -> io::Result<Self> {
+    pub fn begin(sink: &'a mut dyn Write, head: &Document, key: &str) -> Result<Self> {
         let Value::Object(head) = head.value() else { unreachable!("a document is an object") };
-        sink.write_all(b"{")?;
+        let mut rows = JsonRows { sink, empty: true };
+        rows.put("{")?;
         for (name, value) in &head {
-            write!(sink, "\n  {}: {value},", Value::from(name.as_str()))?;
+            rows.put(format_args!("\n  {}: {value},", Value::from(name.as_str())))?;
         }
-        write!(sink, "\n  {}: [", Value::from(key))?;
-        Ok(JsonRows { sink, empty: true })
+        rows.put(format_args!("\n  {}: [", Value::from(key)))?;
+        Ok(rows)
     }
 
     /// Writes one row, already JSON.
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn row(&mut self, json: &str) -> io::Result<()> {
-        let before = if self.empty { "\n    " } else { ",\n    " };
+    pub fn row(&mut self, json: &str) -> Result<()> {
+        self.put(if self.empty { "\n    " } else { ",\n    " })?;
         self.empty = false;
-        self.sink.write_all(before.as_bytes())?;
-        self.sink.write_all(json.as_bytes())
+        self.put(json)
     }
 
     /// Closes the rows, writes the entries that were known last, and closes the document.
     ///
     /// # Errors
     /// Those of the sink.
-    pub fn end(self, entries: &[(&str, Value)]) -> io::Result<()> {
-        self.sink.write_all(if self.empty { b"]" } else { b"\n  ]" })?;
+    pub fn end(mut self, entries: &[(&str, Value)]) -> Result<()> {
+        self.put(if self.empty { "]" } else { "\n  ]" })?;
         for (name, value) in entries {
-            write!(self.sink, ",\n  {}: {value}", Value::from(*name))?;
+            self.put(format_args!(",\n  {}: {value}", Value::from(*name)))?;
         }
-        self.sink.write_all(b"\n}\n")
+        self.put("\n}\n")
+    }
+
+    fn put(&mut self, text: impl Display) -> Result<()> {
+        write!(self.sink, "{text}").map_err(Error::stream)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::document::Format;
+    use crate::format::Format;
     use serde_json::json;
 
     #[test]

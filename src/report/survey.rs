@@ -13,7 +13,8 @@ const FEW: usize = 4;
 
 /// The document `kickdrift/survey/1`.
 pub fn document(survey: &Survey) -> Document {
-    let closed: Vec<Value> = survey.closed.iter().map(|(p, q, m)| json!({"p": p, "q": q, "m": m})).collect();
+    let closed: Vec<Value> =
+        survey.closed.iter().map(|(ratio, m)| json!({"p": ratio.p(), "q": ratio.q(), "m": m})).collect();
     Document::new("survey")
         .input("max_sum", survey.max_sum)
         .input("rho", &survey.rho)
@@ -46,14 +47,14 @@ fn spread(spread: &Spread) -> Value {
 
 fn thin(thin: &Thin) -> Value {
     json!({
-        "p": thin.p, "q": thin.q, "m": thin.m, "a": thin.a, "b": thin.b,
+        "p": thin.ratio.p(), "q": thin.ratio.q(), "m": thin.m, "a": thin.a, "b": thin.b,
         "s": thin.s, "width": enclosure(thin.width),
     })
 }
 
 fn lines(survey: &Survey) -> Vec<String> {
     let share = |n: u64| rounded(100.0 * n as f64 / survey.predicted.max(1) as f64, 3);
-    let closed: Vec<String> = survey.closed.iter().map(|(p, q, m)| format!("{p}/{q} m = {m}")).collect();
+    let closed: Vec<String> = survey.closed.iter().map(|(ratio, m)| format!("{ratio} m = {m}")).collect();
     let mut lines = vec![
         format!(
             "all tongues that begin below s = 4, for all h2/h1 = p/q, p + q <= {}, rho = {}",
@@ -85,7 +86,7 @@ fn lines(survey: &Survey) -> Vec<String> {
     ));
     if let Some(thin) = survey.thinnest.first() {
         let width = decimal::enclosure(thin.width.0, thin.width.1);
-        lines.push(format!("  thinnest     {width} wide: {}/{}, m = {}", thin.p, thin.q, thin.m));
+        lines.push(format!("  thinnest     {width} wide: {}, m = {}", thin.ratio, thin.m));
     }
     lines
 }
@@ -127,7 +128,9 @@ fn thinnest(survey: &Survey) -> Table {
     let mut table = Table::new("thinnest", &caption, columns);
     for thin in &survey.thinnest {
         let mut cells: Vec<Cell> =
-            [thin.p as i64, thin.q as i64, thin.m as i64, thin.a, thin.b].map(Cell::Integer).into();
+            [thin.ratio.p() as i64, thin.ratio.q() as i64, thin.m as i64, thin.a, thin.b]
+                .map(Cell::Integer)
+                .into();
         let (lo, hi) = thin.width;
         cells.extend([Cell::Float(thin.s), Cell::Enclosure { lo, hi }]);
         table.push(cells);

@@ -48,9 +48,9 @@ impl Answer {
     /// m and its dominant family.
     fn resonance(&self) -> Option<(u64, i64, i64)> {
         let clocks = self.oscillator.clocks();
-        let (p, q, m) = (clocks.p(), clocks.q(), self.growth.label?);
-        let small = p.max(q).max(m) < 1 << 31;
-        small.then(|| dominant_family(p, q, m)).map(|(a, b)| (m, a, b))
+        let m = self.growth.label?;
+        let (a, b) = dominant_family(clocks.ratio(), m);
+        Some((m, a, b))
     }
 
     /// The document `kickdrift/verdict/1`.
@@ -111,11 +111,10 @@ impl Answer {
         if verdict.kind() == Kind::Hyperbolic {
             let rate = self.growth_rate();
             let steps = std::f64::consts::LN_10 / (rate.0 * self.oscillator.h2().to_f64());
-            lines.push(format!(
-                "  growth rate  {} per unit time: tenfold in {} slow steps",
-                shown(rate),
-                significant(steps)
-            ));
+            // Where the rate or the steps are beyond doubles, nothing can be said of the steps.
+            let steps = Some(steps).filter(|steps| steps.is_finite() && *steps > 0.0).map(significant);
+            let tenfold = steps.map_or(String::new(), |steps| format!(": tenfold in {steps} slow steps"));
+            lines.push(format!("  growth rate  {} per unit time{tenfold}", shown(rate)));
         }
         if let Some((m, a, b)) = self.resonance() {
             lines.push(format!(
@@ -188,9 +187,6 @@ fn shown((lo, hi): (f64, f64)) -> String {
 
 /// Three significant digits.
 fn significant(x: f64) -> String {
-    if !x.is_finite() {
-        return "ever so many".into();
-    }
     let digits = (2 - x.abs().log10().floor() as i32).clamp(0, 12) as usize;
     if x >= 1e7 { format!("{x:.2e}") } else { format!("{x:.digits$}") }
 }

@@ -10,7 +10,7 @@
 //! use kickdrift::resonance::compare::{compare, Outcome};
 //! use kickdrift::verdict::Limits;
 //! // A closed tongue: q h2 is near 4 T½ and yet the pair is stable.
-//! let clocks = TwoClocks::with_rho(5, 3, ratio(11, 4), ratio(114, 55));
+//! let clocks = TwoClocks::with_rho("5/3".parse().unwrap(), ratio(11, 4), ratio(114, 55));
 //! let pair = compare(&clocks, &ratio(1, 2), &Limits::default()).unwrap();
 //! assert!(pair.tan_agrees());
 //! assert_eq!(pair.outcome, Some(Outcome::FalseAlarm));

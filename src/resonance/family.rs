@@ -3,20 +3,15 @@
 use num_integer::Integer;
 
 use super::strength;
-use crate::number::{Ball, Rational};
+use crate::number::{Ball, Ratio, Rational};
 
 /// The families through a resonance: one pair (a0, b0) with a0 p + b0 q = m and 0 ≤ a0 < q; all others are
 /// (a0 + q k, b0 − p k).
-///
-/// # Panics
-/// Where p and q have a common factor or p, q, m exceed 2^31.
-pub fn families(p: u64, q: u64, m: u64) -> (i64, i64) {
-    assert!(p.max(q).max(m) < 1 << 31, "{p}/{q}, m = {m}: too large for exact 64-bit families");
-    let (p, q, m) = (p as i64, q as i64, m as i64);
-    let bezout = p.extended_gcd(&q);
-    assert!(bezout.gcd == 1, "{p}/{q} is not in lowest terms");
-    let a0 = (i128::from(bezout.x) * i128::from(m)).rem_euclid(i128::from(q)) as i64;
-    (a0, (m - a0 * p) / q)
+pub fn families(ratio: Ratio, m: u64) -> (i64, i64) {
+    let [p, q, m] = [ratio.p(), ratio.q(), m].map(i128::from);
+    let a0 = (p.extended_gcd(&q).x * m).rem_euclid(q);
+    // |a0| < q and |b0| <= max(m/q, p).
+    (a0 as i64, ((m - a0 * p) / q) as i64)
 }
 
 /// The dominant family of the tongue m of h2/h1 = p/q: the one that maximizes |S_a(θ)| at p θ = m π.
@@ -28,21 +23,18 @@ pub fn families(p: u64, q: u64, m: u64) -> (i64, i64) {
 /// Tongues m ≥ p have no resonance below the fast clock's Verlet limit; they are labelled as at θ = π, where
 /// ties go to the smaller |a|. Where a negative slow stiffness outweighs the fast one the solution grows without
 /// turning: m = 0, the trivial family (0, 0).
-///
-/// # Panics
-/// As [`families`].
-pub fn dominant_family(p: u64, q: u64, m: u64) -> (i64, i64) {
-    let (a0, b0) = families(p, q, m);
+pub fn dominant_family(ratio: Ratio, m: u64) -> (i64, i64) {
+    let (a0, b0) = families(ratio, m);
     if m == 0 {
         return (0, 0);
     }
-    let (step_a, step_b) = (q as i64, p as i64);
+    let (step_a, step_b) = (ratio.q() as i64, ratio.p() as i64);
     let above = if a0 >= 1 { (a0, b0) } else { (a0 + step_a, b0 - step_b) };
     let below = (above.0 - step_a, above.1 + step_b);
-    if m >= p {
+    if m >= ratio.p() {
         return if above.0 - 1 < 1 - below.0 { above } else { below };
     }
-    if stronger(above.0, below.0, p, m) { above } else { below }
+    if stronger(above.0, below.0, ratio.p(), m) { above } else { below }
 }
 
 /// Whether |S_a| > |S_b| at θ = m π/p: in doubles where they are clearly apart, else in as many bits as needed.
@@ -81,7 +73,7 @@ mod tests {
         for p in 1..30u64 {
             for q in (1..30u64).filter(|q| q.gcd(&p) == 1) {
                 for m in 1..p {
-                    let (a, b) = dominant_family(p, q, m);
+                    let (a, b) = dominant_family(Ratio::new(p, q).unwrap(), m);
                     assert_eq!(a * p as i64 + b * q as i64, m as i64);
                     let theta = std::f64::consts::PI * m as f64 / p as f64;
                     let best = strength(a, theta).abs();
@@ -96,16 +88,16 @@ mod tests {
 
     #[test]
     fn growth_without_a_turn_is_no_resonance() {
-        assert_eq!(dominant_family(5, 3, 0), (0, 0));
+        assert_eq!(dominant_family("5/3".parse().unwrap(), 0), (0, 0));
     }
 
     #[test]
     fn respa_is_family_zero() {
         for (p, m) in [(2, 1), (7, 1), (9, 4)] {
-            assert_eq!(families(p, 1, m), (0, m as i64));
+            assert_eq!(families(Ratio::new(p, 1).unwrap(), m), (0, m as i64));
         }
         // Below th = pi/2 the family a = 0 wins over a = 1 for q = 1, above it the other.
-        assert_eq!(dominant_family(9, 1, 2), (0, 2));
-        assert_eq!(dominant_family(9, 1, 8), (1, -1));
+        assert_eq!(dominant_family("9/1".parse().unwrap(), 2), (0, 2));
+        assert_eq!(dominant_family("9/1".parse().unwrap(), 8), (1, -1));
     }
 }

@@ -10,9 +10,9 @@
 //! use kickdrift::propagator::TwoClocks;
 //! use kickdrift::resonance::{dominant_family, tan};
 //! // 7/3 just below p th = 4 pi, weak slow force: unstable, tongue m = 4 = 1·7 − 1·3.
-//! let clocks = TwoClocks::with_rho(7, 3, ratio(2385, 1000), ratio(1, 25));
+//! let clocks = TwoClocks::with_rho("7/3".parse().unwrap(), ratio(2385, 1000), ratio(1, 25));
 //! assert!(tan::criterion(&clocks).is_unstable());
-//! assert_eq!(dominant_family(7, 3, 4), (1, -1));
+//! assert_eq!(dominant_family("7/3".parse().unwrap(), 4), (1, -1));
 //! ```
 
 mod angle;

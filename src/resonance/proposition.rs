@@ -16,7 +16,7 @@
 //!
 //! ```
 //! use kickdrift::resonance::proposition::{witness, Witness};
-//! let w = witness(1, 1, 1);
+//! let w = witness("1/1".parse().unwrap(), 1);
 //! assert!(w.b != 0 && w.a * 1 + w.b * 1 == 1);
 //! assert!(w.lies_on_its_curve() && w.is_resonant());
 //! ```
@@ -26,48 +26,46 @@ use num_traits::{One, Zero};
 
 use super::family::families;
 use crate::number::cyclotomic::CyclotomicField;
-use crate::number::{Cyclotomic, Rational, Ring};
+use crate::number::{Cyclotomic, Ratio, Rational, Ring};
 
 /// A resonant point h2/h1 = p/q, p θ = m π, and a curve (a, b), b ≠ 0, through it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Witness {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub m: u64,
     pub a: i64,
     pub b: i64,
 }
 
 /// The curve (a, b) with b ≠ 0 and the smallest |a| through the resonant point (p, q, m), 0 < m < p where θ < π.
-///
-/// # Panics
-/// As [`families`].
-pub fn witness(p: u64, q: u64, m: u64) -> Witness {
-    let (a0, b0) = families(p, q, m);
-    let candidates = [(a0, b0), (a0 - q as i64, b0 + p as i64), (a0 + q as i64, b0 - p as i64)];
+pub fn witness(ratio: Ratio, m: u64) -> Witness {
+    let (a0, b0) = families(ratio, m);
+    let (p, q) = (ratio.p() as i64, ratio.q() as i64);
+    let candidates = [(a0, b0), (a0 - q, b0 + p), (a0 + q, b0 - p)];
     let nonzero = candidates.into_iter().filter(|&(_, b)| b != 0);
     let (a, b) = nonzero.min_by_key(|&(a, _)| a.abs()).expect("at most one of three has b = 0");
-    Witness { p, q, m, a, b }
+    Witness { ratio, m, a, b }
 }
 
 impl Witness {
     /// Eq. (10), exactly: in the unit h1, T½ = p/m at the resonance, and b T½/(1 − a T½) must be p/q.
     /// (The curve passes through the pair; its denominator does not vanish since b ≠ 0.)
     pub fn lies_on_its_curve(&self) -> bool {
-        point_on_curve(self.a, self.b, &half_period(self.p, self.m)) == Some(ratio(self.p, self.q))
+        point_on_curve(self.a, self.b, &half_period(self.ratio.p(), self.m)) == Some(self.ratio.into())
     }
 
     /// Eq. (9), exactly, in the cyclotomic field: T_p(1 − s/2) = (−1)^m and q h2 = m T½.
     pub fn is_resonant(&self) -> bool {
-        let period = ratio(self.p, self.q) * Rational::from_integer(self.q.into());
-        let turns = half_period(self.p, self.m) * Rational::from_integer(self.m.into());
-        period == turns && chebyshev_closes(self.p, self.m)
+        let (p, q) = self.ratio.terms();
+        let period = Rational::from(self.ratio) * Rational::from_integer(q.into());
+        let turns = half_period(p, self.m) * Rational::from_integer(self.m.into());
+        period == turns && chebyshev_closes(p, self.m)
     }
 }
 
 /// T½/h1 = p/m at p θ = m π.
 fn half_period(p: u64, m: u64) -> Rational {
-    ratio(p, m)
+    fraction(p, m)
 }
 
 /// h2/h1 on the curve (a, b) where T½/h1 = t: b t/(1 − a t), or `None` where the curve has no such point.
@@ -80,9 +78,10 @@ pub fn point_on_curve(a: i64, b: i64, t: &Rational) -> Option<Rational> {
 /// m = a p + b q. `None` where m ≤ 0: no step h1 > 0 has such a T½.
 ///
 /// With b ≠ 0 and x = h1/T½, eq. (10) reads p/q (x − a) = b.
-pub fn resonance_on_curve(p: u64, q: u64, a: i64, b: i64) -> Option<u64> {
-    let over_pi = ratio(q, p) * Rational::from_integer(b.into()) + Rational::from_integer(a.into());
-    let m = over_pi * Rational::from_integer(p.into());
+pub fn resonance_on_curve(ratio: Ratio, a: i64, b: i64) -> Option<u64> {
+    let over_pi =
+        Rational::from(ratio.inverse()) * Rational::from_integer(b.into()) + Rational::from_integer(a.into());
+    let m = over_pi * Rational::from_integer(ratio.p().into());
     (m.is_integer() && m > Rational::zero()).then(|| u64::try_from(m.to_integer()).ok()).flatten()
 }
 
@@ -99,7 +98,7 @@ fn field(p: u64) -> CyclotomicField {
 /// The same by 2 T_p(x/2) =: V_p(x), V_{k+1} = x V_k − V_{k−1}, x = 2 cos(m π/p).
 fn closes_in(field: &CyclotomicField, p: u64, m: u64) -> bool {
     let x = field.two_cos(m as i64);
-    let two = <Cyclotomic as Ring>::from_rational(&ratio(2, 1));
+    let two = <Cyclotomic as Ring>::from_rational(&fraction(2, 1));
     let (mut before, mut now) = (two.clone(), x.clone());
     for _ in 1..p {
         let mut next = Cyclotomic::product(&x, &now);
@@ -127,33 +126,35 @@ pub fn check(max: u64, mut visit: impl FnMut(&Witness)) -> Check {
     for p in 1..=max {
         let field = field(p);
         let closes: Vec<bool> = (0..p).map(|m| m > 0 && closes_in(&field, p, m)).collect();
-        for q in (1..=max).filter(|q| q.gcd(&p) == 1) {
+        for ratio in (1..=max).filter(|q| q.gcd(&p) == 1).filter_map(|q| Ratio::new(p, q).ok()) {
+            let q = ratio.q();
             for m in 1..p {
-                let w = witness(p, q, m);
+                let w = witness(ratio, m);
                 result.forward += 1;
-                let resonant =
-                    closes[m as usize] && ratio(p, q) * ratio(q, 1) == half_period(p, m) * ratio(m, 1);
+                let resonant = closes[m as usize]
+                    && fraction(p, q) * fraction(q, 1) == half_period(p, m) * fraction(m, 1);
                 let holds = w.b != 0 && w.a * p as i64 + w.b * q as i64 == m as i64 && w.lies_on_its_curve();
                 if holds && resonant { visit(&w) } else { result.failures.push(w) }
             }
-            backward(p, q, max as i64, &closes, &mut result);
+            backward(ratio, max as i64, &closes, &mut result);
         }
     }
     result
 }
 
 /// Every curve |a| ≤ `max` that has a point with h2/h1 = p/q below the Verlet limit, 0 < θ/π < 1.
-fn backward(p: u64, q: u64, max: i64, closes: &[bool], result: &mut Check) {
+fn backward(ratio: Ratio, max: i64, closes: &[bool], result: &mut Check) {
+    let (p, q) = (ratio.p() as i64, ratio.q() as i64);
     for a in -max..=max {
         // 0 < a + b q/p < 1.
-        let lowest = (-a * p as i64).div_euclid(q as i64) + 1;
-        let curves = (lowest..).take_while(|b| a * p as i64 + b * (q as i64) < p as i64).filter(|&b| b != 0);
+        let lowest = (-a * p).div_euclid(q) + 1;
+        let curves = (lowest..).take_while(|b| a * p + b * q < p).filter(|&b| b != 0);
         for b in curves {
             result.backward += 1;
-            let m = resonance_on_curve(p, q, a, b);
-            let on_curve = |m| point_on_curve(a, b, &half_period(p, m)) == Some(ratio(p, q));
+            let m = resonance_on_curve(ratio, a, b);
+            let on_curve = |m| point_on_curve(a, b, &half_period(ratio.p(), m)) == Some(ratio.into());
             if !m.is_some_and(|m| closes[m as usize] && on_curve(m)) {
-                result.failures.push(Witness { p, q, m: m.unwrap_or(0), a, b });
+                result.failures.push(Witness { ratio, m: m.unwrap_or(0), a, b });
             }
         }
     }
@@ -162,10 +163,10 @@ fn backward(p: u64, q: u64, max: i64, closes: &[bool], result: &mut Check) {
 /// For fixed h1 with T½/h1 = p/m in lowest terms, the resonant slow steps below h1 p: h2 = (p/q) h1 for every
 /// 1 ≤ q < p coprime to p. In units of h1.
 pub fn resonant_steps(p: u64) -> Vec<Rational> {
-    (1..p.max(2)).filter(|q| q.gcd(&p) == 1).map(|q| ratio(p, q)).collect()
+    (1..p.max(2)).filter(|q| q.gcd(&p) == 1).map(|q| fraction(p, q)).collect()
 }
 
-fn ratio(p: u64, q: u64) -> Rational {
+fn fraction(p: u64, q: u64) -> Rational {
     Rational::new(p.into(), q.into())
 }
 
@@ -179,7 +180,7 @@ mod tests {
         // m = a p + b q holds for every m with b != 0.
         for q in 1..20 {
             for m in 1..20 {
-                assert_ne!(witness(1, q, m).b, 0);
+                assert_ne!(witness(Ratio::new(1, q).unwrap(), m).b, 0);
             }
         }
     }
@@ -193,7 +194,7 @@ mod tests {
 
     #[test]
     fn a_wrong_witness_fails() {
-        let right = witness(7, 3, 4);
+        let right = witness("7/3".parse().unwrap(), 4);
         assert!(!Witness { a: right.a + 1, ..right }.lies_on_its_curve());
         assert!(!Witness { m: 3, ..right }.lies_on_its_curve());
         assert!(!chebyshev_closes_at(7, 4, 5));
@@ -208,7 +209,7 @@ mod tests {
     fn resonant_steps_are_resonant() {
         for step in resonant_steps(10) {
             let q = u64::try_from(step.denom().clone()).unwrap();
-            assert!(witness(10, q, 3).is_resonant());
+            assert!(witness(Ratio::new(10, q).unwrap(), 3).is_resonant());
         }
     }
 }

@@ -7,7 +7,8 @@
 //!     S0 = mean |P(sigma_k)|²,   S = mean P(sigma_k)² e^{2 i n_k th}   over the q slow kicks, k p/q = n_k + sigma_k,
 //! ```
 //!
-//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. On a fixed family
+//! P(σ) = 1 − σ + σ e^{iθ} being the fast clock's solution between two of its kicks. A phase δ off the middle lets the
+//! amplitude grow by √((q α |S|)² − δ²) per period, so by q α |S| in the middle. On a fixed family
 //! (a, b), as q grows, S0 → 1 − s/6 and |S| → |S_a(θ)|,
 //!
 //! ```text
@@ -29,6 +30,7 @@
 //! assert!(strength(2, 1.0).abs() < strength(1, 1.0).abs());
 //! ```
 
+use crate::number::Ratio;
 use num_complex::Complex64;
 
 /// S_a(θ), 0 < θ < π, in doubles: relative error a few units in the last place except where ψ − sin θ
@@ -54,19 +56,20 @@ pub struct FirstOrder {
     pub centre: f64,
     /// Its width.
     pub width: f64,
-    /// ln of the multiplier at the middle, per period: 2 q alpha |S|.
+    /// ln of the multiplier at the middle, per period: q alpha |S|, half the width in the phase p θ.
     pub ln_multiplier: f64,
 }
 
 /// The first-order tongue of h2/h1 = p/q about p θ = m π, for L2 = rho L1, 0 < m < p.
 ///
 /// Rounded; the law itself is of first order in rho: its error is O(rho²).
-pub fn first_order(p: u64, q: u64, m: u64, rho: f64) -> Option<FirstOrder> {
+pub fn first_order(ratio: Ratio, m: u64, rho: f64) -> Option<FirstOrder> {
+    let (p, q) = ratio.terms();
     if m == 0 || m >= p {
         return None;
     }
     let theta = std::f64::consts::PI * m as f64 / p as f64;
-    let (s0, s1) = means(p, q, theta);
+    let (s0, s1) = means(ratio, theta);
     let s = 4.0 * (theta / 2.0).sin().powi(2);
     let alpha = s * rho * (p as f64 / q as f64) / (2.0 * theta.sin());
     let phase = q as f64 * alpha;
@@ -75,12 +78,13 @@ pub fn first_order(p: u64, q: u64, m: u64, rho: f64) -> Option<FirstOrder> {
     Some(FirstOrder {
         centre: s - phase * s0 * per_phase,
         width: 2.0 * phase * s1 * per_phase,
-        ln_multiplier: 2.0 * phase * s1,
+        ln_multiplier: phase * s1,
     })
 }
 
 /// S0 and |S| over the q slow kicks of one period.
-fn means(p: u64, q: u64, theta: f64) -> (f64, f64) {
+fn means(ratio: Ratio, theta: f64) -> (f64, f64) {
+    let (p, q) = ratio.terms();
     let turn = Complex64::cis(theta);
     let (mut s0, mut s1) = (0.0, Complex64::ZERO);
     for k in 0..q {
@@ -134,7 +138,7 @@ mod tests {
     fn the_mean_over_many_kicks_tends_to_the_closed_form() {
         // p/q = 301/100, m = 101 = 1·301 − 2·100: family (1, −2), theta = 101 pi/301.
         let theta = std::f64::consts::PI * 101.0 / 301.0;
-        let (s0, s1) = means(301, 100, theta);
+        let (s0, s1) = means("301/100".parse().unwrap(), theta);
         let s = 4.0 * (theta / 2.0f64).sin().powi(2);
         // The kicks sample sigma at spacing 1/100: errors of order 1/q.
         assert!((s0 - (1.0 - s / 6.0)).abs() < 1e-2);
@@ -144,7 +148,7 @@ mod tests {
     #[test]
     fn first_order_widths_match_a_known_tongue() {
         // 7/2, m = 4 at rho = 1/25: edges 2.31510 and 2.44504.
-        let law = first_order(7, 2, 4, 0.04).unwrap();
+        let law = first_order("7/2".parse().unwrap(), 4, 0.04).unwrap();
         assert!((law.width - 0.12995).abs() < 0.02, "{law:?}");
         assert!((law.centre - 2.38007).abs() < 0.02, "{law:?}");
     }

@@ -1,13 +1,31 @@
 //! A scene as it is written: texts, not yet quantities.
 
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::error::{Error, Result};
 
 /// The schema that this version reads.
 const SCHEMA: &str = "kickdrift/scene/1";
 
-/// The fields of a scene file; all quantities are exact strings. See data/schema/scene.json.
+/// An exact quantity as it is written: a text, or a JSON number, whose digits are taken as they stand.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(try_from = "Value")]
+pub struct Quantity(pub String);
+
+impl TryFrom<Value> for Quantity {
+    type Error = String;
+
+    fn try_from(value: Value) -> std::result::Result<Self, String> {
+        match value {
+            Value::String(text) => Ok(Quantity(text)),
+            Value::Number(number) => Ok(Quantity(number.to_string())),
+            other => Err(format!("{other} is no quantity: write a number, or a text as \"pi^2/25\"")),
+        }
+    }
+}
+
+/// The fields of a scene file; all quantities are exact. See data/schema/scene.json.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Document {
@@ -16,23 +34,23 @@ pub struct Document {
     /// Shown on figures and summaries.
     pub title: Option<String>,
     /// The stiffness of the fast force, 1/time².
-    pub lambda1: Option<String>,
+    pub lambda1: Option<Quantity>,
     /// The stiffness of the slow force, 1/time².
-    pub lambda2: Option<String>,
+    pub lambda2: Option<Quantity>,
     /// The step pairs.
     pub grid: Option<Grid>,
     /// The curves (a, b).
     pub families: Option<Families>,
     /// Nearness to a resonance in units of T½.
-    pub tolerance: Option<String>,
+    pub tolerance: Option<Quantity>,
     /// h2/h1 = p/q for products about one ratio.
-    pub ratio: Option<String>,
+    pub ratio: Option<Quantity>,
     /// The bound on p and q of exhaustive checks.
     pub max: Option<u64>,
     /// All coprime p + q up to this, for products about many ratios.
     pub max_sum: Option<u64>,
     /// lambda2/lambda1, in place of lambda2.
-    pub rho: Option<String>,
+    pub rho: Option<Quantity>,
     /// Where closings are searched.
     pub rho_range: Option<String>,
     /// The steps that tongues and the atlas show.
@@ -48,11 +66,11 @@ pub struct Document {
 #[serde(deny_unknown_fields)]
 pub struct Grid {
     /// The spacing of both steps ...
-    pub step: Option<String>,
+    pub step: Option<Quantity>,
     /// ... or of h1 and h2 apart.
-    pub step1: Option<String>,
+    pub step1: Option<Quantity>,
     /// The spacing of h2.
-    pub step2: Option<String>,
+    pub step2: Option<Quantity>,
     /// The range of h1.
     pub h1: String,
     /// The range of h2.

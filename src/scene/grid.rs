@@ -1,6 +1,6 @@
 //! The grid of step pairs as a scene or a command line gives it.
 
-use super::document;
+use super::document::{self, Quantity};
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::Laurent;
@@ -24,8 +24,8 @@ impl GridRange {
     /// # Errors
     /// A missing spacing, or a text that does not parse.
     pub(super) fn read(grid: &document::Grid) -> Result<Self> {
-        let step = |field, own: &Option<String>| match own.as_ref().or(grid.step.as_ref()) {
-            Some(text) => parse(field, text),
+        let step = |field, own: &Option<Quantity>| match own.as_ref().or(grid.step.as_ref()) {
+            Some(text) => parse(field, &text.0),
             None => Err(Error::missing(field, "give the spacing as \"step\", or as \"step1\" and \"step2\"")),
         };
         let steps = [step("grid.step1", &grid.step1)?, step("grid.step2", &grid.step2)?];

@@ -1,6 +1,6 @@
 //! Input documents: what a person writes in a scene file, as library types.
 //!
-//! A scene names its quantities as exact strings and the products it wants; only those are computed. It is
+//! A scene names its quantities exactly, as texts or JSON numbers, and the products it wants; only those are computed. It is
 //! read in two steps: JSON into [`document::Document`], whose fields are still text, then each text into the
 //! type that the library asks for, so that every error names the field, its value and a remedy.
 //!
@@ -19,18 +19,20 @@
 
 mod document;
 mod grid;
+#[cfg(feature = "system")]
 mod system;
 mod want;
 
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Ratio, Rational};
 
-pub use document::Document;
+pub use document::{Document, Quantity};
 pub use grid::GridRange;
+#[cfg(feature = "system")]
 pub use system::{Axis, Scan, SystemScene};
-pub use want::{Format, Product, Want};
+pub use want::{Product, Want};
 
 /// What is to be computed, checked as far as it can be without computing.
 #[derive(Clone, Debug)]
@@ -103,7 +105,7 @@ impl Scene {
     /// # Errors
     /// Where the field is missing or does not parse.
     pub fn lambda1(&self) -> Result<Laurent> {
-        quantity("lambda1", self.document.lambda1.as_deref())
+        quantity("lambda1", self.document.lambda1.as_ref())
     }
 
     /// The stiffness of the slow force.
@@ -111,7 +113,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::lambda1`].
     pub fn lambda2(&self) -> Result<Laurent> {
-        quantity("lambda2", self.document.lambda2.as_deref())
+        quantity("lambda2", self.document.lambda2.as_ref())
     }
 
     /// The grid of step pairs on the scene's oscillator.
@@ -154,16 +156,16 @@ impl Scene {
     /// # Errors
     /// Where it does not parse.
     pub fn tolerance(&self) -> Result<Rational> {
-        parse_rational("tolerance", self.document.tolerance.as_deref().unwrap_or("1/20"))
+        parse_rational("tolerance", self.document.tolerance.as_ref().map_or("1/20", |text| &text.0))
     }
 
     /// h2/h1 = p/q.
     ///
     /// # Errors
     /// Where the field is missing or is no positive ratio.
-    pub fn ratio(&self) -> Result<(u64, u64)> {
-        let text = self.document.ratio.as_deref().ok_or_else(|| missing("ratio", "\"7/2\""))?;
-        parse_ratio("ratio", text)
+    pub fn ratio(&self) -> Result<Ratio> {
+        let text = self.document.ratio.as_ref().ok_or_else(|| missing("ratio", "\"7/2\""))?;
+        parse_ratio("ratio", &text.0)
     }
 
     /// The bound on p and q of an exhaustive check of the Proposition; 60 unless the scene says otherwise.
@@ -176,7 +178,7 @@ impl Scene {
     /// # Errors
     /// Where it does not parse.
     pub fn rho(&self) -> Result<Option<Rational>> {
-        self.document.rho.as_ref().map(|text| parse_rational("rho", text)).transpose()
+        self.document.rho.as_ref().map(|text| parse_rational("rho", &text.0)).transpose()
     }
 
     /// The closed range of ρ in which closings are searched; 1/10000..100 unless the scene says otherwise.
@@ -249,8 +251,8 @@ impl Scene {
     }
 }
 
-fn quantity(field: &str, text: Option<&str>) -> Result<Laurent> {
-    parse(field, text.ok_or_else(|| missing(field, "\"pi^2/25\""))?)
+fn quantity(field: &str, quantity: Option<&Quantity>) -> Result<Laurent> {
+    parse(field, &quantity.ok_or_else(|| missing(field, "\"pi^2/25\""))?.0)
 }
 
 fn missing(field: &str, example: &str) -> Error {

@@ -1,6 +1,7 @@
 //! The products that a scene can want.
 
 use crate::error::{Error, Result};
+use crate::format::Format;
 
 /// A product of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -29,19 +30,6 @@ pub enum Product {
     Atlas,
 }
 
-/// The form of a product's file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Format {
-    Json,
-    Csv,
-    Latex,
-    Text,
-    Svg,
-    Png,
-    /// NumPy arrays; of the map alone.
-    Npz,
-}
-
 /// One product in one format: one file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Want {
@@ -63,16 +51,6 @@ const PRODUCTS: [(&str, Product); 11] = [
     ("atlas", Product::Atlas),
 ];
 
-const FORMATS: [(&str, Format); 7] = [
-    ("json", Format::Json),
-    ("csv", Format::Csv),
-    ("tex", Format::Latex),
-    ("txt", Format::Text),
-    ("svg", Format::Svg),
-    ("png", Format::Png),
-    ("npz", Format::Npz),
-];
-
 impl Want {
     /// Reads `NAME` or `NAME.FORMAT`. Without a format: JSON for tables, SVG for figures.
     ///
@@ -85,11 +63,12 @@ impl Want {
         let default = if product.is_figure() { Format::Svg } else { Format::Json };
         let format = match format {
             Some(format) => {
-                find(&FORMATS, format).ok_or_else(|| unknown(text, "the formats are", &names(&FORMATS)))?
+                let known = Format::ALL.map(Format::extension).join(", ");
+                Format::of_extension(format).ok_or_else(|| unknown(text, "the formats are", &known))?
             }
             None => default,
         };
-        let drawn = matches!(format, Format::Svg | Format::Png);
+        let drawn = format.is_figure();
         if drawn != product.is_figure() {
             let remedy = if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg or png" };
             return Err(Error::input("want", text, remedy));
@@ -115,13 +94,6 @@ impl Product {
     /// Whether it is drawn.
     pub fn is_figure(self) -> bool {
         matches!(self, Product::Figure | Product::Overlay | Product::Atlas)
-    }
-}
-
-impl Format {
-    /// The extension of its files.
-    pub fn extension(self) -> &'static str {
-        FORMATS.iter().find(|(_, format)| *format == self).expect("every format has an extension").0
     }
 }
 

@@ -18,7 +18,7 @@ use super::model::{Potential, System};
 use super::sparse::Symmetric;
 use crate::error::Result;
 use crate::number::{Rational, Ring};
-use crate::propagator::{Event, Weight};
+use crate::schedule::{Event, Weight};
 
 /// What an event costs beside its multiplications, in columns of the half period.
 const OVERHEAD: u64 = 16;

@@ -4,7 +4,7 @@ use num_bigint::BigInt;
 
 use super::ManyClocks;
 use crate::number::{Ball, Rational, Real, Sign};
-use crate::propagator::Weight;
+use crate::schedule::Weight;
 use crate::verdict::{PartialSigns, Verdict};
 
 /// H = \[\[A, B\], \[C, D\]\], and the sign changes of x on the way of the even solution.

@@ -23,7 +23,7 @@ use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, Ring, U};
-use crate::propagator::Weight;
+use crate::schedule::Weight;
 
 /// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
 #[derive(Clone, Debug)]

@@ -12,7 +12,7 @@ use super::compose::{Program, Row, State};
 use super::frame::Frame;
 use super::model::System;
 use crate::number::Rational;
-use crate::propagator::Weight;
+use crate::schedule::Weight;
 
 /// Positive multiples of the blocks of H, and the scale of B and C together.
 pub(super) struct IntegerBlocks {

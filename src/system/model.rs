@@ -8,7 +8,7 @@ use num_traits::{Signed, Zero};
 use super::sparse::{Symmetric, null_space};
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::propagator::Schedule;
+use crate::schedule::Schedule;
 
 /// One potential xᵀ K x/2, its force applied as kicks at the times (n + phase) step.
 #[derive(Clone, Debug, PartialEq)]

@@ -22,8 +22,9 @@ use nalgebra::Matrix2;
 use num_traits::{One, Zero};
 
 use crate::error::{Error, Result};
-use crate::number::{ExactSign, Rational, Ring, Sign};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight, apply_drift, apply_kick};
+use crate::number::{ExactSign, Ratio, Rational, Ring, Sign};
+use crate::propagator::{TwoClocks, apply_drift, apply_kick};
+use crate::schedule::{Event, Schedule, Weight};
 use crate::verdict::{HalfSigns, Kind};
 
 /// K clocks on one oscillator, without dimension: the unit of time is h_1.
@@ -73,15 +74,14 @@ impl<S: Ring> ManyClocks<S> {
 
     /// The same as one or two clocks of phase 0, for the scalar kernels; `None` for any other.
     pub fn as_two_clocks(&self) -> Option<TwoClocks<S>> {
-        let positive = |x: &num_bigint::BigInt| u64::try_from(x).ok();
         if self.phases.iter().any(|phase| !phase.is_zero()) || !self.steps[0].is_one() {
             return None;
         }
         match self.strengths.as_slice() {
-            [one] => Some(TwoClocks::new(1, 1, one.clone(), S::zero())),
+            [one] => Some(TwoClocks::new(Ratio::ONE, one.clone(), S::zero())),
             [fast, slow] => {
-                let (p, q) = (positive(self.steps[1].numer())?, positive(self.steps[1].denom())?);
-                Some(TwoClocks::new(p, q, fast.clone(), slow.clone()))
+                let ratio = Ratio::try_from(&self.steps[1]).ok()?;
+                Some(TwoClocks::new(ratio, fast.clone(), slow.clone()))
             }
             _ => None,
         }

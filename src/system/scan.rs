@@ -1,6 +1,6 @@
 //! Maps of a system: its verdict over two parameters.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::analysis::Analysis;
 use crate::error::Result;

@@ -6,13 +6,17 @@
 //!
 //! ```text
 //!     counts -> brackets -> modes, Rayleigh quotients -> edges -> tongues -> rows, survey, closings
-//!
-//!     counts, brackets     sturm, isolate
-//!     modes                locate, half, mode, side by side in a batch
-//!     edges                spectrum; by more bits: precise, exact_count
-//!     tongues              gaps, order; thinner than doubles tell: tunnel; open or closed: modular, elimination
-//!     largest growth       peak, meet
 //! ```
+//!
+//! | room | what is there |
+//! |---|---|
+//! | `string` | the half period as masses and springs |
+//! | `edge` | edges in doubles and by more bits |
+//! | `gap` | a tongue between its two edges: which is the lower one, how wide, open or closed |
+//! | `peak` | the fastest growth inside |
+//! | `closing` | where tongues close as ρ changes |
+//! | `row` | a tongue with all that is known about it |
+//! | `tongues`, `select`, `survey` | the tongues of one ratio, some of them, those of all ratios up to a sum |
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
 //! Inside tongue m the growing solution changes sign m times in a period: m is the label that the map and the
@@ -22,7 +26,7 @@
 //! use kickdrift::number::rational::ratio;
 //! use kickdrift::tongue::{Entry, Tongues};
 //! // 7/2 at rho = 1/25, m = 4: one edge sits on the resonance 4 sin²(2 pi/7).
-//! let mut tongues = Tongues::new(7, 2, &ratio(1, 25)).unwrap();
+//! let tongues = Tongues::new("7/2".parse().unwrap(), &ratio(1, 25)).unwrap();
 //! let gap = tongues.gap(4).unwrap();
 //! let (lower, upper) = (gap.lower, gap.upper.unwrap());
 //! assert!(lower.lo <= 2.3150964145691537 && 2.3150964145691537 <= lower.hi);
@@ -33,39 +37,22 @@
 //! assert!(precise.width() < &precise.lo * num_rational::BigRational::new(1.into(), num_bigint::BigInt::from(10).pow(50)));
 //! ```
 
-mod batch;
 mod closing;
-mod elimination;
-mod exact_count;
-mod gaps;
-mod half;
-mod isolate;
-mod jet;
-mod lanes;
-mod locate;
-mod meet;
-mod mode;
-mod modular;
-mod order;
+mod edge;
+mod gap;
 mod peak;
-mod precise;
 mod row;
 mod select;
-mod spectrum;
 mod string;
-mod sturm;
 mod survey;
-mod tunnel;
-mod twofold;
+mod tongues;
 
-pub use closing::{Closing, ELIMINATION, Found, Search, closings};
-pub use elimination::entries;
-pub use gaps::{Effort, Tongues};
-pub use order::Gap;
+pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings};
+pub use edge::{Edge, Effort, Enclosure};
+pub use gap::{Gap, entries};
 pub use peak::Peak;
-pub use precise::Enclosure;
-pub use row::{ExactEdge, Law, Predicted, Row, Side, Wanted};
-pub use select::{Resonance, Selection};
-pub use spectrum::Edge;
+pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
+pub use select::Selection;
 pub use string::Entry;
-pub use survey::{Spread, Survey, Thin, ratios, survey};
+pub use survey::{Spread, Survey, Thin, survey};
+pub use tongues::Tongues;

@@ -11,15 +11,11 @@
 
 use std::collections::BTreeMap;
 
-use num_integer::Integer;
-use rayon::prelude::*;
-
-use super::gaps::Tongues;
-use super::order::Gap;
-use super::row::{Row, Wanted};
-use super::select::Selection;
+use super::row::{Row, Side, Wanted};
+use super::tongues::Tongues;
 use crate::error::Result;
-use crate::number::Rational;
+use crate::number::{Ratio, Rational};
+use crate::parallel::*;
 
 /// What all coprime p + q ≤ N have to say at one ρ, about the tongues whose lower edge has s < 4.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +26,8 @@ pub struct Survey {
     /// Tongues with lower edge s < 4, each certified open or closed.
     pub tongues: u64,
     pub open: u64,
-    /// (p, q, m) of the closed ones.
-    pub closed: Vec<(u64, u64, u64)>,
+    /// The ratio and m of the closed ones.
+    pub closed: Vec<(Ratio, u64)>,
     /// Edges certified in doubles, and with more bits.
     pub edges: (u64, u64),
     /// The thinnest open ones, thinnest first.
@@ -49,8 +45,7 @@ pub struct Survey {
 /// A thin tongue; its width is enclosed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Thin {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub m: u64,
     pub a: i64,
     pub b: i64,
@@ -70,22 +65,6 @@ pub struct Spread {
     pub largest: f64,
 }
 
-impl Tongues {
-    /// The tongues whose lower edge lies below s = `limit`.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn below(&mut self, limit: f64) -> Result<Vec<Gap>> {
-        let window = Selection { s: Some((0.0, limit)), ..Selection::default() };
-        Ok(self.select(&window)?.into_iter().filter(|gap| gap.lower.lo < limit).collect())
-    }
-}
-
-/// All coprime (p, q) with p + q ≤ N, by sum, then p.
-pub fn ratios(max_sum: u64) -> Vec<(u64, u64)> {
-    (2..=max_sum).flat_map(|sum| (1..sum).map(move |p| (p, sum - p)).filter(|(p, q)| p.gcd(q) == 1)).collect()
-}
-
 /// The survey of all p + q ≤ `max_sum` at ρ > 0, with the `keep` thinnest tongues. The same whatever the number of
 /// threads.
 ///
@@ -93,14 +72,14 @@ pub fn ratios(max_sum: u64) -> Vec<(u64, u64)> {
 /// As [`Tongues::new`].
 pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
     let wanted = Wanted { family: true, predicted: true, first_order: true, ..Wanted::default() };
-    let one = |(p, q): (u64, u64)| -> Result<(Vec<Row>, (u64, u64))> {
-        let mut tongues = Tongues::new(p, q, rho)?;
-        let gaps = tongues.below(4.0)?;
+    let one = |ratio: Ratio| -> Result<(Vec<Row>, (u64, u64))> {
+        let tongues = Tongues::new(ratio, rho)?;
+        let gaps = tongues.below(4)?;
         let rows = gaps.iter().map(|gap| tongues.row(gap, &wanted)).collect::<Result<_>>()?;
         let effort = tongues.effort();
         Ok((rows, (effort.doubles, effort.precise)))
     };
-    let ratios = ratios(max_sum);
+    let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
     let parts: Vec<_> = ratios.into_par_iter().map(one).collect::<Result<_>>()?;
     let mut survey = Survey::empty(max_sum, rho, parts.len() as u64);
     let mut by_family: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
@@ -139,16 +118,15 @@ impl Survey {
     }
 
     fn count(&mut self, row: &Row) {
-        use super::row::Side;
-        let (p, q, gap) = (row.p, row.q, &row.gap);
+        let (ratio, gap) = (row.ratio, &row.gap);
         self.tongues += 1;
         if gap.closed {
-            self.closed.push((p, q, gap.m));
+            self.closed.push((ratio, gap.m));
         } else {
             self.open += 1;
             if gap.upper.is_some() {
                 let (a, b) = row.family.unwrap_or_default();
-                self.thinnest.push(Thin { p, q, m: gap.m, a, b, s: gap.lower.lo, width: gap.width });
+                self.thinnest.push(Thin { ratio, m: gap.m, a, b, s: gap.lower.lo, width: gap.width });
             }
         }
         if let Some(predicted) = row.predicted {

@@ -10,7 +10,7 @@
 //! use kickdrift::propagator::TwoClocks;
 //! use kickdrift::verdict::Decidable;
 //! // th = pi/3 and 3 | p: the upper edge of the tongue sits exactly on the resonance.
-//! let signs = Decidable::half_signs(&TwoClocks::new(3, 1, ratio(1, 1), ratio(1, 10)));
+//! let signs = Decidable::half_signs(&TwoClocks::new("3/1".parse().unwrap(), ratio(1, 1), ratio(1, 10)));
 //! assert_eq!((signs.verdict().kind().name(), signs.verdict().side()), ("parabolic", -1));
 //! ```
 
@@ -18,10 +18,10 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use super::kind::HalfSigns;
-use super::residue;
-use crate::number::{Cyclotomic, ExactSign, Laurent, Rational, Real, Sign};
-use crate::propagator::{Event, Schedule, TwoClocks, Weight, half_period};
+use crate::number::{Cyclotomic, Laurent, Rational, Real, Sign};
+use crate::orbit::residue;
+use crate::propagator::{HalfSigns, TwoClocks, half_period};
+use crate::schedule::{Event, Schedule, Weight};
 
 /// Exact real numbers over which the four signs of the half period are decided.
 pub trait Decidable: Real {
@@ -30,8 +30,7 @@ pub trait Decidable: Real {
     /// # Panics
     /// Where the period has 2^62 ticks and more.
     fn half_signs(clocks: &TwoClocks<Self>) -> HalfSigns {
-        let half = half_period(clocks);
-        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+        half_period(clocks).signs()
     }
 
     /// What [`Decidable::half_signs`] costs for a half period of so many kicks, in kicks of the refine tier (about
@@ -53,8 +52,7 @@ impl Decidable for Laurent {
         if let Some(rational) = clocks.as_rational() {
             return Decidable::half_signs(&rational);
         }
-        let half = half_period(clocks);
-        HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign())
+        half_period(clocks).signs()
     }
 
     /// As for the rationals where both strengths are rational.
@@ -75,8 +73,7 @@ impl Decidable for Cyclotomic {}
 impl Decidable for Rational {
     /// By a product tree of integer matrices, about (p + q)/2 leaves.
     fn half_signs(clocks: &TwoClocks<Rational>) -> HalfSigns {
-        let schedule =
-            Schedule::two_clocks(clocks.p(), clocks.q()).expect("a period short enough to compose");
+        let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
         let [[a, b], [c, d]] = product(&Steps::new(clocks, &schedule), &schedule).entries;
         let sign = |n: &BigInt| Sign::from_ordering(n.cmp(&BigInt::zero()));
         HalfSigns::new(sign(&a), sign(&b), sign(&c), sign(&d))
@@ -96,7 +93,7 @@ impl Decidable for Rational {
 /// # Panics
 /// Where the period has 2^62 ticks and more.
 pub fn exact_trace(clocks: &TwoClocks<Rational>) -> Rational {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q()).expect("a period short enough to compose");
+    let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
     let steps = Steps::new(clocks, &schedule);
     let half = product(&steps, &schedule);
     let [[a, b], [c, d]] = &half.entries;
@@ -207,6 +204,7 @@ fn product(steps: &Steps, schedule: &Schedule) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::rational::ratio;
     use proptest::prelude::*;
 
@@ -216,10 +214,9 @@ mod tests {
             p in 1u64..90, q in 1u64..90, s in -50i64..500, slow in -300i64..300, d in 1i64..120,
         ) {
             let (p, q) = (p / p.gcd(&q), q / p.gcd(&q));
-            let clocks = TwoClocks::new(p, q, ratio(s, d), ratio(slow, 2 * d + 1));
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, d), ratio(slow, 2 * d + 1));
             let half = half_period(&clocks);
-            let plain = HalfSigns::new(half.a().sign(), half.b().sign(), half.c().sign(), half.d().sign());
-            prop_assert_eq!(Decidable::half_signs(&clocks), plain);
+            prop_assert_eq!(Decidable::half_signs(&clocks), half.signs());
             let trace = exact_trace(&clocks);
             prop_assert_eq!(trace.denom().gcd(trace.numer()), BigInt::one());
             prop_assert_eq!(trace, half.trace());

@@ -10,15 +10,15 @@
 //! since Tr = 2 cosh(ln μ) = 2 + 4 sinh²(ln μ / 2) (theorems `multiplier_plus`, `multiplier_minus` in proofs/).
 
 use super::exact::Decidable;
-use super::filter;
-use super::floquet::Floquet;
 use super::kind::{Kind, Verdict};
+use super::label::{from_nodes, label};
 use super::ladder::Limits;
-use super::refine;
-use super::winding;
 use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
-use crate::propagator::{Schedule, TwoClocks};
+use crate::orbit::floquet::Floquet;
+use crate::orbit::{filter, refine};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 
 /// How a pair moves over one synchronization period.
 #[derive(Clone, Debug)]
@@ -42,10 +42,10 @@ const ACCURACY: i64 = 60;
 /// # Errors
 /// A budget error where more kicks would have to be composed than `limits` allows.
 pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let schedule = Schedule::two_clocks(clocks.ratio())?;
     let floquet = Floquet::new(clocks);
     let filtered = floquet.as_ref().and_then(filter::run);
-    let label = filtered.as_ref().and_then(|ends| winding::label(ends, verdict));
+    let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
     if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
         return Ok(from_products(products(&ends), verdict, label));
     }
@@ -62,7 +62,7 @@ pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Li
 /// ```
 /// use kickdrift::number::rational::ratio;
 /// use kickdrift::propagator::{TwoClocks, half_period};
-/// let clocks = TwoClocks::with_rho(7, 2, ratio(1, 3), ratio(1, 25));
+/// let clocks = TwoClocks::with_rho("7/2".parse().unwrap(), ratio(1, 3), ratio(1, 25));
 /// let trace = kickdrift::verdict::filter_trace(&clocks).unwrap();
 /// assert!(trace.contains(&half_period(&clocks).trace()) && trace.radius_log2() < Some(-40));
 /// ```
@@ -130,22 +130,6 @@ impl refine::Ends {
     fn products(&self, bits: u32) -> Products {
         Products { bc: self.odd.x.mul(&self.even.v, bits), ad: self.even.x.mul(&self.odd.v, bits) }
     }
-}
-
-/// m from the sign changes n of the even solution over the half period. Where Tr > 2 the even solution has
-/// turned by less than a quarter from n half turns, so m = 2n. Where Tr < −2 it has turned by (m/2) half turns
-/// give or take a quarter: past n of them if x v < 0 at T/2 (it turns clockwise), before n if x v > 0.
-fn from_nodes(ends: &refine::Ends, verdict: Verdict) -> Option<u64> {
-    use crate::number::Sign::Negative;
-    if verdict.kind() != Kind::Hyperbolic {
-        return None;
-    }
-    let nodes = ends.even.nodes?;
-    if verdict.side() > 0 {
-        return Some(2 * nodes);
-    }
-    let (x, v) = ends.even.signs;
-    if x? * v? == Negative { Some(2 * nodes + 1) } else { (2 * nodes).checked_sub(1) }
 }
 
 /// The filter's products: exact vector = a 2^e ((x, v) + t J(x, v)/|(x, v)|²), |t| ≤ across.

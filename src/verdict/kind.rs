@@ -22,6 +22,7 @@
 //! ```
 
 use crate::number::Sign::{self, Negative, Positive, Zero};
+use crate::propagator::{HalfSigns, PartialSigns};
 
 /// What the powers of Q do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -98,58 +99,21 @@ impl Verdict {
     }
 }
 
-/// The signs of A, B, C, D; consistent with AD − BC = 1.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct HalfSigns {
-    a: Sign,
-    b: Sign,
-    c: Sign,
-    d: Sign,
-}
-
 impl HalfSigns {
-    /// # Panics
-    /// On signs that no matrix with AD − BC = 1 has: AD ≤ 0 ≤ BC.
-    pub fn new(a: Sign, b: Sign, c: Sign, d: Sign) -> Self {
-        assert!(
-            a * d == Positive || b * c == Negative,
-            "signs {a:?} {b:?} {c:?} {d:?} contradict AD - BC = 1"
-        );
-        HalfSigns { a, b, c, d }
-    }
-
     /// The table above.
     pub fn verdict(self) -> Verdict {
-        let (kind, side) = match (self.b * self.c, self.a * self.d) {
+        let [a, b, c, d] = self.all();
+        let (kind, side) = match (b * c, a * d) {
             (Positive, _) => (Kind::Hyperbolic, 1),
             (_, Negative) => (Kind::Hyperbolic, -1),
             (Negative, Positive) => (Kind::Elliptic, 0),
-            (Zero, _) if self.b == self.c => (Kind::Coexistence, 1),
+            (Zero, _) if b == c => (Kind::Coexistence, 1),
             (Zero, _) => (Kind::Parabolic, 1),
-            (_, Zero) if self.a == self.d => (Kind::Coexistence, -1),
+            (_, Zero) if a == d => (Kind::Coexistence, -1),
             (_, Zero) => (Kind::Parabolic, -1),
         };
         Verdict { kind, side }
     }
-
-    /// The signs of A, B, C, D.
-    pub fn all(self) -> [Sign; 4] {
-        [self.a, self.b, self.c, self.d]
-    }
-
-    /// The signs of A and C tell where the even solution ends; the label of a tongue needs them.
-    pub fn even(self) -> (Sign, Sign) {
-        (self.a, self.c)
-    }
-}
-
-/// The same four signs as far as they are known: `None` is "could not tell", which is not zero.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PartialSigns {
-    pub a: Option<Sign>,
-    pub b: Option<Sign>,
-    pub c: Option<Sign>,
-    pub d: Option<Sign>,
 }
 
 impl PartialSigns {
@@ -161,11 +125,6 @@ impl PartialSigns {
             (_, Some(Negative)) => Some(Verdict { kind: Kind::Hyperbolic, side: -1 }),
             _ => self.complete().map(HalfSigns::verdict),
         }
-    }
-
-    /// All four signs, where all are known.
-    pub fn complete(self) -> Option<HalfSigns> {
-        Some(HalfSigns::new(self.a?, self.b?, self.c?, self.d?))
     }
 }
 

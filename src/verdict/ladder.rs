@@ -1,15 +1,14 @@
 //! filter → refine → exact.
 
 use super::exact::Decidable;
-use super::filter;
-use super::floquet::Floquet;
 use super::kind::Verdict;
 use super::lone;
-use super::plain;
-use super::refine;
 use crate::error::{Error, Result};
 use crate::number::Real;
-use crate::propagator::{Schedule, TwoClocks};
+use crate::orbit::floquet::Floquet;
+use crate::orbit::{filter, plain, refine};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 
 /// Which tier decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -126,13 +125,13 @@ fn without_floquet<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Resu
     if let Some(verdict) = lone::verdict(clocks) {
         return Ok(Some(verdict));
     }
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(schedule.strikes() / 2, Tier::Filter)?;
     Ok(plain::signs(clocks, &schedule).and_then(|signs| signs.verdict()))
 }
 
 fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(schedule.strikes() / 2, Tier::Refine)?;
     let verdict = |bits: u32| refine::run(clocks, &schedule, bits)?.signs().verdict();
     let found = PRECISIONS.into_iter().find_map(verdict);
@@ -145,7 +144,7 @@ fn by_refine<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Opt
 }
 
 fn by_exact<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
-    let schedule = Schedule::two_clocks(clocks.p(), clocks.q())?;
+    let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(S::exact_cost(clocks, schedule.strikes() / 2), Tier::Exact)?;
     Ok(S::half_signs(clocks).verdict())
 }

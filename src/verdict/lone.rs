@@ -4,9 +4,9 @@
 //! ±I where nθ is a multiple of π, which is left to the exact tier. For s < 0 and s > 4, θ or θ − π is imaginary:
 //! Tr Q = 2 cosh or (−1)^n 2 cosh.
 
-use super::floquet::turn_signs;
 use super::kind::{Kind, Verdict};
 use crate::number::{Ball, Real, Sign};
+use crate::orbit::floquet::turn_signs;
 use crate::propagator::TwoClocks;
 
 /// Bits of s.
@@ -45,6 +45,7 @@ fn alone(s: &Ball, n: u64) -> Option<Verdict> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
     use crate::verdict::{Limits, Tier, decide_from};
@@ -55,7 +56,7 @@ mod tests {
         for (p, q) in [(1, 1), (5, 3), (4, 3), (3, 8), (12, 1), (1, 7), (101, 64)] {
             for s in [-3, -1, 1, 8, 10, 25, 39, 41, 77] {
                 let zero = Rational::from_integer(0.into());
-                let fast = TwoClocks::new(p, q, ratio(s, 10), zero.clone());
+                let fast = TwoClocks::new(Ratio::new(p, q).unwrap(), ratio(s, 10), zero.clone());
                 for clocks in [fast.swapped(), fast] {
                     let Some(verdict) = verdict(&clocks) else { continue };
                     let slow_way = decide_from(Tier::Refine, &clocks, &Limits::default()).unwrap().verdict;
@@ -73,9 +74,9 @@ mod tests {
         let zero = Rational::from_integer(0.into());
         for (s, k) in [(ratio(1, 1), ratio(1, 9)), (zero.clone(), zero.clone()), (ratio(4, 1), zero.clone())]
         {
-            assert_eq!(verdict(&TwoClocks::new(5, 3, s, k)), None);
+            assert_eq!(verdict(&TwoClocks::new("5/3".parse().unwrap(), s, k)), None);
         }
         // n theta = pi: Q = -I.
-        assert_eq!(verdict(&TwoClocks::new(3, 2, ratio(1, 1), zero)), None);
+        assert_eq!(verdict(&TwoClocks::new("3/2".parse().unwrap(), ratio(1, 1), zero)), None);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`filter`](Tier::Filter) → [`refine`](Tier::Refine) → [`exact`](Tier::Exact): a certified answer in
 //! doubles first, more bits where they do not suffice, exact arithmetic for what is left. Every answer is
-//! proven: by the rounding bound of the `bound` module or by exact arithmetic. A verdict is never a guess,
+//! proven: by the rounding bounds of `orbit` or by exact arithmetic. A verdict is never a guess,
 //! and there is no tolerance anywhere.
 //!
 //! ```
@@ -10,7 +10,7 @@
 //! use kickdrift::propagator::TwoClocks;
 //! use kickdrift::verdict::{decide, Kind, Limits, Tier};
 //! // r-RESPA, h2 = 3 h1 at s = 1: the resonance 3 th = pi. A step below it is stable ...
-//! let verdict_at = |s| decide(&TwoClocks::with_rho(3, 1, s, ratio(1, 25)), &Limits::default()).unwrap();
+//! let verdict_at = |s| decide(&TwoClocks::with_rho("3/1".parse().unwrap(), s, ratio(1, 25)), &Limits::default()).unwrap();
 //! assert_eq!(verdict_at(ratio(8, 10)).verdict.kind(), Kind::Elliptic);
 //! // ... close below the resonance is not, and on it sits the edge of the tongue.
 //! assert_eq!(verdict_at(ratio(99, 100)).verdict.kind(), Kind::Hyperbolic);
@@ -18,23 +18,17 @@
 //! assert_eq!((edge.verdict.kind(), edge.decided_by), (Kind::Parabolic, Tier::Exact));
 //! ```
 
-mod bound;
-mod certificate;
 mod exact;
-pub(crate) mod filter;
-pub(crate) mod floquet;
 mod growth;
-mod kernel;
 mod kind;
+mod label;
 mod ladder;
 mod lone;
-mod plain;
-pub(crate) mod refine;
-mod residue;
-pub(crate) mod winding;
 
+pub use crate::propagator::{HalfSigns, PartialSigns};
 pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, filter_trace, growth};
-pub use kind::{HalfSigns, Kind, PartialSigns, Verdict};
+pub use kind::{Kind, Verdict};
+pub(crate) use label::label;
 pub(crate) use ladder::filter_only;
 pub use ladder::{Decision, Limits, Tier, decide, decide_from};

@@ -2,7 +2,7 @@
 
 use faer::Mat;
 use kickdrift::number::rational::to_f64;
-use kickdrift::propagator::{Event, Weight};
+use kickdrift::schedule::{Event, Weight};
 use kickdrift::system::System;
 
 /// One dense product for each kick time of the full period, then all 2n eigenvalues: their moduli.

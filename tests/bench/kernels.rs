@@ -5,6 +5,7 @@
 //! `cargo bench --bench kernels` lists the names.
 
 use kickdrift::map::{Products, Shard, for_each_band};
+use kickdrift::number::Ratio;
 use kickdrift::number::rational::ratio;
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::Tongues;
@@ -23,12 +24,14 @@ const KERNELS: [(&str, fn()); 7] = [
     ("map", || map(Products::default())),
     ("map-growth", || map(Products { label: true, growth: true })),
     ("tongues", || {
-        Tongues::new(61, 39, &ratio(1, 25)).and_then(|mut tongues| tongues.all()).expect("a ratio");
+        Tongues::new("61/39".parse().unwrap(), &ratio(1, 25))
+            .and_then(|tongues| tongues.all())
+            .expect("a ratio");
     }),
 ];
 
 fn tier(first: Tier, p: u64, q: u64) {
-    let clocks = TwoClocks::with_rho(p, q, ratio(1, 3), ratio(1, 25));
+    let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), ratio(1, 3), ratio(1, 25));
     std::hint::black_box(decide_from(first, &clocks, &Limits::default()).expect("a short period"));
 }
 

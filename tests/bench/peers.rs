@@ -6,9 +6,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use kickdrift::map::{Products, Shard, for_each_band};
+use kickdrift::number::Ratio;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::propagator::TwoClocks;
-use kickdrift::tongue::{Edge, Tongues, ratios};
+use kickdrift::tongue::{Edge, Tongues};
 use kickdrift::verdict::{Limits, decide, exact_trace};
 use rayon::prelude::*;
 
@@ -58,7 +59,7 @@ fn figure(n: u64) -> String {
 
 /// h2/h1 = 1751/317, s = h1² L1 with h1 = 0.317 and L1 = 10, rho = 1/25: trace and verdict.
 fn long_period(folder: &Path) {
-    let clocks = TwoClocks::with_rho(1751, 317, ratio(317 * 317, 100_000), ratio(1, 25));
+    let clocks = TwoClocks::with_rho("1751/317".parse().unwrap(), ratio(317 * 317, 100_000), ratio(1, 25));
     let trace = timed("exact_trace", || exact_trace(&clocks));
     write(folder, "exact_trace", &trace.to_string());
     let verdict =
@@ -68,8 +69,8 @@ fn long_period(folder: &Path) {
 
 /// Every edge of all coprime p + q <= max_sum at rho = 1/25, one a line; thirty digits of those of 13/7.
 fn edges(folder: &Path, max_sum: u64) {
-    let (rho, ratios) = (ratio(1, 25), ratios(max_sum));
-    let one = |&(p, q): &(u64, u64)| Tongues::new(p, q, &rho).and_then(|mut x| x.all_edges()).expect("edges");
+    let (rho, ratios) = (ratio(1, 25), Ratio::up_to(max_sum).collect::<Vec<_>>());
+    let one = |&ratio: &Ratio| Tongues::new(ratio, &rho).and_then(|x| x.all_edges()).expect("edges");
     timed(&format!("edges_{max_sum}_one_thread"), || ratios.iter().map(one).collect::<Vec<_>>());
     let all = timed(&format!("edges_{max_sum}"), || ratios.par_iter().map(one).collect::<Vec<_>>());
     let mut text = String::new();
@@ -78,7 +79,7 @@ fn edges(folder: &Path, max_sum: u64) {
     }
     write(folder, &format!("edges_{max_sum}"), &text);
     let digits = timed("edges_30_digits", || {
-        let mut tongues = Tongues::new(13, 7, &rho).expect("a string");
+        let tongues = Tongues::new("13/7".parse().unwrap(), &rho).expect("a string");
         let edges: Vec<Edge> = tongues.all_edges().expect("edges").concat();
         edges.iter().map(|edge| tongues.refine(edge, 30).expect("digits").middle()).collect::<Vec<_>>()
     });

@@ -43,7 +43,7 @@ fn main() {
             seconds / base
         );
     }
-    let clocks = TwoClocks::with_rho(3499, 631, ratio(1, 3), ratio(1, 25));
+    let clocks = TwoClocks::with_rho("3499/631".parse().unwrap(), ratio(1, 3), ratio(1, 25));
     let limits = Limits::default();
     let (base, decision) = timed(|| decide(&clocks, &limits).expect("short"));
     println!("| verdict at p + q = 4130 | 316 updates, {} | 1.00 |", decision.decided_by.name());
@@ -55,9 +55,9 @@ fn main() {
 }
 
 fn tongues() {
-    let new = || Tongues::new(97, 61, &ratio(1, 25)).expect("a ratio");
+    let new = || Tongues::new("97/61".parse().unwrap(), &ratio(1, 25)).expect("a ratio");
     let (base, edges) = timed(|| {
-        let mut tongues = new();
+        let tongues = new();
         tongues.gap(50).expect("a tongue");
         tongues.effort()
     });
@@ -66,7 +66,7 @@ fn tongues() {
         edges.doubles, edges.precise
     );
     let (seconds, edges) = timed(|| {
-        let mut tongues = new();
+        let tongues = new();
         tongues.all().expect("tongues");
         tongues.effort()
     });
@@ -77,7 +77,7 @@ fn tongues() {
         seconds / base
     );
     let (seconds, edges) = timed(|| {
-        let mut tongues = new();
+        let tongues = new();
         let all = tongues.all().expect("tongues");
         let wanted = Wanted { growth: true, ..Wanted::default() };
         all.iter().for_each(|gap| drop(tongues.row(gap, &wanted)));

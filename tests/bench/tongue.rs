@@ -5,19 +5,19 @@
 
 use std::time::Instant;
 
-use kickdrift::number::{Rational, rational::ratio};
-use kickdrift::tongue::{Edge, Entry, Search, Tongues, closings, ratios, survey};
+use kickdrift::number::{Ratio, Rational, rational::ratio};
+use kickdrift::tongue::{Edge, Entry, Search, Tongues, closings, survey};
 use rayon::prelude::*;
 
 /// How many tongues one ratio has, and how many edges needed more bits than doubles have.
-fn all((p, q): (u64, u64), rho: &Rational) -> (usize, u64) {
-    let mut tongues = Tongues::new(p, q, rho).unwrap();
+fn all(ratio: Ratio, rho: &Rational) -> (usize, u64) {
+    let tongues = Tongues::new(ratio, rho).unwrap();
     (tongues.all().unwrap().len(), tongues.effort().precise)
 }
 
 /// The edges of one ratio, all four problems, and how many needed more bits than doubles have.
-fn edges((p, q): (u64, u64), rho: &Rational) -> (Vec<Edge>, u64) {
-    let mut tongues = Tongues::new(p, q, rho).unwrap();
+fn edges(ratio: Ratio, rho: &Rational) -> (Vec<Edge>, u64) {
+    let tongues = Tongues::new(ratio, rho).unwrap();
     let all = tongues.all_edges().unwrap().concat();
     (all, tongues.effort().precise)
 }
@@ -37,7 +37,7 @@ fn report(name: &str, start: Instant, found: &[(Vec<Edge>, u64)]) {
 fn main() {
     let quick = std::env::args().any(|x| x == "--quick");
     let max_sum = std::env::args().find_map(|x| x.parse().ok()).unwrap_or(100);
-    let (rho, ratios) = (ratio(1, 25), ratios(max_sum));
+    let (rho, ratios) = (ratio(1, 25), Ratio::up_to(max_sum).collect::<Vec<_>>());
     let start = Instant::now();
     let found: Vec<_> = ratios.iter().map(|&pair| edges(pair, &rho)).collect();
     report(&format!("p + q <= {max_sum}, one thread"), start, &found);
@@ -56,10 +56,13 @@ fn main() {
     }
 
     let start = Instant::now();
-    let one = Tongues::new(61_803, 38_197, &rho).unwrap().edges(Entry::B, 12_345, 12_345).unwrap();
+    let one = Tongues::new(Ratio::new(61_803, 38_197).unwrap(), &rho)
+        .unwrap()
+        .edges(Entry::B, 12_345, 12_345)
+        .unwrap();
     println!("one edge of 61803/38197: {:?}, {:.3} s", one[0], start.elapsed().as_secs_f64());
     let start = Instant::now();
-    let found = closings(7, 4, &Search::default()).unwrap();
+    let found = closings("7/4".parse().unwrap(), &Search::default()).unwrap();
     println!("closings of 7/4: {}, {:.3} s", found.closings.len(), start.elapsed().as_secs_f64());
     let start = Instant::now();
     let survey = survey(max_sum, &rho, 5).unwrap();

@@ -1,6 +1,6 @@
 //! The contract: keys, formats, exit codes.
 
-use super::support::{json, keys, run, stdout, words};
+use super::support::{Desk, json, keys, run, stdout, words};
 
 /// h2 just below T½: resonant. And a plainly stable neighbour.
 const UNSTABLE: &str = "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98";
@@ -16,6 +16,7 @@ fn a_verdict_has_the_keys_of_the_contract_in_their_order() {
     let verdict = json(&words(UNSTABLE, &[]));
     let contract = [
         "schema",
+        "kickdrift",
         "input",
         "p",
         "q",
@@ -29,6 +30,10 @@ fn a_verdict_has_the_keys_of_the_contract_in_their_order() {
     ];
     assert_eq!(keys(&verdict), contract);
     assert_eq!(verdict["schema"], "kickdrift/verdict/1");
+    assert_eq!(
+        verdict["kickdrift"],
+        serde_json::json!({"version": env!("CARGO_PKG_VERSION"), "command": "verdict"})
+    );
     assert_eq!(keys(&verdict["resonance"]), ["m", "a", "b"]);
     assert_eq!((verdict["p"].as_u64(), verdict["q"].as_u64()), (Some(98), Some(1)));
     assert_eq!(verdict["resonance"].to_string(), r#"{"m":1,"a":0,"b":1}"#);
@@ -80,6 +85,34 @@ fn people_get_text_from_verdict_and_scripts_get_json_from_tables() {
     assert!(stdout(&words(CLOSED, &[])).contains("stable: coexistence, Q = I"));
     assert!(stdout(&words("map", &words(GRID, &[]))).starts_with("{\n  \"schema\": \"kickdrift/map/1\""));
     assert!(stdout(&words("curves --samples 5", &[])).starts_with("{\n  \"schema\": \"kickdrift/curves/1\""));
+}
+
+/// A terminal of its own, on which the command's standard output is.
+#[cfg(unix)]
+fn at_a_terminal(line: &str) -> String {
+    use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+    use std::io::Read;
+    let master = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+    grantpt(&master).and_then(|()| unlockpt(&master)).unwrap();
+    let name = ptsname(&master, Vec::new()).unwrap().into_string().unwrap();
+    let desk = Desk::new();
+    let terminal = std::fs::OpenOptions::new().write(true).open(name).unwrap();
+    let mut command = desk.command(&words(line, &[]));
+    assert!(command.stdout(terminal).status().unwrap().success());
+    // The terminal must be closed on our side: then its reader comes to an end, which Linux tells by an error.
+    drop(command);
+    let (mut shown, mut screen) = (Vec::new(), std::fs::File::from(master));
+    let _ = screen.read_to_end(&mut shown);
+    String::from_utf8(shown).unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_table_is_text_at_a_terminal() {
+    let map = at_a_terminal(&format!("map {GRID}"));
+    assert!(map.contains(" pairs, each decided: ") && !map.contains("schema"), "{map}");
+    let tongues = at_a_terminal("tongues --ratio 7/3 --rho 1/25");
+    assert!(tongues.starts_with("9 tongues of h2/h1 = 7/3"), "{tongues}");
 }
 
 #[test]

@@ -41,7 +41,11 @@ fn the_extension_of_the_output_is_its_form_unless_a_format_is_asked_for() {
     for name in ["v.svg", "v.PNG", "v.npz"] {
         let ended = desk.run(&words(VERDICT, &["--output", name]));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""));
-        assert!(ended.stderr.contains(name) && ended.stderr.contains("no figure"), "{}", ended.stderr);
+        assert!(
+            ended.stderr.contains(name) && ended.stderr.contains(".json, .csv, .tex or .txt"),
+            "{}",
+            ended.stderr
+        );
     }
     assert_eq!(desk.files(), ["v.csv", "v.json", "v.tex", "v.txt"]);
 }
@@ -53,6 +57,45 @@ fn two_results_do_not_share_a_file() {
     let ended = desk.run(&line);
     assert_eq!(ended.code, Some(2));
     assert!(ended.stderr.contains("certificate = a.v") && desk.is_empty(), "{}", ended.stderr);
+}
+
+/// Some seconds of work, its arrays growing beside the output from the beginning.
+#[cfg(unix)]
+const LONG: &str = "map --lambda1 pi^2 --lambda2 pi^2/25 --step 1/6000 --h1-range 1/6000..2/pi \
+                    --h2-range 1/6000..7/2 --output map.npz";
+
+/// Starts LONG, sends it a signal as soon as its first file is there, and waits for its end.
+#[cfg(unix)]
+fn stopped(desk: &Desk, signal: &str) -> std::process::ExitStatus {
+    let mut child = desk.command(&words(LONG, &[])).spawn().unwrap();
+    while desk.files().is_empty() {
+        assert!(child.try_wait().unwrap().is_none(), "it has ended before it could be stopped");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let kill = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    child.wait().unwrap()
+}
+
+#[cfg(unix)]
+#[test]
+fn a_process_that_is_interrupted_or_terminated_leaves_nothing_behind() {
+    use std::os::unix::process::ExitStatusExt;
+    for (signal, number) in [("-INT", 2), ("-TERM", 15)] {
+        let desk = Desk::new();
+        assert_eq!(stopped(&desk, signal).signal(), Some(number));
+        assert!(desk.is_empty(), "{signal}: {:?}", desk.files());
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_killed_process_left_is_removed_by_the_next_one_in_that_folder() {
+    let desk = Desk::new();
+    stopped(&desk, "-KILL");
+    assert!(!desk.is_empty());
+    assert_eq!(desk.run(&words(VERDICT, &["--output", "v.json"])).code, Some(0));
+    assert_eq!(desk.files(), ["v.json"]);
 }
 
 #[test]

@@ -93,7 +93,12 @@ fn flags_that_are_missing_unknown_or_given_twice() {
     refused(&desk, &["verdict", "--lambda1", "1"], &["lambda2, h1, h2 missing", "--h1 <A>"]);
     refused(&desk, &["polynomial"], &["ratio missing", "--ratio <P/Q>"]);
     refused(&desk, &["run"], &["SCENE.json"]);
-    refused(&desk, &["curves", "--sample", "3"], &["--sample", "--samples"]);
+    refused(&desk, &["curves", "--sample", "3"], &["--sample", "did you mean --samples?"]);
+    refused(
+        &desk,
+        &[&verdict("10", "1", "1", "1")[..], &["--period", "3"]].concat(),
+        &["unknown; see --help"],
+    );
     refused(&desk, &["curves", "--samples", "3", "--samples", "4"], &["samples", "once"]);
     refused(&desk, &["curves", "--format", "yaml"], &["format = yaml", "latex"]);
     refused(&desk, &["curves", "--samples", "3.5"], &["samples = 3.5", "whole number"]);
@@ -200,7 +205,7 @@ fn scenes_that_cannot_be_read_or_meant() {
         (r#"{"schema": "kickdrift/scene/1", "want": ["survey"], "rho": "1"}"#, &["max_sum missing", "40"]),
         (r#"{"schema": "kickdrift/scene/1", "want": [], "colour": "red"}"#, &["colour = red", "growth"]),
         (r#"{"schema": "kickdrift/scene/1", "lamda1": "1", "want": []}"#, &["lamda1", "lambda1"]),
-        (r#"{"schema": "kickdrift/scene/1", "lambda1": 0.3, "want": []}"#, &["0.3", "string"]),
+        (r#"{"schema": "kickdrift/scene/1", "lambda1": true, "want": []}"#, &["true", "write a number"]),
         (r#"{"schema": "kickdrift/scene/1", "lambda1": "1/0", "want": []}"#, &["lambda1 = 1/0", "zero"]),
         (r#"{"schema": "kickdrift/scene/1", "want": ["\u001b\n"]}"#, &["want = "]),
         (&format!(r#"{{"schema": "kickdrift/scene/1", "{}": 1}}"#, "x".repeat(100_000)), &["unknown field"]),
@@ -274,3 +279,38 @@ fn forms_that_a_result_has_not() {
     desk.write("scene.json", r#"{"schema": "kickdrift/scene/1", "want": []}"#);
     refused(&desk, &["run", "scene.json", "--format", "csv"], &["format = csv", "text or json"]);
 }
+
+#[test]
+fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_has() {
+    let desk = Desk::new();
+    desk.write("system.json", &std::fs::read_to_string(SYSTEM).unwrap());
+    let tables = ".json, .csv, .tex or .txt";
+    let drawn = ".json, .csv, .tex, .txt, .svg or .png";
+    let map = format!("map {GRID}");
+    for (line, forms) in [
+        ("verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1", tables),
+        ("curves", tables),
+        ("compare --max-sum 5 --rho 1", tables),
+        ("proposition", tables),
+        ("polynomial --ratio 1", tables),
+        ("closings --ratio 5/3 --m 4", tables),
+        ("tongues --survey --max-sum 5 --rho 1", tables),
+        ("tongues --ratio 5/3 --rho 1", drawn),
+        ("system system.json", drawn),
+        ("simulate system.json", tables),
+        (&map, ".json, .csv, .tex, .txt, .svg, .png or .npz"),
+    ] {
+        for name in ["x.pdf", "x.eps", "x.jpg"] {
+            let ended = desk.run(&[&words(line)[..], &["--output", name]].concat());
+            assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line} {name}");
+            assert!(
+                ended.stderr.contains(name) && ended.stderr.trim_end().ends_with(forms),
+                "{}",
+                ended.stderr
+            );
+        }
+    }
+    assert_eq!(desk.files(), ["system.json"]);
+}
+
+const SYSTEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json");

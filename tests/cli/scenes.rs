@@ -112,6 +112,41 @@ fn the_closing_document_echoes_the_scene_as_exact_strings() {
     assert_eq!(document["products"][1], json!({"product": "figure", "file": "o/figure.svg"}));
 }
 
+#[test]
+fn a_json_number_is_the_exact_number_that_stands_there() {
+    let desk = Desk::new();
+    let long = "0.1000000000000000055511151231257827021181583404541015625";
+    for (number, exact) in [("0.1", "1/10"), ("1e-1", "1/10"), ("10", "10"), (long, long)] {
+        let text = r#"{"schema": "kickdrift/scene/1", "rho": NUMBER, "want": []}"#;
+        desk.write("number.json", &text.replace("NUMBER", number));
+        desk.write("text.json", &text.replace("NUMBER", &format!("\"{exact}\"")));
+        let echo = |file| desk.run(&["run", file, "--format", "json"]).stdout;
+        assert!(
+            echo("number.json").contains(r#""rho": ""#) && echo("number.json") == echo("text.json"),
+            "{number}"
+        );
+    }
+    let system = r#"{"schema": "kickdrift/system/1", "masses": [1], "potentials": [
+        {"step": 0.1, "springs": [[0, null, LAMBDA]]}, {"step": 3e-1, "springs": [[0, null, 2.50]]}]}"#;
+    desk.write("number.json", &system.replace("LAMBDA", "0.3"));
+    desk.write(
+        "text.json",
+        &system.replace("LAMBDA", "\"3/10\"").replace("0.1", "\"1/10\"").replace("3e-1", "\"3/10\""),
+    );
+    let verdict = |file| desk.run(&["system", file, "--exact"]);
+    assert_eq!(
+        (verdict("number.json").code, verdict("number.json").stdout),
+        (Some(0), verdict("text.json").stdout)
+    );
+    let scan = |file| {
+        let axes = ["--scan", "potentials.1.step=1/10..3/10:1/10", "--scan", "potentials.0.scale=1/2..1:1/2"];
+        let json = desk.run(&[&["system", file], &axes[..]].concat());
+        assert_eq!(json.code, Some(0), "{}", json.stderr);
+        json.stdout.replace(file, "")
+    };
+    assert_eq!(scan("number.json"), scan("text.json"));
+}
+
 /// The polynomial alone would do; the Proposition's bound is out of range. Neither is written.
 #[test]
 fn an_error_in_a_late_product_leaves_no_early_one_and_no_folder() {

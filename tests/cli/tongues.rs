@@ -1,5 +1,6 @@
 //! Tongues, closings, the survey and the atlas as a user sees them.
 
+use kickdrift::number::Ratio;
 use kickdrift::number::parse::parse_rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::tongue::Tongues;
@@ -133,7 +134,7 @@ fn the_label_of_a_map_is_the_tongue_that_holds_the_pair() {
         let [p, q, m] = [p, q, m].map(|n| n.parse::<u64>().unwrap());
         let h1 = parse_rational("h1", h1).unwrap();
         let s = &h1 * &h1 * ratio(10, 1);
-        let mut tongues = Tongues::new(p, q, &ratio(1, 25)).unwrap();
+        let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &ratio(1, 25)).unwrap();
         let gap = tongues.gap(m).unwrap();
         let exact = |x: f64| from_f64_exact(x).unwrap();
         assert!(exact(gap.lower.lo) < s && gap.upper.is_none_or(|upper| s < exact(upper.hi)), "{row:?}");

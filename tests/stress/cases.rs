@@ -1,7 +1,7 @@
 //! Cases by the thousand, each against exact rational arithmetic.
 
-use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::number::{Ratio, Rational};
 use kickdrift::propagator::{TwoClocks, half_period};
 use kickdrift::verdict::{Decidable, Kind, Limits, Tier, decide, filter_trace};
 use num_bigint::BigInt;
@@ -59,7 +59,7 @@ pub fn random(seed: u64, cases: u64) -> Record {
             let ((p, q), scale) = (coprime(&mut random, 40), 1i64 << random.below(12));
             let s = ratio(1 + random.below(5 * 64) as i64, 64);
             let k = ratio(random.below(2 * 8 * 64) as i64 - 8 * 64, 64 * scale);
-            let clocks = TwoClocks::new(p, q, s, k);
+            let clocks = TwoClocks::new(Ratio::new(p, q).unwrap(), s, k);
             record = record.join(check(&clocks));
             if case % 50 == 0 {
                 record = record.join(check_trace(&clocks));
@@ -97,8 +97,7 @@ pub fn adversarial(seed: u64, cases: u64) -> Record {
 
 /// A ratio and rho.
 struct Pair {
-    p: u64,
-    q: u64,
+    ratio: Ratio,
     rho: Rational,
 }
 
@@ -106,11 +105,11 @@ impl Pair {
     fn new(random: &mut Random) -> Pair {
         let (p, q) = coprime(random, 24);
         let rho = ratio(1 + random.below(60) as i64, 1 + random.below(200) as i64);
-        Pair { p, q, rho }
+        Pair { ratio: Ratio::new(p, q).expect("two positive numbers"), rho }
     }
 
     fn at(&self, s: Rational) -> TwoClocks<Rational> {
-        TwoClocks::with_rho(self.p, self.q, s, self.rho.clone())
+        TwoClocks::with_rho(self.ratio, s, self.rho.clone())
     }
 
     fn stable(&self, s: f64) -> bool {

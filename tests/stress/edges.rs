@@ -1,7 +1,7 @@
 //! Beside certified edges, at the ends of all scales, over long periods.
 
 use kickdrift::number::rational::ratio;
-use kickdrift::number::{Rational, Ring, parse};
+use kickdrift::number::{Ratio, Rational, Ring, parse};
 use kickdrift::propagator::{Oscillator, TwoClocks};
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Decision, Kind, Limits, Tier, decide, decide_from, growth};
@@ -22,7 +22,7 @@ fn verdicts_flip_at_certified_edges() {
     for (p, q, m, rho) in
         [(7, 2, 4, ratio(1, 25)), (5, 3, 2, ratio(1, 3)), (11, 8, 9, ratio(7, 5)), (3, 7, 2, ratio(1, 2))]
     {
-        let mut tongues = Tongues::new(p, q, &rho).unwrap();
+        let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap();
         let gap = tongues.gap(m).unwrap();
         let edges = [gap.lower, gap.upper.unwrap()].map(|edge| tongues.refine(&edge, 50).unwrap());
         let width = &edges[1].lo - &edges[0].hi;
@@ -32,7 +32,8 @@ fn verdicts_flip_at_certified_edges() {
                 if step >= width {
                     continue;
                 }
-                let verdict = |s: Rational| at(&TwoClocks::with_rho(p, q, s, rho.clone())).verdict;
+                let verdict =
+                    |s: Rational| at(&TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s, rho.clone())).verdict;
                 let (before, after) = (verdict(&edge.lo - &step), verdict(&edge.hi + &step));
                 let (outside, inside) = if rising { (before, after) } else { (after, before) };
                 assert_eq!(inside.kind(), Kind::Hyperbolic, "{p}/{q}, m = {m}, 10^-{k}");
@@ -49,11 +50,11 @@ fn verdicts_flip_at_certified_edges() {
 #[test]
 fn s_just_below_and_above_4() {
     for k in 1..=40 {
-        let verlet = |s: Rational| at(&TwoClocks::new(1, 1, s, ratio(0, 1))).verdict.kind();
+        let verlet = |s: Rational| at(&TwoClocks::new("1/1".parse().unwrap(), s, ratio(0, 1))).verdict.kind();
         assert_eq!(verlet(ratio(4, 1) - hair(k)), Kind::Elliptic);
         assert_eq!(verlet(ratio(4, 1) + hair(k)), Kind::Hyperbolic);
         // Two clocks of one step are one clock.
-        let both = |s: Rational| at(&TwoClocks::new(1, 1, s, hair(45))).verdict.kind();
+        let both = |s: Rational| at(&TwoClocks::new("1/1".parse().unwrap(), s, hair(45))).verdict.kind();
         assert_eq!(both(ratio(4, 1) - hair(k)), Kind::Elliptic);
         assert_eq!(both(ratio(4, 1) - hair(45)), Kind::Parabolic);
     }
@@ -87,7 +88,8 @@ fn any_ratio_of_stiffnesses() {
         for (p, q) in [(1, 1), (3, 1), (1, 3), (7, 4), (4, 7), (20, 19)] {
             for s in [ratio(1, 1000), ratio(1, 1), ratio(2, 1), ratio(3, 1), ratio(399, 100), ratio(9, 1)] {
                 for sign in [1, -1] {
-                    let clocks = TwoClocks::with_rho(p, q, s.clone(), &rho * ratio(sign, 1));
+                    let clocks =
+                        TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s.clone(), &rho * ratio(sign, 1));
                     let exact = decide_from(Tier::Exact, &clocks, &Limits::default()).unwrap();
                     assert_eq!(at(&clocks).verdict, exact.verdict, "{p}/{q}, s = {s}, 10^{exponent}");
                 }
@@ -105,13 +107,13 @@ fn a_period_of_a_million_kicks() {
     {
         // In lowest terms.
         let common = num_integer::gcd(p, q);
-        let clocks = TwoClocks::with_rho(p / common, q / common, s, rho);
+        let clocks = TwoClocks::with_rho(Ratio::new(p / common, q / common).unwrap(), s, rho);
         let quick = decide(&clocks, &limits).unwrap();
         let slow = decide_from(Tier::Refine, &clocks, &limits).unwrap();
         assert_eq!(quick.verdict, slow.verdict);
     }
     // s > 4 on both clocks: each period multiplies by e^(a million).
-    let clocks = TwoClocks::with_rho(333_334, 333_333, ratio(5, 1), ratio(1, 1));
+    let clocks = TwoClocks::with_rho(Ratio::new(333_334, 333_333).unwrap(), ratio(5, 1), ratio(1, 1));
     let verdict = decide(&clocks, &limits).unwrap().verdict;
     let grown = growth(&clocks, verdict, &limits).unwrap();
     let (ln, trace) = (grown.ln_multiplier.unwrap(), grown.trace);
@@ -143,7 +145,8 @@ fn decimals_mean_what_they_say() {
 #[test]
 fn coexistence_is_a_point() {
     let (s, rho) = (ratio(11, 4), ratio(114, 55));
-    let kind = |s: Rational, rho: Rational| at(&TwoClocks::with_rho(5, 3, s, rho)).verdict.kind();
+    let kind =
+        |s: Rational, rho: Rational| at(&TwoClocks::with_rho("5/3".parse().unwrap(), s, rho)).verdict.kind();
     assert_eq!(kind(s.clone(), rho.clone()), Kind::Coexistence);
     for k in 1..=40 {
         for sign in [1, -1] {

@@ -2,9 +2,10 @@
 
 use clap::ValueEnum;
 
-use super::{Map, Target};
+use super::Map;
 use crate::cli::curves;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::Products;
 use crate::number::parse::parse_integer_range;
 use crate::report::plane::{Colouring, window};
@@ -58,14 +59,14 @@ impl Drawing {
     ///
     /// # Errors
     /// Where flags of figures are given without one, or flags of curves without these.
-    pub fn products(&self, target: Target) -> Result<Products> {
+    pub fn products(&self, format: Format) -> Result<Products> {
         let given = [
             ("--colour", self.colour.is_some()),
             ("--curves", self.curves),
             ("--a", self.a.is_some()),
             ("--b", self.b.is_some()),
         ];
-        if !target.is_figure() {
+        if !format.is_figure() {
             return match given.iter().find(|(_, given)| *given) {
                 None => Ok(Products::default()),
                 Some((flag, _)) => Err(Error::input(

@@ -9,9 +9,10 @@ use std::path::PathBuf;
 
 use super::args::{self, Common, Stiffness};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::{Products, Shard};
 pub use drawing::Drawing;
-pub use output::{Output, Target, document};
+pub use output::{Output, document};
 pub use part::{Map, Part};
 pub use source::Source;
 
@@ -40,20 +41,20 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let target = Target::of(common);
-        let shard = self.shard(target)?;
-        let coloured = self.drawing.products(target)?;
+        let format = common.format_of_table(&Format::ALL)?;
+        let shard = self.shard(format)?;
+        let coloured = self.drawing.products(format)?;
         let products =
             Products { label: self.label || coloured.label, growth: self.growth || coloured.growth };
         let map = Map::new(self.stiffness.quantities()?, self.grid.range()?, products)?;
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
         let source = Source::compute(common, shard, store.map(Part::into_store));
-        let output = Output { map: &map, target, drawing: &self.drawing, part: self.shard.as_deref() };
+        let output = Output { map: &map, format, drawing: &self.drawing, part: self.shard.as_deref() };
         output.write(&source, common.output.as_deref())
     }
 
     /// The part of the map to compute.
-    fn shard(&self, target: Target) -> Result<Shard> {
+    fn shard(&self, format: Format) -> Result<Shard> {
         let Some(text) = &self.shard else { return Ok(Shard::WHOLE) };
         let terms = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
         let (k, n) = terms.ok_or_else(|| Error::input("--shard", text, "write part and parts as 2/16"))?;
@@ -61,7 +62,7 @@ impl Args {
             let remedy = "needs --resume DIR, where the part is kept for kickdrift merge";
             return Err(Error::input("--shard", text, remedy));
         }
-        if !target.is_summary() {
+        if !matches!(format, Format::Json | Format::Text) {
             let remedy =
                 "a part has only a summary (json, text): kickdrift merge makes the rest of all parts";
             return Err(Error::input("--shard", text, remedy));

@@ -1,12 +1,12 @@
 //! What becomes of a map: a summary, rows, arrays or a figure, each from one band at a time.
 
-use std::io;
 use std::path::Path;
 
 use super::{Drawing, Map, Source};
-use crate::cli::args::{Common, Format, echo_grid};
+use crate::cli::args::echo_grid;
 use crate::cli::plane::DPI;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::map::{Band, Grid, Products};
 use crate::report::csv;
 use crate::report::document::Document;
@@ -17,55 +17,10 @@ use crate::report::plane::Chart;
 use crate::report::table::Table;
 use crate::scene::GridRange;
 
-/// The form of the result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    Json,
-    Text,
-    Latex,
-    Csv,
-    Npz,
-    Svg,
-    Png,
-}
-
-impl Target {
-    /// `--format`, else the extension of `--output`, else JSON.
-    pub fn of(common: &Common) -> Target {
-        if let Some(format) = common.format {
-            return match format {
-                Format::Json => Target::Json,
-                Format::Text => Target::Text,
-                Format::Latex => Target::Latex,
-                Format::Csv => Target::Csv,
-            };
-        }
-        let extension = common.output.as_ref().and_then(|path| path.extension()?.to_str());
-        match extension.map(str::to_ascii_lowercase).as_deref() {
-            Some("txt") => Target::Text,
-            Some("tex") => Target::Latex,
-            Some("csv") => Target::Csv,
-            Some("npz") => Target::Npz,
-            Some("svg") => Target::Svg,
-            Some("png") => Target::Png,
-            _ => Target::Json,
-        }
-    }
-
-    pub fn is_figure(self) -> bool {
-        matches!(self, Target::Svg | Target::Png)
-    }
-
-    /// Whether it tells counts only.
-    pub fn is_summary(self) -> bool {
-        matches!(self, Target::Json | Target::Text)
-    }
-}
-
 /// A result on its way out.
 pub struct Output<'a> {
     pub map: &'a Map,
-    pub target: Target,
+    pub format: Format,
     pub drawing: &'a Drawing,
     /// K/N where the map is not whole.
     pub part: Option<&'a str>,
@@ -78,19 +33,19 @@ const ROWS_FOR_PEOPLE: u64 = 60;
 impl Output<'_> {
     /// Computes the map and writes the result to the path, or to standard output.
     pub fn write(&self, source: &Source, path: Option<&Path>) -> Result<()> {
-        match (self.target, path) {
-            (Target::Json | Target::Text | Target::Latex, _) => self.document(source, path),
-            (Target::Csv, _) => self.csv(source, path),
-            (Target::Npz, Some(path)) => self.npz(source, path),
-            (Target::Svg | Target::Png, _) => self.figure(source, path),
-            (Target::Npz, None) => unreachable!("an extension is that of a path"),
+        match (self.format, path) {
+            (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path),
+            (Format::Csv, _) => self.csv(source, path),
+            (Format::Npz, Some(path)) => self.npz(source, path),
+            (Format::Svg | Format::Png, _) => self.figure(source, path),
+            (Format::Npz, None) => unreachable!("an extension is that of a path"),
         }
     }
 
     fn document(&self, source: &Source, path: Option<&Path>) -> Result<()> {
-        let most = match self.target {
-            Target::Json => 0,
-            Target::Text => ROWS_FOR_PEOPLE,
+        let most = match self.format {
+            Format::Json => 0,
+            Format::Text => ROWS_FOR_PEOPLE,
             _ => MOST_ROWS,
         };
         let (mut tally, mut pairs) = (Tally::default(), Vec::<Marked>::new());
@@ -102,26 +57,17 @@ impl Output<'_> {
             Ok(())
         })?;
         let count = tally.counts.marked();
-        if self.target == Target::Latex && count > most {
+        if self.format == Format::Latex && count > most {
             let cost = format!("{count} rows are too many for a LaTeX table");
             return Err(Error::too_much(cost, "write csv or npz"));
         }
         let Map { grid, products, .. } = self.map;
         let rows = (count <= most).then(|| Rows::new(grid, *products).table(&pairs));
-        let mut text = self.echo(report::document(&tally, rows)).render(self.format())?;
-        if self.target == Target::Text && count > most {
+        let mut text = self.echo(report::document(&tally, rows)).render(self.format)?;
+        if self.format == Format::Text && count > most {
             text += &format!("\n{count} rows: use --format csv or latex to see them\n");
         }
         write_output(path, text.as_bytes())
-    }
-
-    fn format(&self) -> crate::report::document::Format {
-        match self.target {
-            Target::Text => Format::Text,
-            Target::Latex => Format::Latex,
-            _ => Format::Json,
-        }
-        .into()
     }
 
     fn echo(&self, document: Document) -> Document {
@@ -138,20 +84,13 @@ impl Output<'_> {
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {
         let mut rows = Rows::new(&self.map.grid, self.map.products);
         let columns = rows.columns();
-        let mut stopped = None;
-        let written = write_with(path, |sink| {
+        write_with(path, |sink| {
             csv::write_header(sink, &columns)?;
-            let mut lost = None;
-            let done = source.each(self.map, &mut |band| {
+            source.each(self.map, &mut |band| {
                 let cells = marked(&self.map.grid, band).map(|pair| rows.cells(&pair));
-                csv::write_rows(sink, &columns, cells).map_err(|cause| {
-                    lost = Some(cause);
-                    Error::io("output", "cannot be written")
-                })
-            });
-            finished(done, lost, &mut stopped)
-        });
-        stopped.map_or(written, Err)
+                csv::write_rows(sink, &columns, cells)
+            })
+        })
     }
 
     fn npz(&self, source: &Source, path: &Path) -> Result<()> {
@@ -171,20 +110,8 @@ impl Output<'_> {
             Ok(())
         })?;
         let svg = chart.figure(grid, &counts, &curves).svg();
-        let bytes = if self.target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = if self.format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
         write_output(path, &bytes)
-    }
-}
-
-/// How writing ends when the bands have: an error of the map's own is put aside, for it is not one of the sink.
-fn finished(done: Result<()>, lost: Option<io::Error>, stopped: &mut Option<Error>) -> io::Result<()> {
-    match (done, lost) {
-        (_, Some(cause)) => Err(cause),
-        (Ok(()), None) => Ok(()),
-        (Err(error), None) => {
-            *stopped = Some(error);
-            Err(io::Error::other("the map was not finished"))
-        }
     }
 }
 

@@ -7,8 +7,9 @@ mod work;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Format};
+use super::args::Common;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::report::file::{Folder, write_output};
 use crate::scene::{self, Scene};
 use summary::{Summary, echo};
@@ -26,8 +27,7 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         if let Some(format @ (Format::Csv | Format::Latex)) = common.format {
             let remedy = "a scene's products have their own formats, and the summary is text or json";
-            let name = if matches!(format, Format::Csv) { "csv" } else { "latex" };
-            return Err(Error::input("format", name, remedy));
+            return Err(Error::input("format", format.name(), remedy));
         }
         let scene = Scene::read(&self.text()?)?;
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
@@ -42,7 +42,7 @@ impl Args {
         }
         folder.keep();
         let document = echo(summary.document(&scene), &scene)?;
-        let format = common.format.unwrap_or(Format::Text).into();
+        let format = common.format.unwrap_or(Format::Text);
         write_output(None, document.render(format)?.as_bytes())
     }
 

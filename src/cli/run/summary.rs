@@ -54,8 +54,7 @@ pub fn echo(mut document: Document, scene: &Scene) -> Result<Document> {
         document = document.input("tolerance", scene.tolerance()?);
     }
     if given.ratio.is_some() {
-        let (p, q) = scene.ratio()?;
-        document = document.input("ratio", format!("{p}/{q}"));
+        document = document.input("ratio", scene.ratio()?.to_string());
     }
     if let Some(max) = given.max {
         document = document.input("max", max);

@@ -31,7 +31,7 @@ pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
 pub fn ratios(scene: &Scene) -> Result<Ratios> {
     match scene.document().max_sum {
         Some(max_sum) => Ratios::UpTo(max_sum).within(MOST_SUM),
-        None => scene.ratio().map(|(p, q)| Ratios::One(p, q)),
+        None => scene.ratio().map(Ratios::One),
     }
 }
 

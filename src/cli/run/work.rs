@@ -9,16 +9,17 @@ use crate::cli::plane::{DPI, Verdicts};
 use crate::cli::tongues as answers;
 use crate::cli::{closings, compare, curves, map, polynomial, proposition};
 use crate::error::Result;
+use crate::format::Format;
 use crate::map::Products;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
 use crate::report::file::write_output;
 use crate::report::map::MapArrays;
+use crate::report::plane;
 use crate::report::tongues::Tally;
-use crate::report::{document, plane};
 use crate::resonance::{Curve, Window};
-use crate::scene::{Format, Product, Scene, Want};
+use crate::scene::{Product, Scene, Want};
 use crate::tongue::Wanted;
 use crate::verdict::Limits;
 
@@ -81,11 +82,8 @@ impl<'a> Work<'a> {
         match want.format {
             Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
             Format::Png => png::raster(self.figure(want.product)?, DPI),
-            Format::Json => text(document::Format::Json),
-            Format::Csv => text(document::Format::Csv),
-            Format::Latex => text(document::Format::Latex),
-            Format::Text => text(document::Format::Text),
             Format::Npz => unreachable!("arrays are streamed"),
+            of_document => text(of_document),
         }
     }
 
@@ -119,9 +117,9 @@ impl<'a> Work<'a> {
             }
             Product::Proposition => proposition::document(scene.max()),
             Product::Polynomial => {
-                let (p, q) = scene.ratio()?;
-                polynomial::check_default(p, q)?;
-                Ok(crate::report::polynomial::document(p, q))
+                let ratio = scene.ratio()?;
+                polynomial::check_default(ratio)?;
+                Ok(crate::report::polynomial::document(ratio))
             }
             Product::Closings => {
                 closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?

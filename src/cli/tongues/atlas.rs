@@ -5,10 +5,10 @@ use clap::ValueEnum;
 use super::Question;
 use crate::cli::args::Common;
 use crate::cli::curves;
-use crate::cli::map::Target;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::Laurent;
 use crate::report::figure::{Figure, png};
 use crate::report::file::write_output;
@@ -76,9 +76,9 @@ impl<'a> Atlas<'a> {
     ///
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
-    pub fn write(&self, common: &Common, target: Target) -> Result<()> {
+    pub fn write(&self, common: &Common, format: Format) -> Result<()> {
         let svg = self.figure(common)?.svg();
-        let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
         write_output(common.output.as_deref(), &bytes)
     }
 
@@ -104,7 +104,7 @@ impl<'a> Atlas<'a> {
     fn title(&self) -> String {
         let rho = &self.question.stiffness.rho;
         match self.question.ratios {
-            Ratios::One(p, q) => format!("Tongues of *h*_2/*h*_1 = {p}/{q}, *ρ* = {rho}"),
+            Ratios::One(ratio) => format!("Tongues of *h*_2/*h*_1 = {ratio}, *ρ* = {rho}"),
             Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
         }
     }
@@ -113,7 +113,7 @@ impl<'a> Atlas<'a> {
     fn segment(&self, told: &Told) -> Segment {
         let middle = |q: &Quantity| 0.5 * (q.lo + q.hi);
         let place = |edge: &ToldEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
-        let ratio = told.row.p as f64 / told.row.q as f64;
+        let ratio = told.row.ratio.p() as f64 / told.row.ratio.q() as f64;
         let from = place(&told.lower);
         let to = told.upper.as_ref().map_or([self.window.h1.1, self.window.h1.1 * ratio], place);
         let a = told.row.family.map_or(0, |(a, _)| a);

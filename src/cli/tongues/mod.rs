@@ -9,9 +9,9 @@ mod survey;
 use clap::ValueEnum;
 
 use super::args::{Common, whole};
-use super::map::Target;
 use super::ratios::{Flags, Ratios};
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::number::parse::{parse, parse_integer, parse_integer_range, parse_range, parse_rational};
 use crate::report::tongues::Frame;
 use crate::tongue::{Selection, Wanted};
@@ -100,28 +100,29 @@ const MOST_DIGITS: u32 = 10_000;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let target = Target::of(common);
-        self.check(target)?;
-        match (target, self.figure) {
+        let forms = if self.survey { &Format::DOCUMENT[..] } else { &Format::DOCUMENT_OR_FIGURE };
+        let format = common.format_of_table(forms)?;
+        self.check(format)?;
+        match (format, self.figure) {
             _ if self.survey => {
-                survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, target)
+                survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, format)
             }
-            (Target::Svg | Target::Png, Some(Drawn::Strength)) => {
+            (Format::Svg | Format::Png, Some(Drawn::Strength)) => {
                 let theta = parse("theta", self.theta.as_deref().unwrap_or("pi/2"))?;
-                strength::run(self.ratios()?, &self.stiffness()?, &theta, common, target)
+                strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
             }
-            (Target::Svg | Target::Png, _) => {
+            (Format::Svg | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
                 let question = self.question(colour.needs())?;
-                Atlas::new(&question, colour, None)?.write(common, target)
+                Atlas::new(&question, colour, None)?.write(common, format)
             }
-            _ => output::write(&self.question(self.wanted())?, common, target),
+            _ => output::write(&self.question(self.wanted())?, common, format),
         }
     }
 
     /// Flags that say nothing together.
-    fn check(&self, target: Target) -> Result<()> {
-        let figure = matches!(target, Target::Svg | Target::Png) && !self.survey;
+    fn check(&self, format: Format) -> Result<()> {
+        let figure = format.is_figure();
         let strength = figure && self.figure == Some(Drawn::Strength);
         let wrong = [
             (

@@ -1,20 +1,19 @@
 //! Tongues as rows: streamed where they may be many.
 
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 
 use super::Question;
 use crate::cli::args::Common;
-use crate::cli::map::Target;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::report::csv;
-use crate::report::document::{Document, Format};
-use crate::report::file::{write_or_stop, write_output};
+use crate::report::document::Document;
+use crate::report::file::{write_output, write_with};
 use crate::report::stream::JsonRows;
 use crate::report::tongues::{Rows, Tally, Told, json_row};
-use crate::scene;
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
 const MOST_ROWS: u64 = 100_000;
@@ -24,15 +23,14 @@ const ROWS_FOR_PEOPLE: u64 = 60;
 ///
 /// # Errors
 /// As [`Question::each`], an unwritable place, a format that is not one of rows.
-pub fn write(question: &Question, common: &Common, target: Target) -> Result<()> {
+pub fn write(question: &Question, common: &Common, target: Format) -> Result<()> {
     let path = common.output.as_deref();
     match target {
-        Target::Json => stream(question, common, path, json),
-        Target::Csv => stream(question, common, path, rows),
-        Target::Text => write_output(path, text(question, common)?.0.as_bytes()),
-        Target::Latex => write_output(path, latex(question, common)?.0.as_bytes()),
-        Target::Npz => Err(Error::input("output", "npz", "arrays are those of map: write json or csv")),
-        Target::Svg | Target::Png => unreachable!("a figure is not made of rows"),
+        Format::Json => stream(question, common, path, json),
+        Format::Csv => stream(question, common, path, rows),
+        Format::Text => write_output(path, text(question, common)?.0.as_bytes()),
+        Format::Latex => write_output(path, latex(question, common)?.0.as_bytes()),
+        Format::Svg | Format::Png | Format::Npz => unreachable!("neither a figure nor arrays are rows"),
     }
 }
 
@@ -40,80 +38,67 @@ pub fn write(question: &Question, common: &Common, target: Target) -> Result<()>
 ///
 /// # Errors
 /// As [`Question::each`].
-pub fn bytes(question: &Question, common: &Common, format: scene::Format) -> Result<(Vec<u8>, Tally)> {
+pub fn bytes(question: &Question, common: &Common, format: Format) -> Result<(Vec<u8>, Tally)> {
     let mut bytes = Vec::new();
-    let streamed = match format {
-        scene::Format::Csv => rows(question, common, &mut bytes)?,
-        scene::Format::Text => return text(question, common).map(|(text, tally)| (text.into_bytes(), tally)),
-        scene::Format::Latex => {
-            return latex(question, common).map(|(text, tally)| (text.into_bytes(), tally));
-        }
+    let tally = match format {
+        Format::Csv => rows(question, common, &mut bytes)?,
+        Format::Text => return text(question, common).map(|(text, tally)| (text.into_bytes(), tally)),
+        Format::Latex => return latex(question, common).map(|(text, tally)| (text.into_bytes(), tally)),
         _ => json(question, common, &mut bytes)?,
     };
-    Ok((bytes, streamed.expect("memory takes all")))
+    Ok((bytes, tally))
 }
 
 /// Writes rows to a sink as they come.
-type Stream = fn(&Question, &Common, &mut dyn Write) -> Result<io::Result<Tally>>;
+type Stream = fn(&Question, &Common, &mut dyn Write) -> Result<Tally>;
 
 fn stream(question: &Question, common: &Common, path: Option<&Path>, write: Stream) -> Result<()> {
-    write_or_stop(path, |sink| Ok(write(question, common, sink)?.map(drop)))
+    write_with(path, |sink| write(question, common, sink).map(drop))
 }
 
 /// The document `kickdrift/tongues/1`; the counts stand behind the rows.
 ///
 /// # Errors
-/// As [`Question::each`]; the inner ones are the sink's.
-fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<io::Result<Tally>> {
+/// As [`Question::each`], and those of the sink.
+fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let head = question.echo(Document::new("tongues"));
-    let mut out = match JsonRows::begin(sink, &head, "tongues") {
-        Ok(out) => out,
-        Err(cause) => return Ok(Err(cause)),
-    };
+    let mut out = JsonRows::begin(sink, &head, "tongues")?;
     let row = |told: &Told| json_row(told, &question.frame.wanted).to_string();
-    let done = each_row(question, common, row, |row| out.row(row))?;
-    Ok(done.and_then(|tally| out.end(&tally.entries()).map(|()| tally)))
+    let tally = each_row(question, common, row, |row| out.row(row))?;
+    out.end(&tally.entries())?;
+    Ok(tally)
 }
 
 /// All columns as CSV.
 ///
 /// # Errors
 /// As [`json`].
-fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<io::Result<Tally>> {
+fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let rows = Rows::all(&question.frame);
     let columns = rows.columns();
-    if let Err(cause) = csv::write_header(sink, &columns) {
-        return Ok(Err(cause));
-    }
+    csv::write_header(sink, &columns)?;
     let row = |told: &Told| {
         let mut line = Vec::new();
         csv::write_rows(&mut line, &columns, [rows.cells(told)]).expect("memory takes all");
         line
     };
-    each_row(question, common, row, |line| sink.write_all(line))
+    each_row(question, common, row, |line| sink.write_all(line).map_err(Error::stream))
 }
 
-/// Renders the tongues in parallel and hands them on in order, until the sink is lost.
+/// Renders the tongues in parallel and hands them on in order.
 fn each_row<T: Send>(
     question: &Question,
     common: &Common,
     render: impl Fn(&Told) -> T + Sync,
-    mut put: impl FnMut(&T) -> io::Result<()>,
-) -> Result<io::Result<Tally>> {
-    let (mut tally, mut lost) = (Tally::default(), None);
-    let done = question.each(common, |part| {
+    mut put: impl FnMut(&T) -> Result<()>,
+) -> Result<Tally> {
+    let mut tally = Tally::default();
+    question.each(common, |part| {
         part.iter().for_each(|told| tally.add(told));
         let rendered: Vec<T> = part.par_iter().map(&render).collect();
-        rendered.iter().try_for_each(&mut put).map_err(|cause| {
-            lost = Some(cause);
-            Error::io("output", "cannot be written")
-        })
-    });
-    match (done, lost) {
-        (_, Some(cause)) => Ok(Err(cause)),
-        (Ok(()), None) => Ok(Ok(tally)),
-        (Err(error), None) => Err(error),
-    }
+        rendered.iter().try_for_each(&mut put)
+    })?;
+    Ok(tally)
 }
 
 /// A summary, and the rows where they fit a terminal.

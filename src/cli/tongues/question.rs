@@ -1,14 +1,14 @@
 //! Which tongues are asked for, and what of them.
 
+use crate::parallel::*;
 use indicatif::ProgressBar;
-use rayon::prelude::*;
 
 use crate::cli::args::{Common, shown_range};
 use crate::cli::progress::progress;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::ExactSign;
-use crate::number::{Laurent, Rational, Sign};
+use crate::number::{Laurent, Ratio, Rational, Sign};
 use crate::report::document::Document;
 use crate::report::tongues::{Frame, Told};
 use crate::tongue::{Gap, Selection, Tongues};
@@ -79,8 +79,8 @@ impl Stiffness {
 
 impl Window {
     /// The range of s = h1² L1 for one ratio, from both ranges of steps: h1 = h2 q/p. Ends rounded outward.
-    fn of_ratio(&self, p: u64, q: u64, lambda1: &Laurent) -> Option<(f64, f64)> {
-        let back = Laurent::from_rational(Rational::new(q.into(), p.into()));
+    fn of_ratio(&self, ratio: Ratio, lambda1: &Laurent) -> Option<(f64, f64)> {
+        let back = Laurent::from_rational(ratio.inverse().into());
         let from_h2 = self.h2.as_ref().map(|(lo, hi)| (lo * &back, hi * &back));
         let (lo, hi) = match (self.h1.clone(), from_h2) {
             (None, None) => return None,
@@ -111,12 +111,9 @@ impl Question {
         if window != Window::default() && stiffness.lambda1.is_none() {
             return Err(Error::missing("lambda1", "a window of h1 or h2 needs it: s = h1^2 lambda1"));
         }
-        let (p, q) = match ratios {
-            Ratios::One(p, q) => (p, q),
-            Ratios::UpTo(_) => (1, 1),
-        };
-        let first = Tongues::new(p, q, &stiffness.rho)?;
-        if ratios == Ratios::One(p, q) {
+        let ratio = ratios.list()[0];
+        let first = Tongues::new(ratio, &stiffness.rho)?;
+        if ratios == Ratios::One(ratio) {
             first.check_labels(&selection)?;
         }
         frame.wanted.family = true;
@@ -133,7 +130,7 @@ impl Question {
         // Of one ratio the tongues are counted, once it is known how many there are.
         let alone = ratios.len() == 1;
         let bar = progress(common.quiet, ratios.len() as u64, if alone { "tongues" } else { "ratios" });
-        let one = |&(p, q): &(u64, u64)| self.of_ratio(p, q, alone.then_some(&bar));
+        let one = |&ratio: &Ratio| self.of_ratio(ratio, alone.then_some(&bar));
         for batch in ratios.chunks(BATCH) {
             let parts: Vec<Vec<Told>> = batch.par_iter().map(one).collect::<Result<_>>()?;
             for part in &parts {
@@ -145,16 +142,15 @@ impl Question {
         Ok(())
     }
 
-    fn of_ratio(&self, p: u64, q: u64, bar: Option<&ProgressBar>) -> Result<Vec<Told>> {
-        let mut tongues = Tongues::new(p, q, &self.stiffness.rho)?;
-        let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(p, q, lambda1));
+    fn of_ratio(&self, ratio: Ratio, bar: Option<&ProgressBar>) -> Result<Vec<Told>> {
+        let tongues = Tongues::new(ratio, &self.stiffness.rho)?;
+        let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(ratio, lambda1));
         let gaps = tongues.select(&Selection { s: window, ..self.selection.clone() })?;
         if let Some(bar) = bar {
             bar.set_length(gaps.len() as u64);
         }
         let chunk = |gaps: &[Gap]| {
-            let mut own = tongues.clone();
-            let told = gaps.iter().map(|gap| self.frame.told(&mut own, gap)).collect();
+            let told = gaps.iter().map(|gap| self.frame.told(&tongues, gap)).collect();
             if let Some(bar) = bar {
                 bar.inc(gaps.len() as u64);
             }

@@ -1,21 +1,21 @@
 //! The figure of measured widths against the first-order law.
 
+use crate::parallel::*;
 use num_traits::{ToPrimitive, Zero};
-use rayon::prelude::*;
 
 use super::Stiffness;
 use super::atlas::share_of_pi;
 use crate::cli::args::Common;
-use crate::cli::map::Target;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Rational, rational};
+use crate::format::Format;
+use crate::number::{Laurent, Ratio, Rational, rational};
 use crate::report::figure::png;
 use crate::report::file::write_output;
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
-use crate::tongue::{Gap, Tongues, ratios};
+use crate::tongue::{Gap, Tongues};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
 const AROUND: (i64, i64) = (1, 50);
@@ -29,7 +29,7 @@ pub fn run(
     stiffness: &Stiffness,
     theta: &Laurent,
     common: &Common,
-    target: Target,
+    format: Format,
 ) -> Result<()> {
     let Ratios::UpTo(max_sum) = ratios else {
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
@@ -56,7 +56,7 @@ pub fn run(
     )
     .replace("π1/", "π/");
     let svg = figure(rational::to_f64(&share), &title, &measured).svg();
-    let bytes = if target == Target::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
     write_output(common.output.as_deref(), &bytes)
 }
 
@@ -69,23 +69,24 @@ fn typeset(theta: &Laurent) -> String {
 fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<Measured>> {
     let around = rational::ratio(AROUND.0, AROUND.1);
     let rho = rational::to_f64(&stiffness.rho);
-    let one = |(p, q): (u64, u64)| -> Result<Vec<Measured>> {
+    let one = |ratio: Ratio| -> Result<Vec<Measured>> {
         let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);
-        let terms = Rational::from_integer(p.into());
+        let terms = Rational::from_integer(ratio.p().into());
         let from = whole(((share - &around) * &terms).ceil()).max(1);
-        let upto = whole(((share + &around) * &terms).floor()).min(p - 1);
+        let upto = whole(((share + &around) * &terms).floor()).min(ratio.p() - 1);
         if from > upto {
             return Ok(Vec::new());
         }
-        let mut tongues = Tongues::new(p, q, &stiffness.rho)?;
+        let tongues = Tongues::new(ratio, &stiffness.rho)?;
         let gaps = tongues.gaps(from, upto)?;
         let measured = |gap: &Gap| {
             let s = tongues.resonance(gap.m, 64).mid_f64();
             let width = 0.5 * (gap.width.0 + gap.width.1);
-            Measured { a: dominant_family(p, q, gap.m).0, q, strength: width / (2.0 * s * rho) }
+            Measured { a: dominant_family(ratio, gap.m).0, q: ratio.q(), strength: width / (2.0 * s * rho) }
         };
         Ok(gaps.iter().map(measured).collect())
     };
-    let all: Vec<Vec<Measured>> = ratios(max_sum).into_par_iter().map(one).collect::<Result<_>>()?;
+    let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
+    let all: Vec<Vec<Measured>> = ratios.into_par_iter().map(one).collect::<Result<_>>()?;
     Ok(all.into_iter().flatten().collect())
 }

@@ -8,7 +8,7 @@ use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
-use crate::number::{Rational, Sign};
+use crate::number::{Ratio, Rational, Sign};
 use crate::propagator::TwoClocks;
 use crate::tongue::Entry;
 use crate::verdict::{Limits, decide, growth};
@@ -22,8 +22,8 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
 }
 
 fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
-    let (p, q, m) = (row.whole("p")?, row.whole("q")?, row.whole("m")?);
-    check_ratio(p, q, limits)?;
+    let (ratio, m) = (row.ratio()?, row.whole("m")?);
+    check_ratio(ratio, limits)?;
     holds(m > 0, || "labels begin at 1".into())?;
     let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
     let (s, rho) = (side(row, "s")?, side(row, "rho")?);
@@ -31,7 +31,7 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
     let below = if row.flag("below_verlet")? { s.lo < four } else { s.hi >= four };
     holds(below, || "s* is on the other side of 4".into())?;
     if let (Some(s), Some(rho)) = (&s.exact, &rho.exact) {
-        let signs = signs(p, q, rho, s).all();
+        let signs = signs(ratio, rho, s).all();
         let closed = pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero);
         holds(closed, || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
     }
@@ -42,7 +42,7 @@ fn check_row(row: &Row, limits: &Limits) -> Checked<()> {
     let reach = s.size() + &s.hi * fraction(4, 1) * &margin / &rho.lo;
     let around = (&s.lo - &reach, &s.hi + &reach);
     let [early, late] =
-        [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((p, q, m), pair, &rho, &around, limits));
+        [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((ratio, m), pair, &rho, &around, limits));
     holds(early? != late?, || "its edges do not exchange their order".into())
 }
 
@@ -75,19 +75,19 @@ impl Interval {
 
 /// Whether the first entry's zero near s* lies below the second's, and that the label between them is m.
 fn order(
-    (p, q, m): (u64, u64, u64),
+    (ratio, m): (Ratio, u64),
     pair: [Entry; 2],
     rho: &Rational,
     around: &(Rational, Rational),
     limits: &Limits,
 ) -> Checked<std::cmp::Ordering> {
-    let mut first = ZeroOf::new((p, q, rho), pair[0], around.clone(), "s")?;
-    let mut second = ZeroOf::new((p, q, rho), pair[1], around.clone(), "s")?;
+    let mut first = ZeroOf::new((ratio, rho), pair[0], around.clone(), "s")?;
+    let mut second = ZeroOf::new((ratio, rho), pair[1], around.clone(), "s")?;
     let order = part(&mut first, &mut second);
     let (lower, upper) =
         if order == Some(std::cmp::Ordering::Less) { (first, second) } else { (second, first) };
     let middle = (&lower.hi + &upper.lo) / fraction(2, 1);
-    let clocks = TwoClocks::with_rho(p, q, middle, rho.clone());
+    let clocks = TwoClocks::with_rho(ratio, middle, rho.clone());
     let verdict = decide(&clocks, limits)?.verdict;
     let label = growth(&clocks, verdict, limits)?.label;
     holds(label == Some(m), || format!("the growing solution beside it turns {label:?} times"))?;

@@ -1,38 +1,35 @@
 //! Exact signs: of the half period at rational s, and of the trace over the full period.
 
-use num_integer::Integer;
 use num_traits::One;
 
 use super::read::{Checked, Fault, holds};
 use crate::error::Error;
-use crate::number::{ExactSign, Laurent, Rational, Real, Sign};
+use crate::number::{ExactSign, Laurent, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
 use crate::tongue::Entry;
 use crate::verdict::{Decidable, HalfSigns, Kind, Limits};
 
-/// That p/q is a ratio in lowest terms, and its exact signs within the budget.
-pub fn check_ratio(p: u64, q: u64, limits: &Limits) -> Checked<()> {
-    holds(p > 0 && q > 0 && p.gcd(&q) == 1, || format!("{p}/{q} is no ratio in lowest terms"))?;
-    let kicks = p.saturating_add(q);
+/// That exact signs at p/q are within the budget.
+pub fn check_ratio(ratio: Ratio, limits: &Limits) -> Checked<()> {
+    let kicks = ratio.kicks();
     let cost = kicks.saturating_mul(kicks) / 100;
     if kicks <= limits.kicks && cost <= limits.kicks {
         return Ok(());
     }
-    let work = format!("exact signs at {p}/{q} cost as much as {cost} kicks");
+    let work = format!("exact signs at {ratio} cost as much as {cost} kicks");
     Err(Fault::Error(Error::budget(work, cost)))
 }
 
 /// The signs of A, B, C, D at s.
-pub fn signs(p: u64, q: u64, rho: &Rational, s: &Rational) -> HalfSigns {
-    Decidable::half_signs(&TwoClocks::with_rho(p, q, s.clone(), rho.clone()))
+pub fn signs(ratio: Ratio, rho: &Rational, s: &Rational) -> HalfSigns {
+    Decidable::half_signs(&TwoClocks::with_rho(ratio, s.clone(), rho.clone()))
 }
 
 /// The zero of an entry between two rationals.
 #[derive(Clone, Debug)]
 pub struct ZeroOf<'a> {
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     pub rho: &'a Rational,
     pub entry: Entry,
     pub lo: Rational,
@@ -43,17 +40,17 @@ pub struct ZeroOf<'a> {
 impl<'a> ZeroOf<'a> {
     /// That the entry changes its sign between lo and hi, or vanishes at one of them.
     pub fn new(
-        (p, q, rho): (u64, u64, &'a Rational),
+        (ratio, rho): (Ratio, &'a Rational),
         entry: Entry,
         (lo, hi): (Rational, Rational),
         name: &str,
     ) -> Checked<Self> {
-        let at = |s: &Rational| signs(p, q, rho, s).all()[entry as usize];
+        let at = |s: &Rational| signs(ratio, rho, s).all()[entry as usize];
         let (below, above) = (at(&lo), at(&hi));
         holds(below * above != Sign::Positive, || {
             format!("{name}: {} does not vanish between {lo} and {hi}", entry.name())
         })?;
-        Ok(ZeroOf { p, q, rho, entry, lo, hi, below })
+        Ok(ZeroOf { ratio, rho, entry, lo, hi, below })
     }
 
     /// Halves the interval; an end that is the zero stays.
@@ -62,7 +59,7 @@ impl<'a> ZeroOf<'a> {
             return;
         }
         let middle = (&self.lo + &self.hi) / Rational::from_integer(2.into());
-        let sign = signs(self.p, self.q, self.rho, &middle).all()[self.entry as usize];
+        let sign = signs(self.ratio, self.rho, &middle).all()[self.entry as usize];
         match (self.below, sign) {
             (Sign::Zero, _) => self.hi = self.lo.clone(),
             (_, Sign::Zero) => (self.lo, self.hi) = (middle.clone(), middle),

@@ -10,7 +10,7 @@ use super::exact::{check_ratio, fraction};
 use super::read::{Checked, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
-use crate::number::{Polynomial, Rational};
+use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::methods::avi;
 use crate::propagator::{TwoClocks, half_period};
 
@@ -60,27 +60,27 @@ type Terms = BTreeMap<(u32, u32), Rational>;
 
 pub fn check_polynomial(document: &Value, context: &Context) -> Result<Outcome> {
     let all = Row::new(document);
-    let (p, q) = (whole(all.whole("p"))?, whole(all.whole("q"))?);
-    whole(check_ratio(p, q, &context.limits))?;
-    crate::cli::polynomial::check(p, q, context.common.budget)?;
+    let ratio = whole(all.ratio())?;
+    whole(check_ratio(ratio, &context.limits))?;
+    crate::cli::polynomial::check(ratio, context.common.budget)?;
     let mut terms: BTreeMap<String, Terms> = BTreeMap::new();
     for term in whole(all.rows("terms"))? {
         let term = Row::new(term);
         // Beyond p + q no power can stand; those are told as the first that cannot.
-        let power = |key: &str| -> Result<u32> { Ok(whole(term.whole(key))?.min(p + q + 1) as u32) };
+        let power = |key: &str| -> Result<u32> { Ok(whole(term.whole(key))?.min(ratio.kicks() + 1) as u32) };
         let powers = (power("s")?, power("rho")?);
         let coefficient = whole(term.rational("coefficient"))?;
         let own = terms.entry(whole(term.text("entry"))?.to_string()).or_default();
         let twice = own.insert(powers, coefficient).is_some();
         whole(holds(!twice, || "a term is told twice".into()))?;
     }
-    let ratio = whole(whole(all.object("input"))?.rational("ratio"))?;
-    whole(holds(ratio == fraction(p, q), || format!("its ratio is {ratio}, not {p}/{q}")))?;
+    let asked = whole(whole(all.object("input"))?.rational("ratio"))?;
+    whole(holds(asked == ratio.into(), || format!("its ratio is {asked}, not {ratio}")))?;
     let texts = whole(all.object("polynomials"))?;
     let names = ["A", "B", "C", "D", "trace"].map(|entry| serde_json::json!({"entry": entry}));
     context.rows(&names, POLYNOMIALS, |row| {
         let entry = row.text("entry")?;
-        check_entry(entry, p, q, &terms)?;
+        check_entry(entry, ratio, &terms)?;
         let text = terms.get(entry).map_or_else(|| "0".into(), in_writing);
         holds(texts.text(entry)? == text, || format!("its text is not {text}"))
     })
@@ -96,19 +96,19 @@ fn in_writing(terms: &Terms) -> String {
 }
 
 /// A polynomial of degree m in s and n in ρ is determined by (m + 1)(n + 1) values on a grid.
-fn check_entry(entry: &str, p: u64, q: u64, terms: &BTreeMap<String, Terms>) -> Checked<()> {
+fn check_entry(entry: &str, ratio: Ratio, terms: &BTreeMap<String, Terms>) -> Checked<()> {
     let none = Terms::new();
     let own = terms.get(entry).unwrap_or(&none);
     // At most p + q kicks carry a power of s each, q of them one of rho.
     let told = |power: fn(&(u32, u32)) -> u32| u64::from(own.keys().map(power).max().unwrap_or(0));
-    let (in_s, in_rho) = (told(|k| k.0).max(p + q), told(|k| k.1).max(q));
+    let (in_s, in_rho) = (told(|k| k.0).max(ratio.kicks()), told(|k| k.1).max(ratio.q()));
     for i in 0..=in_s {
         for j in 0..=in_rho {
             let (s, rho) = (fraction(i, 1), fraction(j, 1));
             let value = own
                 .iter()
                 .fold(Rational::zero(), |sum, ((k, l), c)| sum + c * power(&s, *k) * power(&rho, *l));
-            let truth = kicked(entry, p, q, &s, &rho);
+            let truth = kicked(entry, ratio, &s, &rho);
             holds(value == truth, || format!("at s = {s}, rho = {rho} it is {truth}, not {value}"))?;
         }
     }
@@ -120,8 +120,8 @@ fn power(x: &Rational, k: u32) -> Rational {
 }
 
 /// The entry at one point: numbers kicked and drifted, no polynomials.
-fn kicked(entry: &str, p: u64, q: u64, s: &Rational, rho: &Rational) -> Rational {
-    let clocks = TwoClocks::with_rho(p, q, s.clone(), rho.clone());
+fn kicked(entry: &str, ratio: Ratio, s: &Rational, rho: &Rational) -> Rational {
+    let clocks = TwoClocks::with_rho(ratio, s.clone(), rho.clone());
     if entry == "trace" {
         return avi::staggered(&clocks).trace();
     }

@@ -7,8 +7,8 @@ use super::read::{Row, whole};
 use crate::cli::ratios::Ratios;
 use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
-use crate::number::Rational;
 use crate::number::parse::parse_ratio;
+use crate::number::{Ratio, Rational};
 
 /// The row (0: none), its name, what is wrong.
 type Failure = (u64, String, String);
@@ -42,14 +42,15 @@ pub fn complete(input: &Row, rows: &[Value], rho: &Rational) -> Result<Option<Fa
         return Ok(None);
     }
     let asked = match input.get("ratio") {
-        Some(_) => parse_ratio("ratio", whole(input.text("ratio"))?).map(|(p, q)| Ratios::One(p, q))?,
+        Some(_) => parse_ratio("ratio", whole(input.text("ratio"))?).map(Ratios::One)?,
         None => Ratios::UpTo(whole(input.rational("max_sum"))?.to_integer().try_into().unwrap_or(0)),
     };
     let list = asked.within(MOST_SUM)?.list();
-    let last = |p: u64, q: u64| if rho.is_zero() { p } else { p.saturating_add(q) - 1 };
-    let expected = list.into_iter().flat_map(|(p, q)| (1..=last(p, q)).map(move |m| (p, q, m)));
+    let last = |ratio: Ratio| if rho.is_zero() { ratio.p() } else { ratio.kicks() - 1 };
+    let expected = list.into_iter().flat_map(|ratio| (1..=last(ratio)).map(move |m| (ratio, m)));
     let mut rows = rows.iter().map(Row::new).enumerate();
-    for (p, q, m) in expected {
+    for (ratio, m) in expected {
+        let (p, q) = ratio.terms();
         let place = format!("p = {p}, q = {q}, m = {m}");
         let Some((i, row)) = rows.next() else {
             return Ok(Some((0, place, "is missing at the end".into())));

@@ -25,12 +25,13 @@ mod verdict;
 
 use std::path::PathBuf;
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use serde_json::{Value, json};
 
-use super::args::{Common, Format};
+use super::args::Common;
 use super::progress::progress;
 use crate::error::{Error, Result};
+use crate::format::Format;
 use crate::report::document::Document;
 use crate::verdict::Limits;
 use read::{Fault, Row};

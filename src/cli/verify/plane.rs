@@ -1,6 +1,6 @@
 //! Maps and comparisons over a grid: pair by pair, kick by kick.
 
-use rayon::prelude::*;
+use crate::parallel::*;
 use serde_json::Value;
 
 use super::exact::{affordable, check_ratio, full_period, meets};
@@ -113,11 +113,10 @@ pub fn check_compare(document: &Value, context: &Context) -> Result<Outcome> {
                 oscillator.map_err(|error| Fault::Wrong(error.to_string()))?.clocks()
             }
             None => {
-                let (p, q, s, rho) =
-                    (row.whole("p")?, row.whole("q")?, row.rational("s")?, row.rational("rho")?);
-                check_ratio(p, q, &context.limits)?;
+                let (ratio, s, rho) = (row.ratio()?, row.rational("s")?, row.rational("rho")?);
+                check_ratio(ratio, &context.limits)?;
                 holds(given.as_ref() == Some(&rho), || format!("rho = {rho} is not that of the input"))?;
-                TwoClocks::with_rho(p, q, Laurent::from_rational(s), Laurent::from_rational(rho))
+                TwoClocks::with_rho(ratio, Laurent::from_rational(s), Laurent::from_rational(rho))
             }
         };
         check_offender(row, &clocks, &tolerance, &context.limits)
@@ -146,8 +145,7 @@ fn check_offender(
     tolerance: &Rational,
     limits: &Limits,
 ) -> Checked<()> {
-    let ratio = (row.whole("p")?, row.whole("q")?);
-    holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
+    holds(row.ratio()? == clocks.ratio(), || format!("h2/h1 is {}", clocks.ratio()))?;
     let kind = match (affordable(clocks), clocks.as_rational()) {
         (true, Some(rational)) => full_period(&rational).kind,
         (true, None) => full_period(clocks).kind,

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::error::Error;
 use crate::number::parse::{parse, parse_rational};
-use crate::number::{Laurent, Rational, rational};
+use crate::number::{Laurent, Ratio, Rational, rational};
 
 /// Why a row does not hold, or why that cannot be told.
 pub enum Fault {
@@ -91,6 +91,13 @@ impl<'a> Row<'a> {
         let (lo, hi) = self.ends(key)?;
         let ends = rational::from_f64_exact(lo).zip(rational::from_f64_exact(hi));
         ends.ok_or_else(|| Self::missing(key, "a finite enclosure"))
+    }
+
+    /// p/q, written in lowest terms.
+    pub fn ratio(&self) -> Checked<Ratio> {
+        let (p, q) = (self.whole("p")?, self.whole("q")?);
+        let ratio = Ratio::new(p, q).ok().filter(|ratio| ratio.terms() == (p, q));
+        ratio.ok_or_else(|| Fault::Wrong(format!("{p}/{q} is no ratio in lowest terms")))
     }
 
     pub fn rational(&self, key: &str) -> Checked<Rational> {

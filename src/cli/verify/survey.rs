@@ -9,8 +9,8 @@ use super::{Context, Outcome};
 use crate::cli::ratios::Ratios;
 use crate::cli::tongues::MOST_SUM;
 use crate::error::Result;
-use crate::number::{Rational, rational};
-use crate::tongue::{Entry, ratios};
+use crate::number::{Ratio, Rational, rational};
+use crate::tongue::Entry;
 use crate::verdict::Limits;
 
 const ROUTE: &str = "thin tongues by exact signs about both edges; ratios counted again; the counts add up";
@@ -24,7 +24,7 @@ pub fn check(document: &Value, context: &Context) -> Result<Outcome> {
     let mut rows = whole(all.rows("thinnest"))?.to_vec();
     rows.push(json!({"entry": "counts"}));
     context.rows(&rows, ROUTE, |row| match row.get("entry") {
-        Some(_) => counts(&all, ratios(max_sum).len() as u64),
+        Some(_) => counts(&all, Ratio::up_to(max_sum).count() as u64),
         None => thin(row, &rho, &context.limits),
     })
 }
@@ -44,8 +44,8 @@ fn counts(all: &Row, ratios: u64) -> Checked<()> {
 
 /// Both entries vanish just above s, as far apart as told.
 fn thin(row: &Row, rho: &Rational, limits: &Limits) -> Checked<()> {
-    let (p, q, m, s) = (row.whole("p")?, row.whole("q")?, row.whole("m")?, row.float("s")?);
-    check_ratio(p, q, limits)?;
+    let (ratio, m, s) = (row.ratio()?, row.whole("m")?, row.float("s")?);
+    check_ratio(ratio, limits)?;
     let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
     let (least, most) = row.enclosure("width")?;
     // From a double below the lower edge, a few doubles and the width up.
@@ -53,7 +53,7 @@ fn thin(row: &Row, rho: &Rational, limits: &Limits) -> Checked<()> {
     let reach = (exact(s), exact(s * (1.0 + 4.0 * f64::EPSILON)) + &most);
     let mut zeros = Vec::new();
     for entry in pair {
-        zeros.push(ZeroOf::new((p, q, rho), entry, reach.clone(), "s")?);
+        zeros.push(ZeroOf::new((ratio, rho), entry, reach.clone(), "s")?);
     }
     let [a, b] = &mut zeros[..] else { unreachable!("two entries") };
     let order = part(a, b);

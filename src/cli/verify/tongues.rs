@@ -8,7 +8,7 @@ use super::listing::{complete, counts};
 use super::read::{Checked, Fault, Row, holds, whole};
 use super::{Context, Outcome};
 use crate::error::Result;
-use crate::number::{Laurent, Rational, Sign, rational};
+use crate::number::{Laurent, Ratio, Rational, Sign, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::{Entry, Resonance, entries};
 use crate::verdict::{Kind, Limits, decide, growth};
@@ -51,13 +51,15 @@ struct Edge<'a> {
 
 impl Given {
     fn row(&self, row: &Row) -> Checked<()> {
-        let (p, q, m) = (row.whole("p")?, row.whole("q")?, row.whole("m")?);
-        check_ratio(p, q, &self.limits)?;
+        let (ratio, m) = (row.ratio()?, row.whole("m")?);
+        check_ratio(ratio, &self.limits)?;
         holds(m > 0, || "labels begin at 1".into())?;
         let (a, b) = (i128::from(row.integer("a")?), i128::from(row.integer("b")?));
-        holds(a * i128::from(p) + b * i128::from(q) == i128::from(m), || "m is not a p + b q".into())?;
-        let lower = self.edge(row, "lower", (p, q, m))?;
-        let upper = row.get("upper").map(|_| self.edge(row, "upper", (p, q, m))).transpose()?;
+        holds(a * i128::from(ratio.p()) + b * i128::from(ratio.q()) == i128::from(m), || {
+            "m is not a p + b q".into()
+        })?;
+        let lower = self.edge(row, "lower", (ratio, m))?;
+        let upper = row.get("upper").map(|_| self.edge(row, "upper", (ratio, m))).transpose()?;
         match upper {
             None => {
                 holds(!row.flag("closed")?, || "the last tongue is open".into())?;
@@ -75,12 +77,7 @@ impl Given {
         }
     }
 
-    fn edge<'a>(
-        &'a self,
-        row: &Row<'a>,
-        name: &'static str,
-        (p, q, m): (u64, u64, u64),
-    ) -> Checked<Edge<'a>> {
+    fn edge<'a>(&'a self, row: &Row<'a>, name: &'static str, (ratio, m): (Ratio, u64)) -> Checked<Edge<'a>> {
         let edge = row.object(name)?;
         let letter = edge.text("entry")?;
         let pair = if m % 2 == 1 { [Entry::A, Entry::D] } else { [Entry::B, Entry::C] };
@@ -88,7 +85,7 @@ impl Given {
         let entry =
             entry.ok_or_else(|| Fault::Wrong(format!("{name}: {letter} bounds no tongue m = {m}")))?;
         let ends = row.enclosure(name)?;
-        let zero = ZeroOf::new((p, q, &self.rho), entry, ends, name)?;
+        let zero = ZeroOf::new((ratio, &self.rho), entry, ends, name)?;
         let edge = Edge { row: edge, name, zero };
         self.closed_form(&edge, m)?;
         self.written(&edge)?;
@@ -99,12 +96,12 @@ impl Given {
     /// A rational edge is a zero, and a resonance lies in the enclosure.
     fn closed_form(&self, edge: &Edge, m: u64) -> Checked<()> {
         let Edge { row, name, zero } = edge;
-        let (p, q) = (zero.p, zero.q);
+        let ratio = zero.ratio;
         if row.get("exact").is_some() {
             let s = row.rational("exact")?;
             let inside = zero.lo <= s && s <= zero.hi;
             holds(inside, || format!("{name}: {s} lies outside its enclosure"))?;
-            let vanishes = signs(p, q, &self.rho, &s).all()[zero.entry as usize] == Sign::Zero;
+            let vanishes = signs(ratio, &self.rho, &s).all()[zero.entry as usize] == Sign::Zero;
             holds(vanishes, || format!("{name}: {} does not vanish at {s}", zero.entry.name()))?;
         }
         if row.get("on").is_none() {
@@ -113,12 +110,12 @@ impl Given {
         let on = row.text("on")?;
         const BITS: u32 = 128;
         let s = if on == Resonance::Fast.name() {
-            resonance(p, m, BITS)
+            resonance(ratio.p(), m, BITS)
         } else {
             holds(!self.rho.is_zero(), || format!("{name}: without slow kicks there is no {on}"))?;
-            let ratio = fraction(q, p);
-            let scale = &ratio * &ratio / &self.rho;
-            resonance(q, m, BITS).mul(&crate::number::Ball::from_rational(&scale, BITS), BITS)
+            let back = Rational::from(ratio.inverse());
+            let scale = &back * &back / &self.rho;
+            resonance(ratio.q(), m, BITS).mul(&crate::number::Ball::from_rational(&scale, BITS), BITS)
         };
         let ends = (rational::to_f64(&zero.lo), rational::to_f64(&zero.hi));
         holds(meets(ends, &s), || format!("{name}: the resonance {on} lies outside its enclosure"))
@@ -131,8 +128,8 @@ impl Given {
         }
         let decimal = edge.row.object("decimal")?;
         let ends = (decimal.rational("lo")?, decimal.rational("hi")?);
-        let ZeroOf { p, q, rho, entry, .. } = edge.zero;
-        ZeroOf::new((p, q, rho), entry, ends, edge.name).map(drop)
+        let ZeroOf { ratio, rho, entry, .. } = edge.zero;
+        ZeroOf::new((ratio, rho), entry, ends, edge.name).map(drop)
     }
 
     /// h² L over an enclosure of a step meets the enclosure of s.
@@ -140,8 +137,7 @@ impl Given {
         let Some(lambda1) = self.lambda1.as_ref().filter(|_| edge.row.get("h1").is_some()) else {
             return Ok(());
         };
-        let ZeroOf { p, q, .. } = edge.zero;
-        for (key, back) in [("h1", fraction(1, 1)), ("h2", fraction(q, p))] {
+        for (key, back) in [("h1", fraction(1, 1)), ("h2", edge.zero.ratio.inverse().into())] {
             let step = edge.row.object(key)?;
             let decimal = step
                 .get("decimal")
@@ -163,14 +159,14 @@ impl Given {
 
     /// Above the last tongue's edge all is unstable.
     fn last(&self, lower: &Edge, m: u64) -> Checked<()> {
-        let ZeroOf { p, q, hi, .. } = &lower.zero;
-        let end = if self.rho.is_zero() { *p } else { p + q - 1 };
-        holds(m == end, || format!("{p}/{q} has a tongue above m = {m}: it has an upper edge"))?;
-        self.unstable(*p, *q, m, &(hi * fraction(2, 1)))
+        let ZeroOf { ratio, hi, .. } = &lower.zero;
+        let end = if self.rho.is_zero() { ratio.p() } else { ratio.kicks() - 1 };
+        holds(m == end, || format!("{ratio} has a tongue above m = {m}: it has an upper edge"))?;
+        self.unstable(*ratio, m, &(hi * fraction(2, 1)))
     }
 
-    fn unstable(&self, p: u64, q: u64, m: u64, s: &Rational) -> Checked<()> {
-        let verdict = signs(p, q, &self.rho, s).verdict();
+    fn unstable(&self, ratio: Ratio, m: u64, s: &Rational) -> Checked<()> {
+        let verdict = signs(ratio, &self.rho, s).verdict();
         let side = if m.is_multiple_of(2) { 1 } else { -1 };
         let unstable = verdict.kind() == Kind::Hyperbolic && verdict.side() == side;
         holds(unstable, || format!("s = {s} inside it is {}, side {}", verdict.kind().name(), verdict.side()))
@@ -178,7 +174,7 @@ impl Given {
 
     /// The edges part in the order given, and between them all is unstable with the label m.
     fn open(&self, row: &Row, lower: &Edge, upper: &Edge, m: u64) -> Checked<()> {
-        let (p, q) = (lower.zero.p, lower.zero.q);
+        let ratio = lower.zero.ratio;
         let (mut below, mut above) = (lower.zero.clone(), upper.zero.clone());
         let order = part(&mut below, &mut above);
         holds(order.is_some_and(std::cmp::Ordering::is_lt), || {
@@ -188,11 +184,11 @@ impl Given {
         let (least, most) = row.enclosure("width")?;
         holds(least <= outer && inner <= most, || "its width is not the distance of its edges".into())?;
         let middle = (&below.hi + &above.lo) / fraction(2, 1);
-        self.unstable(p, q, m, &middle)?;
+        self.unstable(ratio, m, &middle)?;
         if lower.zero.hi >= upper.zero.lo {
             return Ok(()); // thinner than doubles show
         }
-        let clocks = TwoClocks::with_rho(p, q, middle, self.rho.clone());
+        let clocks = TwoClocks::with_rho(ratio, middle, self.rho.clone());
         let verdict = decide(&clocks, &self.limits)?.verdict;
         let label = growth(&clocks, verdict, &self.limits)?.label;
         holds(label == Some(m), || format!("the growing solution turns {label:?} times"))?;
@@ -202,7 +198,7 @@ impl Given {
     /// The growth told is that of its place, and no hundredth of the tongue to either side has more.
     fn growth(&self, row: &Row, lower: &Edge, upper: &Edge) -> Checked<()> {
         let Some(told) = row.get("growth") else { return Ok(()) };
-        let (p, q) = (lower.zero.p, lower.zero.q);
+        let ratio = lower.zero.ratio;
         let (s, ln) = (told.float("s")?, told.float("ln_multiplier")?);
         let exact = rational::from_f64_exact(s).ok_or_else(|| Fault::Wrong("growth at no s".into()))?;
         let inside = lower.zero.lo <= exact && exact <= upper.zero.hi;
@@ -210,8 +206,8 @@ impl Given {
         // Fifteen digits of the rates are told; where s is rounded to a double they are flat.
         let near = |x: f64, y: f64| (x - y).abs() <= 1e-9 * y.abs();
         let rate = |s: &Rational| {
-            let ln = ln_multiplier_at(&TwoClocks::with_rho(p, q, s.clone(), self.rho.clone()));
-            ln.map(|ln| (ln, ln / (p as f64 * rational::to_f64(s).sqrt())))
+            let ln = ln_multiplier_at(&TwoClocks::with_rho(ratio, s.clone(), self.rho.clone()));
+            ln.map(|ln| (ln, ln / (ratio.p() as f64 * rational::to_f64(s).sqrt())))
         };
         // A place within an edge's rounding tells nothing.
         let Some((ln_here, here)) = rate(&exact) else { return Ok(()) };
@@ -221,7 +217,7 @@ impl Given {
         }
         holds(near(ln, ln_here), || format!("ln of the multiplier at s = {s} is {ln_here}, not {ln}"))?;
         holds(near(told.float("rate")?, here), || format!("the rate at s = {s} is {here}"))?;
-        let steps = std::f64::consts::LN_10 * q as f64 / ln_here;
+        let steps = std::f64::consts::LN_10 * ratio.q() as f64 / ln_here;
         holds(near(told.float("steps_until_tenfold")?, steps), || {
             format!("tenfold takes {steps} slow steps")
         })?;
@@ -237,7 +233,7 @@ impl Given {
 
     /// Both entries vanish at one point.
     fn closed(&self, row: &Row, lower: &Edge, upper: &Edge) -> Checked<()> {
-        let (p, q) = (lower.zero.p, lower.zero.q);
+        let ratio = lower.zero.ratio;
         let (least, most) = row.enclosure("width")?;
         holds(least.is_zero() && most.is_zero(), || "a closed tongue is 0 wide".into())?;
         if self.rho.is_zero() {
@@ -247,7 +243,7 @@ impl Given {
             let (a, b) = (lower.row.rational("exact")?, upper.row.rational("exact")?);
             return holds(a == b, || format!("its edges {a} and {b} differ"));
         }
-        let polynomials = entries(p, q, &self.rho);
+        let polynomials = entries(ratio, &self.rho);
         let [f, g] = [&lower.zero, &upper.zero].map(|zero| &polynomials[zero.entry as usize]);
         let (lo, hi) = ((&lower.zero.lo).max(&upper.zero.lo), (&lower.zero.hi).min(&upper.zero.hi));
         let common = f.gcd(g);
@@ -258,7 +254,7 @@ impl Given {
     /// The point p θ = m π lies where it is said to lie.
     fn predicted(&self, row: &Row, lower: &Edge, upper: &Edge, m: u64) -> Checked<()> {
         let Some(told) = row.get("predicted") else { return Ok(()) };
-        let s = resonance(lower.zero.p, m, 128);
+        let s = resonance(lower.zero.ratio.p(), m, 128);
         let (position, distance) = (told.text("position")?, told.float("distance")?);
         let side = match position {
             "inside" => "inside",

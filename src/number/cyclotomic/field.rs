@@ -5,7 +5,6 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use super::Cyclotomic;
 use crate::number::{Ball, Polynomial, Rational};
 
 /// The field ℚ(c), c = 2cos(π/n); cheap to clone.
@@ -45,8 +44,8 @@ impl CyclotomicField {
         Polynomial::new(self.shared.minimal.iter().cloned().map(Rational::from_integer).collect())
     }
 
-    /// The number f(2cos(π/n)).
-    pub fn element(&self, f: Polynomial<Rational>) -> Cyclotomic {
+    /// f modulo ψ: of least degree among the polynomials of the same value at 2cos(π/n).
+    pub(super) fn reduce(&self, f: Polynomial<Rational>) -> Polynomial<Rational> {
         let (mut rest, degree) = (f.coefficients().to_vec(), self.degree());
         while rest.len() > degree {
             let top = rest.pop().expect("not empty");
@@ -59,31 +58,7 @@ impl CyclotomicField {
                 *own -= &top * c;
             }
         }
-        Cyclotomic::made(Some(self.clone()), Polynomial::new(rest))
-    }
-
-    /// 2cos(m π/n), exactly: T_m(c), by T_2k = T_k² − 2 and T_{2k+1} = T_k T_{k+1} − c.
-    pub fn two_cos(&self, m: i64) -> Cyclotomic {
-        let period = 2 * i64::from(self.n());
-        let m = m.rem_euclid(period).min((-m).rem_euclid(period));
-        let integer = |n: i64| Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(n.into())));
-        let (two, c) = (integer(2), self.element(Polynomial::variable()));
-        let (mut low, mut high) = (two.clone(), c.clone()); // T_k, T_{k+1}
-        for bit in (0..64 - m.leading_zeros()).rev() {
-            let middle = &(&low * &high) - &c;
-            if m >> bit & 1 == 1 {
-                (low, high) = (middle, &(&high * &high) - &two);
-            } else {
-                (low, high) = (&(&low * &low) - &two, middle);
-            }
-        }
-        low
-    }
-
-    /// s = 2 − 2cos(m π/n) = 4 sin²(m π/(2n)): the dimensionless stiffness at which n θ = m π.
-    pub fn resonant_s(&self, m: i64) -> Cyclotomic {
-        let two = Cyclotomic::made(None, Polynomial::constant(Rational::from_integer(2.into())));
-        &two - &self.two_cos(m)
+        Polynomial::new(rest)
     }
 
     /// A ball about 2cos(π/n).

@@ -3,8 +3,16 @@
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 use crate::number::{Laurent, Rational};
+
+/// The longest text that is read, in characters.
+pub const MAX_CHARACTERS: usize = 20_000;
+
+/// The largest value that is held: bits of all numerators and denominators together.
+pub const MAX_BITS: u64 = 200_000;
+
+/// The largest |k| in π^k.
+pub const MAX_PI_EXPONENT: u32 = 1000;
 
 /// The deepest nesting of parentheses.
 const MAX_DEPTH: u32 = 100;

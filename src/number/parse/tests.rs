@@ -85,8 +85,8 @@ fn bad_input_gets_one_clear_line_and_no_wait() {
 
 #[test]
 fn ratios_ranges_and_integers() {
-    assert_eq!(parse_ratio("ratio", "14/4").unwrap(), (7, 2));
-    assert_eq!(parse_ratio("ratio", "3").unwrap(), (3, 1));
+    assert_eq!(parse_ratio("ratio", "14/4").unwrap().terms(), (7, 2));
+    assert_eq!(parse_ratio("ratio", "3").unwrap().terms(), (3, 1));
     for bad in ["0", "-7/2", "pi", "1/2^64", "2^64"] {
         assert!(parse_ratio("ratio", bad).is_err(), "{bad}");
     }

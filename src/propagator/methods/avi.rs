@@ -4,7 +4,7 @@
 //! use kickdrift::number::Rational;
 //! use kickdrift::propagator::{methods::avi, TwoClocks};
 //! let r = |n: i64, d: i64| Rational::new(n.into(), d.into());
-//! let clocks = TwoClocks::new(3, 2, r(1, 2), r(1, 10));
+//! let clocks = TwoClocks::new("3/2".parse().unwrap(), r(1, 2), r(1, 10));
 //! assert_eq!(avi::staggered(&clocks).trace(), avi::symmetric(&clocks).trace());
 //! ```
 

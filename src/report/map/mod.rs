@@ -1,12 +1,14 @@
 //! The verdicts of a grid on their way out: counts for the summary, rows of the pairs that are not plainly stable,
 //! arrays of all pairs. All take one band at a time.
 
+#[cfg(feature = "cli")]
 mod arrays;
 mod rows;
 mod tally;
 
 use serde_json::json;
 
+#[cfg(feature = "cli")]
 pub use arrays::MapArrays;
 pub use rows::{Found, Marked, Rows, marked};
 pub use tally::{Counts, Tally};

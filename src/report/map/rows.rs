@@ -1,8 +1,8 @@
 //! The pairs that are not plainly stable, as rows.
 
 use crate::map::{Band, Grid, Growing, Products};
+use crate::number::Ratio;
 use crate::report::table::{Cell, Column, Table};
-use crate::resonance::dominant_family;
 use crate::verdict::Decision;
 
 /// A pair whose verdict is not "elliptic": (i, j) names h1 = i D1 and h2 = j D2.
@@ -10,8 +10,7 @@ use crate::verdict::Decision;
 pub struct Marked {
     pub i: u64,
     pub j: u64,
-    pub p: u64,
-    pub q: u64,
+    pub ratio: Ratio,
     /// h1, within two roundings.
     pub h1: f64,
     pub decision: Decision,
@@ -26,9 +25,9 @@ pub fn marked<'a>(grid: &'a Grid, band: &'a Band) -> impl Iterator<Item = Marked
     // Verdict 0 is "elliptic".
     (0..band.verdicts.len()).filter(|&n| band.verdicts[n] != 0).map(move |n| {
         let (i, j) = band.multipliers(grid, n);
-        let (p, q) = grid.terms(i, j);
+        let ratio = grid.ratio(i, j);
         let growing = growing.next_if(|found| found.position as usize == n).copied();
-        Marked { i, j, p, q, h1: i as f64 * step, decision: band.decision(n), growing }
+        Marked { i, j, ratio, h1: i as f64 * step, decision: band.decision(n), growing }
     })
 }
 
@@ -51,16 +50,11 @@ impl Marked {
         let Some(growing) = self.growing else { return Found::default() };
         Found {
             m: growing.label,
-            family: growing.label.and_then(|m| self.family(m)),
+            family: growing.family(self.ratio),
             // T = p h1.
-            rate: growing.rate(self.p as f64 * self.h1),
-            tenfold: growing.steps_until_tenfold(self.q),
+            rate: growing.rate(self.ratio.p() as f64 * self.h1),
+            tenfold: growing.steps_until_tenfold(self.ratio.q()),
         }
-    }
-
-    fn family(&self, m: u64) -> Option<(i64, i64)> {
-        // Beyond this, families no longer fit 64 bits.
-        (self.p.max(self.q).max(m) < 1 << 31).then(|| dominant_family(self.p, self.q, m))
     }
 }
 
@@ -113,8 +107,8 @@ impl<'a> Rows<'a> {
         let mut cells = vec![
             Cell::Exact(self.h1(pair.i)),
             Cell::Exact(self.h2(pair.j)),
-            Cell::Integer(pair.p as i64),
-            Cell::Integer(pair.q as i64),
+            Cell::Integer(pair.ratio.p() as i64),
+            Cell::Integer(pair.ratio.q() as i64),
             Cell::Text(verdict.kind().name().into()),
             Cell::Integer(verdict.side().into()),
             Cell::Text(pair.decision.decided_by.name().into()),

@@ -1,6 +1,9 @@
 //! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
 
+#[cfg(feature = "figure")]
+mod chart;
 mod map;
+#[cfg(feature = "figure")]
 mod modes;
 
 use serde_json::{Value, json};
@@ -9,7 +12,10 @@ use super::decimal;
 use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
 use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
-pub use map::{Colouring, SystemMap};
+#[cfg(feature = "figure")]
+pub use chart::Colouring;
+pub use map::SystemMap;
+#[cfg(feature = "figure")]
 pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.

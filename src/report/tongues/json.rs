@@ -13,8 +13,8 @@ pub fn row(told: &Told, wanted: &Wanted) -> Value {
     let (a, b) = row.family.unzip();
     let width = row.gap.upper.map(|_| enclosure(row.gap.width));
     let mut entries = vec![
-        ("p", row.p.into()),
-        ("q", row.q.into()),
+        ("p", row.ratio.p().into()),
+        ("q", row.ratio.q().into()),
         ("m", row.gap.m.into()),
         ("a", a.into()),
         ("b", b.into()),

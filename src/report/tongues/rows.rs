@@ -115,8 +115,8 @@ impl Rows {
         let row = &told.row;
         let integer = |n: Option<i64>| n.map_or(Cell::Missing, Cell::Integer);
         let mut cells = vec![
-            Cell::Integer(row.p as i64),
-            Cell::Integer(row.q as i64),
+            Cell::Integer(row.ratio.p() as i64),
+            Cell::Integer(row.ratio.q() as i64),
             Cell::Integer(row.gap.m as i64),
             integer(row.family.map(|(a, _)| a)),
             integer(row.family.map(|(_, b)| b)),

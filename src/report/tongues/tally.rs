@@ -97,5 +97,5 @@ impl Tally {
 }
 
 fn place(told: &Told) -> String {
-    format!("{}/{}, m = {}", told.row.p, told.row.q, told.row.gap.m)
+    format!("{}, m = {}", told.row.ratio, told.row.gap.m)
 }

@@ -1,7 +1,7 @@
 //! A tongue with all that is asked for.
 
 use crate::error::Result;
-use crate::number::{Ball, Laurent, Rational, Real};
+use crate::number::{Ball, Laurent, Ratio, Rational, Real};
 use crate::report::digits::{exact, outward};
 use crate::tongue::{Edge, Enclosure, Entry, ExactEdge, Gap, Peak, Resonance, Row, Tongues, Wanted};
 
@@ -54,7 +54,7 @@ impl Frame {
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn told(&self, tongues: &mut Tongues, gap: &Gap) -> Result<Told> {
+    pub fn told(&self, tongues: &Tongues, gap: &Gap) -> Result<Told> {
         let row = tongues.row(gap, &self.wanted)?;
         let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
         let upper = match &gap.upper {
@@ -65,9 +65,8 @@ impl Frame {
         Ok(Told { row, lower, upper, growth_rate, closed_forms: self.wanted.exact })
     }
 
-    fn edge(&self, tongues: &mut Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<ToldEdge> {
-        let (p, q) = (tongues.p(), tongues.q());
-        let on = form.as_ref().and_then(|form| Resonance::of(p, q, m, tongues.rho(), form));
+    fn edge(&self, tongues: &Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<ToldEdge> {
+        let on = form.as_ref().and_then(|form| Resonance::of(tongues.ratio(), m, tongues.rho(), form));
         let rational = match form {
             Some(ExactEdge::Rational(s)) => Some(s.clone()),
             _ => None,
@@ -79,12 +78,12 @@ impl Frame {
         };
         let decimal = self.digits.map(|digits| outward(&precise.lo, &precise.hi, digits));
         let s = Quantity { lo: edge.lo, hi: edge.hi, decimal };
-        let steps = self.lambda1.as_ref().map(|lambda1| self.steps(&precise, lambda1, p, q));
+        let steps = self.lambda1.as_ref().map(|lambda1| self.steps(&precise, lambda1, tongues.ratio()));
         Ok(ToldEdge { entry: edge.entry, s, steps, exact: rational, on })
     }
 
     /// h1 = √(s/L1) and h2 = h1 p/q over an enclosure of s.
-    fn steps(&self, s: &Enclosure, lambda1: &Laurent, p: u64, q: u64) -> [Quantity; 2] {
+    fn steps(&self, s: &Enclosure, lambda1: &Laurent, ratio: Ratio) -> [Quantity; 2] {
         let bits = self.digits.map_or(96, |digits| 4 * digits + 96);
         let lambda1 = lambda1.enclosure(bits);
         let h1 = |s: &Rational| {
@@ -92,7 +91,7 @@ impl Frame {
             square.sqrt(bits).expect("s > 0")
         };
         let ends = [h1(&s.lo), h1(&s.hi)];
-        let ratio = Ball::from_rational(&Rational::new(p.into(), q.into()), bits);
+        let ratio = Ball::from_rational(&ratio.into(), bits);
         let slow = ends.each_ref().map(|h1| h1.mul(&ratio, bits));
         [&ends, &slow].map(|[lo, hi]| Quantity {
             lo: lo.to_f64_enclosure().0,

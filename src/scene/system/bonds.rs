@@ -34,7 +34,7 @@ impl Document {
             owners.extend(own.iter().map(|_| k));
             bonds.extend(own);
         }
-        let near = numbers("near", self.near.as_deref().unwrap_or(&vec![Number::Integer(0); n]))?;
+        let near = numbers("near", self.near.as_deref().unwrap_or(&vec![Number::Json("0".into()); n]))?;
         if near.len() != n {
             return Err(Error::input("near", format!("{} positions", near.len()), format!("give {n}")));
         }

@@ -8,35 +8,44 @@ use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
 
-/// An exact number: a string, or an integer. Anything else is kept until a reader can name its field.
+/// An exact number: a text, or a JSON number, whose digits are taken as they stand. Anything else is kept until a reader
+/// can name its field.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(from = "Value")]
 pub(super) enum Number {
     Text(String),
-    Integer(i64),
+    Json(String),
     Other(Value),
 }
 
+impl From<Value> for Number {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::String(text) => Number::Text(text),
+            Value::Number(number) => Number::Json(number.to_string()),
+            other => Number::Other(other),
+        }
+    }
+}
+
 impl Number {
-    fn text(&self, field: &str) -> Result<String> {
+    fn text(&self, field: &str) -> Result<&str> {
         match self {
-            Number::Text(text) => Ok(text.clone()),
-            Number::Integer(n) => Ok(n.to_string()),
+            Number::Text(text) | Number::Json(text) => Ok(text),
             Number::Other(value) => {
-                let remedy = "write an exact number in quotes, as \"1/4\" or \"0.25\"";
-                Err(Error::input(field, value, remedy))
+                Err(Error::input(field, value, "write an exact number, as \"1/4\" or 0.25"))
             }
         }
     }
 
     /// As a rational.
     pub fn read(&self, field: &str) -> Result<Rational> {
-        parse_rational(field, &self.text(field)?)
+        parse_rational(field, self.text(field)?)
     }
 
     /// As an element of ℚ\[π, 1/π\].
     pub fn read_laurent(&self, field: &str) -> Result<Laurent> {
-        parse(field, &self.text(field)?)
+        parse(field, self.text(field)?)
     }
 
     /// As a count of at most `most`.
@@ -51,9 +60,9 @@ impl Number {
     pub fn index(&self, field: &str, n: usize) -> Result<usize> {
         let remedy = || format!("indices are 0 to {}", n.max(1) - 1);
         match self {
-            Number::Integer(i) => {
-                let index = usize::try_from(*i).ok().filter(|&i| i < n);
-                index.ok_or_else(|| Error::input(field, i, remedy()))
+            Number::Json(digits) => {
+                let index = digits.parse().ok().filter(|&i: &usize| i < n);
+                index.ok_or_else(|| Error::input(field, digits, remedy()))
             }
             Number::Text(text) => {
                 Err(Error::input(field, text, format!("write an index without quotes; {}", remedy())))

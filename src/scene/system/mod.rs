@@ -15,7 +15,7 @@
 //! }
 //! ```
 //!
-//! * All quantities are exact strings (or JSON integers) without π; indices count from 0. One mass alone may have π in
+//! * All quantities are exact, texts or JSON numbers (0.1 is 1/10), without π; indices count from 0. One mass alone may have π in
 //!   its mass, stiffnesses and steps, as `"pi^2/25"`: K clocks on one oscillator.
 //! * `masses`, or `mass_matrix` by rows.
 //! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j null for a

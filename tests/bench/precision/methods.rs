@@ -2,7 +2,8 @@
 
 use kickdrift::number::rational::{from_f64_exact, to_f64};
 use kickdrift::number::{Ball, Rational};
-use kickdrift::propagator::{Event, Schedule, TwoClocks, Weight};
+use kickdrift::propagator::TwoClocks;
+use kickdrift::schedule::{Event, Schedule, Weight};
 use kickdrift::verdict::{Limits, decide, exact_trace, filter_trace, growth};
 
 /// A way to compute Tr Q.
@@ -188,7 +189,7 @@ fn start<T: Float>() -> [[T; 2]; 2] {
 }
 
 fn schedule(clocks: &TwoClocks<Rational>) -> Schedule {
-    Schedule::two_clocks(clocks.p(), clocks.q()).expect("a short period")
+    Schedule::two_clocks(clocks.ratio()).expect("a short period")
 }
 
 fn full<T: Float>(clocks: &TwoClocks<Rational>) -> T {

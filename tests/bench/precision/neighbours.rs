@@ -1,7 +1,7 @@
 //! Naive verdicts beside certified ones, over neighbouring doubles of s and rho about an edge.
 
-use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::number::{Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::report::figure::palette::{Colour, GREY};
 use kickdrift::report::figure::{Axis, Cells, Figure, Layer, Panel};
@@ -25,7 +25,7 @@ pub struct Picture {
 pub fn picture() -> Picture {
     let (p, q, m) = RATIO;
     let rho = 0.04;
-    let mut tongues = Tongues::new(p, q, &exact(rho)).expect("a ratio");
+    let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &exact(rho)).expect("a ratio");
     let edge = tongues.gap(m).expect("a tongue").lower.lo;
     let neighbour = |x: f64, n: i64| f64::from_bits((x.to_bits() as i64 + n) as u64);
     let side = (2 * AROUND + 1) as u32;
@@ -35,7 +35,11 @@ pub fn picture() -> Picture {
         for j in 0..side {
             let s = exact(neighbour(edge, i64::from(i) - AROUND));
             // A unit in the last place of rho moves the edge by less than one of s: eight show a slope.
-            let clocks = TwoClocks::with_rho(p, q, s, exact(neighbour(rho, 8 * (i64::from(j) - AROUND))));
+            let clocks = TwoClocks::with_rho(
+                Ratio::new(p, q).unwrap(),
+                s,
+                exact(neighbour(rho, 8 * (i64::from(j) - AROUND))),
+            );
             let truth = decide(&clocks, &Limits::default()).expect("a short period").verdict.is_stable();
             let trace = Method::DoubleFull.trace(&clocks);
             let guess = trace.is_some_and(|trace| trace.abs() < ratio(2, 1));

@@ -1,5 +1,6 @@
 //! Time and error of edges of tongues, and of the multipliers of systems.
 
+use kickdrift::number::Ratio;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::system::{Limits, System, builders, decide_system};
 use kickdrift::tongue::{Entry, Tongues};
@@ -26,13 +27,13 @@ pub fn edges() -> Vec<Row> {
     let mut rows = Vec::new();
     for (p, q) in [(7, 3), (61, 39), (619, 381), (6181, 3819), (61_803, 38_197)] {
         let what = format!("edge of {p}/{q}");
-        let tongues = || Tongues::new(p, q, &ratio(1, 25)).expect("a ratio");
+        let tongues = || Tongues::new(Ratio::new(p, q).unwrap(), &ratio(1, 25)).expect("a ratio");
         let middle = tongues().zeros(Entry::B) / 2 + 1;
         let (seconds, edge) = timed(|| tongues().edges(Entry::B, middle, middle).expect("an edge").remove(0));
         let width = (edge.hi - edge.lo) / edge.lo;
         rows.push(Row { what: what.clone(), method: "doubles, certified".into(), seconds, error: width });
         for digits in [20, 50, 100].into_iter().filter(|_| p < 10_000) {
-            let mut own = tongues();
+            let own = tongues();
             let (seconds, fine) = timed(|| own.refine(&edge, digits).expect("digits"));
             let error = to_f64(&(fine.width() / &fine.lo));
             rows.push(Row {

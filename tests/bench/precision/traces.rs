@@ -1,7 +1,7 @@
 //! Time and error of the trace.
 
-use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::{Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
 use num_traits::Signed;
 use serde_json::{Value, json};
@@ -44,7 +44,7 @@ pub fn measure() -> Vec<Row> {
             if p + q > 20_000 && scene != "usual" {
                 continue;
             }
-            let clocks = TwoClocks::with_rho(p, q, s.clone(), rho.clone());
+            let clocks = TwoClocks::with_rho(Ratio::new(p, q).unwrap(), s.clone(), rho.clone());
             let reference = if p + q <= Method::Exact.patience() { Method::Exact } else { Method::Refine };
             let exact = reference.trace(&clocks).expect("a trace");
             for method in Method::ALL.into_iter().filter(|method| p + q <= method.patience()) {

@@ -1,7 +1,7 @@
 //! Who is still right how near to an edge.
 
-use kickdrift::number::Rational;
 use kickdrift::number::rational::ratio;
+use kickdrift::number::{Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Decidable, Limits, Tier, decide};
@@ -33,7 +33,7 @@ fn edges() -> Vec<(u64, u64, Rational, Rational)> {
     let mut edges = Vec::new();
     for (p, q, m) in [(7, 3, 4), (13, 8, 9), (61, 39, 40), (97, 31, 20), (89, 144, 51), (619, 381, 300)] {
         for rho in [ratio(1, 25), ratio(1, 2)] {
-            let mut tongues = Tongues::new(p, q, &rho).expect("a ratio");
+            let tongues = Tongues::new(Ratio::new(p, q).unwrap(), &rho).expect("a ratio");
             let gap = tongues.gap(m).expect("a tongue");
             for edge in [Some(gap.lower), gap.upper].into_iter().flatten() {
                 let digits = tongues.refine(&edge, 60).expect("digits");
@@ -52,7 +52,7 @@ pub fn measure() -> Verdicts {
             for sign in [1, -1] {
                 let hair = Rational::new(sign.into(), BigInt::from(10).pow(k));
                 let s = edge * (ratio(1, 1) + hair);
-                row.add(&TwoClocks::with_rho(*p, *q, s, rho.clone()));
+                row.add(&TwoClocks::with_rho(Ratio::new(*p, *q).expect("a ratio"), s, rho.clone()));
             }
         }
         row

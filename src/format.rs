@@ -1,0 +1,76 @@
+//! The forms in which results are written.
+
+/// The form of a file, of standard output, of a scene's product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Format {
+    Json,
+    Csv,
+    Latex,
+    Text,
+    Svg,
+    Png,
+    /// NumPy arrays; of maps alone.
+    Npz,
+}
+
+impl Format {
+    /// The forms of a [`Document`](crate::report::document::Document).
+    pub const DOCUMENT: [Format; 4] = [Format::Json, Format::Csv, Format::Latex, Format::Text];
+
+    /// The forms of a [`Figure`](crate::report::figure::Figure).
+    pub const FIGURE: [Format; 2] = [Format::Svg, Format::Png];
+
+    /// The forms of a result that is a document or drawn.
+    pub const DOCUMENT_OR_FIGURE: [Format; 6] =
+        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Png];
+
+    /// All forms.
+    pub const ALL: [Format; 7] =
+        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Png, Format::Npz];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Latex => "latex",
+            Format::Text => "text",
+            other => other.extension(),
+        }
+    }
+
+    /// The extension of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Json => "json",
+            Format::Csv => "csv",
+            Format::Latex => "tex",
+            Format::Text => "txt",
+            Format::Svg => "svg",
+            Format::Png => "png",
+            Format::Npz => "npz",
+        }
+    }
+
+    /// The form of files with this extension, in capitals or not; `None` where there is none.
+    pub fn of_extension(extension: &str) -> Option<Format> {
+        Format::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
+    }
+
+    /// Whether it is drawn.
+    pub fn is_figure(self) -> bool {
+        Format::FIGURE.contains(&self)
+    }
+
+    /// The extensions of some forms in one phrase: `.json, .csv or .txt`.
+    ///
+    /// ```
+    /// use kickdrift::format::Format;
+    /// assert_eq!(Format::extensions(&Format::FIGURE), ".svg or .png");
+    /// ```
+    pub fn extensions(formats: &[Format]) -> String {
+        let dotted: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension())).collect();
+        match dotted.split_last() {
+            Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+            _ => dotted.concat(),
+        }
+    }
+}

@@ -1,0 +1,343 @@
+//! The first tier: the half period in Floquet coordinates and doubles, with a proven error bound.
+//!
+//! Pairs run one by one or in groups; [`super::kernel`] does the updates, [`super::certificate`] knows what the
+//! result proves.
+
+use std::marker::PhantomData;
+
+use super::certificate::{Certificate, Certificates, Hardest};
+use super::floquet::{Floquet, Pair};
+use super::kernel::{Lanes, Orbits, Watch};
+use super::winding;
+use crate::number::{Sign, U};
+use crate::propagator::PartialSigns;
+use crate::vector::each;
+use crate::vector::instructions::{Instructions, Task};
+
+/// Where the even and the odd solution stand at T/2, with proven bounds.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    pub even: End,
+    pub odd: End,
+    /// ⌊Θ/(π/2)⌋, Θ the even solution's turn over the half period; counted on request.
+    pub quarters: i64,
+}
+
+/// One solution at T/2 in Floquet coordinates: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
+/// with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    /// A or B, in the scale that leaves the products AD and BC as they are.
+    pub x: f64,
+    /// C or D.
+    pub v: f64,
+    pub exponent: i64,
+    pub across: f64,
+    pub stretch: f64,
+    signs: (Option<Sign>, Option<Sign>),
+}
+
+impl Ends {
+    /// The signs as far as the bounds certify them.
+    pub fn signs(&self) -> PartialSigns {
+        let ((a, c), (b, d)) = (self.even.signs, self.odd.signs);
+        PartialSigns { a, b, c, d }
+    }
+}
+
+/// Signs, bounds and turns: all that one pair can tell.
+struct Everything;
+
+impl Watch for Everything {
+    const MEASURE: bool = true;
+    const WIND: bool = true;
+}
+
+/// Signs and whether the bounds hold.
+struct SignsOnly;
+
+impl Watch for SignsOnly {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+}
+
+/// No certificate: what the kernel costs alone, for the benchmark.
+struct Bare;
+
+impl Watch for Bare {
+    const MEASURE: bool = false;
+    const WIND: bool = false;
+    const CERTIFY: bool = false;
+}
+
+/// Runs the half period; `None` where the bound's conditions cannot be met (very strong kicks).
+pub fn run(floquet: &Floquet) -> Option<Ends> {
+    let mut ends = [None];
+    Group::<1>::new(Instructions::best()).everything(&[floquet.pair()], &mut ends);
+    ends[0]
+}
+
+/// The filter could not tell.
+pub const UNDECIDED: u8 = u8::MAX;
+
+/// At most L pairs that run side by side. One certificate serves all: that of the strongest kick, the steepest
+/// slope and the most updates.
+pub struct Group<const L: usize> {
+    instructions: Instructions,
+    lanes: Lanes<L>,
+    /// Cosine and sine of the base's last turn.
+    left: [[f64; L]; 2],
+    certificates: Certificates,
+}
+
+impl<const L: usize> Group<L> {
+    /// Room for L pairs.
+    pub fn new(instructions: Instructions) -> Self {
+        let certificates = if L == 1 { Certificates::alone() } else { Certificates::of_groups() };
+        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], certificates }
+    }
+
+    /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
+    pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
+        let Some(certificate) = self.run::<Everything>(pairs) else { return ends.fill(None) };
+        let halves = self.instructions.perform(Finish(self, &certificate));
+        for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
+            *end = halves.ends(self, &certificate, pair, i);
+        }
+    }
+
+    /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
+    pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate = self.run::<SignsOnly>(pairs);
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    /// The signs as they come out, certified or not: for the benchmark alone.
+    pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
+        let certificate = self.run::<Bare>(pairs).map(Certificate::void);
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
+    fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
+        let (beta, slope) = self.instructions.perform(Start(pairs, &mut self.lanes));
+        let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
+        let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
+        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
+        // Who does not look needs no blocks.
+        let block = if W::CERTIFY { certificate.block } else { u64::MAX };
+        self.instructions.perform(Advance::<W, L>(&mut self.lanes, block, PhantomData));
+        for (i, pair) in pairs.iter().enumerate() {
+            let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
+            (self.left[0][i], self.left[1][i]) = (cos, sin);
+        }
+        Some(certificate)
+    }
+}
+
+/// What is compiled for each instruction set.
+struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
+struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
+struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+
+impl<const L: usize> Task for Start<'_, L> {
+    type Output = (f64, f64);
+
+    /// The strongest kick and the steepest tan(θ/2).
+    #[inline(always)]
+    fn run(self) -> (f64, f64) {
+        self.1.start(self.0);
+        (self.1.strongest(), self.1.steepest())
+    }
+}
+
+impl<W: Watch, const L: usize> Task for Advance<'_, W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.0.advance::<W>(self.1);
+    }
+}
+
+impl<const L: usize> Task for Finish<'_, L> {
+    type Output = Halves<L>;
+
+    #[inline(always)]
+    fn run(self) -> Halves<L> {
+        Halves::new(self.0, self.1)
+    }
+}
+
+impl<const L: usize> Task for Verdicts<'_, L> {
+    type Output = [u8; L];
+
+    #[inline(always)]
+    fn run(self) -> [u8; L] {
+        Halves::new(self.0, self.1).verdicts()
+    }
+}
+
+/// The signs of x and v at T/2: 0 where they are not certain, everywhere where a condition of the theorem failed
+/// on the way. (NaN fails.)
+#[inline(always)]
+fn signs<const L: usize>(
+    certificate: &Certificate,
+    [x, v]: &[[f64; L]; 2],
+    orbits: &Orbits<L>,
+) -> [[f64; L]; 2] {
+    let length: [f64; L] = each(|i| (x[i] * x[i] + v[i] * v[i]).sqrt());
+    let held = |i: usize| orbits.worst[i] <= certificate.worst;
+    let across: [f64; L] =
+        each(|i| if held(i) { certificate.across * orbits.squares[i] } else { f64::INFINITY });
+    let sign =
+        |form: f64, i: usize| if form.abs() * length[i] > across[i] { 1f64.copysign(form) } else { 0.0 };
+    [each(|i| sign(x[i], i)), each(|i| sign(v[i], i))]
+}
+
+/// The half periods of a group.
+struct Halves<const L: usize> {
+    /// (re, im) of the even solution before the base's last turn.
+    even: [[f64; L]; 2],
+    /// (x, v) of the even and the odd solution, and their signs, 0 where uncertain.
+    ends: [[[f64; L]; 2]; 2],
+    signs: [[[f64; L]; 2]; 2],
+}
+
+impl<const L: usize> Halves<L> {
+    #[inline(always)]
+    fn new(group: &Group<L>, certificate: &Certificate) -> Self {
+        let [even, odd] = group.lanes.ends();
+        let ends = [group.turned(&even), group.turned(&odd)];
+        let (lanes, [e, o]) = (&group.lanes, &ends);
+        let signs = [signs(certificate, e, &lanes.even), signs(certificate, o, &lanes.odd)];
+        Halves { even, ends, signs }
+    }
+
+    /// Positions in `Verdict::ALL`: BC > 0, AD < 0, BC < 0 < AD.
+    #[inline(always)]
+    fn verdicts(&self) -> [u8; L] {
+        let [[a, c], [b, d]] = &self.signs;
+        let mut verdicts = [UNDECIDED; L];
+        for (i, verdict) in verdicts.iter_mut().enumerate() {
+            let (bc, ad) = (b[i] * c[i], a[i] * d[i]);
+            *verdict = if bc < 0.0 && ad > 0.0 { 0 } else { *verdict };
+            *verdict = if ad < 0.0 { 2 } else { *verdict };
+            *verdict = if bc > 0.0 { 1 } else { *verdict };
+        }
+        verdicts
+    }
+
+    /// All about lane i; `None` where the theorem's conditions did not hold all the way.
+    fn ends(&self, group: &Group<L>, certificate: &Certificate, pair: &Pair, i: usize) -> Option<Ends> {
+        let lanes = &group.lanes;
+        let end = |n: usize, orbits: &Orbits<L>| {
+            let certain = |x: f64| (x != 0.0).then(|| Sign::from_ordering(x.total_cmp(&0.0)));
+            let (squares, worst) = (orbits.squares[i], orbits.worst[i]);
+            let stretch = certificate.stretch(worst);
+            let end = End {
+                x: self.ends[n][0][i],
+                v: self.ends[n][1][i],
+                exponent: orbits.exponent[i] as i64,
+                across: certificate.across * squares,
+                stretch: stretch + 2.0 * U,
+                signs: (certain(self.signs[n][0][i]), certain(self.signs[n][1][i])),
+            };
+            (worst <= certificate.worst).then_some(end)
+        };
+        let lane = |pair: &[[f64; L]; 2]| [pair[0][i], pair[1][i]];
+        let quarters = winding::at_end(pair, lanes.even_quarter(i), lane(&self.even), lane(&group.left));
+        Some(Ends { even: end(0, &lanes.even)?, odd: end(1, &lanes.odd)?, quarters })
+    }
+}
+
+impl<const L: usize> Group<L> {
+    /// (x, v) = (Re, −Im) of g e^{iω}, ω the turn left.
+    #[inline(always)]
+    fn turned(&self, [re, im]: &[[f64; L]; 2]) -> [[f64; L]; 2] {
+        let [cos, sin] = &self.left;
+        [each(|i| re[i] * cos[i] - im[i] * sin[i]), each(|i| -(re[i] * sin[i] + im[i] * cos[i]))]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Ratio;
+    use crate::number::Rational;
+    use crate::number::rational::ratio;
+    use crate::propagator::{TwoClocks, half_period};
+    use num_integer::Integer;
+    use proptest::prelude::*;
+
+    fn pairs() -> impl Strategy<Value = Vec<Floquet>> {
+        let pair = (1u64..300, 1u64..300, 1i64..3999, -2000i64..2000).prop_map(|(p, q, s, k)| {
+            let g = p.gcd(&q);
+            Floquet::new(&TwoClocks::new(
+                Ratio::new(p / g, q / g).unwrap(),
+                ratio(s, 1000),
+                ratio(2 * k + 1, 2000),
+            ))
+        });
+        prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
+    }
+
+    /// All that groups of `L` lanes tell about at most as many pairs, as text: doubles by their shortest exact name.
+    fn told<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
+        let (mut group, mut text) = (Group::<L>::new(instructions), String::new());
+        for pairs in pairs.chunks(L) {
+            let mut ends = vec![None; pairs.len()];
+            group.everything(pairs, &mut ends);
+            text += &format!("{ends:?} {:?}\n", &group.verdicts(pairs)[..pairs.len()]);
+        }
+        text
+    }
+
+    proptest! {
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let results: Vec<String> = Instructions::available()
+                .map(|set| told::<1>(set, &pairs) + &told::<8>(set, &pairs) + &told::<16>(set, &pairs))
+                .collect();
+            prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
+        }
+
+        #[test]
+        fn side_by_side_and_alone_agree(floquets in pairs()) {
+            prop_assume!(!floquets.is_empty());
+            let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
+            let verdicts = Group::<16>::new(Instructions::best()).verdicts(&pairs);
+            for (floquet, verdict) in floquets.iter().zip(verdicts) {
+                let alone = run(floquet).and_then(|ends| ends.signs().verdict());
+                prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));
+            }
+        }
+
+        #[test]
+        fn the_exact_end_lies_within_the_bound(
+            p in 1u64..60, q in 1u64..60, s in 1i64..3999, k in -2000i64..2000,
+        ) {
+            let g = p.gcd(&q);
+            let clocks = TwoClocks::new(Ratio::new(p / g, q / g).unwrap(), ratio(s, 1000), ratio(2 * k + 1, 2000));
+            let Some(ends) = Floquet::new(&clocks).as_ref().and_then(run) else { return Ok(()) };
+            let half = half_period(&clocks);
+            let exact = |x: f64| Rational::from_float(x).unwrap();
+            // Products do not depend on the scale; two errors across, two of length.
+            let check = |value: Rational, x: f64, one: &End, v: f64, other: &End| {
+                let slack = |end: &End| end.across / end.x.hypot(end.v);
+                let error = x.abs() * slack(other) + v.abs() * slack(one) + slack(one) * slack(other)
+                    + 3.0 * (one.stretch + other.stretch) * (x * v).abs();
+                let distance = value - exact(x) * exact(v);
+                (exact(2.0 * error) >= distance.clone()) && (exact(-2.0 * error) <= distance)
+            };
+            let (even, odd) = (&ends.even, &ends.odd);
+            prop_assume!(even.exponent == 0 && odd.exponent == 0);
+            prop_assert!(check(half.b() * half.c(), odd.x, odd, even.v, even));
+            prop_assert!(check(half.a() * half.d(), even.x, even, odd.v, odd));
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! The second tier: kicks and drifts one by one, in as many bits as it takes.
+//!
+//! Position and velocity are integers with a common scale, at least `bits` bits long, so one unit is at most
+//! 2^-bits |û|. A drift x += v n/d rounds once. A kick v −= k x rounds once and knows k to within
+//! κ 2^-bits. Rescaling rounds once a component. So with κ ≥ 1 + max(|k|, t) every step has
+//! ε ≤ (κ + 4) 2^-bits, and the theorem of [`super::bound`] applies. The route shares nothing with the first
+//! tier: no angle, no square root, any stiffness.
+
+use num_bigint::BigInt;
+use num_traits::{FromPrimitive, Signed, ToPrimitive};
+
+use super::bound::StepBound;
+use crate::number::{Ball, Rational, Real, Sign};
+use crate::propagator::{PartialSigns, TwoClocks};
+use crate::schedule::{Event, Schedule, Weight};
+
+/// A state longer than `bits + HEADROOM` bits is scaled down.
+const HEADROOM: u64 = 32;
+
+/// The even and the odd solution at T/2, in the time unit h1.
+#[derive(Clone, Debug)]
+pub struct Ends {
+    pub even: End,
+    pub odd: End,
+}
+
+/// One solution at T/2: enclosures, certified signs, and the sign changes of x on the way.
+#[derive(Clone, Debug)]
+pub struct End {
+    pub x: Ball,
+    pub v: Ball,
+    pub signs: (Option<Sign>, Option<Sign>),
+    /// `None` where some sign could not be told.
+    pub nodes: Option<u64>,
+}
+
+impl Ends {
+    /// The signs of A, B, C, D as far as this precision tells.
+    pub fn signs(&self) -> PartialSigns {
+        let ((a, c), (b, d)) = (self.even.signs, self.odd.signs);
+        PartialSigns { a, b, c, d }
+    }
+}
+
+/// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
+pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
+    let steps = Steps::new(clocks, schedule, bits)?;
+    Some(Ends { even: steps.end(schedule, true)?, odd: steps.end(schedule, false)? })
+}
+
+/// The even or the odd solution alone.
+pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, even: bool) -> Option<End> {
+    Steps::new(clocks, schedule, bits)?.end(schedule, even)
+}
+
+/// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
+pub fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
+    let (fast, slow) = (clocks.fast().enclosure(bits), clocks.slow().enclosure(bits));
+    let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, bits)];
+    let ticks = BigInt::from(schedule.clocks()[0].step());
+    let end = |x: u8, v: u8| {
+        let [mut x, mut v] = [x, v].map(|n| Ball::from_integer(&n.into()));
+        let mut nodes = Nodes::default();
+        for event in schedule.half_period() {
+            let drift = Ball::from_rational(&Rational::new(event.drift.into(), ticks.clone()), bits);
+            x = x.add(&v.mul(&drift, bits), bits);
+            // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
+            nodes.see(x.sign().filter(|&sign| sign != Sign::Zero));
+            let halvings = i64::from(event.weight == Weight::Half);
+            v = v.sub(&strengths[event.kicks as usize].scale2(-halvings).mul(&x, bits), bits);
+        }
+        let signs = (x.sign(), v.sign());
+        End { x, v, signs, nodes: nodes.count() }
+    };
+    Ends { even: end(1, 0), odd: end(0, 1) }
+}
+
+/// The lengths and strengths of the events, and the constants of the bound.
+struct Steps {
+    bits: u32,
+    /// Ticks in the unit of time h1.
+    ticks: u64,
+    /// Kick strengths by set of clocks, times 2^places; whole and halved.
+    full: [BigInt; 4],
+    half: [BigInt; 4],
+    places: u64,
+    bound: StepBound,
+    count: u64,
+    tau: f64,
+}
+
+impl Steps {
+    fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Self> {
+        let precision = bits + 16;
+        let (fast, slow) = (clocks.fast().enclosure(precision), clocks.slow().enclosure(precision));
+        let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, precision)];
+        let strongest = strengths.iter().map(|k| k.mid_f64().abs()).fold(1.0, f64::max);
+        let kappa = 1.01 * (1.0 + strongest);
+        // 2^-1000 stands for anything smaller: the bound stays a bound.
+        let bound = StepBound { kappa, epsilon: (kappa + 4.0) * 2f64.powi(-(bits.min(1000) as i32)) };
+        // Each strike is at most a drift, a kick and a rescaling; the ends add two events.
+        let count = 3 * (schedule.strikes() + 2);
+        // A strength is cut off at 2^-places <= 2^-bits/16, its ball at 2^-bits/2^14 of the larger one.
+        let places = u64::from(bits) + 4;
+        let fixed = |k: &Ball| k.mid_scaled(places as i64).0;
+        Some(Steps {
+            bits,
+            ticks: schedule.clocks()[0].step(),
+            full: strengths.each_ref().map(fixed),
+            half: strengths.each_ref().map(|k| fixed(&k.scale2(-1))),
+            places,
+            bound,
+            count,
+            tau: bound.tau(count)?,
+        })
+    }
+
+    /// The even or the odd solution at T/2.
+    fn end(&self, schedule: &Schedule, even: bool) -> Option<End> {
+        let mut orbit = Orbit::new(self, u8::from(even), u8::from(!even));
+        schedule.half_period().for_each(|event| orbit.advance(event));
+        orbit.finish()
+    }
+
+    fn kick(&self, event: Event) -> &BigInt {
+        match event.weight {
+            Weight::Full => &self.full[event.kicks as usize],
+            Weight::Half => &self.half[event.kicks as usize],
+        }
+    }
+
+    /// 2|r_k|/|û_k| in units of 2^-bits.
+    fn local(&self) -> f64 {
+        2.0 * (self.bound.kappa + 4.0) * self.bound.growth()
+    }
+}
+
+/// A solution on its way: (x, v) 2^exponent.
+struct Orbit<'a> {
+    steps: &'a Steps,
+    x: BigInt,
+    v: BigInt,
+    exponent: i64,
+    /// 2b/|û|², the bound on the angle to the exact orbit, in units of 2^-bits; and its largest value so far.
+    angle: f64,
+    worst: f64,
+    nodes: Nodes,
+}
+
+impl<'a> Orbit<'a> {
+    fn new(steps: &'a Steps, x: u8, v: u8) -> Self {
+        let shift = u64::from(steps.bits) + HEADROOM / 2;
+        let start = |n: u8| BigInt::from(n) << shift;
+        let (x, v, exponent) = (start(x), start(v), -(shift as i64));
+        Orbit { steps, x, v, exponent, angle: 0.0, worst: 0.0, nodes: Nodes::default() }
+    }
+
+    fn advance(&mut self, event: Event) {
+        if event.drift > 0 {
+            let before = self.length();
+            self.x += &self.v * event.drift / self.steps.ticks;
+            self.account(before);
+        }
+        self.nodes.see(self.certain_sign(&self.x));
+        if event.kicks != 0 {
+            let before = self.length();
+            self.v -= (self.steps.kick(event) * &self.x) >> self.steps.places;
+            self.account(before);
+        }
+        self.rescale();
+    }
+
+    /// |û| in units of 2^bits of its own scale: between 1 and 2^34, to within 2^-50.
+    fn length(&self) -> f64 {
+        let bits = u64::from(self.steps.bits);
+        let shift = bits.saturating_sub(64);
+        let part = |n: &BigInt| (n >> shift).to_f64().unwrap_or(f64::INFINITY);
+        part(&self.x).hypot(part(&self.v)) * 2f64.powi(-(bits.min(64) as i32))
+    }
+
+    /// After a step: what it added across the orbit, and the orbit's growth.
+    fn account(&mut self, before: f64) {
+        let ratio = before / self.length();
+        // 1 + 2^-40 covers the rounding of the lengths and of this line.
+        self.angle = (self.angle * ratio * ratio) * (1.0 + 2f64.powi(-40)) + self.steps.local();
+        self.worst = self.worst.max(self.angle);
+    }
+
+    /// Keeps between `bits` and `bits + HEADROOM` bits; scaling up is exact.
+    fn rescale(&mut self) {
+        let (size, least) = (self.x.bits().max(self.v.bits()), u64::from(self.steps.bits) + 1);
+        let goal = least + HEADROOM / 2;
+        if size > least + HEADROOM {
+            let before = self.length();
+            self.x >>= size - goal;
+            self.v >>= size - goal;
+            self.account(before / 2f64.powi((size - goal) as i32));
+        } else if size < least && size > 0 {
+            self.x <<= goal - size;
+            self.v <<= goal - size;
+        } else {
+            return;
+        }
+        self.exponent += size as i64 - goal as i64;
+    }
+
+    /// The uncertainty of a component in units of its own scale: τ |û|.
+    fn uncertainty(&self) -> f64 {
+        1.001 * self.angle * self.length()
+    }
+
+    /// The sign of a component of the exact orbit, where the angle tells it.
+    fn certain_sign(&self, component: &BigInt) -> Option<Sign> {
+        let beyond = component.abs().to_f64().unwrap_or(f64::INFINITY) > self.uncertainty();
+        beyond.then(|| if component.is_negative() { Sign::Negative } else { Sign::Positive })
+    }
+
+    fn finish(self) -> Option<End> {
+        let steps = self.steps;
+        let within = self.worst <= steps.tau * 2f64.powi(steps.bits.min(1000) as i32);
+        if !within {
+            return None;
+        }
+        let signs = (self.certain_sign(&self.x), self.certain_sign(&self.v));
+        let radius = BigInt::from_f64(self.uncertainty().ceil())?;
+        // |a - 1| <= nω/(1 - nω) <= 4nω/3, nω in units of 2^-bits.
+        let stretch =
+            1.4 * steps.count as f64 * steps.bound.growth() * steps.bound.kappa * (5.0 + self.worst);
+        let stretch = BigInt::from_f64(stretch.ceil())?;
+        let unit = BigInt::from(1) << steps.bits;
+        let length = between(&(&unit - &stretch), &(&unit + &stretch)).scale2(-i64::from(steps.bits));
+        let precision = steps.bits + HEADROOM as u32;
+        let component = |n: &BigInt| {
+            between(&(n - &radius), &(n + &radius)).scale2(self.exponent).mul(&length, precision)
+        };
+        Some(End { x: component(&self.x), v: component(&self.v), signs, nodes: self.nodes.count() })
+    }
+}
+
+/// The ball of all numbers between two integers.
+fn between(lo: &BigInt, hi: &BigInt) -> Ball {
+    let precision = lo.bits().max(hi.bits()).max(64) as u32;
+    Ball::from_integer(lo).union(&Ball::from_integer(hi), precision)
+}
+
+/// Counts the sign changes of x from kick to kick.
+///
+/// Where one sign is uncertain, x is near 0 and its neighbours' signs differ: still one change. Equal
+/// neighbours, or two uncertain signs in a row, leave the count unknown.
+#[derive(Clone, Debug, Default)]
+struct Nodes {
+    last: Option<Sign>,
+    uncertain: u32,
+    changes: u64,
+    unknown: bool,
+}
+
+impl Nodes {
+    fn see(&mut self, sign: Option<Sign>) {
+        if sign.is_none() {
+            self.uncertain += 1;
+            return;
+        }
+        let changed = self.last.is_some() && self.last != sign;
+        self.changes += u64::from(changed);
+        // An orbit that begins at x = 0 has no sign there, and no change.
+        self.unknown |= self.uncertain > 1 || (self.uncertain == 1 && self.last.is_some() && !changed);
+        self.uncertain = 0;
+        self.last = sign;
+    }
+
+    fn count(&self) -> Option<u64> {
+        (!self.unknown && self.uncertain == 0).then_some(self.changes)
+    }
+}

@@ -1,0 +1,93 @@
+//! A system's verdict over two of its numbers, drawn.
+
+use super::SystemMap;
+use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::report::figure::palette::{COEXISTENCE, Colour, Gradient, HYPERBOLIC, INK, PARABOLIC};
+use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape};
+use crate::system::scan::Point;
+use crate::verdict::Kind;
+
+/// What colours tell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Colouring {
+    /// The kind of instability.
+    Verdict,
+    /// The growth rate.
+    Growth,
+}
+
+/// Points in points of paper.
+const LEAST: f64 = 0.35;
+const EDGE: f64 = 2.4;
+
+impl SystemMap {
+    /// The unstable points in colour, the edges marked.
+    pub fn figure(&self, colouring: Colouring, title: &str) -> Figure {
+        let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
+        let [x, y] = [(&self.names[0], &self.xs), (&self.names[1], &self.ys)].map(|(name, values)| {
+            let (first, step) = pitch(values);
+            Axis::linear(name, first - step / 2.0, first + step * (values.len() as f64 - 0.5))
+        });
+        let panel = Panel::new(x, y).titled(&format!("{unstable} of {} points unstable", self.points.len()));
+        let panel = match colouring {
+            Colouring::Verdict => {
+                let cells = self.cells(vec![HYPERBOLIC], Kind::Hyperbolic, |_| 0);
+                panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
+            }
+            Colouring::Growth => self.by_growth(panel),
+        };
+        let panel = self.edges(panel).legend(Place::Above);
+        Figure::new(if colouring == Colouring::Growth { 150.0 } else { 135.0 }, 135.0)
+            .named(title)
+            .with(panel)
+    }
+
+    fn by_growth(&self, panel: Panel) -> Panel {
+        let rates = self.points.iter().map(|point| point.growth_rate);
+        let (low, fastest) = ColourBar::range_of(rates.filter(|&rate| rate > 0.0));
+        let bar = ColourBar {
+            axis: Axis::log("growth rate (1/time)", low, fastest),
+            gradient: Gradient::on_white(),
+        };
+        let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), ColourBar::SHADES);
+        let cells = self.cells(bar.gradient.steps(ColourBar::SHADES.into()), Kind::Hyperbolic, shade);
+        panel.with(Layer::cells(cells)).bar(bar)
+    }
+
+    fn edges(&self, mut panel: Panel) -> Panel {
+        for (kind, colour, name) in [
+            (Kind::Parabolic, PARABOLIC, "linear growth (parabolic)"),
+            (Kind::Coexistence, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
+        ] {
+            if self.count(kind) > 0 {
+                let cells = self.cells(vec![colour], kind, |_| 0).at_least(EDGE);
+                panel = panel.with(Layer::cells(cells).labelled(name));
+            }
+        }
+        let open = self.points.iter().filter(|point| !point.is_proof);
+        let open: Vec<[f64; 2]> = open.map(|point| [to_f64(&point.at.0), to_f64(&point.at.1)]).collect();
+        if open.is_empty() {
+            return panel;
+        }
+        panel.with(Layer::dots(open, Shape::Cross, 3.0, INK).labelled("not proven"))
+    }
+
+    /// The points of one kind as cells.
+    fn cells(&self, colours: Vec<Colour>, kind: Kind, class: impl Fn(&Point) -> u16) -> Cells {
+        let ((x, dx), (y, dy)) = (pitch(&self.xs), pitch(&self.ys));
+        let mut cells = Cells::new([x, y], [dx, dy], colours).at_least(LEAST);
+        for (n, point) in self.points.iter().enumerate().filter(|(_, point)| point.kind == kind) {
+            let (i, j) = (n % self.xs.len(), n / self.xs.len());
+            cells.push(i as u32, j as u32, class(point));
+        }
+        cells
+    }
+}
+
+/// The first of evenly spaced values, and their distance.
+fn pitch(values: &[Rational]) -> (f64, f64) {
+    let first = values.first().map_or(0.0, to_f64);
+    let distance = values.get(1).map_or_else(|| first.abs().max(1.0) / 10.0, |second| to_f64(second) - first);
+    (first, distance)
+}

@@ -1,0 +1,34 @@
+//! Edges of tongues: the eigenvalues of the four strings, enclosed.
+//!
+//! Sturm counts tell the eigenvalues apart, a mode's Rayleigh quotient encloses each one as a rule between neighbouring
+//! doubles, and signs of the entry by more bits give any number of digits.
+//!
+//! | file | what is there |
+//! |---|---|
+//! | `count`, `isolate` | how many eigenvalues lie below a point, and brackets of one each |
+//! | `batch` | eigenvalues that are looked for side by side |
+//! | `locate`, `half`, `mode` | where a mode lives, the recurrence to it from both ends, what it proves |
+//! | `eigenvalues` | the way from counts to enclosures in doubles |
+//! | `enclosure` | an edge in doubles, and by rational ends |
+//! | `function` | an entry of the half period at rational points |
+//! | `precise`, `exact_count` | any number of digits; counts where doubles tell nothing apart |
+//! | `edges` | the edges of one ratio, by whichever way is needed |
+
+mod batch;
+mod count;
+mod edges;
+mod eigenvalues;
+mod enclosure;
+mod exact_count;
+mod function;
+mod half;
+mod isolate;
+mod locate;
+mod mode;
+mod precise;
+
+pub(crate) use count::counts;
+pub(crate) use edges::Edges;
+pub use edges::Effort;
+pub use enclosure::{Edge, Enclosure};
+pub(crate) use enclosure::{negative_log2, simplest};

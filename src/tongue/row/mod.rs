@@ -1,0 +1,114 @@
+//! What there is to say about a tongue, column by column; each is computed only where it is wanted.
+//!
+//! ```
+//! use kickdrift::number::rational::ratio;
+//! use kickdrift::tongue::{Side, Tongues, Wanted};
+//! // 7/3, m = 4: the resonance p th = 4 pi lies outside its own tongue.
+//! let tongues = Tongues::new("7/3".parse().unwrap(), &ratio(1, 25)).unwrap();
+//! let gap = tongues.gap(4).unwrap();
+//! let row = tongues.row(&gap, &Wanted::all()).unwrap();
+//! assert_eq!((row.family, row.predicted.unwrap().side), (Some((1, -1)), Side::Above));
+//! assert_eq!(tongues.effort().doubles, 2); // no other edge was computed
+//! ```
+
+mod exact;
+mod predicted;
+
+use num_traits::{ToPrimitive, Zero};
+
+use exact::exact_edge;
+pub use exact::{ExactEdge, Resonance};
+pub use predicted::{Predicted, Side};
+
+use crate::error::Result;
+use crate::number::Ratio;
+use crate::resonance::{FirstOrder, dominant_family, first_order};
+use crate::tongue::edge::Edges;
+use crate::tongue::gap::Gap;
+use crate::tongue::peak::Peak;
+
+/// The columns wanted beside p, q, m, the edges and the width.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The dominant (a, b).
+    pub family: bool,
+    /// Which edges are known exactly.
+    pub exact: bool,
+    /// The largest growth rate inside.
+    pub growth: bool,
+    /// The point p θ = m π against the tongue.
+    pub predicted: bool,
+    /// The first-order law against the tongue.
+    pub first_order: bool,
+}
+
+impl Wanted {
+    /// Every column.
+    pub fn all() -> Self {
+        Wanted { family: true, exact: true, growth: true, predicted: true, first_order: true }
+    }
+}
+
+/// The first-order law and what it misses; rounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law {
+    pub law: FirstOrder,
+    /// Tongue minus law.
+    pub centre_error: f64,
+    pub width_error: f64,
+    /// Tongue's width over the law's.
+    pub width_ratio: f64,
+}
+
+/// A tongue and the columns asked for; `None` where not asked, or where there is none (said beside each).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    pub ratio: Ratio,
+    pub gap: Gap,
+    /// (a, b), m = a p + b q, of the strongest family.
+    pub family: Option<(i64, i64)>,
+    /// The two edges, where recognized.
+    pub exact: [Option<ExactEdge>; 2],
+    /// Not for closed tongues, nor the infinite one.
+    pub peak: Option<Peak>,
+    /// Only for m < p: below the fast clock's Verlet limit.
+    pub predicted: Option<Predicted>,
+    /// Only for m < p, ρ > 0.
+    pub first_order: Option<Law>,
+}
+
+impl Row {
+    /// The row of a tongue with the columns wanted.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub(crate) fn new(edges: &Edges, gap: &Gap, wanted: &Wanted) -> Result<Row> {
+        let (ratio, m) = (edges.ratio(), gap.m);
+        let family = wanted.family.then(|| dominant_family(ratio, m));
+        let mut exact = [None, None];
+        if wanted.exact {
+            exact[0] = exact_edge(edges, m, &gap.lower)?;
+            exact[1] = gap.upper.as_ref().map_or(Ok(None), |upper| exact_edge(edges, m, upper))?;
+        }
+        let peak = if wanted.growth { Peak::new(edges, gap)? } else { None };
+        let predicted = if wanted.predicted { Predicted::new(edges, gap)? } else { None };
+        let first_order = if wanted.first_order { Law::new(edges, gap) } else { None };
+        Ok(Row { ratio, gap: gap.clone(), family, exact, peak, predicted, first_order })
+    }
+}
+
+impl Law {
+    fn new(edges: &Edges, gap: &Gap) -> Option<Law> {
+        let rho = edges.rho().to_f64().filter(|_| !edges.rho().is_zero())?;
+        let law = first_order(edges.ratio(), gap.m, rho)?;
+        let upper = gap.upper.as_ref()?;
+        let width = 0.5 * (gap.width.0 + gap.width.1);
+        let centre = 0.25 * (gap.lower.lo + gap.lower.hi + upper.lo + upper.hi);
+        Some(Law {
+            law,
+            centre_error: centre - law.centre,
+            width_error: width - law.width,
+            width_ratio: width / law.width,
+        })
+    }
+}
