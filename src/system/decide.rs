@@ -73,7 +73,7 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     let kind = parts.iter().map(|part| part.kind).max_by_key(severity).unwrap_or(Kind::Elliptic);
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
-    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings })
+    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
 fn severity(kind: &Kind) -> u8 {

@@ -110,7 +110,11 @@ impl System {
     /// long as they cancel, and is called what it is, parabolic.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
-        let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
+        let total = self.total_stiffness();
+        if total.is_definite_in_doubles() {
+            return Vec::new();
+        }
+        let candidates: Vec<_> = total.null_space().into_iter().map(|(_, z)| z).collect();
         let mut conditions = Vec::new();
         for potential in &self.potentials {
             let images: Vec<_> = candidates.iter().map(|z| potential.stiffness.times(z)).collect();

@@ -4,11 +4,12 @@ use super::analysis::degrees_of_freedom;
 use super::analysis::{Evidence, Part};
 use super::compose::check_length;
 use super::decide::Route;
-use super::exact::{MuCount, decide_exact};
+use super::exact::{MuCount, decide_by_signs, decide_exact};
 use super::float;
 use super::frame::Frame;
 use super::limits::Limits;
 use super::model::System;
+use super::signs::{self, Forms};
 use super::single;
 use super::sparse::{dot, null_space};
 use super::spectrum::{Spectrum, from_segment};
@@ -93,11 +94,12 @@ impl Piece {
         check_length(&self.system, how.1)?;
         let blocks = float::half_period(&self.system, &self.frame);
         let spectrum = Spectrum::new(&blocks);
-        let certified = || spectrum.as_ref().and_then(|spectrum| spectrum.certified(&blocks));
+        let signed = || Some((signs::judge(&mut Forms::new(&blocks)?)?, Evidence::Signs));
+        let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some(exact) => (exact.kind, Evidence::Exact, Some(exact.roots)),
-            None => match certified() {
-                Some(kind) => (kind, Evidence::Discs, None),
+            None => match signed().or_else(certified) {
+                Some((kind, evidence)) => (kind, evidence, None),
                 None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
             },
         };
@@ -116,6 +118,9 @@ impl Piece {
         spectrum: Option<&Spectrum>,
         warnings: &mut Vec<String>,
     ) -> Result<(Kind, Evidence, Option<MuCount>)> {
+        if let Ok(Some(kind)) = decide_by_signs(&self.system, &self.frame, limits) {
+            return Ok((kind, Evidence::Exact, None));
+        }
         let error = match (decide_exact(&self.system, limits), spectrum) {
             (Ok(exact), _) => return Ok((exact.kind, Evidence::Exact, Some(exact.roots))),
             (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,

@@ -2,11 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
 use nalgebra::DMatrix;
 use num_traits::{Signed, Zero};
 
+use super::inertia::is_definite;
+use super::norm;
 use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::number::{Rational, U};
 
 /// A symmetric n x n matrix over ℚ.
 ///
@@ -165,14 +169,30 @@ impl Symmetric {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
     }
 
-    /// Whether xᵀ self x ≥ 0 for all x; by symmetric elimination, exactly.
+    /// Whether xᵀ self x ≥ 0 for all x, exactly.
     pub fn is_positive_semidefinite(&self) -> bool {
-        self.pivots().is_some()
+        self.is_definite_in_doubles() || self.pivots().is_some()
     }
 
-    /// Whether xᵀ self x > 0 for all x ≠ 0.
+    /// Whether xᵀ self x > 0 for all x ≠ 0, exactly: by its entries where it is diagonal, else by a factorization in
+    /// doubles where that proves it, else by elimination over ℚ.
     pub fn is_positive_definite(&self) -> bool {
-        self.pivots() == Some(self.size())
+        if self.is_diagonal() {
+            return (0..self.size()).all(|i| self.get(i, i).is_positive());
+        }
+        self.is_definite_in_doubles() || self.pivots() == Some(self.size())
+    }
+
+    /// Whether doubles prove that it is positive definite; `false` may also mean that they do not tell.
+    pub(super) fn is_definite_in_doubles(&self) -> bool {
+        let n = self.size();
+        let mut rounded = Mat::<f64>::zeros(n, n);
+        for (i, row) in self.rows.iter().enumerate() {
+            row.iter().for_each(|(&j, x)| rounded[(i, j)] = to_f64(x));
+        }
+        // Each entry within u of its size, or within the smallest double: Frobenius's norm of all that.
+        let slack = 1.01 * U * norm::frobenius(&rounded) + n as f64 * f64::MIN_POSITIVE;
+        is_definite(&rounded, slack)
     }
 
     /// The number of positive pivots of a semidefinite matrix (its rank), or `None` if it is not one.

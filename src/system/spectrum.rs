@@ -36,11 +36,17 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// `None` where the eigenvalue iteration fails: never seen, but not excluded.
+    /// That of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
         let m = blocks.m;
         let b = Mat::from_fn(m, m, |i, j| blocks.y[i][m + j]);
         let (s, s_error) = times_c(blocks, &b);
+        Spectrum::of(s, s_error)
+    }
+
+    /// That of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
+    pub fn of(s: Mat<f64>, s_error: Option<f64>) -> Option<Spectrum> {
+        let m = s.nrows();
         let eigen = s.eigen().ok()?;
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
         let vectors = eigen.U().to_owned();
@@ -51,12 +57,19 @@ impl Spectrum {
 
     /// What the discs prove, or the clusters, if anything.
     pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
-        self.by_discs().or_else(|| self.by_clusters(blocks).then_some(Kind::Elliptic))
+        let form = || {
+            let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
+            times_c(blocks, &a)
+        };
+        self.certified_with(form)
     }
 
-    fn by_clusters(&self, blocks: &FloatBlocks) -> bool {
-        let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
-        let (y, y_error) = times_c(blocks, &a);
+    /// The same with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask for.
+    pub fn certified_with(&self, form: impl FnOnce() -> (Mat<f64>, Option<f64>)) -> Option<Kind> {
+        self.by_discs().or_else(|| self.by_clusters(form()).then_some(Kind::Elliptic))
+    }
+
+    fn by_clusters(&self, (y, y_error): (Mat<f64>, Option<f64>)) -> bool {
         let (Some(s_error), Some(y_error)) = (self.s_error, y_error) else { return false };
         clusters::are_stable(&Pencil { s: &self.s, s_error, y: &y, y_error }, &self.mu, &self.vectors)
     }
