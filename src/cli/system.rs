@@ -35,6 +35,12 @@ pub struct Args {
     /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error tells its cost.
     #[arg(long)]
     exact: bool,
+    /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
+    #[arg(long, value_name = "X")]
+    accuracy: Option<f64>,
+    /// Leave the rigid motions of measured stiffnesses in.
+    #[arg(long)]
+    keep_rigid: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -50,13 +56,22 @@ impl Args {
         // Refused before the work, not after it.
         drawing(common)?;
         let text = text(&self.file)?;
-        let scene = SystemScene::read(&text)?;
+        let mut scene = SystemScene::read_in(folder(&self.file), &text)?;
+        if let Some(accuracy) = self.accuracy {
+            scene = scene.at_accuracy(accuracy)?;
+        }
+        if self.keep_rigid {
+            scene = scene.keeping_rigid()?;
+        }
         match self.scan.as_slice() {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
             }
             [] => self.verdict(&scene, common),
-            [x, y] => self.map(&scene, &Scan::read(&text, Axis::parse(x)?, Axis::parse(y)?)?, common),
+            [x, y] => {
+                let axes = Scan::read_in(folder(&self.file), &text, Axis::parse(x)?, Axis::parse(y)?)?;
+                self.map(&scene, &axes, common)
+            }
             other => {
                 Err(Error::input("--scan", format!("given {} times", other.len()), "a map has two axes"))
             }
@@ -100,7 +115,9 @@ impl Args {
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
             .input("title", scene.title())
             .input_json("system", scene.source().clone());
-        if self.exact { document.input("exact", "true") } else { document }
+        let document = if self.exact { document.input("exact", "true") } else { document };
+        let document = if self.keep_rigid { document.input("keep_rigid", "true") } else { document };
+        self.accuracy.map_or(document.clone(), |accuracy| document.input("accuracy", accuracy))
     }
 }
 
@@ -135,9 +152,14 @@ fn text(path: &Path) -> Result<String> {
     })
 }
 
+/// Where the files are that a system refers to.
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
 /// A system file, read.
 pub fn read(path: &Path) -> Result<SystemScene> {
-    SystemScene::read(&text(path)?)
+    SystemScene::read_in(folder(path), &text(path)?)
 }
 
 /// A bar on standard error, which shows itself on a terminal only.

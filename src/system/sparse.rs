@@ -9,7 +9,7 @@ use num_traits::{Signed, Zero};
 use super::inertia::is_definite;
 use super::norm;
 use crate::error::{Error, Result};
-use crate::number::rational::to_f64;
+use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
 
 /// A symmetric n x n matrix over ℚ.
@@ -220,6 +220,35 @@ impl Symmetric {
     /// and all others are 0.
     pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
         null_space(self.rows.clone(), self.size())
+    }
+}
+
+impl TryFrom<&DMatrix<Rational>> for Symmetric {
+    type Error = Error;
+
+    /// All entries, exactly.
+    ///
+    /// # Errors
+    /// Names the first pair of entries that differ, and rows of another number than columns.
+    fn try_from(matrix: &DMatrix<Rational>) -> Result<Self> {
+        let rows: Vec<Vec<Rational>> = matrix.row_iter().map(|row| row.iter().cloned().collect()).collect();
+        Symmetric::dense("stiffness", &rows)
+    }
+}
+
+impl TryFrom<&DMatrix<f64>> for Symmetric {
+    type Error = Error;
+
+    /// All entries as the rationals that the doubles are, exactly: 0.1 is not 1/10.
+    ///
+    /// # Errors
+    /// As for rationals; an entry that is not finite.
+    fn try_from(matrix: &DMatrix<f64>) -> Result<Self> {
+        let infinite = matrix.iter().find(|x| !x.is_finite());
+        if let Some(x) = infinite {
+            return Err(Error::input("stiffness", x, "give finite numbers"));
+        }
+        Symmetric::try_from(&matrix.map(|x| from_f64_exact(x).expect("finite")))
     }
 }
 
