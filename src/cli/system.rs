@@ -9,6 +9,8 @@ use super::args::Common;
 use super::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::number::parse::parse_rational;
+use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, png};
 use crate::report::file::write_output;
@@ -38,6 +40,12 @@ pub struct Args {
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
     #[arg(long, value_name = "X")]
     accuracy: Option<f64>,
+    /// All unstable intervals of the outer step, the number of inner steps as in the file: outer=LO..HI.
+    #[arg(long, value_name = "outer=LO..HI", conflicts_with_all = ["scan", "exact"])]
+    intervals: Option<String>,
+    /// The relative width above which no interval is missed [default: 1e-4].
+    #[arg(long, value_name = "W", requires = "intervals")]
+    width: Option<f64>,
     /// Leave the rigid motions of measured stiffnesses in.
     #[arg(long)]
     keep_rigid: bool,
@@ -63,6 +71,9 @@ impl Args {
         if self.keep_rigid {
             scene = scene.keeping_rigid()?;
         }
+        if let Some(range) = &self.intervals {
+            return self.intervals(&scene, range, common);
+        }
         match self.scan.as_slice() {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
@@ -80,6 +91,18 @@ impl Args {
 
     fn route(&self) -> Route {
         if self.exact { Route::Exact } else { Route::Cheapest }
+    }
+
+    fn intervals(&self, scene: &SystemScene, range: &str, common: &Common) -> Result<()> {
+        let form = || Error::input("intervals", range, "write outer=LO..HI, as outer=0.004..0.005");
+        let (lo, hi) =
+            range.strip_prefix("outer=").and_then(|range| range.split_once("..")).ok_or_else(form)?;
+        let read = |text: &str| Ok(to_f64(&parse_rational("intervals", text)?));
+        let width = self.width.unwrap_or(1e-4);
+        let (inner_steps, stretches) = scene.stretches((read(lo)?, read(hi)?), width)?;
+        let document =
+            report::intervals(&stretches, inner_steps).input("intervals", range).input("width", width);
+        common.write(&self.echo(document, scene), Format::Text)
     }
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {

@@ -21,7 +21,27 @@ pub struct Potential {
     pub phase: Rational,
 }
 
+impl Potential {
+    /// That of the stiffness K, its first kick at t = 0.
+    pub fn new(stiffness: Symmetric, step: Rational) -> Self {
+        Potential { stiffness, step, phase: Rational::default() }
+    }
+}
+
 /// M x'' + Σ K_k x = 0, each K_k kicking by its own clock.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Limits, Potential, Symmetric, System, decide_system};
+/// use nalgebra::DMatrix;
+/// let mass = Symmetric::diagonal(&[ratio(1, 1), ratio(2, 1)]);
+/// let bond = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[50.0, -50.0, -50.0, 50.0]))?;
+/// let tether = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[0.5, 0.0, 0.0, 0.0]))?;
+/// let potentials = vec![Potential::new(bond, ratio(1, 10)), Potential::new(tether, ratio(3, 10))];
+/// let analysis = decide_system(&System::new(mass, potentials)?, &Limits::default())?;
+/// assert!(analysis.is_stable() && analysis.is_proof());
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 ///
 /// Potentials of equal step and phase share a clock, whose stiffness is their sum.
 #[derive(Clone, Debug)]

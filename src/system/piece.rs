@@ -13,7 +13,7 @@ use super::signs::{self, Forms};
 use super::single;
 use super::sparse::{dot, null_space};
 use super::spectrum::{Spectrum, from_segment};
-use super::split::{Subspace, invariant_subspaces};
+use super::split::{Subspace, invariant_subspaces, may_split};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Laurent, Rational};
 use crate::verdict::Kind;
@@ -37,6 +37,9 @@ pub(super) struct Piece {
 /// The component itself, or what it splits into.
 pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
     if component.size() > SMALL {
+        return vec![Piece { system: component, frame, columns: None }];
+    }
+    if frame.rigid.is_empty() && !may_split(&component) {
         return vec![Piece { system: component, frame, columns: None }];
     }
     // The M-orthogonal complement of the rigid modes.

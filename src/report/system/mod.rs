@@ -2,6 +2,7 @@
 
 #[cfg(feature = "figure")]
 mod chart;
+mod intervals;
 mod map;
 mod measured;
 #[cfg(feature = "figure")]
@@ -15,6 +16,7 @@ use super::table::{Cell, Column, Table};
 use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
+pub use intervals::document as intervals;
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;

@@ -28,7 +28,7 @@ use super::document::Number;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::levels::{Hessians, Kernel, Outer, rigid_motions};
+use crate::system::levels::{Hessians, Kernel, Outer, Stretch, rigid_motions};
 use crate::system::{Analysis, Limits, Potential, Route, Symmetric, System, decide_by};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
@@ -164,6 +164,16 @@ impl Measured {
             format!("eigenvalues and factorizations of {n} rows")
         })?;
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
+    }
+
+    /// The number of inner steps, and the verdicts on a range of outer ones.
+    pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
+        let (outer, _) = self.outer().ok_or_else(|| {
+            let remedy = "intervals are computed for two levels, the outer step a multiple of the inner one";
+            Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
+        })?;
+        let inner_steps = outer.inner_steps();
+        Ok((inner_steps, self.kernel()?.stretches(inner_steps, range, width)?))
     }
 
     /// The eigenbasis, computed when it is first asked for.

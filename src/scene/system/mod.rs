@@ -57,6 +57,7 @@ use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::system::levels::Stretch;
 use crate::system::{Analysis, Limits, Potential, Route, System, decide_by, decide_oscillator};
 use bonds::Nonlinear;
 use document::Document;
@@ -104,14 +105,22 @@ impl SystemScene {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        SystemScene::from_json(folder, serde_json::from_str(text).map_err(no_system)?)
+        SystemScene::from_json_in(folder, serde_json::from_str(text).map_err(no_system)?)
     }
 
     /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
     ///
     /// # Errors
+    /// As [`SystemScene::read`].
+    pub fn from_json(source: Value) -> Result<SystemScene> {
+        SystemScene::from_json_in(Path::new(""), source)
+    }
+
+    /// The same with the folder that the files it refers to are in.
+    ///
+    /// # Errors
     /// As [`SystemScene::read_in`].
-    pub fn from_json(folder: &Path, source: Value) -> Result<SystemScene> {
+    pub fn from_json_in(folder: &Path, source: Value) -> Result<SystemScene> {
         let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default().to_string();
         let (schema, title) = (text("schema"), text("title"));
         if measured::is_by_reference(&source) && schema == SCHEMA {
@@ -210,6 +219,18 @@ impl SystemScene {
             (None, Some(measured)) => measured.decide(route, limits),
             (None, None) => decide_by(route, self.system(), limits),
         }
+    }
+
+    /// The number of inner steps in an outer one, and the verdicts on all outer steps of a range, at that number: stretches
+    /// that cover it, no interval wider than `width` (relative) missed.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not two measured levels; as [`Kernel::stretches`].
+    ///
+    /// [`Kernel::stretches`]: crate::system::levels::Kernel::stretches
+    pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
+        let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
+        self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
     }
 
     /// The equilibrium, where there are bonds.

@@ -117,7 +117,7 @@ impl Scan {
         for (axis, value) in [(&self.x, x), (&self.y, y)] {
             *place(&mut file, &axis.path)? = Value::String(value.to_string());
         }
-        SystemScene::from_json(&self.folder, file)
+        SystemScene::from_json_in(&self.folder, file)
     }
 }
 

@@ -7,7 +7,7 @@ use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::number::{Laurent, Rational};
 use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part, exponent};
-use crate::system::measured::{Holds, Measured};
+use crate::system::measured::Measured;
 use crate::system::modes::Origin;
 use crate::system::spectrum::{Spectrum, from_segment};
 use crate::verdict::Kind;
@@ -79,20 +79,10 @@ impl Kernel {
     }
 
     fn measured(&self, outer: &Outer, accuracy: f64) -> Measured {
-        let holds = if self.is_in_first_region(outer, accuracy) {
-            Holds::Stable
-        } else if self.is_unstable(outer, accuracy) {
-            Holds::Unstable
-        } else {
-            match self.beyond(outer, accuracy) {
-                Some((Some(Kind::Elliptic), _)) => Holds::Stable,
-                _ => Holds::NotTold,
-            }
-        };
         let first_unstable = self.first_unstable(outer.inner_steps);
         Measured {
             accuracy,
-            holds,
+            holds: self.verdict_within(outer, accuracy),
             margin: self.margin(outer),
             first_unstable,
             is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step > hi),

@@ -67,6 +67,11 @@ impl Outer {
         Some(Outer { inner_square: to_f64(&(inner * inner)), ..checked })
     }
 
+    /// p.
+    pub fn inner_steps(&self) -> u64 {
+        self.inner_steps
+    }
+
     /// (p/2) h², of which half an outer kick is the multiple in the time unit h.
     pub(super) fn half_kick(&self) -> f64 {
         self.inner_square * (self.inner_steps as f64 / 2.0)

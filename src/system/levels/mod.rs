@@ -37,14 +37,17 @@
 //! | `region` | the first stable region: verdict, margin, first unstable step |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `answer` | the verdict at one outer step |
+//! | `intervals` | the verdicts on a range of outer steps |
 
 mod answer;
 mod beyond;
 mod half;
 mod interval;
+mod intervals;
 mod kernel;
 mod region;
 mod rigid;
 
+pub use intervals::Stretch;
 pub use kernel::{Kernel, Outer};
 pub use rigid::{Hessians, rigid_motions};

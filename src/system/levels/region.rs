@@ -92,13 +92,8 @@ impl Kernel {
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let mut hi = 1.000_001 * inner_steps as f64 * 2.0 * angle.sin() / self.highest_frequency();
-        let mut lo = hi / 2.0;
-        while !stable(lo) {
-            (lo, hi) = (lo / 2.0, lo);
-            if lo < 1e-9 * hi.max(1e-300) || lo == 0.0 {
-                return None;
-            }
-        }
+        let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
+        hi = hi.min(2.0 * lo);
         while hi - lo > 1e-8 * lo {
             let middle = lo + (hi - lo) / 2.0;
             *(if stable(middle) { &mut lo } else { &mut hi }) = middle;
