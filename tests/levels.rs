@@ -67,7 +67,8 @@ fn kernels_agree_with_the_rational_route() {
     for trial in 0..60 {
         let n = 2 + trial % 3;
         let (fast, slow) = numbers.levels(n);
-        let (inner, step) = (1 + trial as u64 % 5, 0.5 + 2.5 * numbers.next().abs());
+        let inner = 1 + trial as u64 % 5;
+        let step = inner as f64 * (0.5 + 1.4 * numbers.next().abs());
         let step = from_f64_exact(step).unwrap();
         let h = &step / Rational::from_integer((inner as i64).into());
         let analysis = kernel(&fast, &slow).decide(&Outer::of_steps(&h, &step).unwrap(), &step, 1e-9);
@@ -200,6 +201,39 @@ fn four_waters_are_unstable_where_their_simulation_blows_up() {
     {
         let own = water("water4", 9, step, "");
         assert_eq!((&own["stable"], &own["proven"]), (&stable.into(), &true.into()), "{step}: {own}");
+    }
+}
+
+#[test]
+fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
+    let mut numbers = Numbers(31);
+    for inner in [2u64, 3, 5] {
+        let (fast, slow) = numbers.levels(3);
+        let kernel = kernel(&fast, &slow);
+        let (first, _) = kernel.first_unstable(inner).unwrap();
+        // Below the Verlet limit of the fast stiffness, h = 2.
+        let range = (0.5 * first, (1.6 * first).min(1.98 * inner as f64));
+        let stretches = kernel.stretches(inner, range, 1e-4).unwrap();
+        assert_eq!((stretches[0].lo, stretches.last().unwrap().hi), range);
+        assert!(
+            stretches.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict)
+        );
+        assert!(stretches.iter().any(|own| own.verdict == Holds::Unstable));
+        // What is not told of is thin: the neighbourhoods of edges.
+        let untold: f64 =
+            stretches.iter().filter(|own| own.verdict == Holds::NotTold).map(|own| own.hi - own.lo).sum();
+        assert!(untold < 0.02 * first, "{untold} of {first}: {stretches:?}");
+        for own in &stretches {
+            for k in 1..20 {
+                let step = own.lo + (own.hi - own.lo) * f64::from(k) / 20.0;
+                let largest = largest_multiplier(&fast, &slow, step, inner);
+                match own.verdict {
+                    Holds::Stable => assert!(largest < 1.0 + 1e-6, "{step} {largest}"),
+                    Holds::Unstable => assert!(largest > 1.0 + 1e-9, "{step} {largest}"),
+                    Holds::NotTold => {}
+                }
+            }
+        }
     }
 }
 

@@ -8,11 +8,6 @@ use super::modes::{Origin, Resonance};
 use crate::number::{Ball, Laurent, Rational};
 use crate::verdict::{Kind, Tier};
 
-/// "1 degree of freedom", "2 degrees of freedom".
-pub(super) fn degrees_of_freedom(n: usize) -> String {
-    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
-}
-
 /// What a verdict rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {

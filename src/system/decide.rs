@@ -14,21 +14,12 @@
 use super::analysis::Analysis;
 use super::compose::connected;
 use super::frame::Frame;
-use super::limits::Limits;
+use super::limits::{Limits, Route};
 use super::model::System;
 use super::piece::{pieces, unit};
 use crate::error::Result;
 use crate::number::{Laurent, Rational};
 use crate::verdict::Kind;
-
-/// Which means are tried for parts of several degrees of freedom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Route {
-    /// The cheapest that proves the verdict; where none does within the budget, an estimate.
-    Cheapest,
-    /// Exact arithmetic, or an error that tells its cost.
-    Exact,
-}
 
 /// The verdict on a system.
 ///

@@ -14,11 +14,10 @@ use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
-use super::analysis::degrees_of_freedom;
 use super::frame::Frame;
 use super::inertia::Inertia;
 use super::integers::{IntegerBlocks, IntegerProgram};
-use super::limits::Limits;
+use super::limits::{Limits, degrees_of_freedom};
 use super::model::System;
 use super::modular::Field;
 use super::roots::{self, RootCount};

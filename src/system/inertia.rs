@@ -37,6 +37,9 @@ impl Inertia {
 /// Only the lower triangle of m is read.
 pub(super) fn is_definite(m: &Mat<f64>, slack: f64) -> bool {
     let n = m.nrows();
+    if n == 0 {
+        return true;
+    }
     let trace: f64 = (0..n).map(|i| m[(i, i)].abs()).sum();
     // γ_(n+1), with room for the reciprocals of pivots, the rounding of the shifted diagonal and of the sums here.
     let shift = 1.01 * (slack + (n as f64 + 24.0) * U * trace) + f64::MIN_POSITIVE * (n as f64 + 1.0).powi(2);

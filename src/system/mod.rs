@@ -17,7 +17,7 @@
 //! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
 //! | `scalar`, `enclose`, `single` | K clocks on one oscillator: exact, in balls, decided |
 //! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
-//! | `spectrum`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
+//! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
 //! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
 //! | `decide`, `piece` | the verdict, part by part |
 //! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
@@ -38,6 +38,7 @@
 //! ```
 
 mod analysis;
+mod bauer_fike;
 pub mod builders;
 mod clusters;
 mod compose;
@@ -68,9 +69,9 @@ mod split;
 
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
 pub use compose::{full_period, half_period};
-pub use decide::{Route, decide_by, decide_system};
+pub use decide::{decide_by, decide_system};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
-pub use limits::Limits;
+pub use limits::{Limits, Route};
 pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
 pub use modes::{Origin, Resonance};

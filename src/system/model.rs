@@ -131,7 +131,7 @@ impl System {
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
         let total = self.total_stiffness();
-        if total.is_definite_in_doubles() {
+        if total.is_surely_regular() {
             return Vec::new();
         }
         let candidates: Vec<_> = total.null_space().into_iter().map(|(_, z)| z).collect();

@@ -1,13 +1,11 @@
 //! Invariant parts of a component, and the verdict on each.
 
-use super::analysis::degrees_of_freedom;
 use super::analysis::{Evidence, Part};
 use super::compose::check_length;
-use super::decide::Route;
 use super::exact::{MuCount, decide_by_signs, decide_exact};
 use super::float;
 use super::frame::Frame;
-use super::limits::Limits;
+use super::limits::{Limits, Route, degrees_of_freedom};
 use super::model::System;
 use super::signs::{self, Forms};
 use super::single;

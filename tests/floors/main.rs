@@ -31,14 +31,11 @@ const FLOORS: [(&str, u32); 19] = [
 ];
 
 /// Circles that are still there.
-const KNOWN_CIRCLES: [&[&str]; 12] = [
+const KNOWN_CIRCLES: [&[&str]; 9] = [
     &["map/band.rs", "map/products.rs"],
     &["report/decimal.rs", "report/latex.rs", "report/table.rs"],
     &["report/figure/draw.rs", "report/figure/key.rs", "report/figure/layout.rs", "report/figure/marks.rs"],
     &["report/plane/chart.rs", "report/plane/mod.rs"],
-    &["scene/system/bonds.rs", "scene/system/linear.rs", "scene/system/mod.rs"],
-    &["system/clusters.rs", "system/spectrum.rs"],
-    &["system/decide.rs", "system/piece.rs"],
     &["tongue/gaps.rs", "tongue/order.rs"],
     &["tongue/isolate.rs", "tongue/string.rs"],
     &["cli/map/drawing.rs", "cli/map/output.rs"],

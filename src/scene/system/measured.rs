@@ -22,9 +22,8 @@ use num_traits::One;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::LARGEST;
 use super::array::Reference;
-use super::document::Number;
+use super::document::{LARGEST, Number, no_system};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
@@ -82,7 +81,7 @@ pub(super) fn is_by_reference(source: &Value) -> bool {
 impl Measured {
     /// From a file of such stiffnesses, paths taken from `folder`.
     pub fn read(source: &Value, folder: &Path) -> Result<Measured> {
-        let document = Document::deserialize(source).map_err(super::no_system)?;
+        let document = Document::deserialize(source).map_err(no_system)?;
         let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
         for (k, own) in document.potentials.iter().enumerate() {
             let (step, stiffness) = own.read(k, folder)?;

@@ -60,7 +60,7 @@ use crate::number::rational::to_f64;
 use crate::system::levels::Stretch;
 use crate::system::{Analysis, Limits, Potential, Route, System, decide_by, decide_oscillator};
 use bonds::Nonlinear;
-use document::Document;
+use document::{Document, no_system};
 use measured::Measured;
 use oscillator::Oscillator;
 pub use scan::{Axis, Scan};
@@ -70,9 +70,6 @@ const SCHEMA: &str = "kickdrift/system/1";
 
 /// The longest file, in bytes.
 const LONGEST: usize = 16 << 20;
-
-/// The most degrees of freedom: dense matrices of this size still fit.
-const LARGEST: usize = 4096;
 
 /// A system file, read and checked.
 #[derive(Clone, Debug)]
@@ -281,14 +278,4 @@ impl SystemScene {
         }
         Ok((0..self.system().size()).map(|i| self.system().mass().get(i, i)).collect())
     }
-}
-
-/// Why a text is no system.
-fn no_system(cause: serde_json::Error) -> Error {
-    let place = if cause.line() > 0 { format!("line {}", cause.line()) } else { "this file".into() };
-    Error::input(
-        "system",
-        place,
-        format!("{cause}; write one JSON object as in data/scenes/diatomic-tether.json"),
-    )
 }

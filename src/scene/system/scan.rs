@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::{SystemScene, no_system};
+use super::SystemScene;
+use super::document::no_system;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
