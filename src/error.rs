@@ -148,6 +148,7 @@ impl Error {
     }
 
     /// The cause, where it is a stream's and nobody has said yet where the stream goes.
+    #[cfg(feature = "serde")]
     pub(crate) fn lost_stream(&self) -> Option<&io::Error> {
         self.0.source.as_deref().filter(|_| self.0.field.is_empty())?.downcast_ref()
     }

@@ -8,6 +8,7 @@ pub enum Format {
     Latex,
     Text,
     Svg,
+    Pdf,
     Png,
     /// NumPy arrays; of maps alone.
     Npz,
@@ -18,15 +19,23 @@ impl Format {
     pub const DOCUMENT: [Format; 4] = [Format::Json, Format::Csv, Format::Latex, Format::Text];
 
     /// The forms of a [`Figure`](crate::report::figure::Figure).
-    pub const FIGURE: [Format; 2] = [Format::Svg, Format::Png];
+    pub const FIGURE: [Format; 3] = [Format::Svg, Format::Pdf, Format::Png];
 
     /// The forms of a result that is a document or drawn.
-    pub const DOCUMENT_OR_FIGURE: [Format; 6] =
-        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Png];
+    pub const DOCUMENT_OR_FIGURE: [Format; 7] =
+        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Pdf, Format::Png];
 
     /// All forms.
-    pub const ALL: [Format; 7] =
-        [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Png, Format::Npz];
+    pub const ALL: [Format; 8] = [
+        Format::Json,
+        Format::Csv,
+        Format::Latex,
+        Format::Text,
+        Format::Svg,
+        Format::Pdf,
+        Format::Png,
+        Format::Npz,
+    ];
 
     /// Its name.
     pub fn name(self) -> &'static str {
@@ -45,6 +54,7 @@ impl Format {
             Format::Latex => "tex",
             Format::Text => "txt",
             Format::Svg => "svg",
+            Format::Pdf => "pdf",
             Format::Png => "png",
             Format::Npz => "npz",
         }
@@ -64,7 +74,7 @@ impl Format {
     ///
     /// ```
     /// use kickdrift::format::Format;
-    /// assert_eq!(Format::extensions(&Format::FIGURE), ".svg or .png");
+    /// assert_eq!(Format::extensions(&Format::FIGURE), ".svg, .pdf or .png");
     /// ```
     pub fn extensions(formats: &[Format]) -> String {
         let dotted: Vec<String> = formats.iter().map(|format| format!(".{}", format.extension())).collect();

@@ -50,6 +50,18 @@
 //! assert_eq!(decision.verdict.kind(), Kind::Hyperbolic);
 //! ```
 //!
+//! # Glossary
+//!
+//! * *period*: T = q h2 = p h1, after which the clocks strike together again; *half period*: the first half of it, with
+//!   half of each kick at its two ends.
+//! * *base*: the clock that an orbit is followed along in closed form; *foreign kick*: a kick of the other clock.
+//! * *tongue*: an interval of s in which a pair p/q is unstable with exponential growth, between two zeros (*edges*) of
+//!   A, B, C or D; it is *closed* where the two coincide.
+//! * *label*: the number m of half turns that the growing solution of a tongue makes in one period.
+//! * *family*: the integers (a, b) with m = a p + b q, one curve of resonance across all ratios.
+//! * *look*: the moment at which a run in doubles measures its orbit's length, on which the proven bound rests.
+//! * *refine*: to follow the orbit again kick by kick, in more bits.
+//!
 //! # The floors of the house
 //!
 //! Imports go down only, and siblings on one floor do not import each other (a test keeps it so).
@@ -69,6 +81,7 @@
 //! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
+//! | 7 | [`recheck`] | every document's claims found again by another route |
 //! | 8 | [`scene`] | input documents → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
 //! | 9 | [`cli`] | arguments → a scene → the library → a report |
@@ -84,7 +97,7 @@
 //! |---|---|
 //! | `system` | `system`: many clocks, many degrees of freedom (faer) |
 //! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
-//! | `serde` | `scene` and `report`: input documents and output tables |
+//! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
 //! | `figure` | `report::figure` and the drawings of results |
 //! | `cli` | the program (default) |
 
@@ -99,6 +112,8 @@ mod orbit;
 mod parallel;
 pub mod propagator;
 #[cfg(feature = "serde")]
+pub mod recheck;
+#[cfg(feature = "serde")]
 pub mod report;
 pub mod resonance;
 #[cfg(feature = "serde")]
@@ -109,3 +124,6 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+
+#[doc(hidden)]
+pub use vector::instructions::force_instructions;

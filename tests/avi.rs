@@ -65,7 +65,7 @@ proptest! {
         for column in 0..2 * n {
             let unit = |from: usize| (from..from + n).map(|i| ratio(i64::from(i == column), 1)).collect::<Vec<_>>();
             let clocks = clocks(&system);
-            let period = clocks.period;
+            let period = clocks.period();
             // The propagator's momenta are in the unit of time one tick.
             let p: Vec<_> = unit(n).into_iter().map(|p| p / tick).collect();
             let mut simulation =
@@ -88,7 +88,7 @@ proptest! {
         let matrix = methods::avi::staggered(&two);
         for column in 0..2 {
             let clocks = Clocks::new(&[ratio(1, 1), h2.clone()], &[ratio(0, 1), ratio(0, 1)]).unwrap();
-            let period = clocks.period;
+            let period = clocks.period();
             let start = State::new(vec![ratio(i64::from(column == 0), 1)], vec![ratio(i64::from(column == 1), 1)]);
             let mut simulation = Simulation::new(&[ratio(1, 1)], springs(), clocks, start).unwrap();
             prop_assert_eq!(simulation.run(period, Ends::Staggered), p + q);
@@ -101,7 +101,7 @@ proptest! {
     fn running_back_leads_to_the_start_exactly(system in any_system()) {
         let n = system.size();
         let clocks = clocks(&system);
-        let period = clocks.period;
+        let period = clocks.period();
         let start: Vec<_> = (0..n).map(|i| ratio(i as i64 + 1, 3)).collect();
         let p: Vec<_> = (0..n).map(|i| ratio(2 - i as i64, 5)).collect();
         let mut simulation =
@@ -166,7 +166,7 @@ fn nonlinear_forms_conserve_what_they_should() {
         let start = State::new(vec![0.0, 0.3, -0.2], vec![0.5, -0.25, 0.0]);
         let mut simulation =
             Simulation::new(&vec![ratio(1, 1); 3], vec![quartic(0), quartic(1)], clocks, start).unwrap();
-        let period = simulation.clocks().period;
+        let period = simulation.clocks().period();
         let off = avi::irreversibility(&mut simulation, 20 * period);
         // Roundoff of some hundred kicks, little amplified.
         assert!(off < 1e-11, "{off}");

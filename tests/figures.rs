@@ -2,7 +2,7 @@
 
 use kickdrift::report::figure::palette::{Gradient, family};
 use kickdrift::report::figure::{
-    Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Picture, Place, Shape, Stroke, png,
+    Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Picture, Place, Shape, Stroke,
 };
 
 /// One panel with one of everything that is small.
@@ -37,9 +37,8 @@ fn inspected(bytes: &[u8]) -> (u32, u32, f64) {
 
 #[test]
 fn the_png_has_the_size_asked_for_and_ink_on_it() {
-    let svg = tiny().svg();
     for (dpi, width, height) in [(25.4, 40, 30), (254.0, 400, 300), (508.0, 800, 600)] {
-        let (w, h, ink) = inspected(&png::raster(&svg, dpi).unwrap());
+        let (w, h, ink) = inspected(&tiny().png(dpi).unwrap());
         assert_eq!((w, h), (width, height));
         assert!((0.03..0.5).contains(&ink), "{ink} of the paper is inked");
     }
@@ -47,9 +46,8 @@ fn the_png_has_the_size_asked_for_and_ink_on_it() {
 
 #[test]
 fn a_resolution_that_cannot_be_is_refused() {
-    let svg = tiny().svg();
     for dpi in [0.0, -300.0, f64::NAN, f64::INFINITY, 1e9] {
-        let message = png::raster(&svg, dpi).unwrap_err().to_string();
+        let message = tiny().png(dpi).unwrap_err().to_string();
         assert!(message.starts_with("dpi = "), "{message}");
     }
 }
@@ -77,15 +75,16 @@ fn strange_data_still_makes_a_figure() {
             .bar(ColourBar { axis: Axis::log("bar", 1e-6, 1.0), gradient: Gradient::full() })
             .legend(Place::BottomRight)
             .gridded();
-        let svg = Figure::new(60.0, 50.0).with(panel.clone()).with(panel).columns(1).svg();
+        let figure = Figure::new(60.0, 50.0).with(panel.clone()).with(panel).columns(1);
+        let svg = figure.svg();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "a number got lost");
-        png::raster(&svg, 72.0).unwrap();
+        figure.png(72.0).unwrap();
     }
 }
 
 #[test]
 fn a_figure_without_panels_is_blank_paper() {
-    let (_, _, ink) = inspected(&png::raster(&Figure::single_column(20.0).svg(), 72.0).unwrap());
+    let (_, _, ink) = inspected(&Figure::single_column(20.0).png(72.0).unwrap());
     assert_eq!(ink, 0.0);
 }
 
@@ -94,4 +93,33 @@ fn a_bar_gives_each_value_the_colour_beside_its_number() {
     let bar = ColourBar { axis: Axis::log("rate", 1e-4, 1.0), gradient: Gradient::on_white() };
     assert_eq!(bar.colour(1e-2), Gradient::on_white().at(0.5));
     assert_eq!([1e-9, 1e-4, 1.1e-2, 1.0, 9.0, 0.0].map(|rate| bar.class(rate, 8)), [0, 0, 4, 7, 7, 0]);
+}
+
+#[test]
+fn the_pdf_has_the_size_asked_for_and_its_letters_can_be_searched() {
+    let pdf = tiny().pdf();
+    assert_eq!(pdf, tiny().pdf());
+    let text = String::from_utf8_lossy(&pdf);
+    assert!(text.starts_with("%PDF-") && text.trim_end().ends_with("%%EOF"));
+    // 40 and 30 mm in points.
+    assert!(text.contains("/MediaBox [0 0 113.385826 85.03937]"), "{text}");
+    for letter in "Tinyleh01".chars() {
+        let meaning = format!("<{:04X}>", u32::from(letter));
+        assert!(text.contains(&meaning), "{letter} has no meaning");
+    }
+    assert_eq!(text.matches("/Subtype /CIDFontType0C").count(), 3, "roman, italic, semibold");
+}
+
+#[test]
+fn strange_letters_and_pictures_make_a_sound_pdf() {
+    let picture = Picture::new([0.0, 1.0], [0.0, 1.0], 2, vec![family(3); 4]);
+    let panel = Panel::new(Axis::linear("\u{10ffff} *x* Ж", 0.0, 1.0), Axis::linear("", 0.0, 1.0))
+        .with(Layer::picture(picture))
+        .with(Layer::areas(vec![vec![[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]]], family(2), 0.5))
+        .note(Note::new([0.5, 0.5], "note"));
+    let pdf = Figure::new(60.0, 50.0).named("(a\\b)").with(panel).pdf();
+    let text = String::from_utf8_lossy(&pdf);
+    for piece in ["/Subtype /Image", "/ca 0.5", "<DBFFDFFF>", "<0416>"] {
+        assert!(text.contains(piece), "no {piece} in {text}");
+    }
 }

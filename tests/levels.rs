@@ -222,7 +222,7 @@ fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
         // What is not told of is thin: the neighbourhoods of edges.
         let untold: f64 =
             stretches.iter().filter(|own| own.verdict == Holds::NotTold).map(|own| own.hi - own.lo).sum();
-        assert!(untold < 0.02 * first, "{untold} of {first}: {stretches:?}");
+        assert!(untold < 0.05 * first, "{untold} of {first}: {stretches:?}");
         for own in &stretches {
             for k in 1..20 {
                 let step = own.lo + (own.hi - own.lo) * f64::from(k) / 20.0;

@@ -87,7 +87,7 @@ fn arrays(bytes: &[u8]) -> Vec<(String, String, Vec<u8>)> {
     (0..archive.len())
         .map(|i| {
             let mut file = archive.by_index(i).unwrap();
-            assert_eq!(file.compression(), zip::CompressionMethod::Stored);
+            assert_eq!(file.compression(), zip::CompressionMethod::Deflated);
             let (mut content, name) = (Vec::new(), file.name().unwrap().into_owned());
             std::io::Read::read_to_end(&mut file, &mut content).unwrap();
             assert_eq!(&content[..8], b"\x93NUMPY\x01\x00");
@@ -277,7 +277,7 @@ fn bad_flags_are_told_in_one_line() {
         ("--colour growth", "--output FILE.svg"),
         ("--curves --output map.csv", "--output FILE.svg"),
         ("--a 0..1 --output map.png", "add --curves"),
-        ("--curves --a 1..x --output map.png", "--a"),
+        ("--curves --a 1..x --output map.png", "a = 1..x"),
         ("--colour pink --output map.png", "pink"),
         ("--shard 1/2", "--resume DIR"),
         ("--shard 3/2 --resume nowhere", "shard = 3/2"),

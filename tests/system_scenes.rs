@@ -46,7 +46,7 @@ fn growth_of_small_deviations_is_that_of_the_hessians() {
         let start: Vec<f64> = centre.iter().enumerate().map(|(i, x)| x + 1e-6 * (i as f64 - 0.4)).collect();
         for ends in [Ends::Symmetric, Ends::Staggered] {
             let mut run = scene.nonlinear_simulation(start.clone(), vec![0.0; start.len()]).unwrap().unwrap();
-            let time = 2000.0 * to_f64(&run.clocks().tick) * run.clocks().period as f64;
+            let time = 2000.0 * to_f64(run.clocks().tick()) * run.clocks().period() as f64;
             let measured = avi::growth_rate(&mut run, centre, 1e-6, (4000, ends));
             // The shape turns with a collision's beat: its length changes by a factor of some units over the time.
             let off = (measured - predicted).abs();

@@ -22,7 +22,7 @@ pub struct Sample {
 fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> Sample {
     let x = &simulation.state().x;
     Sample {
-        time: to_f64(&simulation.clocks().tick) * simulation.now() as f64,
+        time: to_f64(simulation.clocks().tick()) * simulation.now() as f64,
         energy: simulation.energy(),
         momentum: simulation.momentum(),
         amplitude: x.iter().zip(centre).fold(0.0, |a, (x, c)| (x - c).abs().max(a)),
@@ -78,7 +78,7 @@ pub fn growth_rate<F: Force<f64>>(
     size: f64,
     (periods, ends): (u32, Ends),
 ) -> f64 {
-    let ticks = simulation.clocks().period;
+    let ticks = simulation.clocks().period();
     let mut log = -rescale(simulation, centre, size);
     let mut middle = 0.0;
     for period in 0..periods {
@@ -88,7 +88,7 @@ pub fn growth_rate<F: Force<f64>>(
         simulation.run(ticks, ends);
         log -= rescale(simulation, centre, size);
     }
-    let half = f64::from(periods - periods / 2) * ticks as f64 * to_f64(&simulation.clocks().tick);
+    let half = f64::from(periods - periods / 2) * ticks as f64 * to_f64(simulation.clocks().tick());
     (log + deviation(simulation, centre).ln() - middle) / half
 }
 

@@ -10,7 +10,7 @@
 //! // The paper's oscillator with two springs, h2/h1 = 3/2, in exact arithmetic.
 //! let springs = vec![Linear::tether(0, ratio(1, 1)), Linear::tether(0, ratio(1, 25))];
 //! let clocks = Clocks::new(&[ratio(1, 1), ratio(3, 2)], &[ratio(0, 1), ratio(0, 1)]).unwrap();
-//! let period = clocks.period;
+//! let period = clocks.period();
 //! let start = State::new(vec![ratio(1, 1)], vec![ratio(0, 1)]);
 //! let mut simulation = Simulation::new(&[ratio(1, 1)], springs, clocks, start).unwrap();
 //! assert_eq!(simulation.run(period, Ends::Symmetric), 3 + 2 + 2); // the kicks at both ends in halves
@@ -20,10 +20,9 @@
 
 mod force;
 mod measure;
-mod queue;
 mod simulation;
 
+pub use crate::schedule::Clocks;
 pub use force::{Bond, Force, Form, Linear};
 pub use measure::{Sample, equilibrium, growth_rate, irreversibility, series};
-pub use queue::{Clock, Clocks, Queue};
 pub use simulation::{Ends, Simulation, State, Ticks};

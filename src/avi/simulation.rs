@@ -4,9 +4,9 @@
 //! to t; kick them with the force of the potential there, over its step; schedule the potential again.
 
 use super::force::Force;
-use super::queue::{Clocks, Queue};
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, Ring};
+use crate::schedule::{Clock, Clocks, Queue};
 
 /// A ring in which a number of ticks is quickly made.
 pub trait Ticks: Ring {
@@ -85,15 +85,15 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
     pub fn new(masses: &[Rational], forces: Vec<F>, clocks: Clocks, state: State<S>) -> Result<Self> {
         let n = masses.len();
         check(masses, &forces, &clocks, &state)?;
-        let step = |clock: &super::queue::Clock| {
-            let step = &clocks.tick * Rational::from_integer(clock.step.into());
+        let step = |clock: &Clock| {
+            let step = clocks.tick() * Rational::from_integer(clock.step().into());
             [S::from_rational(&step), S::from_rational(&(step / Rational::from_integer(2.into())))]
         };
         Ok(Simulation {
             inverse_masses: masses.iter().map(|m| S::from_rational(&m.recip())).collect(),
-            ticks: masses.iter().map(|m| S::from_rational(&(&clocks.tick / m))).collect(),
-            steps: clocks.clocks.iter().map(step).collect(),
-            queue: Queue::new(&clocks.clocks),
+            ticks: masses.iter().map(|m| S::from_rational(&(clocks.tick() / m))).collect(),
+            steps: clocks.all().iter().map(step).collect(),
+            queue: Queue::new(clocks.all()),
             scratch: (vec![S::zero(); n], vec![S::zero(); n]),
             forces,
             clocks,
@@ -196,7 +196,7 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
     /// what the queue and the drifts cost.
     pub fn cost(&self, ticks: u64) -> u64 {
         const OVERHEAD: u64 = 16;
-        let kicks = self.clocks.clocks.iter().map(|clock| ticks / clock.step + 1);
+        let kicks = self.clocks.all().iter().map(|clock| ticks / clock.step() + 1);
         let one = |force: &F| (force.particles().len() as u64).pow(2) + OVERHEAD;
         kicks
             .zip(&self.forces)
@@ -241,10 +241,10 @@ fn check<S, F: Force<S>>(masses: &[Rational], forces: &[F], clocks: &Clocks, sta
         let given = format!("{} positions, {} momenta", state.x.len(), state.p.len());
         return Err(Error::input("state", given, format!("give {n} of each")));
     }
-    if forces.len() != clocks.clocks.len() {
+    if forces.len() != clocks.all().len() {
         return Err(Error::input(
             "steps",
-            clocks.clocks.len(),
+            clocks.all().len(),
             format!("give {}, one a potential", forces.len()),
         ));
     }

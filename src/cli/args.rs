@@ -12,14 +12,14 @@ use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::document::Document;
 use crate::report::file::write_output;
-use crate::scene::GridRange;
+use crate::scene::{GridRange, StepRange};
 use crate::verdict::Limits;
 
 /// Flags of every command.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Options of every command")]
 pub struct Common {
-    /// The form [default: by the file name; else text, but json for tables that are not shown at a terminal].
+    /// The form [default: by the file name; else text, or json for piped tables].
     #[arg(long, global = true, value_name = "FORMAT")]
     pub format: Option<Format>,
     /// Write to this file (run: to this folder) and not to standard output; files appear whole or not at all.
@@ -34,6 +34,13 @@ pub struct Common {
     /// The most kicks that one tier may compose for one pair [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = whole::<u64>)]
     pub budget: Option<u64>,
+}
+
+/// A parser of values from one that names the field: here the flag names it.
+pub fn of<T>(
+    parse: impl Fn(&str, &str) -> Result<T> + Clone + Send + Sync + 'static,
+) -> impl Fn(&str) -> std::result::Result<T, String> + Clone + Send + Sync + 'static {
+    move |text| parse("value", text).map_err(|error| error.remedy().to_string())
 }
 
 /// A count, with the remedy that the standard library's message lacks.
@@ -120,78 +127,54 @@ impl Common {
 #[derive(Clone, Debug, clap::Args)]
 pub struct Stiffness {
     /// The stiffness of the fast force, as 10 or pi^2.
-    #[arg(long, value_name = "X", allow_hyphen_values = true)]
-    lambda1: String,
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    pub lambda1: Laurent,
     /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
-    lambda2: String,
-}
-
-impl Stiffness {
-    /// lambda1 and lambda2.
-    pub fn quantities(&self) -> Result<(Laurent, Laurent)> {
-        Ok((parse("lambda1", &self.lambda1)?, parse("lambda2", &self.lambda2)?))
-    }
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    pub lambda2: Laurent,
 }
 
 /// A grid of step pairs: all multiples of the spacing in closed ranges.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Grid {
     /// The spacing of both steps.
-    #[arg(long, value_name = "D", allow_hyphen_values = true)]
-    step: Option<String>,
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = of(parse))]
+    step: Option<Laurent>,
     /// The spacing of h1, where it differs.
-    #[arg(long, value_name = "D1", allow_hyphen_values = true)]
-    step1: Option<String>,
+    #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = of(parse))]
+    step1: Option<Laurent>,
     /// The spacing of h2, where it differs.
-    #[arg(long, value_name = "D2", allow_hyphen_values = true)]
-    step2: Option<String>,
+    #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = of(parse))]
+    step2: Option<Laurent>,
     /// The closed range of h1, as 1/100..2/pi.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h1_range: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    h1_range: Option<StepRange>,
     /// The closed range of h2.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h2_range: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    h2_range: Option<StepRange>,
 }
 
 impl Grid {
     /// Whether no flag of the grid was given.
     pub fn is_absent(&self) -> bool {
-        [&self.step, &self.step1, &self.step2, &self.h1_range, &self.h2_range]
-            .iter()
-            .all(|flag| flag.is_none())
+        [&self.step, &self.step1, &self.step2].iter().all(|step| step.is_none())
+            && [&self.h1_range, &self.h2_range].iter().all(|range| range.is_none())
     }
 
     /// The grid as a library type.
     pub fn range(&self) -> Result<GridRange> {
-        let given = |flag: &str, text: Option<&String>, example: &str| {
-            text.cloned().ok_or_else(|| Error::missing(flag, format!("a grid needs it, as {example}")))
+        let missing = |flag: &str, example: &str| {
+            Error::missing(flag, format!("a grid needs it, as --{flag} {example}"))
         };
-        let step = |flag: &str, own: &Option<String>| {
-            let text = given("step", own.as_ref().or(self.step.as_ref()), "--step 1/100")?;
-            parse(flag, &text)
+        let step = |own: &Option<Laurent>| {
+            own.as_ref().or(self.step.as_ref()).cloned().ok_or_else(|| missing("step", "1/100"))
         };
-        let range = |flag: &str, text: &Option<String>, example: &str| {
-            parse_range(flag, &given(flag, text.as_ref(), example)?)
+        let range = |flag: &str, range: &Option<StepRange>, example: &str| {
+            range.clone().ok_or_else(|| missing(flag, example))
         };
-        let steps = [step("step1", &self.step1)?, step("step2", &self.step2)?];
-        let h1 = range("h1-range", &self.h1_range, "--h1-range 1/100..2/pi")?;
-        let h2 = range("h2-range", &self.h2_range, "--h2-range 1/100..7/2")?;
+        let steps = [step(&self.step1)?, step(&self.step2)?];
+        let h1 = range("h1-range", &self.h1_range, "1/100..2/pi")?;
+        let h2 = range("h2-range", &self.h2_range, "1/100..7/2")?;
         Ok(GridRange::new(steps, [h1, h2]))
     }
-}
-
-/// Echoes a grid into a document.
-pub fn echo_grid(document: Document, grid: &GridRange) -> Document {
-    let ([step1, step2], [h1, h2]) = (grid.steps(), grid.ranges());
-    document
-        .input("step1", step1)
-        .input("step2", step2)
-        .input("h1_range", shown_range(h1))
-        .input("h2_range", shown_range(h2))
-}
-
-/// A closed range as it is written, exactly.
-pub fn shown_range((lo, hi): &(Laurent, Laurent)) -> String {
-    format!("{lo}..{hi}")
 }

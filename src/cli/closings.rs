@@ -2,7 +2,7 @@
 
 use crate::parallel::*;
 
-use super::args::{Common, shown_range, whole};
+use super::args::{Common, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
 use super::tongues::{parse_list, shown_list};
@@ -10,10 +10,11 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::parse_range;
 use crate::number::{Laurent, Ratio, Rational};
-use crate::report::closings::{self, DIGITS, OfRatio};
+use crate::report::closings::{self, DIGITS};
 use crate::report::document::Document;
 use crate::report::file::write_output;
-use crate::tongue::{Found, Search, closings as search};
+use crate::scene::shown_range;
+use crate::tongue::{self, Found, Search};
 
 /// Flags of `closings`: a ratio or all of them.
 #[derive(Debug, clap::Args)]
@@ -97,7 +98,7 @@ impl Question {
     /// The document `kickdrift/closings/1`; its rows with all columns, or with those that fit paper.
     ///
     /// # Errors
-    /// As [`search`].
+    /// As [`tongue::closings`].
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = self.ratios.list();
         let bar = progress(common.quiet, list.len() as u64, "ratios");
@@ -106,33 +107,19 @@ impl Question {
             bar.inc(1);
             found
         };
-        let found: Vec<OfRatio> = list.into_par_iter().map(one).collect::<Result<_>>()?;
+        let found: Vec<Found> = list.into_par_iter().map(one).collect::<Result<_>>()?;
         bar.finish_and_clear();
         let (lo, hi) = &self.rho;
         let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());
         Ok(self.echo(closings::document(&found, self.digits, &what, all_columns)))
     }
 
-    /// The labels one by one where some are asked for: a search for one costs two edges a sample.
-    fn of_ratio(&self, ratio: Ratio) -> Result<OfRatio> {
-        let of = |m| search(ratio, &Search { m, rho: self.rho.clone(), samples: self.samples });
-        let Some(list) = &self.m else {
-            let Found { closings, complete } = of(None)?;
-            return Ok(OfRatio { ratio, closings, complete });
-        };
-        // The last tongue has no upper edge, and never closes.
-        let last = ratio.kicks() - 2;
-        if let Some(m) = list.iter().map(|run| run.1).find(|&m| m > last) {
-            return Err(Error::input("m", m, format!("{ratio} has the finite tongues 1 to {last}")));
+    fn of_ratio(&self, ratio: Ratio) -> Result<Found> {
+        let search = Search { m: None, rho: self.rho.clone(), samples: self.samples };
+        match &self.m {
+            None => tongue::closings(ratio, &search),
+            Some(labels) => tongue::closings_of(ratio, labels, &search),
         }
-        let labels: Vec<u64> = (1..=last).filter(|m| list.iter().any(|(a, b)| a <= m && m <= b)).collect();
-        let found: Vec<Found> = labels.into_par_iter().map(|m| of(Some(m))).collect::<Result<_>>()?;
-        let complete = found.iter().all(|found| found.complete);
-        Ok(OfRatio {
-            ratio,
-            closings: found.into_iter().flat_map(|found| found.closings).collect(),
-            complete,
-        })
     }
 
     fn echo(&self, document: Document) -> Document {
@@ -141,10 +128,8 @@ impl Question {
             Some(list) => document.input("m", shown_list(list)),
             None => document,
         };
-        let range = [&self.rho.0, &self.rho.1].map(|x| Laurent::from_rational(x.clone()));
-        let [lo, hi] = range;
         document
-            .input("rho_range", shown_range(&(lo, hi)))
+            .input("rho_range", shown_range(&self.rho))
             .input("samples", self.samples)
             .input("digits", self.digits)
     }

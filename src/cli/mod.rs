@@ -6,6 +6,7 @@ mod args;
 mod closings;
 mod compare;
 mod curves;
+mod generate;
 mod map;
 mod merge;
 mod plane;
@@ -25,7 +26,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::Result;
 use crate::format::Format;
@@ -73,13 +74,15 @@ enum Command {
     Run(run::Args),
     /// Rechecks every row of a JSON document that kickdrift wrote, by another route.
     Verify(verify::Args),
+    /// Manual pages and completions for shells: what packagers need.
+    Generate(generate::Args),
 }
 
 impl Command {
     /// Whether its output may be a figure or arrays.
     fn draws(&self) -> bool {
-        use Command::{Closings, Map, Merge, Run, System, Tongues};
-        matches!(self, Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_))
+        use Command::{Closings, Generate, Map, Merge, Run, System, Tongues};
+        matches!(self, Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_) | Generate(_))
     }
 }
 
@@ -94,7 +97,7 @@ pub fn main() -> ExitCode {
             let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
             return ExitCode::SUCCESS;
         }
-        Err(error) => return failure(&usage::explained(&error)),
+        Err(error) => return failure(&usage::explained(&error, &Cli::command())),
     };
     match run(&cli) {
         Ok(code) => code,
@@ -142,6 +145,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
+        Command::Generate(args) => args.run(Cli::command(), common)?,
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -1,6 +1,6 @@
 //! `kickdrift polynomial`: the half period of one ratio in s and rho.
 
-use super::args::Common;
+use super::args::{Common, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Ratio;
@@ -11,8 +11,8 @@ use crate::report::polynomial;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// h2/h1 = p/q.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
-    ratio: String,
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = of(parse_ratio))]
+    ratio: Ratio,
 }
 
 /// The largest p + q unless a budget says otherwise: the entries have about p q/4 terms, with coefficients of
@@ -21,15 +21,9 @@ const MOST_KICKS: u64 = 120;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let ratio = parse_ratio("ratio", &self.ratio)?;
-        check(ratio, common.budget)?;
-        common.write(&polynomial::document(ratio), Format::Text)
+        check(self.ratio, common.budget)?;
+        common.write(&polynomial::document(self.ratio), Format::Text)
     }
-}
-
-/// The default bound for scenes.
-pub fn check_default(ratio: Ratio) -> Result<()> {
-    check(ratio, None)
 }
 
 /// That the polynomials are worth their cost, or allowed by a budget.

@@ -1,6 +1,6 @@
 //! One ratio of steps, or all up to a sum: what `tongues` and `closings` range over.
 
-use super::args::whole;
+use super::args::{of, whole};
 use crate::error::{Error, Result};
 use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
@@ -10,8 +10,8 @@ use crate::report::document::Document;
 #[derive(Debug, clap::Args)]
 pub struct Flags {
     /// h2/h1 = p/q.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true)]
-    ratio: Option<String>,
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = of(parse_ratio))]
+    ratio: Option<Ratio>,
     /// All coprime p + q up to this number.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
     max_sum: Option<u64>,
@@ -26,10 +26,10 @@ impl Flags {
     /// The ratios.
     ///
     /// # Errors
-    /// Neither flag or both, or a ratio that is none.
+    /// Neither flag or both.
     pub fn ratios(&self) -> Result<Ratios> {
-        match (&self.ratio, self.max_sum) {
-            (Some(text), None) => parse_ratio("ratio", text).map(Ratios::One),
+        match (self.ratio, self.max_sum) {
+            (Some(ratio), None) => Ok(Ratios::One(ratio)),
             (None, Some(max_sum)) => Ok(Ratios::UpTo(max_sum)),
             (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
             (None, None) => {

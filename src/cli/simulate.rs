@@ -29,7 +29,7 @@ pub struct Args {
     /// which makes the run symmetric in time.
     #[arg(long)]
     staggered: bool,
-    /// Also draw energy, momentum and amplitude: FILE.svg or FILE.png.
+    /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
 }
@@ -86,11 +86,11 @@ impl Args {
     ) -> Result<Run> {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
-        let period = simulation.clocks().period;
+        let period = simulation.clocks().period();
         // The series, the measurement of growth, and one period forward and back.
         let runs = 2 * u64::from(self.periods) + 2;
         limits.allow(simulation.cost(period).saturating_mul(runs), || {
-            format!("{} periods of {} kicks", self.periods, simulation.clocks().kicks())
+            format!("{} periods of {} kicks", self.periods, simulation.clocks().strikes())
         })?;
         if !simulation.energy().is_finite() {
             let remedy = "the energy there is beyond all doubles: choose a smaller displacement";

@@ -12,7 +12,7 @@ use crate::format::Format;
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::system::{self as report, Colouring, SystemMap};
 use crate::scene::{Axis, Scan, SystemScene};
@@ -21,7 +21,7 @@ use crate::system::{Limits, Route};
 
 /// Flags of `system`.
 ///
-/// --output FILE.svg or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
+/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -157,15 +157,13 @@ fn drawing(common: &Common) -> Result<Option<&Path>> {
     Ok(common.output.as_deref().filter(|_| format.is_figure()))
 }
 
-/// Writes a figure to FILE.svg or FILE.png.
+/// Writes a figure to FILE.svg, FILE.pdf or FILE.png.
 pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
-    let svg = figure.svg();
-    let drawn = match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
-        Some("svg") => svg.into_bytes(),
-        Some("png") => png::raster(&svg, DPI)?,
-        _ => return Err(Error::input(field, path.display(), "name a file that ends in .svg or .png")),
-    };
-    write_output(Some(path), &drawn)
+    let extension = path.extension().and_then(|extension| extension.to_str());
+    let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
+    let remedy = || format!("name a file that ends in {}", Format::extensions(&Format::FIGURE));
+    let format = format.ok_or_else(|| Error::input(field, path.display(), remedy()))?;
+    write_output(Some(path), &figure.file(format, DPI)?)
 }
 
 fn text(path: &Path) -> Result<String> {

@@ -1,23 +1,21 @@
 //! Usage errors in one line: what is wrong, with which value, and what to do.
 
-use clap::CommandFactory;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use super::Cli;
 use crate::error::Error;
 
 /// The one line for an error that the argument parser found.
-pub fn explained(error: &clap::Error) -> String {
+pub fn explained(error: &clap::Error, program: &clap::Command) -> String {
     let invalid = || shown(error, ContextKind::InvalidArg);
     let known = match error.kind() {
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
-            Some(Error::missing("command", format!("choose {}", commands())))
+            Some(Error::missing("command", format!("choose {}", commands(program))))
         }
         ErrorKind::MissingRequiredArgument => {
             invalid().map(|flags| Error::missing(&names(&flags), format!("add {flags}")))
         }
         ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand)
-            .map(|name| Error::input("command", name, format!("choose {}", commands()))),
+            .map(|name| Error::input("command", name, format!("choose {}", commands(program)))),
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => bad_value(error),
         ErrorKind::ArgumentConflict => {
             invalid().map(|flag| Error::input("flag", names(&flag), "is given twice; give it once"))
@@ -41,7 +39,9 @@ fn bad_value(error: &clap::Error) -> Option<Error> {
         (None, Some(cause)) => cause.to_string(),
         (None, None) => "write a value".into(),
     };
-    Some(if value.is_empty() { Error::missing(&flag, remedy) } else { Error::input(&flag, value, remedy) })
+    // An empty value that a parser has seen is bad; else there was none.
+    let absent = value.is_empty() && std::error::Error::source(error).is_none();
+    Some(if absent { Error::missing(&flag, remedy) } else { Error::input(&flag, value, remedy) })
 }
 
 fn suggestion(error: &clap::Error) -> String {
@@ -82,8 +82,7 @@ fn names(flags: &str) -> String {
     if flags.is_empty() { words.collect::<Vec<_>>().join(" ") } else { flags.join(", ") }
 }
 
-fn commands() -> String {
-    let command = Cli::command();
-    let names: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
+fn commands(program: &clap::Command) -> String {
+    let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
     format!("{}; each has a --help", names.join(", "))
 }

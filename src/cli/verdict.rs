@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use super::args::{Common, Stiffness};
+use super::args::{Common, Stiffness, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::number::Laurent;
 use crate::number::parse::parse;
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::report::certificate;
@@ -20,11 +21,11 @@ pub struct Args {
     #[command(flatten)]
     stiffness: Stiffness,
     /// The fast step.
-    #[arg(long, value_name = "A", allow_hyphen_values = true)]
-    h1: String,
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = of(parse))]
+    h1: Laurent,
     /// The slow step; h2/h1 must be rational.
-    #[arg(long, value_name = "B", allow_hyphen_values = true)]
-    h2: String,
+    #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = of(parse))]
+    h2: Laurent,
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
     exact: bool,
@@ -39,8 +40,8 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<ExitCode> {
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
-        let (lambda1, lambda2) = self.stiffness.quantities()?;
-        let oscillator = Oscillator::new(lambda1, lambda2, parse("h1", &self.h1)?, parse("h2", &self.h2)?)?;
+        let Stiffness { lambda1, lambda2 } = self.stiffness.clone();
+        let oscillator = Oscillator::new(lambda1, lambda2, self.h1.clone(), self.h2.clone())?;
         let clocks = oscillator.clocks();
         // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
         let stable = match clocks.as_rational() {

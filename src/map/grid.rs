@@ -3,6 +3,8 @@
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::{Oscillator, TwoClocks};
+use crate::resonance::compare::Comparisons;
+use crate::verdict::Limits;
 
 /// The most columns or rows: their products are then exact in doubles.
 const MOST: u64 = 1 << 26;
@@ -101,6 +103,23 @@ impl Grid {
     pub fn clocks(&self, column: u64, row: u64) -> Result<TwoClocks<Laurent>> {
         let (lambda1, lambda2) = (self.lambda1.clone(), self.lambda2.clone());
         Ok(Oscillator::new(lambda1, lambda2, self.h1(column), self.h2(row))?.clocks())
+    }
+
+    /// The trace condition against the resonance predictions at every pair, column by column.
+    ///
+    /// # Errors
+    /// A negative tolerance, and as [`compare`](crate::resonance::compare::compare).
+    pub fn compare(&self, tolerance: &Rational, limits: &Limits) -> Result<Comparisons> {
+        let columns: Vec<u64> = (self.columns.0..=self.columns.1).collect();
+        Comparisons::gather(columns, tolerance, |i, found| {
+            (self.rows.0..=self.rows.1).try_for_each(|j| {
+                let (clocks, place) = (self.clocks(i, j)?, || [self.h1(i), self.h2(j)]);
+                match clocks.as_rational() {
+                    Some(rational) => found.add(&rational, place, tolerance, limits),
+                    None => found.add(&clocks, place, tolerance, limits),
+                }
+            })
+        })
     }
 
     /// The grid as one line of exact strings: equal iff the grids are.

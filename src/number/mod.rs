@@ -26,11 +26,13 @@
 
 pub mod ball;
 pub mod cyclotomic;
+mod enclosed;
 mod float;
 pub mod laurent;
 mod operators;
 pub mod parse;
 pub mod polynomial;
+mod prime_field;
 mod quantity;
 mod ratio;
 pub mod rational;
@@ -39,8 +41,10 @@ mod sign;
 
 pub use ball::Ball;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
+pub(crate) use enclosed::Enclosed;
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;
+pub use prime_field::{PrimeField, prime_fields};
 pub use quantity::Quantity;
 pub use ratio::Ratio;
 pub use ring::{ExactSign, Real, Ring};

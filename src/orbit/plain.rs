@@ -16,7 +16,7 @@ use super::bound::StepBound;
 use super::floquet::ordinary;
 use crate::number::{Ball, Real, Sign, U};
 use crate::propagator::{PartialSigns, TwoClocks};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// Bits of the strengths.
 const BITS: u32 = 128;
@@ -33,7 +33,7 @@ pub fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Part
     let steps = Steps::new(clocks, schedule)?;
     let end = |x: f64, y: f64| {
         let mut orbit = Orbit { steps: &steps, x, y, square: x * x + y * y, angle: 0.0, worst: 0.0 };
-        schedule.half_period().for_each(|event| orbit.advance(event));
+        steps.kicks.lead(schedule.half_period(), &mut orbit);
         orbit.signs()
     };
     let ((a, c), (b, d)) = (end(1.0, 0.0)?, end(0.0, 1.0)?);
@@ -42,8 +42,8 @@ pub fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Part
 
 /// The shears of all events, and the constants of the bound.
 struct Steps {
-    /// b by set of clocks, whole; half of it is exact.
-    kicks: [f64; 4],
+    /// The b of all kicks; half of one is exact.
+    kicks: Kicks<f64>,
     /// Ticks in h1 times w: a = drift/`ticks`.
     ticks: f64,
     /// 2|r_k|/|û_k|.
@@ -54,11 +54,9 @@ struct Steps {
 
 impl Steps {
     fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Self> {
-        let (fast, slow) = (clocks.fast().enclosure(BITS), clocks.slow().enclosure(BITS));
-        let strengths = [fast.clone(), slow.clone(), fast.add(&slow, BITS)];
-        let [fast, slow, both] = strengths.each_ref().map(strength);
-        let (fast, slow, both) = (fast?, slow?, both?);
-        let strongest = fast.abs().max(slow.abs()).max(both.abs());
+        let [fast, slow, both] = clocks.enclosures(BITS).each_ref().map(strength);
+        let strengths = [fast?, slow?, both?];
+        let strongest = strengths.iter().fold(0.0, |most: f64, k| most.max(k.abs()));
         // w = 2^-k with 4^k next to the strongest kick: drifts are at most 1, kicks at most `strongest`.
         let w = 2f64.powi(-((strongest.max(1.0).log2() / 2.0).round() as i32));
         let largest = (1.0 / w).max(strongest * w);
@@ -70,7 +68,8 @@ impl Steps {
         let exact = schedule.clocks().iter().all(|clock| clock.step() < 1 << 53);
         let ticks = schedule.clocks()[0].step() as f64 * w;
         let local = 2.02 * bound.epsilon * bound.growth();
-        exact.then_some(Steps { kicks: [0.0, fast * w, slow * w, both * w], ticks, local, tau })
+        let kicks = Kicks::of_two_clocks(strengths, |k| [k * w, 0.5 * (k * w)]);
+        exact.then_some(Steps { kicks, ticks, local, tau })
     }
 }
 
@@ -92,25 +91,6 @@ struct Orbit<'a> {
 }
 
 impl Orbit<'_> {
-    fn advance(&mut self, event: Event) {
-        if event.drift > 0 {
-            self.x = (event.drift as f64 / self.steps.ticks).mul_add(self.y, self.x);
-            self.account();
-        }
-        if event.kicks != 0 {
-            let whole = self.steps.kicks[event.kicks as usize];
-            let b = if event.weight == Weight::Half { 0.5 * whole } else { whole };
-            self.y = (-b).mul_add(self.x, self.y);
-            self.account();
-        }
-        if !(1.0 / LONG..=LONG).contains(&self.square) {
-            // Powers of two: exact.
-            let by = if self.square > 1.0 { SHRINK } else { 1.0 / SHRINK };
-            (self.x, self.y) = (self.x * by, self.y * by);
-            self.square = self.x * self.x + self.y * self.y;
-        }
-    }
-
     /// After a shear: what it added across the orbit, and the orbit's growth.
     fn account(&mut self) {
         let before = std::mem::replace(&mut self.square, self.x * self.x + self.y * self.y);
@@ -119,11 +99,36 @@ impl Orbit<'_> {
         self.worst = self.worst.max(self.angle);
     }
 
+    /// Keeps the squared length in range.
+    fn rescale(&mut self) {
+        if !(1.0 / LONG..=LONG).contains(&self.square) {
+            // Powers of two: exact.
+            let by = if self.square > 1.0 { SHRINK } else { 1.0 / SHRINK };
+            (self.x, self.y) = (self.x * by, self.y * by);
+            self.square = self.x * self.x + self.y * self.y;
+        }
+    }
+
     /// The signs of x and y where the angle leaves them certain; `None` where a condition failed. (NaN fails.)
-    fn signs(&self) -> Option<(Option<Sign>, Option<Sign>)> {
+    fn signs(mut self) -> Option<(Option<Sign>, Option<Sign>)> {
+        // The last event may be a drift alone.
+        self.rescale();
         let slack = 1.001 * self.angle * self.square.sqrt();
         let certain = |z: f64| (z.abs() > slack).then(|| Sign::from_ordering(z.total_cmp(&0.0)));
         (self.worst <= self.steps.tau && self.square.is_finite()).then(|| (certain(self.x), certain(self.y)))
+    }
+}
+
+impl KickDrift<f64> for Orbit<'_> {
+    fn drift(&mut self, ticks: u64) {
+        self.x = (ticks as f64 / self.steps.ticks).mul_add(self.y, self.x);
+        self.account();
+    }
+
+    fn kick(&mut self, b: &f64) {
+        self.y = (-b).mul_add(self.x, self.y);
+        self.account();
+        self.rescale();
     }
 }
 
@@ -133,6 +138,7 @@ mod tests {
     use crate::number::Ratio;
     use crate::number::Rational;
     use crate::number::rational::ratio;
+    use crate::orbit::refine;
     use crate::propagator::half_period;
     use num_integer::Integer;
     use proptest::prelude::*;
@@ -172,7 +178,10 @@ mod tests {
                 ratio(9, 1) * ratio(q as i64, p as i64),
             );
             let verdict = signs_of(&clocks).and_then(|signs| signs.verdict());
-            assert_eq!(verdict, Some(half_period(&clocks).signs().verdict()), "{p}/{q}");
+            let schedule = Schedule::two_clocks(clocks.ratio()).unwrap();
+            let certain = refine::run(&clocks, &schedule, 256).and_then(|ends| ends.signs().verdict());
+            assert!(verdict.is_some());
+            assert_eq!(verdict, certain, "{p}/{q}");
         }
     }
 }

@@ -12,7 +12,7 @@ use num_traits::{FromPrimitive, Signed, ToPrimitive};
 use super::bound::StepBound;
 use crate::number::{Ball, Rational, Real, Sign};
 use crate::propagator::{PartialSigns, TwoClocks};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
 const HEADROOM: u64 = 32;
@@ -55,24 +55,43 @@ pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, e
 
 /// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
 pub fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
-    let (fast, slow) = (clocks.fast().enclosure(bits), clocks.slow().enclosure(bits));
-    let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, bits)];
-    let ticks = BigInt::from(schedule.clocks()[0].step());
+    let kicks = Kicks::of_two_clocks(clocks.enclosures(bits), |k| [k.clone(), k.scale2(-1)]);
     let end = |x: u8, v: u8| {
-        let [mut x, mut v] = [x, v].map(|n| Ball::from_integer(&n.into()));
-        let mut nodes = Nodes::default();
-        for event in schedule.half_period() {
-            let drift = Ball::from_rational(&Rational::new(event.drift.into(), ticks.clone()), bits);
-            x = x.add(&v.mul(&drift, bits), bits);
-            // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
-            nodes.see(x.sign().filter(|&sign| sign != Sign::Zero));
-            let halvings = i64::from(event.weight == Weight::Half);
-            v = v.sub(&strengths[event.kicks as usize].scale2(-halvings).mul(&x, bits), bits);
-        }
+        let [x, v] = [x, v].map(|n| Ball::from_integer(&n.into()));
+        let ticks = schedule.clocks()[0].step();
+        let mut orbit = BallOrbit { x, v, bits, ticks, nodes: Nodes::default() };
+        kicks.lead(schedule.half_period(), &mut orbit);
+        let BallOrbit { x, v, nodes, .. } = orbit;
         let signs = (x.sign(), v.sign());
         End { x, v, signs, nodes: nodes.count() }
     };
     Ends { even: end(1, 0), odd: end(0, 1) }
+}
+
+/// A solution on its way in balls of `bits` bits.
+struct BallOrbit {
+    x: Ball,
+    v: Ball,
+    bits: u32,
+    /// Ticks in the unit of time h1.
+    ticks: u64,
+    nodes: Nodes,
+}
+
+impl KickDrift<Ball> for BallOrbit {
+    fn drift(&mut self, ticks: u64) {
+        let time = Ball::from_rational(&Rational::new(ticks.into(), self.ticks.into()), self.bits);
+        self.x = self.x.add(&self.v.mul(&time, self.bits), self.bits);
+    }
+
+    fn arrive(&mut self) {
+        // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
+        self.nodes.see(self.x.sign().filter(|&sign| sign != Sign::Zero));
+    }
+
+    fn kick(&mut self, strength: &Ball) {
+        self.v = self.v.sub(&strength.mul(&self.x, self.bits), self.bits);
+    }
 }
 
 /// The lengths and strengths of the events, and the constants of the bound.
@@ -80,9 +99,8 @@ struct Steps {
     bits: u32,
     /// Ticks in the unit of time h1.
     ticks: u64,
-    /// Kick strengths by set of clocks, times 2^places; whole and halved.
-    full: [BigInt; 4],
-    half: [BigInt; 4],
+    /// Strengths times 2^places.
+    kicks: Kicks<BigInt>,
     places: u64,
     bound: StepBound,
     count: u64,
@@ -92,8 +110,7 @@ struct Steps {
 impl Steps {
     fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Self> {
         let precision = bits + 16;
-        let (fast, slow) = (clocks.fast().enclosure(precision), clocks.slow().enclosure(precision));
-        let strengths = [Ball::zero(), fast.clone(), slow.clone(), fast.add(&slow, precision)];
+        let strengths = clocks.enclosures(precision);
         let strongest = strengths.iter().map(|k| k.mid_f64().abs()).fold(1.0, f64::max);
         let kappa = 1.01 * (1.0 + strongest);
         // 2^-1000 stands for anything smaller: the bound stays a bound.
@@ -106,8 +123,7 @@ impl Steps {
         Some(Steps {
             bits,
             ticks: schedule.clocks()[0].step(),
-            full: strengths.each_ref().map(fixed),
-            half: strengths.each_ref().map(|k| fixed(&k.scale2(-1))),
+            kicks: Kicks::of_two_clocks(strengths, |k| [fixed(&k), fixed(&k.scale2(-1))]),
             places,
             bound,
             count,
@@ -118,15 +134,8 @@ impl Steps {
     /// The even or the odd solution at T/2.
     fn end(&self, schedule: &Schedule, even: bool) -> Option<End> {
         let mut orbit = Orbit::new(self, u8::from(even), u8::from(!even));
-        schedule.half_period().for_each(|event| orbit.advance(event));
+        self.kicks.lead(schedule.half_period(), &mut orbit);
         orbit.finish()
-    }
-
-    fn kick(&self, event: Event) -> &BigInt {
-        match event.weight {
-            Weight::Full => &self.full[event.kicks as usize],
-            Weight::Half => &self.half[event.kicks as usize],
-        }
     }
 
     /// 2|r_k|/|û_k| in units of 2^-bits.
@@ -153,21 +162,6 @@ impl<'a> Orbit<'a> {
         let start = |n: u8| BigInt::from(n) << shift;
         let (x, v, exponent) = (start(x), start(v), -(shift as i64));
         Orbit { steps, x, v, exponent, angle: 0.0, worst: 0.0, nodes: Nodes::default() }
-    }
-
-    fn advance(&mut self, event: Event) {
-        if event.drift > 0 {
-            let before = self.length();
-            self.x += &self.v * event.drift / self.steps.ticks;
-            self.account(before);
-        }
-        self.nodes.see(self.certain_sign(&self.x));
-        if event.kicks != 0 {
-            let before = self.length();
-            self.v -= (self.steps.kick(event) * &self.x) >> self.steps.places;
-            self.account(before);
-        }
-        self.rescale();
     }
 
     /// |û| in units of 2^bits of its own scale: between 1 and 2^34, to within 2^-50.
@@ -215,7 +209,9 @@ impl<'a> Orbit<'a> {
         beyond.then(|| if component.is_negative() { Sign::Negative } else { Sign::Positive })
     }
 
-    fn finish(self) -> Option<End> {
+    fn finish(mut self) -> Option<End> {
+        // The last event may be a drift alone.
+        self.rescale();
         let steps = self.steps;
         let within = self.worst <= steps.tau * 2f64.powi(steps.bits.min(1000) as i32);
         if !within {
@@ -234,6 +230,25 @@ impl<'a> Orbit<'a> {
             between(&(n - &radius), &(n + &radius)).scale2(self.exponent).mul(&length, precision)
         };
         Some(End { x: component(&self.x), v: component(&self.v), signs, nodes: self.nodes.count() })
+    }
+}
+
+impl KickDrift<BigInt> for Orbit<'_> {
+    fn drift(&mut self, ticks: u64) {
+        let before = self.length();
+        self.x += &self.v * ticks / self.steps.ticks;
+        self.account(before);
+    }
+
+    fn arrive(&mut self) {
+        self.nodes.see(self.certain_sign(&self.x));
+    }
+
+    fn kick(&mut self, strength: &BigInt) {
+        let before = self.length();
+        self.v -= (strength * &self.x) >> self.steps.places;
+        self.account(before);
+        self.rescale();
     }
 }
 

@@ -12,7 +12,7 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::number::{ExactSign, Laurent, Ratio, Rational, Ring, Sign};
+use crate::number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Ring, Sign};
 
 /// x'' + (L1 + L2) x = 0 with the force of L1 at the multiples of h1 and that of L2 at those of h2:
 /// the paper's section 3, its Lambda_1, Lambda_2. Unit mass; L in 1/time², h in time.
@@ -129,6 +129,12 @@ impl<S: Ring> TwoClocks<S> {
         &self.slow
     }
 
+    /// The strengths of the kicks of the fast clock, of the slow one and of both together.
+    pub fn strengths(&self) -> [S; 3] {
+        let (fast, slow) = (self.fast.clone(), self.slow.clone());
+        [fast.clone(), slow.clone(), fast + slow]
+    }
+
     /// The same system with the clocks' roles exchanged, in the time unit h2: s' = h2² L2 and so on.
     /// No verdict changes (theorem `swap_clocks` in proofs/).
     pub fn swapped(&self) -> Self {
@@ -140,6 +146,15 @@ impl<S: Ring> TwoClocks<S> {
     /// The same pair with its strengths in another ring.
     pub fn map<U: Ring>(&self, convert: impl Fn(&S) -> U) -> TwoClocks<U> {
         TwoClocks { ratio: self.ratio, fast: convert(&self.fast), slow: convert(&self.slow) }
+    }
+}
+
+impl<S: Real> TwoClocks<S> {
+    /// [`TwoClocks::strengths`] in balls.
+    pub(crate) fn enclosures(&self, bits: u32) -> [Ball; 3] {
+        let (fast, slow) = (self.fast.enclosure(bits), self.slow.enclosure(bits));
+        let both = fast.add(&slow, bits);
+        [fast, slow, both]
     }
 }
 

@@ -15,9 +15,8 @@ use num_integer::Integer;
 
 use super::TwoClocks;
 use super::elementary::{apply_drift, apply_kick};
-use crate::error::Result;
 use crate::number::{Rational, Ring};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{Events, KickDrift, Kicks, Schedule};
 
 /// H = \[\[A, B\], \[C, D\]\], the propagator over the first half of the time-symmetric period.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,8 +68,7 @@ impl<S: Ring> HalfPeriod<S> {
 /// # Panics
 /// Where the period has 2^62 ticks and more (some 10^18 kicks).
 pub fn half_period<S: Ring>(clocks: &TwoClocks<S>) -> HalfPeriod<S> {
-    let schedule = schedule(clocks).expect("a period short enough to compose");
-    HalfPeriod(compose(schedule.half_period(), &Steps::new(clocks, &schedule)))
+    HalfPeriod(compose(clocks, Schedule::half_period))
 }
 
 /// The full-period propagator of the time-symmetric form: half of each kick at t = 0 and T.
@@ -78,56 +76,35 @@ pub fn half_period<S: Ring>(clocks: &TwoClocks<S>) -> HalfPeriod<S> {
 /// # Panics
 /// As [`half_period`].
 pub fn full_period<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
-    let schedule = schedule(clocks).expect("a period short enough to compose");
-    compose(schedule.symmetric_period(), &Steps::new(clocks, &schedule))
+    compose(clocks, Schedule::symmetric_period)
 }
 
-/// The schedule of the pair.
-pub(super) fn schedule<S: Ring>(clocks: &TwoClocks<S>) -> Result<Schedule> {
-    Schedule::two_clocks(clocks.ratio())
+/// The product over the events of a span of the pair's schedule, the first event rightmost.
+pub(super) fn compose<S: Ring>(clocks: &TwoClocks<S>, span: impl Fn(&Schedule) -> Events) -> Matrix2<S> {
+    let schedule = Schedule::two_clocks(clocks.ratio()).expect("a period short enough to compose");
+    let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
+    let kicks = Kicks::of_two_clocks(clocks.strengths(), |k| [k.clone(), k * one_half.clone()]);
+    let matrix = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
+    let mut product = Product { matrix, ticks: schedule.clocks()[0].step() };
+    kicks.lead(span(&schedule), &mut product);
+    product.matrix
 }
 
-/// The product over `events`, the first event rightmost.
-pub(super) fn compose<S: Ring>(events: impl Iterator<Item = Event>, steps: &Steps<S>) -> Matrix2<S> {
-    let mut m = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
-    for event in events {
-        if event.drift > 0 {
-            apply_drift(&mut m, &steps.drift(event.drift));
-        }
-        if event.kicks != 0 {
-            apply_kick(&mut m, steps.kick(event.kicks, event.weight));
-        }
-    }
-    m
-}
-
-/// The lengths and strengths that the events of two clocks refer to.
-pub(super) struct Steps<S> {
+/// The product so far.
+struct Product<S> {
+    matrix: Matrix2<S>,
     /// Ticks in the unit of time h1.
     ticks: u64,
-    /// The strength for each set of clocks (index: the event's bits), whole and halved.
-    full: [S; 4],
-    half: [S; 4],
 }
 
-impl<S: Ring> Steps<S> {
-    pub(super) fn new(clocks: &TwoClocks<S>, schedule: &Schedule) -> Self {
-        let (fast, slow) = (clocks.fast().clone(), clocks.slow().clone());
-        let full = [S::zero(), fast.clone(), slow.clone(), fast + slow];
-        let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
-        let half = full.clone().map(|k| k * one_half.clone());
-        Steps { ticks: schedule.clocks()[0].step(), full, half }
-    }
-
-    fn kick(&self, kicks: u64, weight: Weight) -> &S {
-        match weight {
-            Weight::Full => &self.full[kicks as usize],
-            Weight::Half => &self.half[kicks as usize],
-        }
-    }
-
-    fn drift(&self, ticks: u64) -> S {
+impl<S: Ring> KickDrift<S> for Product<S> {
+    fn drift(&mut self, ticks: u64) {
         let divisor = ticks.gcd(&self.ticks);
-        S::from_rational(&Rational::new_raw((ticks / divisor).into(), (self.ticks / divisor).into()))
+        let time = Rational::new_raw((ticks / divisor).into(), (self.ticks / divisor).into());
+        apply_drift(&mut self.matrix, &S::from_rational(&time));
+    }
+
+    fn kick(&mut self, strength: &S) {
+        apply_kick(&mut self.matrix, strength);
     }
 }

@@ -5,16 +5,8 @@ use serde_json::{Value, json};
 use super::digits::outward;
 use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
-use crate::number::{Ratio, Rational};
-use crate::tongue::{Closing, Enclosure};
-
-/// The closings of one ratio, and whether elimination proves that there are no others.
-#[derive(Clone, Debug, PartialEq)]
-pub struct OfRatio {
-    pub ratio: Ratio,
-    pub closings: Vec<Closing>,
-    pub complete: bool,
-}
+use crate::number::Rational;
+use crate::tongue::{Closing, Enclosure, Found};
 
 /// Significant digits unless others are asked for: the boxes are known to 2^-100.
 pub const DIGITS: u32 = 25;
@@ -22,7 +14,7 @@ pub const DIGITS: u32 = 25;
 /// The document `kickdrift/closings/1`. The caller adds the input; `what` says in words what was searched.
 ///
 /// With `all_columns` the table is made for programs, else for people and paper.
-pub fn document(found: &[OfRatio], digits: u32, what: &str, all_columns: bool) -> Document {
+pub fn document(found: &[Found], digits: u32, what: &str, all_columns: bool) -> Document {
     let rows: Vec<Value> =
         found.iter().flat_map(|of| &of.closings).map(|closing| row(closing, digits)).collect();
     let complete: Vec<Value> = found
@@ -62,7 +54,7 @@ fn ends(x: &Enclosure, exact: Option<&Rational>, digits: u32) -> [String; 2] {
     exact.map_or_else(|| outward(&x.lo, &x.hi, digits), |x| outward(x, x, digits))
 }
 
-fn lines(found: &[OfRatio], what: &str) -> Vec<String> {
+fn lines(found: &[Found], what: &str) -> Vec<String> {
     let closings = || found.iter().flat_map(|of| &of.closings);
     let count = closings().count();
     let exact = closings().filter(|closing| closing.exact.is_some()).count();
@@ -87,7 +79,7 @@ fn labels() -> Vec<Column> {
 }
 
 /// s and ρ exactly where they are rational, else as enclosures.
-fn short_table(found: &[OfRatio]) -> Table {
+fn short_table(found: &[Found]) -> Table {
     let mut columns = labels();
     columns.extend(
         [("s", "$s$"), ("rho", "$\\rho$")]
@@ -111,7 +103,7 @@ fn short_table(found: &[OfRatio]) -> Table {
     table
 }
 
-fn table(found: &[OfRatio], digits: u32) -> Table {
+fn table(found: &[Found], digits: u32) -> Table {
     let mut columns = labels();
     for (key, latex) in [("s", "$s$"), ("rho", "$\\rho$")] {
         columns.push(Column::new(key).titled(key, latex).enclosure());

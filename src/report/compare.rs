@@ -3,22 +3,15 @@
 use serde_json::json;
 
 use super::document::Document;
-use super::table::{Cell, Column, Table};
-use crate::number::{Ratio, Rational};
-use crate::resonance::compare::{Comparison, Tally};
-
-/// A pair at which a prediction is wrong.
-#[derive(Clone, Debug)]
-pub struct Offender {
-    /// Two exact quantities that name the pair: h1 and h2 on a grid, s and rho for ratios.
-    pub place: [String; 2],
-    pub ratio: Ratio,
-    pub comparison: Comparison,
-}
+use super::record::Record;
+use super::table::{Cell, Column};
+use crate::number::Rational;
+use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally};
 
 /// The document `kickdrift/compare/1`; `places` are the names of an offender's two quantities. The caller
 /// adds the rest of the input.
-pub fn document(tally: &Tally, tolerance: &Rational, places: [&str; 2], offenders: &[Offender]) -> Document {
+pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> Document {
+    let Comparisons { tally, offenders } = all;
     Document::new("compare")
         .input("tolerance", tolerance)
         .entry("pairs", tally.pairs)
@@ -31,7 +24,7 @@ pub fn document(tally: &Tally, tolerance: &Rational, places: [&str; 2], offender
                 "false_alarms": tally.false_alarms, "beyond_verlet": tally.beyond_verlet,
             }),
         )
-        .rows(table(places, offenders))
+        .rows(record(places).table("offenders", "Pairs at which a prediction is wrong", offenders))
         .summary(&lines(tally, tolerance))
 }
 
@@ -50,51 +43,35 @@ fn lines(tally: &Tally, tolerance: &Rational) -> Vec<String> {
     ]
 }
 
-fn table(places: [&str; 2], offenders: &[Offender]) -> Table {
-    let [first, second] = places.map(|name| Column::new(name).titled(name, &typeset(name)));
-    let columns = vec![
-        first,
-        second,
-        Column::new("p").titled("p", "$p$"),
-        Column::new("q").titled("q", "$q$"),
-        Column::new("offence").left(),
-        Column::new("kind").left(),
-        Column::new("tan").titled("tan criterion", "tan criterion").left(),
-        Column::new("m").titled("nearest m", "nearest $m$"),
-        Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(),
-    ];
-    let mut table = Table::new("offenders", "Pairs at which a prediction is wrong", columns);
-    for offender in offenders {
-        table.push(row(offender));
-    }
-    table
+/// What is written of an offender.
+fn record(places: [&str; 2]) -> Record<'static, Offender> {
+    let [first, second] = places.map(|name| Column::math(name, formula(name)));
+    let nearest = |of: &Offender| of.comparison.nearest.clone();
+    Record::new()
+        .field(first, |of: &Offender| Cell::exact(&of.place[0]))
+        .field(second, |of| Cell::exact(&of.place[1]))
+        .field(Column::math("p", "p"), |of| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::new("offence").left(), |of| offence(&of.comparison).into())
+        .field(Column::new("kind").left(), |of| of.comparison.trace.verdict.kind().name().into())
+        .field(Column::new("tan").in_words("tan criterion").left(), |of| {
+            of.comparison.tan.kind().name().into()
+        })
+        .field(Column::new("m").titled("nearest m", "nearest $m$"), move |of| nearest(of).map(|n| n.m).into())
+        .field(Column::new("distance").titled("q h2/T½ - m", "$q h_2/T_{1/2} - m$").enclosure(), move |of| {
+            nearest(of).map(|n| n.distance.to_f64_enclosure()).into()
+        })
 }
 
-fn row(offender: &Offender) -> Vec<Cell> {
-    let Comparison { trace, tan, nearest, outcome } = &offender.comparison;
-    let offence = if offender.comparison.tan_agrees() { outcome.map_or("none", |o| o.name()) } else { "tan" };
-    let [first, second] = offender.place.clone().map(Cell::Exact);
-    vec![
-        first,
-        second,
-        Cell::Integer(offender.ratio.p() as i64),
-        Cell::Integer(offender.ratio.q() as i64),
-        Cell::Text(offence.into()),
-        Cell::Text(trace.verdict.kind().name().into()),
-        Cell::Text(tan.kind().name().into()),
-        nearest.as_ref().map_or(Cell::Missing, |n| Cell::Integer(n.m as i64)),
-        nearest.as_ref().map_or(Cell::Missing, |n| {
-            let (lo, hi) = n.distance.to_f64_enclosure();
-            Cell::Enclosure { lo, hi }
-        }),
-    ]
+fn offence(comparison: &Comparison) -> &'static str {
+    if comparison.tan_agrees() { comparison.outcome.map_or("none", |outcome| outcome.name()) } else { "tan" }
 }
 
-fn typeset(name: &str) -> String {
+fn formula(name: &str) -> &str {
     match name {
-        "h1" => "$h_1$".into(),
-        "h2" => "$h_2$".into(),
-        "rho" => "$\\rho$".into(),
-        other => format!("${other}$"),
+        "h1" => "h_1",
+        "h2" => "h_2",
+        "rho" => "\\rho",
+        other => other,
     }
 }

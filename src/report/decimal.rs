@@ -17,7 +17,7 @@ const LARGEST_UNCERTAINTY: u32 = 9;
 /// Numbers from 10^-5 up to below 10^7 are written without an exponent.
 const PLAIN: std::ops::Range<i32> = -5..7;
 
-/// An enclosure made ready to be shown; [`Display`](fmt::Display) for plain text, [`Shown::latex`] for papers.
+/// An enclosure made ready to be shown in plain text by [`Display`](fmt::Display).
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
     /// `sign digits x 10^-places`, right within `uncertainty` units of the last digit.
@@ -100,19 +100,6 @@ fn at_places(lo: &BigRational, hi: &BigRational, places: i32) -> Option<Shown> {
     })
 }
 
-impl Shown {
-    /// For math mode: the exponent as a power of ten.
-    pub fn latex(&self) -> String {
-        match self {
-            Shown::Ends(lo, hi) => format!("[{}, {}]", super::latex::float(*lo), super::latex::float(*hi)),
-            Shown::Concise { .. } => match self.to_string().split_once('e') {
-                Some((mantissa, power)) => format!("{mantissa} \\times 10^{{{power}}}"),
-                None => self.to_string(),
-            },
-        }
-    }
-}
-
 impl fmt::Display for Shown {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (negative, digits, places, uncertainty) = match self {
@@ -162,8 +149,6 @@ mod tests {
         assert_eq!(enclosure(-0.25, -0.25).to_string(), "-0.25");
         assert_eq!(enclosure(123456.0, 123458.0).to_string(), "123457(1)");
         assert_eq!(enclosure(3e20, 3.001e20).to_string(), "3.0005(5)e20");
-        assert_eq!(enclosure(1e-300, 1e-300 + 2e-304).latex(), "1.0001(2) \\times 10^{-300}");
-        assert_eq!(enclosure(0.0, f64::INFINITY).latex(), "[0.0, \\infty]");
     }
 
     proptest! {

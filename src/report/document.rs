@@ -49,6 +49,12 @@ impl Document {
         self
     }
 
+    /// Echoes inputs, in order.
+    #[must_use]
+    pub fn inputs<'a>(self, given: impl IntoIterator<Item = (&'a str, String)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.input(key, value))
+    }
+
     /// Echoes one input that has parts of its own, as JSON.
     #[must_use]
     pub fn input_json(mut self, key: &str, value: Value) -> Self {
@@ -123,7 +129,7 @@ impl Document {
                 Ok(all.collect::<Vec<_>>().join("\n"))
             }
             Format::Text => Ok(self.text()),
-            Format::Svg | Format::Png | Format::Npz => {
+            Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
                 let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
                 Err(Error::input("format", format.name(), remedy))
             }

@@ -1,6 +1,6 @@
 //! Tables for papers: a LaTeX `table` with a `booktabs` body, numbers in math mode.
 
-use super::decimal;
+use super::decimal::{self, Shown};
 use super::table::{Align, Cell, Column, Table};
 
 /// The whole table as a float with caption and the label `tab:NAME`; needs `\usepackage{booktabs}`.
@@ -27,12 +27,20 @@ pub fn shown(cell: &Cell) -> String {
     match cell {
         Cell::Exact(text) => format!("${}$", exact(text)),
         Cell::Float(value) => format!("${}$", float(*value)),
-        Cell::Enclosure { lo, hi } => format!("${}$", decimal::enclosure(*lo, *hi).latex()),
+        Cell::Enclosure { lo, hi } => format!("${}$", enclosure(*lo, *hi)),
         Cell::Integer(value) => format!("${value}$"),
         Cell::Text(text) => escaped(text),
         Cell::Flag(true) => "yes".into(),
         Cell::Flag(false) => "no".into(),
         Cell::Missing => "--".into(),
+    }
+}
+
+/// An enclosure in math mode: the digits that are certain, the exponent as a power of ten.
+pub fn enclosure(lo: f64, hi: f64) -> String {
+    match decimal::enclosure(lo, hi) {
+        Shown::Ends(lo, hi) => format!("[{}, {}]", float(lo), float(hi)),
+        concise => power_of_ten(concise.to_string()),
     }
 }
 
@@ -42,6 +50,10 @@ pub fn float(value: f64) -> String {
         return "\\text{NaN}".into();
     }
     let text = format!("{value:?}").replace("inf", "\\infty");
+    power_of_ten(text)
+}
+
+fn power_of_ten(text: String) -> String {
     match text.split_once('e') {
         Some((mantissa, power)) => format!("{mantissa} \\times 10^{{{power}}}"),
         None => text,
@@ -118,9 +130,10 @@ fn side(column: &Column) -> char {
 }
 
 fn head(column: &Column) -> String {
+    let title = column.latex.clone().unwrap_or_else(|| escaped(&column.title));
     match &column.unit {
-        Some(unit) => format!("{} ({})", column.latex, escaped(unit)),
-        None => column.latex.clone(),
+        Some(unit) => format!("{title} ({})", escaped(unit)),
+        None => title,
     }
 }
 
@@ -164,6 +177,8 @@ mod tests {
         assert_eq!(float(1.5e-7), "1.5 \\times 10^{-7}");
         assert_eq!(float(f64::NEG_INFINITY), "-\\infty");
         assert_eq!(float(0.25), "0.25");
+        assert_eq!(enclosure(1e-300, 1e-300 + 2e-304), "1.0001(2) \\times 10^{-300}");
+        assert_eq!(enclosure(0.0, f64::INFINITY), "[0.0, \\infty]");
     }
 
     #[test]

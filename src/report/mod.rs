@@ -25,6 +25,7 @@ pub mod npz;
 pub mod plane;
 pub mod polynomial;
 pub mod proposition;
+pub mod record;
 pub mod simulate;
 pub mod stream;
 #[cfg(feature = "figure")]

@@ -1,5 +1,5 @@
 //! NumPy's `.npz`: arrays that grow piece by piece, each in a temporary file beside the output, then joined into a
-//! zip archive without compression. Memory does not grow with their size.
+//! zip archive and deflated there. Memory does not grow with their size.
 //!
 //! An array is a `.npy` file of format 1.0: the magic bytes, a header that is a Python dictionary padded to a
 //! multiple of 64 bytes, and the elements in C order, little-endian.
@@ -13,6 +13,9 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::file::{Temporary, explained, write_with};
 use crate::error::{Error, Result};
+
+/// Few distinct values in long runs: the least effort does.
+const LEVEL: i64 = 1;
 
 /// The type of an array's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +101,8 @@ impl Array {
     fn archive(self, zip: &mut ZipWriter<impl Write + Seek>) -> io::Result<()> {
         // The date of the files is the earliest that a zip knows: same arrays, same bytes.
         let options = SimpleFileOptions::DEFAULT
-            .compression_method(CompressionMethod::Stored)
+            .compression_method(CompressionMethod::Deflated)
+            .compression_level(Some(LEVEL))
             .large_file(true)
             .unix_permissions(0o644);
         zip.start_file(format!("{}.npy", self.name), options).map_err(io::Error::other)?;

@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::document::Document;
+use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::number::{Polynomial, Ratio, Rational};
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
@@ -36,23 +37,20 @@ pub fn document(ratio: Ratio) -> Document {
         .told(&lines)
 }
 
+/// The terms other than zero: entry, powers of s and rho, coefficient.
 fn table(polynomials: &[(&'static str, Bivariate)]) -> Table {
-    let columns = vec![
-        Column::new("entry").left(),
-        Column::new("s").titled("power of s", "power of $s$"),
-        Column::new("rho").titled("power of rho", "power of $\\rho$"),
-        Column::new("coefficient"),
-    ];
-    let mut table = Table::new("terms", "Half period and trace as polynomials in s and rho", columns);
-    for (name, f) in polynomials {
-        for (i, in_rho) in f.coefficients().iter().enumerate() {
-            for (j, c) in in_rho.coefficients().iter().enumerate().filter(|(_, c)| **c != Rational::default())
-            {
-                let powers = [i, j].map(|n| Cell::Integer(n as i64));
-                let [s, rho] = powers;
-                table.push(vec![Cell::Text((*name).into()), s, rho, Cell::Exact(c.to_string())]);
-            }
-        }
-    }
-    table
+    type Term<'a> = (&'static str, usize, usize, &'a Rational);
+    let terms = polynomials.iter().flat_map(|(name, f)| {
+        let in_s = f.coefficients().iter().enumerate();
+        in_s.flat_map(move |(i, g)| g.coefficients().iter().enumerate().map(move |(j, c)| (*name, i, j, c)))
+    });
+    let terms: Vec<Term> = terms.filter(|(.., coefficient)| **coefficient != Rational::default()).collect();
+    Record::new()
+        .field(Column::new("entry").left(), |(name, ..): &Term| (*name).into())
+        .field(Column::new("s").titled("power of s", "power of $s$"), |(_, s, ..)| (*s as u64).into())
+        .field(Column::new("rho").titled("power of rho", "power of $\\rho$"), |(_, _, rho, _)| {
+            (*rho as u64).into()
+        })
+        .field(Column::new("coefficient"), |(.., coefficient)| Cell::exact(coefficient))
+        .table("terms", "Half period and trace as polynomials in s and rho", &terms)
 }

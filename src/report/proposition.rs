@@ -1,10 +1,13 @@
 //! The exhaustive check of the Proposition as a document.
 
-use serde_json::json;
+use serde_json::Value;
 
 use super::document::Document;
-use super::table::{Cell, Column, Table};
+use super::record::Record;
+use super::table::Column;
 use crate::resonance::proposition::{Check, Witness};
+
+const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
 
 /// The document `kickdrift/proposition/1`: counts, failures, and a witness for every resonant point.
 pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
@@ -16,27 +19,23 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
         format!("  curves (a, b) at a ratio p/q, each resonant with m = a p + b q  {backward:>9}"),
         format!("  failures                                                        {:>9}", failures.len()),
     ];
-    let failed: Vec<_> = failures
-        .iter()
-        .map(|w| json!({"p": w.ratio.p(), "q": w.ratio.q(), "m": w.m, "a": w.a, "b": w.b}))
-        .collect();
+    let failed: Vec<Value> = failures.iter().map(|failure| record().json(failure)).collect();
     Document::new("proposition")
         .input("max", max)
         .entry("holds", failures.is_empty())
         .entry("resonant_points", *forward)
         .entry("curves", *backward)
         .entry("failures", failed)
-        .rows(table(witnesses))
+        .rows(record().table("witnesses", CAPTION, witnesses))
         .summary(&lines)
 }
 
-fn table(witnesses: &[Witness]) -> Table {
-    let columns = ["p", "q", "m", "a", "b"].map(|key| Column::new(key).titled(key, &format!("${key}$")));
-    let caption = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
-    let mut table = Table::new("witnesses", caption, columns.to_vec());
-    for w in witnesses {
-        let cells = [w.ratio.p() as i64, w.ratio.q() as i64, w.m as i64, w.a, w.b];
-        table.push(cells.map(Cell::Integer).to_vec());
-    }
-    table
+/// What is written of a resonant point.
+fn record() -> Record<'static, Witness> {
+    Record::new()
+        .field(Column::math("p", "p"), |of: &Witness| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into())
+        .field(Column::math("a", "a"), |of| of.a.into())
+        .field(Column::math("b", "b"), |of| of.b.into())
 }

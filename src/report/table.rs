@@ -29,6 +29,56 @@ pub enum Cell {
     Missing,
 }
 
+impl Cell {
+    /// An exact number, from its text.
+    pub fn exact(number: impl ToString) -> Self {
+        Cell::Exact(number.to_string())
+    }
+}
+
+impl From<i64> for Cell {
+    fn from(value: i64) -> Self {
+        Cell::Integer(value)
+    }
+}
+
+impl From<u64> for Cell {
+    fn from(value: u64) -> Self {
+        // Counts and labels stay below 2^63.
+        Cell::Integer(value as i64)
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(value: f64) -> Self {
+        Cell::Float(value)
+    }
+}
+
+impl From<(f64, f64)> for Cell {
+    fn from((lo, hi): (f64, f64)) -> Self {
+        Cell::Enclosure { lo, hi }
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(words: &str) -> Self {
+        Cell::Text(words.into())
+    }
+}
+
+impl From<bool> for Cell {
+    fn from(value: bool) -> Self {
+        Cell::Flag(value)
+    }
+}
+
+impl<T: Into<Cell>> From<Option<T>> for Cell {
+    fn from(value: Option<T>) -> Self {
+        value.map_or(Cell::Missing, Into::into)
+    }
+}
+
 /// How a column lies on paper and on a terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
@@ -45,8 +95,8 @@ pub struct Column {
     pub key: String,
     /// The name in plain text.
     pub title: String,
-    /// The name in LaTeX, typeset as it stands.
-    pub latex: String,
+    /// The name in LaTeX, typeset as it stands; without one the title is typeset as plain text.
+    pub latex: Option<String>,
     /// The unit, shown in parentheses after the title.
     pub unit: Option<String>,
     /// The side on which the cells line up.
@@ -61,18 +111,30 @@ impl Column {
         Column {
             key: key.into(),
             title: key.into(),
-            latex: super::latex::escaped(key),
+            latex: None,
             unit: None,
             align: Align::Right,
             enclosed: false,
         }
     }
 
+    /// A column whose titles are its key and, in LaTeX, a formula.
+    pub fn math(key: &str, formula: &str) -> Self {
+        Column::new(key).titled(key, &format!("${formula}$"))
+    }
+
     /// The same column with a title for people, plain and in LaTeX.
     #[must_use]
     pub fn titled(mut self, title: &str, latex: &str) -> Self {
         self.title = title.into();
-        self.latex = latex.into();
+        self.latex = Some(latex.into());
+        self
+    }
+
+    /// The same column with words for a title.
+    #[must_use]
+    pub fn in_words(mut self, title: &str) -> Self {
+        self.title = title.into();
         self
     }
 

@@ -1,16 +1,17 @@
 //! The answer to "is this pair stable?" as a document.
 
-use serde_json::{Map, Value};
+use serde_json::json;
 
 use super::decimal;
-use super::document::{Document, enclosure};
-use super::table::{Cell, Column, Table};
+use super::document::Document;
+use super::record::Record;
+use super::table::{Cell, Column};
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::resonance::dominant_family;
 use crate::verdict::{Decision, Growth, Kind, exact_trace};
 
-/// A decided pair, with all that the document tells.
+/// A decided pair, with all that its document holds.
 #[derive(Clone, Debug)]
 pub struct Answer {
     pub oscillator: Oscillator,
@@ -20,9 +21,10 @@ pub struct Answer {
     pub exact_trace: Option<Rational>,
 }
 
-/// Periods of at most so many kicks have their rational trace shown unasked ...
+/// A rational trace is shown unasked where the period has at most so many kicks.
 const SHORT_PERIOD: u64 = 40;
-/// ... if it has at most so many characters.
+
+/// A rational trace is shown unasked where it has at most so many characters.
 const SHORT_TEXT: usize = 60;
 
 impl Answer {
@@ -55,42 +57,44 @@ impl Answer {
 
     /// The document `kickdrift/verdict/1`.
     pub fn document(&self) -> Document {
-        let (oscillator, clocks) = (&self.oscillator, self.oscillator.clocks());
-        let verdict = self.decision.verdict;
-        Document::new("verdict")
-            .input("lambda1", oscillator.lambda1())
-            .input("lambda2", oscillator.lambda2())
-            .input("h1", oscillator.h1())
-            .input("h2", oscillator.h2())
-            .entry("p", clocks.p())
-            .entry("q", clocks.q())
-            .entry("kind", verdict.kind().name())
-            .entry("stable", verdict.is_stable())
-            .entry("side", verdict.side())
-            .entry("trace", self.trace())
-            .entry("growth_rate", enclosure(self.growth_rate()))
-            .entry("resonance", self.resonance_value())
-            .entry("decided_by", self.decision.decided_by.name())
-            .long_rows(self.table())
-            .told(&self.lines())
-    }
-
-    fn trace(&self) -> Value {
-        let mut trace = enclosure(self.growth.trace.to_f64_enclosure());
-        if let (Some(exact), Some(map)) = (&self.exact_trace, trace.as_object_mut()) {
-            map.insert("exact".into(), exact.to_string().into());
+        let record = record();
+        let (lambda1, lambda2) = (self.oscillator.lambda1(), self.oscillator.lambda2());
+        let document = Document::new("verdict").input("lambda1", lambda1).input("lambda2", lambda2);
+        let mut document = record.document(document, self);
+        if let Some(exact) = &self.exact_trace {
+            let (lo, hi) = self.growth.trace.to_f64_enclosure();
+            document = document.entry("trace", json!({"lo": lo, "hi": hi, "exact": exact.to_string()}));
         }
-        trace
-    }
-
-    fn resonance_value(&self) -> Value {
-        let Some((m, a, b)) = self.resonance() else { return Value::Null };
-        let entries = [("m", Value::from(m)), ("a", a.into()), ("b", b.into())];
-        Value::Object(entries.into_iter().map(|(key, value)| (key.to_string(), value)).collect::<Map<_, _>>())
+        document
+            .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
+            .told(&self.lines())
     }
 }
 
-/// For people and for rows.
+/// What is written of an answer.
+fn record() -> Record<'static, Answer> {
+    type Of<'a> = &'a Answer;
+    Record::new()
+        .input(Column::math("h1", "h_1"), |of: Of| Cell::exact(of.oscillator.h1()))
+        .input(Column::math("h2", "h_2"), |of| Cell::exact(of.oscillator.h2()))
+        .field(Column::math("p", "p"), |of| of.oscillator.clocks().p().into())
+        .field(Column::math("q", "q"), |of| of.oscillator.clocks().q().into())
+        .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())
+        .field(Column::new("stable"), |of| of.decision.verdict.is_stable().into())
+        .field(Column::new("side"), |of| i64::from(of.decision.verdict.side()).into())
+        .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |of| {
+            of.growth.trace.to_f64_enclosure().into()
+        })
+        .field(Column::new("growth_rate").in_words("growth rate").enclosure(), |of| of.growth_rate().into())
+        .field_in("resonance", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
+        .field_in("resonance", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
+        .field_in("resonance", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
+        .field(Column::new("decided_by").in_words("decided by").left(), |of| {
+            of.decision.decided_by.name().into()
+        })
+}
+
+/// For people.
 impl Answer {
     /// Five to seven lines; the one row of the table would only repeat them.
     fn lines(&self) -> Vec<String> {
@@ -133,46 +137,6 @@ impl Answer {
             Kind::Parabolic => format!("unstable: {verdict}; linear growth"),
             Kind::Hyperbolic => format!("unstable: {verdict}; exponential growth"),
         }
-    }
-
-    fn table(&self) -> Table {
-        let clocks = self.oscillator.clocks();
-        let verdict = self.decision.verdict;
-        let columns = vec![
-            Column::new("h1").titled("h1", "$h_1$"),
-            Column::new("h2").titled("h2", "$h_2$"),
-            Column::new("p").titled("p", "$p$"),
-            Column::new("q").titled("q", "$q$"),
-            Column::new("kind").left(),
-            Column::new("stable"),
-            Column::new("side"),
-            Column::new("trace").titled("trace", "$\\operatorname{Tr} Q$").enclosure(),
-            Column::new("growth_rate").titled("growth rate", "growth rate").enclosure(),
-            Column::new("m").titled("m", "$m$"),
-            Column::new("a").titled("a", "$a$"),
-            Column::new("b").titled("b", "$b$"),
-            Column::new("decided_by").titled("decided by", "decided by").left(),
-        ];
-        let mut table = Table::new("verdict", "Stability of one pair of steps", columns);
-        let interval = |(lo, hi): (f64, f64)| Cell::Enclosure { lo, hi };
-        let resonance = self.resonance();
-        let integer = |n: Option<i64>| n.map_or(Cell::Missing, Cell::Integer);
-        table.push(vec![
-            Cell::Exact(self.oscillator.h1().to_string()),
-            Cell::Exact(self.oscillator.h2().to_string()),
-            Cell::Integer(clocks.p() as i64),
-            Cell::Integer(clocks.q() as i64),
-            Cell::Text(verdict.kind().name().into()),
-            Cell::Flag(verdict.is_stable()),
-            Cell::Integer(verdict.side().into()),
-            interval(self.growth.trace.to_f64_enclosure()),
-            interval(self.growth_rate()),
-            integer(resonance.map(|(m, _, _)| m as i64)),
-            integer(resonance.map(|(_, a, _)| a)),
-            integer(resonance.map(|(_, _, b)| b)),
-            Cell::Text(self.decision.decided_by.name().into()),
-        ]);
-        table
     }
 }
 

@@ -1,7 +1,7 @@
 //! The trace condition against the resonance predictions, pair by pair.
 //!
 //! Two questions are asked of every pair. Does the tan criterion say what the trace says? (It must, for every
-//! q: both are exact.) And does the rule of thumb "unstable whenever q h2 is near an integer multiple of T½" say
+//! q: both are exact, each by arithmetic of its own.) And does the rule of thumb "unstable whenever q h2 is near an integer multiple of T½" say
 //! so, "near" meaning |p θ/π − m| ≤ tolerance for some m ≥ 1? (It need not.)
 //!
 //! ```
@@ -18,8 +18,9 @@
 
 use super::angle::Nearest;
 use super::tan;
-use crate::error::Result;
-use crate::number::Rational;
+use crate::error::{Error, Result};
+use crate::number::{Laurent, Ratio, Rational};
+use crate::parallel::*;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
 
@@ -66,9 +67,10 @@ impl Outcome {
 /// Both predictions beside the trace's verdict.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// By kicks and drifts (the refine and exact tiers), which share nothing with the tan criterion.
+    /// Rests on kicks and drifts one by one, in multiple precision or exactly (the refine and exact tiers).
     pub trace: Decision,
-    /// By the tan criterion.
+    /// Rests on turns of the fast clock by θ with the slow kicks between them, in balls or exactly
+    /// ([`tan::criterion`]): the two sides share the numbers and the table of signs, and no arithmetic beyond.
     pub tan: Verdict,
     /// The nearest resonance; `None` beyond the fast clock's Verlet limit s = 4, where there is no θ.
     pub nearest: Option<Nearest>,
@@ -147,4 +149,91 @@ impl Tally {
         self.beyond_verlet += other.beyond_verlet;
         self
     }
+}
+
+/// A pair at which a prediction is wrong.
+#[derive(Clone, Debug)]
+pub struct Offender {
+    /// Two exact quantities that name the pair: h1 and h2 on a grid, s and ρ for ratios.
+    pub place: [Laurent; 2],
+    pub ratio: Ratio,
+    pub comparison: Comparison,
+}
+
+/// Many pairs compared: the counts, and the pairs at which a prediction is wrong, in order.
+#[derive(Clone, Debug, Default)]
+pub struct Comparisons {
+    pub tally: Tally,
+    pub offenders: Vec<Offender>,
+}
+
+impl Comparisons {
+    /// Compares one more pair.
+    ///
+    /// # Errors
+    /// As [`compare`].
+    pub fn add<S: Decidable>(
+        &mut self,
+        clocks: &TwoClocks<S>,
+        place: impl FnOnce() -> [Laurent; 2],
+        tolerance: &Rational,
+        limits: &Limits,
+    ) -> Result<()> {
+        let comparison = compare(clocks, tolerance, limits)?;
+        self.tally.add(&comparison);
+        if !comparison.tan_agrees() || comparison.outcome.is_some_and(Outcome::is_offence) {
+            self.offenders.push(Offender { place: place(), ratio: clocks.ratio(), comparison });
+        }
+        Ok(())
+    }
+
+    /// The parts of all items, on all threads, joined in the items' order.
+    ///
+    /// # Errors
+    /// A negative tolerance, and those of the parts.
+    pub fn gather<T: Send>(
+        items: Vec<T>,
+        tolerance: &Rational,
+        part: impl Fn(T, &mut Comparisons) -> Result<()> + Send + Sync,
+    ) -> Result<Comparisons> {
+        if *tolerance < Rational::default() {
+            return Err(Error::input("tolerance", tolerance, "must not be negative"));
+        }
+        let one = |item: T| {
+            let mut found = Comparisons::default();
+            part(item, &mut found).map(|()| found)
+        };
+        let parts: Vec<Comparisons> = items.into_par_iter().map(one).collect::<Result<_>>()?;
+        Ok(parts.into_iter().fold(Comparisons::default(), |mut all, mut part| {
+            all.tally = all.tally.plus(&part.tally);
+            all.offenders.append(&mut part.offenders);
+            all
+        }))
+    }
+}
+
+/// Every ratio with p + q ≤ `max_sum` at s = 4k/(samples + 1), k = 1, ..., samples.
+///
+/// # Errors
+/// Numbers beyond 2000 and a million, a negative tolerance, and as [`compare`].
+pub fn compare_ratios(
+    max_sum: u64,
+    rho: &Rational,
+    samples: u64,
+    tolerance: &Rational,
+    limits: &Limits,
+) -> Result<Comparisons> {
+    if !(2..=2000).contains(&max_sum) {
+        return Err(Error::input("max-sum", max_sum, "choose 2 to 2000"));
+    }
+    if !(1..=1_000_000).contains(&samples) {
+        return Err(Error::input("samples", samples, "choose 1 to 1000000"));
+    }
+    Comparisons::gather(Ratio::up_to(max_sum).collect(), tolerance, |ratio: Ratio, found| {
+        (1..=samples).try_for_each(|k| {
+            let s = Rational::new((4 * k).into(), (samples + 1).into());
+            let place = || [Laurent::from(&s), Laurent::from(rho)];
+            found.add(&TwoClocks::with_rho(ratio, s.clone(), rho.clone()), place, tolerance, limits)
+        })
+    })
 }

@@ -10,6 +10,14 @@ pub struct Window {
     pub h2: (f64, f64),
 }
 
+impl Window {
+    /// The window of two closed ranges, widened to doubles.
+    pub fn new(h1: &(Laurent, Laurent), h2: &(Laurent, Laurent)) -> Window {
+        let ends = |(lo, hi): &(Laurent, Laurent)| (lo.enclose_f64().0, hi.enclose_f64().1);
+        Window { h1: ends(h1), h2: ends(h2) }
+    }
+}
+
 /// A curve 1/T½(h1) = a/h1 + b/h2 within a window: its pieces from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {

@@ -18,6 +18,7 @@
 mod angle;
 pub mod compare;
 mod curve;
+mod families;
 mod family;
 pub mod proposition;
 mod strength;
@@ -25,5 +26,6 @@ pub mod tan;
 
 pub use angle::{Angle, Nearest};
 pub use curve::{Curve, CurvePoint, Window, curve, curve_within};
+pub use families::Families;
 pub use family::{dominant_family, families};
 pub use strength::{FirstOrder, first_order, strength};

@@ -10,21 +10,30 @@
 //! so the pair is unstable iff t lies between the critical values −cE/cO of A and D (Tr < −2) or between the
 //! values cO/cE of B and C (Tr > 2). (Theorems `tan_criterion_q1`, `tan_criterion` in proofs/.)
 //!
-//! None of this composes a kick of the fast clock: it is a route of its own to the verdict. Angles drop
-//! out of the exact form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s (Chebyshev's), and with
-//! d = cO sin θ the update of a slow kick of strength k at t = n + σ is
+//! None of this composes a kick of the fast clock, and nothing is asked of the verdict's ladder: it is a route of its
+//! own. Angles drop out of the form: C_n = cos nθ and S_n = sin nθ/ sin θ are polynomials in s (Chebyshev's), which
+//! the addition theorems give for any n at once,
+//!
+//! ```text
+//!     C_{m+n} = C_m C_n - sin²θ S_m S_n,   S_{m+n} = S_m C_n + C_m S_n,   sin²θ = s - s²/4,
+//! ```
+//!
+//! and with d = cO sin θ the update of a slow kick of strength k at t = n + σ is
 //!
 //! ```text
 //!     E = (1-σ) C_n + σ C_{n+1},  O = (1-σ) S_n + σ S_{n+1},   x = cE E + d O,   cE += k x O,  d -= k x E.
 //! ```
+//!
+//! The four signs are first enclosed, in balls of 128 bits and more; what stays undecided there, the edges above
+//! all, is computed exactly.
 
 use nalgebra::Matrix2;
 use num_traits::{One, Signed, Zero};
 
-use crate::number::{ExactSign, Rational, Ring, Sign};
+use crate::number::{Enclosed, ExactSign, Rational, Real, Ring, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::respa::power;
-use crate::verdict::{Decidable, HalfSigns, Kind, Verdict, filter_only};
+use crate::verdict::{HalfSigns, Kind, PartialSigns, Verdict};
 
 /// What the tan criterion says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,12 +51,15 @@ impl Criterion {
     }
 }
 
-/// The tan criterion for any q: in certified doubles (the filter works in these coordinates), else exactly.
-///
-/// # Panics
-/// Where p + q is too large to compose (the exact form has p + q terms).
-pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>) -> Criterion {
-    Criterion(filter_only(clocks).unwrap_or_else(|| exact_forms(clocks).verdict()))
+/// The tan criterion for any q: the four forms enclosed, else computed exactly. q/2 slow kicks, whatever p.
+pub fn criterion<S: Real>(clocks: &TwoClocks<S>) -> Criterion {
+    // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them.
+    let kicks = clocks.q();
+    let enclosed = enclosed_forms::<S, 128>(clocks)
+        .or_else(|| enclosed_forms::<S, 512>(clocks))
+        .or_else(|| (kicks > 200).then(|| enclosed_forms::<S, 2048>(clocks))?)
+        .or_else(|| (kicks > 800).then(|| enclosed_forms::<S, 8192>(clocks))?);
+    Criterion(enclosed.unwrap_or_else(|| exact_forms(clocks).verdict()))
 }
 
 /// The tan criterion for any q by exact arithmetic in the ring of s and the slow kick.
@@ -57,22 +69,42 @@ pub fn exact_criterion<S: ExactSign>(clocks: &TwoClocks<S>) -> Criterion {
 
 /// The signs of the four forms at T/2, each times a positive factor.
 fn exact_forms<S: ExactSign>(clocks: &TwoClocks<S>) -> HalfSigns {
-    let (even, odd) = coefficients(clocks);
-    let half_turn = HalfTurn::new(clocks.p(), clocks.fast());
+    let [a, b, c, d] = forms(clocks).map(|form| form.sign());
+    HalfSigns::new(a, b, c, d)
+}
+
+/// The verdict, where balls of so many bits tell enough of the four signs.
+fn enclosed_forms<S: Real, const BITS: u32>(clocks: &TwoClocks<S>) -> Option<Verdict> {
+    let enclosed = clocks.map(|x| Enclosed::<BITS>(x.enclosure(BITS)));
+    let [a, b, c, d] = forms(&enclosed).map(|form| form.sign());
+    PartialSigns { a, b, c, d }.verdict()
+}
+
+/// A, B, C, D, each times a positive factor.
+fn forms<S: Ring>(clocks: &TwoClocks<S>) -> [S; 4] {
+    let turns = Turns::new(clocks.fast());
+    let (even, odd) = coefficients(clocks, &turns);
+    let half_turn = HalfTurn::new(clocks.p(), clocks.fast(), &turns);
     let ((a, c), (b, d)) = (half_turn.forms(&even), half_turn.forms(&odd));
-    HalfSigns::new(a.sign(), b.sign(), c.sign(), d.sign())
+    [a, b, c, d]
 }
 
 /// (cE, d) after the slow kicks of the half period, for the even and the odd start.
-fn coefficients<S: Ring>(clocks: &TwoClocks<S>) -> ([S; 2], [S; 2]) {
+fn coefficients<S: Ring>(clocks: &TwoClocks<S>, turns: &Turns<S>) -> ([S; 2], [S; 2]) {
     let (p, q) = (u128::from(clocks.p()), u128::from(clocks.q()));
     let (mut even, mut odd) = ([S::one(), S::zero()], [S::zero(), S::one()]);
-    let mut chebyshev = Chebyshev::new(clocks.fast());
+    // From one slow kick to the next the fast clock makes ⌊p/q⌋ steps or one more.
+    let short = turns.by(clocks.p() / clocks.q());
+    let long = turns.sum(&short, &turns.once);
+    let (mut n, mut turn) = (0, turns.by(0));
     for k in 0..=q / 2 {
-        let (n, r) = (k * p / q, k * p % q);
-        chebyshev.advance_to(n);
+        let (next, r) = (k * p / q, k * p % q);
+        if k > 0 {
+            turn = turns.sum(&turn, if next - n == p / q { &short } else { &long });
+        }
+        n = next;
         let sigma = S::from_rational(&Rational::new(r.into(), q.into()));
-        let (e, o) = chebyshev.between(&sigma);
+        let [e, o] = between(&turn, &turns.sum(&turn, &turns.once), &sigma);
         let whole = k > 0 && 2 * k != q;
         let weight = S::from_rational(&Rational::new(1.into(), if whole { 1 } else { 2 }.into()));
         let strength = S::product(clocks.slow(), &weight);
@@ -91,39 +123,43 @@ fn kick<S: Ring>([c, d]: &mut [S; 2], strength: &S, e: &S, o: &S) {
     d.sub_product(&y, e);
 }
 
-/// C_n, S_n and C_{n+1}, S_{n+1} by X_{n+1} = (2 − s) X_n − X_{n−1}.
-struct Chebyshev<S> {
-    n: u128,
-    now: [S; 2],
-    next: [S; 2],
-    two_cos: S,
+/// E and O at n + σ.
+fn between<S: Ring>(now: &[S; 2], next: &[S; 2], sigma: &S) -> [S; 2] {
+    [0, 1].map(|i| {
+        let mut x = now[i].clone();
+        x.add_product(sigma, &next[i]);
+        x.sub_product(sigma, &now[i]);
+        x
+    })
 }
 
-impl<S: Ring> Chebyshev<S> {
+/// Turns by nθ, as (C_n, S_n), and their addition theorems.
+struct Turns<S> {
+    once: [S; 2],
+    sin2: S,
+}
+
+impl<S: Ring> Turns<S> {
     fn new(s: &S) -> Self {
-        let half = S::from_rational(&Rational::new(1.into(), 2.into()));
-        let two_cos = S::from_rational(&Rational::from_integer(2.into())) + -s.clone();
-        let next = [S::product(&two_cos, &half), S::one()];
-        Chebyshev { n: 0, now: [S::one(), S::zero()], next, two_cos }
+        let half_s = S::product(s, &S::from_rational(&Rational::new(1.into(), 2.into())));
+        let sin2 = s.clone() + -S::product(&half_s, &half_s);
+        Turns { once: [S::one() + -half_s, S::one()], sin2 }
     }
 
-    fn advance_to(&mut self, n: u128) {
-        while self.n < n {
-            let after = [0, 1].map(|i| S::product(&self.two_cos, &self.next[i]) + -self.now[i].clone());
-            self.now = std::mem::replace(&mut self.next, after);
-            self.n += 1;
-        }
+    fn sum(&self, [c, s]: &[S; 2], [d, t]: &[S; 2]) -> [S; 2] {
+        let mut cos = S::product(c, d);
+        cos.sub_product(&self.sin2, &S::product(s, t));
+        let mut sin = S::product(s, d);
+        sin.add_product(c, t);
+        [cos, sin]
     }
 
-    /// E and O at n + σ.
-    fn between(&self, sigma: &S) -> (S, S) {
-        let [e, o] = [0, 1].map(|i| {
-            let mut x = self.now[i].clone();
-            x.add_product(sigma, &self.next[i]);
-            x.sub_product(sigma, &self.now[i]);
-            x
-        });
-        (e, o)
+    /// The turn by nθ, by doubling.
+    fn by(&self, n: u64) -> [S; 2] {
+        (0..u64::BITS - n.leading_zeros()).rev().fold([S::one(), S::zero()], |turn, bit| {
+            let twice = self.sum(&turn, &turn);
+            if n >> bit & 1 == 1 { self.sum(&twice, &self.once) } else { twice }
+        })
     }
 }
 
@@ -136,16 +172,12 @@ enum HalfTurn<S> {
 }
 
 impl<S: Ring> HalfTurn<S> {
-    fn new(p: u64, s: &S) -> Self {
-        let mut chebyshev = Chebyshev::new(s);
-        chebyshev.advance_to(u128::from(p / 2));
-        let [cos, sin] = chebyshev.now.clone();
+    fn new(p: u64, s: &S, turns: &Turns<S>) -> Self {
+        let [cos, sin] = turns.by(p / 2);
         let constant = |n: i64, d: i64| S::from_rational(&Rational::new(n.into(), d.into()));
         let half_s = S::product(s, &constant(1, 2));
         if p.is_multiple_of(2) {
-            // sin²θ = s − s²/4.
-            let sin2 = s.clone() + -S::product(&half_s, &half_s);
-            return HalfTurn::Even { cos, sin, sin2 };
+            return HalfTurn::Even { cos, sin, sin2: turns.sin2.clone() };
         }
         // cos(nθ + θ/2) = cos(θ/2) (C_n − 2 sin²(θ/2) S_n), sin(nθ + θ/2) = sin(θ/2) (C_n + 2 cos²(θ/2) S_n).
         let twice_cos2 = constant(2, 1) + -half_s.clone();
@@ -226,4 +258,29 @@ pub fn two_slow_kicks(clocks: &TwoClocks<Rational>) -> Option<Sign> {
         (_, true) => Sign::Positive,
         _ => Sign::Zero,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Ratio;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn the_forms_are_those_of_the_half_period_for_every_strength() {
+        for ratio_of_steps in Ratio::up_to(14) {
+            for (s, k) in [(-3, 2), (5, 9), (20, -7), (36, 1), (40, 3), (47, 11)] {
+                let clocks = TwoClocks::new(ratio_of_steps, ratio(s, 10), ratio(k, 10));
+                let signs = crate::propagator::half_period(&clocks).signs();
+                assert_eq!(exact_forms(&clocks).all(), signs.all(), "{ratio_of_steps}, {s}/10, {k}/10");
+                // 512 bits tell all but the edges, and of those nothing false.
+                let enclosed = enclosed_forms::<_, 512>(&clocks);
+                let edge = matches!(signs.verdict(), Verdict::Parabolic(_) | Verdict::Coexistence(_));
+                assert!(
+                    enclosed.map_or(edge, |found| found == signs.verdict()),
+                    "{ratio_of_steps}, {s}/10, {k}/10"
+                );
+            }
+        }
+    }
 }

@@ -13,6 +13,17 @@ const SCHEMA: &str = "kickdrift/scene/1";
 #[serde(try_from = "Value")]
 pub struct Quantity(pub String);
 
+impl Quantity {
+    /// What is given, read by a parser that names the field.
+    pub(super) fn read<T>(
+        given: Option<&Quantity>,
+        field: &str,
+        parse: impl Fn(&str, &str) -> Result<T>,
+    ) -> Result<Option<T>> {
+        given.map(|quantity| parse(field, &quantity.0)).transpose()
+    }
+}
+
 impl TryFrom<Value> for Quantity {
     type Error = String;
 
@@ -52,10 +63,10 @@ pub struct Document {
     /// lambda2/lambda1, in place of lambda2.
     pub rho: Option<Quantity>,
     /// Where closings are searched.
-    pub rho_range: Option<String>,
+    pub rho_range: Option<Quantity>,
     /// The steps that tongues and the atlas show.
     pub window: Option<Window>,
-    /// What the atlas's colours tell: family or growth.
+    /// What the atlas's colours show: family or growth.
     pub colour: Option<String>,
     /// The products, `NAME` or `NAME.FORMAT`.
     pub want: Vec<String>,
@@ -65,32 +76,32 @@ pub struct Document {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Grid {
-    /// The spacing of both steps ...
+    /// The spacing of both steps.
     pub step: Option<Quantity>,
-    /// ... or of h1 and h2 apart.
+    /// The spacing of h1, where it differs.
     pub step1: Option<Quantity>,
-    /// The spacing of h2.
+    /// The spacing of h2, where it differs.
     pub step2: Option<Quantity>,
     /// The range of h1.
-    pub h1: String,
+    pub h1: Quantity,
     /// The range of h2.
-    pub h2: String,
+    pub h2: Quantity,
 }
 
 /// Closed ranges `LO..HI` of the steps.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Window {
-    pub h1: String,
-    pub h2: String,
+    pub h1: Quantity,
+    pub h2: Quantity,
 }
 
 /// Ranges `LO..HI` of a and b, and samples a curve.
 #[derive(Clone, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Families {
-    pub a: Option<String>,
-    pub b: Option<String>,
+    pub a: Option<Quantity>,
+    pub b: Option<Quantity>,
     pub samples: Option<u32>,
 }
 

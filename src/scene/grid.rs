@@ -29,7 +29,19 @@ impl GridRange {
             None => Err(Error::missing(field, "give the spacing as \"step\", or as \"step1\" and \"step2\"")),
         };
         let steps = [step("grid.step1", &grid.step1)?, step("grid.step2", &grid.step2)?];
-        Ok(GridRange::new(steps, [parse_range("grid.h1", &grid.h1)?, parse_range("grid.h2", &grid.h2)?]))
+        let ranges = [parse_range("grid.h1", &grid.h1.0)?, parse_range("grid.h2", &grid.h2.0)?];
+        Ok(GridRange::new(steps, ranges))
+    }
+
+    /// The fields by which a document echoes it.
+    pub fn given(&self) -> [(&'static str, String); 4] {
+        let ([step1, step2], [h1, h2]) = (&self.steps, &self.ranges);
+        [
+            ("step1", step1.to_string()),
+            ("step2", step2.to_string()),
+            ("h1_range", shown_range(h1)),
+            ("h2_range", shown_range(h2)),
+        ]
     }
 
     /// All pairs of multiples of the spacings in the ranges, for one oscillator.
@@ -50,4 +62,9 @@ impl GridRange {
     pub fn ranges(&self) -> &[(Laurent, Laurent); 2] {
         &self.ranges
     }
+}
+
+/// A closed range as it is written, exactly.
+pub fn shown_range<T: std::fmt::Display>((lo, hi): &(T, T)) -> String {
+    format!("{lo}..{hi}")
 }

@@ -14,7 +14,7 @@
 //! }"#;
 //! let scene = Scene::read(text).unwrap();
 //! assert_eq!(scene.grid().unwrap().pairs(), 63 * 350);
-//! assert!(matches!(scene.want()[0].product, Product::Map));
+//! assert!(matches!(scene.want[0].product, Product::Map));
 //! ```
 
 mod document;
@@ -27,27 +27,66 @@ use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
 use crate::number::{Laurent, Ratio, Rational};
+use crate::resonance::Families;
 
 pub use document::{Document, Quantity};
-pub use grid::GridRange;
+pub use grid::{GridRange, shown_range};
 #[cfg(feature = "system")]
 pub use system::{Axis, Scan, SystemScene};
 pub use want::{Product, Want};
 
-/// What is to be computed, checked as far as it can be without computing.
+/// What is to be computed: what the file gives, read once, and checked as far as it can be without computing.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Scene {
-    document: Document,
-    range: Option<GridRange>,
-    want: Vec<Want>,
+    /// The title, or nothing.
+    pub title: String,
+    /// The stiffness of the fast force, 1/time².
+    pub lambda1: Option<Laurent>,
+    /// The stiffness of the slow force, 1/time².
+    pub lambda2: Option<Laurent>,
+    /// The spacings and ranges of the steps.
+    pub grid: Option<GridRange>,
+    /// The curves wanted.
+    pub families: Option<Families>,
+    /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
+    pub tolerance: Option<Rational>,
+    /// h2/h1 = p/q.
+    pub ratio: Option<Ratio>,
+    /// The bound on p and q of an exhaustive check of the Proposition.
+    pub max: Option<u64>,
+    /// All ratios with p + q up to this.
+    pub max_sum: Option<u64>,
+    /// ρ = L2/L1, where it is given as such.
+    pub rho: Option<Rational>,
+    /// The closed range of ρ in which closings are searched.
+    pub rho_range: Option<(Rational, Rational)>,
+    /// The steps to show.
+    pub window: Option<[StepRange; 2]>,
+    /// What the atlas's colours show: `family` or `growth`.
+    pub colour: Option<String>,
+    /// The products wanted, in the order of the file.
+    pub want: Vec<Want>,
 }
 
-/// The curves wanted: closed ranges of a and b, and the number of samples in 0 < θ < π.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Families {
-    pub a: (i64, i64),
-    pub b: (i64, i64),
-    pub samples: usize,
+/// The curves unless a scene or a person says otherwise: a from 0 to 3 and |b| up to 12.
+pub const FAMILIES: Families = Families { a: (0, 3), b: (-12, 12), samples: 400 };
+
+fn read_families(document: &document::Families) -> Result<Families> {
+    let range = |field, given: &Option<_>, default| {
+        Ok(Quantity::read(given.as_ref(), field, parse_integer_range)?.unwrap_or(default))
+    };
+    Ok(Families {
+        a: range("families.a", &document.a, FAMILIES.a)?,
+        b: range("families.b", &document.b, FAMILIES.b)?,
+        samples: document.samples.map_or(FAMILIES.samples, |samples| samples as usize),
+    })
+}
+
+/// The fields by which a document echoes families.
+pub fn given_families(families: &Families) -> [(&'static str, String); 3] {
+    let Families { a, b, samples } = families;
+    [("a", shown_range(a)), ("b", shown_range(b)), ("samples", samples.to_string())]
 }
 
 /// A closed range of steps.
@@ -68,52 +107,45 @@ impl Scene {
             return Err(Error::input("scene", format!("{} bytes", text.len()), remedy));
         }
         let document: Document = serde_json::from_str(text).map_err(|cause| not_a_scene(text, &cause))?;
-        Scene::new(document)
+        Scene::new(&document)
     }
 
     /// Checks a document and turns its texts into quantities.
     ///
     /// # Errors
     /// As [`Scene::read`].
-    pub fn new(document: Document) -> Result<Scene> {
+    pub fn new(document: &Document) -> Result<Scene> {
         document.check_schema()?;
-        let range = document.grid.as_ref().map(GridRange::read).transpose()?;
-        let want = document.want.iter().map(|text| Want::new(text)).collect::<Result<Vec<_>>>()?;
-        let scene = Scene { document, range, want };
-        scene.parses()?;
+        let window = |of: &document::Window| {
+            Ok([parse_range("window.h1", &of.h1.0)?, parse_range("window.h2", &of.h2.0)?])
+        };
+        let rational = |field, given: &Option<_>| Quantity::read(given.as_ref(), field, parse_rational);
+        let scene = Scene {
+            title: document.title.clone().unwrap_or_default(),
+            lambda1: Quantity::read(document.lambda1.as_ref(), "lambda1", parse)?,
+            lambda2: Quantity::read(document.lambda2.as_ref(), "lambda2", parse)?,
+            grid: document.grid.as_ref().map(GridRange::read).transpose()?,
+            families: document.families.as_ref().map(read_families).transpose()?,
+            tolerance: rational("tolerance", &document.tolerance)?,
+            ratio: Quantity::read(document.ratio.as_ref(), "ratio", parse_ratio)?,
+            max: document.max,
+            max_sum: document.max_sum,
+            rho: rational("rho", &document.rho)?,
+            rho_range: Quantity::read(document.rho_range.as_ref(), "rho_range", rational_range)?,
+            window: document.window.as_ref().map(window).transpose()?,
+            colour: document.colour.as_ref().map(|text| colour(text)).transpose()?,
+            want: document.want.iter().map(|text| Want::new(text)).collect::<Result<_>>()?,
+        };
         scene.want.iter().try_for_each(|want| scene.supports(want.product))?;
         Ok(scene)
-    }
-
-    /// The products wanted, in the order of the file.
-    pub fn want(&self) -> &[Want] {
-        &self.want
-    }
-
-    /// The document behind the scene, for the echo of the input.
-    pub fn document(&self) -> &Document {
-        &self.document
-    }
-
-    /// The title, or nothing.
-    pub fn title(&self) -> &str {
-        self.document.title.as_deref().unwrap_or("")
     }
 
     /// The stiffness of the fast force.
     ///
     /// # Errors
-    /// Where the field is missing or does not parse.
-    pub fn lambda1(&self) -> Result<Laurent> {
-        quantity("lambda1", self.document.lambda1.as_ref())
-    }
-
-    /// The stiffness of the slow force.
-    ///
-    /// # Errors
-    /// As [`Scene::lambda1`].
-    pub fn lambda2(&self) -> Result<Laurent> {
-        quantity("lambda2", self.document.lambda2.as_ref())
+    /// Where the field is missing.
+    pub fn lambda1(&self) -> Result<&Laurent> {
+        self.lambda1.as_ref().ok_or_else(|| missing("lambda1", "\"pi^2/25\""))
     }
 
     /// The grid of step pairs on the scene's oscillator.
@@ -121,7 +153,7 @@ impl Scene {
     /// # Errors
     /// Where the scene lacks it or a stiffness, or holds no pair.
     pub fn grid(&self) -> Result<Grid> {
-        self.range()?.of(self.lambda1()?, self.lambda2()?)
+        self.range()?.of(self.lambda1()?.clone(), self.lambda2()?.clone())
     }
 
     /// The spacings and ranges of the steps.
@@ -129,98 +161,51 @@ impl Scene {
     /// # Errors
     /// Where the scene has none.
     pub fn range(&self) -> Result<&GridRange> {
-        self.range
+        self.grid
             .as_ref()
             .ok_or_else(|| missing("grid", "{\"step\": \"1/100\", \"h1\": \"LO..HI\", \"h2\": \"LO..HI\"}"))
-    }
-
-    /// The families of curves; a from 0 to 3 and |b| up to 12 unless the scene says otherwise.
-    ///
-    /// # Errors
-    /// Where a range does not parse.
-    pub fn families(&self) -> Result<Families> {
-        let range = |field, text: Option<&String>, default| {
-            text.map_or(Ok(default), |text| parse_integer_range(field, text))
-        };
-        let families = self.document.families.clone().unwrap_or_default();
-        Ok(Families {
-            a: range("families.a", families.a.as_ref(), (0, 3))?,
-            b: range("families.b", families.b.as_ref(), (-12, 12))?,
-            samples: families.samples.unwrap_or(400) as usize,
-        })
-    }
-
-    /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless the scene
-    /// says otherwise.
-    ///
-    /// # Errors
-    /// Where it does not parse.
-    pub fn tolerance(&self) -> Result<Rational> {
-        parse_rational("tolerance", self.document.tolerance.as_ref().map_or("1/20", |text| &text.0))
     }
 
     /// h2/h1 = p/q.
     ///
     /// # Errors
-    /// Where the field is missing or is no positive ratio.
+    /// Where the field is missing.
     pub fn ratio(&self) -> Result<Ratio> {
-        let text = self.document.ratio.as_ref().ok_or_else(|| missing("ratio", "\"7/2\""))?;
-        parse_ratio("ratio", &text.0)
+        self.ratio.ok_or_else(|| missing("ratio", "\"7/2\""))
     }
 
-    /// The bound on p and q of an exhaustive check of the Proposition; 60 unless the scene says otherwise.
-    pub fn max(&self) -> u64 {
-        self.document.max.unwrap_or(60)
+    fn lambda2(&self) -> Result<&Laurent> {
+        self.lambda2.as_ref().ok_or_else(|| missing("lambda2", "\"pi^2/25\""))
     }
 
-    /// ρ = L2/L1, where it is given as such.
-    ///
-    /// # Errors
-    /// Where it does not parse.
-    pub fn rho(&self) -> Result<Option<Rational>> {
-        self.document.rho.as_ref().map(|text| parse_rational("rho", &text.0)).transpose()
-    }
-
-    /// The closed range of ρ in which closings are searched; 1/10000..100 unless the scene says otherwise.
-    ///
-    /// # Errors
-    /// Where it does not parse or is not rational.
-    pub fn rho_range(&self) -> Result<(Rational, Rational)> {
-        let text = self.document.rho_range.as_deref().unwrap_or("1/10000..100");
-        let (lo, hi) = parse_range("rho_range", text)?;
-        let both = lo.as_rational().zip(hi.as_rational());
-        both.ok_or_else(|| Error::input("rho_range", text, "must be rational; write it without pi"))
-    }
-
-    /// The steps to show.
-    ///
-    /// # Errors
-    /// Where a range does not parse.
-    pub fn window(&self) -> Result<Option<[StepRange; 2]>> {
-        let Some(window) = &self.document.window else { return Ok(None) };
-        Ok(Some([parse_range("window.h1", &window.h1)?, parse_range("window.h2", &window.h2)?]))
-    }
-
-    /// What is given parses, wanted or not.
-    fn parses(&self) -> Result<()> {
-        let Document { lambda1, lambda2, ratio, .. } = &self.document;
-        lambda1.as_ref().map(|_| self.lambda1()).transpose()?;
-        lambda2.as_ref().map(|_| self.lambda2()).transpose()?;
-        ratio.as_ref().map(|_| self.ratio()).transpose()?;
-        self.rho().and(self.rho_range()).and(self.window())?;
-        if let Some(colour) =
-            self.document.colour.as_ref().filter(|c| !["family", "growth"].contains(&c.as_str()))
-        {
-            return Err(Error::input("colour", colour, "choose family or growth"));
+    /// What the scene gives, exactly, for a document to echo.
+    pub fn given(&self) -> Vec<(&'static str, String)> {
+        fn text<T: ToString>(key: &'static str, given: Option<&T>) -> Option<(&'static str, String)> {
+            given.map(|value| (key, value.to_string()))
         }
-        self.families().and(self.tolerance()).map(drop)
+        let range = |key, of: usize| self.window.as_ref().map(|window| (key, shown_range(&window[of])));
+        let mut given = vec![("title", self.title.clone())];
+        given.extend(text("lambda1", self.lambda1.as_ref()));
+        given.extend(text("lambda2", self.lambda2.as_ref()));
+        given.extend(self.grid.iter().flat_map(GridRange::given));
+        given.extend(self.families.iter().flat_map(given_families));
+        given.extend(text("tolerance", self.tolerance.as_ref()));
+        given.extend(text("ratio", self.ratio.as_ref()));
+        given.extend(text("max", self.max.as_ref()));
+        given.extend(text("max_sum", self.max_sum.as_ref()));
+        given.extend(text("rho", self.rho.as_ref()));
+        given.extend(range("window_h1", 0).into_iter().chain(range("window_h2", 1)));
+        given.extend(text("colour", self.colour.as_ref()));
+        given.extend(self.rho_range.as_ref().map(|range| ("rho_range", shown_range(range))));
+        given.push(("want", self.want.iter().map(Want::file_name).collect::<Vec<_>>().join(", ")));
+        given
     }
 
     /// The fields that a product needs are there, and make sense together.
     fn supports(&self, product: Product) -> Result<()> {
         match product {
             Product::Map | Product::Compare | Product::Figure | Product::Overlay => self.grid().map(drop),
-            Product::Curves => self.lambda1().and(self.range().map(drop)),
+            Product::Curves => self.lambda1().and(self.range()).map(drop),
             Product::Polynomial => self.ratio().map(drop),
             Product::Proposition => Ok(()),
             Product::Closings => self.has_ratios(),
@@ -230,7 +215,7 @@ impl Scene {
                 self.has_ratios()?;
                 self.lambda1()?;
                 self.has_rho()?;
-                match self.document.window {
+                match self.window {
                     Some(_) => Ok(()),
                     None => Err(missing("window", "{\"h1\": \"0..2/pi\", \"h2\": \"0..7/2\"}")),
                 }
@@ -239,20 +224,27 @@ impl Scene {
     }
 
     fn has_max_sum(&self) -> Result<()> {
-        self.document.max_sum.map(drop).ok_or_else(|| missing("max_sum", "40"))
+        self.max_sum.map(drop).ok_or_else(|| missing("max_sum", "40"))
     }
 
     fn has_ratios(&self) -> Result<()> {
-        if self.document.max_sum.is_some() { Ok(()) } else { self.ratio().map(drop) }
+        if self.max_sum.is_some() { Ok(()) } else { self.ratio().map(drop) }
     }
 
     fn has_rho(&self) -> Result<()> {
-        if self.document.rho.is_some() { Ok(()) } else { self.lambda1().and(self.lambda2()).map(drop) }
+        if self.rho.is_some() { Ok(()) } else { self.lambda1().and(self.lambda2()).map(drop) }
     }
 }
 
-fn quantity(field: &str, quantity: Option<&Quantity>) -> Result<Laurent> {
-    parse(field, &quantity.ok_or_else(|| missing(field, "\"pi^2/25\""))?.0)
+fn rational_range(field: &str, text: &str) -> Result<(Rational, Rational)> {
+    let (lo, hi) = parse_range(field, text)?;
+    let both = lo.as_rational().zip(hi.as_rational());
+    both.ok_or_else(|| Error::input(field, text, "must be rational; write it without pi"))
+}
+
+fn colour(text: &str) -> Result<String> {
+    let known = ["family", "growth"].contains(&text).then(|| text.to_string());
+    known.ok_or_else(|| Error::input("colour", text, "choose family or growth"))
 }
 
 fn missing(field: &str, example: &str) -> Error {
@@ -263,8 +255,8 @@ fn missing(field: &str, example: &str) -> Error {
 fn not_a_scene(text: &str, cause: &serde_json::Error) -> Error {
     let (number, column) = (cause.line(), cause.column());
     let line = text.lines().nth(number.saturating_sub(1)).unwrap_or("");
-    let told = cause.to_string();
-    let why = told.strip_suffix(&format!(" at line {number} column {column}")).unwrap_or(&told);
+    let words = cause.to_string();
+    let why = words.strip_suffix(&format!(" at line {number} column {column}")).unwrap_or(&words);
     let remedy = format!("{why}; a scene is one JSON object, as data/scenes/figure1.json");
     Error::input(&format!("line {number} of the scene"), line.trim(), remedy)
 }

@@ -70,7 +70,8 @@ impl Want {
         };
         let drawn = format.is_figure();
         if drawn != product.is_figure() {
-            let remedy = if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg or png" };
+            let remedy =
+                if drawn { "is a table: json, csv, tex or txt" } else { "is a figure: svg, pdf or png" };
             return Err(Error::input("want", text, remedy));
         }
         if format == Format::Npz && product != Product::Map {

@@ -124,7 +124,7 @@ impl<S> Program<S> {
         let mut now = 0;
         for event in events {
             now += event.drift;
-            for (_, kick) in self.kicks.iter().enumerate().filter(|(k, _)| event.kicks >> k & 1 == 1) {
+            for kick in event.clocks().map(|clock| &self.kicks[clock]) {
                 for &island in &kick.islands {
                     state.drift(self, island, now - at[island]);
                     at[island] = now;

@@ -1,10 +1,8 @@
 //! K clocks on one oscillator in balls: enclosures that widen with every kick, and as many bits as that takes.
 
-use num_bigint::BigInt;
-
 use super::ManyClocks;
 use crate::number::{Ball, Rational, Real, Sign};
-use crate::schedule::Weight;
+use crate::schedule::{KickDrift, Kicks};
 use crate::verdict::{PartialSigns, Verdict};
 
 /// H = \[\[A, B\], \[C, D\]\], and the sign changes of x on the way of the even solution.
@@ -13,36 +11,47 @@ pub(super) struct Enclosed {
     b: Ball,
     c: Ball,
     d: Ball,
-    /// `None` where some sign was not told.
+    /// `None` where some sign was not known.
     nodes: Option<u64>,
+    last: Sign,
+    bits: u32,
+    /// Ticks in h_1.
+    ticks: u64,
 }
 
 /// The half period in balls of `bits` bits.
 pub(super) fn run<S: Real>(clocks: &ManyClocks<S>, bits: u32) -> Enclosed {
-    let strengths: Vec<Ball> = clocks.strengths().iter().map(|k| k.enclosure(bits)).collect();
-    let ticks = BigInt::from(clocks.schedule().clocks()[0].step());
-    let [mut a, mut b, mut c, mut d] = [1, 0, 0, 1].map(|n: i32| Ball::from_integer(&n.into()));
-    let (mut nodes, mut last) = (Some(0), Sign::Positive);
-    for event in clocks.schedule().half_period() {
-        let drift = Ball::from_rational(&Rational::new(event.drift.into(), ticks.clone()), bits);
-        a = a.add(&c.mul(&drift, bits), bits);
-        b = b.add(&d.mul(&drift, bits), bits);
-        match a.sign() {
-            Some(sign) if sign != Sign::Zero && sign != last => {
-                nodes = nodes.map(|n| n + 1);
-                last = sign;
+    let strengths = clocks.strengths().iter().map(|k| k.enclosure(bits));
+    let kicks = Kicks::of_clocks(strengths, |k| [k.clone(), k.scale2(-1)]);
+    let ticks = clocks.schedule().clocks()[0].step();
+    let [a, b, c, d] = [1, 0, 0, 1].map(|n: i32| Ball::from_integer(&n.into()));
+    let mut half = Enclosed { a, b, c, d, nodes: Some(0), last: Sign::Positive, bits, ticks };
+    kicks.lead(clocks.schedule().half_period(), &mut half);
+    half
+}
+
+impl KickDrift<Ball> for Enclosed {
+    fn drift(&mut self, ticks: u64) {
+        let time = Ball::from_rational(&Rational::new(ticks.into(), self.ticks.into()), self.bits);
+        self.a = self.a.add(&self.c.mul(&time, self.bits), self.bits);
+        self.b = self.b.add(&self.d.mul(&time, self.bits), self.bits);
+    }
+
+    fn arrive(&mut self) {
+        match self.a.sign() {
+            Some(sign) if sign != Sign::Zero && sign != self.last => {
+                self.nodes = self.nodes.map(|n| n + 1);
+                self.last = sign;
             }
             Some(_) => {}
-            None => nodes = None,
-        }
-        let halvings = i64::from(event.weight == Weight::Half);
-        for (_, strength) in strengths.iter().enumerate().filter(|(k, _)| event.kicks >> k & 1 == 1) {
-            let strength = strength.scale2(-halvings);
-            c = c.sub(&strength.mul(&a, bits), bits);
-            d = d.sub(&strength.mul(&b, bits), bits);
+            None => self.nodes = None,
         }
     }
-    Enclosed { a, b, c, d, nodes }
+
+    fn kick(&mut self, strength: &Ball) {
+        self.c = self.c.sub(&strength.mul(&self.a, self.bits), self.bits);
+        self.d = self.d.sub(&strength.mul(&self.b, self.bits), self.bits);
+    }
 }
 
 impl Enclosed {

@@ -19,11 +19,11 @@ use super::inertia::Inertia;
 use super::integers::{IntegerBlocks, IntegerProgram};
 use super::limits::{Limits, degrees_of_freedom};
 use super::model::System;
-use super::modular::Field;
+use super::modular;
 use super::roots::{self, RootCount};
 use super::signs::{self, Inertias};
 use crate::error::Result;
-use crate::number::Rational;
+use crate::number::{PrimeField, Rational};
 use crate::verdict::Kind;
 
 /// What exact arithmetic says of a system without rigid modes.
@@ -153,7 +153,7 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
 
 fn nullity(m: &DMatrix<BigInt>) -> usize {
     let bound = m.iter().map(Signed::abs).max().unwrap_or_default();
-    m.nrows() - roots::rank(m.nrows(), &bound, |field| field.matrix(m))
+    m.nrows() - roots::rank(m.nrows(), &bound, |field| modular::matrix(field, m))
 }
 
 /// rank f(m).
@@ -162,7 +162,7 @@ fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
     let norm = roots::row_sum(m);
     let bound = f.iter().rev().fold(BigInt::zero(), |value, c| value * &norm + c.abs()) + BigInt::one();
     roots::rank(n, &bound, |field| {
-        let m = field.matrix(m);
+        let m = modular::matrix(field, m);
         f.iter().rev().fold(DMatrix::from_element(n, n, 0), |value, c| {
             let mut next = times(field, &value, &m);
             let c = field.of_big(c);
@@ -172,7 +172,7 @@ fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
     })
 }
 
-fn times(field: &Field, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
+fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
     DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
         (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
     })

@@ -9,15 +9,16 @@ use num_bigint::BigInt;
 use num_integer::{Integer, binomial};
 use num_traits::{One, Signed, Zero};
 
-use super::modular::{Field, Lift, fields};
+use super::modular::{self, Lift};
+use crate::number::{PrimeField, prime_fields};
 
 /// det(z − m), monic: from its residues modulo primes, as many as the bound on its coefficients asks for.
 pub(super) fn characteristic(m: &DMatrix<BigInt>) -> Vec<BigInt> {
     let n = m.nrows();
     let bound = coefficient_bound(m);
     let mut lift = Lift::new(n + 1);
-    for field in fields() {
-        lift.join(&field, &field.characteristic(field.matrix(m)));
+    for field in prime_fields() {
+        lift.join(&field, &modular::characteristic(&field, modular::matrix(&field, m)));
         if *lift.product() > bound {
             break;
         }
@@ -65,12 +66,12 @@ pub(super) fn divided_out(mut f: Vec<BigInt>, root: &BigInt) -> (usize, Vec<BigI
 /// The monic polynomial with the roots of the monic f, each simple.
 pub(super) fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
     let derivative: Vec<BigInt> = f.iter().enumerate().skip(1).map(|(k, c)| c * k).collect();
-    let residues = |field: &Field, f: &[BigInt]| f.iter().map(|c| field.of_big(c)).collect::<Vec<_>>();
+    let residues = |field: &PrimeField, f: &[BigInt]| f.iter().map(|c| field.of_big(c)).collect::<Vec<_>>();
     // A divisor modulo p has at least the degree of the true one; the latter is monic with integer coefficients
     // (Gauss), so it is what the residues of least degree lift to.
     let mut lift: Option<Lift> = None;
     let mut degree = usize::MAX;
-    for field in fields() {
+    for field in prime_fields() {
         let gcd = field.gcd(residues(&field, f), residues(&field, &derivative));
         if gcd.len() == 1 {
             return f.to_vec();
@@ -186,12 +187,12 @@ fn shift_by_one(f: &mut [BigInt]) {
 ///
 /// A rank modulo p is at most the true one. If it is r for primes whose product exceeds every minor of size r + 1
 /// (Hadamard), all these minors are 0.
-pub(super) fn rank(rows: usize, bound: &BigInt, residues: impl Fn(&Field) -> DMatrix<u64>) -> usize {
+pub(super) fn rank(rows: usize, bound: &BigInt, residues: impl Fn(&PrimeField) -> DMatrix<u64>) -> usize {
     // A row of a minor has at most `rows` entries: its length is at most √rows bound.
     let entry_bits = bound.bits() + rows.ilog2() as u64 / 2 + 1;
     let (mut rank, mut bits) = (0, 0);
-    for field in fields() {
-        let found = field.rank(residues(&field));
+    for field in prime_fields() {
+        let found = modular::rank(&field, residues(&field));
         rank = rank.max(found);
         bits += 61;
         if rank == rows || bits > entry_bits * (rank as u64 + 1) {

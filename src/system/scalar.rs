@@ -24,7 +24,7 @@ use num_traits::{One, Zero};
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Ratio, Rational, Ring, Sign};
 use crate::propagator::{TwoClocks, apply_drift, apply_kick};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::verdict::{HalfSigns, Kind};
 
 /// K clocks on one oscillator, without dimension: the unit of time is h_1.
@@ -89,21 +89,17 @@ impl<S: Ring> ManyClocks<S> {
 
     /// H = \[\[A, B\], \[C, D\]\], in the unit of time h_1.
     pub fn half_period(&self) -> Matrix2<S> {
-        let mut m = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
-        self.schedule.half_period().for_each(|event| self.apply(event, &mut m));
-        m
+        self.lead(|_| ())
     }
 
-    fn apply(&self, event: Event, m: &mut Matrix2<S>) {
-        if event.drift > 0 {
-            let ticks = self.schedule.clocks()[0].step();
-            let time = Rational::new(event.drift.into(), ticks.into()) * &self.steps[0];
-            apply_drift(m, &S::from_rational(&time));
-        }
-        let weight = Rational::new(1.into(), if event.weight == Weight::Full { 1.into() } else { 2.into() });
-        for (_, strength) in self.strengths.iter().enumerate().filter(|(k, _)| event.kicks >> k & 1 == 1) {
-            apply_kick(m, &S::product(strength, &S::from_rational(&weight)));
-        }
+    /// H, and `see` of the position of the even solution at every kick time on the way.
+    fn lead(&self, see: impl FnMut(&S)) -> Matrix2<S> {
+        let one_half = S::from_rational(&Rational::new(1.into(), 2.into()));
+        let kicks = Kicks::of_clocks(self.strengths.clone(), |k| [k.clone(), k * one_half.clone()]);
+        let m = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
+        let mut product = Product { m, tick: self.schedule.tick(), see };
+        kicks.lead(self.schedule.half_period(), &mut product);
+        product.m
     }
 
     /// Tr Q = 2 (AD + BC).
@@ -118,8 +114,7 @@ impl<S: Ring> ManyClocks<S> {
 impl<S: ExactSign> ManyClocks<S> {
     /// The signs of A, B, C, D, exactly; they are the verdict.
     pub fn half_signs(&self) -> HalfSigns {
-        let m = self.half_period();
-        HalfSigns::new(m[(0, 0)].sign(), m[(0, 1)].sign(), m[(1, 0)].sign(), m[(1, 1)].sign())
+        signs(&self.half_period())
     }
 
     /// m, the half turns of the growing solution in one period; `None` unless hyperbolic.
@@ -128,18 +123,15 @@ impl<S: ExactSign> ManyClocks<S> {
     /// Tr > 2; where Tr < −2, m = 2n ± 1, + if x and v differ in sign at T/2, that is if it is past its n-th zero by
     /// less than a quarter turn.
     pub fn label(&self) -> Option<u64> {
-        let mut m = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
         let (mut nodes, mut last) = (0, Sign::Positive);
-        for event in self.schedule.half_period() {
-            self.apply(event, &mut m);
-            let sign = m[(0, 0)].sign();
+        let m = self.lead(|x| {
+            let sign = x.sign();
             if sign != Sign::Zero && sign != last {
-                nodes += 1;
-                last = sign;
+                (nodes, last) = (nodes + 1, sign);
             }
-        }
-        let [a, c, b, d] = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|at| m[at].sign());
-        let verdict = HalfSigns::new(a, b, c, d).verdict();
+        });
+        let verdict = signs(&m).verdict();
+        let (a, c) = signs(&m).even();
         match (verdict.kind(), verdict.side()) {
             (Kind::Hyperbolic, 1) => Some(2 * nodes),
             (Kind::Hyperbolic, _) if a * c == Sign::Negative => Some(2 * nodes + 1),
@@ -147,6 +139,32 @@ impl<S: ExactSign> ManyClocks<S> {
             _ => None,
         }
     }
+}
+
+/// The product so far.
+struct Product<'a, S, F> {
+    m: Matrix2<S>,
+    tick: &'a Rational,
+    see: F,
+}
+
+impl<S: Ring, F: FnMut(&S)> KickDrift<S> for Product<'_, S, F> {
+    fn drift(&mut self, ticks: u64) {
+        let time = self.tick * Rational::from_integer(ticks.into());
+        apply_drift(&mut self.m, &S::from_rational(&time));
+    }
+
+    fn arrive(&mut self) {
+        (self.see)(&self.m[(0, 0)]);
+    }
+
+    fn kick(&mut self, strength: &S) {
+        apply_kick(&mut self.m, strength);
+    }
+}
+
+fn signs<S: ExactSign>(m: &Matrix2<S>) -> HalfSigns {
+    HalfSigns::new(m[(0, 0)].sign(), m[(0, 1)].sign(), m[(1, 0)].sign(), m[(1, 1)].sign())
 }
 
 /// All families of the resonance m: the integers a_k, |a_k| ≤ `bound`, with m = Σ a_k N_k.

@@ -16,7 +16,9 @@
 //! | `peak` | the fastest growth inside |
 //! | `closing` | where tongues close as ρ changes |
 //! | `row` | a tongue with all that is known about it |
-//! | `tongues`, `select`, `survey` | the tongues of one ratio, some of them, those of all ratios up to a sum |
+//! | `tongues`, `select` | the tongues of one ratio, and some of them |
+//! | `request`, `question` | a tongue with all that is asked for, tongues of many ratios |
+//! | `survey` | what all ratios up to a sum have to say |
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
 //! Inside tongue m the growing solution changes sign m times in a period: m is the label that the map and the
@@ -41,16 +43,20 @@ mod closing;
 mod edge;
 mod gap;
 mod peak;
+mod question;
+mod request;
 mod row;
 mod select;
 mod string;
 mod survey;
 mod tongues;
 
-pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings};
+pub use closing::{COMPLETE_UP_TO, Closing, Found, Search, closings, closings_of};
 pub use edge::{Edge, Effort, Enclosure};
-pub use gap::{Gap, entries};
+pub use gap::{Gap, count_closings, entries};
 pub use peak::Peak;
+pub use question::{Progress, Question, Range, Stiffness, Window};
+pub use request::{Quantity, Request, Tongue, TongueEdge};
 pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
 pub use select::Selection;
 pub use string::Entry;

@@ -9,6 +9,7 @@ use num_traits::Zero;
 
 use super::edge::{Edge, Edges, Effort, Enclosure};
 use super::gap::{Gap, Openness};
+use super::peak::Peak;
 use super::row::{Row, Wanted};
 use super::select::{Selection, runs};
 use super::string::Entry;
@@ -160,6 +161,14 @@ impl Tongues {
     /// Where the schedule is too long.
     pub fn row(&self, gap: &Gap, wanted: &Wanted) -> Result<Row> {
         Row::new(&self.edges, gap, wanted)
+    }
+
+    /// The fastest growth inside a tongue; `None` of a closed one and of the infinite one.
+    ///
+    /// # Errors
+    /// Where the schedule is too long, or more digits are needed than are tried.
+    pub fn peak(&self, gap: &Gap) -> Result<Option<Peak>> {
+        Peak::new(&self.edges, gap)
     }
 
     /// The edges `first` ..= `last` of one problem, counted from 1.

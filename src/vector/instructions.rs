@@ -1,6 +1,7 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
 use std::marker::PhantomData;
+use std::sync::OnceLock;
 
 #[cfg(target_arch = "x86_64")]
 use super::registers::{Avx2, Avx512};
@@ -59,10 +60,21 @@ impl Instructions {
         }
     }
 
-    /// The best that this processor has.
+    /// The best that this processor has, unless another is forced.
     pub fn best() -> Instructions {
-        Instructions::available().next().unwrap_or(Instructions::Portable)
+        let best = || Instructions::available().next().unwrap_or(Instructions::Portable);
+        FORCED.get().copied().unwrap_or_else(best)
     }
+}
+
+static FORCED: OnceLock<Instructions> = OnceLock::new();
+
+/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine can
+/// measure several. False where the processor lacks it, or where another was forced before.
+#[doc(hidden)]
+pub fn force_instructions(name: &str) -> bool {
+    let meant = |set: &Instructions| format!("{set:?}").eq_ignore_ascii_case(name);
+    Instructions::available().find(meant).is_some_and(|set| *FORCED.get_or_init(|| set) == set)
 }
 
 /// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.

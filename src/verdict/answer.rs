@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use super::exact::Decidable;
 use super::growth::{Growth, Runs};
 use super::kind::Verdict;
-use super::ladder::{Limits, Tier};
+use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::number::Ball;
 use crate::propagator::TwoClocks;

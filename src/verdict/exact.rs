@@ -21,7 +21,7 @@ use num_traits::{One, Zero};
 use crate::number::{Cyclotomic, Laurent, Rational, Real, Sign};
 use crate::orbit::residue;
 use crate::propagator::{HalfSigns, TwoClocks, half_period};
-use crate::schedule::{Event, Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// Exact real numbers over which the four signs of the half period are decided.
 pub trait Decidable: Real {
@@ -139,9 +139,7 @@ impl Matrix {
 /// The events' strengths as integers over one denominator, in the unit of time one tick.
 struct Steps {
     denominator: BigInt,
-    /// By set of clocks; whole and halved.
-    full: [BigInt; 4],
-    half: [BigInt; 4],
+    kicks: Kicks<BigInt>,
 }
 
 impl Steps {
@@ -152,26 +150,31 @@ impl Steps {
         let denominator = fast.denom().lcm(slow.denom());
         let numerator = |k: &Rational| k.numer() * (&denominator / k.denom());
         let (fast, slow) = (numerator(&fast), numerator(&slow));
-        let half = [BigInt::zero(), fast.clone(), slow.clone(), fast + slow];
-        let full = half.each_ref().map(|k| k * 2);
-        Steps { denominator, full, half }
+        let halves = [fast.clone(), slow.clone(), fast + slow];
+        Steps { denominator, kicks: Kicks::of_two_clocks(halves, |half| [&half * 2, half]) }
+    }
+}
+
+/// A few factors, composed one by one.
+struct Leaf<'a> {
+    matrix: Matrix,
+    denominator: &'a BigInt,
+}
+
+impl KickDrift<BigInt> for Leaf<'_> {
+    fn drift(&mut self, ticks: u64) {
+        let [xs, vs] = &mut self.matrix.entries;
+        xs.iter_mut().zip(vs).for_each(|(x, v)| *x += &*v * ticks);
     }
 
-    /// `m ← (drift, then kick) m`, times the denominator where there is a kick.
-    fn apply(&self, event: Event, m: &mut Matrix) {
-        let strength = match event.weight {
-            Weight::Full => &self.full[event.kicks as usize],
-            Weight::Half => &self.half[event.kicks as usize],
-        };
-        m.kicks += u32::from(event.kicks != 0);
-        let [xs, vs] = &mut m.entries;
+    /// Times the denominator.
+    fn kick(&mut self, strength: &BigInt) {
+        self.matrix.kicks += 1;
+        let [xs, vs] = &mut self.matrix.entries;
         for (x, v) in xs.iter_mut().zip(vs) {
-            *x += &*v * event.drift;
-            if event.kicks != 0 {
-                *v *= &self.denominator;
-                *v -= strength * &*x;
-                *x *= &self.denominator;
-            }
+            *v *= self.denominator;
+            *v -= strength * &*x;
+            *x *= self.denominator;
         }
     }
 }
@@ -184,9 +187,9 @@ fn product(steps: &Steps, schedule: &Schedule) -> Matrix {
     let mut events = schedule.half_period().peekable();
     let mut joined: Vec<(u32, Matrix)> = Vec::new();
     while events.peek().is_some() {
-        let mut leaf = Matrix::identity();
-        events.by_ref().take(LEAF).for_each(|event| steps.apply(event, &mut leaf));
-        let mut node = (0, leaf);
+        let mut leaf = Leaf { matrix: Matrix::identity(), denominator: &steps.denominator };
+        steps.kicks.lead(events.by_ref().take(LEAF), &mut leaf);
+        let mut node = (0, leaf.matrix);
         while joined.last().is_some_and(|(level, _)| *level == node.0) {
             let (level, earlier) = joined.pop().expect("just seen");
             node = (level + 1, node.1.times(&earlier));

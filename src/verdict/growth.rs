@@ -12,7 +12,7 @@
 use super::exact::Decidable;
 use super::kind::{Side, Verdict};
 use super::label::{from_nodes, label};
-use super::ladder::Limits;
+use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
@@ -77,7 +77,7 @@ impl Runs {
         if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
             return Ok(from_products(products(&ends), verdict, label));
         }
-        limits.allow(schedule.strikes() / 2, super::Tier::Refine)?;
+        limits.allow(schedule.strikes() / 2, Tier::Refine)?;
         let (products, nodes) = self.refined(clocks, &schedule, verdict);
         Ok(from_products(products, verdict, label.or(nodes)))
     }

@@ -25,6 +25,7 @@ mod kind;
 mod label;
 mod ladder;
 mod lone;
+mod tier;
 
 pub use crate::propagator::{HalfSigns, PartialSigns};
 pub use answer::{Answer, Decision};
@@ -32,5 +33,5 @@ pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, filter_trace, growth};
 pub use kind::{Kind, Side, Verdict};
 pub(crate) use label::label;
-pub(crate) use ladder::filter_only;
-pub use ladder::{Limits, Tier, decide, decide_from};
+pub use ladder::{decide, decide_from};
+pub use tier::{Limits, Tier};

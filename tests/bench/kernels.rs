@@ -2,7 +2,7 @@
 //!
 //!     tests/bench/instructions.sh
 //!
-//! `cargo bench --bench kernels` lists the names.
+//! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces that form.
 
 use kickdrift::map::{Map, Products, Resources};
 use kickdrift::number::Ratio;
@@ -45,7 +45,12 @@ fn map(products: Products) {
 }
 
 fn main() {
-    let name = std::env::args().skip(1).find(|argument| !argument.starts_with("--"));
+    let mut words = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
+    let (name, form) = (words.next(), words.next());
+    if let Some(form) = form.filter(|form| !kickdrift::force_instructions(form)) {
+        eprintln!("this processor lacks {form}");
+        std::process::exit(2);
+    }
     match KERNELS.iter().find(|(kernel, _)| Some(*kernel) == name.as_deref()) {
         Some((_, work)) => work(),
         None => KERNELS.iter().for_each(|(kernel, _)| println!("{kernel}")),

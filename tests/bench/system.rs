@@ -42,7 +42,7 @@ fn chain(steps: [Rational; 3]) -> System {
 fn simulation() {
     let springs = vec![Linear::tether(0, 9.8696), Linear::tether(0, 0.39478)];
     let clocks = Clocks::new(&[ratio(2, 5), ratio(1, 1)], &[ratio(0, 1), ratio(0, 1)]).expect("clocks");
-    let ticks = clocks.period * 20_000;
+    let ticks = clocks.period() * 20_000;
     let mut simulation = Simulation::new(&[ratio(1, 1)], springs, clocks, State::new(vec![1.0], vec![0.0]))
         .expect("two springs");
     let (time, kicks) = least(100, 0.0, || simulation.run(ticks, Ends::Staggered));

@@ -53,10 +53,10 @@ fn the_extension_of_the_output_is_its_form_unless_a_format_is_asked_for() {
 #[test]
 fn two_results_do_not_share_a_file() {
     let desk = Desk::new();
-    let line = words(VERDICT, &["--certificate", "a.v", "--output", "a.v"]);
+    let line = words(VERDICT, &["--certificate", "a.txt", "--output", "a.txt"]);
     let ended = desk.run(&line);
     assert_eq!(ended.code, Some(2));
-    assert!(ended.stderr.contains("certificate = a.v") && desk.is_empty(), "{}", ended.stderr);
+    assert!(ended.stderr.contains("certificate = a.txt") && desk.is_empty(), "{}", ended.stderr);
 }
 
 /// Some seconds of work, its arrays growing beside the output from the beginning.
@@ -144,4 +144,17 @@ fn a_full_disk_is_an_error() {
     // Where even the message cannot be written, the code still tells.
     let status = desk.command(&["verdict"]).stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(2));
+}
+
+#[test]
+fn packagers_get_a_page_of_each_command_and_completions_for_each_shell() {
+    let desk = Desk::new();
+    assert_eq!(desk.run(&["generate", "man", "--output", "man"]).code, Some(0));
+    let page = |name: &str| String::from_utf8(desk.read(name)).unwrap();
+    assert!(page("man/kickdrift.1").contains(".TH kickdrift 1"));
+    assert!(page("man/kickdrift-verdict.1").contains("\\-\\-lambda1"));
+    assert!(desk.files().len() >= 15, "{:?}", desk.files());
+    assert_eq!(desk.run(&["generate", "completions"]).code, Some(0));
+    let shells = desk.files().into_iter().filter(|file| file.starts_with("out/completions/"));
+    assert!(shells.map(|file| page(&file)).filter(|script| script.contains("lambda1")).count() == 5);
 }

@@ -157,7 +157,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --lambda1 10 --lambda2 -2/5", &["rho = -1/25", "`map`"]);
     tongues("tongues --ratio 7/3 --lambda1 -10 --rho 1", &["lambda1 = -10", "positive"]);
     tongues("tongues --ratio 7/3 --lambda1 pi^2 --lambda2 1", &["lambda2/lambda1 = (1)/(pi^2)", "rational"]);
-    tongues("tongues --ratio 7/3", &["rho missing", "--lambda2"]);
+    tongues("tongues --ratio 7/3", &["rho missing", "lambda1 and lambda2"]);
     tongues("tongues --rho 1", &["ratio missing", "--max-sum"]);
     tongues("tongues --ratio 7/3 --rho 1 --lambda2 1", &["rho = given with lambda2"]);
     tongues("tongues --ratio 7/3 --max-sum 9 --rho 1", &["--max-sum"]);
@@ -285,7 +285,7 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
     let desk = Desk::new();
     desk.write("system.json", &std::fs::read_to_string(SYSTEM).unwrap());
     let tables = ".json, .csv, .tex or .txt";
-    let drawn = ".json, .csv, .tex, .txt, .svg or .png";
+    let drawn = ".json, .csv, .tex, .txt, .svg, .pdf or .png";
     let map = format!("map {GRID}");
     for (line, forms) in [
         ("verdict --lambda1 1 --lambda2 1 --h1 1 --h2 1", tables),
@@ -298,9 +298,9 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
         ("tongues --ratio 5/3 --rho 1", drawn),
         ("system system.json", drawn),
         ("simulate system.json", tables),
-        (&map, ".json, .csv, .tex, .txt, .svg, .png or .npz"),
+        (&map, ".json, .csv, .tex, .txt, .svg, .pdf, .png or .npz"),
     ] {
-        for name in ["x.pdf", "x.eps", "x.jpg"] {
+        for name in ["x.ps", "x.eps", "x.jpg"] {
             let ended = desk.run(&[&words(line)[..], &["--output", name]].concat());
             assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line} {name}");
             assert!(

@@ -23,7 +23,7 @@ fn labels(rows: &[Value]) -> Vec<u64> {
 #[test]
 fn a_row_has_the_keys_of_the_contract_and_the_known_edges() {
     let document = json(&words(ALL, &[]));
-    assert_eq!(keys(&document)[..3], ["schema", "input", "tongues"]);
+    assert_eq!(keys(&document)[..4], ["schema", "kickdrift", "input", "tongues"]);
     assert_eq!(document["schema"], "kickdrift/tongues/1");
     assert_eq!(document["input"].to_string(), r#"{"ratio":"7/3","rho":"1/25"}"#);
     let row = &document["tongues"][3];

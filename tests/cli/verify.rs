@@ -1,5 +1,6 @@
 //! `verify`: what kickdrift wrote holds; what was changed does not, and the row is named.
 
+use kickdrift::recheck::{Claim, Options};
 use serde_json::{Value, json};
 
 use super::support::{Desk, words};
@@ -99,7 +100,7 @@ fn every_change_is_found_and_its_row_named() {
             d["side"] = json!(0);
         }),
         (DOCUMENTS[8], "row 1", |d, _| d["trace"] = json!({"lo": 2.1, "hi": 2.2})),
-        (DOCUMENTS[12], "row 3", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[12], "row 0", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
         (DOCUMENTS[15], "row 1", |d, by| {
             d["curves"][0]["points"][3]["h2"] = by(&d["curves"][0]["points"][3]["h2"], 1e-14);
         }),
@@ -108,14 +109,14 @@ fn every_change_is_found_and_its_row_named() {
         (DOCUMENTS[18], "row 2", |d, by| {
             d["thinnest"][1]["width"] = by_both(&d["thinnest"][1]["width"], by, 1e-2)
         }),
-        (DOCUMENTS[18], "row 11", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
+        (DOCUMENTS[18], "row 0", |d, _| d["open"] = json!(d["open"].as_u64().unwrap() + 1)),
         (DOCUMENTS[9], "row 1", |d, by| d["trace"] = by_both(&d["trace"], by, 1e-12)),
         (DOCUMENTS[9], "row 1", |d, _| d["trace"] = json!({"lo": null, "hi": null})),
         (DOCUMENTS[9], "row 1", |d, by| d["growth_rate"] = by_both(&d["growth_rate"], by, 1e-12)),
         (DOCUMENTS[9], "row 1", |d, _| d["resonance"] = json!(null)),
-        (DOCUMENTS[9], "row 1", |d, _| d["decided_by"] = json!("chance")),
+        (DOCUMENTS[9], "decided_by", |d, _| d["decided_by"] = json!("chance")),
         (DOCUMENTS[8], "row 1", |d, _| d["trace"]["exact"] = json!("21/10")),
-        (DOCUMENTS[12], "row 6", |d, _| {
+        (DOCUMENTS[12], "row 0", |d, _| {
             d["decided_by"]["exact"] = json!(d["decided_by"]["exact"].as_u64().unwrap() + 1);
         }),
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["offence"] = json!("quiet")),
@@ -172,14 +173,210 @@ fn what_cannot_be_rechecked_is_told() {
     desk.write("bare.json", r#"{"schema": "kickdrift/tongues/1"}"#);
     for (file, parts) in [
         ("run.json", &["kickdrift/run/1", "one of tongues, closings, survey"][..]),
-        ("text.json", &["is no JSON", "--format json"]),
-        ("bare.json", &["input is not an object"]),
+        ("text.json", &["document = no JSON", "as kickdrift wrote them"]),
+        ("bare.json", &["missing field `input`"]),
         ("none.json", &["none.json", "cannot read it"]),
     ] {
         let ended = desk.run(&["verify", file]);
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{file}");
         assert!(parts.iter().all(|part| ended.stderr.contains(part)), "{file}: {}", ended.stderr);
     }
+}
+
+/// What is done to the values of a document.
+struct Tamper<'a> {
+    /// Shown each tampered document, with the path and what was done there.
+    see: &'a mut dyn FnMut(Value, String),
+}
+
+/// Another word of the same kind.
+const WORDS: [[&str; 2]; 12] = [
+    ["elliptic", "hyperbolic"],
+    ["hyperbolic", "elliptic"],
+    ["parabolic", "coexistence"],
+    ["coexistence", "parabolic"],
+    ["A", "D"],
+    ["D", "A"],
+    ["B", "C"],
+    ["C", "B"],
+    ["outside", "inside"],
+    ["above", "below"],
+    ["miss", "false alarm"],
+    ["false alarm", "miss"],
+];
+
+impl Tamper<'_> {
+    /// Everything that is done to a value, put back into the whole by `back`.
+    fn value(&mut self, value: &Value, path: &str, back: &dyn Fn(Value) -> Value) {
+        let mut tell = |what: &str, value: Value| (self.see)(back(value), format!("{path} {what}"));
+        match value {
+            Value::Null => tell("null -> 1", json!(1)),
+            Value::Bool(truth) => tell("flipped", json!(!truth)),
+            Value::Number(number) => {
+                tell("-> null", json!(null));
+                if let Some(n) = number.as_i64().filter(|_| !number.is_f64()) {
+                    tell("+ 1", json!(n + 1));
+                    tell("- 1", json!(n - 1));
+                } else {
+                    let x = number.as_f64().unwrap();
+                    tell("+ 1 %", json!(if x == 0.0 { 0.01 } else { x * 1.01 }));
+                }
+            }
+            Value::String(text) => {
+                tell("-> null", json!(null));
+                if let Some([_, other]) = WORDS.iter().find(|words| words[0] == text) {
+                    tell("-> another word", json!(other));
+                } else if text.contains(|c: char| c.is_ascii_digit()) {
+                    // The first and the last digit.
+                    for at in
+                        [text.find(|c: char| c.is_ascii_digit()), text.rfind(|c: char| c.is_ascii_digit())]
+                    {
+                        let (at, mut bytes) = (at.unwrap(), text.clone().into_bytes());
+                        bytes[at] = b'1' + (bytes[at] - b'0' + 1) % 9;
+                        tell("digit", json!(String::from_utf8(bytes).unwrap()));
+                    }
+                }
+            }
+            Value::Array(items) => {
+                for i in [0, items.len() / 2, items.len().saturating_sub(1)] {
+                    if i < items.len() {
+                        let mut fewer = items.clone();
+                        fewer.remove(i);
+                        tell(&format!("without {i}"), json!(fewer));
+                        let mut more = items.clone();
+                        more.insert(i, items[i].clone());
+                        tell(&format!("twice {i}"), json!(more));
+                    }
+                }
+                if items.len() > 1 {
+                    tell("all but one gone", json!(items[..1]));
+                    let mut other = items.clone();
+                    other.swap(0, 1);
+                    tell("exchanged", json!(other));
+                }
+                // The first two of a list stand for all.
+                for (i, item) in items.iter().enumerate().take(2) {
+                    self.value(item, &format!("{path}.{i}"), &|changed| {
+                        let mut whole = items.clone();
+                        whole[i] = changed;
+                        back(json!(whole))
+                    });
+                }
+            }
+            Value::Object(map) => {
+                let with = |changes: &[(&str, Value)]| {
+                    let mut whole = map.clone();
+                    changes.iter().for_each(|(key, value)| whole[*key] = value.clone());
+                    Value::Object(whole)
+                };
+                let ends = map.get("lo").zip(map.get("hi"));
+                if let Some((lo, hi)) = ends.and_then(|(lo, hi)| Some((lo.as_f64()?, hi.as_f64()?))) {
+                    // A wider enclosure would be true, so both ends go.
+                    let moved = |x: f64| json!(if x == 0.0 { 0.01 } else { x * 1.01 });
+                    tell("moved", with(&[("lo", moved(lo)), ("hi", moved(hi))]));
+                    tell("empty", with(&[("lo", json!(hi + 1.0)), ("hi", json!(lo))]));
+                } else if let Some((lo, hi)) = ends.and_then(|(lo, hi)| Some((lo.as_str()?, hi.as_str()?))) {
+                    let moved = |text: &str| json!(format!("1{text}"));
+                    tell("moved", with(&[("lo", moved(lo)), ("hi", moved(hi))]));
+                }
+                for (key, inner) in map {
+                    let mut without = map.clone();
+                    without.shift_remove(key);
+                    (self.see)(back(Value::Object(without)), format!("{path}.{key} gone"));
+                    if ends.is_none() || !["lo", "hi"].contains(&key.as_str()) {
+                        self.value(inner, &format!("{path}.{key}"), &|changed| back(with(&[(key, changed)])));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Tamperings after which what is written is still true: it says less, or asks another question to which the same answer
+/// belongs (all of them computed again for the new question).
+const STILL_TRUE: [(&str, &str); 12] = [
+    ("verdict", ".trace.exact gone"),
+    ("verdict", ".trace.exact -> null"),
+    ("tongues", ".input.lambda2 gone"),
+    ("tongues", ".input.lambda2 -> null"),
+    ("closings", ".complete flipped"),
+    // The nine thinnest are a list, too.
+    ("tongues --survey", ".thinnest without 9"),
+    ("tongues --survey", ".thinnest all but one gone"),
+    ("closings", ".input.rho_range digit"),
+    ("closings --ratio", ".input.m digit"),
+    ("compare --max-sum", ".input.tolerance digit"),
+    ("curves", ".input.h1_range digit"),
+    ("curves", ".input.h2_range digit"),
+];
+
+#[test]
+fn every_field_is_rechecked_or_said_not_to_be() {
+    let desk = Desk::new();
+    let lines = [
+        "tongues --ratio 7/3 --rho 1/25",
+        "tongues --ratio 5/3 --rho 114/55 --lambda1 pi^2 --digits 20",
+        "tongues --max-sum 5 --rho 0",
+        "tongues --max-sum 6 --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/10..3/5 --h2-range 1/10..2 --columns growth",
+        "tongues --ratio 23/20 --rho 1/1000 --m 3..6,22 --columns exact,predicted,growth",
+        "tongues --survey --max-sum 14 --rho 1/25",
+        "closings --max-sum 9",
+        "closings --ratio 9/5 --m 3..9 --samples 60",
+        "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+        "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
+        "map --label --growth --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+        "compare --max-sum 8 --rho 1/25 --samples 20",
+        "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+        "curves --samples 40 --a 0..2 --b -3..3",
+        "polynomial --ratio 5/4",
+        "proposition --max 6",
+    ];
+    let (mut count, mut passed) = (0, Vec::new());
+    for line in lines {
+        let document = write(&desk, line, "d.json");
+        let recheck = |value: &Value| {
+            let claim = Claim::read(&value.to_string())?;
+            claim.recheck(&Options::default(), None)
+        };
+        let sound = recheck(&document).unwrap();
+        assert_eq!(sound.failures, [], "{line}");
+        let skipped = |path: &str| {
+            let named =
+                |field: &&str| field.split(':').next().unwrap().split(", ").any(|name| path.contains(name));
+            sound.not_rechecked.iter().any(named)
+        };
+        let mut see = |tampered: Value, what: String| {
+            let still_true = |(of, end): &(&str, &str)| line.starts_with(of) && what.ends_with(end);
+            let exempt = STILL_TRUE.iter().any(still_true) || what.contains(".kickdrift") // who wrote it is no claim
+                || skipped(&what);
+            if tampered != document && !exempt {
+                count += 1;
+                if recheck(&tampered).is_ok_and(|outcome| outcome.failures.is_empty()) {
+                    passed.push(format!("{line}: {what}"));
+                }
+            }
+        };
+        Tamper { see: &mut see }.value(&document, "", &|changed| changed);
+    }
+    assert!(passed.is_empty(), "{} of {count} pass:\n{}", passed.len(), passed.join("\n"));
+    assert!(count > 2000, "{count}");
+}
+
+#[test]
+fn a_map_is_sampled_unless_all_is_asked_for() {
+    let desk = Desk::new();
+    write(
+        &desk,
+        "map --lambda1 10 --lambda2 2/5 --step 1/100 --h1-range 1/100..1/2 --h2-range 1/100..1",
+        "map.json",
+    );
+    let told = |args: &[&str]| {
+        let ended = desk.run(&[args, &["--format", "json"]].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        serde_json::from_str::<Value>(&ended.stdout).unwrap()["sample"].clone()
+    };
+    assert_eq!(told(&["verify", "map.json"]), json!({"drawn": 2000, "of": 5000}));
+    assert_eq!(told(&["verify", "map.json", "--all"]), json!({"drawn": 5000, "of": 5000}));
 }
 
 /// Puts `strange` at every leaf below, one at a time.

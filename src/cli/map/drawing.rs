@@ -3,14 +3,15 @@
 use clap::ValueEnum;
 
 use super::Map;
-use crate::cli::curves;
+use crate::cli::args::of;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::parse::parse_integer_range;
 use crate::report::plane::{Colouring, window};
 use crate::resonance::Curve;
-use crate::scene::Families;
+use crate::resonance::Families;
+use crate::scene::FAMILIES;
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
@@ -22,11 +23,11 @@ pub struct Drawing {
     #[arg(long)]
     curves: bool,
     /// The range of a for --curves [default: 0..3].
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    a: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    a: Option<(i64, i64)>,
     /// The range of b for --curves [default: -12..12].
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    b: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    b: Option<(i64, i64)>,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -40,9 +41,6 @@ enum Colour {
     /// Slow steps until the amplitude is tenfold.
     Tenfold,
 }
-
-/// Samples of a curve in the window: on paper a third of a millimetre apart.
-const SAMPLES: usize = 400;
 
 impl Drawing {
     /// What the colours tell.
@@ -72,7 +70,7 @@ impl Drawing {
                 Some((flag, _)) => Err(Error::input(
                     flag,
                     "given",
-                    "is for figures: write one with --output FILE.svg or FILE.png",
+                    "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png",
                 )),
             };
         }
@@ -85,19 +83,13 @@ impl Drawing {
     /// The curves wanted.
     ///
     /// # Errors
-    /// Ranges that do not parse or are too large.
+    /// Ranges that are too large.
     pub fn sampled(&self, map: &Map) -> Result<Vec<Curve>> {
         if !self.curves {
             return Ok(Vec::new());
         }
-        let range = |flag: &str, text: &Option<String>, default| {
-            text.as_ref().map_or(Ok(default), |text| parse_integer_range(flag, text))
-        };
-        let families = Families {
-            a: range("--a", &self.a, (0, 3))?,
-            b: range("--b", &self.b, (-12, 12))?,
-            samples: SAMPLES,
-        };
-        curves::sample_within(map.grid.lambdas().0, &families, &window(&map.grid))
+        let default = FAMILIES;
+        let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
+        families.curves_within(map.grid.lambdas().0, &window(&map.grid))
     }
 }

@@ -46,7 +46,7 @@ impl Args {
         let coloured = self.drawing.products(format)?;
         let products =
             Products { label: self.label || coloured.label, growth: self.growth || coloured.growth };
-        let map = Map::new(self.stiffness.quantities()?, self.grid.range()?, products)?;
+        let map = Map::new(self.stiffness.clone(), self.grid.range()?, products)?;
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
         let source = Source::compute(common, shard, store.map(Part::into_store));
         let output = Output { map: &map, format, drawing: &self.drawing, part: self.shard.as_deref() };

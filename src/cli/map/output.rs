@@ -3,14 +3,12 @@
 use std::path::Path;
 
 use super::{Drawing, Map, Source};
-use crate::cli::args::echo_grid;
 use crate::cli::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Band, Grid, Products};
 use crate::report::csv;
 use crate::report::document::Document;
-use crate::report::figure::png;
 use crate::report::file::{write_output, write_with};
 use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
 use crate::report::plane::Chart;
@@ -37,7 +35,7 @@ impl Output<'_> {
             (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path),
             (Format::Csv, _) => self.csv(source, path),
             (Format::Npz, Some(path)) => self.npz(source, path),
-            (Format::Svg | Format::Png, _) => self.figure(source, path),
+            (Format::Svg | Format::Pdf | Format::Png, _) => self.figure(source, path),
             (Format::Npz, None) => unreachable!("an extension is that of a path"),
         }
     }
@@ -73,12 +71,9 @@ impl Output<'_> {
     fn echo(&self, document: Document) -> Document {
         let document = echo(document, &self.map.grid, &self.map.range);
         let Products { label, growth } = self.map.products;
-        let mut flags = vec![("label", label.then_some("true")), ("growth", growth.then_some("true"))];
-        flags.push(("shard", self.part));
-        flags.into_iter().fold(document, |document, (key, value)| match value {
-            Some(value) => document.input(key, value),
-            None => document,
-        })
+        let flags =
+            [("label", label.then_some("true")), ("growth", growth.then_some("true")), ("shard", self.part)];
+        document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?.to_string()))))
     }
 
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {
@@ -109,8 +104,7 @@ impl Output<'_> {
             counts.add(band);
             Ok(())
         })?;
-        let svg = chart.figure(grid, &counts, &curves).svg();
-        let bytes = if self.format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = chart.figure(grid, &counts, &curves).file(self.format, DPI)?;
         write_output(path, &bytes)
     }
 }
@@ -123,5 +117,5 @@ pub fn document(grid: &Grid, range: &GridRange, tally: &Tally, pairs: &[Marked])
 
 fn echo(document: Document, grid: &Grid, range: &GridRange) -> Document {
     let (lambda1, lambda2) = grid.lambdas();
-    echo_grid(document.input("lambda1", lambda1).input("lambda2", lambda2), range)
+    document.input("lambda1", lambda1).input("lambda2", lambda2).inputs(range.given())
 }

@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use crate::cli::args::Stiffness;
 use crate::error::{Error, Result};
 use crate::map::{Grid, Products, Store};
 use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::file::write_output;
-use crate::scene::GridRange;
+use crate::scene::{GridRange, shown_range};
 
 /// A grid, as it was asked for, and what is asked of it.
 pub struct Map {
@@ -22,7 +23,11 @@ pub struct Map {
 impl Map {
     /// # Errors
     /// As [`Grid::new`].
-    pub fn new((lambda1, lambda2): (Laurent, Laurent), range: GridRange, products: Products) -> Result<Map> {
+    pub fn new(
+        Stiffness { lambda1, lambda2 }: Stiffness,
+        range: GridRange,
+        products: Products,
+    ) -> Result<Map> {
         Ok(Map { grid: range.of(lambda1, lambda2)?, range, products })
     }
 }
@@ -49,7 +54,7 @@ struct Written {
 impl Written {
     fn new(map: &Map) -> Written {
         let ((lambda1, lambda2), [step1, step2]) = (map.grid.lambdas(), map.range.steps());
-        let [h1_range, h2_range] = map.range.ranges().clone().map(|(lo, hi)| format!("{lo}..{hi}"));
+        let [h1_range, h2_range] = map.range.ranges().each_ref().map(shown_range);
         let [lambda1, lambda2, step1, step2] = [lambda1, lambda2, step1, step2].map(Laurent::to_string);
         let Products { label, growth } = map.products;
         let schema = SCHEMA.into();
@@ -62,7 +67,10 @@ impl Written {
         }
         let ranges = [parse_range("h1_range", &self.h1_range)?, parse_range("h2_range", &self.h2_range)?];
         let steps = [parse("step1", &self.step1)?, parse("step2", &self.step2)?];
-        let lambdas = (parse("lambda1", &self.lambda1)?, parse("lambda2", &self.lambda2)?);
+        let lambdas = Stiffness {
+            lambda1: parse("lambda1", &self.lambda1)?,
+            lambda2: parse("lambda2", &self.lambda2)?,
+        };
         Map::new(lambdas, GridRange::new(steps, ranges), Products { label: self.label, growth: self.growth })
     }
 

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::file::{Folder, write_output};
 use crate::scene::{self, Scene};
-use summary::{Summary, echo};
+use summary::Summary;
 use work::Work;
 
 /// Flags of `run`.
@@ -33,15 +33,15 @@ impl Args {
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
         let work = Work::new(&scene, common, folder.path());
         // All products before the first file: an error leaves nothing behind.
-        let contents = scene.want().iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
+        let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut summary = Summary::default();
-        for (want, contents) in scene.want().iter().zip(contents) {
+        for (want, contents) in scene.want.iter().zip(contents) {
             let path = folder.path().join(want.file_name());
             work.write(contents, &path)?;
             summary.add(*want, &path, &work);
         }
         folder.keep();
-        let document = echo(summary.document(&scene), &scene)?;
+        let document = summary.document(&scene);
         let format = common.format.unwrap_or(Format::Text);
         write_output(None, document.render(format)?.as_bytes())
     }

@@ -2,34 +2,33 @@
 
 use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
-use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question, Stiffness, Window};
-use crate::error::{Error, Result};
-use crate::report::tongues::Frame;
-use crate::scene::Scene;
-use crate::tongue::{Selection, Wanted};
+use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question};
+use crate::error::Result;
+use crate::report::figure::Figure;
+use crate::scene::{FAMILIES, Scene};
+use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 
-/// The atlas's SVG.
-pub fn atlas(scene: &Scene, common: &Common) -> Result<String> {
-    let colour = match scene.document().colour.as_deref() {
-        None | Some("family") => Colour::Family,
+/// The atlas.
+pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
+    let colour = match scene.colour.as_deref() {
         Some("growth") => Colour::Growth,
-        Some(other) => return Err(Error::input("colour", other, "choose family or growth")),
+        _ => Colour::Family,
     };
     let question = question(scene, colour.needs())?;
-    Ok(Atlas::new(&question, colour, Some(scene.families()?))?.figure(common)?.svg())
+    Atlas::new(&question, colour, Some(scene.families.unwrap_or(FAMILIES)))?.figure(common)
 }
 
 /// The question that tongues and atlas answer.
 pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
-    let window =
-        scene.window()?.map_or_else(Window::default, |[h1, h2]| Window { h1: Some(h1), h2: Some(h2) });
-    let frame = Frame { wanted, ..Frame::default() };
-    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), frame)
+    let [h1, h2] = scene.window.clone().map_or([None, None], |window| window.map(Some));
+    let window = Window { h1, h2 };
+    let request = Request { wanted, ..Request::default() };
+    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), request)
 }
 
 /// All ratios where a sum is given, else the one.
 pub fn ratios(scene: &Scene) -> Result<Ratios> {
-    match scene.document().max_sum {
+    match scene.max_sum {
         Some(max_sum) => Ratios::UpTo(max_sum).within(MOST_SUM),
         None => scene.ratio().map(Ratios::One),
     }
@@ -37,8 +36,5 @@ pub fn ratios(scene: &Scene) -> Result<Ratios> {
 
 /// rho, as such or by the stiffnesses.
 pub fn stiffness(scene: &Scene) -> Result<Stiffness> {
-    let given = scene.document();
-    let lambda1 = given.lambda1.as_ref().map(|_| scene.lambda1()).transpose()?;
-    let lambda2 = given.lambda2.as_ref().map(|_| scene.lambda2()).transpose()?;
-    Stiffness::new(scene.rho()?, lambda1, lambda2)
+    Stiffness::new(scene.rho.clone(), scene.lambda1.clone(), scene.lambda2.clone())
 }

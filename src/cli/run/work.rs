@@ -11,15 +11,16 @@ use crate::cli::{closings, compare, curves, map, polynomial, proposition};
 use crate::error::Result;
 use crate::format::Format;
 use crate::map::Products;
+use crate::number::rational::ratio;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::map::MapArrays;
 use crate::report::plane;
 use crate::report::tongues::Tally;
-use crate::resonance::{Curve, Window};
-use crate::scene::{Product, Scene, Want};
+use crate::resonance::{Curve, Families, Window};
+use crate::scene::{FAMILIES, Product, Scene, Want};
 use crate::tongue::Wanted;
 use crate::verdict::Limits;
 
@@ -38,13 +39,13 @@ pub struct Work<'a> {
     documents: [OnceCell<Document>; 7],
     /// What the tongues told, once they were written.
     tongues: OnceCell<Tally>,
-    figures: [OnceCell<String>; 3],
+    figures: [OnceCell<Figure>; 3],
 }
 
 impl<'a> Work<'a> {
     pub fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
-        let arrays = scene.want().iter().find(|want| want.format == Format::Npz);
+        let arrays = scene.want.iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
             common,
@@ -80,8 +81,7 @@ impl<'a> Work<'a> {
             return self.tongues(want.format);
         }
         match want.format {
-            Format::Svg => Ok(self.figure(want.product)?.clone().into_bytes()),
-            Format::Png => png::raster(self.figure(want.product)?, DPI),
+            drawn if drawn.is_figure() => self.figure(want.product)?.file(drawn, DPI),
             Format::Npz => unreachable!("arrays are streamed"),
             of_document => text(of_document),
         }
@@ -110,23 +110,25 @@ impl<'a> Work<'a> {
                 Ok(map::document(&scene.grid()?, scene.range()?, tally, marked))
             }
             Product::Curves => {
-                Ok(curves::document(&scene.lambda1()?, scene.range()?, &scene.families()?, self.curves()?))
+                Ok(curves::document(scene.lambda1()?, scene.range()?, &self.families(), self.curves()?))
             }
             Product::Compare => {
-                compare::over_grid(&scene.grid()?, scene.range()?, &scene.tolerance()?, &self.limits)
+                let tolerance = scene.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
+                compare::over_grid(&scene.grid()?, scene.range()?, &tolerance, &self.limits)
             }
-            Product::Proposition => proposition::document(scene.max()),
+            Product::Proposition => proposition::document(scene.max.unwrap_or(60)),
             Product::Polynomial => {
                 let ratio = scene.ratio()?;
-                polynomial::check_default(ratio)?;
+                polynomial::check(ratio, None)?;
                 Ok(crate::report::polynomial::document(ratio))
             }
             Product::Closings => {
-                closings::Question::new(tongues::ratios(scene)?, None, scene.rho_range()?, 400, DIGITS)?
+                let range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
+                closings::Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?
                     .document(self.common, false)
             }
             Product::Survey => {
-                let max_sum = scene.document().max_sum.expect("the scene was checked");
+                let max_sum = scene.max_sum.expect("the scene was checked");
                 answers::survey(max_sum, &tongues::stiffness(scene)?.rho, answers::THINNEST)
             }
             Product::Tongues => unreachable!("tongues are streamed"),
@@ -134,8 +136,8 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// The SVG of a figure.
-    fn figure(&self, product: Product) -> Result<&String> {
+    /// A figure.
+    fn figure(&self, product: Product) -> Result<&Figure> {
         let slot = match product {
             Product::Figure => 0,
             Product::Overlay => 1,
@@ -145,13 +147,13 @@ impl<'a> Work<'a> {
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
                 if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            Ok(draw(&window, &cloud, self.curves()?, self.scene.title()).svg())
+            Ok(draw(&window, &cloud, self.curves()?, &self.scene.title))
         })
     }
 
     /// The tongues' bytes in one format.
     fn tongues(&self, format: Format) -> Result<Vec<u8>> {
-        let growth = self.scene.document().max_sum.is_none();
+        let growth = self.scene.max_sum.is_none();
         let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
         let (bytes, tally) = answers::bytes(&question, self.common, format)?;
         // Every format tells the same.
@@ -183,14 +185,16 @@ impl<'a> Work<'a> {
     }
 
     fn curves(&self) -> Result<&Vec<Curve>> {
-        once(&self.curves, || {
-            curves::sample(&self.scene.lambda1()?, &self.scene.families()?, &self.window()?)
-        })
+        once(&self.curves, || self.families().curves(self.scene.lambda1()?, &self.window()?))
+    }
+
+    fn families(&self) -> Families {
+        self.scene.families.unwrap_or(FAMILIES)
     }
 
     fn window(&self) -> Result<Window> {
         let [h1, h2] = self.scene.range()?.ranges();
-        Ok(curves::window(h1, h2))
+        Ok(Window::new(h1, h2))
     }
 }
 

@@ -4,19 +4,16 @@ use clap::ValueEnum;
 
 use super::Question;
 use crate::cli::args::Common;
-use crate::cli::curves;
 use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::report::figure::{Figure, png};
+use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::plane::{self, Segment};
-use crate::report::tongues::{Quantity, Told, ToldEdge};
-use crate::resonance::{Curve, Window};
-use crate::scene::Families;
-use crate::tongue::Wanted;
+use crate::resonance::{Curve, Families, Window};
+use crate::tongue::{Quantity, Tongue, TongueEdge, Wanted};
 
 /// What the colours tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -54,21 +51,22 @@ impl<'a> Atlas<'a> {
         let missing =
             |field: &str, example: &str| Error::missing(field, format!("an atlas needs it, as {example}"));
         let lambda1 =
-            question.stiffness.lambda1.as_ref().ok_or_else(|| missing("lambda1", "--lambda1 pi^2"))?;
-        let h1 = question.window.h1.as_ref().ok_or_else(|| missing("h1-range", "--h1-range 0..2/pi"))?;
-        let h2 = question.window.h2.as_ref().ok_or_else(|| missing("h2-range", "--h2-range 0..7/2"))?;
-        let window = curves::window(h1, h2);
+            question.asked.stiffness.lambda1.as_ref().ok_or_else(|| missing("lambda1", "--lambda1 pi^2"))?;
+        let h1 =
+            question.asked.window.h1.as_ref().ok_or_else(|| missing("h1-range", "--h1-range 0..2/pi"))?;
+        let h2 = question.asked.window.h2.as_ref().ok_or_else(|| missing("h2-range", "--h2-range 0..7/2"))?;
+        let window = Window::new(h1, h2);
         for (field, (lo, hi)) in [("h1-range", window.h1), ("h2-range", window.h2)] {
             if hi <= lo.max(0.0) {
                 return Err(Error::input(field, format!("{lo}..{hi}"), "holds no positive step to draw"));
             }
         }
         let families = families.unwrap_or(Families {
-            a: question.selection.a.unwrap_or((0, 3)),
-            b: question.selection.b.unwrap_or((-12, 12)),
+            a: question.asked.selection.a.unwrap_or((0, 3)),
+            b: question.asked.selection.b.unwrap_or((-12, 12)),
             samples: SAMPLES,
         });
-        let curves = curves::sample_within(lambda1, &families, &window)?;
+        let curves = families.curves_within(lambda1, &window)?;
         Ok(Atlas { question, colour, window, curves })
     }
 
@@ -77,8 +75,7 @@ impl<'a> Atlas<'a> {
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
     pub fn write(&self, common: &Common, format: Format) -> Result<()> {
-        let svg = self.figure(common)?.svg();
-        let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+        let bytes = self.figure(common)?.file(format, DPI)?;
         write_output(common.output.as_deref(), &bytes)
     }
 
@@ -89,7 +86,7 @@ impl<'a> Atlas<'a> {
     pub fn figure(&self, common: &Common) -> Result<Figure> {
         let mut segments = Vec::new();
         self.question.each(common, |part| {
-            segments.extend(part.iter().map(|told| self.segment(told)));
+            segments.extend(part.iter().map(|tongue| self.segment(tongue)));
             Ok(())
         })?;
         let title = self.title();
@@ -102,7 +99,7 @@ impl<'a> Atlas<'a> {
     }
 
     fn title(&self) -> String {
-        let rho = &self.question.stiffness.rho;
+        let rho = &self.question.asked.stiffness.rho;
         match self.question.ratios {
             Ratios::One(ratio) => format!("Tongues of *h*_2/*h*_1 = {ratio}, *ρ* = {rho}"),
             Ratios::UpTo(max_sum) => format!("All tongues with *p* + *q* ≤ {max_sum}, *ρ* = {rho}"),
@@ -110,14 +107,14 @@ impl<'a> Atlas<'a> {
     }
 
     /// The last tongue has no end: it is drawn to where the window ends.
-    fn segment(&self, told: &Told) -> Segment {
+    fn segment(&self, tongue: &Tongue) -> Segment {
         let middle = |q: &Quantity| 0.5 * (q.lo + q.hi);
-        let place = |edge: &ToldEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
-        let ratio = told.row.ratio.p() as f64 / told.row.ratio.q() as f64;
-        let from = place(&told.lower);
-        let to = told.upper.as_ref().map_or([self.window.h1.1, self.window.h1.1 * ratio], place);
-        let a = told.row.family.map_or(0, |(a, _)| a);
-        Segment { from, to, a, rate: told.growth_rate, closed: told.row.gap.closed }
+        let place = |edge: &TongueEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
+        let ratio = tongue.row.ratio.p() as f64 / tongue.row.ratio.q() as f64;
+        let from = place(&tongue.lower);
+        let to = tongue.upper.as_ref().map_or([self.window.h1.1, self.window.h1.1 * ratio], place);
+        let a = tongue.row.family.map_or(0, |(a, _)| a);
+        Segment { from, to, a, rate: tongue.growth_rate, closed: tongue.row.gap.closed }
     }
 }
 

@@ -13,11 +13,10 @@ use super::ratios::{Flags, Ratios};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer, parse_integer_range, parse_range, parse_rational};
-use crate::report::tongues::Frame;
-use crate::tongue::{Selection, Wanted};
+use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::bytes;
-pub use question::{MOST_SUM, Question, Stiffness, Window, shown_list};
+pub use question::{MOST_SUM, Question, shown_list};
 pub use survey::{THINNEST, document as survey};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
@@ -61,7 +60,7 @@ pub struct Args {
     /// The thinnest tongues that a survey lists.
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole::<usize>)]
     thinnest: Option<usize>,
-    /// What a figure (--output FILE.svg or FILE.png) shows [default: atlas].
+    /// What a figure (--output FILE.svg, FILE.pdf or FILE.png) shows [default: atlas].
     #[arg(long, value_name = "WHAT")]
     figure: Option<Drawn>,
     /// What the colours of an atlas tell [default: family].
@@ -107,11 +106,11 @@ impl Args {
             _ if self.survey => {
                 survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, format)
             }
-            (Format::Svg | Format::Png, Some(Drawn::Strength)) => {
+            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = parse("theta", self.theta.as_deref().unwrap_or("pi/2"))?;
                 strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
             }
-            (Format::Svg | Format::Png, _) => {
+            (Format::Svg | Format::Pdf | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
                 let question = self.question(colour.needs())?;
                 Atlas::new(&question, colour, None)?.write(common, format)
@@ -128,17 +127,17 @@ impl Args {
             (
                 "figure",
                 self.figure.is_some() && !figure,
-                "is for figures: write one with --output FILE.svg or FILE.png",
+                "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png",
             ),
             (
                 "colour",
                 self.colour.is_some() && (!figure || strength),
-                "is for an atlas: write one with --output FILE.svg or FILE.png",
+                "is for an atlas: write one with --output FILE.svg, FILE.pdf or FILE.png",
             ),
             (
                 "theta",
                 self.theta.is_some() && !strength,
-                "is for --figure strength with --output FILE.svg or FILE.png",
+                "is for --figure strength with --output FILE.svg, FILE.pdf or FILE.png",
             ),
             ("thinnest", self.thinnest.is_some() && !self.survey, "is for --survey"),
             ("columns", self.columns.is_some() && (figure || self.survey), "is for tables"),
@@ -194,8 +193,8 @@ impl Args {
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
-        let frame = Frame { wanted, lambda1: None, digits: self.digits };
-        Question::new(self.ratios()?, self.stiffness()?, window, selection, frame)
+        let request = Request { wanted, lambda1: None, digits: self.digits };
+        Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
     fn wanted(&self) -> Wanted {

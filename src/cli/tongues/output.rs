@@ -13,7 +13,8 @@ use crate::report::csv;
 use crate::report::document::Document;
 use crate::report::file::{write_output, write_with};
 use crate::report::stream::JsonRows;
-use crate::report::tongues::{Rows, Tally, Told, json_row};
+use crate::report::tongues::{Rows, Tally, json_row};
+use crate::tongue::Tongue;
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
 const MOST_ROWS: u64 = 100_000;
@@ -30,7 +31,9 @@ pub fn write(question: &Question, common: &Common, target: Format) -> Result<()>
         Format::Csv => stream(question, common, path, rows),
         Format::Text => write_output(path, text(question, common)?.0.as_bytes()),
         Format::Latex => write_output(path, latex(question, common)?.0.as_bytes()),
-        Format::Svg | Format::Png | Format::Npz => unreachable!("neither a figure nor arrays are rows"),
+        Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
+            unreachable!("neither a figure nor arrays are rows")
+        }
     }
 }
 
@@ -63,7 +66,7 @@ fn stream(question: &Question, common: &Common, path: Option<&Path>, write: Stre
 fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let head = question.echo(Document::new("tongues"));
     let mut out = JsonRows::begin(sink, &head, "tongues")?;
-    let row = |told: &Told| json_row(told, &question.frame.wanted).to_string();
+    let row = |tongue: &Tongue| json_row(tongue, &question.asked.request).to_string();
     let tally = each_row(question, common, row, |row| out.row(row))?;
     out.end(&tally.entries())?;
     Ok(tally)
@@ -74,12 +77,12 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 /// # Errors
 /// As [`json`].
 fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
-    let rows = Rows::all(&question.frame);
+    let rows = Rows::all(&question.asked.request);
     let columns = rows.columns();
     csv::write_header(sink, &columns)?;
-    let row = |told: &Told| {
+    let row = |tongue: &Tongue| {
         let mut line = Vec::new();
-        csv::write_rows(&mut line, &columns, [rows.cells(told)]).expect("memory takes all");
+        csv::write_rows(&mut line, &columns, [rows.cells(tongue)]).expect("memory takes all");
         line
     };
     each_row(question, common, row, |line| sink.write_all(line).map_err(Error::stream))
@@ -89,12 +92,12 @@ fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 fn each_row<T: Send>(
     question: &Question,
     common: &Common,
-    render: impl Fn(&Told) -> T + Sync,
+    render: impl Fn(&Tongue) -> T + Sync,
     mut put: impl FnMut(&T) -> Result<()>,
 ) -> Result<Tally> {
     let mut tally = Tally::default();
     question.each(common, |part| {
-        part.iter().for_each(|told| tally.add(told));
+        part.iter().for_each(|tongue| tally.add(tongue));
         let rendered: Vec<T> = part.par_iter().map(&render).collect();
         rendered.iter().try_for_each(&mut put)
     })?;
@@ -106,7 +109,7 @@ fn each_row<T: Send>(
 /// # Errors
 /// As [`Question::each`].
 fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
-    let (tally, document) = told(question, common, ROWS_FOR_PEOPLE)?;
+    let (tally, document) = summed_up(question, common, ROWS_FOR_PEOPLE)?;
     let mut text = document.render(Format::Text)?;
     if tally.count > ROWS_FOR_PEOPLE {
         text += &format!("\n{} rows: use --format csv, json or latex to see them\n", tally.count);
@@ -119,7 +122,7 @@ fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
 /// # Errors
 /// As [`Question::each`], and too many rows.
 fn latex(question: &Question, common: &Common) -> Result<(String, Tally)> {
-    let (tally, document) = told(question, common, MOST_ROWS)?;
+    let (tally, document) = summed_up(question, common, MOST_ROWS)?;
     if tally.count > MOST_ROWS {
         let cost = format!("{} rows are too many for a LaTeX table", tally.count);
         return Err(Error::too_much(cost, "write csv or json"));
@@ -128,14 +131,14 @@ fn latex(question: &Question, common: &Common) -> Result<(String, Tally)> {
 }
 
 /// The summary, and the rows up to a number.
-fn told(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
-    let rows = Rows::short(&question.frame);
+fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
+    let rows = Rows::short(&question.asked.request);
     let (mut tally, mut table) = (Tally::default(), rows.table());
     question.each(common, |part| {
-        for told in part {
-            tally.add(told);
+        for tongue in part {
+            tally.add(tongue);
             if tally.count <= most {
-                table.push(rows.cells(told));
+                table.push(rows.cells(tongue));
             }
         }
         Ok(())

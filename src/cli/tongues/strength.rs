@@ -3,7 +3,6 @@
 use crate::parallel::*;
 use num_traits::{ToPrimitive, Zero};
 
-use super::Stiffness;
 use super::atlas::share_of_pi;
 use crate::cli::args::Common;
 use crate::cli::plane::DPI;
@@ -11,11 +10,10 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::{Laurent, Ratio, Rational, rational};
-use crate::report::figure::png;
 use crate::report::file::write_output;
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
-use crate::tongue::{Gap, Tongues};
+use crate::tongue::{Gap, Stiffness, Tongues};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
 const AROUND: (i64, i64) = (1, 50);
@@ -55,8 +53,7 @@ pub fn run(
         stiffness.rho
     )
     .replace("π1/", "π/");
-    let svg = figure(rational::to_f64(&share), &title, &measured).svg();
-    let bytes = if format == Format::Png { png::raster(&svg, DPI)? } else { svg.into_bytes() };
+    let bytes = figure(rational::to_f64(&share), &title, &measured).file(format, DPI)?;
     write_output(common.output.as_deref(), &bytes)
 }
 

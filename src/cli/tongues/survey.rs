@@ -1,6 +1,5 @@
 //! The survey of all ratios up to a sum.
 
-use super::Stiffness;
 use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
@@ -9,7 +8,7 @@ use crate::number::Rational;
 use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::survey;
-use crate::tongue;
+use crate::tongue::{self, Stiffness};
 
 /// Thin tongues listed unless a number is given, and at most.
 pub const THINNEST: usize = 10;

@@ -12,7 +12,8 @@ use nalgebra::Matrix2;
 
 use crate::number::Ring;
 use crate::propagator::TwoClocks;
-use crate::propagator::half::{Steps, compose, full_period, schedule};
+use crate::propagator::half::{compose, full_period};
+use crate::schedule::Schedule;
 
 /// The staggered form, Algorithm 1: whole kicks at t = 0, then drifts up to each next kick, ending just
 /// before the kicks at T. In the time unit h1.
@@ -20,8 +21,7 @@ use crate::propagator::half::{Steps, compose, full_period, schedule};
 /// # Panics
 /// Where the period has 2^62 ticks and more.
 pub fn staggered<S: Ring>(clocks: &TwoClocks<S>) -> Matrix2<S> {
-    let schedule = schedule(clocks).expect("a period short enough to compose");
-    compose(schedule.staggered_period(), &Steps::new(clocks, &schedule))
+    compose(clocks, Schedule::staggered_period)
 }
 
 /// The time-symmetric form: the kicks at t = 0 split in two halves, one moved to T. Conjugate to the

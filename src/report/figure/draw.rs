@@ -1,6 +1,7 @@
-//! A panel into the SVG: layers, frame, ticks, numbers, labels, title.
+//! A panel onto the canvas: layers, frame, ticks, numbers, labels, title.
 
 use super::axis::{Axis, Tick};
+use super::canvas::{Anchor, Canvas, Element, Path, Pen, Set};
 use super::clip::{self, Rect};
 use super::font::Face;
 use super::key;
@@ -11,7 +12,6 @@ use super::layout::{
 use super::marks;
 use super::palette::{Colour, INK};
 use super::panel::{Note, Panel};
-use super::svg::{Anchor, Canvas, Path, Set, number};
 
 /// Lines of the frame and its ticks.
 const HAIR: f64 = 0.5;
@@ -53,11 +53,11 @@ pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Sit
     if panel.grid {
         grid(canvas, &plane, &x_ticks, &y_ticks);
     }
-    canvas.open_clipped(frame);
+    canvas.elements.push(Element::Open(frame));
     for layer in &panel.layers {
         marks::layer(canvas, &plane, layer);
     }
-    canvas.close();
+    canvas.elements.push(Element::Close);
     rim(canvas, &plane, &x_ticks, &y_ticks);
     for note in &panel.notes {
         words(canvas, &plane, note);
@@ -65,7 +65,7 @@ pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Sit
     numbers(canvas, &plane, &x_ticks, &y_ticks);
     axis_labels(canvas, &plane, up);
     let title = Label::in_face(&panel.title, Face::Semibold);
-    canvas.text(&title, [frame[0], top + TITLE * CAPITAL], set(TITLE, Anchor::Start));
+    canvas.text(title, [frame[0], top + TITLE * CAPITAL], set(TITLE, Anchor::Start));
     key::legend(canvas, panel, frame);
     if let Some(bar) = &panel.bar {
         key::bar(canvas, bar, frame);
@@ -81,7 +81,7 @@ fn grid(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) 
     for tick in y_ticks.iter().filter(|tick| tick.label.is_some()) {
         lines.horizontal([left, plane.down(plane.y.unit(tick.at))], right);
     }
-    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{FAINT}\" stroke-width=\"{}\"", number(HAIR)));
+    canvas.stroke(lines, Pen::new(FAINT, HAIR));
 }
 
 /// The frame with its ticks, as one path.
@@ -100,7 +100,7 @@ fn rim(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) {
     for tick in y_ticks {
         lines.horizontal([left, plane.down(plane.y.unit(tick.at))], left - length(tick));
     }
-    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"{}\"", number(HAIR)));
+    canvas.stroke(lines, Pen::new(INK, HAIR));
 }
 
 fn numbers(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick]) {
@@ -111,13 +111,13 @@ fn numbers(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick
     if plane.x.numbered {
         let base = bottom + TICK + GAP + NUMBER * DIGIT;
         for (at, label) in labelled(x_ticks) {
-            canvas.text(&label, [plane.across(plane.x.unit(at)), base], set(NUMBER, Anchor::Middle));
+            canvas.text(label, [plane.across(plane.x.unit(at)), base], set(NUMBER, Anchor::Middle));
         }
     }
     if plane.y.numbered {
         for (at, label) in labelled(y_ticks) {
             let base = plane.down(plane.y.unit(at)) + NUMBER * DIGIT / 2.0;
-            canvas.text(&label, [left - TICK - GAP, base], set(NUMBER, Anchor::End));
+            canvas.text(label, [left - TICK - GAP, base], set(NUMBER, Anchor::End));
         }
     }
 }
@@ -127,12 +127,12 @@ fn axis_labels(canvas: &mut Canvas, plane: &Plane, up: f64) {
     if plane.x.numbered {
         let base = bottom + TICK + GAP + NUMBER * DIGIT + GAP + WORDS * 0.85;
         let label = Label::new(&plane.x.label);
-        canvas.text(&label, [(left + right) / 2.0, base], set(WORDS, Anchor::Middle));
+        canvas.text(label, [(left + right) / 2.0, base], set(WORDS, Anchor::Middle));
     }
     if plane.y.numbered {
         let base = left - TICK - GAP - widest_number(plane.y, up) - GAP - WORDS * (LINE - 0.85);
         let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
-        canvas.text(&Label::new(&plane.y.label), [base, (top + bottom) / 2.0], upright);
+        canvas.text(Label::new(&plane.y.label), [base, (top + bottom) / 2.0], upright);
     }
 }
 
@@ -142,6 +142,6 @@ fn words(canvas: &mut Canvas, plane: &Plane, note: &Note) {
         // Centred on the point: half the height of a small letter lies below it.
         let at = [x + note.shift[0], y - note.shift[1] + NUMBER * 0.23];
         let set = Set { turn: note.turn, colour: note.colour, halo: true, ..set(NUMBER, note.anchor) };
-        canvas.text(&Label::new(&note.text), at, set);
+        canvas.text(Label::new(&note.text), at, set);
     }
 }

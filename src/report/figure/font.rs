@@ -1,11 +1,11 @@
-//! The text face: Libertinus Serif (SIL Open Font License), built in.
+//! The text face: Libertinus Serif (SIL Open Font License, see `fonts/`), built in.
 //!
 //! Glyphs are drawn as outlines, so that a figure looks the same in a browser, in a paper and as PNG, with no
 //! font installed; the words themselves stay in the SVG as `aria-label`s. Lengths are in em.
 
-use std::fmt::Write as _;
 use std::sync::LazyLock;
 
+use subsetter::GlyphRemapper;
 use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
 use ttf_parser::{GlyphId, OutlineBuilder};
 
@@ -29,13 +29,13 @@ impl Face {
         }
     }
 
-    /// Its place among the fonts of `typst-assets`; a test holds the names against it.
-    fn place(self) -> usize {
+    /// The font file.
+    fn file(self) -> &'static [u8] {
         match self {
-            Face::Roman => 0,
-            Face::Italic => 2,
-            Face::Semibold => 4,
-            Face::SemiboldItalic => 5,
+            Face::Roman => include_bytes!("fonts/LibertinusSerif-Regular.otf"),
+            Face::Italic => include_bytes!("fonts/LibertinusSerif-Italic.otf"),
+            Face::Semibold => include_bytes!("fonts/LibertinusSerif-Semibold.otf"),
+            Face::SemiboldItalic => include_bytes!("fonts/LibertinusSerif-SemiboldItalic.otf"),
         }
     }
 
@@ -51,10 +51,7 @@ impl Face {
 
     fn font(self) -> &'static ttf_parser::Face<'static> {
         static FONTS: LazyLock<[ttf_parser::Face<'static>; 4]> = LazyLock::new(|| {
-            Face::ALL.map(|face| {
-                let bytes = typst_assets::fonts().nth(face.place()).expect("the font is built in");
-                ttf_parser::Face::parse(bytes, 0).expect("a built-in font is sound")
-            })
+            Face::ALL.map(|face| ttf_parser::Face::parse(face.file(), 0).expect("a built-in font is sound"))
         });
         &FONTS[self as usize]
     }
@@ -83,16 +80,47 @@ impl Face {
         f64::from(shift.unwrap_or(0)) / self.em()
     }
 
-    /// The outline as SVG path data in units of 1/1000 em, y pointing down.
-    pub(super) fn outline(self, glyph: u16) -> String {
-        let mut pen = Pen { data: String::new(), scale: (1000.0 / self.em()) as f32 };
+    /// The outline in units of 1/1000 em, y pointing down.
+    pub(super) fn outline(self, glyph: u16) -> Vec<Curve> {
+        let mut pen = Pen { curves: Vec::new(), scale: (1000.0 / self.em()) as f32 };
         self.font().outline_glyph(GlyphId(glyph), &mut pen);
-        pen.data
+        pen.curves
+    }
+
+    /// The glyphs numbered by `numbers` as a font program for embedding (CFF).
+    pub(super) fn outlines(self, numbers: &GlyphRemapper) -> Vec<u8> {
+        let part = subsetter::subset(self.file(), 0, numbers).expect("a built-in font is sound");
+        let face = ttf_parser::RawFace::parse(&part, 0).expect("a part of a sound font is sound");
+        face.table(ttf_parser::Tag::from_bytes(b"CFF ")).expect("the outlines are CFF").to_vec()
+    }
+
+    /// How large its glyphs are.
+    pub(super) fn shape(self) -> Shape {
+        let (font, em) = (self.font(), self.em());
+        let length = |units: i16| 1000.0 * f64::from(units) / em;
+        let bounds = font.global_bounding_box();
+        Shape {
+            bounds: [bounds.x_min, bounds.y_min, bounds.x_max, bounds.y_max].map(length),
+            slant: f64::from(font.italic_angle()),
+            ascent: length(font.ascender()),
+            descent: length(font.descender()),
+            capital: font.capital_height().map_or(700.0, length),
+        }
     }
 
     fn em(self) -> f64 {
         f64::from(self.font().units_per_em())
     }
+}
+
+/// The measures of a face in 1/1000 em, y pointing up; the slant in degrees, counterclockwise.
+pub(super) struct Shape {
+    /// Left, bottom, right, top of all glyphs put on one another.
+    pub bounds: [f64; 4],
+    pub slant: f64,
+    pub ascent: f64,
+    pub descent: f64,
+    pub capital: f64,
 }
 
 /// The change of the left glyph's advance, if the table knows the pair.
@@ -107,42 +135,47 @@ fn pair_shift(pairs: &PairAdjustment, left: GlyphId, right: GlyphId) -> Option<i
     Some(first.x_advance)
 }
 
+/// A piece of an outline: control points, and the point where it ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Curve {
+    Move([i32; 2]),
+    Line([i32; 2]),
+    Quad([i32; 2], [i32; 2]),
+    Cubic([i32; 2], [i32; 2], [i32; 2]),
+    Close,
+}
+
 struct Pen {
-    data: String,
+    curves: Vec<Curve>,
     scale: f32,
 }
 
 impl Pen {
-    fn put(&mut self, command: char, numbers: &[f32]) {
-        self.data.push(command);
-        for (i, number) in numbers.iter().enumerate() {
-            // Fonts count upwards, SVG downwards.
-            let value = (number * self.scale * if i % 2 == 1 { -1.0 } else { 1.0 }).round() as i32;
-            let gap = if i > 0 && value >= 0 { " " } else { "" };
-            write!(self.data, "{gap}{value}").expect("writing to a String does not fail");
-        }
+    /// Fonts count upwards, pages downwards.
+    fn at(&self, x: f32, y: f32) -> [i32; 2] {
+        [x * self.scale, -y * self.scale].map(|value| value.round() as i32)
     }
 }
 
 impl OutlineBuilder for Pen {
     fn move_to(&mut self, x: f32, y: f32) {
-        self.put('M', &[x, y]);
+        self.curves.push(Curve::Move(self.at(x, y)));
     }
 
     fn line_to(&mut self, x: f32, y: f32) {
-        self.put('L', &[x, y]);
+        self.curves.push(Curve::Line(self.at(x, y)));
     }
 
     fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.put('Q', &[x1, y1, x, y]);
+        self.curves.push(Curve::Quad(self.at(x1, y1), self.at(x, y)));
     }
 
     fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.put('C', &[x1, y1, x2, y2, x, y]);
+        self.curves.push(Curve::Cubic(self.at(x1, y1), self.at(x2, y2), self.at(x, y)));
     }
 
     fn close(&mut self) {
-        self.data.push('Z');
+        self.curves.push(Curve::Close);
     }
 }
 

@@ -1,5 +1,6 @@
 //! Keys: legends and colour bars.
 
+use super::canvas::{Anchor, Canvas, Element, Patch, Path, Pen, Set};
 use super::clip::Rect;
 use super::draw::{Plane, set};
 use super::label::Label;
@@ -8,7 +9,6 @@ use super::layout::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, TICK, WORDS, ticks, wi
 use super::marks;
 use super::palette::{INK, WHITE};
 use super::panel::{ColourBar, Panel, Place};
-use super::svg::{Anchor, Canvas, Path, Set, number};
 use crate::report::figure::Axis;
 
 /// A sample of a line, the space to its words, the space to the next entry, the height of a line of entries.
@@ -87,14 +87,9 @@ fn in_corner(canvas: &mut Canvas, entries: &[Entry], corner: Place, [left, top, 
         Place::BottomLeft | Place::BottomRight => bottom - INSET - high,
         _ => top + INSET,
     };
-    let place = format!(
-        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        number(x),
-        number(y),
-        number(wide),
-        number(high)
-    );
-    canvas.raw(&format!("<rect {place} rx=\"1.5\" fill=\"{WHITE}\" fill-opacity=\".88\"/>"));
+    let veil =
+        Patch { x, y, width: wide, height: high, radius: Some(1.5), colour: WHITE, opacity: Some(0.88) };
+    canvas.elements.push(Element::Patch(veil));
     for (i, entry) in entries.iter().enumerate() {
         draw_entry(canvas, entry, [x + TO_WORDS, y + TO_WORDS / 2.0 + ROW * (i as f64 + 0.5)]);
     }
@@ -126,7 +121,7 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
         marks::layer(canvas, &plane, &sample);
     }
     let at = [x + SAMPLE + TO_WORDS, y + NUMBER * 0.23];
-    canvas.text(label, at, set(NUMBER, Anchor::Start));
+    canvas.text(label.clone(), at, set(NUMBER, Anchor::Start));
 }
 
 /// What a colour bar takes at the right of a frame of the given height.
@@ -143,9 +138,9 @@ pub(super) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
     for (i, colour) in bar.gradient.steps(SHADES).into_iter().enumerate() {
         // From each shade's foot up to the top: the next one covers the rest, and no seam shows.
         let foot = bottom - high * i as f64 / SHADES as f64;
-        let (x, y) = (number(left), number(top));
-        let (w, h) = (number(BAR), number(foot - top));
-        canvas.raw(&format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" fill=\"{colour}\"/>"));
+        let (x, y, width, height) = (left, top, BAR, foot - top);
+        let shade = Patch { x, y, width, height, radius: None, colour, opacity: None };
+        canvas.elements.push(Element::Patch(shade));
     }
     let mut lines = Path::default();
     lines.move_to([left, top]);
@@ -158,11 +153,11 @@ pub(super) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
         lines.horizontal([edge, y], edge + if tick.label.is_some() { TICK } else { MINOR_TICK });
         if let Some(label) = &tick.label {
             let at = [edge + TICK + GAP, y + NUMBER * DIGIT / 2.0];
-            canvas.text(&Label::new(label), at, set(NUMBER, Anchor::Start));
+            canvas.text(Label::new(label), at, set(NUMBER, Anchor::Start));
         }
     }
-    canvas.path(&lines, &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\".5\""));
+    canvas.stroke(lines, Pen::new(INK, 0.5));
     let x = edge + TICK + GAP + widest_number(&bar.axis, high) + GAP + WORDS * 0.75;
     let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
-    canvas.text(&Label::new(&bar.axis.label), [x, (top + bottom) / 2.0], upright);
+    canvas.text(Label::new(&bar.axis.label), [x, (top + bottom) / 2.0], upright);
 }

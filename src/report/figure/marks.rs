@@ -1,14 +1,10 @@
-//! Layers into the SVG: one path a colour and stroke, nothing outside the frame.
+//! Layers onto the canvas: one path a colour and stroke, nothing outside the frame.
 
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
-
+use super::canvas::{Canvas, Element, Image, Path, Pen};
 use super::clip;
 use super::draw::Plane;
-use super::layer::{Cells, Dash, Layer, Mark, Picture, Run, Shape, Stroke};
-use super::palette::Colour;
-use super::png;
-use super::svg::{Canvas, Path, number};
+use super::layer::{Cells, Layer, Mark, Picture, Run, Shape, Stroke};
+use super::palette::{Colour, WHITE};
 
 /// Cells overlap by this much (points), or hairlines of paper would show between neighbours in every rasterizer.
 const OVERLAP: f64 = 0.06;
@@ -26,7 +22,7 @@ pub(super) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
                 let kept = clip::polygon(plane.frame, outline.iter().map(|&p| plane.place(p)));
                 put_outline(&mut path, &kept);
             }
-            canvas.path(&path, &format!("fill=\"{colour}\" fill-opacity=\"{}\"", number(*opacity)));
+            canvas.fill(path, *colour, Some(*opacity));
         }
         Mark::Cells(grid) => cells(canvas, plane, grid),
         Mark::Picture(pixels) => picture(canvas, plane, pixels),
@@ -41,26 +37,7 @@ fn lines(canvas: &mut Canvas, plane: &Plane, lines: &[Vec<[f64; 2]>], stroke: &S
             piece[1..].iter().for_each(|&point| path.line_to(point));
         }
     }
-    canvas.path(&path, &stroked(stroke));
-}
-
-fn stroked(stroke: &Stroke) -> String {
-    let (colour, width) = (stroke.colour, number(stroke.width));
-    let lengths = |lengths: &[f64]| {
-        let listed: Vec<String> = lengths.iter().map(|&length| number(length)).collect();
-        format!(" stroke-dasharray=\"{}\"", listed.join(" "))
-    };
-    let dash = match stroke.dash {
-        Dash::Solid => " stroke-linejoin=\"round\"".to_string(),
-        // Lines of no length under a round cap: dots as wide as the line.
-        Dash::Dotted => format!(" stroke-linecap=\"round\"{}", lengths(&[0.0, 2.4 * stroke.width])),
-        Dash::Dashed => lengths(&[2.0 + 2.4 * stroke.width, 1.0 + 1.4 * stroke.width]),
-        Dash::DashDotted => {
-            let (long, dot, gap) = (2.5 + 3.0 * stroke.width, stroke.width, 1.0 + stroke.width);
-            lengths(&[long, gap, dot, gap])
-        }
-    };
-    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{dash}")
+    canvas.stroke(path, Pen::new(stroke.colour, stroke.width).dashed(stroke.dash));
 }
 
 fn dots(
@@ -85,20 +62,14 @@ fn dots(
             }
         }
     }
-    let round = |size: f64, colour| {
-        format!(
-            "fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\" stroke-linecap=\"round\"",
-            number(size)
-        )
-    };
     match shape {
-        Shape::Disc => canvas.path(&path, &round(size, colour)),
+        Shape::Disc => canvas.stroke(path, Pen::new(colour, size).capped()),
         Shape::Ring => {
-            canvas.path(&path, &round(size, colour));
-            canvas.path(&path, &round(size - 1.6, super::palette::WHITE));
+            canvas.stroke(path.clone(), Pen::new(colour, size).capped());
+            canvas.stroke(path, Pen::new(WHITE, size - 1.6).capped());
         }
-        Shape::Cross => canvas.path(&path, &format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\".8\"")),
-        _ => canvas.path(&path, &format!("fill=\"{colour}\"")),
+        Shape::Cross => canvas.stroke(path, Pen::new(colour, 0.8)),
+        _ => canvas.fill(path, colour, None),
     }
 }
 
@@ -127,11 +98,9 @@ fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells) {
         }
     }
     let [wide, high] = cell_size(plane, cells);
-    for (colour, [across, up]) in cells.colours.iter().zip(&paths) {
-        for (path, width) in [(across, high), (up, wide)] {
-            canvas
-                .path(path, &format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{}\"", number(width)));
-        }
+    for (&colour, [across, up]) in cells.colours.iter().zip(paths) {
+        canvas.stroke(across, Pen::new(colour, high));
+        canvas.stroke(up, Pen::new(colour, wide));
     }
 }
 
@@ -163,20 +132,7 @@ fn run_ends(plane: &Plane, cells: &Cells, run: &Run, lying: bool) -> Option<([f6
 fn picture(canvas: &mut Canvas, plane: &Plane, picture: &Picture) {
     let [left, bottom] = plane.place([picture.x[0], picture.y[0]]);
     let [right, top] = plane.place([picture.x[1], picture.y[1]]);
-    let rows = picture.pixels.len() as u32 / picture.width;
-    let bytes = png::encode(picture.width, rows, &picture.pixels, None);
-    let square = (right - left) / f64::from(picture.width) > SQUARE;
-    let rendering = if square { "optimizeSpeed" } else { "optimizeQuality" };
-    let place = format!(
-        "x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"",
-        number(left),
-        number(top),
-        number(right - left),
-        number(bottom - top)
-    );
-    canvas.raw(&format!(
-        "<image {place} preserveAspectRatio=\"none\" image-rendering=\"{rendering}\" \
-         xlink:href=\"data:image/png;base64,{}\"/>",
-        STANDARD.encode(bytes)
-    ));
+    let smooth = (right - left) / f64::from(picture.width) <= SQUARE;
+    let (place, pixels) = ([left, top, right, bottom], picture.pixels.clone());
+    canvas.elements.push(Element::Image(Image { place, width: picture.width, pixels, smooth }));
 }

@@ -1,19 +1,18 @@
 //! Figures for papers: panels of layers, drawn as SVG, rasterized to PNG.
 //!
 //! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it. Text is
-//! drawn in a built-in face, so the same figure gives the same SVG bytes wherever it is made, and the PNG is
-//! rasterized from that very SVG.
+//! drawn in a built-in face, so the same figure gives the same bytes wherever it is made, and every format draws the
+//! same primitives.
 //!
 //! ```
-//! use kickdrift::report::figure::{Axis, Figure, Layer, Panel, Stroke, png};
+//! use kickdrift::report::figure::{Axis, Figure, Layer, Panel, Stroke};
 //! let wave = (0..=100).map(|i| f64::from(i) / 100.0).map(|t| [t, (6.0 * t).sin()]).collect();
 //! let panel = Panel::new(Axis::linear("*t* (s)", 0.0, 1.0), Axis::linear("*x*", -1.1, 1.1))
 //!     .titled("One oscillation")
 //!     .with(Layer::lines(vec![wave], Stroke::LINE));
-//! let svg = Figure::single_column(60.0).with(panel).svg();
-//! assert!(svg.starts_with("<svg"));
-//! let image = png::raster(&svg, 300.0)?;
-//! assert_eq!(&image[1..4], b"PNG");
+//! let figure = Figure::single_column(60.0).with(panel);
+//! assert!(figure.svg().starts_with("<svg"));
+//! assert_eq!(&figure.png(300.0)?[1..4], b"PNG");
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 //!
@@ -24,32 +23,43 @@
 //! | `layer` | lines, dots, areas, cells, pictures |
 //! | `panel` | axes, layers, notes, legend, colour bar |
 //! | `layout` | where everything goes |
-//! | `draw` | a panel into the SVG |
-//! | `key` | legends and colour bars into the SVG |
-//! | `marks` | layers into the SVG |
+//! | `draw` | a panel onto the canvas |
+//! | `key` | legends and colour bars onto the canvas |
+//! | `marks` | layers onto the canvas |
 //! | `clip` | what lies in the frame |
 //! | `font`, `label` | glyphs, and words made of them |
-//! | `svg` | the text of the SVG |
-//! | `png` | the SVG as pixels |
+//! | `canvas` | paths, rectangles, pictures, words: what every format draws |
+//! | `outline` | its lines and curves, for formats that draw by themselves |
+//! | `svg` | the canvas as SVG |
+//! | `png` | the canvas as pixels |
+//! | `pdf`, `embed` | the canvas as PDF, and the letters in it |
 
 mod axis;
+mod canvas;
 mod clip;
 mod draw;
+mod embed;
 mod font;
 mod key;
 mod label;
 mod layer;
 mod layout;
 mod marks;
+mod outline;
 pub mod palette;
 mod panel;
-pub mod png;
+mod pdf;
+mod png;
 mod svg;
 
 pub use axis::{Axis, Scale, Tick};
+pub use canvas::Anchor;
 pub use layer::{Cells, Dash, Layer, Picture, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
-pub use svg::Anchor;
+
+use crate::error::{Error, Result};
+use crate::format::Format;
+use canvas::Canvas;
 
 /// A sheet of panels.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,13 +110,46 @@ impl Figure {
 
     /// The figure as a whole SVG document: same figure, same bytes.
     pub fn svg(&self) -> String {
-        let (width, height) = (self.width_mm * svg::MM, self.height_mm * svg::MM);
+        svg::document(&self.drawn())
+    }
+
+    /// The figure as a PNG file on white, with `dpi` pixels an inch.
+    ///
+    /// # Errors
+    /// [`Kind::Input`](crate::error::Kind::Input) if `dpi` is not a positive number or makes more than 2^28 pixels.
+    pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
+        png::raster(&self.drawn(), dpi)
+    }
+
+    /// The figure as a PDF file of one page, its words searchable: same figure, same bytes.
+    pub fn pdf(&self) -> Vec<u8> {
+        pdf::document(&self.drawn())
+    }
+
+    /// The figure as the bytes of a file; `dpi` is for PNG alone.
+    ///
+    /// # Errors
+    /// A format that is none of figures, and as [`Figure::png`].
+    pub fn file(&self, format: Format, dpi: f64) -> Result<Vec<u8>> {
+        match format {
+            Format::Svg => Ok(self.svg().into_bytes()),
+            Format::Pdf => Ok(self.pdf()),
+            Format::Png => self.png(dpi),
+            other => {
+                let remedy = format!("a figure is written as {}", Format::extensions(&Format::FIGURE));
+                Err(Error::input("format", other.name(), remedy))
+            }
+        }
+    }
+
+    fn drawn(&self) -> Canvas {
+        let (width, height) = (self.width_mm * canvas::MM, self.height_mm * canvas::MM);
         let columns = self.columns.min(self.panels.len()).max(1);
         let sites = layout::sites(&self.panels, columns, width, height);
-        let mut canvas = svg::Canvas::default();
+        let mut canvas = Canvas::new(width, height, &self.title);
         for (panel, site) in self.panels.iter().zip(sites) {
             draw::panel(&mut canvas, panel, site);
         }
-        canvas.finish(width, height, &self.title)
+        canvas
     }
 }

@@ -1,9 +1,9 @@
 //! A panel: two axes and what stands between them.
 
 use super::axis::Axis;
+use super::canvas::Anchor;
 use super::layer::Layer;
 use super::palette::{Colour, Gradient, INK};
-use super::svg::Anchor;
 
 /// Where the legend stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

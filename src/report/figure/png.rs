@@ -1,46 +1,45 @@
-//! The SVG as pixels.
+//! A drawing as pixels.
 
 use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree};
+use tiny_skia::{
+    Color, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Mask, Paint as Shade, PathBuilder, Pixmap,
+    PixmapPaint, Rect as Area, Stroke, StrokeDash, Transform,
+};
 
-use super::palette::Colour;
+use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
+use super::clip::Rect;
+use super::outline::{self, Outline};
+use super::palette::{Colour, WHITE};
 use crate::error::{Error, Result};
 
 /// The most pixels of one image; at four bytes each this is 1 GiB.
 const MOST_PIXELS: f64 = (1u64 << 28) as f64;
-/// CSS, and with it SVG, counts 96 units an inch.
-const UNITS_AN_INCH: f32 = 96.0;
 
-/// Rasterizes an SVG document on white at `dpi` pixels an inch, and notes that resolution in the file.
+/// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file.
 ///
 /// # Errors
 /// [`Kind::Input`](crate::error::Kind::Input) if `dpi` is not a positive number or makes more than 2^28 pixels.
-///
-/// # Panics
-/// If `svg` is not an SVG document: [`Figure::svg`](super::Figure::svg) always makes one.
-pub fn raster(svg: &str, dpi: f64) -> Result<Vec<u8>> {
-    let tree = Tree::from_str(svg, &Options { dpi: UNITS_AN_INCH, ..Options::default() })
-        .expect("the figure is an SVG document");
-    let scale = dpi / f64::from(UNITS_AN_INCH);
-    let size =
-        [tree.size().width(), tree.size().height()].map(|side| (f64::from(side) * scale).round().max(1.0));
+pub(super) fn raster(canvas: &Canvas, dpi: f64) -> Result<Vec<u8>> {
+    let scale = dpi / 72.0;
+    let size = [canvas.width, canvas.height].map(|side| (side * scale).round().max(1.0));
+    let refused = || Error::input("dpi", dpi, "between 1 and what makes 268 million pixels; 300 suits print");
     if !(dpi > 0.0 && size[0] * size[1] <= MOST_PIXELS) {
-        return Err(Error::input("dpi", dpi, "between 1 and what makes 268 million pixels; 300 suits print"));
+        return Err(refused());
     }
-    let (width, height) = (size[0] as u32, size[1] as u32);
-    let mut pixels = Pixmap::new(width, height).expect("both sides are positive");
-    pixels.fill(resvg::tiny_skia::Color::WHITE);
-    resvg::render(&tree, Transform::from_scale(scale as f32, scale as f32), &mut pixels.as_mut());
+    let mut pixels = Pixmap::new(size[0] as u32, size[1] as u32).ok_or_else(refused)?;
+    pixels.fill(Color::WHITE);
+    let page = Transform::from_scale(scale as f32, scale as f32);
+    let mut brush = Brush { pixels, page, clip: None };
+    canvas.elements.iter().for_each(|element| brush.draw(element));
     // White below makes every pixel opaque, so premultiplied and plain colours agree.
-    let colours: Vec<Colour> = pixels.pixels().iter().map(|p| Colour(p.red(), p.green(), p.blue())).collect();
-    Ok(encode(width, height, &colours, Some(dpi)))
+    let colours = brush.pixels.pixels().iter().map(|p| Colour(p.red(), p.green(), p.blue()));
+    Ok(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi)))
 }
 
-/// Pixels, row by row, as a PNG file.
-pub(super) fn encode(width: u32, height: u32, pixels: &[Colour], dpi: Option<f64>) -> Vec<u8> {
+/// Pixels in rows of `width` as a PNG file.
+pub(super) fn encode(width: u32, pixels: &[Colour], dpi: Option<f64>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, height);
+    let mut encoder = Encoder::new(&mut bytes, width, (pixels.len() / width as usize) as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Balanced);
@@ -53,4 +52,134 @@ pub(super) fn encode(width: u32, height: u32, pixels: &[Colour], dpi: Option<f64
     writer.write_image_data(&data).expect("writing to memory does not fail");
     writer.finish().expect("writing to memory does not fail");
     bytes
+}
+
+/// What draws, and where it may.
+struct Brush {
+    pixels: Pixmap,
+    /// From points to pixels.
+    page: Transform,
+    clip: Option<Mask>,
+}
+
+impl Brush {
+    fn draw(&mut self, element: &Element) {
+        match element {
+            Element::Path(path, paint) => {
+                if let Some(path) = traced(|pen| outline::path(path, pen)) {
+                    match paint {
+                        Paint::Fill { colour, opacity } => {
+                            self.fill(&path, &shade(*colour, *opacity), self.page);
+                        }
+                        Paint::Stroke(pen) => self.stroke(&path, pen, self.page),
+                    }
+                }
+            }
+            Element::Patch(patch) => {
+                if let Some(path) = traced(|pen| outline::patch(patch, pen)) {
+                    self.fill(&path, &shade(patch.colour, patch.opacity), self.page);
+                }
+            }
+            Element::Image(image) => self.image(image),
+            Element::Words(words) => self.words(words),
+            Element::Open(frame) => self.clip = self.mask(frame),
+            Element::Close => self.clip = None,
+        }
+    }
+
+    fn fill(&mut self, path: &tiny_skia::Path, shade: &Shade, place: Transform) {
+        self.pixels.fill_path(path, shade, FillRule::Winding, place, self.clip.as_ref());
+    }
+
+    fn stroke(&mut self, path: &tiny_skia::Path, pen: &Pen, place: Transform) {
+        let stroke = Stroke {
+            width: pen.width as f32,
+            line_cap: if pen.round_caps { LineCap::Round } else { LineCap::Butt },
+            line_join: if pen.round_joins { LineJoin::Round } else { LineJoin::Miter },
+            dash: StrokeDash::new(pen.dashes.iter().map(|&length| length as f32).collect(), 0.0),
+            ..Stroke::default()
+        };
+        self.pixels.stroke_path(path, &shade(pen.colour, None), &stroke, place, self.clip.as_ref());
+    }
+
+    /// The pixels inside a rectangle; none where it has no size.
+    fn mask(&self, &[left, top, right, bottom]: &Rect) -> Option<Mask> {
+        let [left, top, right, bottom] = [left, top, right, bottom].map(|side| side as f32);
+        let mut mask = Mask::new(self.pixels.width(), self.pixels.height())?;
+        if let Some(frame) = Area::from_ltrb(left, top, right, bottom) {
+            mask.fill_path(&PathBuilder::from_rect(frame), FillRule::Winding, true, self.page);
+        }
+        Some(mask)
+    }
+
+    fn image(&mut self, image: &Image) {
+        let [left, top, right, bottom] = image.place;
+        let rows = image.pixels.len() as u32 / image.width;
+        let bytes = image.pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b, 255]).collect();
+        let size = IntSize::from_wh(image.width, rows);
+        let Some(pixels) = size.and_then(|size| Pixmap::from_vec(bytes, size)) else { return };
+        let quality = if image.smooth { FilterQuality::Bicubic } else { FilterQuality::Nearest };
+        let (wide, high) = ((right - left) / f64::from(image.width), (bottom - top) / f64::from(rows));
+        let place = Transform::from_row(wide as f32, 0.0, 0.0, high as f32, left as f32, top as f32);
+        let paint = PixmapPaint { quality, ..PixmapPaint::default() };
+        let place = place.post_concat(self.page);
+        self.pixels.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, self.clip.as_ref());
+    }
+
+    /// Each glyph in its place; the rim of all of them first, or it would cover neighbours.
+    fn words(&mut self, words: &Words) {
+        let ([x, y], set) = (words.at.map(|at| at as f32), words.set);
+        let em = (set.size / 1000.0) as f32;
+        let frame = Transform::from_rotate(-set.turn as f32).pre_scale(em, em).post_translate(x, y);
+        let glyphs = words.glyphs.iter().filter_map(|placed| {
+            let [x, y] = words.offset(placed).map(|at| at as f32);
+            let scale = placed.scale as f32;
+            let place = frame.pre_translate(x, y).pre_scale(scale, scale).post_concat(self.page);
+            let curves = placed.face.outline(placed.glyph);
+            Some((traced(|pen| outline::glyph(&curves, pen))?, place))
+        });
+        let glyphs: Vec<_> = glyphs.collect();
+        if set.halo {
+            let rim = Pen { round_joins: true, ..Pen::new(WHITE, HALO) };
+            for (path, place) in &glyphs {
+                self.fill(path, &shade(WHITE, None), *place);
+                self.stroke(path, &rim, *place);
+            }
+        }
+        for (path, place) in &glyphs {
+            self.fill(path, &shade(set.colour, None), *place);
+        }
+    }
+}
+
+fn shade(Colour(r, g, b): Colour, opacity: Option<f64>) -> Shade<'static> {
+    let mut shade = Shade::default();
+    shade.set_color_rgba8(r, g, b, (255.0 * opacity.unwrap_or(1.0)).round() as u8);
+    shade
+}
+
+/// What is drawn by `trace`; none where nothing is left of it.
+fn traced(trace: impl FnOnce(&mut PathBuilder)) -> Option<tiny_skia::Path> {
+    let mut path = PathBuilder::new();
+    trace(&mut path);
+    path.finish()
+}
+
+impl Outline for PathBuilder {
+    fn begin(&mut self, [x, y]: [f64; 2]) {
+        self.move_to(x as f32, y as f32);
+    }
+
+    fn line(&mut self, [x, y]: [f64; 2]) {
+        self.line_to(x as f32, y as f32);
+    }
+
+    fn cubic(&mut self, first: [f64; 2], second: [f64; 2], to: [f64; 2]) {
+        let [[a, b], [c, d], [x, y]] = [first, second, to].map(|point| point.map(|x| x as f32));
+        self.cubic_to(a, b, c, d, x, y);
+    }
+
+    fn end(&mut self) {
+        self.close();
+    }
 }

@@ -1,25 +1,52 @@
-//! The SVG text: numbers, paths, glyphs. Lengths are points (1/72 inch), y pointing down.
-//!
-//! Every coordinate is a whole number of hundredths of a point (3.5 micrometres) and is written with as few
-//! letters as possible; path data is relative, computed in integers, so that nothing drifts.
+//! A drawing as SVG, with as few letters as possible: path data is relative, computed in integers, so that nothing
+//! drifts.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use super::font::Face;
-use super::label::Label;
-use super::palette::{Colour, WHITE};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 
-/// Points a millimetre.
-pub(super) const MM: f64 = 72.0 / 25.4;
+use super::canvas::{Canvas, Element, HALO, Image, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
+use super::clip::Rect;
+use super::font::{Curve, Face};
+use super::palette::WHITE;
+use super::png;
 
-/// A coordinate in hundredths of a point. Far outside it saturates: nobody sees the difference.
-fn hundredths(value: f64) -> i64 {
-    (value * 100.0).round().clamp(-1e12, 1e12) as i64
+/// The whole document, on white paper.
+pub(super) fn document(canvas: &Canvas) -> String {
+    let (w, h) = (number(canvas.width), number(canvas.height));
+    let (w_mm, h_mm) = (number(canvas.width / MM), number(canvas.height / MM));
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+         width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\">\n<title>{}</title>\n<defs>\n",
+        escaped(&canvas.title)
+    );
+    for (face, glyph) in canvas.glyphs() {
+        let (name, data) = (glyph_name(face, glyph), outline(face, glyph));
+        out.push_str(&format!("<path id=\"{name}\" d=\"{data}\"/>\n"));
+    }
+    out.push_str(&format!("</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"{WHITE}\"/>\n"));
+    let mut clips = 0;
+    for element in &canvas.elements {
+        out.push_str(&match element {
+            Element::Path(path, paint) => format!("<path {} d=\"{}\"/>", attributes(paint), data(path)),
+            Element::Patch(rect) => filled(rect),
+            Element::Image(image) => picture(image),
+            Element::Words(words) => text(words),
+            Element::Open(frame) => {
+                clips += 1;
+                clipped(clips, frame)
+            }
+            Element::Close => "</g>".into(),
+        });
+        out.push('\n');
+    }
+    out.push_str("</svg>\n");
+    out
 }
 
 /// A number with at most two decimals and no letter to spare.
-pub(super) fn number(value: f64) -> String {
+fn number(value: f64) -> String {
     let mut text = String::new();
     put(&mut text, hundredths(value));
     text
@@ -39,205 +66,141 @@ fn put(text: &mut String, value: i64) {
     }
 }
 
-/// Path data under construction.
-#[derive(Default)]
-pub(super) struct Path {
-    data: String,
-    at: (i64, i64),
-    /// The command that a bare pair of numbers would repeat.
-    implied: char,
-}
-
-impl Path {
-    pub(super) fn is_empty(&self) -> bool {
-        self.data.is_empty()
-    }
-
-    /// Lifts the pen to a point.
-    pub(super) fn move_to(&mut self, [x, y]: [f64; 2]) {
-        self.step('m', hundredths(x), hundredths(y));
-        // Behind a move, a bare pair is a line.
-        self.implied = 'l';
-    }
-
-    /// Draws to a point; nothing where it rounds to the one before.
-    pub(super) fn line_to(&mut self, [x, y]: [f64; 2]) {
-        let to = (hundredths(x), hundredths(y));
-        if to != self.at {
-            self.step('l', to.0, to.1);
+/// Path data; a pair of numbers repeats the command before it, and behind a move it is a line.
+fn data(path: &Path) -> String {
+    let (mut data, mut at, mut implied) = (String::new(), (0, 0), ' ');
+    for &step in &path.steps {
+        match step {
+            Step::Move(x, y) | Step::Line(x, y) => {
+                let command = if matches!(step, Step::Move(..)) { 'm' } else { 'l' };
+                let (dx, dy) = (x - at.0, y - at.1);
+                if implied != command {
+                    data.push(command);
+                } else if dx >= 0 {
+                    data.push(' ');
+                }
+                put(&mut data, dx);
+                if dy >= 0 {
+                    data.push(' ');
+                }
+                put(&mut data, dy);
+                (at, implied) = ((x, y), 'l');
+            }
+            Step::Across(x) => {
+                data.push('h');
+                put(&mut data, x - at.0);
+                (at.0, implied) = (x, 'h');
+            }
+            Step::Along(y) => {
+                data.push('v');
+                put(&mut data, y - at.1);
+                (at.1, implied) = (y, 'v');
+            }
+            Step::Dot => {
+                data.push_str("h0");
+                implied = 'h';
+            }
+            Step::Close(x, y) => {
+                data.push('z');
+                (at, implied) = ((x, y), 'z');
+            }
         }
     }
-
-    /// A dot under a round line cap: a line of no length.
-    pub(super) fn dot(&mut self, point: [f64; 2]) {
-        self.move_to(point);
-        self.data.push_str("h0");
-        self.implied = 'h';
-    }
-
-    /// A horizontal stroke from `from` to `x`.
-    pub(super) fn horizontal(&mut self, from: [f64; 2], x: f64) {
-        self.move_to(from);
-        self.along('h', hundredths(x) - self.at.0);
-        self.at.0 = hundredths(x);
-    }
-
-    /// A vertical stroke from `from` to `y`.
-    pub(super) fn vertical(&mut self, from: [f64; 2], y: f64) {
-        self.move_to(from);
-        self.along('v', hundredths(y) - self.at.1);
-        self.at.1 = hundredths(y);
-    }
-
-    /// Closes the outline; the pen is back where it began.
-    pub(super) fn close(&mut self, start: [f64; 2]) {
-        self.data.push('z');
-        self.at = (hundredths(start[0]), hundredths(start[1]));
-        self.implied = 'z';
-    }
-
-    fn along(&mut self, command: char, length: i64) {
-        self.data.push(command);
-        put(&mut self.data, length);
-        self.implied = command;
-    }
-
-    fn step(&mut self, command: char, x: i64, y: i64) {
-        let (dx, dy) = (x - self.at.0, y - self.at.1);
-        if self.implied != command {
-            self.data.push(command);
-        } else if dx >= 0 {
-            self.data.push(' ');
-        }
-        put(&mut self.data, dx);
-        if dy >= 0 {
-            self.data.push(' ');
-        }
-        put(&mut self.data, dy);
-        (self.at, self.implied) = ((x, y), command);
-    }
+    data
 }
 
-/// The side of a text that stands at its place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Anchor {
-    /// The text begins there.
-    Start,
-    /// The text is centred there.
-    Middle,
-    /// The text ends there.
-    End,
-}
-
-/// How a text is set.
-#[derive(Clone, Copy)]
-pub(super) struct Set {
-    pub size: f64,
-    pub anchor: Anchor,
-    /// Degrees, counterclockwise.
-    pub turn: f64,
-    pub colour: Colour,
-    /// Whether a rim of paper keeps the text readable over lines.
-    pub halo: bool,
-}
-
-/// The drawing so far.
-#[derive(Default)]
-pub(super) struct Canvas {
-    body: String,
-    glyphs: BTreeSet<(Face, u16)>,
-    clips: usize,
-}
-
-impl Canvas {
-    /// Adds a finished element or tag.
-    pub(super) fn raw(&mut self, element: &str) {
-        self.body.push_str(element);
-        self.body.push('\n');
-    }
-
-    /// Adds a path with the attributes given; an empty one is left out.
-    pub(super) fn path(&mut self, path: &Path, attributes: &str) {
-        if !path.is_empty() {
-            let data = &path.data;
-            self.raw(&format!("<path {attributes} d=\"{data}\"/>"));
-        }
-    }
-
-    /// Opens a group that shows only what lies in the rectangle; [`Canvas::close`] ends it.
-    pub(super) fn open_clipped(&mut self, [left, top, right, bottom]: [f64; 4]) {
-        self.clips += 1;
-        let name = format!("box{}", self.clips);
-        let (x, y, w, h) = (number(left), number(top), number(right - left), number(bottom - top));
-        let shape = format!("<rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/>");
-        self.raw(&format!("<clipPath id=\"{name}\">{shape}</clipPath>\n<g clip-path=\"url(#{name})\">"));
-    }
-
-    /// Ends a group.
-    pub(super) fn close(&mut self) {
-        self.raw("</g>");
-    }
-
-    /// Sets a label with its baseline at (x, y).
-    pub(super) fn text(&mut self, label: &Label, [x, y]: [f64; 2], set: Set) {
-        if label.glyphs.is_empty() {
-            return;
-        }
-        let before = label.width
-            * match set.anchor {
-                Anchor::Start => 0.0,
-                Anchor::Middle => 0.5,
-                Anchor::End => 1.0,
+fn attributes(paint: &Paint) -> String {
+    match paint {
+        Paint::Fill { colour, opacity } => format!("fill=\"{colour}\"{}", veil(*opacity)),
+        Paint::Stroke(Pen { colour, width, round_joins, round_caps, dashes }) => {
+            let joins = if *round_joins { " stroke-linejoin=\"round\"" } else { "" };
+            let caps = if *round_caps { " stroke-linecap=\"round\"" } else { "" };
+            let lengths: Vec<String> = dashes.iter().map(|&length| number(length)).collect();
+            let dashes = match lengths.join(" ") {
+                none if none.is_empty() => none,
+                lengths => format!(" stroke-dasharray=\"{lengths}\""),
             };
-        let turn = if set.turn == 0.0 { String::new() } else { format!(" rotate({})", number(-set.turn)) };
-        // Glyphs are drawn in units of 1/1000 em.
-        let scale = set.size / 1000.0;
-        let mut uses = String::new();
-        for placed in &label.glyphs {
-            self.glyphs.insert((placed.face, placed.glyph));
-            let (gx, gy) = (number(1000.0 * (placed.x - before)), number(1000.0 * placed.y));
-            let scaled =
-                if placed.scale == 1.0 { String::new() } else { format!(" scale({})", placed.scale) };
-            let name = glyph_name(placed.face, placed.glyph);
-            let place = format!("translate({gx} {gy}){scaled}");
-            write!(uses, "<use xlink:href=\"#{name}\" transform=\"{place}\"/>").expect("a String takes all");
+            let width = number(*width);
+            format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\"{joins}{caps}{dashes}")
         }
-        let frame = format!("transform=\"translate({} {}){turn} scale({scale})\"", number(x), number(y));
-        if set.halo {
-            let rim =
-                format!("fill=\"{WHITE}\" stroke=\"{WHITE}\" stroke-width=\"280\" stroke-linejoin=\"round\"");
-            self.raw(&format!("<g aria-hidden=\"true\" {rim} {frame}>{uses}</g>"));
-        }
-        let words = escaped(&label.words);
-        self.raw(&format!(
-            "<g role=\"img\" aria-label=\"{words}\" fill=\"{}\" {frame}>{uses}</g>",
-            set.colour
-        ));
     }
+}
 
-    /// The whole document, on white paper of the size given.
-    pub(super) fn finish(self, width: f64, height: f64, title: &str) -> String {
-        let (w, h) = (number(width), number(height));
-        let (w_mm, h_mm) = (number(width / MM), number(height / MM));
-        let mut out = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-             width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\">\n<title>{}</title>\n<defs>\n",
-            escaped(title)
-        );
-        for &(face, glyph) in &self.glyphs {
-            let (name, data) = (glyph_name(face, glyph), face.outline(glyph));
-            writeln!(out, "<path id=\"{name}\" d=\"{data}\"/>").expect("a String takes all");
-        }
-        writeln!(out, "</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"{WHITE}\"/>")
-            .expect("a String takes all");
-        out.push_str(&self.body);
-        out.push_str("</svg>\n");
-        out
+fn veil(opacity: Option<f64>) -> String {
+    opacity.map_or_else(String::new, |opacity| format!(" fill-opacity=\"{}\"", number(opacity)))
+}
+
+fn place(x: f64, y: f64, width: f64, height: f64) -> String {
+    let [x, y, width, height] = [x, y, width, height].map(number);
+    format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
+}
+
+fn filled(&Patch { x, y, width, height, radius, colour, opacity }: &Patch) -> String {
+    let corners = radius.map_or_else(String::new, |radius| format!(" rx=\"{radius}\""));
+    format!("<rect {}{corners} fill=\"{colour}\"{}/>", place(x, y, width, height), veil(opacity))
+}
+
+fn clipped(clips: usize, [left, top, right, bottom]: &Rect) -> String {
+    let frame = place(*left, *top, right - left, bottom - top);
+    format!("<clipPath id=\"box{clips}\"><rect {frame}/></clipPath>\n<g clip-path=\"url(#box{clips})\">")
+}
+
+fn picture(image: &Image) -> String {
+    let [left, top, right, bottom] = image.place;
+    let rendering = if image.smooth { "optimizeQuality" } else { "optimizeSpeed" };
+    format!(
+        "<image {} preserveAspectRatio=\"none\" image-rendering=\"{rendering}\" \
+         xlink:href=\"data:image/png;base64,{}\"/>",
+        place(left, top, right - left, bottom - top),
+        STANDARD.encode(png::encode(image.width, &image.pixels, None))
+    )
+}
+
+fn text(words: &Words) -> String {
+    let mut uses = String::new();
+    for placed in &words.glyphs {
+        let [x, y] = words.offset(placed).map(number);
+        let scaled = if placed.scale == 1.0 { String::new() } else { format!(" scale({})", placed.scale) };
+        let name = glyph_name(placed.face, placed.glyph);
+        uses.push_str(&format!("<use xlink:href=\"#{name}\" transform=\"translate({x} {y}){scaled}\"/>"));
     }
+    let set = words.set;
+    let [x, y] = words.at.map(number);
+    let turn = if set.turn == 0.0 { String::new() } else { format!(" rotate({})", number(-set.turn)) };
+    // Glyphs are drawn in units of 1/1000 em.
+    let frame = format!("transform=\"translate({x} {y}){turn} scale({})\"", set.size / 1000.0);
+    let rim =
+        format!("fill=\"{WHITE}\" stroke=\"{WHITE}\" stroke-width=\"{HALO}\" stroke-linejoin=\"round\"");
+    let halo =
+        if set.halo { format!("<g aria-hidden=\"true\" {rim} {frame}>{uses}</g>\n") } else { String::new() };
+    let (name, colour) = (escaped(&words.words), set.colour);
+    format!("{halo}<g role=\"img\" aria-label=\"{name}\" fill=\"{colour}\" {frame}>{uses}</g>")
 }
 
 fn glyph_name(face: Face, glyph: u16) -> String {
     format!("{}{glyph}", face.prefix())
+}
+
+/// A glyph as path data in units of 1/1000 em.
+fn outline(face: Face, glyph: u16) -> String {
+    let mut data = String::new();
+    let mut step = |command: char, points: &[[i32; 2]]| {
+        data.push(command);
+        for (i, number) in points.as_flattened().iter().enumerate() {
+            let gap = if i > 0 && *number >= 0 { " " } else { "" };
+            write!(data, "{gap}{number}").expect("writing to a String does not fail");
+        }
+    };
+    for curve in face.outline(glyph) {
+        match curve {
+            Curve::Move(to) => step('M', &[to]),
+            Curve::Line(to) => step('L', &[to]),
+            Curve::Quad(control, to) => step('Q', &[control, to]),
+            Curve::Cubic(first, second, to) => step('C', &[first, second, to]),
+            Curve::Close => step('Z', &[]),
+        }
+    }
+    data
 }
 
 /// Text that may stand in an attribute or between tags; control letters are no XML and become spaces.
@@ -278,7 +241,7 @@ mod tests {
         path.move_to([2.0, 1.0]);
         path.vertical([0.0, 0.0], 5.0);
         path.dot([1.0, 1.0]);
-        assert_eq!(path.data, "m1 2 .33 0 .34 0 .33 0m0-1m-2-1v5m1-4h0");
+        assert_eq!(data(&path), "m1 2 .33 0 .34 0 .33 0m0-1m-2-1v5m1-4h0");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 use crate::map::{Band, Enclosure, Grid, Growing, Products};
 use crate::number::Ratio;
+use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use crate::verdict::Decision;
 
@@ -61,69 +62,69 @@ impl Marked {
 /// Turns marked pairs into rows of cells, in the columns that were asked for.
 pub struct Rows<'a> {
     grid: &'a Grid,
-    products: Products,
+    record: Record<'static, Written>,
     /// The last h1 in writing.
     h1: (u64, String),
     /// The h2 in writing, as far as they were needed; too many rows are written anew each time.
     h2: Vec<Option<String>>,
 }
 
+/// A pair, its steps in writing, and what was asked for of it.
+struct Written {
+    steps: [String; 2],
+    pair: Marked,
+    found: Found,
+}
+
 /// More texts than these are not kept.
 const MOST_TEXTS: usize = 1 << 16;
 
+/// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate` and
+/// `steps_until_tenfold`, both enclosed.
+fn record(products: Products) -> Record<'static, Written> {
+    type Of<'a> = &'a Written;
+    let mut record = Record::new()
+        .field(Column::math("h1", "h_1"), |of: Of| Cell::exact(&of.steps[0]))
+        .field(Column::math("h2", "h_2"), |of| Cell::exact(&of.steps[1]))
+        .field(Column::math("p", "p"), |of| of.pair.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.pair.ratio.q().into())
+        .field(Column::new("kind").left(), |of| of.pair.decision.verdict.kind().name().into())
+        .field(Column::new("side"), |of| i64::from(of.pair.decision.verdict.side()).into())
+        .field(Column::new("decided_by").in_words("decided by").left(), |of| {
+            of.pair.decision.decided_by.name().into()
+        });
+    if products.label {
+        record = record
+            .field(Column::math("m", "m"), |of| of.found.m.into())
+            .field(Column::math("a", "a"), |of| of.found.family.map(|(a, _)| a).into())
+            .field(Column::math("b", "b"), |of| of.found.family.map(|(_, b)| b).into());
+    }
+    if products.growth {
+        let ends = |found: Option<Enclosure>| Cell::from(found.map(|Enclosure { lo, hi }| (lo, hi)));
+        let enclosed = |key, title| Column::new(key).in_words(title).enclosure();
+        record = record
+            .field(enclosed("growth_rate", "growth rate"), move |of| ends(of.found.rate))
+            .field(enclosed("steps_until_tenfold", "steps until tenfold"), move |of| ends(of.found.tenfold));
+    }
+    record
+}
+
 impl<'a> Rows<'a> {
+    /// The rows of a grid.
     pub fn new(grid: &'a Grid, products: Products) -> Self {
         let kept = if grid.shape().1 <= MOST_TEXTS { grid.shape().1 } else { 0 };
-        Rows { grid, products, h1: (0, String::new()), h2: vec![None; kept] }
+        Rows { grid, record: record(products), h1: (0, String::new()), h2: vec![None; kept] }
     }
 
-    /// `h1, h2, p, q, kind, side, decided_by`, with labels `m, a, b`, with growth `growth_rate` and
-    /// `steps_until_tenfold`, both enclosed.
+    /// The columns that were asked for.
     pub fn columns(&self) -> Vec<Column> {
-        let mut columns = vec![
-            Column::new("h1").titled("h1", "$h_1$"),
-            Column::new("h2").titled("h2", "$h_2$"),
-            Column::new("p").titled("p", "$p$"),
-            Column::new("q").titled("q", "$q$"),
-            Column::new("kind").left(),
-            Column::new("side"),
-            Column::new("decided_by").titled("decided by", "decided by").left(),
-        ];
-        if self.products.label {
-            columns.extend(["m", "a", "b"].map(|key| Column::new(key).titled(key, &format!("${key}$"))));
-        }
-        if self.products.growth {
-            let enclosed = |key: &str, title: &str| Column::new(key).titled(title, title).enclosure();
-            columns.push(enclosed("growth_rate", "growth rate"));
-            columns.push(enclosed("steps_until_tenfold", "steps until tenfold"));
-        }
-        columns
+        self.record.columns()
     }
 
     /// The cells of one pair.
     pub fn cells(&mut self, pair: &Marked) -> Vec<Cell> {
-        let verdict = pair.decision.verdict;
-        let mut cells = vec![
-            Cell::Exact(self.h1(pair.i)),
-            Cell::Exact(self.h2(pair.j)),
-            Cell::Integer(pair.ratio.p() as i64),
-            Cell::Integer(pair.ratio.q() as i64),
-            Cell::Text(verdict.kind().name().into()),
-            Cell::Integer(verdict.side().into()),
-            Cell::Text(pair.decision.decided_by.name().into()),
-        ];
-        let found = pair.found();
-        let integer = |n: Option<i64>| n.map_or(Cell::Missing, Cell::Integer);
-        if self.products.label {
-            let family = [found.family.map(|(a, _)| a), found.family.map(|(_, b)| b)];
-            cells.push(integer(found.m.map(|m| m as i64)));
-            cells.extend(family.map(integer));
-        }
-        if self.products.growth {
-            let enclosure = |Enclosure { lo, hi }| Cell::Enclosure { lo, hi };
-            cells.extend([found.rate, found.tenfold].map(|x| x.map_or(Cell::Missing, enclosure)));
-        }
-        cells
+        let steps = [self.h1(pair.i), self.h2(pair.j)];
+        self.record.row(&Written { steps, pair: *pair, found: pair.found() })
     }
 
     /// The rows as a table in memory.

@@ -4,7 +4,7 @@
 //! than any grid is there too: as a dot as wide as the lines.
 
 use super::chart::{FAMILIES, axis, family_name, grouped, rank};
-use super::lines_in;
+use super::lines::lines_in;
 use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient};
 use crate::report::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::resonance::{Curve, Window};

@@ -1,7 +1,7 @@
 //! A map drawn: its unstable pairs in colour, the edges marked, the curves over them on request.
 
+use super::lines::{lines, stroke};
 use super::raster::Raster;
-use super::{lines, stroke};
 use crate::map::{Band, Enclosure, Grid, Products};
 use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient, HYPERBOLIC, PARABOLIC};
 use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place};

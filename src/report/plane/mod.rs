@@ -2,13 +2,15 @@
 
 mod atlas;
 mod chart;
+mod lines;
 mod raster;
 
 pub use atlas::{Atlas, Segment};
 pub use chart::{Chart, Colouring, window};
+use lines::lines;
 
-use super::figure::palette::{Colour, INK};
-use super::figure::{Axis, Cells, Dash, Figure, Layer, Panel, Place, Stroke};
+use super::figure::palette::Colour;
+use super::figure::{Axis, Cells, Figure, Layer, Panel};
 use crate::resonance::{Curve, Window};
 
 /// Unstable pairs as cells of a grid: (i, j) is centred at (i D1, j D2).
@@ -47,35 +49,4 @@ fn cells(cloud: &Cloud, colour: Colour) -> Layer {
         cells.push(i, j, 0);
     }
     Layer::cells(cells)
-}
-
-/// One layer for each a, in the paper's line styles, and the legend.
-fn lines(panel: Panel, curves: &[Curve]) -> Panel {
-    lines_in(INK, "", panel, curves)
-}
-
-/// The same in another colour, with something before the names.
-fn lines_in(colour: Colour, before: &str, mut panel: Panel, curves: &[Curve]) -> Panel {
-    let mut families: Vec<i64> = curves.iter().map(|curve| curve.a).collect();
-    families.sort_unstable();
-    families.dedup();
-    for a in families {
-        let of_a = curves.iter().filter(|curve| curve.a == a);
-        let pieces = of_a.flat_map(|curve| &curve.pieces);
-        let lines = pieces.map(|piece| piece.iter().map(|p| [p.h1, p.h2]).collect()).collect();
-        let layer = Layer::lines(lines, stroke(a).in_colour(colour));
-        panel = panel.with(layer.labelled(&format!("{before}*a* = {a}")));
-    }
-    panel.legend(Place::Above)
-}
-
-/// The paper's styles: a = 0 thick, 1 dotted, 2 dashed, 3 thin; others dash-dotted.
-fn stroke(a: i64) -> Stroke {
-    match a {
-        0 => Stroke::THICK,
-        1 => Stroke::DOTTED,
-        2 => Stroke::DASHED,
-        3 => Stroke::THIN,
-        _ => Stroke { dash: Dash::DashDotted, ..Stroke::THIN },
-    }
 }

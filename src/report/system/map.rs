@@ -62,8 +62,8 @@ impl SystemMap {
 
     fn table(&self) -> Table {
         let columns = vec![
-            Column::new("x").titled(&self.names[0], &crate::report::latex::escaped(&self.names[0])),
-            Column::new("y").titled(&self.names[1], &crate::report::latex::escaped(&self.names[1])),
+            Column::new("x").in_words(&self.names[0]),
+            Column::new("y").in_words(&self.names[1]),
             Column::new("kind").left(),
             Column::new("proven"),
             Column::new("growth_rate").titled("growth rate", "growth rate"),

@@ -2,14 +2,14 @@
 
 use serde_json::{Map, Value, json};
 
-use super::told::{Quantity, Told, ToldEdge};
+use crate::report::digits::outward;
 use crate::report::document::enclosure;
-use crate::tongue::{Law, Peak, Predicted, Side, Wanted};
+use crate::tongue::{Law, Peak, Predicted, Quantity, Request, Side, Tongue, TongueEdge};
 
 /// The row of a tongue: `p, q, m, a, b, lower, upper, closed, width`, and what else is wanted, null where a tongue has
 /// none of it.
-pub fn row(told: &Told, wanted: &Wanted) -> Value {
-    let row = &told.row;
+pub fn row(tongue: &Tongue, request: &Request) -> Value {
+    let (row, wanted) = (&tongue.row, &request.wanted);
     let (a, b) = row.family.unzip();
     let width = row.gap.upper.map(|_| enclosure(row.gap.width));
     let mut entries = vec![
@@ -18,13 +18,13 @@ pub fn row(told: &Told, wanted: &Wanted) -> Value {
         ("m", row.gap.m.into()),
         ("a", a.into()),
         ("b", b.into()),
-        ("lower", edge(&told.lower, told.closed_forms)),
-        ("upper", told.upper.as_ref().map_or(Value::Null, |upper| edge(upper, told.closed_forms))),
+        ("lower", edge(&tongue.lower, request)),
+        ("upper", tongue.upper.as_ref().map_or(Value::Null, |upper| edge(upper, request))),
         ("closed", row.gap.closed.into()),
         ("width", width.into()),
     ];
     if wanted.growth {
-        entries.push(("growth", row.peak.as_ref().map(|peak| growth(peak, told.growth_rate)).into()));
+        entries.push(("growth", row.peak.as_ref().map(|peak| growth(peak, tongue.growth_rate)).into()));
     }
     if wanted.predicted {
         entries.push(("predicted", row.predicted.as_ref().map(predicted).into()));
@@ -40,28 +40,34 @@ fn object(entries: Vec<(&str, Value)>) -> Value {
 }
 
 /// `lo, hi, entry`, with closed forms `exact, on`, with L1 `h1, h2`.
-fn edge(edge: &ToldEdge, closed_forms: bool) -> Value {
-    let mut value = quantity(&edge.s);
+fn edge(edge: &TongueEdge, request: &Request) -> Value {
+    let mut value = quantity(&edge.s, request);
     let map = value.as_object_mut().expect("an enclosure is an object");
     map.insert("entry".into(), edge.entry.name().into());
-    if closed_forms {
+    if request.wanted.exact {
         map.insert("exact".into(), edge.exact.as_ref().map(ToString::to_string).into());
         map.insert("on".into(), edge.on.map(|on| on.name()).into());
     }
     if let Some([h1, h2]) = &edge.steps {
-        map.insert("h1".into(), quantity(h1));
-        map.insert("h2".into(), quantity(h2));
+        map.insert("h1".into(), quantity(h1, request));
+        map.insert("h2".into(), quantity(h2, request));
     }
     value
 }
 
 /// `lo, hi`, with digits `decimal`.
-pub fn quantity(quantity: &Quantity) -> Value {
+fn quantity(quantity: &Quantity, request: &Request) -> Value {
     let mut value = enclosure((quantity.lo, quantity.hi));
-    if let (Some([lo, hi]), Some(map)) = (&quantity.decimal, value.as_object_mut()) {
+    if let (Some([lo, hi]), Some(map)) = (decimal(quantity, request), value.as_object_mut()) {
         map.insert("decimal".into(), json!({"lo": lo, "hi": hi}));
     }
     value
+}
+
+/// Both ends in writing, where digits are asked for.
+pub fn decimal(quantity: &Quantity, request: &Request) -> Option<[String; 2]> {
+    let (precise, digits) = quantity.precise.as_ref().zip(request.digits)?;
+    Some(outward(&precise.lo, &precise.hi, digits))
 }
 
 fn growth(peak: &Peak, growth_rate: Option<f64>) -> Value {

@@ -2,7 +2,6 @@
 //!
 //! | file | what is in it |
 //! |---|---|
-//! | `told` | a tongue with all that is asked for |
 //! | `json` | one row of JSON |
 //! | `rows` | the same as cells: all columns, or those that fit paper |
 //! | `tally` | what stands out among many |
@@ -10,9 +9,7 @@
 mod json;
 mod rows;
 mod tally;
-mod told;
 
 pub use json::row as json_row;
 pub use rows::Rows;
 pub use tally::Tally;
-pub use told::{Frame, Quantity, Told, ToldEdge};

@@ -1,14 +1,14 @@
 //! Tongues as cells.
 
-use super::json::side;
-use super::told::{Frame, Quantity, Told, ToldEdge};
+use super::json::{decimal, side};
 use crate::report::digits::rounded;
 use crate::report::table::{Cell, Column, Table};
+use crate::tongue::{Quantity, Request, Tongue, TongueEdge};
 
 /// Turns tongues into rows of cells.
 #[derive(Clone, Debug)]
 pub struct Rows {
-    frame: Frame,
+    request: Request,
     /// For people and paper: the columns that fit a line, rounded numbers in a few digits.
     short: bool,
 }
@@ -18,13 +18,13 @@ const FEW: usize = 4;
 
 impl Rows {
     /// Every column.
-    pub fn all(frame: &Frame) -> Self {
-        Rows { frame: frame.clone(), short: false }
+    pub fn all(request: &Request) -> Self {
+        Rows { request: request.clone(), short: false }
     }
 
     /// The columns that fit a line.
-    pub fn short(frame: &Frame) -> Self {
-        Rows { frame: frame.clone(), short: true }
+    pub fn short(request: &Request) -> Self {
+        Rows { request: request.clone(), short: true }
     }
 
     /// An empty table.
@@ -43,7 +43,7 @@ impl Rows {
         for (end, sign) in [("lower", "-"), ("upper", "+")] {
             columns.push(Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure());
             columns.push(Column::new(&format!("{end}_entry")).titled("of", "of").left());
-            if self.frame.wanted.exact {
+            if self.request.wanted.exact {
                 columns.push(Column::new(&format!("{end}_exact")).titled("exact", "exact").left());
                 if !self.short {
                     columns.push(Column::new(&format!("{end}_on")).left());
@@ -62,7 +62,7 @@ impl Rows {
     }
 
     fn add_digits(&self, columns: &mut Vec<Column>, end: &str) {
-        if self.frame.digits.is_some() {
+        if self.request.digits.is_some() {
             columns.extend(["lo", "hi"].map(|side| {
                 Column::new(&format!("{end}_decimal_{side}")).titled(&format!("{end} {side}"), side)
             }));
@@ -70,7 +70,7 @@ impl Rows {
     }
 
     fn add_steps(&self, columns: &mut Vec<Column>, end: &str, sign: &str) {
-        if self.frame.lambda1.is_some() {
+        if self.request.lambda1.is_some() {
             columns.extend([1, 2].map(|i| {
                 let title = format!("h{i} {end}");
                 Column::new(&format!("{end}_h{i}")).titled(&title, &format!("$h_{i}^{sign}$")).enclosure()
@@ -79,7 +79,7 @@ impl Rows {
     }
 
     fn add_wanted(&self, columns: &mut Vec<Column>) {
-        let (wanted, short) = (&self.frame.wanted, self.short);
+        let (wanted, short) = (&self.request.wanted, self.short);
         let mut add = |key: &str, title: &str, only_long: bool| {
             if !(short && only_long) {
                 columns
@@ -89,8 +89,8 @@ impl Rows {
         if wanted.growth {
             add("growth_s", "fastest at s", true);
             add("ln_multiplier", "ln multiplier", true);
-            add("rate", "growth/√lambda1", self.frame.lambda1.is_some());
-            if self.frame.lambda1.is_some() {
+            add("rate", "growth/√lambda1", self.request.lambda1.is_some());
+            if self.request.lambda1.is_some() {
                 add("growth_rate", "growth rate", false);
             }
             add("steps_until_tenfold", "tenfold in", false);
@@ -111,8 +111,8 @@ impl Rows {
     }
 
     /// The cells of one tongue.
-    pub fn cells(&self, told: &Told) -> Vec<Cell> {
-        let row = &told.row;
+    pub fn cells(&self, tongue: &Tongue) -> Vec<Cell> {
+        let row = &tongue.row;
         let integer = |n: Option<i64>| n.map_or(Cell::Missing, Cell::Integer);
         let mut cells = vec![
             Cell::Integer(row.ratio.p() as i64),
@@ -121,8 +121,8 @@ impl Rows {
             integer(row.family.map(|(a, _)| a)),
             integer(row.family.map(|(_, b)| b)),
         ];
-        self.add_edge(&mut cells, Some(&told.lower));
-        self.add_edge(&mut cells, told.upper.as_ref());
+        self.add_edge(&mut cells, Some(&tongue.lower));
+        self.add_edge(&mut cells, tongue.upper.as_ref());
         if !self.short {
             cells.push(Cell::Flag(row.gap.closed));
         }
@@ -132,15 +132,15 @@ impl Rows {
             Some(_) => Cell::Enclosure { lo, hi },
             None => Cell::Missing,
         });
-        self.add_numbers(&mut cells, told);
+        self.add_numbers(&mut cells, tongue);
         cells
     }
 
-    fn add_edge(&self, cells: &mut Vec<Cell>, edge: Option<&ToldEdge>) {
+    fn add_edge(&self, cells: &mut Vec<Cell>, edge: Option<&TongueEdge>) {
         let enclosed = |q: &Quantity| Cell::Enclosure { lo: q.lo, hi: q.hi };
         cells.push(edge.map_or(Cell::Missing, |edge| enclosed(&edge.s)));
         cells.push(edge.map_or(Cell::Missing, |edge| Cell::Text(edge.entry.name().into())));
-        if self.frame.wanted.exact {
+        if self.request.wanted.exact {
             let rational = edge.and_then(|edge| edge.exact.as_ref()).map(|s| Cell::Exact(s.to_string()));
             let on = edge.and_then(|edge| edge.on).map(|on| Cell::Text(on.name().into()));
             cells.push(if self.short { rational.or(on.clone()) } else { rational }.unwrap_or(Cell::Missing));
@@ -148,19 +148,19 @@ impl Rows {
                 cells.push(on.unwrap_or(Cell::Missing));
             }
         }
-        if self.frame.digits.is_some() {
-            let decimal = edge.and_then(|edge| edge.s.decimal.clone());
+        if self.request.digits.is_some() {
+            let decimal = edge.and_then(|edge| decimal(&edge.s, &self.request));
             cells.extend(decimal.map_or([Cell::Missing, Cell::Missing], |ends| ends.map(Cell::Exact)));
         }
-        if self.frame.lambda1.is_some() {
+        if self.request.lambda1.is_some() {
             let steps = edge.and_then(|edge| edge.steps.as_ref());
             cells
                 .extend(steps.map_or([Cell::Missing, Cell::Missing], |steps| steps.each_ref().map(enclosed)));
         }
     }
 
-    fn add_numbers(&self, cells: &mut Vec<Cell>, told: &Told) {
-        let (wanted, row, short) = (&self.frame.wanted, &told.row, self.short);
+    fn add_numbers(&self, cells: &mut Vec<Cell>, tongue: &Tongue) {
+        let (wanted, row, short) = (&self.request.wanted, &tongue.row, self.short);
         let float = |x: Option<f64>| {
             x.map_or(Cell::Missing, |x| Cell::Float(if short { rounded(x, FEW) } else { x }))
         };
@@ -173,9 +173,9 @@ impl Rows {
             let peak = row.peak.as_ref();
             add(float(peak.map(|peak| peak.s)), true);
             add(float(peak.map(|peak| peak.ln_multiplier)), true);
-            add(float(peak.map(|peak| peak.rate)), self.frame.lambda1.is_some());
-            if self.frame.lambda1.is_some() {
-                add(float(told.growth_rate), false);
+            add(float(peak.map(|peak| peak.rate)), self.request.lambda1.is_some());
+            if self.request.lambda1.is_some() {
+                add(float(tongue.growth_rate), false);
             }
             add(float(peak.map(|peak| peak.slow_steps_to_tenfold)), false);
         }

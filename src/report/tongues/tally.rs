@@ -3,9 +3,9 @@
 use serde_json::{Value, json};
 
 use super::json::side;
-use super::told::Told;
 use crate::report::decimal;
 use crate::report::digits::few;
+use crate::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
 #[derive(Clone, Debug, Default)]
@@ -14,29 +14,29 @@ pub struct Tally {
     pub closed: u64,
     /// Inside, on the edge, outside: predicted points.
     predicted: [u64; 3],
-    thinnest: Option<Told>,
-    fastest: Option<Told>,
+    thinnest: Option<Tongue>,
+    fastest: Option<Tongue>,
     /// The least and the largest width over first-order width.
     ratios: Option<(f64, f64)>,
 }
 
 impl Tally {
     /// Counts a tongue in.
-    pub fn add(&mut self, told: &Told) {
-        let row = &told.row;
+    pub fn add(&mut self, tongue: &Tongue) {
+        let row = &tongue.row;
         self.count += 1;
         self.closed += u64::from(row.gap.closed);
         if let Some(predicted) = &row.predicted {
             let place = ["inside", "on the edge", "outside"].iter().position(|&s| s == side(predicted.side));
             self.predicted[place.expect("one of three")] += 1;
         }
-        let thinner = |other: &Told| row.gap.width.0 < other.row.gap.width.0;
+        let thinner = |other: &Tongue| row.gap.width.0 < other.row.gap.width.0;
         if !row.gap.closed && row.gap.upper.is_some() && self.thinnest.as_ref().is_none_or(thinner) {
-            self.thinnest = Some(told.clone());
+            self.thinnest = Some(tongue.clone());
         }
-        let rate = |told: &Told| told.row.peak.as_ref().map(|peak| peak.rate);
-        if rate(told) > self.fastest.as_ref().and_then(rate) {
-            self.fastest = Some(told.clone());
+        let rate = |tongue: &Tongue| tongue.row.peak.as_ref().map(|peak| peak.rate);
+        if rate(tongue) > self.fastest.as_ref().and_then(rate) {
+            self.fastest = Some(tongue.clone());
         }
         if let Some(law) = &row.first_order {
             let (least, largest) = self.ratios.unwrap_or((f64::INFINITY, 0.0));
@@ -67,17 +67,19 @@ impl Tally {
         let plural = if self.count == 1 { "" } else { "s" };
         let mut lines =
             vec![format!("{} tongue{plural} of {what}: {open} open, {} closed", self.count, self.closed)];
-        if let Some(told) = &self.thinnest {
-            let (lo, hi) = told.row.gap.width;
-            lines.push(format!("  thinnest     {} wide: {}", decimal::enclosure(lo, hi), place(told)));
+        if let Some(tongue) = &self.thinnest {
+            let (lo, hi) = tongue.row.gap.width;
+            lines.push(format!("  thinnest     {} wide: {}", decimal::enclosure(lo, hi), place(tongue)));
         }
-        if let Some((told, peak)) = self.fastest.as_ref().and_then(|told| Some((told, told.row.peak?))) {
+        if let Some((tongue, peak)) =
+            self.fastest.as_ref().and_then(|tongue| Some((tongue, tongue.row.peak?)))
+        {
             let (rate, unit) =
-                told.growth_rate.map_or((peak.rate, "√lambda1"), |rate| (rate, "per unit time"));
+                tongue.growth_rate.map_or((peak.rate, "√lambda1"), |rate| (rate, "per unit time"));
             let (rate, steps) = (few(rate, 4), few(peak.slow_steps_to_tenfold, 3));
             lines.push(format!(
                 "  fastest      {rate} {unit}, tenfold in {steps} slow steps: {} at s = {}",
-                place(told),
+                place(tongue),
                 few(peak.s, 6)
             ));
         }
@@ -96,6 +98,6 @@ impl Tally {
     }
 }
 
-fn place(told: &Told) -> String {
-    format!("{}, m = {}", told.row.ratio, told.row.gap.m)
+fn place(tongue: &Tongue) -> String {
+    format!("{}, m = {}", tongue.row.ratio, tongue.row.gap.m)
 }

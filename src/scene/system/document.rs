@@ -80,8 +80,7 @@ impl Number {
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
     pub schema: String,
-    #[serde(rename = "title")]
-    _title: Option<String>,
+    pub title: Option<String>,
     pub masses: Option<Vec<Number>>,
     pub mass_matrix: Option<Vec<Vec<Number>>>,
     pub potentials: Option<Vec<PotentialDocument>>,

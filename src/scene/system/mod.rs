@@ -102,7 +102,12 @@ impl SystemScene {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        SystemScene::from_json_in(folder, serde_json::from_str(text).map_err(no_system)?)
+        let source: Value = serde_json::from_str(text).map_err(no_system)?;
+        if measured::is_by_reference(&source) {
+            return SystemScene::from_json_in(folder, source);
+        }
+        // From the text, for an error to name its line.
+        SystemScene::new(serde_json::from_str(text).map_err(no_system)?, source)
     }
 
     /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
@@ -118,23 +123,30 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::read_in`].
     pub fn from_json_in(folder: &Path, source: Value) -> Result<SystemScene> {
+        if !measured::is_by_reference(&source) {
+            return SystemScene::new(Document::deserialize(&source).map_err(no_system)?, source);
+        }
         let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default().to_string();
         let (schema, title) = (text("schema"), text("title"));
-        if measured::is_by_reference(&source) && schema == SCHEMA {
-            let measured = Some(Measured::read(&source, folder)?);
-            return Ok(SystemScene {
-                source,
-                title,
-                system: OnceLock::new(),
-                nonlinear: None,
-                oscillator: None,
-                measured,
-            });
+        if schema != SCHEMA {
+            return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
-        let document: Document = Document::deserialize(&source).map_err(no_system)?;
+        let measured = Some(Measured::read(&source, folder)?);
+        Ok(SystemScene {
+            source,
+            title,
+            system: OnceLock::new(),
+            nonlinear: None,
+            oscillator: None,
+            measured,
+        })
+    }
+
+    fn new(document: Document, source: Value) -> Result<SystemScene> {
         if document.schema != SCHEMA {
             return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
         }
+        let title = document.title.clone().unwrap_or_default();
         match &document.build {
             Some(build) if document.masses.is_none() && document.potentials.is_none() => {
                 Ok(SystemScene::linear(source, title, build.system()?))

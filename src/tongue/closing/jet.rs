@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational};
-use crate::schedule::{Schedule, Weight};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::tongue::string::Entry;
 
 /// A function's value, its derivative in s and in ρ.
@@ -41,20 +41,36 @@ pub(crate) fn jets(ratio: Ratio, s: &Ball, rho: &Ball, pair: [Entry; 2], bits: u
     let s = Jet([s.clone(), Ball::one(), Ball::zero()]);
     let rho = Jet([rho.clone(), Ball::zero(), Ball::one()]);
     let slow = s.times(&rho, bits).scaled(&exact(ratio.p(), ratio.q()), bits);
-    let kicks = [Jet::constant(Ball::zero()), s.clone(), slow.clone(), s.plus(&slow, bits)];
+    let strengths = [s.clone(), slow.clone(), s.plus(&slow, bits)];
+    let kicks = Kicks::of_two_clocks(strengths, |k| [k.clone(), k.scaled(&exact(1, 2), bits)]);
     let ticks = schedule.clocks()[0].step();
     let orbit = |even: bool| {
         let unit = |on: bool| Jet::constant(if on { Ball::one() } else { Ball::zero() });
-        let (mut x, mut v) = (unit(even), unit(!even));
-        for event in schedule.half_period() {
-            x = x.plus(&v.scaled(&exact(event.drift, ticks), bits), bits);
-            let kick = kicks[event.kicks as usize].times(&x, bits);
-            let part = if event.weight == Weight::Half { exact(1, 2) } else { Ball::one() };
-            v = v.minus(&kick.scaled(&part, bits), bits);
-        }
-        (x, v)
+        let mut orbit = Orbit { x: unit(even), v: unit(!even), ticks, bits };
+        kicks.lead(schedule.half_period(), &mut orbit);
+        (orbit.x, orbit.v)
     };
     let ((a, c), (b, d)) = (orbit(true), orbit(false));
     let all = [a, b, c, d];
     Ok(pair.map(|entry| all[entry as usize].clone()))
+}
+
+/// A solution on its way.
+struct Orbit {
+    x: Jet,
+    v: Jet,
+    /// Ticks in the unit of time h1.
+    ticks: u64,
+    bits: u32,
+}
+
+impl KickDrift<Jet> for Orbit {
+    fn drift(&mut self, ticks: u64) {
+        let time = Ball::from_rational(&Rational::new(ticks.into(), self.ticks.into()), self.bits);
+        self.x = self.x.plus(&self.v.scaled(&time, self.bits), self.bits);
+    }
+
+    fn kick(&mut self, strength: &Jet) {
+        self.v = self.v.minus(&strength.times(&self.x, self.bits), self.bits);
+    }
 }

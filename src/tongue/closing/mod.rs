@@ -11,4 +11,4 @@ mod jet;
 mod search;
 
 pub use certify::Closing;
-pub use search::{COMPLETE_UP_TO, Found, Search, closings};
+pub use search::{COMPLETE_UP_TO, Found, Search, closings, closings_of};

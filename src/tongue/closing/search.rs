@@ -23,6 +23,7 @@ use num_traits::Signed;
 use super::certify::{Closing, Order, certify, orders};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
+use crate::parallel::*;
 use crate::tongue::edge::Enclosure;
 use crate::tongue::gap::count_closings;
 use crate::tongue::string::Entry;
@@ -52,9 +53,10 @@ impl Default for Search {
     }
 }
 
-/// The outcome of a search.
+/// The closings that a search found for one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
+    pub ratio: Ratio,
     /// In order of m, then ρ.
     pub closings: Vec<Closing>,
     /// Whether elimination proves that there are no others in the range.
@@ -87,7 +89,24 @@ pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let closings: Vec<Closing> =
         found.into_iter().map(|(m, lo, hi)| certify(ratio, m, &lo, &hi)).collect::<Result<_>>()?;
     let complete = ratio.kicks() <= COMPLETE_UP_TO && is_complete(ratio, search, &closings)?;
-    Ok(Found { closings, complete })
+    Ok(Found { ratio, closings, complete })
+}
+
+/// The same for the tongues of a list of closed ranges of labels alone: a search for one costs two edges a sample.
+///
+/// # Errors
+/// As [`closings`], and a label beyond the last finite tongue, p + q − 2.
+pub fn closings_of(ratio: Ratio, labels: &[(u64, u64)], search: &Search) -> Result<Found> {
+    // The last tongue has no upper edge, and never closes.
+    let last = ratio.kicks() - 2;
+    if let Some(m) = labels.iter().map(|run| run.1).find(|&m| m > last) {
+        return Err(Error::input("m", m, format!("{ratio} has the finite tongues 1 to {last}")));
+    }
+    let labels: Vec<u64> = (1..=last).filter(|m| labels.iter().any(|(a, b)| a <= m && m <= b)).collect();
+    let of = |m| closings(ratio, &Search { m: Some(m), ..search.clone() });
+    let found: Vec<Found> = labels.into_par_iter().map(of).collect::<Result<_>>()?;
+    let complete = found.iter().all(|found| found.complete);
+    Ok(Found { ratio, closings: found.into_iter().flat_map(|found| found.closings).collect(), complete })
 }
 
 /// The samples of ρ: doubles evenly spaced in ln ρ, the ends exact.

@@ -9,7 +9,7 @@ use num_traits::{Signed, Zero};
 use super::enclosure::Enclosure;
 use super::function::EntryFunction;
 use crate::number::{Rational, rational};
-use crate::schedule::{Event, Weight};
+use crate::schedule::{KickDrift, Kicks};
 use crate::tongue::string::HalfString;
 
 /// Bits to begin with, and beyond which counting is left to exact integers.
@@ -34,26 +34,46 @@ fn exact_count(function: &EntryFunction, s: &Rational) -> (u64, bool) {
     let slow = &kappa * &function.slow;
     let denominator = kappa.denom().lcm(slow.denom());
     let numerator = |x: &Rational| x.numer() * (&denominator / x.denom());
-    let half = [BigInt::zero(), numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
+    let halves = [numerator(&kappa), numerator(&slow), numerator(&kappa) + numerator(&slow)];
+    let kicks = Kicks::of_two_clocks(halves, |half| [&half * 2u8, half]);
     let even = function.entry.starts_free();
-    let (mut x, mut v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
-    let (mut last, mut changes) = (IntSign::Plus, 0);
-    for Event { drift, kicks, weight } in function.schedule.half_period() {
-        x += &v * drift;
-        if x.sign() != IntSign::NoSign && x.sign() != last {
-            (last, changes) = (x.sign(), changes + 1);
-        }
-        if kicks != 0 {
-            let parts = if weight == Weight::Half { 1u8 } else { 2 };
-            v = v * &denominator - &half[kicks as usize] * parts * &x;
-            x *= &denominator;
-        }
-    }
+    let (x, v) = (BigInt::from(u8::from(even)), BigInt::from(u8::from(!even)));
+    let mut orbit = IntegerOrbit { x, v, denominator, last: IntSign::Plus, changes: 0 };
+    kicks.lead(function.schedule.half_period(), &mut orbit);
+    let IntegerOrbit { x, v, changes, .. } = orbit;
     if !function.entry.ends_free() {
         return (changes, x.is_zero());
     }
     let falling = x.is_zero() || (!v.is_zero() && x.sign() != v.sign());
     (function.free_count(changes, falling), v.is_zero())
+}
+
+/// A solution on its way, and the sign changes of x so far.
+struct IntegerOrbit {
+    x: BigInt,
+    v: BigInt,
+    denominator: BigInt,
+    last: IntSign,
+    changes: u64,
+}
+
+impl KickDrift<BigInt> for IntegerOrbit {
+    fn drift(&mut self, ticks: u64) {
+        self.x += &self.v * ticks;
+    }
+
+    fn arrive(&mut self) {
+        if self.x.sign() != IntSign::NoSign && self.x.sign() != self.last {
+            (self.last, self.changes) = (self.x.sign(), self.changes + 1);
+        }
+    }
+
+    /// Times the denominator.
+    fn kick(&mut self, strength: &BigInt) {
+        self.v *= &self.denominator;
+        self.v -= strength * &self.x;
+        self.x *= &self.denominator;
+    }
 }
 
 /// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot tell them

@@ -40,7 +40,7 @@ type InRho = Polynomial<Polynomial<Rational>>;
 ///
 /// The resultant in s vanishes at ρ iff they share a zero or both degrees fall, and for ρ > 0 the degrees are what
 /// the string has masses: they do not fall.
-pub(crate) fn count_closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
+pub fn count_closings(ratio: Ratio, pair: [Entry; 2], lo: &Rational, hi: &Rational) -> Option<usize> {
     let s = InRho::variable();
     let rho = InRho::constant(Polynomial::variable());
     let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(ratio, s, rho)));

@@ -12,7 +12,6 @@ mod modular;
 mod order;
 mod tunnel;
 
-pub(crate) use elimination::count_closings;
-pub use elimination::entries;
+pub use elimination::{count_closings, entries};
 pub(crate) use modular::Openness;
 pub use order::Gap;

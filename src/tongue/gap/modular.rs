@@ -8,51 +8,16 @@
 
 use std::sync::OnceLock;
 
-use num_bigint::BigInt;
-use num_traits::{ToPrimitive, Zero};
+use num_traits::Zero;
 
 use crate::error::Result;
-use crate::number::{Ratio, Rational};
-use crate::schedule::{Schedule, Weight};
+use crate::number::{PrimeField, Ratio, Rational};
+use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::tongue::edge::Edges;
 use crate::tongue::string::Entry;
 
-/// 2^61 − 1, a Mersenne prime.
-const PRIME: u64 = (1 << 61) - 1;
-
-fn times(a: u64, b: u64) -> u64 {
-    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
-}
-
-fn minus(a: u64, b: u64) -> u64 {
-    if a >= b { a - b } else { a + PRIME - b }
-}
-
-fn plus(a: u64, b: u64) -> u64 {
-    minus(a, if b == 0 { 0 } else { PRIME - b })
-}
-
-fn power(a: u64, n: u64) -> u64 {
-    let square = |half: u64| times(half, half);
-    match n {
-        0 => 1,
-        _ if n % 2 == 1 => times(a, square(power(a, n / 2))),
-        _ => square(power(a, n / 2)),
-    }
-}
-
-/// a/b; `None` where the prime divides b.
-fn over(a: u64, b: u64) -> Option<u64> {
-    (b != 0).then(|| times(a, power(b, PRIME - 2)))
-}
-
-fn residue(x: &Rational) -> Option<u64> {
-    let reduce = |n: &BigInt| {
-        let prime = BigInt::from(PRIME);
-        (((n % &prime) + &prime) % &prime).to_u64().expect("below the prime")
-    };
-    over(reduce(x.numer()), reduce(x.denom()))
-}
+/// Any prime field will do.
+const FIELD: PrimeField = PrimeField::LARGEST;
 
 /// c_0, c_1, ..., the last one not 0.
 type Coefficients = Vec<u64>;
@@ -67,39 +32,35 @@ fn trim(mut f: Coefficients) -> Coefficients {
 /// x += c y.
 fn add_multiple(x: &mut Coefficients, c: u64, y: &[u64]) {
     x.resize(x.len().max(y.len()), 0);
-    x.iter_mut().zip(y).for_each(|(x, y)| *x = plus(*x, times(c, *y)));
+    x.iter_mut().zip(y).for_each(|(x, y)| *x = FIELD.add(*x, FIELD.mul(c, *y)));
 }
 
 /// x and v at T/2 as polynomials in 2κ; `None` where the prime divides a denominator.
 fn ends(ratio: Ratio, rho: &Rational, even: bool) -> Result<Option<(Coefficients, Coefficients)>> {
-    let Some(slow) = residue(&(rho * Rational::from(ratio))) else { return Ok(None) };
-    let half = [0, 1, slow, plus(1, slow)];
-    let (mut x, mut v) = if even { (vec![1], vec![]) } else { (vec![], vec![1]) };
-    let schedule = Schedule::two_clocks(ratio)?;
-    for event in schedule.half_period() {
-        add_multiple(&mut x, event.drift % PRIME, &v);
-        let mass = half[event.kicks as usize];
-        let mass = if event.weight == Weight::Half { mass } else { plus(mass, mass) };
-        let raised: Coefficients = std::iter::once(0).chain(x.iter().copied()).collect();
-        add_multiple(&mut v, minus(0, mass), &raised);
-    }
-    Ok(Some((trim(x), trim(v))))
+    let Some(slow) = FIELD.of_rational(&(rho * Rational::from(ratio))) else { return Ok(None) };
+    let one = FIELD.of(1);
+    let kicks = Kicks::of_two_clocks([one, slow, FIELD.add(one, slow)], |half| [FIELD.add(half, half), half]);
+    let (x, v) = if even { (vec![one], vec![]) } else { (vec![], vec![one]) };
+    let mut orbit = PolynomialOrbit { x, v };
+    kicks.lead(Schedule::two_clocks(ratio)?.half_period(), &mut orbit);
+    Ok(Some((trim(orbit.x), trim(orbit.v))))
 }
 
-/// The degree of the greatest common divisor.
-fn common_degree(mut a: Coefficients, mut b: Coefficients) -> usize {
-    while !b.is_empty() {
-        let inverse = power(*b.last().expect("not empty"), PRIME - 2);
-        while a.len() >= b.len() {
-            let (shift, factor) = (a.len() - b.len(), times(*a.last().expect("not empty"), inverse));
-            for (a, b) in a[shift..].iter_mut().zip(&b) {
-                *a = minus(*a, times(factor, *b));
-            }
-            a = trim(a);
-        }
-        std::mem::swap(&mut a, &mut b);
+/// A solution on its way.
+struct PolynomialOrbit {
+    x: Coefficients,
+    v: Coefficients,
+}
+
+impl KickDrift<u64> for PolynomialOrbit {
+    fn drift(&mut self, ticks: u64) {
+        add_multiple(&mut self.x, FIELD.of(ticks), &self.v);
     }
-    a.len().saturating_sub(1)
+
+    fn kick(&mut self, mass: &u64) {
+        let raised: Coefficients = std::iter::once(0).chain(self.x.iter().copied()).collect();
+        add_multiple(&mut self.v, FIELD.sub(0, *mass), &raised);
+    }
 }
 
 /// Whether both edges of every tongue of the given parity of m are proven different, for ρ > 0.
@@ -112,9 +73,9 @@ fn all_open(ratio: Ratio, rho: &Rational, odd: bool, degrees: [usize; 2]) -> Res
     };
     let (first, second) = if odd { (even_start.0, odd_start.1) } else { (odd_start.0, even_start.1) };
     // C = κ times the polynomial of its positive zeros.
-    let second = if odd { second } else { second[1..].to_vec() };
+    let second = if odd { second } else { second.into_iter().skip(1).collect() };
     let survived = first.len() == degrees[0] + 1 && second.len() == degrees[1] + 1;
-    Ok(survived && common_degree(first, second) == 0)
+    Ok(survived && FIELD.gcd(first, second).len() == 1)
 }
 
 /// What is known of all tongues of even and of all of odd m; asked for once each.

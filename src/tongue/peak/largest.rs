@@ -25,7 +25,7 @@
 
 use super::meet::Meeting;
 use crate::error::{Error, Result};
-use crate::number::{Rational, rational};
+use crate::number::{Laurent, Rational, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Edge, Edges, Enclosure};
 use crate::tongue::gap::Gap;
@@ -75,6 +75,11 @@ impl Peak {
             rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
             slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
         }))
+    }
+
+    /// The growth rate per unit time for a fast stiffness L1, rounded: `rate` is in units of √L1.
+    pub fn growth_rate(&self, lambda1: &Laurent) -> f64 {
+        self.rate * lambda1.to_f64().sqrt()
     }
 }
 

@@ -2,20 +2,29 @@
 
 use num_traits::One;
 
-use super::read::{Checked, Fault, holds};
-use crate::error::Error;
-use crate::number::{ExactSign, Laurent, Ratio, Rational, Real, Sign};
+use super::context::{Checked, Fault, holds};
+use crate::error::{Error, Result};
+use crate::number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
 use crate::tongue::Entry;
-use crate::verdict::{Decidable, HalfSigns, Kind, Limits};
+use crate::verdict::{
+    Decidable, Decision, Growth, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth,
+};
 
-/// That exact signs at p/q are within the budget.
-pub fn check_ratio(ratio: Ratio, limits: &Limits) -> Checked<()> {
+/// p/q, in lowest terms as it has to be written.
+pub fn lowest(p: u64, q: u64) -> Checked<Ratio> {
+    let ratio = Ratio::new(p, q).ok().filter(|ratio| ratio.terms() == (p, q));
+    ratio.ok_or_else(|| Fault::Wrong(format!("{p}/{q} is no ratio in lowest terms")))
+}
+
+/// p/q, and that exact signs of it are within the limits.
+pub fn check_ratio(p: u64, q: u64, limits: &Limits) -> Checked<Ratio> {
+    let ratio = lowest(p, q)?;
     let kicks = ratio.kicks();
     let cost = kicks.saturating_mul(kicks) / 100;
     if kicks <= limits.kicks && cost <= limits.kicks {
-        return Ok(());
+        return Ok(ratio);
     }
     let work = format!("exact signs at {ratio} cost as much as {cost} kicks");
     Err(Fault::Error(Error::budget(work, cost)))
@@ -51,6 +60,16 @@ impl<'a> ZeroOf<'a> {
             format!("{name}: {} does not vanish between {lo} and {hi}", entry.name())
         })?;
         Ok(ZeroOf { ratio, rho, entry, lo, hi, below })
+    }
+
+    /// The clocks at s.
+    pub fn clocks(&self, s: Rational) -> TwoClocks<Rational> {
+        TwoClocks::with_rho(self.ratio, s, self.rho.clone())
+    }
+
+    /// Whether the entry vanishes exactly at s.
+    pub fn vanishes(&self, s: &Rational) -> bool {
+        signs(self.ratio, self.rho, s).all()[self.entry as usize] == Sign::Zero
     }
 
     /// Halves the interval; an end that is the zero stays.
@@ -90,10 +109,9 @@ pub fn part(a: &mut ZeroOf, b: &mut ZeroOf) -> Option<std::cmp::Ordering> {
     None
 }
 
-/// Kind, side and trace by the full period, kick by kick, in exact arithmetic.
+/// Verdict and trace by the full period, kick by kick, in exact arithmetic.
 pub struct FullPeriod<S> {
-    pub kind: Kind,
-    pub side: i8,
+    pub verdict: Verdict,
     pub trace: S,
 }
 
@@ -102,21 +120,22 @@ pub fn full_period<S: ExactSign>(clocks: &TwoClocks<S>) -> FullPeriod<S> {
     let q = avi::staggered(clocks);
     let mut trace = q[(0, 0)].clone();
     trace += q[(1, 1)].clone();
-    let less = |n: i64| {
+    let beyond = |n: i64| {
         let mut difference = trace.clone();
         difference -= S::from_rational(&Rational::from_integer(n.into()));
         difference.sign()
     };
-    let (above, below) = (less(2), less(-2));
     let plain = q[(0, 1)].sign() == Sign::Zero && q[(1, 0)].sign() == Sign::Zero;
-    let (kind, side) = match (above, below) {
+    let edge = if plain { Kind::Coexistence } else { Kind::Parabolic };
+    let (kind, side) = match (beyond(2), beyond(-2)) {
         (Sign::Positive, _) => (Kind::Hyperbolic, 1),
         (_, Sign::Negative) => (Kind::Hyperbolic, -1),
-        (Sign::Zero, _) => (if plain { Kind::Coexistence } else { Kind::Parabolic }, 1),
-        (_, Sign::Zero) => (if plain { Kind::Coexistence } else { Kind::Parabolic }, -1),
+        (Sign::Zero, _) => (edge, 1),
+        (_, Sign::Zero) => (edge, -1),
         _ => (Kind::Elliptic, 0),
     };
-    FullPeriod { kind, side, trace }
+    let verdict = Verdict::ALL.into_iter().find(|verdict| (verdict.kind(), verdict.side()) == (kind, side));
+    FullPeriod { verdict: verdict.expect("one of seven"), trace }
 }
 
 /// Kicks up to which the full period is composed exactly: numbers grow with every kick, over Q\[π\] much faster.
@@ -126,7 +145,7 @@ pub fn affordable(clocks: &TwoClocks<Laurent>) -> bool {
 }
 
 /// ln μ of a trace beyond ±2: ln((|Tr| + √(Tr² − 4))/2).
-pub fn ln_multiplier<S: Real>(trace: &S, bits: u32) -> Option<crate::number::Ball> {
+pub fn ln_multiplier<S: Real>(trace: &S, bits: u32) -> Option<Ball> {
     let mut square = S::product(trace, trace);
     square -= S::from_rational(&Rational::from_integer(4.into()));
     let root = square.enclosure(bits).sqrt(bits)?;
@@ -138,23 +157,31 @@ pub fn fraction(n: u64, d: u64) -> Rational {
     Rational::new(n.into(), d.into())
 }
 
-/// Whether an interval of doubles meets a ball.
-pub fn meets((lo, hi): (f64, f64), ball: &crate::number::Ball) -> bool {
-    let (from, upto) = ball.to_f64_enclosure();
-    lo <= upto && from <= hi
-}
-
 /// 4 sin²(m π/(2 p)).
-pub fn resonance(p: u64, m: u64, bits: u32) -> crate::number::Ball {
-    use crate::number::Ball;
+pub fn resonance(p: u64, m: u64, bits: u32) -> Ball {
     // By the double angle, 2 − 2 cos(m π/p).
     let angle = Ball::pi(bits + 32).mul(&Ball::from_rational(&fraction(m, p), bits + 32), bits + 32);
     let two = Ball::from_rational(&(Rational::one() + Rational::one()), bits);
     two.sub(&angle.cos(bits + 16).scale2(1), bits + 16)
 }
 
-/// ln μ of a rational pair to doubles, by the trace of the full period; `None` unless it grows exponentially.
-pub fn ln_multiplier_at(clocks: &TwoClocks<Rational>) -> Option<f64> {
-    let trace = crate::verdict::exact_trace(clocks);
-    ln_multiplier(&trace, 128).map(|ln| ln.mid_f64())
+/// ln μ of a rational pair, by the trace of the full period; `None` unless it grows exponentially.
+pub fn ln_multiplier_at(clocks: &TwoClocks<Rational>, bits: u32) -> Option<Ball> {
+    ln_multiplier(&exact_trace(clocks), bits)
+}
+
+/// The verdict without the tiers below `first`.
+pub fn again(first: Tier, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Decision> {
+    match clocks.as_rational() {
+        Some(rational) => decide_from(first, &rational, limits).map(|answer| answer.decision()),
+        None => decide_from(first, clocks, limits).map(|answer| answer.decision()),
+    }
+}
+
+/// The enclosures of trace and growth, and the label.
+pub fn growth_again(clocks: &TwoClocks<Laurent>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
+    match clocks.as_rational() {
+        Some(rational) => growth(&rational, verdict, limits),
+        None => growth(clocks, verdict, limits),
+    }
 }

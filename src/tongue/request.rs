@@ -1,13 +1,16 @@
-//! A tongue with all that is asked for.
+//! A tongue with all that is asked for: its edges in h1 and h2 where L1 is known, by as many digits as are wanted.
 
+use super::edge::{Edge, Enclosure};
+use super::gap::Gap;
+use super::row::{ExactEdge, Resonance, Row, Wanted};
+use super::string::Entry;
+use super::tongues::Tongues;
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Ratio, Rational, Real};
-use crate::report::digits::{exact, outward};
-use crate::tongue::{Edge, Enclosure, Entry, ExactEdge, Gap, Peak, Resonance, Row, Tongues, Wanted};
 
 /// What is asked for beside the edges in s.
 #[derive(Clone, Debug, Default)]
-pub struct Frame {
+pub struct Request {
     pub wanted: Wanted,
     /// L1, which turns s into steps: h1 = √(s/L1), h2 = h1 p/q.
     pub lambda1: Option<Laurent>,
@@ -15,18 +18,18 @@ pub struct Frame {
     pub digits: Option<u32>,
 }
 
-/// An enclosure, in doubles and in digits.
+/// An enclosure, in doubles and to the digits that are asked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     pub lo: f64,
     pub hi: f64,
-    /// Both ends in writing, where digits are asked for.
-    pub decimal: Option<[String; 2]>,
+    /// The same by rational ends, where digits are asked for.
+    pub precise: Option<Enclosure>,
 }
 
-/// An edge.
+/// An edge of a tongue.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ToldEdge {
+pub struct TongueEdge {
     pub entry: Entry,
     pub s: Quantity,
     /// h1 and h2.
@@ -37,35 +40,34 @@ pub struct ToldEdge {
     pub on: Option<Resonance>,
 }
 
-/// A tongue ready to be told.
+/// A tongue with all that is asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct Tongue {
     pub row: Row,
-    pub lower: ToldEdge,
-    pub upper: Option<ToldEdge>,
-    /// The fastest growth per unit time, where L1 is known; rounded.
+    pub lower: TongueEdge,
+    pub upper: Option<TongueEdge>,
+    /// The fastest growth per unit time, where it is asked for and L1 is known; rounded.
     pub growth_rate: Option<f64>,
-    /// Whether closed forms were asked for.
-    pub closed_forms: bool,
 }
 
-impl Frame {
-    /// Completes a tongue of `tongues`.
+impl Request {
+    /// A tongue of `tongues` with what is asked for.
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub fn told(&self, tongues: &Tongues, gap: &Gap) -> Result<Told> {
+    pub fn answer(&self, tongues: &Tongues, gap: &Gap) -> Result<Tongue> {
         let row = tongues.row(gap, &self.wanted)?;
         let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
         let upper = match &gap.upper {
             Some(upper) => Some(self.edge(tongues, gap.m, upper, &row.exact[1])?),
             None => None,
         };
-        let growth_rate = self.growth_rate(row.peak.as_ref());
-        Ok(Told { row, lower, upper, growth_rate, closed_forms: self.wanted.exact })
+        let growth_rate =
+            row.peak.as_ref().zip(self.lambda1.as_ref()).map(|(peak, lambda1)| peak.growth_rate(lambda1));
+        Ok(Tongue { row, lower, upper, growth_rate })
     }
 
-    fn edge(&self, tongues: &Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<ToldEdge> {
+    fn edge(&self, tongues: &Tongues, m: u64, edge: &Edge, form: &Option<ExactEdge>) -> Result<TongueEdge> {
         let on = form.as_ref().and_then(|form| Resonance::of(tongues.ratio(), m, tongues.rho(), form));
         let rational = match form {
             Some(ExactEdge::Rational(s)) => Some(s.clone()),
@@ -74,12 +76,11 @@ impl Frame {
         let precise = match (self.digits, &rational) {
             (Some(_), Some(s)) => Enclosure { lo: s.clone(), hi: s.clone() },
             (Some(digits), None) => tongues.refine(edge, digits)?,
-            (None, _) => Enclosure { lo: exact(edge.lo), hi: exact(edge.hi) },
+            (None, _) => Enclosure::from(edge),
         };
-        let decimal = self.digits.map(|digits| outward(&precise.lo, &precise.hi, digits));
-        let s = Quantity { lo: edge.lo, hi: edge.hi, decimal };
         let steps = self.lambda1.as_ref().map(|lambda1| self.steps(&precise, lambda1, tongues.ratio()));
-        Ok(ToldEdge { entry: edge.entry, s, steps, exact: rational, on })
+        let s = Quantity { lo: edge.lo, hi: edge.hi, precise: self.digits.map(|_| precise) };
+        Ok(TongueEdge { entry: edge.entry, s, steps, exact: rational, on })
     }
 
     /// h1 = √(s/L1) and h2 = h1 p/q over an enclosure of s.
@@ -96,12 +97,7 @@ impl Frame {
         [&ends, &slow].map(|[lo, hi]| Quantity {
             lo: lo.to_f64_enclosure().0,
             hi: hi.to_f64_enclosure().1,
-            decimal: self.digits.map(|digits| outward(&lo.lower(), &hi.upper(), digits)),
+            precise: self.digits.map(|_| Enclosure { lo: lo.lower(), hi: hi.upper() }),
         })
-    }
-
-    /// The peak's rate is in units of √L1.
-    fn growth_rate(&self, peak: Option<&Peak>) -> Option<f64> {
-        Some(peak?.rate * self.lambda1.as_ref()?.to_f64().sqrt())
     }
 }

@@ -1,0 +1,82 @@
+//! `kickdrift verify`: a document rechecked by another route than the one that made it.
+
+use std::path::PathBuf;
+
+use serde_json::{Value, json};
+
+use super::args::Common;
+use super::progress::progress;
+use crate::error::{Error, Result};
+use crate::format::Format;
+use crate::recheck::{Claim, Options, Outcome};
+use crate::report::document::Document;
+
+/// Flags of `verify`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A JSON document that kickdrift wrote.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of them.
+    #[arg(long)]
+    all: bool,
+}
+
+/// Work that is told before it begins, in kicks, and kicks a second: some tens of seconds.
+const LONG: u64 = 20_000_000;
+const KICKS_A_SECOND: u64 = 400_000;
+
+impl Args {
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let file = self.file.display();
+        let text = std::fs::read_to_string(&self.file).map_err(|cause| {
+            Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
+        })?;
+        let claim = Claim::read(&text)?;
+        let options = Options { limits: common.limits(), all: self.all };
+        let work = claim.work(&options)?;
+        if work > LONG && !common.quiet {
+            let seconds = work / KICKS_A_SECOND;
+            eprintln!("kickdrift: {file}: about {work} kicks, some {seconds} s on one core");
+        }
+        let bar = progress(common.quiet, 0, "rows");
+        let see = |done: u64, of: u64| {
+            bar.set_length(of);
+            bar.set_position(done);
+        };
+        let outcome = claim.recheck(&options, Some(&see))?;
+        bar.finish_and_clear();
+        let name = claim.name();
+        if let Some(first) = outcome.failures.first() {
+            let more = format!("({} of {} rows of {file} fail)", outcome.failures.len(), outcome.rows);
+            return Err(Error::input(
+                &format!("row {} of {name}", first.row),
+                &first.place,
+                format!("{} {more}", first.why),
+            ));
+        }
+        common.write(&document(&outcome, &file.to_string(), name), Format::Text)
+    }
+}
+
+/// The document `kickdrift/verify/1`: all rows hold.
+fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
+    let Outcome { rows, route, sample, not_rechecked, .. } = outcome;
+    let mut lines = vec![
+        format!("{rows} of {rows} rows hold"),
+        format!("  document     {name}"),
+        format!("  route        {route}"),
+    ];
+    lines.extend(sample.map(|(drawn, of)| format!("  sample       {drawn} of {of}")));
+    lines.extend(not_rechecked.iter().map(|field| format!("  not rechecked: {field}")));
+    Document::new("verify")
+        .input("file", file)
+        .entry("document", format!("kickdrift/{name}/1"))
+        .entry("rows", *rows)
+        .entry("holding", *rows)
+        .entry("route", *route)
+        .entry("sample", sample.map_or(Value::Null, |(drawn, of)| json!({"drawn": drawn, "of": of})))
+        .entry("not_rechecked", not_rechecked.clone())
+        .entry("failures", Vec::<Value>::new())
+        .told(&lines)
+}

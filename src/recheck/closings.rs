@@ -1,0 +1,262 @@
+//! Closings: at both ends of the range of ρ the edges lie in opposite orders, by exact signs; where a closing is
+//! rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose tongues close at
+//! 1/ρ: by another resultant.
+
+use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
+use super::tongues::simplest;
+use super::written::{Decimal, Range, Written, exact, nullable, ratios};
+use crate::error::Result;
+use crate::number::{Ratio, Rational, Sign};
+use crate::propagator::TwoClocks;
+use crate::tongue::{COMPLETE_UP_TO, Entry, Tongues, count_closings};
+use crate::verdict::{Limits, decide, growth};
+use num_traits::Signed;
+
+const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exchange their order, the label between \
+                     them is m; rational closings: both entries vanish; complete lists by the mirror ratio's resultant";
+
+rows! {
+    /// `kickdrift/closings/1`.
+    pub struct Claim {
+        input: Input,
+        closings: Vec<Closing>,
+        ratios: Vec<Searched>,
+    }
+
+    struct Input {
+        ratio: Option<Written<Ratio>>,
+        max_sum: Option<Written<u64>>,
+        m: Option<Written<Vec<(u64, u64)>>>,
+        rho_range: Written<Range>,
+        #[serde(rename = "samples")]
+        _samples: Written<u64>,
+        digits: Written<u64>,
+    }
+
+    struct Closing {
+        p: u64,
+        q: u64,
+        m: u64,
+        s: Side,
+        rho: Side,
+        below_verlet: bool,
+    }
+
+    struct Side {
+        lo: f64,
+        hi: f64,
+        #[serde(deserialize_with = "nullable")]
+        exact: Option<Written<Rational>>,
+        decimal: Decimal,
+    }
+
+    struct Searched {
+        p: u64,
+        q: u64,
+        complete: bool,
+    }
+}
+
+impl Place for Closing {
+    fn place(&self) -> String {
+        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
+    }
+}
+
+impl Claim {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
+        let whole = self.complete(context.limits());
+        let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, |row| {
+            row.holds(&self.input, context.limits())
+        })?;
+        outcome.not_rechecked.push("samples: they say how the search was made, and nothing of what it found");
+        if self.ratios.iter().any(|ratio| !ratio.complete) {
+            let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
+            outcome.not_rechecked.push(remark);
+        }
+        Ok(outcome)
+    }
+
+    /// The list of ratios is that of the input, the closings are in their order, each once, and none is missing.
+    fn complete(&self, limits: &Limits) -> Checked {
+        let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref())?;
+        let told = self.ratios.iter().map(|ratio| (ratio.p, ratio.q));
+        holds(told.eq(list.iter().map(|ratio| ratio.terms())), || {
+            "the ratios searched are not those of the input".into()
+        })?;
+        holds(self.input.m.is_none() || self.input.ratio.is_some(), || {
+            "labels are those of one ratio".into()
+        })?;
+        let (lo, hi) = self.input.range()?;
+        let key = |row: &Closing| {
+            Ok::<_, Fault>((row.p.saturating_add(row.q), row.p, row.m, row.rho.both(&self.input)?))
+        };
+        let keys = self.closings.iter().map(key).collect::<Checked<Vec<_>>>()?;
+        let increasing = keys.windows(2).all(|pair| {
+            let ((a, b, c, (_, before)), (d, e, f, (after, _))) = (&pair[0], &pair[1]);
+            (a, b, c) < (d, e, f) || ((a, b, c) == (d, e, f) && before < after)
+        });
+        holds(increasing, || "its rows are not in order, each once".into())?;
+        let within = keys.iter().all(|(.., (from, upto))| *from <= hi && lo <= *upto);
+        holds(within, || "a closing lies outside the range of rho".into())?;
+        let known = self.closings.iter().all(|row| list.iter().any(|ratio| ratio.terms() == (row.p, row.q)));
+        holds(known, || "a closing is of no ratio that was searched".into())?;
+        for (ratio, searched) in list.into_iter().zip(&self.ratios) {
+            let rows: Vec<&Closing> =
+                self.closings.iter().filter(|row| (row.p, row.q) == ratio.terms()).collect();
+            self.input.counted(ratio, searched.complete, &rows, (&lo, &hi), limits)?;
+        }
+        Ok(())
+    }
+}
+
+impl Input {
+    fn range(&self) -> Checked<(Rational, Rational)> {
+        let (lo, hi) = &self.rho_range.0;
+        let ends = lo.as_rational().zip(hi.as_rational()).filter(|(lo, _)| lo.is_positive());
+        ends.ok_or_else(|| Fault::Wrong("rho_range is no range of positive rationals".into()))
+    }
+
+    /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for pairs, as the
+    /// edges' orders at both ends of the range of ρ tell.
+    fn counted(
+        &self,
+        ratio: Ratio,
+        complete: bool,
+        rows: &[&Closing],
+        (lo, hi): (&Rational, &Rational),
+        limits: &Limits,
+    ) -> Checked {
+        check_ratio(ratio.p(), ratio.q(), limits)?;
+        let finite = ratio.kicks() - 2;
+        let labels: Vec<u64> = (1..=finite)
+            .filter(|m| self.m.as_ref().is_none_or(|list| list.iter().any(|&(a, b)| (a..=b).contains(m))))
+            .collect();
+        let asked = rows.iter().all(|row| labels.contains(&row.m));
+        holds(asked, || format!("{ratio} has a closing of a label that was not asked for"))?;
+        if !complete {
+            let orders = [lo, hi].map(|rho| Tongues::new(ratio, rho)?.gaps(1, finite.max(1)));
+            let [early, late] = orders;
+            for (early, late) in early?.iter().zip(&late?).filter(|(gap, _)| labels.contains(&gap.m)) {
+                let there = rows.iter().filter(|row| row.m == early.m).count() % 2 == 1;
+                let crossed = early.lower.entry != late.lower.entry;
+                let right = there == crossed || early.closed || late.closed;
+                holds(right, || format!("{ratio}, m = {}: its edges change their order {crossed}", early.m))?;
+            }
+            return Ok(());
+        }
+        holds(ratio.kicks() <= COMPLETE_UP_TO, || {
+            format!("{ratio} is too long for elimination: it cannot be complete")
+        })?;
+        for odd in [true, false] {
+            let told = rows.iter().filter(|row| (row.m % 2 == 1) == odd).count();
+            let asked = labels.iter().any(|m| (m % 2 == 1) == odd);
+            let whole = self.m.is_none() || told > 0;
+            // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period.
+            let truth =
+                count_closings(ratio.inverse(), Entry::of_tongue(odd), &hi.recip(), &lo.recip()).unwrap_or(0);
+            let others = labels.len() as u64 != finite;
+            let right = if others { told <= truth } else { told == truth };
+            holds(right || !(asked && whole || told > 0), || {
+                format!("{ratio} has {truth} closings of this parity, not {told}")
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl Side {
+    /// The doubles and the decimals both hold the value: what they have in common.
+    fn both(&self, input: &Input) -> Checked<(Rational, Rational)> {
+        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends(Some(&input.digits))?);
+        let (lo, hi) = (a.max(c), b.min(d));
+        holds(lo <= hi && lo.is_positive(), || {
+            "doubles and decimals have nothing positive in common".into()
+        })?;
+        Ok((lo, hi))
+    }
+}
+
+/// One side of a closing's box.
+struct Interval {
+    lo: Rational,
+    hi: Rational,
+    exact: Option<Rational>,
+}
+
+impl Interval {
+    fn new(side: &Side, name: &str, input: &Input) -> Checked<Self> {
+        let (lo, hi) = side.both(input)?;
+        let exact = side.exact.as_ref().map(|x| x.0.clone());
+        let inside = exact.as_ref().is_none_or(|x| lo <= *x && *x <= hi);
+        holds(inside, || format!("{name} lies outside its own enclosure"))?;
+        Ok(Interval { lo, hi, exact })
+    }
+
+    /// Its width, or a trillionth of a trillionth of its value where it is narrower.
+    fn size(&self) -> Rational {
+        (&self.hi - &self.lo).max(&self.hi * fraction(1, 1 << 40) * fraction(1, 1 << 40))
+    }
+}
+
+impl Closing {
+    fn holds(&self, input: &Input, limits: &Limits) -> Checked {
+        let (p, q, m) = (self.p, self.q, self.m);
+        let ratio = check_ratio(p, q, limits)?;
+        holds((1..p + q - 1).contains(&m), || format!("{ratio} has the finite tongues 1 to {}", p + q - 2))?;
+        let pair = Entry::of_tongue(m % 2 == 1);
+        let (s, rho) = (Interval::new(&self.s, "s", input)?, Interval::new(&self.rho, "rho", input)?);
+        let four = fraction(4, 1);
+        let below = if self.below_verlet { s.lo < four } else { s.hi >= four };
+        holds(below, || "s* is on the other side of 4".into())?;
+        let vanish = |s: &Rational, rho: &Rational| {
+            let signs = signs(ratio, rho, s).all();
+            pair.iter().all(|&entry| signs[entry as usize] == Sign::Zero)
+        };
+        match (&s.exact, &rho.exact) {
+            (Some(s), Some(rho)) => {
+                holds(vanish(s, rho), || format!("its entries do not both vanish at s = {s}, rho = {rho}"))?;
+            }
+            (None, None) => {
+                // The simplest rationals of the box: no coincidence where they are short.
+                let [s, rho] = [&s, &rho].map(|side| simplest(&side.lo, &side.hi));
+                let short = s.denom().bits() + rho.denom().bits() <= 32;
+                holds(!(short && vanish(&s, &rho)), || format!("it is rational: s = {s}, rho = {rho}"))?;
+            }
+            _ => return Err(Fault::Wrong("s and rho are rational together".into())),
+        }
+        // A hair to either side of the box, in units of its own size: there the edges have parted. Zeros move by no larger
+        // part of themselves than rho does (masses and eigenvalues), and rho by three of its sizes at most.
+        let margin = rho.size();
+        let reach = s.size() + &s.hi * fraction(4, 1) * &margin / &rho.lo;
+        let around = (&s.lo - &reach, &s.hi + &reach);
+        let [early, late] =
+            [&rho.lo - &margin, &rho.hi + &margin].map(|rho| order((ratio, m), pair, &rho, &around, limits));
+        holds(early? != late?, || "its edges do not exchange their order".into())
+    }
+}
+
+/// Whether the first entry's zero near s* lies below the second's, and that the label between them is m.
+fn order(
+    (ratio, m): (Ratio, u64),
+    pair: [Entry; 2],
+    rho: &Rational,
+    around: &(Rational, Rational),
+    limits: &Limits,
+) -> Checked<std::cmp::Ordering> {
+    let mut first = ZeroOf::new((ratio, rho), pair[0], around.clone(), "s")?;
+    let mut second = ZeroOf::new((ratio, rho), pair[1], around.clone(), "s")?;
+    let order = part(&mut first, &mut second);
+    let (lower, upper) =
+        if order == Some(std::cmp::Ordering::Less) { (first, second) } else { (second, first) };
+    let middle = (&lower.hi + &upper.lo) / fraction(2, 1);
+    let clocks = TwoClocks::with_rho(ratio, middle, rho.clone());
+    let verdict = decide(&clocks, limits)?.verdict;
+    let label = growth(&clocks, verdict, limits)?.label;
+    holds(label == Some(m), || format!("the growing solution beside it turns {label:?} times"))?;
+    order.map_or_else(
+        || holds(false, || "its edges do not part beside it".into()).map(|()| std::cmp::Ordering::Equal),
+        Ok,
+    )
+}

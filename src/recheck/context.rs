@@ -1,0 +1,127 @@
+//! What a check is given, and what it finds.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::error::{Error, Result};
+use crate::parallel::*;
+use crate::verdict::Limits;
+
+/// How much is rechecked, and what one row may cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Options {
+    /// The kicks that one verdict may compose.
+    pub limits: Limits,
+    /// Whether the slower route takes every pair or tongue of a map or a survey, and not a sample of them.
+    pub all: bool,
+}
+
+/// What is shown of the progress: rows done, rows in all.
+pub type See<'a> = &'a (dyn Fn(u64, u64) + Sync);
+
+/// What a recheck found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// The rows of the document; one where it has none.
+    pub rows: u64,
+    /// In words, how they were rechecked.
+    pub route: &'static str,
+    /// Where the slower route took a sample: so many, of so many.
+    pub sample: Option<(u64, u64)>,
+    /// What does not hold, in the order of the rows; last what concerns the whole document.
+    pub failures: Vec<Failure>,
+    /// The fields that were not rechecked, each with the reason.
+    pub not_rechecked: Vec<&'static str>,
+}
+
+/// A row that does not hold.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// Counted from 1; 0 for the document as a whole.
+    pub row: u64,
+    /// The row's name, as `p = 7, q = 3, m = 4`.
+    pub place: String,
+    /// What is wrong.
+    pub why: String,
+}
+
+/// Why a row does not hold, or why that cannot be told.
+pub enum Fault {
+    Wrong(String),
+    Error(Error),
+}
+
+impl From<Error> for Fault {
+    fn from(error: Error) -> Self {
+        Fault::Error(error)
+    }
+}
+
+pub type Checked<T = ()> = std::result::Result<T, Fault>;
+
+/// That something holds, or what is wrong.
+pub fn holds(truth: bool, wrong: impl FnOnce() -> String) -> Checked {
+    if truth { Ok(()) } else { Err(Fault::Wrong(wrong())) }
+}
+
+/// What holds all along, or what it is instead.
+pub fn same<T: PartialEq + std::fmt::Display>(name: &str, told: T, truth: T) -> Checked {
+    holds(told == truth, || format!("{name} is {truth}, not {told}"))
+}
+
+/// A row that can be named.
+pub trait Place: Sync {
+    fn place(&self) -> String;
+}
+
+/// A check at work.
+pub struct Context<'a> {
+    pub options: &'a Options,
+    pub see: Option<See<'a>>,
+}
+
+impl Context<'_> {
+    pub fn limits(&self) -> &Limits {
+        &self.options.limits
+    }
+
+    /// Checks all rows, side by side: what does not hold, in their order.
+    pub fn rows<T: Place>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
+        let (done, of) = (AtomicU64::new(0), rows.len() as u64);
+        let one = |(i, row): (usize, &T)| {
+            let failure = self.failure(i as u64 + 1, || row.place(), check(row));
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            self.see.inspect(|see| see(done, of));
+            failure
+        };
+        let found: Vec<_> = rows.par_iter().enumerate().map(one).collect::<Result<_>>()?;
+        Ok(found.into_iter().flatten().collect())
+    }
+
+    pub fn failure(
+        &self,
+        row: u64,
+        place: impl FnOnce() -> String,
+        checked: Checked,
+    ) -> Result<Option<Failure>> {
+        match checked {
+            Ok(()) => Ok(None),
+            Err(Fault::Wrong(why)) => Ok(Some(Failure { row, place: place(), why })),
+            Err(Fault::Error(error)) => Err(error),
+        }
+    }
+
+    /// The outcome of a whole document (`whole`, named in words) and of its rows.
+    pub fn outcome<T: Place>(
+        &self,
+        route: &'static str,
+        (place, whole): (&str, Checked),
+        rows: &[T],
+        check: impl Fn(&T) -> Checked + Sync,
+    ) -> Result<Outcome> {
+        let whole = self.failure(0, || place.into(), whole)?;
+        let mut failures = self.rows(rows, check)?;
+        failures.extend(whole);
+        let rows = rows.len() as u64;
+        Ok(Outcome { rows, route, sample: None, failures, not_rechecked: Vec::new() })
+    }
+}

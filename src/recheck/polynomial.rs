@@ -1,0 +1,123 @@
+//! Polynomials: numbers kicked and drifted at as many rational points as determine them.
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, Zero};
+use serde::Deserialize;
+
+use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
+use super::exact::{check_ratio, fraction};
+use super::written::Written;
+use crate::error::{Error, Result};
+use crate::number::{Polynomial, Ratio, Rational};
+use crate::propagator::methods::avi;
+use crate::propagator::{TwoClocks, half_period};
+
+const ROUTE: &str = "the full period, kick by kick, at more rational points than the degrees leave free";
+
+/// The largest p + q unless more work is allowed: the points are some p q, of p + q kicks each.
+const MOST_KICKS: u64 = 120;
+
+rows! {
+    /// `kickdrift/polynomial/1`.
+    pub struct Claim {
+        input: Input,
+        p: u64,
+        q: u64,
+        polynomials: BTreeMap<Entry, String>,
+        terms: Vec<Term>,
+    }
+
+    struct Input {
+        ratio: Written<Ratio>,
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+enum Entry {
+    A,
+    B,
+    C,
+    D,
+    #[serde(rename = "trace")]
+    Trace,
+}
+
+rows! {
+    struct Term {
+        entry: Entry,
+        s: u32,
+        rho: u32,
+        coefficient: Written<Rational>,
+    }
+}
+
+impl Place for Entry {
+    fn place(&self) -> String {
+        format!("entry = {self:?}")
+    }
+}
+
+impl Claim {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
+        let (kicks, most) = (self.input.ratio.kicks(), MOST_KICKS.max(context.limits().kicks / 1_000_000));
+        if kicks > most {
+            return Err(Error::budget(
+                format!("polynomials of p + q = {kicks} are many points"),
+                kicks.saturating_mul(1_000_000),
+            ));
+        }
+        let all = [Entry::A, Entry::B, Entry::C, Entry::D, Entry::Trace];
+        context.outcome(ROUTE, ("the terms", self.whole(context)), &all, |&entry| self.entry(entry))
+    }
+
+    fn whole(&self, context: &Context) -> Checked {
+        let ratio = check_ratio(self.p, self.q, context.limits())?;
+        same("its ratio", ratio, *self.input.ratio)?;
+        let key = |term: &Term| (term.entry, term.s, term.rho);
+        let increasing = self.terms.windows(2).all(|pair| key(&pair[0]) < key(&pair[1]));
+        holds(increasing, || "its terms are not in order, each once".into())?;
+        holds(self.terms.iter().all(|term| !term.coefficient.is_zero()), || "a term is zero".into())
+    }
+
+    fn entry(&self, entry: Entry) -> Checked {
+        let terms: Vec<&Term> = self.terms.iter().filter(|term| term.entry == entry).collect();
+        // At most p + q kicks carry a power of s each, q of them one of ρ.
+        let (in_s, in_rho) = (self.input.ratio.kicks() as u32, self.input.ratio.q() as u32);
+        let bounded = terms.iter().all(|term| term.s <= in_s && term.rho <= in_rho);
+        holds(bounded, || format!("no power above s^{in_s} rho^{in_rho} can stand"))?;
+        // A polynomial of degree m in s and n in ρ is determined by (m + 1)(n + 1) values on a grid.
+        for (s, rho) in (0..=in_s).flat_map(|i| (0..=in_rho).map(move |j| (i, j))) {
+            let power =
+                |x: u32, k: u32| if k == 0 { Rational::one() } else { fraction(x.into(), 1).pow(k as i32) };
+            let value = terms.iter().fold(Rational::zero(), |sum, term| {
+                sum + &*term.coefficient * power(s, term.s) * power(rho, term.rho)
+            });
+            let truth = entry.kicked(*self.input.ratio, s, rho);
+            holds(value == truth, || format!("at s = {s}, rho = {rho} it is {truth}, not {value}"))?;
+        }
+        let sum = terms.iter().fold(Polynomial::zero(), |mut sum, term| {
+            let in_rho = Polynomial::monomial(term.coefficient.0.clone(), term.rho as usize);
+            sum += Polynomial::monomial(in_rho, term.s as usize);
+            sum
+        });
+        let text = sum.text(&["s", "rho"]);
+        let told = self.polynomials.get(&entry).ok_or_else(|| Fault::Wrong("it has no text".into()))?;
+        holds(*told == text, || format!("its text is not {text}"))
+    }
+}
+
+impl Entry {
+    /// Its value at one point: numbers kicked and drifted, no polynomials.
+    fn kicked(self, ratio: Ratio, s: u32, rho: u32) -> Rational {
+        let clocks = TwoClocks::with_rho(ratio, fraction(s.into(), 1), fraction(rho.into(), 1));
+        let half = || half_period(&clocks);
+        match self {
+            Entry::A => half().a().clone(),
+            Entry::B => half().b().clone(),
+            Entry::C => half().c().clone(),
+            Entry::D => half().d().clone(),
+            Entry::Trace => avi::staggered(&clocks).trace(),
+        }
+    }
+}

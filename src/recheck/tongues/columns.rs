@@ -1,0 +1,211 @@
+//! What else a row says of a tongue.
+
+use std::f64::consts::{LN_10, PI};
+
+use num_traits::{Signed, Zero as _};
+
+use super::edge::Zero;
+use super::rows::{FirstOrder, Growth, Input, Predicted, Tongue};
+use crate::number::{Ball, Rational, rational};
+use crate::propagator::{TwoClocks, half_period};
+use crate::recheck::context::{Checked, Fault, holds};
+use crate::recheck::exact::{ZeroOf, fraction, ln_multiplier_at, resonance};
+use crate::recheck::written::Ends;
+use crate::tongue::{Resonance, Side};
+
+/// Rounded numbers are right to nine digits: some are the end of a few hundred operations in doubles.
+const ROUNDED: f64 = 1e-9;
+
+fn near(told: f64, truth: f64) -> bool {
+    (told - truth).abs() <= ROUNDED * truth.abs()
+}
+
+fn exact(x: f64) -> Checked<Rational> {
+    rational::from_f64_exact(x).ok_or_else(|| Fault::Wrong(format!("{x} is no number")))
+}
+
+impl Growth {
+    /// The growth is that of its place, and falls on both sides of it.
+    pub fn holds(&self, row: &Tongue, input: &Input, (lower, upper): (&ZeroOf, &ZeroOf)) -> Checked {
+        const BITS: u32 = 256;
+        let s = exact(self.s)?;
+        let ends = row.upper.as_ref().map_or(f64::INFINITY, |upper| upper.hi);
+        let inside = (row.lower.lo..=ends).contains(&self.s);
+        holds(inside, || format!("its fastest growth is written outside of it, at s = {}", self.s))?;
+        let ln = |s: &Rational| ln_multiplier_at(&lower.clocks(s.clone()), BITS);
+        // ln μ/√s, the rate but for a factor.
+        let rate = |s: &Rational| {
+            let root = Ball::from_rational(s, BITS).sqrt(BITS)?;
+            ln(s).filter(|_| lower.lo <= *s && *s <= upper.hi)?.div(&root, BITS)
+        };
+        let width = &upper.lo - &lower.hi;
+        // A place is written to nine digits. Where it lies inside with them, growth is compared there.
+        let (far, close) = (&s * fraction(1, 1_000_000_000), &s * fraction(1, 20_000_000_000));
+        let points = [&s - &far, &s - &close, &s + &close, &s + &far];
+        let truth = if lower.hi < points[0] && points[3] < upper.lo {
+            let [before, left, right, after] = points.map(|s| rate(&s));
+            let rises = |a: Option<Ball>, b: Option<Ball>| Some(a?.compare(&b?)? == std::cmp::Ordering::Less);
+            let peak = rises(before, left) == Some(true) && rises(after, right) == Some(true);
+            holds(peak, || format!("growth is faster beside s = {}", self.s))?;
+            ln(&s).map_or(0.0, |ln| ln.mid_f64())
+        } else {
+            thin(lower, &width)?
+        };
+        holds(near(self.ln_multiplier, truth), || format!("ln of the multiplier is {truth}"))?;
+        let rate = truth / (row.p as f64 * self.s.sqrt());
+        holds(near(self.rate, rate), || format!("the rate is {rate}"))?;
+        let steps = LN_10 * row.q as f64 / truth;
+        holds(near(self.steps_until_tenfold, steps), || format!("tenfold takes {steps} slow steps"))?;
+        let truth = input.lambda1.as_ref().map(|lambda1| rate * lambda1.to_f64().sqrt());
+        match (self.growth_rate, truth) {
+            (Some(told), Some(truth)) => holds(near(told, truth), || format!("the growth rate is {truth}")),
+            (None, None) => Ok(()),
+            _ => Err(Fault::Wrong("growth_rate is there where lambda1 is".into())),
+        }
+    }
+}
+
+/// The largest ln μ of a tongue that is thin against nine digits of s: sinh² (ln μ/2) is a parabola there, by three points
+/// of it.
+fn thin(lower: &ZeroOf, width: &Rational) -> Checked<f64> {
+    const BITS: u32 = 256;
+    let square = |quarter: u64| -> Option<Ball> {
+        let s = &lower.hi + width * fraction(quarter, 4);
+        let ln = ln_multiplier_at(&lower.clocks(s), BITS + 2 * width.denom().bits() as u32)?;
+        let half = ln.scale2(-1).exp(BITS);
+        let sinh = half.sub(&Ball::one().div(&half, BITS)?, BITS).scale2(-1);
+        Some(sinh.square(BITS))
+    };
+    let [Some(a), Some(b), Some(c)] = [square(1), square(2), square(3)] else {
+        return Err(Fault::Wrong("nothing grows inside".into()));
+    };
+    // Vertex of the parabola through (-1, a), (0, b), (1, c): b - (c - a)^2/(8 (a - 2b + c)).
+    let slope = c.sub(&a, BITS).square(BITS);
+    let bend = a.add(&c, BITS).sub(&b.scale2(1), BITS).scale2(3);
+    let top = slope.div(&bend, BITS).map(|x| b.sub(&x, BITS));
+    let ln = top.and_then(|top| top.sqrt(BITS)).map(|root| root.asinh(BITS).scale2(1).mid_f64());
+    ln.ok_or_else(|| Fault::Wrong("nothing grows inside".into()))
+}
+
+impl Predicted {
+    /// The point lies where it is said to lie: on an edge by theory or in cyclotomic numbers, else edge and point part.
+    pub fn holds(&self, m: u64, lower: &Zero, upper: &Zero) -> Checked {
+        let p = lower.zero.ratio.p();
+        let (position, distance) = (*self.position, self.distance);
+        let side = match position {
+            Side::Inside => "inside",
+            Side::Below | Side::Above => "outside",
+            Side::OnLower | Side::OnUpper => "on the edge",
+        };
+        holds(self.side == side, || format!("{} is {side}, not {}", position.name(), self.side))?;
+        let s = resonance(p, m, BITS);
+        let (least, most) = s.to_f64_enclosure();
+        holds((least.next_down()..=most.next_up()).contains(&self.s), || {
+            format!("p theta = m pi is s = {}", s.mid_f64())
+        })?;
+        let on = (lower.sits(Resonance::Fast, m), upper.sits(Resonance::Fast, m));
+        let (mut below, mut above) = (lower.zero.clone(), upper.zero.clone());
+        let truth = match on {
+            (Some(true), _) => Side::OnLower,
+            (_, Some(true)) => Side::OnUpper,
+            (Some(false), Some(false)) => place(p, m, &mut below, &mut above)?,
+            // Too long a period for the field: what the enclosures leave open is taken as it is written.
+            _ if matches!(position, Side::OnLower | Side::OnUpper) => position,
+            _ => place(p, m, &mut below, &mut above)?,
+        };
+        holds(truth == position, || format!("p theta = m pi is {}", truth.name()))?;
+        let truth = match truth {
+            Side::OnLower | Side::OnUpper => return holds(distance == 0.0, || "its distance is 0".into()),
+            Side::Below => apart(p, m, &mut below),
+            Side::Above => apart(p, m, &mut above),
+            Side::Inside => -apart(p, m, &mut below).min(apart(p, m, &mut above)),
+        };
+        // Both ends are rounded where they are doubles: of a larger distance that takes less than a millionth.
+        let slack = 1e-6 * truth.abs();
+        holds((distance - truth).abs() <= slack, || {
+            format!("the distance to its tongue is {truth}, not {distance}")
+        })
+    }
+}
+
+const BITS: u32 = 128;
+
+/// Where the point lies that is on neither edge: halved until they part.
+fn place(p: u64, m: u64, lower: &mut ZeroOf, upper: &mut ZeroOf) -> Checked<Side> {
+    let mut bits = BITS;
+    for _ in 0..64 {
+        let s = resonance(p, m, bits);
+        match () {
+            () if s.upper() < lower.lo => return Ok(Side::Below),
+            () if upper.hi < s.lower() => return Ok(Side::Above),
+            () if lower.hi < s.lower() && s.upper() < upper.lo => return Ok(Side::Inside),
+            () => {}
+        }
+        for _ in 0..32 {
+            lower.halve();
+            upper.halve();
+        }
+        bits += 32;
+    }
+    Err(Fault::Wrong("the predicted point cannot be told from an edge".into()))
+}
+
+/// The distance of the point from an edge, to ten digits.
+fn apart(p: u64, m: u64, edge: &mut ZeroOf) -> f64 {
+    let mut bits = BITS;
+    loop {
+        let s = resonance(p, m, bits);
+        let [least, most] = if s.upper() < edge.lo {
+            [&edge.lo - s.upper(), &edge.hi - s.lower()]
+        } else {
+            [s.lower() - &edge.hi, s.upper() - &edge.lo]
+        };
+        if least.is_positive() && most <= &least * fraction(10_000_000_001, 10_000_000_000) {
+            return rational::to_f64(&least);
+        }
+        (0..16).for_each(|_| edge.halve());
+        bits += 16;
+    }
+}
+
+impl FirstOrder {
+    /// The law by the edges' slopes in ρ at ρ = 0, −X_ρ/X_s for either entry X: with no sum over the slow kicks.
+    pub fn holds(&self, m: u64, lower: &Zero, upper: &Zero, width: Ends) -> Checked {
+        let (p, rho) = (lower.zero.ratio.p(), lower.zero.rho);
+        // Differences of 2^-80 in exact arithmetic: slopes to 2^-70 or so.
+        let (near_s, small) = (resonance(p, m, 200).lower(), fraction(1, 1 << 40) * fraction(1, 1 << 40));
+        let at = |s: Rational, rho: Rational| {
+            let half = half_period(&TwoClocks::with_rho(lower.zero.ratio, s, rho));
+            [lower, upper].map(|edge| half.matrix().transpose()[edge.zero.entry as usize].clone())
+        };
+        let here = at(near_s.clone(), Rational::zero());
+        let (beside, stronger) = (at(&near_s + &small, Rational::zero()), at(near_s.clone(), small));
+        let slope = |k: usize| -rational::to_f64(&((&stronger[k] - &here[k]) / (&beside[k] - &here[k])));
+        let (rho, s) = (rational::to_f64(rho), rational::to_f64(&near_s));
+        let shifts = [rho * slope(0), rho * slope(1)];
+        let (centre, law) = (s + 0.5 * (shifts[0] + shifts[1]), (shifts[0] - shifts[1]).abs());
+        let reach = shifts[0].abs() + shifts[1].abs();
+        // The law is the sum of q terms of size 1 in doubles.
+        let off = 1e-12 * reach;
+        let ulps = 8.0 * f64::EPSILON * s;
+        let close = |told: f64, truth: f64, by: f64| (told - truth).abs() <= by;
+        holds(close(self.centre, centre, off + ulps), || format!("the law's centre is {centre}"))?;
+        holds(close(self.width, law, off), || format!("the law's width is {law}"))?;
+        // Half the width in p θ: ds = 2 sin θ dθ.
+        let turn = p as f64 / (4.0 * (PI * m as f64 / p as f64).sin());
+        let ln = law * turn;
+        holds(close(self.ln_multiplier, ln, off * turn + ROUNDED * ln), || {
+            format!("the law's growth is {ln}")
+        })?;
+        let middle =
+            0.25 * [&lower.zero, &upper.zero].iter().map(|z| rational::to_f64(&(&z.lo + &z.hi))).sum::<f64>();
+        let error = middle - self.centre;
+        holds(close(self.centre_error, error, ulps), || format!("the centre is off by {error}"))?;
+        // The tongue's own width lies in its enclosure.
+        let (lo, hi, slack) = (width.lo, width.hi, ROUNDED * (width.hi + self.width));
+        let error = (lo - self.width - slack..=hi - self.width + slack).contains(&self.width_error);
+        holds(error, || "width_error is not width - law".into())?;
+        let ratio = ((lo - slack) / self.width..=(hi + slack) / self.width).contains(&self.width_ratio);
+        holds(ratio, || "width_ratio is not width/law".into())
+    }
+}

@@ -1,0 +1,176 @@
+//! The rows of a document of tongues.
+
+use serde::Deserialize;
+
+use crate::number::{Laurent, Ratio, Rational};
+use crate::recheck::context::Place;
+use crate::recheck::written::{Column, Decimal, Ends, Range, Written, nullable};
+use crate::resonance::dominant_family;
+use crate::tongue::{self, Entry, Gap, Resonance, Side};
+
+rows! {
+    /// `kickdrift/tongues/1`.
+    pub struct Claim {
+        pub input: Input,
+        pub tongues: Vec<Tongue>,
+        pub count: u64,
+        pub open: u64,
+        pub closed: u64,
+        pub predicted_points: Option<Points>,
+    }
+
+    #[derive(Default)]
+    pub struct Input {
+        pub ratio: Option<Written<Ratio>>,
+        pub max_sum: Option<Written<u64>>,
+        #[serde(deserialize_with = "given_rho")]
+        pub rho: Rational,
+        pub lambda1: Option<Written<Laurent>>,
+        pub lambda2: Option<Written<Laurent>>,
+        pub h1_range: Option<Written<Range>>,
+        pub h2_range: Option<Written<Range>>,
+        pub m: Option<Written<Vec<(u64, u64)>>>,
+        pub a: Option<Written<(i64, i64)>>,
+        pub b: Option<Written<(i64, i64)>>,
+        pub digits: Option<Written<u64>>,
+    }
+}
+
+fn given_rho<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Rational, D::Error> {
+    Written::deserialize(deserializer).map(|rho| rho.0)
+}
+
+rows! {
+    #[derive(PartialEq)]
+    pub struct Points {
+        pub inside: u64,
+        pub on_edge: u64,
+        pub outside: u64,
+    }
+
+    /// A row.
+    pub struct Tongue {
+        pub p: u64,
+        pub q: u64,
+        pub m: u64,
+        #[serde(deserialize_with = "nullable")]
+        pub a: Option<i64>,
+        #[serde(deserialize_with = "nullable")]
+        pub b: Option<i64>,
+        pub lower: Edge,
+        #[serde(deserialize_with = "nullable")]
+        pub upper: Option<Edge>,
+        pub closed: bool,
+        #[serde(deserialize_with = "nullable")]
+        pub width: Option<Ends>,
+        #[serde(default)]
+        pub growth: Column<Growth>,
+        #[serde(default)]
+        pub predicted: Column<Predicted>,
+        #[serde(default)]
+        pub first_order: Column<FirstOrder>,
+    }
+}
+
+impl Place for Tongue {
+    fn place(&self) -> String {
+        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
+    }
+}
+
+rows! {
+    /// An edge as it is written.
+    pub struct Edge {
+        pub lo: f64,
+        pub hi: f64,
+        pub decimal: Option<Decimal>,
+        pub entry: Written<Entry>,
+        #[serde(default)]
+        pub exact: Column<Written<Rational>>,
+        #[serde(default)]
+        pub on: Column<Written<Resonance>>,
+        pub h1: Option<Quantity>,
+        pub h2: Option<Quantity>,
+    }
+
+    pub struct Quantity {
+        pub lo: f64,
+        pub hi: f64,
+        pub decimal: Option<Decimal>,
+    }
+
+    /// The fastest growth inside.
+    #[derive(Copy)]
+    pub struct Growth {
+        pub s: f64,
+        pub ln_multiplier: f64,
+        pub rate: f64,
+        pub steps_until_tenfold: f64,
+        pub growth_rate: Option<f64>,
+    }
+
+    /// The point p θ = m π against the tongue.
+    pub struct Predicted {
+        pub s: f64,
+        pub side: String,
+        pub position: Written<Side>,
+        pub distance: f64,
+    }
+
+    /// The law of first order, and the tongue minus the law.
+    #[derive(Copy)]
+    pub struct FirstOrder {
+        pub centre: f64,
+        pub width: f64,
+        pub ln_multiplier: f64,
+        pub centre_error: f64,
+        pub width_error: f64,
+        pub width_ratio: f64,
+    }
+}
+
+impl Tongue {
+    /// A tongue as it is computed, without further columns.
+    pub fn bare(ratio: Ratio, gap: &Gap) -> Tongue {
+        let ((p, q), family) = (ratio.terms(), dominant_family(ratio, gap.m));
+        let width = gap.upper.map(|_| Ends { lo: gap.width.0, hi: gap.width.1 });
+        Tongue {
+            p,
+            q,
+            m: gap.m,
+            a: Some(family.0),
+            b: Some(family.1),
+            lower: Edge::bare(&gap.lower),
+            upper: gap.upper.as_ref().map(Edge::bare),
+            closed: gap.closed,
+            width,
+            growth: Column::Absent,
+            predicted: Column::Absent,
+            first_order: Column::Absent,
+        }
+    }
+}
+
+impl Input {
+    /// The input of bare tongues.
+    pub fn bare(rho: &Rational) -> Input {
+        Input { rho: rho.clone(), ..Input::default() }
+    }
+}
+
+impl Edge {
+    /// An edge as it is computed.
+    pub fn bare(edge: &tongue::Edge) -> Edge {
+        let entry = Written(edge.entry);
+        Edge {
+            lo: edge.lo,
+            hi: edge.hi,
+            decimal: None,
+            entry,
+            exact: Column::Absent,
+            on: Column::Absent,
+            h1: None,
+            h2: None,
+        }
+    }
+}

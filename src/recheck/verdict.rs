@@ -1,0 +1,150 @@
+//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
+
+use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
+use super::exact::{FullPeriod, affordable, again, full_period, growth_again, ln_multiplier};
+use super::written::{Ends, Written, nullable};
+use crate::error::Result;
+use crate::number::{Ball, Laurent, Rational, Real};
+use crate::propagator::{Oscillator, TwoClocks};
+use crate::resonance::dominant_family;
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace};
+
+const ROUTE: &str =
+    "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
+
+rows! {
+    /// `kickdrift/verdict/1`.
+    pub struct Claim {
+        input: Input,
+        p: u64,
+        q: u64,
+        kind: Written<Kind>,
+        stable: bool,
+        side: i8,
+        trace: Trace,
+        growth_rate: Ends,
+        #[serde(deserialize_with = "nullable")]
+        resonance: Option<Resonance>,
+        decided_by: Written<Tier>,
+    }
+
+    struct Input {
+        lambda1: Written<Laurent>,
+        lambda2: Written<Laurent>,
+        h1: Written<Laurent>,
+        h2: Written<Laurent>,
+    }
+
+    struct Trace {
+        #[serde(deserialize_with = "nullable")]
+        lo: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        hi: Option<f64>,
+        exact: Option<Written<Rational>>,
+    }
+
+    struct Resonance {
+        m: u64,
+        a: i64,
+        b: i64,
+    }
+}
+
+impl Place for Claim {
+    fn place(&self) -> String {
+        format!("p = {}, q = {}", self.p, self.q)
+    }
+}
+
+/// What the other route finds.
+struct Truth {
+    verdict: Verdict,
+    trace: Ball,
+    ln_multiplier: Option<Ball>,
+    exact: Option<Rational>,
+}
+
+const BITS: u32 = 192;
+
+impl Claim {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
+        let row = std::slice::from_ref(self);
+        let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, |row| row.holds(context.limits()))?;
+        outcome.not_rechecked.push("decided_by: the tier depends on the version of the program");
+        Ok(outcome)
+    }
+
+    fn holds(&self, limits: &Limits) -> Checked {
+        let Input { lambda1, lambda2, h1, h2 } = &self.input;
+        let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())
+            .map_err(|error| Fault::Wrong(error.to_string()))?;
+        let clocks = oscillator.clocks();
+        let ratio = (self.p, self.q);
+        holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
+        let truth = self.truth(&clocks, limits)?;
+        self.against(&truth)?;
+        self.numbers(&oscillator, &truth)?;
+        self.label(&clocks, limits)
+    }
+
+    /// The full period where that is affordable, else a tier that did not decide.
+    fn truth(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Truth> {
+        if affordable(clocks) {
+            let FullPeriod { verdict, trace } = full_period(clocks);
+            let grows = verdict.kind() == Kind::Hyperbolic;
+            let ln_multiplier = grows.then(|| ln_multiplier(&trace, BITS).expect("|Tr| > 2"));
+            return Ok(Truth {
+                verdict,
+                trace: trace.enclosure(BITS),
+                ln_multiplier,
+                exact: trace.as_rational(),
+            });
+        }
+        let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
+        let verdict = again(tier, clocks, limits)?.verdict;
+        let Growth { trace, ln_multiplier, .. } = growth_again(clocks, verdict, limits)?;
+        let rational = clocks.as_rational().filter(|_| self.trace.exact.is_some());
+        Ok(Truth { verdict, trace, ln_multiplier, exact: rational.map(|clocks| exact_trace(&clocks)) })
+    }
+
+    fn against(&self, truth: &Truth) -> Checked {
+        let (kind, side, verdict) = (*self.kind, self.side, truth.verdict);
+        holds((kind, side) == (verdict.kind(), verdict.side()), || {
+            format!("is {}, side {}, not {}, side {side}", verdict.kind().name(), verdict.side(), kind.name())
+        })?;
+        same("stable", self.stable, verdict.is_stable())
+    }
+
+    /// The trace and the growth rate lie in their enclosures.
+    fn numbers(&self, oscillator: &Oscillator, truth: &Truth) -> Checked {
+        let Trace { lo, hi, exact: told } = &self.trace;
+        let ends = Ends::new(*lo, *hi);
+        holds(ends.is_some_and(|ends| ends.holds(&truth.trace)), || {
+            "the trace lies outside its enclosure".into()
+        })?;
+        let right = told.is_none() || told.as_deref() == truth.exact.as_ref();
+        holds(right, || "the trace is not what it is told to be exactly".into())?;
+        let Some(ln) = &truth.ln_multiplier else {
+            let Ends { lo, hi } = self.growth_rate;
+            return holds((lo, hi) == (0.0, 0.0), || "grows though it is not hyperbolic".into());
+        };
+        let rate = ln.div(&oscillator.period().enclosure(BITS), BITS).expect("T > 0");
+        holds(self.growth_rate.holds(&rate), || format!("the growth rate is {}", rate.mid_f64()))
+    }
+
+    /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
+    fn label(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Checked {
+        let (p, q) = clocks.ratio().terms();
+        // Families beyond 31 bits are not written.
+        let due = *self.kind == Kind::Hyperbolic && p.max(q) < 1 << 31;
+        let Some(Resonance { m, a, b }) = self.resonance else {
+            return holds(!due, || "what grows has a label".into());
+        };
+        holds(due && m < 1 << 31, || "has no label".into())?;
+        let verdict = again(Tier::Refine, clocks, limits)?.verdict;
+        let turns = growth_again(clocks, verdict, limits)?.label;
+        holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))?;
+        let family = dominant_family(clocks.ratio(), m);
+        holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))
+    }
+}

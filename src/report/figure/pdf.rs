@@ -1,0 +1,207 @@
+//! A drawing as a PDF of one page: the same lines as the SVG, and words as words, in the letters that they need.
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use pdf_writer::types::{LineCapStyle, LineJoinStyle};
+use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as Area, Ref, Str, TextStr};
+
+use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
+use super::embed::Fonts;
+use super::outline::{self, Outline};
+use super::palette::{Colour, WHITE};
+
+/// The whole document.
+pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
+    let mut next = 1;
+    let mut fresh = || {
+        next += 1;
+        Ref::new(next - 1)
+    };
+    let [catalog, pages, page, stream, info] = std::array::from_fn(|_| fresh());
+    let mut pdf = Pdf::new();
+    pdf.catalog(catalog).pages(pages);
+    pdf.document_info(info).title(TextStr(&canvas.title));
+    pdf.pages(pages).kids([page]).count(1);
+    let fonts = Fonts::new(canvas);
+    let mut drawing = Drawing::new(&fonts, canvas.height);
+    canvas.elements.iter().for_each(|element| drawing.draw(element));
+    let Drawing { content, images, veils, .. } = drawing;
+    pdf.stream(stream, &deflated(content.finish().as_slice())).filter(Filter::FlateDecode);
+    let fonts = fonts.write(&mut pdf, &mut fresh);
+    let images: Vec<Ref> = images.into_iter().map(|image| embedded(&mut pdf, fresh(), image)).collect();
+    let mut sheet = pdf.page(page);
+    sheet.parent(pages).media_box(Area::new(0.0, 0.0, canvas.width as f32, canvas.height as f32));
+    sheet.contents(stream);
+    let mut resources = sheet.resources();
+    resources.fonts().pairs(fonts.iter().map(|(name, font)| (Name(name.as_bytes()), *font)));
+    let mut named = resources.x_objects();
+    for (i, image) in images.into_iter().enumerate() {
+        named.pair(Name(image_name(i).as_bytes()), image);
+    }
+    named.finish();
+    let mut states = resources.ext_g_states();
+    for (opacity, name) in &veils {
+        let share = f32::from(*opacity) / 100.0;
+        states.insert(Name(name.as_bytes())).dict().pair(Name(b"ca"), share);
+    }
+    states.finish();
+    resources.finish();
+    sheet.finish();
+    pdf.finish()
+}
+
+pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("writing to memory does not fail")
+}
+
+fn image_name(i: usize) -> String {
+    format!("i{i}")
+}
+
+fn embedded(pdf: &mut Pdf, id: Ref, image: &Image) -> Ref {
+    let rgb: Vec<u8> = image.pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b]).collect();
+    let bytes = deflated(&rgb);
+    let mut object = pdf.image_xobject(id, &bytes);
+    object.filter(Filter::FlateDecode);
+    object.interpolate(image.smooth).bits_per_component(8);
+    object.width(image.width as i32).height((image.pixels.len() / image.width as usize) as i32);
+    object.color_space().device_rgb();
+    id
+}
+
+/// The page under construction.
+struct Drawing<'a> {
+    content: Content,
+    fonts: &'a Fonts,
+    images: Vec<&'a Image>,
+    /// Opacities in use, in hundredths as in the SVG, with their names.
+    veils: BTreeMap<u8, String>,
+}
+
+impl<'a> Drawing<'a> {
+    /// An empty page with y pointing down from its upper edge, as on the canvas.
+    fn new(fonts: &'a Fonts, height: f64) -> Self {
+        let mut content = Content::new();
+        content.transform([1.0, 0.0, 0.0, -1.0, 0.0, height as f32]);
+        Drawing { content, fonts, images: Vec::new(), veils: BTreeMap::new() }
+    }
+
+    fn draw(&mut self, element: &'a Element) {
+        match element {
+            Element::Path(path, Paint::Fill { colour, opacity }) => {
+                self.fill(*colour, *opacity, |content| outline::path(path, content));
+            }
+            Element::Path(path, Paint::Stroke(pen)) => {
+                self.content.save_state();
+                self.take(pen);
+                outline::path(path, &mut self.content);
+                self.content.stroke().restore_state();
+            }
+            Element::Patch(patch) => {
+                self.fill(patch.colour, patch.opacity, |content| outline::patch(patch, content));
+            }
+            Element::Image(image) => {
+                let [left, top, right, bottom] = image.place.map(|side| side as f32);
+                let place = [right - left, 0.0, 0.0, top - bottom, left, bottom];
+                let name = image_name(self.images.len());
+                self.images.push(image);
+                self.content.save_state().transform(place);
+                self.content.x_object(Name(name.as_bytes())).restore_state();
+            }
+            Element::Words(words) => self.words(words),
+            Element::Open([left, top, right, bottom]) => {
+                let [x, y, width, height] = [*left, *top, right - left, bottom - top].map(|x| x as f32);
+                self.content.save_state().rect(x, y, width, height);
+                self.content.clip_nonzero().end_path();
+            }
+            Element::Close => drop(self.content.restore_state()),
+        }
+    }
+
+    fn fill(&mut self, colour: Colour, opacity: Option<f64>, trace: impl FnOnce(&mut Content)) {
+        let opacity = (100.0 * opacity.unwrap_or(1.0)).round() as u8;
+        self.content.save_state();
+        if opacity < 100 {
+            let name = self.veils.entry(opacity).or_insert_with(|| format!("v{opacity}"));
+            self.content.set_parameters(Name(name.as_bytes()));
+        }
+        let [r, g, b] = shares(colour);
+        self.content.set_fill_rgb(r, g, b);
+        trace(&mut self.content);
+        self.content.fill_nonzero().restore_state();
+    }
+
+    fn take(&mut self, pen: &Pen) {
+        let [r, g, b] = shares(pen.colour);
+        // A miter longer than four widths is cut, as in SVG.
+        self.content.set_stroke_rgb(r, g, b).set_line_width(pen.width as f32).set_miter_limit(4.0);
+        if pen.round_caps {
+            self.content.set_line_cap(LineCapStyle::RoundCap);
+        }
+        if pen.round_joins {
+            self.content.set_line_join(LineJoinStyle::RoundJoin);
+        }
+        if !pen.dashes.is_empty() {
+            self.content.set_dash_pattern(pen.dashes.iter().map(|&length| length as f32), 0.0);
+        }
+    }
+
+    /// Letters as text, each in its place; the rim around them as outlines, or a search would find them twice.
+    fn words(&mut self, words: &Words) {
+        let (set, (sin, cos)) = (words.set, (-words.set.turn).to_radians().sin_cos());
+        let em = set.size / 1000.0;
+        let place = |placed| {
+            let [x, y] = words.offset(placed);
+            [words.at[0] + em * (cos * x - sin * y), words.at[1] + em * (sin * x + cos * y)]
+        };
+        let places: Vec<[f64; 2]> = words.glyphs.iter().map(place).collect();
+        if set.halo {
+            let rim = Pen { round_joins: true, ..Pen::new(WHITE, HALO) };
+            for (placed, [x, y]) in words.glyphs.iter().zip(&places) {
+                let (a, b) = (em * placed.scale * cos, em * placed.scale * sin);
+                self.content.save_state();
+                self.take(&rim);
+                self.content.transform([a, b, -b, a, *x, *y].map(|x| x as f32));
+                outline::glyph(&placed.face.outline(placed.glyph), &mut self.content);
+                self.content.stroke().restore_state();
+            }
+        }
+        let [r, g, b] = shares(set.colour);
+        self.content.save_state().begin_text().set_fill_rgb(r, g, b);
+        for (placed, [x, y]) in words.glyphs.iter().zip(&places) {
+            let (font, glyph) = self.fonts.find(placed.face, placed.glyph);
+            self.content.set_font(Name(font.as_bytes()), (set.size * placed.scale) as f32);
+            // Letters stand upright although y points down.
+            self.content.set_text_matrix([cos, sin, sin, -cos, *x, *y].map(|x| x as f32));
+            self.content.show(Str(&glyph.to_be_bytes()));
+        }
+        self.content.end_text().restore_state();
+    }
+}
+
+fn shares(Colour(r, g, b): Colour) -> [f32; 3] {
+    [r, g, b].map(|share| f32::from(share) / 255.0)
+}
+
+impl Outline for Content {
+    fn begin(&mut self, [x, y]: [f64; 2]) {
+        self.move_to(x as f32, y as f32);
+    }
+
+    fn line(&mut self, [x, y]: [f64; 2]) {
+        self.line_to(x as f32, y as f32);
+    }
+
+    fn cubic(&mut self, first: [f64; 2], second: [f64; 2], to: [f64; 2]) {
+        let [[a, b], [c, d], [x, y]] = [first, second, to].map(|point| point.map(|x| x as f32));
+        self.cubic_to(a, b, c, d, x, y);
+    }
+
+    fn end(&mut self) {
+        self.close_path();
+    }
+}
