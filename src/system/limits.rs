@@ -20,9 +20,9 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 10^11 products: some minutes at worst.
+    /// 5·10^10 products: a minute or two at worst.
     fn default() -> Self {
-        Limits { products: 100_000_000_000 }
+        Limits { products: 50_000_000_000 }
     }
 }
 
