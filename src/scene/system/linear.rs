@@ -1,7 +1,6 @@
 //! Masses and stiffnesses from a file, and the usual systems by name.
 
-use super::LARGEST;
-use super::document::{Build, Document, Number, PotentialDocument, ends};
+use super::document::{Build, Document, LARGEST, Number, PotentialDocument, ends};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::{Potential, Symmetric, System, builders};
