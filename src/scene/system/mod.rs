@@ -60,9 +60,6 @@ const SCHEMA: &str = "kickdrift/system/1";
 /// The longest file, in bytes.
 const LONGEST: usize = 16 << 20;
 
-/// The most degrees of freedom: dense matrices of this size still fit.
-const LARGEST: usize = 4096;
-
 /// A system file, read and checked.
 #[derive(Clone, Debug)]
 pub struct SystemScene {
