@@ -1,7 +1,9 @@
 //! Maps: Figure 1 of the paper, and agreement with tiers that share nothing with the kernel.
 
 use kickdrift::error::Kind as ErrorKind;
-use kickdrift::map::{Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, merge};
+use kickdrift::map::{
+    Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, instruction_sets, merge,
+};
 use kickdrift::number::Ratio;
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::ratio;
@@ -411,4 +413,18 @@ fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
     }
     let few = Resources { limits: Limits { kicks: 3 }, ..Resources::default() };
     assert_eq!(decide_all(&pairs, &few).unwrap_err().kind(), ErrorKind::Budget);
+}
+
+/// All instruction sets give the same bits: verdicts, tiers, labels and the ends of every enclosure.
+#[test]
+fn every_instruction_set_gives_the_same_map() {
+    let grid = figure_1("1/60");
+    let sets = instruction_sets();
+    let forced = |set: &String| {
+        assert!(kickdrift::force_instructions(set), "{set}");
+        bands(&grid, BOTH, Shard::WHOLE, 1)
+    };
+    let maps: Vec<_> = sets.iter().map(forced).collect();
+    assert!(kickdrift::force_instructions(&sets[0]));
+    assert!(maps.windows(2).all(|two| two[0] == two[1]));
 }

@@ -180,6 +180,11 @@ proptest! {
     }
 }
 
+/// Whether doubles proved the verdict.
+fn is_in_doubles(evidence: Evidence) -> bool {
+    matches!(evidence, Evidence::Signs | Evidence::Discs)
+}
+
 /// The verdict by `verdict`'s own ladder, on the sums of springs of one step.
 fn by_the_ladder(springs: &[(i64, i64)]) -> Kind {
     let steps: Vec<i64> =
@@ -367,7 +372,8 @@ fn a_collision_of_two_modes_is_named_with_its_resonance() {
         vec![potential(fast, &step / ratio(40, 1), ratio(0, 1)), potential(slow, step.clone(), ratio(0, 1))];
     let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), potentials).unwrap();
     let analysis = decide_system(&system, &Limits::default()).unwrap();
-    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
+    assert_eq!(analysis.kind, Kind::Hyperbolic);
+    assert!(is_in_doubles(analysis.parts[0].evidence));
     let instability = &analysis.parts[0].instabilities[0];
     assert_eq!(instability.origin, Origin::Collision);
     let resonance = instability.resonance.as_ref().unwrap();
@@ -385,7 +391,8 @@ fn large_chains_and_bars_are_proven_in_doubles() {
     assert_eq!((chain.clocks().len(), bar.clocks().len()), (3, 10));
     for system in [chain, bar] {
         let analysis = decide_system(&system, &Limits::default()).unwrap();
-        assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Elliptic, Evidence::Discs));
+        assert_eq!(analysis.kind, Kind::Elliptic);
+        assert!(is_in_doubles(analysis.parts[0].evidence));
     }
 }
 
@@ -421,7 +428,7 @@ fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
         let analysis = analysis.unwrap();
         let part = &analysis.parts[0];
         let rigid = usize::from(n <= LARGE);
-        assert_eq!((analysis.kind, part.evidence), (Kind::Elliptic, Evidence::Discs), "{n}");
+        assert_eq!((analysis.kind, part.evidence), (Kind::Elliptic, Evidence::Signs), "{n}");
         assert_eq!(analysis.rigid_modes.len(), rigid);
         let twice =
             part.multipliers.windows(2).filter(|pair| (pair[0].mu - pair[1].mu).norm() < 1e-9).count();
@@ -432,7 +439,8 @@ fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
     assert_eq!(decide_exact(&small, &Limits::default()).unwrap().kind, Kind::Elliptic);
     let resonant = ring(18, [&ratio(4, 1), &ratio(1, 1)], [ratio(1, 4), ratio(5, 2)], ratio(0, 1));
     let analysis = decide_system(&resonant, &Limits::default()).unwrap();
-    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
+    assert_eq!(analysis.kind, Kind::Hyperbolic);
+    assert!(is_in_doubles(analysis.parts[0].evidence));
 }
 
 proptest! {
@@ -468,7 +476,8 @@ fn a_large_unstable_chain_is_proven_and_explained() {
     let chain =
         builders::alternating_chain(60, [&ratio(9, 1), &ratio(1, 1)], [&ratio(1, 2), &ratio(3, 4)]).unwrap();
     let analysis = decide_system(&chain, &Limits::default()).unwrap();
-    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Hyperbolic, Evidence::Discs));
+    assert_eq!(analysis.kind, Kind::Hyperbolic);
+    assert!(is_in_doubles(analysis.parts[0].evidence));
     let instabilities = &analysis.parts[0].instabilities;
     assert!(!instabilities.is_empty());
     for instability in instabilities {
@@ -490,7 +499,8 @@ fn exact_arithmetic_reaches_twelve_degrees_of_freedom() {
         println!("n = 12, {} kicks: {:?}", chain.schedule().strikes(), start.elapsed());
         assert_eq!(exact.kind, kind);
         let analysis = decide_system(&chain, &Limits::default()).unwrap();
-        assert_eq!((analysis.kind, analysis.parts[0].evidence), (kind, Evidence::Discs));
+        assert_eq!(analysis.kind, kind);
+        assert!(is_in_doubles(analysis.parts[0].evidence));
     }
     let chain =
         builders::periodic_chain(12, &stiffness, &[ratio(1, 4), ratio(1, 997), ratio(7, 20)]).unwrap();

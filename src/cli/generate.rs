@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{CommandFactory, ValueEnum};
+use clap::{Command, ValueEnum};
 use clap_complete::Shell;
 
 use super::args::Common;
@@ -28,10 +28,11 @@ enum What {
 }
 
 impl Args {
-    pub fn run(&self, common: &Common) -> Result<()> {
+    /// Writes the files; `program` is the whole of the commands.
+    pub fn run(&self, program: Command, common: &Common) -> Result<()> {
         let (default, files) = match self.what {
-            What::Man => ("man", pages()?),
-            What::Completions => ("completions", completions()),
+            What::Man => ("man", pages(program)?),
+            What::Completions => ("completions", completions(program)),
         };
         let default = || PathBuf::from("out").join(default);
         let folder = Folder::make(&common.output.clone().unwrap_or_else(default))?;
@@ -46,24 +47,23 @@ impl Args {
 /// A file's name and its bytes.
 type File = (String, Vec<u8>);
 
-fn pages() -> Result<Vec<File>> {
-    let mut program = super::Cli::command();
+fn pages(mut program: Command) -> Result<Vec<File>> {
     program.build();
     let commands = program.get_subcommands().filter(|command| command.get_name() != "help");
     std::iter::once(&program).chain(commands).map(page).collect()
 }
 
-fn page(command: &clap::Command) -> Result<File> {
+fn page(command: &Command) -> Result<File> {
     let (man, mut bytes) = (clap_mangen::Man::new(command.clone()), Vec::new());
     let name = man.get_filename();
     man.render(&mut bytes).map_err(|cause| Error::io(&name, &cause).caused_by(cause))?;
     Ok((name, bytes))
 }
 
-fn completions() -> Vec<File> {
+fn completions(program: Command) -> Vec<File> {
     let one = |shell: &Shell| {
         let mut bytes = Vec::new();
-        clap_complete::generate(*shell, &mut super::Cli::command(), "kickdrift", &mut bytes);
+        clap_complete::generate(*shell, &mut program.clone(), "kickdrift", &mut bytes);
         (clap_complete::Generator::file_name(shell, "kickdrift"), bytes)
     };
     Shell::value_variants().iter().map(one).collect()

@@ -145,7 +145,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
-        Command::Generate(args) => args.run(common)?,
+        Command::Generate(args) => args.run(Cli::command(), common)?,
     }
     Ok(ExitCode::SUCCESS)
 }

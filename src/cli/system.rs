@@ -9,6 +9,8 @@ use super::args::Common;
 use super::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::number::parse::parse_rational;
+use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::figure::Figure;
 use crate::report::file::write_output;
@@ -35,6 +37,18 @@ pub struct Args {
     /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error tells its cost.
     #[arg(long)]
     exact: bool,
+    /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
+    #[arg(long, value_name = "X")]
+    accuracy: Option<f64>,
+    /// All unstable intervals of the outer step, the number of inner steps as in the file: outer=LO..HI.
+    #[arg(long, value_name = "outer=LO..HI", conflicts_with_all = ["scan", "exact"])]
+    intervals: Option<String>,
+    /// The relative width above which no interval is missed [default: 1e-4].
+    #[arg(long, value_name = "W", requires = "intervals")]
+    width: Option<f64>,
+    /// Leave the rigid motions of measured stiffnesses in.
+    #[arg(long)]
+    keep_rigid: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -50,13 +64,25 @@ impl Args {
         // Refused before the work, not after it.
         drawing(common)?;
         let text = text(&self.file)?;
-        let scene = SystemScene::read(&text)?;
+        let mut scene = SystemScene::read_in(folder(&self.file), &text)?;
+        if let Some(accuracy) = self.accuracy {
+            scene = scene.at_accuracy(accuracy)?;
+        }
+        if self.keep_rigid {
+            scene = scene.keeping_rigid()?;
+        }
+        if let Some(range) = &self.intervals {
+            return self.intervals(&scene, range, common);
+        }
         match self.scan.as_slice() {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
             }
             [] => self.verdict(&scene, common),
-            [x, y] => self.map(&scene, &Scan::read(&text, Axis::parse(x)?, Axis::parse(y)?)?, common),
+            [x, y] => {
+                let axes = Scan::read_in(folder(&self.file), &text, Axis::parse(x)?, Axis::parse(y)?)?;
+                self.map(&scene, &axes, common)
+            }
             other => {
                 Err(Error::input("--scan", format!("given {} times", other.len()), "a map has two axes"))
             }
@@ -65,6 +91,18 @@ impl Args {
 
     fn route(&self) -> Route {
         if self.exact { Route::Exact } else { Route::Cheapest }
+    }
+
+    fn intervals(&self, scene: &SystemScene, range: &str, common: &Common) -> Result<()> {
+        let form = || Error::input("intervals", range, "write outer=LO..HI, as outer=0.004..0.005");
+        let (lo, hi) =
+            range.strip_prefix("outer=").and_then(|range| range.split_once("..")).ok_or_else(form)?;
+        let read = |text: &str| Ok(to_f64(&parse_rational("intervals", text)?));
+        let width = self.width.unwrap_or(1e-4);
+        let (inner_steps, stretches) = scene.stretches((read(lo)?, read(hi)?), width)?;
+        let document =
+            report::intervals(&stretches, inner_steps).input("intervals", range).input("width", width);
+        common.write(&self.echo(document, scene), Format::Text)
     }
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
@@ -100,7 +138,9 @@ impl Args {
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
             .input("title", scene.title())
             .input_json("system", scene.source().clone());
-        if self.exact { document.input("exact", "true") } else { document }
+        let document = if self.exact { document.input("exact", "true") } else { document };
+        let document = if self.keep_rigid { document.input("keep_rigid", "true") } else { document };
+        self.accuracy.map_or(document.clone(), |accuracy| document.input("accuracy", accuracy))
     }
 }
 
@@ -133,9 +173,14 @@ fn text(path: &Path) -> Result<String> {
     })
 }
 
+/// Where the files are that a system refers to.
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
 /// A system file, read.
 pub fn read(path: &Path) -> Result<SystemScene> {
-    SystemScene::read(&text(path)?)
+    SystemScene::read_in(folder(path), &text(path)?)
 }
 
 /// A bar on standard error, which shows itself on a terminal only.

@@ -95,19 +95,45 @@ impl<'a> Bases<'a> {
     }
 }
 
+/// ⌊p/q⌋ for p below 2^50, by the faster division of doubles: where p/q is no integer it is 1/q below the next one at
+/// least, more than p/q 2^-53, so that rounding does not reach that.
+#[inline(always)]
+pub(super) fn quotient(p: u64, q: u64) -> u64 {
+    (p as i64 as f64 / q as i64 as f64) as i64 as u64
+}
+
 /// The foreign clock's step is p base steps over q, both `gcd` times what they are in lowest terms.
 #[inline(always)]
 fn pair(base: &Base, kick: f64, (p, q): (u64, u64), gcd: u64) -> Pair<'_> {
+    let whole = quotient(p, q);
     // n/gcd is odd where gcd holds all factors 2 of n.
     let odd = |n: u64| n.trailing_zeros() == gcd.trailing_zeros();
     Pair {
         base,
         kick,
-        whole: p / q,
-        rest: p % q,
+        whole,
+        rest: p - whole * q,
         modulus: q,
         p_odd: odd(p),
         q_even: !odd(q),
-        updates: q / gcd / 2,
+        updates: quotient(q, gcd) / 2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quotient;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn quotients_of_doubles_are_those_of_integers(q in 1u64..1 << 50, n in 0u64..1 << 25, off in 0u64..3) {
+            let q = q >> (n % 50);
+            prop_assume!(q > 0);
+            // Next to multiples, where rounding could tell.
+            let p = (n * q).saturating_sub(off) % (1 << 50);
+            prop_assert_eq!(quotient(p, q), p / q);
+            prop_assert_eq!(quotient(q, p.max(1)), q / p.max(1));
+        }
     }
 }

@@ -11,26 +11,33 @@ use crate::vector::instructions::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, label};
 
 impl Work<'_> {
-    /// A second run over the pairs in tongues.
+    /// A second run over the pairs in tongues, a third over those of which it tells too little, and more bits for the
+    /// rest.
     pub(super) fn grow(&self, band: &mut Band, products: Products) -> Result<()> {
         let verdict = |n: usize| Verdict::ALL[usize::from(band.verdicts[n])];
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
-        let order: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
-        let mut growing = Vec::with_capacity(order.len());
-        let mut group = Group::<LANES>::precise(Instructions::best());
-        let mut ends = [None; LANES];
-        let mut seen = vec![false; band.verdicts.len()];
-        let kicks = self.side_by_side(&order, |pairs, positions| {
-            group.everything(pairs, &mut ends[..pairs.len()]);
-            for (&n, ends) in positions.iter().zip(&ends) {
-                let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
-                let found = ends.and_then(|ends| quick(n, ends, verdict(n), products));
-                seen[n] = found.is_some();
-                growing.extend(found);
-            }
-        })?;
-        let rest = order.iter().map(|&n| n as usize).filter(|&n| !seen[n]);
-        for n in rest {
+        let mut rest: Vec<u32> = self.order().iter().copied().filter(hyperbolic).collect();
+        let (mut growing, mut seen) = (Vec::with_capacity(rest.len()), vec![false; band.verdicts.len()]);
+        let mut kicks = 0;
+        for most in BLOCKS {
+            let (mut group, mut ends) = (Group::<LANES>::watched(Instructions::best(), most), [None; LANES]);
+            kicks += self.side_by_side(&rest, |pairs, positions| {
+                let ends = &mut ends[..pairs.len()];
+                if products.label {
+                    group.everything(pairs, ends)
+                } else {
+                    group.measured(pairs, ends)
+                }
+                for (&n, ends) in positions.iter().zip(ends) {
+                    let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
+                    let found = ends.and_then(|ends| quick(n, ends, verdict(n), products));
+                    seen[n] = found.is_some();
+                    growing.extend(found);
+                }
+            })?;
+            rest.retain(|&n| !seen[n as usize]);
+        }
+        for n in rest.into_iter().map(|n| n as usize) {
             let (i, j) = self.multipliers(n);
             let grown = growth(&self.grid().clocks(i, j)?, verdict(n), self.limits())?;
             let ln = grown.ln_multiplier.filter(|_| products.growth).map(|ln| Enclosure::of(&ln));
@@ -42,6 +49,9 @@ impl Work<'_> {
         Ok(())
     }
 }
+
+/// Updates between two looks: few suffice for most pairs, looks at every one cost twice as much and suffice for more.
+const BLOCKS: [u64; 2] = [4, 1];
 
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;

@@ -33,3 +33,6 @@ pub use run::{Map, merge, uncertified_unstable};
 pub use scattered::decide_all;
 pub use shard::Shard;
 pub use store::Store;
+
+#[doc(hidden)]
+pub use crate::vector::instructions::names as instruction_sets;

@@ -18,10 +18,11 @@ const TOGETHER: usize = 1 << 14;
 ///
 /// ```
 /// use kickdrift::map::{Resources, decide_all};
-/// use kickdrift::number::rational::ratio;
+/// use kickdrift::number::{Ratio, rational::ratio};
 /// use kickdrift::propagator::TwoClocks;
 /// use kickdrift::verdict::{Limits, decide};
-/// let pairs: Vec<_> = (1..200).map(|n| TwoClocks::with_rho(7, 3, ratio(n, 60), ratio(1, 25))).collect();
+/// let steps = Ratio::new(7, 3).unwrap();
+/// let pairs: Vec<_> = (1..200).map(|n| TwoClocks::with_rho(steps, ratio(n, 60), ratio(1, 25))).collect();
 /// let decisions = decide_all(&pairs, &Resources::default()).unwrap();
 /// assert_eq!(decisions[70].verdict, decide(&pairs[70], &Limits::default()).unwrap().verdict);
 /// ```

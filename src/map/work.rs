@@ -3,7 +3,7 @@
 use std::cell::OnceCell;
 
 use super::band::{Band, Counters};
-use super::bases::Bases;
+use super::bases::{Bases, quotient};
 use super::gcd;
 use super::grid::Grid;
 use crate::error::{Error, Result};
@@ -53,8 +53,9 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn multipliers(&self, n: usize) -> (u64, u64) {
-        let rows = self.grid.shape().1;
-        (self.first + (n / rows) as u64, self.grid.rows().0 + (n % rows) as u64)
+        // A band has fewer than 2^32 pairs, and the shorter division is the faster one.
+        let (n, rows) = (n as u32, self.grid.shape().1 as u32);
+        (self.first + u64::from(n / rows), self.grid.rows().0 + u64::from(n % rows))
     }
 
     /// Positions by min(p, q)/2: equal numbers run together.
@@ -63,7 +64,7 @@ impl<'a> Work<'a> {
         let (rows, first_row) = (self.grid.shape().1, self.grid.rows().0);
         let mut keys = Vec::with_capacity(self.gcds.len());
         for (i, gcds) in (self.first..).zip(self.gcds.chunks(rows)) {
-            let updates = |(j, &gcd): (u64, &u32)| (i * b).min(j * a) / u64::from(gcd) / 2;
+            let updates = |(j, &gcd): (u64, &u32)| quotient((i * b).min(j * a), u64::from(gcd)) / 2;
             keys.extend((first_row..).zip(gcds).map(updates).map(|n| n.min(u64::from(u32::MAX)) as u32));
         }
         by_counting(&keys)

@@ -38,6 +38,7 @@ mod ratio;
 pub mod rational;
 mod ring;
 mod sign;
+mod twofold;
 
 pub use ball::Ball;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
@@ -49,6 +50,7 @@ pub use quantity::Quantity;
 pub use ratio::Ratio;
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;
+pub(crate) use twofold::Twofold;
 
 /// The unit roundoff u = 2^-53 of doubles: half the distance from 1 to the next one.
 pub(crate) const U: f64 = f64::EPSILON / 2.0;

@@ -5,7 +5,7 @@
 //! the norm 1,
 //!
 //! ```text
-//!     |r_k| ≤ u (κ (28 + 13 tan(θ/2)) + 6.1 |β|) |g_(k-1)| + u (1 + tan(θ/2)) |g_k|
+//!     |r_k| ≤ u (κ (28 + 11 tan(θ/2)) + 6.1 |β|) |g_(k-1)| + u (1 + tan(θ/2)) |g_k|
 //! ```
 //!
 //! is what one update (four shears) adds to the error.
@@ -15,7 +15,7 @@ use crate::number::U;
 
 /// |r_k| ≤ u (κ (`TURN` + `TURN_SLOPE` tan(θ/2)) + `KICK` |β|) |g_(k-1)| + ...
 const TURN: f64 = 28.0;
-const TURN_SLOPE: f64 = 13.0;
+const TURN_SLOPE: f64 = 11.0;
 const KICK: f64 = 6.1;
 
 /// ... + u (`LAST` + `LAST_SLOPE` tan(θ/2)) |g_k|.
@@ -62,6 +62,8 @@ pub struct Certificate {
     pub worst: f64,
     /// 2b and the error of evaluating a linear form of g are together at most this times `squares`.
     pub across: f64,
+    /// Whether |g|² may pass 2^900, from 2^100 at most at the start.
+    pub strong: bool,
 }
 
 impl Certificate {
@@ -88,18 +90,15 @@ impl Certificate {
         // Between two looks |g|² is smaller than at the nearer one by `away` at most.
         let ratio = 2.0 * b * away;
         let across = 2.0 * b + SECOND_ORDER * U * (FORM + FORM_SLOPE * slope);
-        let certificate = Certificate { step, steps, block, ratio, worst: 0.99 * tau / ratio, across };
+        let strong = steps as f64 * growth.log2() > 400.0;
+        let certificate =
+            Certificate { step, steps, block, ratio, worst: 0.99 * tau / ratio, across, strong };
         (steps < MOST_STEPS && ratio.is_finite()).then_some(certificate)
     }
 
     /// One that takes every sign as certain: for the benchmark.
     pub fn void(self) -> Certificate {
         Certificate { across: 0.0, ..self }
-    }
-
-    /// Whether |g|² may pass 2^900, from 2^100 at most at the start.
-    pub fn strong(&self) -> bool {
-        self.steps as f64 * self.step.growth().log2() > 400.0
     }
 
     /// How far the orbit's length may be off, relatively, where `squares/|g|²` was `worst` at most.
@@ -135,9 +134,9 @@ impl Certificates {
         Certificates { most: BLOCK, made: vec![None; REMEMBERED] }
     }
 
-    /// The same for groups that are watched at every update.
-    pub fn of_precise_groups() -> Self {
-        Certificates { most: 1, ..Certificates::of_groups() }
+    /// The same with at most so many updates between two looks: the fewer, the sharper.
+    pub fn watched(most: u64) -> Self {
+        Certificates { most, ..Certificates::of_groups() }
     }
 
     /// The certificate.
@@ -188,7 +187,7 @@ mod tests {
         // Section 2, in units of u, relative: tan(θ/2), k, B; absolute: T_k (over tan(θ/2)), t and S.
         let (slope, k) = (2.0, 3.0);
         let b = k + slope + 1.0;
-        let place = slope + 1.0 + 1.0 + 1.0;
+        let place = slope + 1.0 + 1.0;
         let (t, bt, sb) = (4.0, 1.0, 2.0);
         // A coefficient T ∓ t of a shear of re: rounded, and made of T_k, t and B t.
         let shear = error(1.0 + t + bt, 1.0 + place);
@@ -206,8 +205,8 @@ mod tests {
         // e4 rounds im' and meets the shear from X' to re.
         least(LAST, 1.0, 1.0);
         least(LAST_SLOPE, 1.0, 1.0);
-        // re = X + T im, im = B w; cos and sin of the last turn, and the two products of each form.
-        let form = sum(&[error(1.0, place), error(1.0, 0.0), error(2.0, 0.0), error(2.0 * NU, 0.0)]);
+        // re = X + T im with T_k rounded once more, im = B w; cos and sin of the last turn, and the two products of each.
+        let form = sum(&[error(1.0, place + 1.0), error(1.0, 0.0), error(2.0, 0.0), error(2.0 * NU, 0.0)]);
         least(FORM, form.plain, 1.0);
         least(FORM_SLOPE, form.slope, 1.0);
     }

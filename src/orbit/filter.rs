@@ -3,8 +3,6 @@
 //! Pairs run one by one or in groups; [`super::kernel`] does the updates, [`super::certificate`] knows what the
 //! result proves.
 
-use std::marker::PhantomData;
-
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
 use super::kernel::{Lanes, Orbits, Watch};
@@ -53,6 +51,14 @@ impl Watch for Everything {
     const WIND: bool = true;
 }
 
+/// Signs and bounds.
+struct Measured;
+
+impl Watch for Measured {
+    const MEASURE: bool = true;
+    const WIND: bool = false;
+}
+
 /// Signs and whether the bounds hold.
 struct SignsOnly;
 
@@ -80,7 +86,7 @@ pub fn run(floquet: &Floquet) -> Option<Ends> {
 /// The filter could not tell.
 pub const UNDECIDED: u8 = u8::MAX;
 
-/// At most L pairs that run side by side. One certificate serves all: that of the strongest kick, the steepest
+/// At most L pairs, 1 or 16, that run side by side. One certificate serves all: that of the strongest kick, the steepest
 /// slope and the most updates.
 pub struct Group<const L: usize> {
     instructions: Instructions,
@@ -97,14 +103,25 @@ impl<const L: usize> Group<L> {
         Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], certificates }
     }
 
-    /// The same for sharper bounds, at about twice the cost.
-    pub fn precise(instructions: Instructions) -> Self {
-        Group { certificates: Certificates::of_precise_groups(), ..Group::new(instructions) }
+    /// The same for bounds that are the sharper the fewer updates there are between two looks.
+    pub fn watched(instructions: Instructions, most: u64) -> Self {
+        Group { certificates: Certificates::watched(most), ..Group::new(instructions) }
     }
 
     /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
     pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
-        let Some(certificate) = self.run::<Everything>(pairs) else { return ends.fill(None) };
+        let certificate = self.run::<Everything>(pairs);
+        self.tell(pairs, certificate, ends);
+    }
+
+    /// The same but for the turns, which stay uncounted.
+    pub fn measured(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
+        let certificate = self.run::<Measured>(pairs);
+        self.tell(pairs, certificate, ends);
+    }
+
+    fn tell(&self, pairs: &[Pair], certificate: Option<Certificate>, ends: &mut [Option<Ends>]) {
+        let Some(certificate) = certificate else { return ends.fill(None) };
         let halves = self.instructions.perform(Finish(self, &certificate));
         for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
             *end = halves.ends(self, &certificate, pair, i);
@@ -129,10 +146,10 @@ impl<const L: usize> Group<L> {
         let (beta, slope) = self.instructions.perform(Start(pairs, &mut self.lanes));
         let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
         let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
-        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong());
+        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong);
         // Who does not look needs no blocks.
         let block = if W::CERTIFY { certificate.block } else { u64::MAX };
-        self.instructions.perform(Advance::<W, L>(&mut self.lanes, block, PhantomData));
+        self.lanes.advance::<W>(self.instructions, block);
         for (i, pair) in pairs.iter().enumerate() {
             let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
             (self.left[0][i], self.left[1][i]) = (cos, sin);
@@ -143,7 +160,6 @@ impl<const L: usize> Group<L> {
 
 /// What is compiled for each instruction set.
 struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
-struct Advance<'a, W, const L: usize>(&'a mut Lanes<L>, u64, PhantomData<W>);
 struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 
@@ -155,15 +171,6 @@ impl<const L: usize> Task for Start<'_, L> {
     fn run(self) -> (f64, f64) {
         self.1.start(self.0);
         (self.1.strongest(), self.1.steepest())
-    }
-}
-
-impl<W: Watch, const L: usize> Task for Advance<'_, W, L> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run(self) {
-        self.0.advance::<W>(self.1);
     }
 }
 
@@ -306,7 +313,7 @@ mod tests {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
             let results: Vec<String> = Instructions::available()
-                .map(|set| told::<1>(set, &pairs) + &told::<8>(set, &pairs) + &told::<16>(set, &pairs))
+                .map(|set| told::<1>(set, &pairs) + &told::<16>(set, &pairs))
                 .collect();
             prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
         }

@@ -20,13 +20,12 @@
 //! orbit, and no product of signs depends on them.
 
 use std::f64::consts::FRAC_PI_2;
+use std::ops::RangeInclusive;
 
-use num_traits::ToPrimitive;
-
-use crate::number::{Ball, Real, Sign};
+use crate::number::{Ball, Real, Sign, Twofold};
 use crate::propagator::TwoClocks;
 
-/// Working precision of the constants; they end as doubles.
+/// Bits of the strengths; the constants are made of two doubles each and end as one.
 const BITS: u32 = 192;
 
 /// What the updates need to know of the base clock alone. Every double has a relative error of at most 2u,
@@ -66,14 +65,15 @@ impl Base {
         if s.sign() != Some(Sign::Positive) || rest.sign() != Some(Sign::Positive) {
             return None;
         }
-        let half = Phase::half(s, &rest)?;
-        let Phase { re: cos_half, im: sin_half } = &half;
-        let theta = 2.0 * sin_half.mid_f64().atan2(cos_half.mid_f64());
+        let half = Phase { re: root_of_quarter(&rest)?, im: root_of_quarter(s)? };
+        let theta = 2.0 * half.im.hi.atan2(half.re.hi);
+        let start =
+            if last < LONGEST { half.power(first) } else { Phase::of(&Sharp::half(s, &rest)?.power(first))? };
         Some(Base {
-            slope: ordinary(&sin_half.div(cos_half, BITS)?)?,
-            sin: ordinary(&sin_half.mul(cos_half, BITS).scale2(1))?,
+            slope: comfortable(half.im.divided_by(half.re))?,
+            sin: comfortable(half.im.times(half.re).scaled(2.0))?,
             theta,
-            turns: turns(&half, theta, first, last)?,
+            turns: turns(half, start, theta, first..=last),
             first,
         })
     }
@@ -84,40 +84,57 @@ impl Base {
     }
 }
 
-/// Entries of the table of turns between two that come from multiple precision.
-const ANCHOR: u64 = 32;
-
-/// Entries between two anchors that are powers of their own.
-const POWER: u64 = 64 * ANCHOR;
-
-/// The turns by nθ for n in `first..=last`.
-///
-/// e^{inθ/2} in units of 2^-62: from one anchor to the next by multiplication with e^{iθ/2}. Cutting off costs
-/// √2 units a product and the factor's own error as much, so within 32 steps the error is below 91 units,
-/// 0.18u; rounding to a double adds u. Anchors follow from one another by products of balls, whose radii may grow by
-/// √2 each time: every 64th is a power made anew.
-fn turns(half: &Phase, theta: f64, first: u64, last: u64) -> Option<Vec<Turn>> {
-    let (step, mut anchor) = (half.fixed()?, Phase::one());
-    let leap = if last - first >= ANCHOR { half.power(ANCHOR) } else { Phase::one() };
-    let mut table = Vec::with_capacity((last - first) as usize + 1);
-    let mut now = [0, 0];
-    for n in first..=last {
-        if (n - first).is_multiple_of(ANCHOR) {
-            anchor = if (n - first).is_multiple_of(POWER) { half.power(n) } else { anchor.times(&leap) };
-            now = anchor.fixed()?;
-        }
-        table.push(Turn::new(now.map(|x| x as f64 * UNIT), n as f64 * theta));
-        now = times(now, step);
-    }
-    Some(table)
+/// e^{iα} in two doubles a component.
+#[derive(Clone, Copy)]
+struct Phase {
+    re: Twofold,
+    im: Twofold,
 }
 
-/// 2^-62.
-const UNIT: f64 = 1.0 / (1u64 << 62) as f64;
+impl Phase {
+    /// To within 2^-97 absolutely.
+    fn of(sharp: &Sharp) -> Option<Phase> {
+        let component = |x: &Ball| Twofold::from_fixed(x, 100, 4);
+        Some(Phase { re: component(&sharp.re)?, im: component(&sharp.im)? })
+    }
 
-fn times([a, b]: [i64; 2], [c, d]: [i64; 2]) -> [i64; 2] {
-    let product = |x: i64, y: i64| i128::from(x) * i128::from(y);
-    [((product(a, c) - product(b, d)) >> 62) as i64, ((product(a, d) + product(b, c)) >> 62) as i64]
+    /// To within 2^-100 absolutely, beside what the factors are off.
+    fn times(self, other: Phase) -> Phase {
+        Phase {
+            re: self.re.times(other.re).minus(self.im.times(other.im)),
+            im: self.re.times(other.im).plus(self.im.times(other.re)),
+        }
+    }
+
+    fn power(self, n: u64) -> Phase {
+        let (zero, one) = (Twofold { hi: 0.0, lo: 0.0 }, Twofold { hi: 1.0, lo: 0.0 });
+        (0..64 - n.leading_zeros()).rev().fold(Phase { re: one, im: zero }, |power, bit| {
+            let square = power.times(power);
+            if n >> bit & 1 == 1 { square.times(self) } else { square }
+        })
+    }
+}
+
+/// √x/2 to within 2^-100 relatively.
+fn root_of_quarter(x: &Ball) -> Option<Twofold> {
+    Some(Twofold::from_ball(x)?.root().half())
+}
+
+/// Turns by more steps come from multiple precision.
+const LONGEST: u64 = 1 << 40;
+
+/// The turns by nθ for n in the range, from the first one on.
+///
+/// e^{iθ/2} is within 2^-99, and a product costs 2^-100: e^{inθ/2} is within n 2^-98, or within 2^-97 and 2^-98 for each
+/// entry after the first. A table has far fewer than 2^40 entries, so this is below 2^-57, less than 0.18u.
+fn turns(half: Phase, start: Phase, theta: f64, range: RangeInclusive<u64>) -> Vec<Turn> {
+    let mut now = start;
+    let turn = |n: u64| {
+        let turn = Turn::new([now.re.hi, now.im.hi], n as f64 * theta);
+        now = now.times(half);
+        turn
+    };
+    range.map(turn).collect()
 }
 
 impl Turn {
@@ -180,9 +197,8 @@ impl Floquet {
     /// The constants, with the clock of more kicks as the base, or the other one where that is beyond its
     /// own Verlet limit; `None` where both are, or where a constant leaves the range of doubles.
     pub fn new<S: Real>(clocks: &TwoClocks<S>) -> Option<Floquet> {
-        let swapped = clocks.swapped();
-        let (first, second) = if clocks.p() >= clocks.q() { (clocks, &swapped) } else { (&swapped, clocks) };
-        Floquet::on_base(first).or_else(|| Floquet::on_base(second))
+        let (own, other) = (|| Floquet::on_base(clocks), || Floquet::on_base(&clocks.swapped()));
+        if clocks.p() >= clocks.q() { own().or_else(other) } else { other().or_else(own) }
     }
 
     /// The number of updates: the half kick at t = 0 and ⌊q/2⌋ more.
@@ -215,7 +231,7 @@ impl Floquet {
 
 /// The signs of cos(nθ/2) and sin(nθ/2), as far as they are certain; `None` outside 0 < s < 4.
 pub fn turn_signs(s: &Ball, n: u64) -> Option<[Option<Sign>; 2]> {
-    let turned = Phase::half(s, &below_four(s))?.power(n);
+    let turned = Sharp::half(s, &below_four(s))?.power(n);
     Some([turned.re.sign(), turned.im.sign()])
 }
 
@@ -225,32 +241,32 @@ fn below_four(s: &Ball) -> Ball {
 }
 
 /// e^{iα} in multiple precision.
-struct Phase {
+struct Sharp {
     re: Ball,
     im: Ball,
 }
 
-impl Phase {
+impl Sharp {
     /// e^{iθ/2} = (√(4 − s) + i √s)/2, `rest` being 4 − s; `None` where a root is none.
-    fn half(s: &Ball, rest: &Ball) -> Option<Phase> {
-        Some(Phase { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) })
+    fn half(s: &Ball, rest: &Ball) -> Option<Sharp> {
+        Some(Sharp { re: rest.sqrt(BITS)?.scale2(-1), im: s.sqrt(BITS)?.scale2(-1) })
     }
 
-    fn one() -> Phase {
-        Phase { re: Ball::one(), im: Ball::zero() }
+    fn one() -> Sharp {
+        Sharp { re: Ball::one(), im: Ball::zero() }
     }
 
-    fn times(&self, other: &Phase) -> Phase {
+    fn times(&self, other: &Sharp) -> Sharp {
         let product = |x: &Ball, y: &Ball| x.mul(y, BITS);
-        Phase {
+        Sharp {
             re: product(&self.re, &other.re).sub(&product(&self.im, &other.im), BITS),
             im: product(&self.re, &other.im).add(&product(&self.im, &other.re), BITS),
         }
     }
 
-    fn power(&self, mut n: u64) -> Phase {
-        let mut result = Phase::one();
-        let mut square = Phase { re: self.re.clone(), im: self.im.clone() };
+    fn power(&self, mut n: u64) -> Sharp {
+        let mut result = Sharp::one();
+        let mut square = Sharp { re: self.re.clone(), im: self.im.clone() };
         while n > 0 {
             if n & 1 == 1 {
                 result = result.times(&square);
@@ -260,22 +276,58 @@ impl Phase {
         }
         result
     }
+}
 
-    /// Both components in units of 2^-62, cut off; `None` where they are not known that well.
-    fn fixed(&self) -> Option<[i64; 2]> {
-        let component = |x: &Ball| {
-            let sharp = x.radius_log2().is_none_or(|log2| log2 < -80);
-            sharp.then(|| x.mid_scaled(62).0.to_i64()).flatten()
-        };
-        Some([component(&self.re)?, component(&self.im)?])
-    }
+/// The comfortable range of doubles: nothing in it or made of it comes near an end.
+const TINY: f64 = 1e-30;
+
+fn comfortable(x: Twofold) -> Option<f64> {
+    (TINY..1.0 / TINY).contains(&x.hi).then_some(x.hi)
 }
 
 /// A double next to the midpoint, where that has a relative error of at most 2u: the ball is tight and the
 /// number is not 0 and far from the ends of the double's range.
 pub fn ordinary(x: &Ball) -> Option<f64> {
-    const TINY: f64 = 1e-30;
     let value = x.mid_f64();
     let in_range = value.abs() > TINY && value.abs() < 1.0 / TINY;
     (in_range && x.relative_accuracy_bits() >= 60).then_some(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Rational;
+    use crate::number::U;
+    use crate::number::rational::ratio;
+    use proptest::prelude::*;
+
+    fn ball(x: f64) -> Ball {
+        Ball::from_rational(&Rational::from_float(x).unwrap(), 200)
+    }
+
+    proptest! {
+        /// Of every constant: the error that it is said to have at most, in units of u.
+        #[test]
+        fn constants_are_as_near_as_they_say(a in 1i64..1 << 40, first in 0u64..1 << 41, small in any::<bool>()) {
+            let s = Ball::from_rational(&ratio(a, 1 << 38), 300);
+            let first = if small { first % 100 } else { first };
+            let Some(base) = Base::new(&s, first, first + 70) else { return Ok(()) };
+            let half = Sharp::half(&s, &below_four(&s)).unwrap();
+            let near = |x: f64, exact: &Ball, most: f64| {
+                ball(x).sub(exact, 200).abs().to_f64_enclosure().1 <= most * U
+            };
+            let slope = half.im.div(&half.re, 200).unwrap();
+            prop_assert!(near(base.slope, &slope, 2.0 * base.slope));
+            prop_assert!(near(base.sin, &half.re.mul(&half.im, 200).scale2(1), 2.0 * base.sin));
+            for n in [first, first + 33, first + 70] {
+                let (turn, exact) = (base.turn(n), half.power(n));
+                prop_assert!(near(turn.half[0], &exact.re, 1.2) && near(turn.half[1], &exact.im, 1.2));
+                // sin nθ and tan(nθ/2) up to half turns.
+                let (odd, two) = (turn.half[1].abs() > turn.half[0].abs(), exact.re.mul(&exact.im, 200).scale2(1));
+                let sin = if odd { two.neg() } else { two };
+                let (over, under) = if odd { (exact.re.neg(), &exact.im) } else { (exact.im.clone(), &exact.re) };
+                prop_assert!(near(turn.sin, &sin, 4.0) && near(turn.tan, &over.div(under, 200).unwrap(), 4.0));
+            }
+        }
+    }
 }

@@ -7,15 +7,19 @@
 //!     re += B (T - t) w,    w += (S/B) re,    re -= B (t + T') w,    w += re
 //! ```
 //!
-//! 8 fused operations for both solutions and 7 shared ones. Every operation is rounded once, as IEEE 754 says,
-//! the fused ones on every machine: in hardware where there is some, else in software (some 50 times slower).
-//! So results are equal bit for bit, whichever of the compiled versions runs.
+//! 8 operations for both solutions, all but the last two fused, and 7 shared ones: a comparison, three choices, a sum,
+//! and two fused operations. Every operation is rounded once, as IEEE 754 says, the fused ones on every machine: in
+//! hardware where there is some, else in software (some 50 times slower). So results are equal bit for bit, whatever
+//! the vectors.
 //!
 //! At the end of each block of updates |g|² = (re + B T w)² + (B w)² is added up and compared with the sum so
 //! far; the certificate of [`super::filter`] needs no more.
 
+use std::marker::PhantomData;
+
 use super::floquet::Pair;
-use crate::vector::each;
+use crate::vector::instructions::{Instructions, Kernel, Task};
+use crate::vector::{Vector, each};
 
 /// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
@@ -30,6 +34,7 @@ const fn power_of_two(n: i64) -> f64 {
 
 /// One solution in each lane.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub struct Orbits<const L: usize> {
     pub re: [f64; L],
     pub w: [f64; L],
@@ -40,18 +45,17 @@ pub struct Orbits<const L: usize> {
     pub worst: [f64; L],
     /// The true orbit is 2^exponent times this one.
     pub exponent: [f64; L],
-    /// ⌊angle / (π/2)⌋ in the plane (re, w), turns apart.
-    pub quarters: [f64; L],
 }
 
 /// L pairs on their way.
 #[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
 pub struct Lanes<const L: usize> {
     pub even: Orbits<L>,
     pub odd: Orbits<L>,
     /// 2r − q, r the remainder of kp mod q: an integer in [−q, q).
     place: [f64; L],
-    /// What a kick adds to it, q less that, and the same with a carry.
+    /// What a kick adds to it, the largest place without a carry, and what a kick with a carry adds.
     step: [f64; L],
     limit: [f64; L],
     wrap: [f64; L],
@@ -66,6 +70,10 @@ pub struct Lanes<const L: usize> {
     /// ⌊q/2⌋, and the share of a kick that the last one is.
     updates: [f64; L],
     last_kick: [f64; L],
+    /// Integers in the bits of doubles: by the first and by the second shear of re, how often the even solution
+    /// crossed the w axis, and how often of these the first shear's coefficient and that of −w in the second one was
+    /// negative.
+    crossings: [[f64; L]; 4],
     /// What `worst` must not exceed.
     pub worst: f64,
     /// Whether an orbit may grow so long that it must be scaled down on the way.
@@ -76,77 +84,248 @@ pub struct Lanes<const L: usize> {
 pub trait Watch {
     /// Measure `worst`, not only whether it is within bounds.
     const MEASURE: bool;
-    /// Count the even solution's quarter turns.
+    /// Count the even solution's half turns.
     const WIND: bool;
     /// Keep the sums that the certificate needs.
     const CERTIFY: bool = true;
 }
 
-impl<const L: usize> Orbits<L> {
-    #[inline(always)]
-    fn new(re: f64, w: [f64; L], squares: [f64; L]) -> Self {
-        let quarters = each(|i| if w[i] < 0.0 { -1.0 } else { 0.0 });
-        Orbits { re: [re; L], w, squares, worst: [1.0; L], exponent: [0.0; L], quarters }
-    }
+/// What an update needs and leaves as it is.
+#[derive(Clone, Copy)]
+struct Course<V> {
+    limit: V,
+    tilt: V,
+    /// With a carry and without, in the form that is chosen from.
+    step: [V; 2],
+    drift: [V; 2],
+    kick: [V; 2],
+}
 
-    /// re += a w: counterclockwise across the w axis where re and w had the same sign.
+/// What an update changes.
+#[derive(Clone, Copy)]
+struct State<V> {
+    place: V,
+    /// Of the even and of the odd solution.
+    re: [V; 2],
+    w: [V; 2],
+    crossings: [V; 4],
+}
+
+impl<V: Vector> Course<V> {
     #[inline(always)]
-    fn drift<W: Watch>(&mut self, a: &[f64; L]) {
-        let re: [f64; L] = each(|i| a[i].mul_add(self.w[i], self.re[i]));
+    fn load<const L: usize>(lanes: &Lanes<L>, at: usize) -> Self {
+        let ([drift, carried_drift], [kick, carried_kick]) = (&lanes.drift, &lanes.kick);
+        Course {
+            limit: V::load(&lanes.limit[at..]),
+            tilt: V::load(&lanes.tilt[at..]),
+            step: V::alternatives(V::load(&lanes.wrap[at..]), V::load(&lanes.step[at..])),
+            drift: V::alternatives(V::load(&carried_drift[at..]), V::load(&drift[at..])),
+            kick: V::alternatives(V::load(&carried_kick[at..]), V::load(&kick[at..])),
+        }
+    }
+}
+
+impl<V: Vector> State<V> {
+    #[inline(always)]
+    fn load<W: Watch, const L: usize>(lanes: &Lanes<L>, at: usize) -> Self {
+        let (even, odd) = (&lanes.even, &lanes.odd);
+        let mut state = State {
+            place: V::load(&lanes.place[at..]),
+            re: [V::load(&even.re[at..]), V::load(&odd.re[at..])],
+            w: [V::load(&even.w[at..]), V::load(&odd.w[at..])],
+            crossings: [V::splat(0.0); 4],
+        };
         if W::WIND {
-            let same = |i: usize| (self.re[i] < 0.0) == (self.w[i] < 0.0);
-            let turn = |i: usize| if same(i) { 1.0 } else { -1.0 };
-            let crossed = |i: usize| (re[i] < 0.0) != (self.re[i] < 0.0);
-            self.quarters = each(|i| self.quarters[i] + if crossed(i) { turn(i) } else { 0.0 });
+            for (to, from) in state.crossings.iter_mut().zip(&lanes.crossings) {
+                *to = V::load(&from[at..]);
+            }
         }
-        self.re = re;
+        state
     }
 
-    /// w += a re: counterclockwise across the re axis where re and w had opposite signs.
     #[inline(always)]
-    fn kick<W: Watch>(&mut self, a: &[f64; L]) {
-        let w: [f64; L] = each(|i| a[i].mul_add(self.re[i], self.w[i]));
+    fn store<W: Watch, const L: usize>(self, lanes: &mut Lanes<L>, at: usize) {
+        self.place.store(&mut lanes.place[at..]);
+        self.re[0].store(&mut lanes.even.re[at..]);
+        self.re[1].store(&mut lanes.odd.re[at..]);
+        self.w[0].store(&mut lanes.even.w[at..]);
+        self.w[1].store(&mut lanes.odd.w[at..]);
         if W::WIND {
-            let same = |i: usize| (self.re[i] < 0.0) == (self.w[i] < 0.0);
-            let turn = |i: usize| if same(i) { -1.0 } else { 1.0 };
-            let crossed = |i: usize| (w[i] < 0.0) != (self.w[i] < 0.0);
-            self.quarters = each(|i| self.quarters[i] + if crossed(i) { turn(i) } else { 0.0 });
+            for (to, count) in lanes.crossings.iter_mut().zip(self.crossings) {
+                count.store(&mut to[at..]);
+            }
         }
-        self.w = w;
     }
 
-    /// Adds |g|² to the sum and compares them, in the active lanes.
+    /// From a kick to just before the next one.
     #[inline(always)]
-    fn look<W: Watch>(
-        &mut self,
-        (tilt, scale): (&[f64; L], &[f64; L]),
-        (worst, strong): (f64, bool),
-        active: impl Fn(usize) -> bool,
-    ) {
-        let norm: [f64; L] = each(|i| {
-            let (re, im) = (tilt[i].mul_add(self.w[i], self.re[i]), scale[i] * self.w[i]);
-            re.mul_add(re, im * im)
-        });
-        self.squares = each(|i| self.squares[i] + if active(i) { norm[i] } else { 0.0 });
-        if W::MEASURE {
-            let ratio: [f64; L] = each(|i| self.squares[i] / norm[i]);
-            let within = |i: usize| ratio[i] <= self.worst[i] || !active(i);
-            self.worst = each(|i| if within(i) { self.worst[i] } else { ratio[i] });
-        } else {
-            // NaN fails.
-            let within = |i: usize| self.squares[i] <= worst * norm[i] || !active(i);
-            self.worst = each(|i| if within(i) { self.worst[i] } else { f64::INFINITY });
+    fn travel<W: Watch>(&mut self, course: &Course<V>) {
+        let carry = self.place.exceeds(course.limit);
+        let drift = V::choose(carry, course.drift);
+        let kick = V::choose(carry, course.kick);
+        let first = self.place.mul_sub(course.tilt, drift);
+        self.place = self.place.add(V::choose(carry, course.step));
+        let second = self.place.mul_add(course.tilt, drift);
+        let before = self.re[0];
+        for (re, w) in self.re.iter_mut().zip(self.w) {
+            *re = first.mul_add(w, *re);
         }
-        if strong {
-            // Powers of two: exact.
-            let shrink = |by: f64| -> [f64; L] { each(|i| if norm[i] > LARGE { by } else { 1.0 }) };
-            let (once, twice) = (shrink(power_of_two(-150)), shrink(power_of_two(-300)));
-            self.re = each(|i| self.re[i] * once[i]);
-            self.w = each(|i| self.w[i] * once[i]);
-            self.squares = each(|i| self.squares[i] * twice[i]);
-            self.exponent = each(|i| self.exponent[i] + if norm[i] > LARGE { 150.0 } else { 0.0 });
+        if W::WIND {
+            self.count(0, before, first);
+        }
+        for (w, re) in self.w.iter_mut().zip(self.re) {
+            *w = kick.mul_add(re, *w);
+        }
+        let before = self.re[0];
+        for (re, w) in self.re.iter_mut().zip(self.w) {
+            *re = second.neg_mul_add(w, *re);
+        }
+        if W::WIND {
+            self.count(2, before, second);
         }
     }
+
+    /// Counts where the even solution's re has changed its sign, and where the coefficient is negative too.
+    #[inline(always)]
+    fn count(&mut self, shear: usize, before: V, coefficient: V) {
+        let [all, negative] = [self.crossings[shear], self.crossings[shear + 1]];
+        self.crossings[shear] = all.count_change(before, self.re[0]);
+        self.crossings[shear + 1] = negative.count_change_below(before, self.re[0], coefficient);
+    }
+
+    /// A whole kick.
+    #[inline(always)]
+    fn strike(&mut self) {
+        for (w, re) in self.w.iter_mut().zip(self.re) {
+            *w = w.add(re);
+        }
+    }
+
+    /// Part of a kick.
+    #[inline(always)]
+    fn strike_by(&mut self, share: V) {
+        for (w, re) in self.w.iter_mut().zip(self.re) {
+            *w = share.mul_add(re, *w);
+        }
+    }
+
+    /// Adds |g|² to the sums, compares them, and scales down what is large.
+    #[inline(always)]
+    fn look<W: Watch, const L: usize>(&mut self, lanes: &mut Lanes<L>, at: usize, scaling: bool) {
+        let (tilt, scale) = (self.place.mul(V::load(&lanes.tilt[at..])), V::load(&lanes.scale[at..]));
+        let (worst, strong) = (V::splat(lanes.worst), lanes.strong && scaling);
+        for (n, orbits) in [&mut lanes.even, &mut lanes.odd].into_iter().enumerate() {
+            let (re, im) = (tilt.mul_add(self.w[n], self.re[n]), scale.mul(self.w[n]));
+            let norm = re.mul_add(re, im.mul(im));
+            let squares = V::load(&orbits.squares[at..]).add(norm);
+            let so_far = V::load(&orbits.worst[at..]);
+            let now = if W::MEASURE {
+                // NaN stays.
+                let ratio = squares.div(norm);
+                V::choose(so_far.exceeds(ratio), V::alternatives(so_far, ratio))
+            } else {
+                // NaN fails.
+                let within = worst.mul(norm).exceeds(squares);
+                V::choose(within, V::alternatives(so_far, V::splat(f64::INFINITY)))
+            };
+            now.store(&mut orbits.worst[at..]);
+            squares.store(&mut orbits.squares[at..]);
+            if strong {
+                // Powers of two: exact.
+                let large = norm.exceeds(V::splat(LARGE));
+                let once = either::<V>(large, power_of_two(-150), 1.0);
+                (self.re[n], self.w[n]) = (self.re[n].mul(once), self.w[n].mul(once));
+                squares.mul(either(large, power_of_two(-300), 1.0)).store(&mut orbits.squares[at..]);
+                let exponent = V::load(&orbits.exponent[at..]).add(either(large, 150.0, 0.0));
+                exponent.store(&mut orbits.exponent[at..]);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn either<V: Vector>(mask: V::Mask, yes: f64, no: f64) -> V {
+    V::choose(mask, V::alternatives(V::splat(yes), V::splat(no)))
+}
+
+/// The updates that all lanes have, with looks in between and at the end.
+struct Together<'a, W, const L: usize> {
+    lanes: &'a mut Lanes<L>,
+    updates: u64,
+    block: u64,
+    watch: PhantomData<W>,
+}
+
+impl<W: Watch, const L: usize> Kernel for Together<'_, W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vector>(mut self) {
+        // Two vectors on their way hide most of each other's latency, and leave registers for what they need.
+        if L == V::WIDTH {
+            return self.strands::<V, 1>(0);
+        }
+        for at in (0..L).step_by(2 * V::WIDTH) {
+            self.strands::<V, 2>(at);
+        }
+    }
+}
+
+impl<W: Watch, const L: usize> Together<'_, W, L> {
+    /// N vectors of lanes, from lane `at` on.
+    #[inline(always)]
+    fn strands<V: Vector, const N: usize>(&mut self, at: usize) {
+        let mut courses = [Course::<V>::load(self.lanes, at); N];
+        let mut states = [State::<V>::load::<W, L>(self.lanes, at); N];
+        for n in 1..N {
+            courses[n] = Course::load(self.lanes, at + n * V::WIDTH);
+            states[n] = State::load::<W, L>(self.lanes, at + n * V::WIDTH);
+        }
+        // The half kick at t = 0 was the first block's first step; the last update is perhaps half a kick.
+        let (last, mut done, mut due, mut looks) = (self.updates.saturating_sub(1), 0, self.block - 1, 0);
+        while due <= last {
+            states = blocks::<V, W, N>(states, &courses, due - done);
+            self.look(&mut states, at, looks % SCALING == 0);
+            (done, due, looks) = (due, due + self.block, looks + 1);
+        }
+        states = blocks::<V, W, N>(states, &courses, last - done);
+        let share = self.lanes.share(self.updates);
+        for n in 0..N {
+            if self.updates > 0 {
+                states[n].travel::<W>(&courses[n]);
+                states[n].strike_by(V::load(&share[at + n * V::WIDTH..]));
+            }
+        }
+        self.look(&mut states, at, true);
+        for n in 0..N {
+            states[n].store::<W, L>(self.lanes, at + n * V::WIDTH);
+        }
+    }
+
+    #[inline(always)]
+    fn look<V: Vector, const N: usize>(&mut self, states: &mut [State<V>; N], at: usize, scaling: bool) {
+        if W::CERTIFY {
+            for n in 0..N {
+                states[n].look::<W, L>(self.lanes, at + n * V::WIDTH, scaling);
+            }
+        }
+    }
+}
+
+/// So many whole updates.
+#[inline(always)]
+fn blocks<V: Vector, W: Watch, const N: usize>(
+    mut states: [State<V>; N],
+    courses: &[Course<V>; N],
+    count: u64,
+) -> [State<V>; N] {
+    for _ in 0..count {
+        for n in 0..N {
+            states[n].travel::<W>(&courses[n]);
+            states[n].strike();
+        }
+    }
+    states
 }
 
 /// What the lanes start from, by kind instead of by pair: one walk over the pairs, then vectors only.
@@ -185,6 +364,32 @@ impl<const L: usize> Constants<L> {
     }
 }
 
+impl<const L: usize> Orbits<L> {
+    #[inline(always)]
+    fn new(re: f64, w: [f64; L], squares: [f64; L]) -> Self {
+        Orbits { re: [re; L], w, squares, worst: [1.0; L], exponent: [0.0; L] }
+    }
+}
+
+/// The updates that come after, each in the lanes that have it.
+struct Apart<'a, W, const L: usize> {
+    lanes: &'a mut Lanes<L>,
+    updates: u64,
+    longest: u64,
+    watch: PhantomData<W>,
+}
+
+impl<W: Watch, const L: usize> Task for Apart<'_, W, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for k in self.updates + 1..=self.longest {
+            self.lanes.update_some::<W>(k);
+        }
+    }
+}
+
 impl<const L: usize> Lanes<L> {
     /// No pair yet.
     pub fn empty() -> Self {
@@ -192,6 +397,7 @@ impl<const L: usize> Lanes<L> {
         Lanes {
             even: orbits,
             odd: orbits,
+            crossings: [zero; 4],
             place: zero,
             step: zero,
             limit: zero,
@@ -228,7 +434,8 @@ impl<const L: usize> Lanes<L> {
             odd: Orbits::new(0.0, each(|i| -inverse[i]), secant2),
             place: each(|i| -of.modulus[i]),
             step,
-            limit: each(|i| of.modulus[i] - step[i]),
+            // Places go by twos from -q on: the largest without a carry is q - step - 2.
+            limit: each(|i| of.modulus[i] - step[i] - 1.0),
             wrap: each(|i| step[i] - 2.0 * of.modulus[i]),
             tilt: each(|i| scale[i] * of.slope[i] / of.modulus[i]),
             drift: [each(|i| scale[i] * of.tan[0][i]), each(|i| scale[i] * of.tan[1][i])],
@@ -237,6 +444,7 @@ impl<const L: usize> Lanes<L> {
             slope: of.slope,
             updates: of.updates,
             last_kick: of.last_kick,
+            crossings: [[0.0; L]; 4],
             worst: f64::INFINITY,
             strong: true,
         };
@@ -257,100 +465,61 @@ impl<const L: usize> Lanes<L> {
     }
 
     /// The updates of all lanes, looking at |g| every `block` of them.
-    #[inline(always)]
-    pub fn advance<W: Watch>(&mut self, block: u64) {
+    pub fn advance<W: Watch>(&mut self, instructions: Instructions, block: u64) {
         let (shortest, longest) = self.updates.iter().fold((f64::INFINITY, 0.0), min_max);
-        let mut lanes = *self;
-        let mut tilt: [f64; L] = each(|i| lanes.place[i] * lanes.tilt[i]);
-        // The last update, perhaps half a kick, is left to the loop that tells the lanes apart.
-        let together = (shortest as u64).saturating_sub(1);
-        // The half kick at t = 0 was the first block's first step.
-        let (mut done, mut due, mut looks) = (0, block - 1, 0);
-        while due <= together {
-            lanes.block::<W>(&mut tilt, due - done);
-            lanes.look::<W>(&tilt, looks % SCALING == 0, |_| true);
-            (done, due, looks) = (due, due + block, looks + 1);
+        let (updates, longest) = (shortest as u64, longest as u64);
+        let together = Together { lanes: &mut *self, updates, block, watch: PhantomData::<W> };
+        if L == 1 {
+            instructions.compute_alone(together)
+        } else {
+            instructions.compute_by_register(together)
         }
-        lanes.block::<W>(&mut tilt, together - done);
-        if shortest == 0.0 {
-            lanes.look::<W>(&tilt, true, |_| true);
+        if longest > updates {
+            instructions.perform(Apart { lanes: self, updates, longest, watch: PhantomData::<W> });
         }
-        for k in together + 1..=longest as u64 {
-            lanes.last_updates::<W>(k as f64, &mut tilt);
-        }
-        *self = lanes;
     }
 
-    /// `count` whole updates in every lane.
+    /// The shares of a whole kick that the k-th ones are.
     #[inline(always)]
-    fn block<W: Watch>(&mut self, tilt: &mut [f64; L], count: u64) {
-        let (mut lanes, mut now) = (*self, *tilt);
-        for _ in 0..count {
-            lanes.travel::<W>(&mut now);
-            lanes.strike::<W>(&[1.0; L]);
-        }
-        (self.even, self.odd, self.place, *tilt) = (lanes.even, lanes.odd, lanes.place, now);
+    fn share(&self, k: u64) -> [f64; L] {
+        each(|i| if k as f64 == self.updates[i] { self.last_kick[i] } else { 1.0 })
     }
 
     /// The k-th update in the lanes that have one.
     #[inline(always)]
-    fn last_updates<W: Watch>(&mut self, k: f64, tilt: &mut [f64; L]) {
+    fn update_some<W: Watch>(&mut self, k: u64) {
         let (before, updates) = (*self, self.updates);
-        self.travel::<W>(tilt);
-        self.strike::<W>(&each(|i| if k == updates[i] { self.last_kick[i] } else { 1.0 }));
-        let active = |i: usize| k <= updates[i];
-        let keep =
-            |new: &mut [f64; L], old: &[f64; L]| *new = each(|i| if active(i) { new[i] } else { old[i] });
-        keep(&mut self.place, &before.place);
-        keep(&mut self.even.re, &before.even.re);
-        keep(&mut self.even.w, &before.even.w);
-        keep(&mut self.even.quarters, &before.even.quarters);
-        keep(&mut self.odd.re, &before.odd.re);
-        keep(&mut self.odd.w, &before.odd.w);
-        *tilt = each(|i| self.place[i] * self.tilt[i]);
-        self.look::<W>(tilt, true, active);
-    }
-
-    /// From a kick to just before the next one.
-    #[inline(always)]
-    fn travel<W: Watch>(&mut self, tilt: &mut [f64; L]) {
-        let (place, limit) = (self.place, self.limit);
-        let select = |without: &[f64; L], with: &[f64; L]| -> [f64; L] {
-            each(|i| if place[i] >= limit[i] { with[i] } else { without[i] })
-        };
-        let drift = select(&self.drift[0], &self.drift[1]);
-        let kick = select(&self.kick[0], &self.kick[1]);
-        let step = select(&self.step, &self.wrap);
-        let first: [f64; L] = each(|i| tilt[i] - drift[i]);
-        self.place = each(|i| place[i] + step[i]);
-        *tilt = each(|i| self.place[i] * self.tilt[i]);
-        let second: [f64; L] = each(|i| -(tilt[i] + drift[i]));
-        self.even.drift::<W>(&first);
-        self.odd.drift::<W>(&first);
-        self.even.kick::<W>(&kick);
-        self.odd.kick::<W>(&kick);
-        self.even.drift::<W>(&second);
-        self.odd.drift::<W>(&second);
-    }
-
-    #[inline(always)]
-    fn strike<W: Watch>(&mut self, share: &[f64; L]) {
-        self.even.kick::<W>(share);
-        self.odd.kick::<W>(share);
-    }
-
-    #[inline(always)]
-    fn look<W: Watch>(&mut self, tilt: &[f64; L], scaling: bool, active: impl Fn(usize) -> bool + Copy) {
+        let mut state = State::<[f64; L]>::load::<W, L>(self, 0);
+        state.travel::<W>(&Course::load(self, 0));
+        state.strike_by(self.share(k));
         if W::CERTIFY {
-            let strong = self.strong && scaling;
-            self.even.look::<W>((tilt, &self.scale), (self.worst, strong), active);
-            self.odd.look::<W>((tilt, &self.scale), (self.worst, strong), active);
+            state.look::<W, L>(self, 0, true);
+        }
+        state.store::<W, L>(self, 0);
+        let keep = |new: &mut [f64; L], old: &[f64; L]| {
+            *new = each(|i| if k as f64 <= updates[i] { new[i] } else { old[i] });
+        };
+        keep(&mut self.place, &before.place);
+        for (new, old) in [(&mut self.even, &before.even), (&mut self.odd, &before.odd)] {
+            keep(&mut new.re, &old.re);
+            keep(&mut new.w, &old.w);
+            keep(&mut new.squares, &old.squares);
+            keep(&mut new.worst, &old.worst);
+            keep(&mut new.exponent, &old.exponent);
+        }
+        if W::WIND {
+            self.crossings.iter_mut().zip(&before.crossings).for_each(|(new, old)| keep(new, old));
         }
     }
 
     /// ⌊angle/(π/2)⌋ of the even solution after its last update in (re, im), in lane i.
     pub fn even_quarter(&self, i: usize) -> i64 {
-        let counted = self.even.quarters[i] as i64;
+        let [first, first_negative, second, second_negative] =
+            self.crossings.map(|count| count[i].to_bits() as i64);
+        // re += a w crosses the w axis counterclockwise iff a < 0; the second shear's a is the negative one.
+        let half_turns = 2 * (first_negative - second_negative) - first + second;
+        let same = self.even.re[i].is_sign_negative() == self.even.w[i].is_sign_negative();
+        let counted = 2 * half_turns - 1 + i64::from(same);
         // For B < 0 the plane (re, w) is the mirror image.
         if self.scale[i] < 0.0 { -1 - counted } else { counted }
     }

@@ -18,10 +18,12 @@
 //! ```
 //! use kickdrift::recheck::{Claim, Options};
 //! let text = r#"{"schema": "kickdrift/proposition/1", "input": {"max": "2"}, "holds": true, "resonant_points": 1,
-//!     "curves": 4, "failures": [], "witnesses": [{"p": 2, "q": 1, "m": 1, "a": 0, "b": 1}]}"#;
+//!     "curves": 5, "failures": [], "witnesses": [{"p": 2, "q": 1, "m": 1, "a": 0, "b": 1}]}"#;
 //! let outcome = Claim::read(text).unwrap().recheck(&Options::default(), None).unwrap();
 //! assert!(outcome.failures.is_empty(), "{:?}", outcome.failures);
-//! assert!(Claim::read(&text.replace("\"b\": 1", "\"b\": 0")).unwrap().recheck(&Options::default(), None).unwrap().failures[0].row == 1);
+//! // Another b, and the first row fails.
+//! let outcome = Claim::read(&text.replace("\"b\": 1", "\"b\": 0")).unwrap().recheck(&Options::default(), None).unwrap();
+//! assert_eq!(outcome.failures[0].row, 1);
 //! ```
 
 /// Rows of documents: every field is known, none is left over.

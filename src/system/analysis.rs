@@ -3,20 +3,18 @@
 use num_complex::Complex64;
 
 use super::exact::MuCount;
+use super::measured::Measured;
 use super::modes::{Origin, Resonance};
 use crate::number::{Ball, Laurent, Rational};
 use crate::verdict::{Kind, Tier};
-
-/// "1 degree of freedom", "2 degrees of freedom".
-pub(super) fn degrees_of_freedom(n: usize) -> String {
-    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
-}
 
 /// What a verdict rests on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Evidence {
     /// The scalar ladder.
     Scalar(Tier),
+    /// Definite forms of the half period in doubles, within proven bounds.
+    Signs,
     /// Doubles with proven discs about every eigenvalue.
     Discs,
     /// Exact arithmetic.
@@ -30,6 +28,7 @@ impl Evidence {
     pub fn name(self) -> &'static str {
         match self {
             Evidence::Scalar(tier) => tier.name(),
+            Evidence::Signs => "signs",
             Evidence::Discs => "discs",
             Evidence::Exact => "exact",
             Evidence::Estimate => "estimate",
@@ -133,6 +132,8 @@ pub struct Analysis {
     pub parts: Vec<Part>,
     /// What a person should know beside the verdict.
     pub warnings: Vec<String>,
+    /// How far the verdict stands, where stiffnesses were measured.
+    pub measured: Option<Measured>,
 }
 
 impl Analysis {

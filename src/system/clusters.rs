@@ -16,8 +16,8 @@
 
 use faer::{Mat, Side, c64};
 
+use super::bauer_fike::{bauer_fike, gamma};
 use super::norm;
-use super::spectrum::{bauer_fike, gamma};
 
 /// The matrices that decide, as computed, and how far from them the true ones can be.
 pub(super) struct Pencil<'a> {

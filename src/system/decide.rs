@@ -14,21 +14,12 @@
 use super::analysis::Analysis;
 use super::compose::connected;
 use super::frame::Frame;
-use super::limits::Limits;
+use super::limits::{Limits, Route};
 use super::model::System;
 use super::piece::{pieces, unit};
 use crate::error::Result;
 use crate::number::{Laurent, Rational};
 use crate::verdict::Kind;
-
-/// Which means are tried for parts of several degrees of freedom.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Route {
-    /// The cheapest that proves the verdict; where none does within the budget, an estimate.
-    Cheapest,
-    /// Exact arithmetic, or an error that tells its cost.
-    Exact,
-}
 
 /// The verdict on a system.
 ///
@@ -73,7 +64,7 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     let kind = parts.iter().map(|part| part.kind).max_by_key(severity).unwrap_or(Kind::Elliptic);
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
-    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings })
+    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
 fn severity(kind: &Kind) -> u8 {

@@ -14,13 +14,14 @@ use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 
-use super::analysis::degrees_of_freedom;
 use super::frame::Frame;
+use super::inertia::Inertia;
 use super::integers::{IntegerBlocks, IntegerProgram};
-use super::limits::Limits;
+use super::limits::{Limits, degrees_of_freedom};
 use super::model::System;
 use super::modular;
 use super::roots::{self, RootCount};
+use super::signs::{self, Inertias};
 use crate::error::Result;
 use crate::number::{PrimeField, Rational};
 use crate::verdict::Kind;
@@ -69,14 +70,55 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
     Ok(judge(&program.half_period(system, &frame)))
 }
 
-/// Products of 64-bit words, roughly: composing (numbers grow by the bits of f with each kick), and n³ operations
-/// for each of the primes of which the coefficients consist.
-fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
-    let kicks = (system.schedule().strikes() / 2 + 1) as f64;
+/// The kind, where one of the half period's forms is definite: a few eliminations in integers, no polynomial; `None` where
+/// none is. The rigid modes of `frame` are set apart.
+///
+/// # Errors
+/// A budget error with the estimated cost, before any work.
+pub(super) fn decide_by_signs(system: &System, frame: &Frame, limits: &Limits) -> Result<Option<Kind>> {
+    let program = IntegerProgram::new(system);
     let n = frame.kept.len() as f64;
+    let (words, compose) = composing(system, frame, &program);
+    // Four products, and four eliminations with integers of up to n times the length, half of it on average.
+    let forms = 4.0 * n.powi(3) * words.powi(2) + 4.0 * n.powi(3) / 3.0 * (n * words).powi(2);
+    limits.allow((compose + forms).min(1e19) as u64, || {
+        format!("exact signs of the forms of {}", degrees_of_freedom(frame.kept.len()))
+    })?;
+    Ok(signs::judge(&mut program.half_period(system, frame)))
+}
+
+impl Inertias for IntegerBlocks {
+    fn p(&mut self) -> Inertia {
+        signs::exact_inertia(&self.a * self.b.transpose())
+    }
+
+    fn r(&mut self) -> Inertia {
+        signs::exact_inertia(&self.c * self.d.transpose()).times(-1)
+    }
+
+    fn w(&mut self) -> Inertia {
+        signs::exact_inertia(self.b.transpose() * &self.d)
+    }
+
+    fn z(&mut self) -> Inertia {
+        signs::exact_inertia(self.a.transpose() * &self.c).times(-1)
+    }
+}
+
+/// The words of the half period's numbers, and the products of 64-bit words of composing it, in which they grow by the
+/// bits of f with each kick.
+fn composing(system: &System, frame: &Frame, program: &IntegerProgram) -> (f64, f64) {
+    let kicks = (system.schedule().strikes() / 2 + 1) as f64;
     let words = kicks * program.bits() as f64 / 64.0 + 1.0;
     let entries: usize = system.clocks().iter().map(|c| c.stiffness.support().len()).max().unwrap_or(0);
-    let compose = kicks * 2.0 * n * 3.0 * entries as f64 * words / 2.0;
+    (words, kicks * 2.0 * frame.kept.len() as f64 * 3.0 * entries as f64 * words / 2.0)
+}
+
+/// Products of 64-bit words, roughly: composing, and n³ operations for each of the primes of which the coefficients
+/// consist.
+fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
+    let n = frame.kept.len() as f64;
+    let (words, compose) = composing(system, frame, program);
     let primes = 2.0 * n * words + 1.0;
     let characteristic = primes * (2.0 * n * n * words + 2.0 * n * n * n + n * primes);
     (compose + characteristic).min(1e19) as u64
@@ -134,4 +176,65 @@ fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64>
     DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
         (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::system::{Potential, Symmetric};
+
+    /// Numbers that repeat, from 0 to n − 1.
+    struct Numbers(u64);
+
+    impl Numbers {
+        fn below(&mut self, n: u64) -> i64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((self.0 >> 33) % n) as i64
+        }
+    }
+
+    /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 4, turned by (3, 4, 5).
+    fn system(numbers: &mut Numbers) -> System {
+        let n = 1 + numbers.below(3) as usize;
+        let edges = numbers.below(2) == 0;
+        let turn: Vec<Vec<Rational>> = (0..n)
+            .map(|i| {
+                let entry = |j: usize| match (i, j) {
+                    (0, 0) | (1, 1) if n > 1 => ratio(3, 5),
+                    (0, 1) => ratio(4, 5),
+                    (1, 0) => ratio(-4, 5),
+                    _ => ratio(i64::from(i == j), 1),
+                };
+                (0..n).map(entry).collect()
+            })
+            .collect();
+        let mut potential = |step: i64| {
+            let mut stiffness = Symmetric::zero(n);
+            for i in 0..n {
+                for j in 0..=i {
+                    let x = if edges && i != j { 0 } else { numbers.below(6) - i64::from(!edges) };
+                    stiffness.add(i, j, &if edges { ratio(x, step) } else { ratio(x, 4) });
+                }
+            }
+            Potential { stiffness: stiffness.congruent(&turn), step: ratio(step, 1), phase: ratio(0, 1) }
+        };
+        let potentials = vec![potential(1), potential(2), potential(3)];
+        System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials).unwrap()
+    }
+
+    #[test]
+    fn signs_of_forms_agree_with_characteristic_polynomials() {
+        let (mut numbers, limits) = (Numbers(7), Limits::default());
+        let mut decided = std::collections::BTreeMap::new();
+        for _ in 0..3000 {
+            let system = system(&mut numbers);
+            let frame = Frame::new(&system);
+            let Some(kind) = decide_by_signs(&system, &frame, &limits).unwrap() else { continue };
+            assert_eq!(kind, decide_exact(&system, &limits).unwrap().kind, "{system:?}");
+            *decided.entry(kind.name()).or_insert(0) += 1;
+        }
+        // Coexistence has no definite form.
+        assert!(["elliptic", "parabolic", "hyperbolic"].iter().all(|kind| decided[kind] > 30), "{decided:?}");
+    }
 }

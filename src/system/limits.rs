@@ -1,7 +1,16 @@
-//! What one answer may cost.
+//! By which means an answer is sought, and what it may cost.
 
 use crate::error::{Error, Result};
 use crate::verdict;
+
+/// Which means are tried for parts of several degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// The cheapest that proves the verdict; where none does within the budget, an estimate.
+    Cheapest,
+    /// Exact arithmetic, or an error that tells its cost.
+    Exact,
+}
 
 /// The most work that one verdict may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,9 +20,9 @@ pub struct Limits {
 }
 
 impl Default for Limits {
-    /// 10^11 products: some minutes at worst.
+    /// 5·10^10 products: a minute or two at worst.
     fn default() -> Self {
-        Limits { products: 100_000_000_000 }
+        Limits { products: 50_000_000_000 }
     }
 }
 
@@ -38,4 +47,9 @@ impl Limits {
     pub(super) fn of_ladder(&self) -> verdict::Limits {
         verdict::Limits { kicks: self.products / 1000 }
     }
+}
+
+/// "1 degree of freedom", "2 degrees of freedom".
+pub(super) fn degrees_of_freedom(n: usize) -> String {
+    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
 }

@@ -16,7 +16,8 @@
 //! | `compose` | kicks and drifts that touch only the degrees of freedom of their potential |
 //! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
 //! | `scalar`, `enclose`, `single` | K clocks on one oscillator: exact, in balls, decided |
-//! | `float`, `spectrum`, `clusters` | doubles with proven bounds |
+//! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
+//! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
 //! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
 //! | `decide`, `piece` | the verdict, part by part |
 //! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
@@ -37,6 +38,7 @@
 //! ```
 
 mod analysis;
+mod bauer_fike;
 pub mod builders;
 mod clusters;
 mod compose;
@@ -46,8 +48,11 @@ mod exact;
 mod explain;
 mod float;
 mod frame;
+mod inertia;
 mod integers;
+pub mod levels;
 mod limits;
+mod measured;
 mod model;
 mod modes;
 mod modular;
@@ -56,6 +61,7 @@ mod piece;
 mod roots;
 mod scalar;
 pub mod scan;
+mod signs;
 mod single;
 mod sparse;
 mod spectrum;
@@ -63,9 +69,10 @@ mod split;
 
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
 pub use compose::{full_period, half_period};
-pub use decide::{Route, decide_by, decide_system};
+pub use decide::{decide_by, decide_system};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
-pub use limits::Limits;
+pub use limits::{Limits, Route};
+pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
 pub use modes::{Origin, Resonance};
 pub use scalar::{ManyClocks, families, shortest_families, shortest_family};

@@ -21,7 +21,27 @@ pub struct Potential {
     pub phase: Rational,
 }
 
+impl Potential {
+    /// That of the stiffness K, its first kick at t = 0.
+    pub fn new(stiffness: Symmetric, step: Rational) -> Self {
+        Potential { stiffness, step, phase: Rational::default() }
+    }
+}
+
 /// M x'' + Σ K_k x = 0, each K_k kicking by its own clock.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Limits, Potential, Symmetric, System, decide_system};
+/// use nalgebra::DMatrix;
+/// let mass = Symmetric::diagonal(&[ratio(1, 1), ratio(2, 1)]);
+/// let bond = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[50.0, -50.0, -50.0, 50.0]))?;
+/// let tether = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[0.5, 0.0, 0.0, 0.0]))?;
+/// let potentials = vec![Potential::new(bond, ratio(1, 10)), Potential::new(tether, ratio(3, 10))];
+/// let analysis = decide_system(&System::new(mass, potentials)?, &Limits::default())?;
+/// assert!(analysis.is_stable() && analysis.is_proof());
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 ///
 /// Potentials of equal step and phase share a clock, whose stiffness is their sum.
 #[derive(Clone, Debug)]
@@ -110,7 +130,11 @@ impl System {
     /// long as they cancel, and is called what it is, parabolic.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
-        let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
+        let total = self.total_stiffness();
+        if total.is_surely_regular() {
+            return Vec::new();
+        }
+        let candidates: Vec<_> = total.null_space().into_iter().map(|(_, z)| z).collect();
         let mut conditions = Vec::new();
         for potential in &self.potentials {
             let images: Vec<_> = candidates.iter().map(|z| potential.stiffness.times(z)).collect();

@@ -1,18 +1,17 @@
 //! Invariant parts of a component, and the verdict on each.
 
-use super::analysis::degrees_of_freedom;
 use super::analysis::{Evidence, Part};
 use super::compose::check_length;
-use super::decide::Route;
-use super::exact::{MuCount, decide_exact};
+use super::exact::{MuCount, decide_by_signs, decide_exact};
 use super::float;
 use super::frame::Frame;
-use super::limits::Limits;
+use super::limits::{Limits, Route, degrees_of_freedom};
 use super::model::System;
+use super::signs::{self, Forms};
 use super::single;
 use super::sparse::{dot, null_space};
 use super::spectrum::{Spectrum, from_segment};
-use super::split::{Subspace, invariant_subspaces};
+use super::split::{Subspace, invariant_subspaces, may_split};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Laurent, Rational};
 use crate::verdict::Kind;
@@ -36,6 +35,9 @@ pub(super) struct Piece {
 /// The component itself, or what it splits into.
 pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
     if component.size() > SMALL {
+        return vec![Piece { system: component, frame, columns: None }];
+    }
+    if frame.rigid.is_empty() && !may_split(&component) {
         return vec![Piece { system: component, frame, columns: None }];
     }
     // The M-orthogonal complement of the rigid modes.
@@ -93,11 +95,12 @@ impl Piece {
         check_length(&self.system, how.1)?;
         let blocks = float::half_period(&self.system, &self.frame);
         let spectrum = Spectrum::new(&blocks);
-        let certified = || spectrum.as_ref().and_then(|spectrum| spectrum.certified(&blocks));
+        let signed = || Some((signs::judge(&mut Forms::new(&blocks)?)?, Evidence::Signs));
+        let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some(exact) => (exact.kind, Evidence::Exact, Some(exact.roots)),
-            None => match certified() {
-                Some(kind) => (kind, Evidence::Discs, None),
+            None => match signed().or_else(certified) {
+                Some((kind, evidence)) => (kind, evidence, None),
                 None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
             },
         };
@@ -116,6 +119,9 @@ impl Piece {
         spectrum: Option<&Spectrum>,
         warnings: &mut Vec<String>,
     ) -> Result<(Kind, Evidence, Option<MuCount>)> {
+        if let Ok(Some(kind)) = decide_by_signs(&self.system, &self.frame, limits) {
+            return Ok((kind, Evidence::Exact, None));
+        }
         let error = match (decide_exact(&self.system, limits), spectrum) {
             (Ok(exact), _) => return Ok((exact.kind, Evidence::Exact, Some(exact.roots))),
             (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,

@@ -86,7 +86,16 @@ pub fn decide_oscillator(
         vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]
     };
     let (size, clocks, kind) = (1, clocks.strikes().len(), part.kind);
-    Ok(Analysis { size, clocks, period, kind, rigid_modes: Vec::new(), parts: vec![part], warnings })
+    Ok(Analysis {
+        size,
+        clocks,
+        period,
+        kind,
+        rigid_modes: Vec::new(),
+        parts: vec![part],
+        warnings,
+        measured: None,
+    })
 }
 
 /// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.

@@ -2,11 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
 use nalgebra::DMatrix;
 use num_traits::{Signed, Zero};
 
+use super::inertia::{Inertia, proven};
+use super::norm;
 use crate::error::{Error, Result};
-use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::{Rational, U};
 
 /// A symmetric n x n matrix over ℚ.
 ///
@@ -165,14 +169,48 @@ impl Symmetric {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))
     }
 
-    /// Whether xᵀ self x ≥ 0 for all x; by symmetric elimination, exactly.
+    /// Whether xᵀ self x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by elimination over ℚ.
     pub fn is_positive_semidefinite(&self) -> bool {
-        self.pivots().is_some()
+        match self.inertia_in_doubles() {
+            Inertia { negative: 1.., .. } => false,
+            Inertia { unknown: 0, .. } => true,
+            _ => self.pivots().is_some(),
+        }
     }
 
-    /// Whether xᵀ self x > 0 for all x ≠ 0.
+    /// Whether xᵀ self x > 0 for all x ≠ 0, exactly: by its entries where it is diagonal, else as for semidefinite ones.
     pub fn is_positive_definite(&self) -> bool {
-        self.pivots() == Some(self.size())
+        if self.is_diagonal() {
+            return (0..self.size()).all(|i| self.get(i, i).is_positive());
+        }
+        match self.inertia_in_doubles() {
+            Inertia { negative: 1.., .. } => false,
+            Inertia { unknown: 0, .. } => true,
+            _ => self.pivots() == Some(self.size()),
+        }
+    }
+
+    /// Whether doubles prove that it has no null vector; `false` may also mean that they do not tell.
+    pub(super) fn is_surely_regular(&self) -> bool {
+        self.inertia_in_doubles().unknown == 0
+    }
+
+    /// What doubles prove of the signs of its eigenvalues; nothing where it is large and sparse: there exact elimination fills
+    /// in little and costs less.
+    fn inertia_in_doubles(&self) -> Inertia {
+        const SMALL: usize = 64;
+        let n = self.size();
+        let entries: usize = self.rows.iter().map(BTreeMap::len).sum();
+        if n > SMALL && entries < 16 * n {
+            return Inertia { unknown: n, ..Inertia::default() };
+        }
+        let mut rounded = Mat::<f64>::zeros(n, n);
+        for (i, row) in self.rows.iter().enumerate() {
+            row.iter().for_each(|(&j, x)| rounded[(i, j)] = to_f64(x));
+        }
+        // Each entry within u of its size, or within the smallest double: Frobenius's norm of all that.
+        let slack = 1.01 * U * norm::frobenius(&rounded) + n as f64 * f64::MIN_POSITIVE;
+        if slack.is_finite() { proven(&rounded, slack) } else { Inertia { unknown: n, ..Inertia::default() } }
     }
 
     /// The number of positive pivots of a semidefinite matrix (its rank), or `None` if it is not one.
@@ -200,6 +238,35 @@ impl Symmetric {
     /// and all others are 0.
     pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
         null_space(self.rows.clone(), self.size())
+    }
+}
+
+impl TryFrom<&DMatrix<Rational>> for Symmetric {
+    type Error = Error;
+
+    /// All entries, exactly.
+    ///
+    /// # Errors
+    /// Names the first pair of entries that differ, and rows of another number than columns.
+    fn try_from(matrix: &DMatrix<Rational>) -> Result<Self> {
+        let rows: Vec<Vec<Rational>> = matrix.row_iter().map(|row| row.iter().cloned().collect()).collect();
+        Symmetric::dense("stiffness", &rows)
+    }
+}
+
+impl TryFrom<&DMatrix<f64>> for Symmetric {
+    type Error = Error;
+
+    /// All entries as the rationals that the doubles are, exactly: 0.1 is not 1/10.
+    ///
+    /// # Errors
+    /// As for rationals; an entry that is not finite.
+    fn try_from(matrix: &DMatrix<f64>) -> Result<Self> {
+        let infinite = matrix.iter().find(|x| !x.is_finite());
+        if let Some(x) = infinite {
+            return Err(Error::input("stiffness", x, "give finite numbers"));
+        }
+        Symmetric::try_from(&matrix.map(|x| from_f64_exact(x).expect("finite")))
     }
 }
 

@@ -13,9 +13,9 @@
 //!
 //! Multiple eigenvalues, of symmetric systems say, are taken together in [`clusters`](super::clusters).
 
-use faer::linalg::solvers::DenseSolveCore;
 use faer::{Mat, c64};
 
+use super::bauer_fike::bauer_fike;
 use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
@@ -36,11 +36,17 @@ pub(super) struct Spectrum {
 }
 
 impl Spectrum {
-    /// `None` where the eigenvalue iteration fails: never seen, but not excluded.
+    /// That of the half period; `None` where the eigenvalue iteration fails: never seen, but not excluded.
     pub fn new(blocks: &FloatBlocks) -> Option<Spectrum> {
         let m = blocks.m;
         let b = Mat::from_fn(m, m, |i, j| blocks.y[i][m + j]);
         let (s, s_error) = times_c(blocks, &b);
+        Spectrum::of(s, s_error)
+    }
+
+    /// That of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
+    pub fn of(s: Mat<f64>, s_error: Option<f64>) -> Option<Spectrum> {
+        let m = s.nrows();
         let eigen = s.eigen().ok()?;
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
         let vectors = eigen.U().to_owned();
@@ -51,12 +57,19 @@ impl Spectrum {
 
     /// What the discs prove, or the clusters, if anything.
     pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
-        self.by_discs().or_else(|| self.by_clusters(blocks).then_some(Kind::Elliptic))
+        let form = || {
+            let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
+            times_c(blocks, &a)
+        };
+        self.certified_with(form)
     }
 
-    fn by_clusters(&self, blocks: &FloatBlocks) -> bool {
-        let a = Mat::from_fn(blocks.m, blocks.m, |i, j| blocks.y[i][j]);
-        let (y, y_error) = times_c(blocks, &a);
+    /// The same with Y = Aᵀ C and a bound on its error (2-norm), which only clusters ask for.
+    pub fn certified_with(&self, form: impl FnOnce() -> (Mat<f64>, Option<f64>)) -> Option<Kind> {
+        self.by_discs().or_else(|| self.by_clusters(form()).then_some(Kind::Elliptic))
+    }
+
+    fn by_clusters(&self, (y, y_error): (Mat<f64>, Option<f64>)) -> bool {
         let (Some(s_error), Some(y_error)) = (self.s_error, y_error) else { return false };
         clusters::are_stable(&Pencil { s: &self.s, s_error, y: &y, y_error }, &self.mu, &self.vectors)
     }
@@ -98,11 +111,6 @@ pub(super) fn from_segment(z: c64) -> f64 {
     (z.re - nearest).hypot(z.im)
 }
 
-/// γ: a sum of m products, in any order, has an error of at most this times the sum of their absolute values.
-pub(super) fn gamma(m: usize) -> f64 {
-    1.01 * (m as f64 + 4.0) * U
-}
-
 /// Eigenvectors as real columns, Re v and Im v for a conjugate pair, and the real normal D with S V ≈ V D: the
 /// numbers themselves and the blocks ((a, b), (−b, a)).
 fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
@@ -125,38 +133,10 @@ fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
     Some((real, d))
 }
 
-/// V D for the block-diagonal D of [`real_form`].
-fn times_blocks(v: &Mat<f64>, d: &Mat<f64>) -> Mat<f64> {
-    let m = v.ncols();
-    Mat::from_fn(m, m, |i, j| {
-        let neighbours = j.saturating_sub(1)..(j + 2).min(m);
-        neighbours.map(|k| v[(i, k)] * d[(k, j)]).sum()
-    })
-}
-
 /// More than ‖F‖₂ with the computed eigenvectors; see [`bauer_fike`].
 fn radius(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<f64> {
     let (v, d) = real_form(mu, v)?;
     bauer_fike(s, delta, &v, &d)
-}
-
-/// More than ‖F‖₂, V⁻¹ S V = D + F, for the true S, which is within `delta` of the given one, and a normal D of blocks of
-/// size 1 and 2.
-pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<f64> {
-    let m = v.ncols();
-    let w = v.partial_piv_lu().inverse();
-    let vd = times_blocks(v, d);
-    let residual = norm::frobenius(&(s * v - &vd));
-    let (nv, nw) = (norm::frobenius(v), norm::frobenius(&w));
-    let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(d));
-    let y = Mat::<f64>::identity(m, m) - &w * v;
-    let y = norm::frobenius(&y) + gamma(m) * (nw * nv + m as f64);
-    if y.is_nan() || y >= 0.5 {
-        return None;
-    }
-    let off = residual + rounding + delta * norm::spectral(v);
-    let radius = 1.01 * norm::spectral(&w) * off / (1.0 - y);
-    radius.is_finite().then_some(radius)
 }
 
 /// The connected components of the union of the discs of one radius.

@@ -1,10 +1,10 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
 use std::marker::PhantomData;
-use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx512};
+use super::registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 use super::{LANES, Vector};
 
 /// The instruction sets that kernels are compiled for.
@@ -60,21 +60,47 @@ impl Instructions {
         }
     }
 
-    /// The best that this processor has, unless another is forced.
+    /// The same with vectors of a single register, for kernels that hold many vectors at a time.
+    pub fn compute_by_register<K: Kernel>(self, kernel: K) -> K::Output {
+        match self {
+            // Safety: as above.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx512 => unsafe { avx512(With::<Avx512Single, K>(kernel, PhantomData)) },
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 => unsafe { avx2(With::<Avx2Single, K>(kernel, PhantomData)) },
+            Instructions::Portable => kernel.run::<[f64; 4]>(),
+        }
+    }
+
+    /// The kernel on one lane.
+    pub fn compute_alone<K: Kernel>(self, kernel: K) -> K::Output {
+        self.perform(With::<[f64; 1], K>(kernel, PhantomData))
+    }
+
+    /// The best that this processor has, or those that were [forced](force_instructions).
     pub fn best() -> Instructions {
-        let best = || Instructions::available().next().unwrap_or(Instructions::Portable);
-        FORCED.get().copied().unwrap_or_else(best)
+        Instructions::available().nth(FORCED.load(Ordering::Relaxed)).unwrap_or(Instructions::Portable)
     }
 }
 
-static FORCED: OnceLock<Instructions> = OnceLock::new();
+/// Which of the available instruction sets counts as the best.
+static FORCED: AtomicUsize = AtomicUsize::new(0);
 
-/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine can
-/// measure several. False where the processor lacks it, or where another was forced before.
+/// The names of the instruction sets that this processor has, the best first.
+#[doc(hidden)]
+pub fn names() -> Vec<String> {
+    Instructions::available().map(|set| format!("{set:?}")).collect()
+}
+
+/// From now on every kernel runs in the form of this name (`portable`, `avx2`, `avx512`), so that one machine measures, and
+/// compares, several. False where the processor lacks it.
 #[doc(hidden)]
 pub fn force_instructions(name: &str) -> bool {
-    let meant = |set: &Instructions| format!("{set:?}").eq_ignore_ascii_case(name);
-    Instructions::available().find(meant).is_some_and(|set| *FORCED.get_or_init(|| set) == set)
+    let meant = Instructions::available().position(|set| format!("{set:?}").eq_ignore_ascii_case(name));
+    if let Some(n) = meant {
+        FORCED.store(n, Ordering::Relaxed);
+    }
+    meant.is_some()
 }
 
 /// Work that is compiled once for each instruction set. `run` and all it calls must be `inline(always)`.

@@ -1,4 +1,4 @@
-//! Sixteen doubles in the processor's registers.
+//! Doubles side by side in the processor's registers.
 //!
 //! A compiler makes vector instructions of most plain loops over lanes, but not of every one where it must not fail: the
 //! few kernels that everything waits for are written for a [`Vector`] instead, and compiled for each kind of registers.
@@ -8,7 +8,7 @@ mod portable;
 #[cfg(target_arch = "x86_64")]
 mod registers;
 
-/// How many numbers a vector has.
+/// How many numbers a vector has as a rule; [`Vector::WIDTH`] is the exact number.
 pub(crate) const LANES: usize = 16;
 
 /// f of each lane; a plain loop over an array is what compilers turn into vector instructions.
@@ -23,9 +23,20 @@ pub(crate) fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
 
 /// One number for each lane. All instruction sets give the same bits.
 pub(crate) trait Vector: Copy {
+    /// How many numbers it has.
+    const WIDTH: usize;
+    /// A yes or no for each lane.
+    type Mask: Copy;
     fn splat(x: f64) -> Self;
-    fn load(from: &[f64; LANES]) -> Self;
-    fn store(self, to: &mut [f64; LANES]);
+    /// The first [`WIDTH`](Vector::WIDTH) numbers, which must be there.
+    fn load(from: &[f64]) -> Self;
+    fn store(self, to: &mut [f64]);
+    /// Whether self > limit.
+    fn exceeds(self, limit: Self) -> Self::Mask;
+    /// Two alternatives in the form in which [`Vector::choose`] is fastest.
+    fn alternatives(this: Self, that: Self) -> [Self; 2];
+    /// `this` of the [alternatives](Vector::alternatives) where the mask says yes, else `that`.
+    fn choose(mask: Self::Mask, alternatives: [Self; 2]) -> Self;
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -46,6 +57,8 @@ pub(crate) trait Vector: Copy {
     fn below(self) -> Self;
     /// self, in which whole numbers are held as integers, one more where the signs of a and b differ.
     fn count_change(self, a: Self, b: Self) -> Self;
+    /// The same where the signs of a and b differ and c is negative.
+    fn count_change_below(self, a: Self, b: Self, c: Self) -> Self;
     /// The power of two that brings |self|, not below 2^-1022, to [1, 2).
     fn normalizing(self) -> Self;
 
@@ -101,47 +114,60 @@ mod tests {
     use super::*;
     use crate::vector::instructions::{Instructions, Kernel};
 
+    /// Three numbers for each of sixteen lanes, and what all operations make of them.
     struct Everything([[f64; LANES]; 3]);
 
     impl Kernel for Everything {
         type Output = Vec<[u64; LANES]>;
 
         fn run<V: Vector>(self) -> Self::Output {
-            let [a, b, c] = [V::load(&self.0[0]), V::load(&self.0[1]), V::load(&self.0[2])];
-            let (sum, rest) = a.two_sum(b);
-            let (difference, left) = a.two_sub(b);
-            let (product, lost) = a.two_product(b);
-            let bits = |x: V| {
-                let mut lanes = [0.0; LANES];
-                x.store(&mut lanes);
-                // NaN has many forms.
-                lanes.map(|x| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() })
-            };
-            let any = V::splat(f64::from(u8::from(a.any_above(b))));
-            let results = [
-                a,
-                any,
-                sum,
-                rest,
-                difference,
-                left,
-                product,
-                lost,
-                a.mul_add(b, c),
-                a.neg_mul_add(b, c),
-                a.div(b),
-                a.abs().sqrt(),
-                a.if_above(b, c, a),
-                a.larger(b),
-                a.lesser(b),
-                c.abs().normalizing(),
-            ];
-            let mut all: Vec<_> = results.into_iter().map(bits).collect();
-            // What is done to bits holds for whole numbers and for positive ones.
-            let unit = V::splat((1u64 << 52) as f64);
-            all.extend([unit.count_change(a, b), c.abs().above(), c.abs().below()].map(bits));
+            let mut all = Vec::new();
+            for at in (0..LANES).step_by(V::WIDTH) {
+                let [a, b, c] = self.0.each_ref().map(|x| V::load(&x[at..]));
+                let above = |i: usize| self.0[0][i] > self.0[1][i];
+                assert_eq!(a.any_above(b), (at..at + V::WIDTH).any(above));
+                let results = results(a, b, c);
+                all.resize(results.len(), [0; LANES]);
+                for (to, result) in all.iter_mut().zip(results) {
+                    let mut lanes = [0.0; LANES];
+                    result.store(&mut lanes);
+                    // NaN has many forms.
+                    let bits = |x: f64| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() };
+                    to[at..at + V::WIDTH].copy_from_slice(&lanes.map(bits)[..V::WIDTH]);
+                }
+            }
             all
         }
+    }
+
+    fn results<V: Vector>(a: V, b: V, c: V) -> Vec<V> {
+        let (sum, rest) = a.two_sum(b);
+        let (difference, left) = a.two_sub(b);
+        let (product, lost) = a.two_product(b);
+        // What is done to bits holds for whole numbers and for positive ones.
+        let unit = V::splat((1u64 << 52) as f64);
+        vec![
+            a,
+            sum,
+            rest,
+            difference,
+            left,
+            product,
+            lost,
+            a.mul_add(b, c),
+            a.neg_mul_add(b, c),
+            a.div(b),
+            a.abs().sqrt(),
+            a.if_above(b, c, a),
+            V::choose(a.exceeds(b), V::alternatives(c, a)),
+            a.larger(b),
+            a.lesser(b),
+            c.abs().normalizing(),
+            unit.count_change(a, b),
+            unit.count_change_below(a, b, c),
+            c.abs().above(),
+            c.abs().below(),
+        ]
     }
 
     #[test]
@@ -162,7 +188,11 @@ mod tests {
             // A normal number that is not near an end of the range.
             numbers[2] = numbers[2].map(|x| if x.is_normal() { x } else { 1.0 });
             let portable = Instructions::Portable.compute(Everything(numbers));
-            assert!(Instructions::available().all(|set| set.compute(Everything(numbers)) == portable));
+            for set in Instructions::available() {
+                assert_eq!(set.compute(Everything(numbers)), portable);
+                assert_eq!(set.compute_by_register(Everything(numbers)), portable);
+                assert_eq!(set.compute_alone(Everything(numbers)), portable);
+            }
         }
     }
 

@@ -1,21 +1,39 @@
 //! Vectors as plain arrays.
 
-use super::{EXPONENTS, LANES, SIGN, Vector, each};
+use super::{EXPONENTS, SIGN, Vector, each};
 
-impl Vector for [f64; LANES] {
+impl<const N: usize> Vector for [f64; N] {
+    const WIDTH: usize = N;
+    type Mask = [bool; N];
+
     #[inline(always)]
     fn splat(x: f64) -> Self {
-        [x; LANES]
+        [x; N]
     }
 
     #[inline(always)]
-    fn load(from: &[f64; LANES]) -> Self {
-        *from
+    fn load(from: &[f64]) -> Self {
+        each(|i| from[i])
     }
 
     #[inline(always)]
-    fn store(self, to: &mut [f64; LANES]) {
-        *to = self;
+    fn store(self, to: &mut [f64]) {
+        to[..N].copy_from_slice(&self);
+    }
+
+    #[inline(always)]
+    fn exceeds(self, limit: Self) -> [bool; N] {
+        std::array::from_fn(|i| self[i] > limit[i])
+    }
+
+    #[inline(always)]
+    fn alternatives(this: Self, that: Self) -> [Self; 2] {
+        [this, that]
+    }
+
+    #[inline(always)]
+    fn choose(mask: [bool; N], [this, that]: [Self; 2]) -> Self {
+        each(|i| if mask[i] { this[i] } else { that[i] })
     }
 
     #[inline(always)]
@@ -81,6 +99,13 @@ impl Vector for [f64; LANES] {
     #[inline(always)]
     fn count_change(self, a: Self, b: Self) -> Self {
         each(|i| f64::from_bits(self[i].to_bits() + ((a[i].to_bits() ^ b[i].to_bits()) >> 63)))
+    }
+
+    #[inline(always)]
+    fn count_change_below(self, a: Self, b: Self, c: Self) -> Self {
+        each(|i| {
+            f64::from_bits(self[i].to_bits() + (((a[i].to_bits() ^ b[i].to_bits()) & c[i].to_bits()) >> 63))
+        })
     }
 
     #[inline(always)]

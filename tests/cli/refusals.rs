@@ -157,7 +157,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --lambda1 10 --lambda2 -2/5", &["rho = -1/25", "`map`"]);
     tongues("tongues --ratio 7/3 --lambda1 -10 --rho 1", &["lambda1 = -10", "positive"]);
     tongues("tongues --ratio 7/3 --lambda1 pi^2 --lambda2 1", &["lambda2/lambda1 = (1)/(pi^2)", "rational"]);
-    tongues("tongues --ratio 7/3", &["rho missing", "--lambda2"]);
+    tongues("tongues --ratio 7/3", &["rho missing", "lambda1 and lambda2"]);
     tongues("tongues --rho 1", &["ratio missing", "--max-sum"]);
     tongues("tongues --ratio 7/3 --rho 1 --lambda2 1", &["rho = given with lambda2"]);
     tongues("tongues --ratio 7/3 --max-sum 9 --rho 1", &["--max-sum"]);

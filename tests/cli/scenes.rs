@@ -142,7 +142,10 @@ fn a_json_number_is_the_exact_number_that_stands_there() {
         let axes = ["--scan", "potentials.1.step=1/10..3/10:1/10", "--scan", "potentials.0.scale=1/2..1:1/2"];
         let json = desk.run(&[&["system", file], &axes[..]].concat());
         assert_eq!(json.code, Some(0), "{}", json.stderr);
-        json.stdout.replace(file, "")
+        let mut document: Value = serde_json::from_str(&json.stdout).unwrap();
+        // The document holds the file as it is written.
+        document["input"] = Value::Null;
+        document
     };
     assert_eq!(scan("number.json"), scan("text.json"));
 }

@@ -124,7 +124,7 @@ fn every_change_is_found_and_its_row_named() {
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["rho"] = json!("1/26")),
         (DOCUMENTS[13], "row 2", |d, _| d["offenders"][1]["q"] = json!(0)),
         (DOCUMENTS[13], "row 0", |d, _| d["input"]["max_sum"] = json!("9")),
-        (DOCUMENTS[14], "row 0", |d, _| d["input"]["h2_range"] = json!("1/10..3")),
+        (DOCUMENTS[14], "not the next offender", |d, _| d["input"]["h2_range"] = json!("1/10..3")),
         (DOCUMENTS[13], "row 0", |d, _| d["unstable"] = json!(d["unstable"].as_u64().unwrap() + 1)),
         (DOCUMENTS[16], "row 3", |d, _| d["polynomials"]["C"] = json!("(-1/2*rho - 1/2)*s")),
         (DOCUMENTS[17], "row 0", |d, _| d["holds"] = json!(false)),

@@ -143,7 +143,8 @@ impl Validator {
         match key {
             "type" if value.is_array() => options().any(|name| is_a(name, instance)),
             "type" => is_a(value, instance),
-            "const" => value == instance,
+            // 0 and 0.0 are one number, in whatever digits it is written.
+            "const" => value == instance || value.as_f64().is_some_and(|x| instance.as_f64() == Some(x)),
             "enum" => options().any(|option| option == instance),
             "required" => instance.as_object().is_none_or(|members| {
                 options().filter_map(Value::as_str).all(|name| members.contains_key(name))
@@ -211,6 +212,7 @@ fn each_keyword_refuses_what_it_should() {
         (json!({"type": "integer"}), json!(1.0), json!(1.5)),
         (json!({"type": ["string", "null"]}), json!(null), json!(1)),
         (json!({"const": {"a": [1]}}), json!({"a": [1]}), json!({"a": [2]})),
+        (json!({"const": 0}), json!(0.0), json!(0.5)),
         (json!({"enum": [1, "x"]}), json!("x"), json!("y")),
         (json!({"required": ["a"]}), json!({"a": null}), json!({"b": 1})),
         (json!({"properties": {"a": {"minimum": 1}}}), json!({"a": 1, "b": 0}), json!({"a": 0})),

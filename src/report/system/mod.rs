@@ -2,7 +2,9 @@
 
 #[cfg(feature = "figure")]
 mod chart;
+mod intervals;
 mod map;
+mod measured;
 #[cfg(feature = "figure")]
 mod modes;
 
@@ -14,13 +16,14 @@ use super::table::{Cell, Column, Table};
 use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
+pub use intervals::document as intervals;
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
 pub fn document(analysis: &Analysis) -> Document {
-    Document::new("system-verdict")
+    let document = Document::new("system-verdict")
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
         .entry("period", analysis.period.to_string())
@@ -30,9 +33,12 @@ pub fn document(analysis: &Analysis) -> Document {
         .entry("growth_rate", analysis.growth_rate())
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", analysis.parts.iter().map(part).collect::<Vec<_>>())
-        .entry("warnings", analysis.warnings.clone())
-        .long_rows(table(analysis))
-        .told(&lines(analysis))
+        .entry("warnings", analysis.warnings.clone());
+    let document = match &analysis.measured {
+        Some(own) => document.entry("measured", measured::value(own)),
+        None => document,
+    };
+    document.long_rows(table(analysis)).told(&lines(analysis))
 }
 
 fn part(part: &Part) -> Value {
@@ -121,6 +127,7 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", told(unstable)));
     }
+    lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }

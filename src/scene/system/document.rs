@@ -8,6 +8,9 @@ use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
 
+/// The most degrees of freedom: dense matrices of this size still fit.
+pub(super) const LARGEST: usize = 4096;
+
 /// An exact number: a text, or a JSON number, whose digits are taken as they stand. Anything else is kept until a reader
 /// can name its field.
 #[derive(Clone, Debug, Deserialize)]
@@ -131,4 +134,14 @@ pub(super) fn ends(field: &str, i: &Number, j: Option<&Number>, n: usize) -> Res
         return Err(Error::input(field, i, "joins two different indices, or one and null"));
     }
     Ok((i, j))
+}
+
+/// Why a text is no system.
+pub(super) fn no_system(cause: serde_json::Error) -> Error {
+    let place = if cause.line() > 0 { format!("line {}", cause.line()) } else { "this file".into() };
+    Error::input(
+        "system",
+        place,
+        format!("{cause}; write one JSON object as in data/scenes/diatomic-tether.json"),
+    )
 }

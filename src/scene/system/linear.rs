@@ -1,12 +1,9 @@
 //! Masses and stiffnesses from a file, and the usual systems by name.
 
-use super::document::{Build, Document, Number, PotentialDocument, ends};
+use super::document::{Build, Document, LARGEST, Number, PotentialDocument, ends};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::{Potential, Symmetric, System, builders};
-
-/// The most degrees of freedom: dense matrices of this size still fit.
-const LARGEST: usize = 4096;
 
 pub(super) fn numbers(field: &str, values: &[Number]) -> Result<Vec<Rational>> {
     values.iter().enumerate().map(|(i, x)| x.read(&format!("{field}[{i}]"))).collect()

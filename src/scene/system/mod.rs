@@ -24,6 +24,9 @@
 //! * Forms: `harmonic` (k), `quartic` (k, beta), `lennard-jones` (epsilon, sigma). With bonds other than harmonic the
 //!   system is the linear one at the equilibrium found near the positions `near`: exact for the Hessian in doubles,
 //!   which is itself rounded.
+//! * A `stiffness` by reference, `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "h"}`, makes it a system of measured
+//!   doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted` says that the matrices are,
+//!   `accuracy` how well they are known.
 //! * In place of masses and potentials, `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
@@ -33,13 +36,19 @@
 //! |---|---|
 //! | `document` | the fields |
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
+//! | `measured`, `array` | stiffnesses by reference to NumPy's files |
 //! | `scan` | one file, many systems: any number of it over a range |
 
+mod array;
 mod bonds;
 mod document;
 mod linear;
+mod measured;
 mod oscillator;
 mod scan;
+
+use std::path::Path;
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -48,9 +57,11 @@ use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::system::levels::Stretch;
 use crate::system::{Analysis, Limits, Potential, Route, System, decide_by, decide_oscillator};
 use bonds::Nonlinear;
-use document::Document;
+use document::{Document, no_system};
+use measured::Measured;
 use oscillator::Oscillator;
 pub use scan::{Axis, Scan};
 
@@ -65,9 +76,11 @@ const LONGEST: usize = 16 << 20;
 pub struct SystemScene {
     source: Value,
     title: String,
-    system: System,
+    /// Built when it is first asked for where stiffnesses are measured.
+    system: OnceLock<System>,
     nonlinear: Option<Nonlinear>,
     oscillator: Option<Oscillator>,
+    measured: Option<Measured>,
 }
 
 impl SystemScene {
@@ -77,11 +90,24 @@ impl SystemScene {
     /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
     /// [`System::new`] refuses; each by the entry's name.
     pub fn read(text: &str) -> Result<SystemScene> {
+        SystemScene::read_in(Path::new(""), text)
+    }
+
+    /// The same with the folder that the files it refers to are in.
+    ///
+    /// # Errors
+    /// As [`SystemScene::read`]; an I/O error of these files.
+    pub fn read_in(folder: &Path, text: &str) -> Result<SystemScene> {
         if text.len() > LONGEST {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        SystemScene::from_json(serde_json::from_str(text).map_err(no_system)?)
+        let source: Value = serde_json::from_str(text).map_err(no_system)?;
+        if measured::is_by_reference(&source) {
+            return SystemScene::from_json_in(folder, source);
+        }
+        // From the text, for an error to name its line.
+        SystemScene::new(serde_json::from_str(text).map_err(no_system)?, source)
     }
 
     /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
@@ -89,14 +115,41 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::read`].
     pub fn from_json(source: Value) -> Result<SystemScene> {
-        let document: Document = Document::deserialize(&source).map_err(no_system)?;
+        SystemScene::from_json_in(Path::new(""), source)
+    }
+
+    /// The same with the folder that the files it refers to are in.
+    ///
+    /// # Errors
+    /// As [`SystemScene::read_in`].
+    pub fn from_json_in(folder: &Path, source: Value) -> Result<SystemScene> {
+        if !measured::is_by_reference(&source) {
+            return SystemScene::new(Document::deserialize(&source).map_err(no_system)?, source);
+        }
+        let text = |key: &str| source.get(key).and_then(Value::as_str).unwrap_or_default().to_string();
+        let (schema, title) = (text("schema"), text("title"));
+        if schema != SCHEMA {
+            return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
+        }
+        let measured = Some(Measured::read(&source, folder)?);
+        Ok(SystemScene {
+            source,
+            title,
+            system: OnceLock::new(),
+            nonlinear: None,
+            oscillator: None,
+            measured,
+        })
+    }
+
+    fn new(document: Document, source: Value) -> Result<SystemScene> {
         if document.schema != SCHEMA {
             return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
         }
         let title = document.title.clone().unwrap_or_default();
         match &document.build {
             Some(build) if document.masses.is_none() && document.potentials.is_none() => {
-                Ok(SystemScene { source, title, system: build.system()?, nonlinear: None, oscillator: None })
+                Ok(SystemScene::linear(source, title, build.system()?))
             }
             Some(_) => Err(Error::input("build", "given", "give either build, or masses and potentials")),
             None => SystemScene::explicit(source, title, &document),
@@ -106,7 +159,10 @@ impl SystemScene {
     fn explicit(source: Value, title: String, document: &Document) -> Result<SystemScene> {
         if let Some(oscillator) = document.oscillator()? {
             let system = oscillator.rounded.clone();
-            return Ok(SystemScene { source, title, system, nonlinear: None, oscillator: Some(oscillator) });
+            return Ok(SystemScene {
+                oscillator: Some(oscillator),
+                ..SystemScene::linear(source, title, system)
+            });
         }
         let (mass, potentials) = (document.mass()?, document.potentials()?);
         let n = mass.size();
@@ -117,7 +173,33 @@ impl SystemScene {
             let (system, nonlinear) = document.at_equilibrium(mass, potentials, linear)?;
             (system, Some(nonlinear))
         };
-        Ok(SystemScene { source, title, system, nonlinear, oscillator: None })
+        Ok(SystemScene { nonlinear, ..SystemScene::linear(source, title, system) })
+    }
+
+    fn linear(source: Value, title: String, system: System) -> SystemScene {
+        let system = OnceLock::from(system);
+        SystemScene { source, title, system, nonlinear: None, oscillator: None, measured: None }
+    }
+
+    /// The same with another accuracy of its measured stiffnesses, relative to their norms.
+    ///
+    /// # Errors
+    /// Where nothing is measured, and where the accuracy is not in (0, 1/10).
+    pub fn at_accuracy(mut self, accuracy: f64) -> Result<SystemScene> {
+        let exact = || Error::input("accuracy", accuracy, "is for stiffnesses by reference: these are exact");
+        self.measured = Some(self.measured.ok_or_else(exact)?.at_accuracy(accuracy)?);
+        Ok(self)
+    }
+
+    /// The same with the rigid motions of measured stiffnesses left in.
+    ///
+    /// # Errors
+    /// Where nothing is measured.
+    pub fn keeping_rigid(mut self) -> Result<SystemScene> {
+        let exact =
+            || Error::input("rigid motions", "kept", "is for stiffnesses by reference: these are exact");
+        self.measured = Some(self.measured.ok_or_else(exact)?.keeping_rigid());
+        Ok(self)
     }
 
     /// The whole input, as it was read.
@@ -133,7 +215,7 @@ impl SystemScene {
     /// The linear system: that at the equilibrium, where there are nonlinear bonds; rounded to doubles (and, where steps
     /// are irrational, in the unit of time of the shortest one), where an oscillator involves π.
     pub fn system(&self) -> &System {
-        &self.system
+        self.system.get_or_init(|| self.measured.as_ref().expect("measured, where it was not built").system())
     }
 
     /// The verdict.
@@ -141,10 +223,23 @@ impl SystemScene {
     /// # Errors
     /// As [`decide_by`] and [`decide_oscillator`].
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
-        match &self.oscillator {
-            Some(own) => decide_oscillator(&own.clocks, &own.rounded, &own.unit, limits),
-            None => decide_by(route, &self.system, limits),
+        match (&self.oscillator, &self.measured) {
+            (Some(own), _) => decide_oscillator(&own.clocks, &own.rounded, &own.unit, limits),
+            (None, Some(measured)) => measured.decide(route, limits),
+            (None, None) => decide_by(route, self.system(), limits),
         }
+    }
+
+    /// The number of inner steps in an outer one, and the verdicts on all outer steps of a range, at that number: stretches
+    /// that cover it, no interval wider than `width` (relative) missed.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not two measured levels; as [`Kernel::stretches`].
+    ///
+    /// [`Kernel::stretches`]: crate::system::levels::Kernel::stretches
+    pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
+        let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
+        self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
     }
 
     /// The equilibrium, where there are bonds.
@@ -172,9 +267,9 @@ impl SystemScene {
             let rows = particles.iter().map(row).collect();
             avi::Linear::new(particles, rows)
         };
-        let forces = self.system.clocks().iter().map(force).collect::<Result<Vec<_>>>()?;
-        let steps: Vec<_> = self.system.clocks().iter().map(|c| c.step.clone()).collect();
-        let phases: Vec<_> = self.system.clocks().iter().map(|c| c.phase.clone()).collect();
+        let forces = self.system().clocks().iter().map(force).collect::<Result<Vec<_>>>()?;
+        let steps: Vec<_> = self.system().clocks().iter().map(|c| c.step.clone()).collect();
+        let phases: Vec<_> = self.system().clocks().iter().map(|c| c.phase.clone()).collect();
         Simulation::new(&self.masses()?, forces, Clocks::new(&steps, &phases)?, State::new(x, p))
     }
 
@@ -189,20 +284,10 @@ impl SystemScene {
     }
 
     fn masses(&self) -> Result<Vec<Rational>> {
-        if !self.system.mass().is_diagonal() {
+        if !self.system().mass().is_diagonal() {
             let remedy = "Algorithm 1 moves particle by particle: give masses in place of mass_matrix";
             return Err(Error::input("mass_matrix", "not diagonal", remedy));
         }
-        Ok((0..self.system.size()).map(|i| self.system.mass().get(i, i)).collect())
+        Ok((0..self.system().size()).map(|i| self.system().mass().get(i, i)).collect())
     }
-}
-
-/// Why a text is no system.
-fn no_system(cause: serde_json::Error) -> Error {
-    let place = if cause.line() > 0 { format!("line {}", cause.line()) } else { "this file".into() };
-    Error::input(
-        "system",
-        place,
-        format!("{cause}; write one JSON object as in data/scenes/diatomic-tether.json"),
-    )
 }

@@ -25,11 +25,11 @@
 
 use super::meet::Meeting;
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Rational, rational};
+use crate::number::{Laurent, Rational, Twofold, rational};
 use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Edge, Edges, Enclosure};
 use crate::tongue::gap::Gap;
-use crate::tongue::string::{HalfString, Twofold};
+use crate::tongue::string::HalfString;
 use crate::verdict::{Limits, Side, Verdict, growth};
 
 /// The fastest growth in a tongue; rounded: s to nine digits, the rate to fifteen; the rest is that of a place which is s

@@ -27,8 +27,9 @@
 //!
 //! with no difference of the edges in it. Slopes are in ln s throughout.
 
+use crate::number::Twofold;
 use crate::tongue::string::lanes::{logarithm, power_of_two, rescaling};
-use crate::tongue::string::{HalfString, KINDS, Step, Twofold};
+use crate::tongue::string::{HalfString, KINDS, Step};
 use crate::vector::instructions::Task;
 
 /// What one operation on two doubles loses, relative to its terms: the kick's own roundings included.

@@ -19,9 +19,8 @@
 use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::entry::Entry;
-use super::twofold::Twofold;
 use crate::error::{Error, Result};
-use crate::number::{Ratio, Rational};
+use crate::number::{Ratio, Rational, Twofold};
 use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 

@@ -10,14 +10,6 @@ pub(crate) type Lanes = [f64; LANES];
 #[repr(align(64))]
 pub(crate) struct Aligned<T>(pub T);
 
-/// The rounded sum and what rounding took from it, exactly (Knuth).
-#[inline(always)]
-pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
-    let s = a + b;
-    let t = s - a;
-    (s, (a - (s - t)) + (b - t))
-}
-
 /// The lesser one; b if one is NaN.
 #[inline(always)]
 pub(crate) fn lesser(a: f64, b: f64) -> f64 {

@@ -4,15 +4,15 @@
 //! |---|---|
 //! | `entry` | A, B, C and D as four eigenvalue problems |
 //! | `half_string` | the masses and springs of a half period |
-//! | `lanes` | doubles side by side, exact sums, powers of two |
-//! | `twofold` | a number as the sum of two doubles |
+//! | `lanes` | doubles side by side, powers of two |
 
 mod entry;
 mod half_string;
 pub(crate) mod lanes;
 mod twofold;
 
+pub(crate) use crate::number::Twofold;
 pub use entry::Entry;
 pub(crate) use entry::Indices;
 pub(crate) use half_string::{HalfString, KINDS, Node, Step};
-pub(crate) use twofold::{Digits, Twofold};
+pub(crate) use twofold::Digits;

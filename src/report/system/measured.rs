@@ -1,0 +1,53 @@
+//! How far a verdict on measured stiffnesses stands, in JSON and in words.
+
+use serde_json::{Value, json};
+
+use crate::report::document::enclosure;
+use crate::system::{Holds, Measured};
+
+/// The entry `measured` of a document.
+pub(super) fn value(own: &Measured) -> Value {
+    let removed = own
+        .removed
+        .as_ref()
+        .map(|r| json!({"count": r.count, "found_by": r.found_by, "fast": r.fast, "slow": r.slow}));
+    json!({
+        "accuracy": own.accuracy,
+        "holds": own.holds.name(),
+        "margin": own.margin,
+        "first_unstable": own.first_unstable.map(enclosure),
+        "above_unstable": own.is_above_unstable,
+        "rigid_motions": removed,
+    })
+}
+
+/// The same for people.
+pub(super) fn lines(own: &Measured) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(r) = &own.removed {
+        lines.push(format!(
+            "  {} rigid motions projected out ({}): they held {:.1e} of the fast and {:.1e} of the slow stiffness",
+            r.count, r.found_by, r.fast, r.slow
+        ));
+    }
+    let accuracy = own.accuracy;
+    lines.push(match own.holds {
+        Holds::Stable => format!("  stable for all stiffnesses within {accuracy:.0e} of their norms"),
+        Holds::Unstable => format!("  unstable for all stiffnesses within {accuracy:.0e} of their norms"),
+        Holds::NotTold => format!("  known to {accuracy:.0e} of their norms, the stiffnesses do not tell"),
+    });
+    if let Some(margin) = own.margin {
+        lines.push(format!("  margin: proven stable for all within {margin:.1e} of their norms"));
+    }
+    if let Some((lo, hi)) = own.first_unstable {
+        let place = if own.is_above_unstable {
+            "; this step lies above it, which is no advice to use it"
+        } else {
+            ""
+        };
+        lines.push(format!(
+            "  with as many inner steps every outer step up to {lo:.6} is stable, and {hi:.6} is unstable{place}"
+        ));
+    }
+    lines
+}

@@ -1,0 +1,181 @@
+//! Arrays by reference: NumPy's `.npy` files, and the members of `.npz` archives.
+//!
+//! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or Fortran's).
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use nalgebra::DMatrix;
+use serde::Deserialize;
+
+use crate::error::{Error, Result};
+
+/// The most elements read: 4096 x 4096.
+const MOST_ELEMENTS: usize = 1 << 24;
+
+/// `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "fast"}`; paths are relative to the file that holds them.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, untagged)]
+pub(super) enum Reference {
+    Npy { npy: String },
+    Npz { npz: String, array: String },
+}
+
+/// The elements as doubles, in C order.
+pub(super) struct Array {
+    shape: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Reference {
+    /// Reads the array, paths taken from `folder`.
+    ///
+    /// # Errors
+    /// An I/O error; bad input by `field` where the file is no such array.
+    pub fn read(&self, field: &str, folder: &Path) -> Result<Array> {
+        let io = |path: &Path, cause: std::io::Error| Error::io(path.display(), &cause).caused_by(cause);
+        let (path, bytes) = match self {
+            Reference::Npy { npy } => {
+                let path = folder.join(npy);
+                let bytes = std::fs::read(&path).map_err(|cause| io(&path, cause))?;
+                (npy.clone(), bytes)
+            }
+            Reference::Npz { npz, array } => {
+                let path = folder.join(npz);
+                let file = File::open(&path).map_err(|cause| io(&path, cause))?;
+                (format!("{npz}, {array}"), member(file, array).map_err(|why| Error::input(field, npz, why))?)
+            }
+        };
+        parse(&bytes).map_err(|why| Error::input(field, path, why))
+    }
+}
+
+#[cfg(feature = "npz")]
+fn member(file: File, name: &str) -> std::result::Result<Vec<u8>, String> {
+    let mut archive = zip::ZipArchive::new(file).map_err(|cause| format!("is no .npz archive ({cause})"))?;
+    let names: Vec<String> = archive
+        .file_names()
+        .filter_map(|name| Some(name.ok()?.trim_end_matches(".npy").to_string()))
+        .collect();
+    let missing = |_| format!("holds no array {name}: it has {}", names.join(", "));
+    let mut entry = archive.by_name(&format!("{name}.npy")).map_err(missing)?;
+    let mut bytes = Vec::new();
+    let most = 8 * MOST_ELEMENTS as u64 + 65_536;
+    entry
+        .by_ref()
+        .take(most)
+        .read_to_end(&mut bytes)
+        .map_err(|cause| format!("cannot be unpacked ({cause})"))?;
+    Ok(bytes)
+}
+
+#[cfg(not(feature = "npz"))]
+fn member(_file: File, _name: &str) -> std::result::Result<Vec<u8>, String> {
+    Err("archives are not read without the feature npz: give a .npy file".into())
+}
+
+/// The array in the bytes of a `.npy` file, or why there is none.
+fn parse(bytes: &[u8]) -> std::result::Result<Array, String> {
+    let bad = |what: &str| format!("{what}: save it with numpy.save, as float64");
+    let start = match bytes {
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => {
+            10 + usize::from(u16::from_le_bytes([*a, *b]))
+        }
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, c, d, ..] => {
+            12 + u32::from_le_bytes([*a, *b, *c, *d]) as usize
+        }
+        _ => return Err(bad("is no .npy file")),
+    };
+    let (header, data) = bytes.split_at_checked(start).ok_or_else(|| bad("its header is cut off"))?;
+    let header = String::from_utf8_lossy(header).into_owned();
+    let after = |key: &str| header.split_once(key).map(|(_, rest)| rest.trim_start_matches([' ', ':']));
+    let kind = after("'descr'").and_then(|rest| rest.split('\'').nth(1)).unwrap_or_default().to_string();
+    let is_fortran = after("'fortran_order'").is_some_and(|rest| rest.starts_with("True"));
+    let shape =
+        after("'shape'").and_then(|rest| rest.strip_prefix('(')?.split_once(')')).map(|(inside, _)| inside);
+    let sizes = shape
+        .ok_or_else(|| bad("its header has no shape"))?
+        .split(',')
+        .map(str::trim)
+        .filter(|s| !s.is_empty());
+    let shape: Vec<usize> = sizes
+        .map(|s| s.parse().map_err(|_| bad("its shape is not understood")))
+        .collect::<std::result::Result<_, _>>()?;
+    let count = shape.iter().try_fold(1usize, |n, &k| n.checked_mul(k)).filter(|&n| n <= MOST_ELEMENTS);
+    let count = count.ok_or_else(|| format!("has more than {MOST_ELEMENTS} elements"))?;
+    let values =
+        elements(&kind, data, count).ok_or_else(|| bad(&format!("its elements are {kind} or cut off")))?;
+    Ok(Array { values: if is_fortran { c_order(&values, &shape) } else { values }, shape })
+}
+
+/// `count` little-endian elements as doubles.
+fn elements(kind: &str, data: &[u8], count: usize) -> Option<Vec<f64>> {
+    fn each<const N: usize>(data: &[u8], count: usize, read: impl Fn([u8; N]) -> f64) -> Option<Vec<f64>> {
+        let data = data.get(..count.checked_mul(N)?)?;
+        Some(data.chunks_exact(N).map(|chunk| read(chunk.try_into().expect("N bytes"))).collect())
+    }
+    match kind {
+        "<f8" => each(data, count, f64::from_le_bytes),
+        "<f4" => each(data, count, |bytes| f32::from_le_bytes(bytes).into()),
+        "<i4" => each(data, count, |bytes| i32::from_le_bytes(bytes).into()),
+        _ => None,
+    }
+}
+
+/// Elements of a matrix by columns, by rows; of anything else as they are.
+fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
+    match *shape {
+        [rows, columns] => (0..rows * columns).map(|k| values[k / columns + rows * (k % columns)]).collect(),
+        _ => values.to_vec(),
+    }
+}
+
+impl Array {
+    /// As a matrix.
+    ///
+    /// # Errors
+    /// Names the shape where it is not of two axes.
+    pub fn matrix(self, field: &str) -> Result<DMatrix<f64>> {
+        match *self.shape {
+            [rows, columns] => Ok(DMatrix::from_row_slice(rows, columns, &self.values)),
+            _ => Err(Error::input(
+                field,
+                format!("shape {:?}", self.shape),
+                "give a matrix, an array of two axes",
+            )),
+        }
+    }
+
+    /// All elements, by rows.
+    pub fn into_values(self) -> Vec<f64> {
+        self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(header: &str, data: &[f64]) -> Vec<u8> {
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.as_bytes());
+        data.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+        bytes
+    }
+
+    #[test]
+    fn matrices_are_read_in_either_order_and_bad_files_refused() {
+        let data = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        let header =
+            |order: &str| format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (2, 3), }}\n");
+        let rows = parse(&file(&header("False"), &data)).unwrap().matrix("k").unwrap();
+        assert_eq!((rows[(0, 2)], rows[(1, 0)]), (3.0, 4.0));
+        let columns = parse(&file(&header("True"), &data)).unwrap().matrix("k").unwrap();
+        assert_eq!((columns[(0, 2)], columns[(1, 0)]), (5.0, 2.0));
+        assert!(parse(&file(&header("False"), &data[..5])).is_err());
+        assert!(parse(b"not an array").is_err());
+        assert!(parse(&file("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", &data)).is_err());
+    }
+}

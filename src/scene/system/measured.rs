@@ -1,0 +1,277 @@
+//! Stiffnesses by reference to NumPy's files: Hessians as people measure them, in doubles.
+//!
+//! ```json
+//! {
+//!     "schema": "kickdrift/system/1",
+//!     "mass_weighted": true,
+//!     "masses": {"npz": "water.npz", "array": "masses"},
+//!     "positions": {"npz": "water.npz", "array": "positions"},
+//!     "accuracy": 1e-6,
+//!     "potentials": [
+//!         {"name": "bonded", "step": "1/2000", "stiffness": {"npz": "water.npz", "array": "fast"}},
+//!         {"name": "rest", "step": "1/250", "stiffness": {"npy": "slow.npy"}}
+//!     ]
+//! }
+//! ```
+
+use std::path::Path;
+use std::sync::OnceLock;
+
+use nalgebra::DMatrix;
+use num_traits::One;
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::array::Reference;
+use super::document::{LARGEST, Number, no_system};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::levels::{Hessians, Kernel, Outer, Stretch, rigid_motions};
+use crate::system::{Analysis, Limits, Potential, Route, Symmetric, System, decide_by};
+
+/// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
+const USUAL_ACCURACY: f64 = 1e-6;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    #[serde(rename = "schema")]
+    _schema: String,
+    #[serde(rename = "title")]
+    _title: Option<String>,
+    #[serde(default)]
+    mass_weighted: bool,
+    masses: Option<Reference>,
+    positions: Option<Reference>,
+    accuracy: Option<Number>,
+    potentials: Vec<PotentialDocument>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PotentialDocument {
+    #[serde(rename = "name")]
+    _name: Option<String>,
+    step: Number,
+    scale: Option<Number>,
+    stiffness: Reference,
+}
+
+/// Measured stiffnesses with their clocks.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    /// By increasing step.
+    potentials: Vec<(Rational, DMatrix<f64>)>,
+    /// Of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses were given.
+    masses: Option<Vec<f64>>,
+    positions: Option<Vec<[f64; 3]>>,
+    is_weighted: bool,
+    accuracy: f64,
+    keeps_rigid: bool,
+    kernel: OnceLock<Kernel>,
+}
+
+/// Whether some stiffness of the file stands by reference.
+pub(super) fn is_by_reference(source: &Value) -> bool {
+    let potentials = source.get("potentials").and_then(Value::as_array);
+    potentials.is_some_and(|all| all.iter().any(|own| own.get("stiffness").is_some_and(Value::is_object)))
+}
+
+impl Measured {
+    /// From a file of such stiffnesses, paths taken from `folder`.
+    pub fn read(source: &Value, folder: &Path) -> Result<Measured> {
+        let document = Document::deserialize(source).map_err(no_system)?;
+        let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
+        for (k, own) in document.potentials.iter().enumerate() {
+            let (step, stiffness) = own.read(k, folder)?;
+            match potentials.iter_mut().find(|(other, k)| *other == step && k.shape() == stiffness.shape()) {
+                Some((_, sum)) => *sum += stiffness,
+                None => potentials.push((step, stiffness)),
+            }
+        }
+        potentials.sort_by(|a, b| a.0.cmp(&b.0));
+        let n = potentials.first().map_or(0, |(_, k)| k.nrows());
+        if n == 0 || n > LARGEST {
+            return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
+        }
+        if potentials.iter().any(|(_, k)| k.iter().any(|x| !x.is_finite()) || k.shape() != (n, n)) {
+            let remedy = format!("give {n} x {n} finite numbers for each potential");
+            return Err(Error::input("potentials", "a stiffness", remedy));
+        }
+        // The steps, checked as those of any system are: what is read can be decided.
+        let clock = |step: &Rational| Potential {
+            stiffness: Symmetric::zero(1),
+            step: step.clone(),
+            phase: Rational::default(),
+        };
+        System::new(
+            Symmetric::diagonal(&[Rational::one()]),
+            potentials.iter().map(|(step, _)| clock(step)).collect(),
+        )?;
+        let accuracy = match &document.accuracy {
+            Some(number) => to_f64(&number.read("accuracy")?),
+            None => USUAL_ACCURACY,
+        };
+        let masses = document.masses.as_ref().map(|at| at.read("masses", folder)).transpose()?;
+        let masses = masses.map(|own| spread(own.into_values(), n)).transpose()?;
+        if masses.is_none() && !document.mass_weighted {
+            return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
+        }
+        let positions = document.positions.as_ref().map(|at| at.read("positions", folder)).transpose()?;
+        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+        let read = Measured {
+            potentials,
+            masses,
+            positions,
+            is_weighted: document.mass_weighted,
+            accuracy: 0.0,
+            keeps_rigid: false,
+            kernel: OnceLock::new(),
+        };
+        read.at_accuracy(accuracy)
+    }
+
+    /// The same known to another accuracy.
+    pub fn at_accuracy(mut self, accuracy: f64) -> Result<Measured> {
+        if !(accuracy > 0.0 && accuracy < 0.1) {
+            return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
+        }
+        (self.accuracy, self.kernel) = (accuracy, OnceLock::new());
+        Ok(self)
+    }
+
+    /// The same with its rigid motions left in.
+    pub fn keeping_rigid(mut self) -> Measured {
+        (self.keeps_rigid, self.kernel) = (true, OnceLock::new());
+        self
+    }
+
+    /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
+            let mut analysis = decide_by(route, &self.system(), limits)?;
+            analysis.warnings.push(
+                "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the \
+                 doubles given, rigid motions left in"
+                    .into(),
+            );
+            return Ok(analysis);
+        };
+        let n = self.potentials[0].1.nrows() as u64;
+        limits.allow(n.saturating_pow(3).saturating_mul(200), || {
+            format!("eigenvalues and factorizations of {n} rows")
+        })?;
+        Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
+    }
+
+    /// The number of inner steps, and the verdicts on a range of outer ones.
+    pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
+        let (outer, _) = self.outer().ok_or_else(|| {
+            let remedy = "intervals are computed for two levels, the outer step a multiple of the inner one";
+            Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
+        })?;
+        let inner_steps = outer.inner_steps();
+        Ok((inner_steps, self.kernel()?.stretches(inner_steps, range, width)?))
+    }
+
+    /// The eigenbasis, computed when it is first asked for.
+    fn kernel(&self) -> Result<&Kernel> {
+        if let Some(kernel) = self.kernel.get() {
+            return Ok(kernel);
+        }
+        let kernel = Kernel::new(&self.hessians()?)?;
+        Ok(self.kernel.get_or_init(|| kernel))
+    }
+
+    fn hessians(&self) -> Result<Hessians> {
+        let fast = &self.potentials[0].1;
+        let nothing = DMatrix::zeros(fast.nrows(), fast.ncols());
+        let slow = self.potentials.get(1).map_or(&nothing, |(_, k)| k);
+        let hessians = match &self.masses {
+            Some(masses) if !self.is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
+            _ => Hessians::new(fast, slow, self.accuracy)?,
+        };
+        Ok(match (&self.positions, &self.masses) {
+            _ if self.keeps_rigid => hessians,
+            (Some(positions), Some(masses)) => {
+                let own: Vec<f64> = masses.iter().step_by(3).copied().collect();
+                hessians.without(&rigid_motions(positions, &own), "positions")
+            }
+            _ => hessians.without_null_space(self.accuracy),
+        })
+    }
+
+    /// The two levels, with their period; `None` where the steps are of another kind.
+    fn outer(&self) -> Option<(Outer, Rational)> {
+        match self.potentials.as_slice() {
+            [(step, _)] => Some((Outer::of_steps(step, step)?, step.clone())),
+            [(inner, _), (outer, _)] => Some((Outer::of_steps(inner, outer)?, outer.clone())),
+            _ => None,
+        }
+    }
+
+    /// The same doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
+    pub fn system(&self) -> System {
+        let n = self.size();
+        let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
+        let one = vec![1.0; n];
+        let masses = self.masses.as_ref().filter(|_| !self.is_weighted).unwrap_or(&one);
+        let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
+        let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+            let mut sum = Symmetric::zero(n);
+            for i in 0..n {
+                for j in 0..=i {
+                    sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
+                }
+            }
+            Potential { stiffness: sum, step: step.clone(), phase: Rational::default() }
+        };
+        let potentials = self.potentials.iter().map(potential).collect();
+        System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.potentials[0].1.nrows()
+    }
+}
+
+impl PotentialDocument {
+    fn read(&self, k: usize, folder: &Path) -> Result<(Rational, DMatrix<f64>)> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
+        let step = self.step.read(&field("step"))?;
+        if step <= Rational::default() {
+            return Err(Error::input(&field("step"), step, "a step must be positive"));
+        }
+        let mut stiffness = self.stiffness.read(&field("stiffness"), folder)?.matrix(&field("stiffness"))?;
+        if let Some(scale) = &self.scale {
+            stiffness *= to_f64(&scale.read(&field("scale"))?);
+        }
+        Ok((step, stiffness))
+    }
+}
+
+/// A mass for each degree of freedom, from one each or from one for each three.
+fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
+    let wrong = || {
+        let remedy = format!("there are {n} degrees of freedom: give a mass for each, or for each three");
+        Error::input("masses", masses.len(), remedy)
+    };
+    if let Some(mass) = masses.iter().find(|m| !(m.is_finite() && **m > 0.0)) {
+        return Err(Error::input("masses", mass, "a mass must be positive"));
+    }
+    match masses.len() {
+        k if k == n => Ok(masses),
+        k if 3 * k == n => Ok(masses.iter().flat_map(|&m| [m; 3]).collect()),
+        _ => Err(wrong()),
+    }
+}
+
+fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
+    if positions.len() != n || n % 3 != 0 {
+        let remedy = format!("there are {n} degrees of freedom: give three coordinates for each particle");
+        return Err(Error::input("positions", format!("{} numbers", positions.len()), remedy));
+    }
+    Ok(positions.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect())
+}

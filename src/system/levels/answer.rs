@@ -1,0 +1,171 @@
+//! The verdict on two levels at one outer step, with how far it stands.
+
+use faer::{Mat, Side};
+use num_complex::Complex64;
+
+use super::half::Half;
+use super::kernel::{Kernel, Outer};
+use crate::number::{Laurent, Rational};
+use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part, exponent};
+use crate::system::measured::Measured;
+use crate::system::modes::Origin;
+use crate::system::spectrum::{Spectrum, from_segment};
+use crate::verdict::Kind;
+
+/// As for rational systems: what eigenvalues in doubles may be off by where nothing is proven.
+const ROUGH: f64 = 1e-6;
+
+impl Kernel {
+    /// The verdict at an outer step, for the matrices given and for all within `accuracy`.
+    pub fn decide(&self, outer: &Outer, period: &Rational, accuracy: f64) -> Analysis {
+        let region = self.is_in_first_region(outer, 0.0);
+        let near = !region && self.is_just_beyond_first_region(outer, 0.0);
+        let beyond = (!region && !near).then(|| self.beyond(outer, 0.0)).flatten();
+        let (kind, evidence) = match (&beyond, region, near) {
+            (_, true, _) => (Kind::Elliptic, Evidence::Signs),
+            (_, _, true) => (Kind::Hyperbolic, Evidence::Signs),
+            (Some((Some(kind), _)), ..) => (*kind, Evidence::Discs),
+            (Some((None, spectrum)), ..) if spectrum.mu.iter().all(|&mu| from_segment(mu) < ROUGH) => {
+                (Kind::Elliptic, Evidence::Estimate)
+            }
+            _ => (Kind::Hyperbolic, Evidence::Estimate),
+        };
+        let (multipliers, instabilities) =
+            self.multipliers(outer, kind, beyond.map(|(_, spectrum)| spectrum));
+        let period = Laurent::from_rational(period.clone());
+        let size = self.size();
+        let part = Part {
+            dofs: (0..self.modes.nrows()).collect(),
+            size,
+            period: period.clone(),
+            kind,
+            evidence,
+            multipliers,
+            instabilities,
+            roots: None,
+            oscillator: None,
+        };
+        Analysis {
+            size: self.modes.nrows(),
+            clocks: 2,
+            period,
+            kind,
+            rigid_modes: Vec::new(),
+            parts: vec![part],
+            warnings: self.warnings(evidence),
+            measured: Some(self.measured(outer, accuracy)),
+        }
+    }
+
+    fn warnings(&self, evidence: Evidence) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if !self.is_total_definite {
+            let lowest = self.lowest_total();
+            warnings.push(format!(
+                "the total stiffness is not proven positive definite: its lowest eigenvalue is {lowest:.3e}, so the system \
+                 itself may be unstable, whatever the steps"
+            ));
+        }
+        if evidence == Evidence::Estimate {
+            warnings.push("doubles do not prove the verdict (eigenvalues too close together or to the edge of stability): it is an estimate".into());
+        }
+        warnings
+    }
+
+    fn lowest_total(&self) -> f64 {
+        let mut total = self.slow.clone();
+        (0..self.size()).for_each(|i| total[(i, i)] += self.values[i]);
+        total.self_adjoint_eigenvalues(Side::Lower).map_or(f64::NAN, |values| values[0])
+    }
+
+    fn measured(&self, outer: &Outer, accuracy: f64) -> Measured {
+        let first_unstable = self.first_unstable(outer.inner_steps);
+        Measured {
+            accuracy,
+            holds: self.verdict_within(outer, accuracy),
+            margin: self.margin(outer),
+            first_unstable,
+            is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step > hi),
+            removed: self.removed.clone(),
+        }
+    }
+
+    /// Every multiplier, and the shapes of those that grow.
+    fn multipliers(
+        &self,
+        outer: &Outer,
+        kind: Kind,
+        spectrum: Option<Spectrum>,
+    ) -> (Vec<Multiplier>, Vec<Instability>) {
+        let Some((mu, radius, shapes)) = self.eigenvalues(outer, spectrum) else { return Default::default() };
+        let mut order: Vec<usize> = (0..mu.len()).collect();
+        order.sort_by(|&i, &j| mu[i].re.total_cmp(&mu[j].re).then(mu[i].im.total_cmp(&mu[j].im)));
+        let multipliers = order.iter().map(|&i| Multiplier::new(mu[i], radius)).collect();
+        if kind != Kind::Hyperbolic {
+            return (multipliers, Vec::new());
+        }
+        let upper = || order.iter().copied().filter(|&i| mu[i].im >= 0.0);
+        let farthest = upper().max_by(|&i, &j| from_segment(mu[i]).total_cmp(&from_segment(mu[j])));
+        let unstable =
+            upper().filter(|&i| from_segment(mu[i]) > radius.unwrap_or(ROUGH) || Some(i) == farthest);
+        let instability = |i: usize| {
+            let (shape, quadrature) = self.shape(&shapes(i));
+            Instability {
+                multiplier: Multiplier::new(mu[i], radius),
+                origin: if mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision },
+                growth_rate: exponent(mu[i]).re / outer.step,
+                shape,
+                quadrature,
+                resonance: None,
+            }
+        };
+        (multipliers, unstable.map(instability).collect())
+    }
+
+    /// The μ, a radius where one is proven, and the eigenvectors in the basis of the modes: those of the spectrum, or, where
+    /// p θ < π for all modes, of the symmetric cos p θ − V^½ M V^½ = 1 + 2 μ, V = 2 b d.
+    #[allow(clippy::type_complexity)]
+    fn eigenvalues(
+        &self,
+        outer: &Outer,
+        spectrum: Option<Spectrum>,
+    ) -> Option<(Vec<Complex64>, Option<f64>, Box<dyn Fn(usize) -> Vec<Complex64>>)> {
+        if let Some(spectrum) = spectrum {
+            let (mu, radius) = (spectrum.mu.clone(), spectrum.radius);
+            let m = self.size();
+            return Some((mu, radius, Box::new(move |i| (0..m).map(|k| spectrum.vectors[(k, i)]).collect())));
+        }
+        let m = self.size();
+        let halves: Vec<Half> =
+            self.values.iter().map(|x| Half::new(outer.inner_square * x, outer.inner_steps)).collect();
+        let root: Vec<f64> = halves.iter().map(|h| (2.0 * h.b.mid() * h.d.mid()).max(0.0).sqrt()).collect();
+        let cosine = |h: &Half| h.a.mid() * h.d.mid() + h.b.mid() * h.c.mid();
+        let factor = outer.half_kick();
+        let symmetric = Mat::from_fn(m, m, |i, j| {
+            (if i == j { cosine(&halves[i]) } else { 0.0 }) - root[i] * factor * self.slow[(i, j)] * root[j]
+        });
+        let eigen = symmetric.self_adjoint_eigen(Side::Lower).ok()?;
+        let mu = (0..m).map(|i| Complex64::new((eigen.S()[i] - 1.0) / 2.0, 0.0)).collect();
+        let vectors = eigen.U().to_owned();
+        let shape = move |i: usize| (0..m).map(|k| Complex64::new(root[k] * vectors[(k, i)], 0.0)).collect();
+        Some((mu, None, Box::new(shape)))
+    }
+
+    /// Mass-weighted positions of a combination of the modes, the longest entry 1.
+    fn shape(&self, amplitudes: &[Complex64]) -> (Vec<f64>, Vec<f64>) {
+        let n = self.modes.nrows();
+        let entry = |i: usize| {
+            amplitudes
+                .iter()
+                .enumerate()
+                .fold(Complex64::new(0.0, 0.0), |sum, (k, c)| sum + c * self.modes[(i, k)])
+        };
+        let all: Vec<Complex64> = (0..n).map(entry).collect();
+        let longest = all
+            .iter()
+            .copied()
+            .fold(Complex64::new(0.0, 0.0), |a, b| if b.norm_sqr() > a.norm_sqr() { b } else { a });
+        let scaled = |z: &Complex64| if longest.norm_sqr() > 0.0 { z / longest } else { *z };
+        (all.iter().map(|z| scaled(z).re).collect(), all.iter().map(|z| scaled(z).im).collect())
+    }
+}

@@ -1,0 +1,163 @@
+//! The eigenbasis of the fast stiffness, computed once for every ratio and step.
+
+use faer::{Mat, Side};
+use num_traits::ToPrimitive;
+
+use super::rigid::{Hessians, halved};
+use crate::error::{Error, Result};
+use crate::number::rational::to_f64;
+use crate::number::{Rational, U};
+use crate::system::inertia::{backward_error, is_definite, orthogonality};
+use crate::system::measured::Removed;
+use crate::system::norm;
+
+/// F = U (Λ + E₁) Uᵀ and S = U (S' + E₂) Uᵀ for an orthogonal U: Λ and S', and bounds on E₁ and E₂ (2-norm).
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    /// Λ, increasing.
+    pub(super) values: Vec<f64>,
+    pub(super) fast_error: f64,
+    /// S'.
+    pub(super) slow: Mat<f64>,
+    pub(super) slow_error: f64,
+    /// Upper bounds of ‖F‖₂ and ‖S‖₂.
+    pub(super) norms: [f64; 2],
+    /// Whether F + S is proven positive definite.
+    pub(super) is_total_definite: bool,
+    /// The modes as columns in the mass-weighted coordinates given, rounded.
+    pub(super) modes: Mat<f64>,
+    /// What was projected out before.
+    pub removed: Option<Removed>,
+}
+
+/// An outer step of p inner ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Outer {
+    /// h², h the inner step, within 4 u of its size.
+    pub(super) inner_square: f64,
+    /// p.
+    pub(super) inner_steps: u64,
+    /// p h.
+    pub(super) step: f64,
+}
+
+/// The relative error of [`Outer::inner_square`] and of a product with it, with room.
+pub(super) const STEP_ERROR: f64 = 8.0 * U;
+
+impl Outer {
+    /// p inner steps in an outer step.
+    ///
+    /// # Errors
+    /// A step that is not positive and finite, p = 0 or above a million.
+    pub fn new(step: f64, inner_steps: u64) -> Result<Outer> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(Error::input("step", step, "a step must be positive"));
+        }
+        if inner_steps == 0 || inner_steps > 1_000_000 {
+            return Err(Error::input("inner steps", inner_steps, "give 1 to a million inner steps"));
+        }
+        Ok(Outer { inner_square: (step / inner_steps as f64).powi(2), inner_steps, step })
+    }
+
+    /// Two rational steps, of which the outer one is a multiple of the inner one; `None` where it is not.
+    pub fn of_steps(inner: &Rational, outer: &Rational) -> Option<Outer> {
+        let ratio = outer / inner;
+        let inner_steps = ratio.is_integer().then(|| ratio.to_integer().to_u64()).flatten()?;
+        let checked = Outer::new(to_f64(outer), inner_steps).ok()?;
+        Some(Outer { inner_square: to_f64(&(inner * inner)), ..checked })
+    }
+
+    /// p.
+    pub fn inner_steps(&self) -> u64 {
+        self.inner_steps
+    }
+
+    /// (p/2) h², of which half an outer kick is the multiple in the time unit h.
+    pub(super) fn half_kick(&self) -> f64 {
+        self.inner_square * (self.inner_steps as f64 / 2.0)
+    }
+
+    /// h² x, rounded up.
+    pub(super) fn scaled_up(&self, x: f64) -> f64 {
+        let y = self.inner_square * x;
+        (y + STEP_ERROR * y.abs()).next_up()
+    }
+
+    /// h² x, rounded down.
+    pub(super) fn scaled_down(&self, x: f64) -> f64 {
+        -self.scaled_up(-x)
+    }
+}
+
+impl Kernel {
+    /// One eigendecomposition and two products.
+    ///
+    /// # Errors
+    /// Where the eigenvalue iteration fails: never seen, but not excluded.
+    pub fn new(hessians: &Hessians) -> Result<Kernel> {
+        let (fast, slow, m) = (&hessians.fast, &hessians.slow, hessians.size());
+        let failed = || {
+            Error::input("fast", "its eigenvalues", "the iteration does not converge: is the matrix sound?")
+        };
+        let eigen = fast.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
+        let vectors = eigen.U().to_owned();
+        let values: Vec<f64> = (0..m).map(|i| eigen.S()[i]).collect();
+        let defect = orthogonality(&vectors).ok_or_else(failed)?;
+        let fast_error =
+            hessians.errors[0] + backward_error(fast, vectors.clone(), &values).ok_or_else(failed)?;
+        let turned = halved((vectors.transpose() * slow * &vectors).as_ref());
+        let size = norm::frobenius(slow);
+        let rounding = 2.2 * (m as f64 + 4.0) * U * norm::frobenius(&vectors).powi(2) * size;
+        let slow_error = hessians.errors[1] + rounding + 2.1 * defect * size;
+        let fast_norm = values.iter().fold(0.0, |a: f64, x| a.max(x.abs())) + fast_error;
+        let slow_norm = spectral_norm(&turned, slow_error);
+        let mut total = turned.clone();
+        (0..m).for_each(|i| total[(i, i)] += values[i]);
+        let modes = match &hessians.basis {
+            Some(basis) => basis * &vectors,
+            None => vectors,
+        };
+        Ok(Kernel {
+            is_total_definite: is_definite(
+                &total,
+                1.01 * (fast_error + slow_error) + U * (fast_norm + slow_norm),
+            ),
+            values,
+            fast_error,
+            slow: turned,
+            slow_error,
+            norms: [fast_norm, slow_norm],
+            modes,
+            removed: hessians.removed.clone(),
+        })
+    }
+
+    /// The number of modes.
+    pub fn size(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The highest frequency of the fast stiffness, rounded.
+    pub fn highest_frequency(&self) -> f64 {
+        self.values.last().copied().unwrap_or(0.0).max(0.0).sqrt()
+    }
+}
+
+/// A proven upper bound of ‖m‖₂ of every symmetric matrix within `slack`, close to it: t I ± m are definite.
+fn spectral_norm(m: &Mat<f64>, slack: f64) -> f64 {
+    let n = m.nrows();
+    let largest = m
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_or(f64::INFINITY, |values| values.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+    let mut bound = largest * 1.0001 + 2.0 * slack;
+    let whole = norm::frobenius(m) + slack;
+    while bound < whole {
+        let shifted =
+            |sign: f64| Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) * bound + sign * m[(i, j)]);
+        if is_definite(&shifted(1.0), slack) && is_definite(&shifted(-1.0), slack) {
+            return bound;
+        }
+        bound *= 1.001;
+    }
+    whole
+}

@@ -1,0 +1,165 @@
+//! Hessians of two levels in mass-weighted coordinates, rigid motions projected out.
+
+use faer::{Mat, MatRef, Side};
+use nalgebra::DMatrix;
+
+use crate::error::{Error, Result};
+use crate::number::U;
+use crate::system::inertia::orthogonality;
+use crate::system::measured::Removed;
+use crate::system::norm;
+
+/// F and S, mass-weighted (1/time²), in coordinates without the rigid motions.
+#[derive(Clone, Debug)]
+pub struct Hessians {
+    pub(super) fast: Mat<f64>,
+    pub(super) slow: Mat<f64>,
+    /// How far (2-norm) these are from the exact restrictions of the matrices given.
+    pub(super) errors: [f64; 2],
+    /// The coordinates kept, as orthonormal columns in those given; `None`: all.
+    pub(super) basis: Option<Mat<f64>>,
+    pub(super) removed: Option<Removed>,
+}
+
+impl Hessians {
+    /// From mass-weighted matrices, M^-½ K M^-½, of one size.
+    ///
+    /// # Errors
+    /// Names the matrix that is empty, not square, of another size, not finite, or farther from symmetric than
+    /// `accuracy` times its norm. What asymmetry there is is split evenly.
+    pub fn new(fast: &DMatrix<f64>, slow: &DMatrix<f64>, accuracy: f64) -> Result<Hessians> {
+        let n = fast.nrows();
+        let [fast, slow] = [("fast", fast), ("slow", slow)].map(|(name, k)| symmetric(name, k, n, accuracy));
+        Ok(Hessians { fast: fast?, slow: slow?, errors: [0.0; 2], basis: None, removed: None })
+    }
+
+    /// From stiffnesses K and the mass of each degree of freedom.
+    ///
+    /// # Errors
+    /// As [`Hessians::new`]; a mass that is not positive.
+    pub fn weighted(
+        masses: &[f64],
+        fast: &DMatrix<f64>,
+        slow: &DMatrix<f64>,
+        accuracy: f64,
+    ) -> Result<Hessians> {
+        if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
+            return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
+        }
+        if masses.len() != fast.nrows() {
+            let remedy = format!("there are {} rows: give as many masses", fast.nrows());
+            return Err(Error::input("masses", masses.len(), remedy));
+        }
+        let root: Vec<f64> = masses.iter().map(|m| m.sqrt()).collect();
+        let weigh = |k: &DMatrix<f64>| {
+            let entry =
+                |i: usize, j: usize| k[(i, j)] / (root[i.min(root.len() - 1)] * root[j.min(root.len() - 1)]);
+            DMatrix::from_fn(k.nrows(), k.ncols(), entry)
+        };
+        let mut all = Hessians::new(&weigh(fast), &weigh(slow), accuracy)?;
+        // Two roots, their product, the quotient.
+        all.errors = [&all.fast, &all.slow].map(|k| 4.1 * U * norm::frobenius(k));
+        Ok(all)
+    }
+
+    /// The number of degrees of freedom kept.
+    pub fn size(&self) -> usize {
+        self.fast.nrows()
+    }
+
+    /// The same orthogonal to the columns of `rigid`, which are orthonormal.
+    #[must_use]
+    pub fn without(self, rigid: &Mat<f64>, found_by: &'static str) -> Hessians {
+        let (n, r) = (rigid.nrows(), rigid.ncols());
+        if r == 0 || r >= n {
+            return self;
+        }
+        let full = rigid.qr().compute_Q();
+        let kept = full.subcols(r, n - r).to_owned();
+        // Exactly orthonormal columns are within the defect of these.
+        let defect = orthogonality(&kept).unwrap_or(f64::INFINITY);
+        let project = |k: &Mat<f64>| {
+            let image = kept.transpose() * k * &kept;
+            let size = norm::frobenius(k);
+            let rounding = 2.2 * (n as f64 + 4.0) * U * norm::frobenius(&kept).powi(2) * size;
+            (halved(image.as_ref()), rounding + 2.1 * defect * size)
+        };
+        let off = |k: &Mat<f64>| norm::spectral(&(k * rigid)) / norm::spectral(k).max(f64::MIN_POSITIVE);
+        let removed = Removed { count: r, found_by, fast: off(&self.fast), slow: off(&self.slow) };
+        let ((fast, e), (slow, f)) = (project(&self.fast), project(&self.slow));
+        let errors = [self.errors[0] + e, self.errors[1] + f];
+        Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed) }
+    }
+
+    /// The same without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most
+    /// `accuracy` (‖F‖ + ‖S‖).
+    #[must_use]
+    pub fn without_null_space(self, accuracy: f64) -> Hessians {
+        let total = &self.fast + &self.slow;
+        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return self };
+        let least = accuracy * (norm::spectral(&self.fast) + norm::spectral(&self.slow));
+        let null: Vec<usize> = (0..self.size()).filter(|&i| eigen.S()[i].abs() <= least).collect();
+        let rigid = Mat::from_fn(self.size(), null.len(), |i, j| eigen.U()[(i, null[j])]);
+        self.without(&rigid, "null space of the total")
+    }
+}
+
+fn symmetric(name: &str, k: &DMatrix<f64>, n: usize, accuracy: f64) -> Result<Mat<f64>> {
+    if k.nrows() != n || k.ncols() != n || n == 0 {
+        let size = format!("{} x {}", k.nrows(), k.ncols());
+        return Err(Error::input(name, size, format!("give a square matrix of {} rows", n.max(1))));
+    }
+    if k.iter().any(|x| !x.is_finite()) {
+        return Err(Error::input(name, "an entry that is not finite", "give finite numbers"));
+    }
+    let whole = Mat::from_fn(n, n, |i, j| k[(i, j)]);
+    let off = norm::frobenius(&(&whole - whole.transpose())) / 2.0;
+    let size = norm::frobenius(&whole);
+    if off > accuracy * size {
+        let remedy = format!("it must be symmetric to its accuracy, {accuracy:.0e} of its norm");
+        return Err(Error::input(name, format!("asymmetry of {:.1e} of its norm", off / size), remedy));
+    }
+    Ok(halved(whole.as_ref()))
+}
+
+/// (m + mᵀ)/2.
+pub(super) fn halved(m: MatRef<'_, f64>) -> Mat<f64> {
+    Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)] / 2.0 + m[(j, i)] / 2.0)
+}
+
+/// Translations and rotations of particles at `positions` (one triple each) with `masses` (one each), in mass-weighted
+/// coordinates x_1, y_1, z_1, x_2, ...: orthonormal columns, 6 of them, 5 for particles on a line, 3 for one.
+pub fn rigid_motions(positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
+    let total: f64 = masses.iter().sum();
+    let centre = [0, 1, 2].map(|a| positions.iter().zip(masses).map(|(x, m)| x[a] * m).sum::<f64>() / total);
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for motion in 0..6 {
+        let axis = motion % 3;
+        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+        let mut column = vec![0.0; 3 * positions.len()];
+        for (i, (x, m)) in positions.iter().zip(masses).enumerate() {
+            let weight = m.sqrt();
+            if motion < 3 {
+                column[3 * i + axis] = weight;
+            } else {
+                column[3 * i + b] = -weight * (x[c] - centre[c]);
+                column[3 * i + c] = weight * (x[b] - centre[b]);
+            }
+        }
+        let length = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let before = length(&column);
+        // Twice is enough (Kahan, Parlett).
+        for _ in 0..2 {
+            for other in &columns {
+                let along: f64 = column.iter().zip(other).map(|(x, y)| x * y).sum();
+                column.iter_mut().zip(other).for_each(|(x, y)| *x -= along * y);
+            }
+        }
+        let after = length(&column);
+        // A rotation about the line of a linear molecule moves nothing: what is left of it is rounding.
+        if after > 1e-8 * before.max(f64::MIN_POSITIVE) {
+            columns.push(column.iter().map(|x| x / after).collect());
+        }
+    }
+    Mat::from_fn(3 * positions.len(), columns.len(), |i, j| columns[j][i])
+}

@@ -1,0 +1,54 @@
+//! How far a verdict on measured stiffnesses stands.
+
+/// Rigid motions that were projected out of every potential.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Removed {
+    /// How many.
+    pub count: usize,
+    /// "positions" or "null space of the total".
+    pub found_by: &'static str,
+    /// ‖F r‖₂/‖F‖₂ for the orthonormal rigid motions r, rounded: what of the fast stiffness was removed.
+    pub fast: f64,
+    /// The same of the slow one.
+    pub slow: f64,
+}
+
+/// Whether a verdict holds for every matrix within the accuracy of the data.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Holds {
+    /// Stable for all of them.
+    Stable,
+    /// Unstable for all of them.
+    Unstable,
+    /// The data do not tell: some are stable and some are not, or nothing was proven of all.
+    NotTold,
+}
+
+impl Holds {
+    /// The name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Holds::Stable => "stable",
+            Holds::Unstable => "unstable",
+            Holds::NotTold => "the data do not tell",
+        }
+    }
+}
+
+/// How far a verdict on measured stiffnesses stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted).
+    pub accuracy: f64,
+    /// The verdict on all matrices within it.
+    pub holds: Holds,
+    /// The largest ε, rounded down, for which all stiffnesses within ε times their norms are proven stable; `None` outside
+    /// the first stable region.
+    pub margin: Option<f64>,
+    /// \[lo, hi\]: every outer step in (0, lo] at this number of inner steps is proven stable, hi is proven unstable.
+    pub first_unstable: Option<(f64, f64)>,
+    /// Whether the step lies above an unstable one, on an island that no advice should rest on.
+    pub is_above_unstable: bool,
+    /// The rigid motions projected out.
+    pub removed: Option<Removed>,
+}

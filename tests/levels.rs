@@ -1,0 +1,254 @@
+//! Two levels of measured stiffnesses: verdicts, margins and first unstable steps against other routes.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::system::levels::{Hessians, Kernel, Outer};
+use kickdrift::system::{Evidence, Holds, Limits, Potential, Symmetric, System, decide_system};
+use kickdrift::verdict::Kind;
+use nalgebra::DMatrix;
+
+/// Numbers that repeat, in [−1, 1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn symmetric(&mut self, n: usize) -> DMatrix<f64> {
+        let mut k = DMatrix::zeros(n, n);
+        for i in 0..n {
+            for j in 0..=i {
+                let x = self.next();
+                (k[(i, j)], k[(j, i)]) = (x, x);
+            }
+        }
+        k
+    }
+
+    /// A definite fast stiffness with highest frequency 1, an indefinite slow one, about a fifth of it.
+    fn levels(&mut self, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+        let g = self.symmetric(n);
+        let fast = &g * &g + DMatrix::identity(n, n) * 0.3;
+        let fast = &fast / norm(&fast);
+        (fast, self.symmetric(n) * (0.2 / n as f64))
+    }
+}
+
+fn norm(k: &DMatrix<f64>) -> f64 {
+    k.clone().symmetric_eigen().eigenvalues.iter().fold(0.0, |a: f64, x| a.max(x.abs()))
+}
+
+/// The largest |λ| of the period, by the dense 2n x 2n product of kicks and drifts.
+fn largest_multiplier(fast: &DMatrix<f64>, slow: &DMatrix<f64>, step: f64, inner: u64) -> f64 {
+    let (n, h) = (fast.nrows(), step / inner as f64);
+    let identity = DMatrix::<f64>::identity(2 * n, 2 * n);
+    let kick = |k: &DMatrix<f64>, weight: f64| {
+        let mut m = identity.clone();
+        m.view_mut((n, 0), (n, n)).copy_from(&(k * -weight));
+        m
+    };
+    let mut drift = identity.clone();
+    drift.view_mut((0, n), (n, n)).copy_from(&(DMatrix::identity(n, n) * h));
+    let fast_step = kick(fast, h / 2.0) * drift * kick(fast, h / 2.0);
+    let product = (0..inner).fold(identity.clone(), |m, _| &fast_step * m);
+    let period = kick(slow, step / 2.0) * product * kick(slow, step / 2.0);
+    period.complex_eigenvalues().iter().fold(0.0, |a: f64, z| a.max(z.norm()))
+}
+
+fn kernel(fast: &DMatrix<f64>, slow: &DMatrix<f64>) -> Kernel {
+    Kernel::new(&Hessians::new(fast, slow, 1e-6).unwrap()).unwrap()
+}
+
+#[test]
+fn kernels_agree_with_the_rational_route() {
+    let (mut numbers, mut seen) = (Numbers(3), [0; 2]);
+    for trial in 0..60 {
+        let n = 2 + trial % 3;
+        let (fast, slow) = numbers.levels(n);
+        let inner = 1 + trial as u64 % 5;
+        let step = inner as f64 * (0.5 + 1.4 * numbers.next().abs());
+        let step = from_f64_exact(step).unwrap();
+        let h = &step / Rational::from_integer((inner as i64).into());
+        let analysis = kernel(&fast, &slow).decide(&Outer::of_steps(&h, &step).unwrap(), &step, 1e-9);
+        let exact = |k: &DMatrix<f64>| Symmetric::try_from(k).unwrap();
+        let potential =
+            |k, step: &Rational| Potential { stiffness: exact(k), step: step.clone(), phase: ratio(0, 1) };
+        let system = System::new(
+            Symmetric::diagonal(&vec![ratio(1, 1); n]),
+            vec![potential(&fast, &h), potential(&slow, &step)],
+        )
+        .unwrap();
+        let other = decide_system(&system, &Limits::default()).unwrap();
+        assert!(other.is_proof());
+        if analysis.is_proof() {
+            assert_eq!(analysis.kind, other.kind, "{trial}: {analysis:?}");
+            seen[usize::from(analysis.is_stable())] += 1;
+            let rates = (analysis.growth_rate(), other.growth_rate());
+            assert!((rates.0 - rates.1).abs() < 1e-6 * (1.0 + rates.1), "{rates:?}");
+        }
+    }
+    assert!(seen[0] > 10 && seen[1] > 10, "{seen:?}");
+}
+
+#[test]
+fn no_perturbation_within_a_margin_flips_a_verdict_and_one_just_beyond_two_does() {
+    let (mut numbers, mut systems) = (Numbers(11), 0);
+    while systems < 100 {
+        let n = 3;
+        let (fast, slow) = numbers.levels(n);
+        let (inner, step) = (4, 1.0 + numbers.next().abs());
+        let outer = Outer::new(step, inner).unwrap();
+        let Some(margin) = kernel(&fast, &slow).margin(&outer).filter(|m| *m > 1e-4) else { continue };
+        systems += 1;
+        let sizes = [norm(&fast), norm(&slow)];
+        let mut perturb = |size: f64| {
+            let e = numbers.symmetric(n);
+            let length = norm(&e);
+            e * (0.999 * margin * size / length)
+        };
+        for _ in 0..100 {
+            let (f, s) = (&fast + perturb(sizes[0]), &slow + perturb(sizes[1]));
+            // Near ±1 multipliers are good to the root of roundoff.
+            assert!(largest_multiplier(&f, &s, step, inner) < 1.0 + 1e-6);
+        }
+        // The worst perturbation is a shift of both; past a thin tongue it would be stable again.
+        let flips = (1..=100).flat_map(|k| [f64::from(k), -f64::from(k)]).any(|k| {
+            let shift = |m: &DMatrix<f64>, size: f64| {
+                m + DMatrix::identity(n, n) * ((k + k.signum() * 100.0) / 100.0 * margin * size)
+            };
+            largest_multiplier(&shift(&fast, sizes[0]), &shift(&slow, sizes[1]), step, inner) > 1.0 + 1e-6
+        });
+        assert!(flips, "margin {margin} of {fast} {slow} at {step}");
+    }
+}
+
+#[test]
+fn the_first_unstable_step_is_where_the_dense_period_first_grows() {
+    let mut numbers = Numbers(5);
+    for inner in [1u64, 2, 3, 6] {
+        let (fast, slow) = numbers.levels(4);
+        let (lo, hi) = kernel(&fast, &slow).first_unstable(inner).unwrap();
+        assert!(hi > lo && hi - lo < 1e-5 * lo, "{lo} {hi}");
+        for k in 1..200 {
+            let step = lo * f64::from(k) / 200.0;
+            assert!(largest_multiplier(&fast, &slow, step, inner) < 1.0 + 1e-6, "{step} below {lo}");
+        }
+        assert!(largest_multiplier(&fast, &slow, hi * 1.0005, inner) > 1.0 + 1e-6, "{hi}");
+    }
+}
+
+/// The program on `data/scenes/NAME.json` with other steps.
+fn water(name: &str, inner: u64, step: &str, flags: &str) -> serde_json::Value {
+    let data = format!("{}/data", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(format!("{data}/scenes/{name}.json")).unwrap();
+    let text = text.replace("../hessians", &format!("{data}/hessians"));
+    let mut system: serde_json::Value = serde_json::from_str(&text).unwrap();
+    system["potentials"][0]["step"] = format!("{step}/{inner}").into();
+    system["potentials"][1]["step"] = step.into();
+    let own = tempfile::tempdir().unwrap();
+    let path = own.path().join("system.json");
+    std::fs::write(&path, system.to_string()).unwrap();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_kickdrift"))
+        .args(["system", path.to_str().unwrap(), "--format", "json"])
+        .args(flags.split_whitespace())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
+
+#[test]
+fn sixteen_waters_are_stable_up_to_4_4_fs_and_unstable_from_there() {
+    let stable = water("water16", 8, "0.004", "");
+    assert_eq!((&stable["stable"], &stable["proven"]), (&true.into(), &true.into()));
+    let own = &stable["measured"];
+    assert_eq!((&own["rigid_motions"]["count"], &own["holds"]), (&6.into(), &"stable".into()), "{own}");
+    assert!(number(&own["margin"]) > 1e-6, "{own}");
+    // Left in, the rotations are no motions of either part alone.
+    let kept = water("water16", 8, "0.004", "--keep-rigid");
+    assert!(kept["measured"]["rigid_motions"].is_null());
+
+    let at = |step: &str| water("water16", 9, step, "");
+    let below = at("0.0044");
+    let first = &below["measured"]["first_unstable"];
+    let (lo, hi) = (number(&first["lo"]), number(&first["hi"]));
+    assert!(lo > 0.0044 && hi < 0.00442 && hi - lo < 1e-6 * lo, "{first}");
+    assert_eq!((&below["stable"], &below["proven"]), (&true.into(), &true.into()));
+    for step in ["0.00442", "0.0045", "0.0047"] {
+        let own = at(step);
+        assert_eq!((&own["stable"], &own["proven"]), (&false.into(), &true.into()), "{step}");
+    }
+    let island = water("water16", 10, "0.005", "");
+    assert_eq!(
+        (&island["stable"], &island["proven"]),
+        (&true.into(), &true.into()),
+        "{}",
+        island["warnings"]
+    );
+    assert_eq!(island["measured"]["above_unstable"], true);
+}
+
+#[test]
+fn four_waters_are_unstable_where_their_simulation_blows_up() {
+    for (step, stable) in
+        [("0.0044", true), ("0.00445", false), ("0.0045", false), ("0.00455", false), ("0.0047", false)]
+    {
+        let own = water("water4", 9, step, "");
+        assert_eq!((&own["stable"], &own["proven"]), (&stable.into(), &true.into()), "{step}: {own}");
+    }
+}
+
+#[test]
+fn stretches_cover_their_range_and_the_dense_period_agrees_with_each() {
+    let mut numbers = Numbers(31);
+    for inner in [2u64, 3, 5] {
+        let (fast, slow) = numbers.levels(3);
+        let kernel = kernel(&fast, &slow);
+        let (first, _) = kernel.first_unstable(inner).unwrap();
+        // Below the Verlet limit of the fast stiffness, h = 2.
+        let range = (0.5 * first, (1.6 * first).min(1.98 * inner as f64));
+        let stretches = kernel.stretches(inner, range, 1e-4).unwrap();
+        assert_eq!((stretches[0].lo, stretches.last().unwrap().hi), range);
+        assert!(
+            stretches.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict)
+        );
+        assert!(stretches.iter().any(|own| own.verdict == Holds::Unstable));
+        // What is not told of is thin: the neighbourhoods of edges.
+        let untold: f64 =
+            stretches.iter().filter(|own| own.verdict == Holds::NotTold).map(|own| own.hi - own.lo).sum();
+        assert!(untold < 0.05 * first, "{untold} of {first}: {stretches:?}");
+        for own in &stretches {
+            for k in 1..20 {
+                let step = own.lo + (own.hi - own.lo) * f64::from(k) / 20.0;
+                let largest = largest_multiplier(&fast, &slow, step, inner);
+                match own.verdict {
+                    Holds::Stable => assert!(largest < 1.0 + 1e-6, "{step} {largest}"),
+                    Holds::Unstable => assert!(largest > 1.0 + 1e-9, "{step} {largest}"),
+                    Holds::NotTold => {}
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_accuracy_does_not_tell_is_not_told() {
+    let (fast, slow) = Numbers(21).levels(4);
+    let kernel = kernel(&fast, &slow);
+    let (lo, hi) = kernel.first_unstable(4).unwrap();
+    let outer = Outer::new(0.999 * lo, 4).unwrap();
+    let told = |accuracy: f64| kernel.decide(&outer, &ratio(1, 1), accuracy).measured.unwrap();
+    let margin = told(1e-9).margin.unwrap();
+    assert_eq!(told(margin / 2.0).holds, Holds::Stable);
+    assert_eq!(told(margin * 2.0).holds, Holds::NotTold);
+    let beyond = Outer::new(1.0005 * hi, 4).unwrap();
+    let analysis = kernel.decide(&beyond, &ratio(1, 1), 1e-9);
+    assert!(analysis.kind == Kind::Hyperbolic && analysis.parts[0].evidence != Evidence::Estimate);
+    assert_eq!(analysis.measured.unwrap().holds, Holds::Unstable);
+}
