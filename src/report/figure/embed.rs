@@ -1,7 +1,10 @@
 //! The letters of a drawing as fonts in its PDF: of each face the glyphs in use, and what letter each one means.
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
 
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 use pdf_writer::types::{CidFontType, FontFlags, SystemInfo, UnicodeCmap};
 use pdf_writer::writers::FontDescriptor;
 use pdf_writer::{Filter, Finish, Name, Pdf, Rect, Ref, Str};
@@ -9,10 +12,15 @@ use subsetter::GlyphRemapper;
 
 use super::canvas::{Canvas, Element};
 use super::font::Face;
-use super::pdf::deflated;
 
 /// Glyphs are numbered by us, in no known order of characters.
 const ORDER: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
+
+/// Bytes as the filter `FlateDecode` of a PDF reads them.
+pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("writing to memory does not fail")
+}
 
 /// The faces in use.
 pub(super) struct Fonts(BTreeMap<Face, Font>);

@@ -1,15 +1,12 @@
 //! A drawing as a PDF of one page: the same lines as the SVG, and words as words, in the letters that they need.
 
 use std::collections::BTreeMap;
-use std::io::Write as _;
 
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as Area, Ref, Str, TextStr};
 
 use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
-use super::embed::Fonts;
+use super::embed::{Fonts, deflated};
 use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
 
@@ -51,11 +48,6 @@ pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
     resources.finish();
     sheet.finish();
     pdf.finish()
-}
-
-pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-    encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("writing to memory does not fail")
 }
 
 fn image_name(i: usize) -> String {
