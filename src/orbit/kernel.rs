@@ -297,16 +297,16 @@ impl<W: Watch, const L: usize> Together<'_, W, L> {
             }
         }
         self.look(&mut states, at, true);
-        for n in 0..N {
-            states[n].store::<W, L>(self.lanes, at + n * V::WIDTH);
+        for (n, state) in states.iter().enumerate() {
+            state.store::<W, L>(self.lanes, at + n * V::WIDTH);
         }
     }
 
     #[inline(always)]
     fn look<V: Vector, const N: usize>(&mut self, states: &mut [State<V>; N], at: usize, scaling: bool) {
         if W::CERTIFY {
-            for n in 0..N {
-                states[n].look::<W, L>(self.lanes, at + n * V::WIDTH, scaling);
+            for (n, state) in states.iter_mut().enumerate() {
+                state.look::<W, L>(self.lanes, at + n * V::WIDTH, scaling);
             }
         }
     }

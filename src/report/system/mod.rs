@@ -127,7 +127,7 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", told(unstable)));
     }
-    lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own)));
+    lines.extend(analysis.measured.iter().flat_map(measured::lines));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }

@@ -269,7 +269,7 @@ fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
 }
 
 fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
-    if positions.len() != n || n % 3 != 0 {
+    if positions.len() != n || !n.is_multiple_of(3) {
         let remedy = format!("there are {n} degrees of freedom: give three coordinates for each particle");
         return Err(Error::input("positions", format!("{} numbers", positions.len()), remedy));
     }

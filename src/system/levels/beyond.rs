@@ -103,7 +103,7 @@ fn lipschitz(p: u64) -> [f64; 4] {
     let k = (p / 2) as f64;
     // d/ds = (d/dx)/2; T_k' ≤ k², U_k' ≤ k (k + 1) (k + 2)/3.
     let (t, u) = (|k: f64| k * k, |k: f64| k * (k + 1.0) * (k + 2.0) / 3.0);
-    if p % 2 == 0 {
+    if p.is_multiple_of(2) {
         // a = d = T_k, b = U_(k−1), c = (T_(k+1) − T_(k−1))/2.
         let c = if k > 0.0 { (t(k + 1.0) + t(k - 1.0)) / 4.0 } else { 0.0 };
         [t(k) / 2.0, u((k - 1.0).max(0.0)) / 2.0, c, t(k) / 2.0]
