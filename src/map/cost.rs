@@ -39,7 +39,7 @@ fn scattered(n: u64, pairs: u64) -> u64 {
 }
 
 /// # Errors
-/// A budget error that tells the cost where this part of the map exceeds the limit.
+/// A budget error that states the cost where this part of the map exceeds the limit.
 pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
     let (pairs, most) = (shard.pairs(grid), limits.kicks.saturating_mul(TIMES_A_PAIR) as f64);
     // No pair composes more kicks than this: most maps need no estimate.

@@ -13,12 +13,12 @@
 use super::bound::StepBound;
 use crate::number::U;
 
-/// |r_k| ≤ u (κ (`TURN` + `TURN_SLOPE` tan(θ/2)) + `KICK` |β|) |g_(k-1)| + ...
+/// |r_k| is at most the sum of two terms. The first is u (κ (`TURN` + `TURN_SLOPE` tan(θ/2)) + `KICK` |β|) |g_(k-1)|.
 const TURN: f64 = 28.0;
 const TURN_SLOPE: f64 = 11.0;
 const KICK: f64 = 6.1;
 
-/// ... + u (`LAST` + `LAST_SLOPE` tan(θ/2)) |g_k|.
+/// The second term of the bound on |r_k| is u (`LAST` + `LAST_SLOPE` tan(θ/2)) |g_k|.
 const LAST: f64 = 1.0;
 const LAST_SLOPE: f64 = 1.0;
 

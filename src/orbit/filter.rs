@@ -108,7 +108,7 @@ impl<const L: usize> Group<L> {
         Group { certificates: Certificates::watched(most), ..Group::new(instructions) }
     }
 
-    /// Runs the half periods of the pairs and tells of each what [`run`] tells of one.
+    /// Runs the half periods of the pairs and writes of each what [`run`] returns for one.
     pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
         let certificate = self.run::<Everything>(pairs);
         self.tell(pairs, certificate, ends);

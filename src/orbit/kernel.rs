@@ -24,8 +24,8 @@ use crate::vector::{Vector, each};
 /// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
 
-/// ... at every fourth look. Between two looks |g|² grows by 2^12, or in a single step by κ² ≤ 2^82 (the certificate
-/// wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
+/// An orbit is scaled down at every fourth look at most. Between two looks |g|² grows by 2^12, or in a single step by
+/// κ² ≤ 2^82 (the certificate wants κ < 2^41), so that no square overflows: 300 + 4·82 < 1000.
 const SCALING: u64 = 4;
 
 const fn power_of_two(n: i64) -> f64 {

@@ -47,7 +47,7 @@ impl Default for Limits {
 
 impl Limits {
     /// # Errors
-    /// A budget error that tells the cost where `kicks` exceeds the limit.
+    /// A budget error that states the cost where `kicks` exceeds the limit.
     pub(super) fn allow(&self, kicks: u64, tier: Tier) -> Result<()> {
         if kicks <= self.kicks {
             return Ok(());

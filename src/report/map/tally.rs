@@ -43,10 +43,10 @@ impl Counts {
     }
 }
 
-/// Families that the summary for people tells.
+/// How many families the summary for people lists.
 const FAMILIES_TOLD: usize = 6;
 
-/// What the summary tells.
+/// What the summary reports.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     pub counts: Counts,
