@@ -181,3 +181,36 @@ fn a_period_beyond_the_budget_is_refused_before_it_begins() {
     let error = decide(&clocks, &Limits::default()).unwrap_err();
     assert_eq!(error.needed(), Some(500_000_001), "{error}");
 }
+/// A strength of 10^90 leaves the bound of the refine tier no room at any precision: balls tell the signs, where exact
+/// arithmetic would multiply polynomials of degree 150 with every kick.
+#[test]
+fn high_powers_of_pi_are_decided_without_exact_arithmetic() {
+    let x = |text| parse::parse("x", text).unwrap();
+    for h2 in ["1/40", "7/400", "33/2000", "1"] {
+        let clocks = Oscillator::new(x("(1+pi)^150"), x("1"), x("1/100"), x(h2)).unwrap().clocks();
+        // Below what exact arithmetic would cost: it is refused by this budget.
+        let limits = Limits { kicks: 100_000 };
+        let answer = decide(&clocks, &limits).unwrap();
+        assert_eq!((answer.verdict.kind(), answer.decided_by), (Kind::Hyperbolic, Tier::Refine), "{h2}");
+        assert!(answer.growth().unwrap().ln_multiplier.as_ref().unwrap().relative_accuracy_bits() >= 50);
+        if h2 == "1/40" {
+            assert_eq!(answer.verdict, half_period(&clocks).signs().verdict());
+        }
+    }
+}
+
+#[test]
+fn exact_arithmetic_tells_what_many_powers_of_pi_cost() {
+    let x = |text| parse::parse("x", text).unwrap();
+    let clocks = |lambda1| Oscillator::new(x(lambda1), x("1"), x("1/100"), x("33/2000")).unwrap().clocks();
+    // Minutes, against milliseconds of one power: each of some 27 kicks multiplies by 151 of them.
+    assert_eq!(Decidable::exact_cost(&clocks("pi^150"), 27), 27 * 27 * 27);
+    let (dear, limits) = (clocks("(1+pi)^150"), Limits::default());
+    assert_eq!(Decidable::exact_cost(&dear, 27), 27 * 27 * 27 * 151 * 151);
+    assert!(
+        decide_from(Tier::Exact, &dear, &limits)
+            .unwrap_err()
+            .needed()
+            .is_some_and(|cost| cost > limits.kicks)
+    );
+}

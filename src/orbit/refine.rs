@@ -48,6 +48,15 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Op
     Some(Ends { even: steps.end(schedule, true)?, odd: steps.end(schedule, false)? })
 }
 
+/// The bound's constants are doubles, which cannot tell a precision beyond this one from it.
+const BOUNDED: u32 = 1000;
+
+/// As [`run`]; beyond 1000 bits, where its bound may leave strengths of 10^90 and more no room however many bits there
+/// are, as [`run_balls`] where it must.
+pub fn run_at_any<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
+    run(clocks, schedule, bits).or_else(|| (bits > BOUNDED).then(|| run_balls(clocks, schedule, bits)))
+}
+
 /// The even or the odd solution alone.
 pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, even: bool) -> Option<End> {
     Steps::new(clocks, schedule, bits)?.end(schedule, even)
@@ -114,7 +123,7 @@ impl Steps {
         let strongest = strengths.iter().map(|k| k.mid_f64().abs()).fold(1.0, f64::max);
         let kappa = 1.01 * (1.0 + strongest);
         // 2^-1000 stands for anything smaller: the bound stays a bound.
-        let bound = StepBound { kappa, epsilon: (kappa + 4.0) * 2f64.powi(-(bits.min(1000) as i32)) };
+        let bound = StepBound { kappa, epsilon: (kappa + 4.0) * 2f64.powi(-(bits.min(BOUNDED) as i32)) };
         // Each strike is at most a drift, a kick and a rescaling; the ends add two events.
         let count = 3 * (schedule.strikes() + 2);
         // A strength is cut off at 2^-places <= 2^-bits/16, its ball at 2^-bits/2^14 of the larger one.
@@ -213,7 +222,7 @@ impl<'a> Orbit<'a> {
         // The last event may be a drift alone.
         self.rescale();
         let steps = self.steps;
-        let within = self.worst <= steps.tau * 2f64.powi(steps.bits.min(1000) as i32);
+        let within = self.worst <= steps.tau * 2f64.powi(steps.bits.min(BOUNDED) as i32);
         if !within {
             return None;
         }

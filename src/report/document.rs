@@ -152,7 +152,7 @@ impl Document {
     /// The command that makes the document, alone or as a part of a larger one.
     fn command(&self) -> &'static str {
         match self.name {
-            "system-verdict" | "system-map" => "system",
+            "system-verdict" | "system-map" | "system-intervals" => "system",
             "survey" => "tongues",
             name => name,
         }

@@ -55,11 +55,15 @@ impl Decidable for Laurent {
         half_period(clocks).signs()
     }
 
-    /// As for the rationals where both strengths are rational.
+    /// As for the rationals where both strengths are rational. Otherwise a strength of n powers of π gives the entries
+    /// up to n more with each kick, and each of them meets all n.
     fn exact_cost(clocks: &TwoClocks<Laurent>, kicks: u64) -> u64 {
+        let powers = clocks.fast().terms().len().max(clocks.slow().terms().len()) as u64;
         clocks
             .as_rational()
-            .map_or(kicks.saturating_pow(3), |rational| Decidable::exact_cost(&rational, kicks))
+            .map_or(kicks.saturating_pow(3).saturating_mul(powers.saturating_pow(2)), |rational| {
+                Decidable::exact_cost(&rational, kicks)
+            })
     }
 
     /// By residues: exact arithmetic over Q\[π\] is dear, and its only zeros are polynomial identities.

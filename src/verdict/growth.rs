@@ -97,11 +97,7 @@ impl Runs {
             bits = 2 * known;
         }
         loop {
-            let ends = if bits <= MOST_BOUNDED {
-                refine::run(clocks, schedule, bits)
-            } else {
-                Some(refine::run_balls(clocks, schedule, bits))
-            };
+            let ends = refine::run_at_any(clocks, schedule, bits);
             if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict)) {
                 return found;
             }
@@ -148,11 +144,6 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
     let ln_multiplier = excess.sqrt_clipped(BITS).map(|root| root.asinh(BITS).scale2(1));
     Growth { trace, ln_multiplier, label }
 }
-
-/// The bound's constants are doubles, which cannot tell a precision beyond 1000 bits from that one: strengths of
-/// 10^90 and more, say, leave them no room however many bits there are. Then balls take over, which lose some
-/// bits of the strongest kick every step but ask for nothing else.
-const MOST_BOUNDED: u32 = 4096;
 
 /// The products and the label, where `bits` bits were enough.
 fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict) -> Option<(Products, Option<u64>)> {
