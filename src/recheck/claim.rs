@@ -74,7 +74,7 @@ impl Claim {
     /// Rechecks every claim; progress is shown to `see`.
     ///
     /// # Errors
-    /// Where a recheck costs more than the options allow; what does not hold is no error but a [`Failure`].
+    /// Where a recheck costs more than the options allow; what does not hold is no error but a [`Failure`](super::Failure).
     pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
         self.check(&Context { options, see })
     }

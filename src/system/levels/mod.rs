@@ -2,7 +2,7 @@
 //!
 //! x'' + (F + S) x = 0 in mass-weighted coordinates, the fast F with the step h, the slow S with the outer step p h. One
 //! eigendecomposition F = U diag(w_i²) Uᵀ serves every p and every step. In its basis the fast half period is diagonal,
-//! a_i = cos(p θ_i/2) and so on ([`half`]: kicks and drifts in intervals), and with M = (p/2) h² Uᵀ S U, in the time unit h,
+//! a_i = cos(p θ_i/2) and so on (file `half`: kicks and drifts in intervals), and with M = (p/2) h² Uᵀ S U, in the time unit h,
 //!
 //! ```text
 //!     P = b (E − M) b,   E = a/b > 0:     definite iff E − M is
@@ -27,7 +27,7 @@
 //! * J is linear in h² at a fixed ratio: where J > 0 at an outer step and F + S > 0, every smaller outer step is stable too.
 //!
 //! Beyond it W is indefinite, modes may collide, and the eigenvalues of Bᵀ C with their discs and clusters decide
-//! ([`beyond`]). Source: THEORY section 11.
+//! (file `beyond`). Source: THEORY section 11.
 //!
 //! | file | what |
 //! |---|---|

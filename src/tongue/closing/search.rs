@@ -66,7 +66,7 @@ pub struct Found {
 /// The closings of p/q in a range of ρ.
 ///
 /// # Errors
-/// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`].
+/// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`](crate::tongue::Tongues::new).
 pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let rhos = samples(search)?;
     let mut found = Vec::new();
