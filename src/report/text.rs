@@ -6,6 +6,11 @@ use super::table::{Align, Cell, Column, Table};
 /// The space between two columns.
 const GAP: &str = "  ";
 
+/// A number with its noun.
+pub fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
 /// The whole table as lines of text, the caption first.
 ///
 /// Enclosures show the digits that are certain, see [`decimal::enclosure`]. Widths count characters, so

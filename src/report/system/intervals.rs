@@ -2,6 +2,7 @@
 
 use crate::report::document::Document;
 use crate::report::table::{Cell, Column, Table};
+use crate::report::text::counted;
 use crate::system::Holds;
 use crate::system::levels::Stretch;
 
@@ -12,11 +13,15 @@ pub fn document(stretches: &[Stretch], inner_steps: u64) -> Document {
     for own in stretches {
         table.push(vec![Cell::Float(own.lo), Cell::Float(own.hi), Cell::Text(own.verdict.name().into())]);
     }
-    let counted = |verdict: Holds| stretches.iter().filter(|own| own.verdict == verdict).count();
-    let (unstable, untold) = (counted(Holds::Unstable), counted(Holds::NotTold));
+    let number = |verdict: Holds| stretches.iter().filter(|own| own.verdict == verdict).count();
+    let (unstable, untold) = (number(Holds::Unstable), number(Holds::NotTold));
     let lines = [
-        format!("{unstable} unstable intervals of the outer step, with {inner_steps} inner steps in each"),
-        format!("  {untold} stretches between where nothing is proven"),
+        format!(
+            "{} of the outer step, with {} in each",
+            counted(unstable, "unstable interval", "unstable intervals"),
+            counted(inner_steps as usize, "inner step", "inner steps")
+        ),
+        format!("  {} where nothing is proven", counted(untold, "stretch", "stretches")),
     ];
     Document::new("system-intervals")
         .entry("inner_steps", inner_steps)

@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use crate::report::decimal;
 use crate::report::document::enclosure;
 use crate::system::{Holds, Measured};
 
@@ -45,8 +46,9 @@ pub(super) fn lines(own: &Measured) -> Vec<String> {
         } else {
             ""
         };
+        let first = decimal::enclosure(lo, hi);
         lines.push(format!(
-            "  with as many inner steps every outer step up to {lo:.6} is stable, and {hi:.6} is unstable{place}"
+            "  first unstable outer step with as many inner ones: {first}; every smaller one is proven stable{place}"
         ));
     }
     lines

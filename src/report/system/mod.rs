@@ -13,6 +13,7 @@ use serde_json::{Value, json};
 use super::decimal;
 use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
+use super::text::counted;
 use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
@@ -93,11 +94,6 @@ fn origin(origin: Origin) -> &'static str {
         Origin::RealPair => "real pair",
         Origin::Collision => "collision",
     }
-}
-
-/// A number with its noun.
-fn counted(n: usize, one: &str, many: &str) -> String {
-    format!("{n} {}", if n == 1 { one } else { many })
 }
 
 fn lines(analysis: &Analysis) -> Vec<String> {
