@@ -310,6 +310,14 @@ const STILL_TRUE: [(&str, &str); 12] = [
     ("curves", ".input.h2_range digit"),
 ];
 
+/// Three masses; at a soft step of 3/4 in place of 1/8 something grows.
+const SYSTEM: &str = r#"{"schema": "kickdrift/system/1", "title": "three masses", "masses": ["1", "3/2", "2"], "potentials": [
+    {"step": "1/8", "springs": [[0, 1, "10"], [1, 2, "20"]]}, {"step": "1/4", "springs": [[0, null, "5"], [2, null, "7"]]}]}"#;
+
+/// Three clocks on one oscillator, a stiffness with pi.
+const ONE_MASS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "masses": ["1"], "potentials": [
+    {"step": "1/10", "stiffness": [["pi^2"]]}, {"step": "1/4", "stiffness": [["1/2"]]}, {"step": "1/6", "stiffness": [["2"]]}]}"#;
+
 #[test]
 fn every_field_is_rechecked_or_said_not_to_be() {
     let desk = Desk::new();
@@ -330,7 +338,15 @@ fn every_field_is_rechecked_or_said_not_to_be() {
         "curves --samples 40 --a 0..2 --b -3..3",
         "polynomial --ratio 5/4",
         "proposition --max 6",
+        "system system.json",
+        "system resonant.json --exact",
+        "system one-mass.json",
+        "system system.json --scan potentials.0.step=1/8..3/4:1/8 --scan potentials.1.scale=1..2:1/2",
+        "simulate resonant.json --periods 20",
     ];
+    desk.write("system.json", SYSTEM);
+    desk.write("resonant.json", &SYSTEM.replace("\"1/8\"", "\"3/4\""));
+    desk.write("one-mass.json", ONE_MASS);
     let (mut count, mut passed) = (0, Vec::new());
     for line in lines {
         let document = write(&desk, line, "d.json");
