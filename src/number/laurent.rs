@@ -235,6 +235,3 @@ impl Ord for Laurent {
         }
     }
 }
-
-#[cfg(test)]
-pub(super) mod tests;

@@ -14,8 +14,6 @@
 //! ```
 
 mod grammar;
-#[cfg(test)]
-mod tests;
 
 pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 

@@ -1,9 +1,10 @@
 use proptest::prelude::*;
 
-use super::*;
-use crate::number::{Real, rational::ratio};
+use kickdrift::number::rational::ratio;
+use kickdrift::number::{ExactSign, Laurent, Rational, Real, Sign};
+use num_traits::{One, Zero};
 
-pub(in crate::number) fn any_laurent() -> impl Strategy<Value = Laurent> {
+pub fn any_laurent() -> impl Strategy<Value = Laurent> {
     let term = (-4i32..5, -20i64..20, 1i64..20);
     proptest::collection::vec(term, 0..4).prop_map(|terms| {
         terms.into_iter().fold(Laurent::zero(), |sum, (k, p, q)| sum + Laurent::monomial(ratio(p, q), k))
