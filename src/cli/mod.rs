@@ -151,7 +151,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
 }
 
 fn failure(message: &str) -> ExitCode {
-    // Where standard error is closed too, the exit code alone has to tell.
+    // Where standard error is closed too, the exit code alone has to say it.
     let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
     ExitCode::from(2)
 }

@@ -16,7 +16,7 @@ pub struct Args {
 }
 
 /// Beyond this the witnesses alone would fill gigabytes.
-const MOST: u64 = 400;
+const LARGEST_MAX: u64 = 400;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
@@ -34,11 +34,11 @@ pub fn document(max: u64) -> Result<Document> {
 
 /// That the check is worth its cost.
 pub fn check_bound(max: u64) -> Result<()> {
-    if max == 0 || max > MOST {
+    if max == 0 || max > LARGEST_MAX {
         return Err(Error::input(
             "max",
             max,
-            format!("choose 1 to {MOST}; the number of witnesses grows like its cube"),
+            format!("choose 1 to {LARGEST_MAX}; the number of witnesses grows like its cube"),
         ));
     }
     Ok(())

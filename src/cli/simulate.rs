@@ -1,12 +1,15 @@
 //! `kickdrift simulate`: Algorithm 1 run, and its growth beside the predicted one.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::str::FromStr;
 
-use super::args::{Common, whole};
+use super::args::{Common, from_str, whole};
 use super::system::{draw, limits, read};
 use crate::avi::{Ends, Force, Simulation, growth_rate, irreversibility, series};
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::report::simulate::{self as report, Run};
@@ -23,8 +26,8 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = whole::<u32>)]
     periods: u32,
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
-    #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]
-    displace: String,
+    #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true, value_parser = from_str::<Displacement>)]
+    displace: Displacement,
     /// Algorithm 1 as it stands: whole kicks at the start of a period, none at its end. Without it these kicks are halved,
     /// which makes the run symmetric in time.
     #[arg(long)]
@@ -35,15 +38,15 @@ pub struct Args {
 }
 
 /// The most periods: the series is kept in memory.
-const MOST: u32 = 10_000_000;
+const MOST_PERIODS: u32 = 10_000_000;
 
 /// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above roundoff.
-const SMALL: f64 = 1e-6;
+const DEVIATION: f64 = 1e-6;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        if self.periods == 0 || self.periods > MOST {
-            return Err(Error::input("periods", self.periods, format!("choose 1 to {MOST}")));
+        if self.periods == 0 || self.periods > MOST_PERIODS {
+            return Err(Error::input("periods", self.periods, format!("choose 1 to {MOST_PERIODS}")));
         }
         self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
         let scene = read(&self.file)?;
@@ -97,28 +100,44 @@ impl Args {
             return Err(Error::input("displace", &self.displace, remedy));
         }
         let series = series(&mut simulation, centre, self.periods as usize, (period, ends));
-        let measured = growth_rate(&mut make()?, centre, SMALL, (self.periods, ends));
+        let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, ends));
         let irreversibility = irreversibility(&mut make()?, period);
         Ok(Run { series, measured, predicted, irreversibility, linear })
     }
 
     /// The displacement of every degree of freedom.
     fn shift(&self, size: usize) -> Result<Vec<f64>> {
-        let parts: Vec<&str> = self.displace.split(',').collect();
-        if parts.len() != 1 && parts.len() != size {
+        let given = &self.displace.0;
+        if given.len() != 1 && given.len() != size {
             return Err(Error::input(
                 "displace",
                 &self.displace,
                 format!("give 1 number or {size}, one a degree of freedom"),
             ));
         }
-        let mut shift = vec![0.0; size];
-        for (x, part) in shift.iter_mut().zip(parts) {
-            *x = to_f64(&parse_rational("displace", part)?);
-        }
+        let mut shift: Vec<f64> = given.iter().map(to_f64).collect();
+        shift.resize(size, 0.0);
         if shift.iter().all(|&x| x == 0.0) {
             return Err(Error::input("displace", &self.displace, "nothing would move: displace something"));
         }
         Ok(shift)
+    }
+}
+
+/// What each degree of freedom is moved by, or the first one alone: numbers with commas between them.
+#[derive(Clone, Debug)]
+struct Displacement(Vec<Rational>);
+
+impl FromStr for Displacement {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        text.split(',').map(|part| parse_rational("displace", part)).collect::<Result<_>>().map(Displacement)
+    }
+}
+
+impl fmt::Display for Displacement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.iter().map(Rational::to_string).collect::<Vec<_>>().join(","))
     }
 }

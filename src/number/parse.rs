@@ -57,6 +57,13 @@ pub fn parse_range(field: &str, text: &str) -> Result<(Laurent, Laurent)> {
     if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
 }
 
+/// The closed range `LO..HI` of rationals, LO ≤ HI.
+pub fn parse_rational_range(field: &str, text: &str) -> Result<(Rational, Rational)> {
+    let (lo, hi) = parse_range(field, text)?;
+    let both = lo.as_rational().zip(hi.as_rational());
+    both.ok_or_else(|| Error::input(field, text, "must be rational; write it without pi"))
+}
+
 /// The closed range `LO..HI` of integers, LO ≤ HI.
 pub fn parse_integer_range(field: &str, text: &str) -> Result<(i64, i64)> {
     let (lo, hi) = split_range(field, text, "-2..3")?;

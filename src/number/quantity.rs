@@ -137,4 +137,12 @@ mod text {
     }
 
     text!(super::Laurent, super::Ratio);
+
+    /// Two doubles with the ball between them.
+    impl Serialize for crate::number::Ball {
+        fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            let (lo, hi) = self.to_f64_enclosure();
+            serializer.collect_map([("lo", lo), ("hi", hi)])
+        }
+    }
 }

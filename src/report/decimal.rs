@@ -13,7 +13,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use crate::number::{Rational, rational};
 
-/// As many significant digits as any double needs to be told from its neighbours.
+/// As many significant digits as any double needs to differ from its neighbours.
 const MOST_DIGITS: i64 = 17;
 /// The largest uncertainty shown: a single digit, lest a last digit be shown that means nothing.
 const LARGEST_UNCERTAINTY: u32 = 9;
@@ -53,7 +53,7 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
     if lo == 0.0 && hi == 0.0 {
         return Shown::Concise { negative: false, digits: "0".into(), places: 0, uncertainty: 0 };
     }
-    // Wider than half its size, or around zero: a leading digit in doubt tells less than the two ends.
+    // Wider than half its size, or around zero: a leading digit in doubt says less than the two ends.
     let vague =
         !(lo.is_finite() && hi.is_finite()) || lo > hi || lo * hi.signum() <= 0.0 || hi - lo > small / 2.0;
     if vague {
@@ -153,7 +153,7 @@ fn power_of_ten(n: i64) -> Rational {
 
 /// e with 10^e ≤ x < 10^(e+1), x > 0.
 fn exponent(x: &Rational) -> i64 {
-    // Lengths in bits tell it to within one or two; comparisons tell the rest.
+    // Lengths in bits give it to within one or two; comparisons decide the rest.
     let bits = x.numer().bits() as f64 - x.denom().bits() as f64;
     let estimate = (bits * std::f64::consts::LOG10_2).floor().to_i64().expect("small");
     (estimate - 2..=estimate + 2).rev().find(|&e| power_of_ten(e) <= *x).expect("the estimate is within two")

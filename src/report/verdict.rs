@@ -67,7 +67,7 @@ impl Answer {
         }
         document
             .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
-            .told(&self.lines())
+            .summary_alone(&self.lines())
     }
 }
 

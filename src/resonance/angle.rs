@@ -85,7 +85,7 @@ impl<S: Real> Angle<S> {
     /// for some m ≥ 1.
     ///
     /// Decided: θ/π is rational only where 2 cos θ is an algebraic integer. For rational s that leaves
-    /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always tell.
+    /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always decide.
     pub fn is_resonant(&self, p: u64, tolerance: &Rational) -> bool {
         if let Some((_, distance)) = self.rational_nearest(p) {
             return distance.abs() <= *tolerance;

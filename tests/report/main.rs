@@ -3,6 +3,7 @@
 mod certificate;
 mod csv;
 mod decimal;
+mod file;
 mod latex;
 mod stream;
 mod table;

@@ -4,7 +4,7 @@ use std::cell::{OnceCell, RefCell};
 use std::path::{Path, PathBuf};
 
 use super::tongues;
-use crate::cli::args::Common;
+use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::plane::{DPI, Verdicts};
 use crate::cli::tongues as answers;
 use crate::cli::{closings, compare, curves, map, polynomial, proposition};
@@ -37,7 +37,7 @@ pub struct Work<'a> {
     arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
     documents: [OnceCell<Document>; 7],
-    /// What the tongues told, once they were written.
+    /// What stands out among the tongues, once they were written.
     tongues: OnceCell<Tally>,
     figures: [OnceCell<Figure>; 3],
 }
@@ -76,7 +76,7 @@ impl<'a> Work<'a> {
 
     /// The bytes of one product's file, where they fit memory.
     fn bytes(&self, want: Want) -> Result<Vec<u8>> {
-        let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
+        let text = |format| Ok(self.document(want.product)?.render_with(format, TO_SEE_ROWS)?.into_bytes());
         if want.product == Product::Tongues {
             return self.tongues(want.format);
         }
@@ -156,7 +156,7 @@ impl<'a> Work<'a> {
         let growth = self.scene.max_sum.is_none();
         let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
         let (bytes, tally) = answers::bytes(&question, self.common, format)?;
-        // Every format tells the same.
+        // It is the same in every format.
         let _ = self.tongues.set(tally);
         Ok(bytes)
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::parallel::*;
 
 use super::Question;
-use crate::cli::args::Common;
+use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::csv;
@@ -37,7 +37,7 @@ pub fn write(question: &Question, common: &Common, target: Format) -> Result<()>
     }
 }
 
-/// The bytes of a scene's product, and what they tell.
+/// The bytes of a scene's product, and what stands out in them.
 ///
 /// # Errors
 /// As [`Question::each`].
@@ -113,7 +113,7 @@ fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
     let (tally, document) = summed_up(question, common, ROWS_FOR_PEOPLE)?;
     let mut text = document.render(Format::Text)?;
     if tally.count > ROWS_FOR_PEOPLE {
-        text += &format!("\n{} rows: use --format csv, json or latex to see them\n", tally.count);
+        text += &format!("\n{} rows: {TO_SEE_ROWS}\n", tally.count);
     }
     Ok((text, tally))
 }

@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Rational;
 use crate::report::document::Document;
-use crate::report::file::write_output;
 use crate::report::survey;
 use crate::tongue::{self, Stiffness};
 
@@ -28,8 +27,7 @@ pub fn run(
     let Ratios::UpTo(max_sum) = ratios else {
         return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
     };
-    let document = document(max_sum, &stiffness.rho, thinnest.unwrap_or(THINNEST))?;
-    write_output(common.output.as_deref(), document.render(format)?.as_bytes())
+    common.write(&document(max_sum, &stiffness.rho, thinnest.unwrap_or(THINNEST))?, format)
 }
 
 /// The survey as a document.

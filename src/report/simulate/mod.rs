@@ -25,7 +25,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// What cannot be told from no growth: a bounded solution returns to its size only after a beat, and over half the
+    /// The growth rate below which none can be seen: a bounded solution returns to its size only after a beat, and over half the
     /// run that looks like growth.
     fn resolution(&self) -> f64 {
         self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
@@ -59,7 +59,7 @@ pub fn document(run: &Run) -> Document {
         .entry("linear", run.linear)
         .entry("irreversibility", run.irreversibility)
         .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
-        .told(&lines)
+        .summary_alone(&lines)
 }
 
 /// What is written of a sample.

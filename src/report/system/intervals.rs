@@ -14,19 +14,19 @@ pub fn document(stretches: &[Stretch], inner_steps: u64) -> Document {
         .field(Column::new("hi"), |of| of.hi.into())
         .field(Column::new("verdict").left(), |of| of.verdict.name().into());
     let number = |verdict: Holds| stretches.iter().filter(|own| own.verdict == verdict).count();
-    let (unstable, untold) = (number(Holds::Unstable), number(Holds::NotTold));
+    let (unstable, undecided) = (number(Holds::Unstable), number(Holds::NotTold));
     let lines = [
         format!(
             "{} of the outer step, with {} in each",
             counted(unstable, "unstable interval", "unstable intervals"),
             counted(inner_steps as usize, "inner step", "inner steps")
         ),
-        format!("  {} where nothing is proven", counted(untold, "stretch", "stretches")),
+        format!("  {} where nothing is proven", counted(undecided, "stretch", "stretches")),
     ];
     Document::new("system-intervals")
         .entry("inner_steps", inner_steps)
         .entry("unstable", unstable)
-        .entry("untold", untold)
+        .entry("untold", undecided)
         .rows(record.table("stretches", "Verdicts on outer steps", stretches))
         .summary(&lines)
 }

@@ -43,7 +43,7 @@ pub fn document(analysis: &Analysis) -> Document {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table).told(&lines(analysis))
+    document.long_rows(table).summary_alone(&lines(analysis))
 }
 
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
@@ -128,7 +128,7 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
-        lines.push(format!("  {}", told(unstable)));
+        lines.push(format!("  {}", described(unstable)));
     }
     lines.extend(analysis.measured.iter().flat_map(measured::lines));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
@@ -162,7 +162,7 @@ fn terms(family: &[i64], h: &str) -> String {
 }
 
 /// One unstable multiplier in words.
-fn told(unstable: &Instability) -> String {
+fn described(unstable: &Instability) -> String {
     let lambda = unstable.multiplier.lambda;
     let mut line = match unstable.origin {
         Origin::RealPair => format!("multiplier {:.6}: one mode, ", lambda.re),

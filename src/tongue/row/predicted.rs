@@ -107,7 +107,7 @@ fn compare(s: &Ball, edge: &Edge) -> Option<Sign> {
 }
 
 /// The predicted point lies within an edge's enclosure: the verdict there, in exact cyclotomic numbers if
-/// need be, tells on which side of the edge.
+/// need be, decides on which side of the edge.
 fn decide_side(edges: &Edges, gap: &Gap, at_lower: bool) -> Result<Side> {
     let edge = if at_lower { &gap.lower } else { gap.upper.as_ref().expect("a finite tongue") };
     let on = if at_lower { Side::OnLower } else { Side::OnUpper };
