@@ -5,6 +5,7 @@ use crate::parallel::*;
 use super::args::{Common, from_str, of, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
+use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::parse_rational_range;
@@ -52,7 +53,8 @@ const MOST_DIGITS: u32 = 28;
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::DOCUMENT)?;
-        common.write(&self.question()?.document(common, format == Format::Csv)?, format)
+        let request = Request::Closings(self.question()?);
+        common.write(&request.perform(common, format == Format::Csv)?, format)
     }
 
     fn question(&self) -> Result<Question> {

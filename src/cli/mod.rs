@@ -14,6 +14,7 @@ mod polynomial;
 mod progress;
 mod proposition;
 mod ratios;
+mod request;
 mod run;
 mod simulate;
 mod system;

@@ -4,22 +4,21 @@ mod atlas;
 mod output;
 mod question;
 mod strength;
-mod survey;
 
 use clap::ValueEnum;
 
 use super::args::{Common, from_str, of, whole};
 use super::ratios::{Flags, Ratios};
+use super::request::{Request, THINNEST};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
-use crate::tongue::{Labels, Range, Request, Selection, Stiffness, Wanted, Window};
+use crate::tongue::{self, Labels, Range, Selection, Stiffness, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::bytes;
 pub use question::{MOST_SUM, Question};
-pub use survey::{THINNEST, document as survey};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
@@ -105,9 +104,7 @@ impl Args {
         let format = common.format_of_table(forms)?;
         self.check(format)?;
         match (format, self.figure) {
-            _ if self.survey => {
-                survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, format)
-            }
+            _ if self.survey => common.write(&self.all_tongues()?.perform(common, true)?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
                 strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
@@ -171,6 +168,14 @@ impl Args {
         }
     }
 
+    fn all_tongues(&self) -> Result<Request> {
+        let Ratios::UpTo(max_sum) = self.ratios()? else {
+            return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
+        };
+        let (rho, thinnest) = (self.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
+        Ok(Request::Survey { max_sum, rho, thinnest })
+    }
+
     fn ratios(&self) -> Result<Ratios> {
         self.which.ratios()?.within(MOST_SUM)
     }
@@ -185,7 +190,7 @@ impl Args {
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
-        let request = Request { wanted, lambda1: None, digits: self.digits };
+        let request = tongue::Request { wanted, lambda1: None, digits: self.digits };
         Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
