@@ -31,11 +31,6 @@ impl Side {
             Side::Above => "above",
         }
     }
-
-    /// Whether the point lies off the closed tongue.
-    pub fn is_outside(self) -> bool {
-        matches!(self, Side::Below | Side::Above)
-    }
 }
 
 /// The paper's point p θ = m π (eq. (9)) and the tongue that belongs to it.
