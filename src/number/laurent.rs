@@ -16,9 +16,7 @@ mod enclose;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use num_bigint::BigInt;
-use num_integer::Integer;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
 use super::{ExactSign, Rational, Ring, Sign};
