@@ -14,6 +14,7 @@ mod polynomial;
 mod progress;
 mod proposition;
 mod ratios;
+mod request;
 mod run;
 mod simulate;
 mod system;
@@ -174,7 +175,7 @@ fn run(cli: &Cli) -> Result<u8> {
 }
 
 fn failure(message: &str) -> u8 {
-    // Where standard error is closed too, the exit code alone has to tell.
+    // Where standard error is closed too, the exit code alone has to say it.
     let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
     2
 }
