@@ -93,7 +93,7 @@ fn by_refine<S: Decidable>(
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }
-    // No entry is zero: some precision tells all four signs. Where 2^14 bits do not suffice, the periods are short in
+    // No entry is zero: some precision decides all four signs. Where 2^14 bits do not suffice, the periods are short in
     // practice, and exact arithmetic is the shorter way.
     Ok((10..15).map(|log2| 1 << log2).find_map(verdict))
 }

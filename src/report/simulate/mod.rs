@@ -5,7 +5,8 @@ mod chart;
 
 use crate::avi::{Run, Sample};
 use crate::report::document::Document;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::record::Record;
+use crate::report::table::Column;
 #[cfg(feature = "figure")]
 pub use chart::figure;
 
@@ -35,16 +36,15 @@ pub fn document(run: &Run) -> Document {
         .entry("growth_rate_measured", run.measured)
         .entry("linear", run.linear)
         .entry("irreversibility", run.irreversibility)
-        .rows(table(&run.series))
-        .told(&lines)
+        .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
+        .summary_alone(&lines)
 }
 
-fn table(series: &[Sample]) -> Table {
-    let columns = ["time", "energy", "momentum", "amplitude"].map(Column::new).to_vec();
-    let mut table = Table::new("series", "Energy, momentum and amplitude over time", columns);
-    for sample in series {
-        let Sample { time, energy, momentum, amplitude } = *sample;
-        table.push([time, energy, momentum, amplitude].map(Cell::Float).to_vec());
-    }
-    table
+/// What is written of a sample.
+fn record() -> Record<'static, Sample> {
+    Record::new()
+        .field(Column::new("time"), |of: &Sample| of.time.into())
+        .field(Column::new("energy"), |of| of.energy.into())
+        .field(Column::new("momentum"), |of| of.momentum.into())
+        .field(Column::new("amplitude"), |of| of.amplitude.into())
 }
