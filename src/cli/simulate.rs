@@ -63,18 +63,24 @@ impl Args {
 
     fn simulate(&self, scene: &SystemScene, common: &Common) -> Result<Run> {
         let limits = limits(common);
-        let predicted = scene.decide(Route::Cheapest, &limits)?.growth_rate();
+        let own = scene.own_orbit(&limits)?;
+        let predicted = match &own {
+            Some(orbit) => orbit.analysis.growth_rate(),
+            None => scene.decide(Route::Cheapest, &limits)?.growth_rate(),
+        };
+        let displacement = own.as_ref().map(|orbit| orbit.displacement);
         let shift = self.shift(scene.system().size())?;
         let rest = vec![0.0; shift.len()];
-        // Bonds are simulated about their equilibrium, linear systems about 0.
-        if let Some(centre) = scene.equilibrium() {
+        // Bonds are simulated about the integrator's own orbit or the equilibrium that is one, linear systems about 0.
+        if let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| scene.equilibrium())
+        {
             let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
             let make =
                 || Ok(scene.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
-            return self.measured(make, centre, scene.is_linear(), (predicted, &limits));
+            return self.measured(make, centre, scene.is_linear(), (predicted, displacement), &limits);
         }
         let make = || scene.linear_simulation(shift.clone(), rest.clone());
-        self.measured(make, &rest, true, (predicted, &limits))
+        self.measured(make, &rest, true, (predicted, None), &limits)
     }
 
     fn measured<F: Force<f64>>(
@@ -82,7 +88,8 @@ impl Args {
         make: impl Fn() -> Result<Simulation<f64, F>>,
         centre: &[f64],
         linear: bool,
-        (predicted, limits): (f64, &Limits),
+        (predicted, displacement): (f64, Option<f64>),
+        limits: &Limits,
     ) -> Result<Run> {
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let mut simulation = make()?;
@@ -97,9 +104,11 @@ impl Args {
             return Err(Error::input("displace", &self.displace, remedy));
         }
         let series = series(&mut simulation, centre, self.periods as usize, (period, ends));
-        let measured = growth_rate(&mut make()?, centre, SMALL, (self.periods, ends));
+        // The symmetric form is at rest at t = 0 on its own orbit; the multipliers are those of the staggered one.
+        let form = if displacement.is_some() { Ends::Symmetric } else { ends };
+        let measured = growth_rate(&mut make()?, centre, SMALL, (self.periods, form));
         let irreversibility = irreversibility(&mut make()?, period);
-        Ok(Run { series, measured, predicted, irreversibility, linear })
+        Ok(Run { series, measured, predicted, irreversibility, linear, displacement })
     }
 
     /// The displacement of every degree of freedom.

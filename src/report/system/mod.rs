@@ -1,5 +1,6 @@
 //! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
 
+mod beside;
 #[cfg(feature = "figure")]
 mod chart;
 mod intervals;
@@ -15,15 +16,18 @@ use super::document::{Document, enclosure};
 use super::table::{Cell, Column, Table};
 use super::text::counted;
 use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
+pub use beside::Beside;
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
-pub use intervals::document as intervals;
+#[cfg(feature = "figure")]
+pub use intervals::figure as intervals_figure;
+pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
-pub fn document(analysis: &Analysis) -> Document {
+pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let document = Document::new("system-verdict")
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
@@ -39,7 +43,9 @@ pub fn document(analysis: &Analysis) -> Document {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table(analysis)).told(&lines(analysis))
+    let entries = beside::entries(beside, analysis).into_iter();
+    let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
+    document.long_rows(table(analysis)).told(&lines(analysis, beside))
 }
 
 fn part(part: &Part) -> Value {
@@ -96,7 +102,7 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
-fn lines(analysis: &Analysis) -> Vec<String> {
+fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
@@ -123,6 +129,7 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", told(unstable)));
     }
+    lines.extend(beside::lines(beside, analysis));
     lines.extend(analysis.measured.iter().flat_map(measured::lines));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
