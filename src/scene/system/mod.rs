@@ -40,6 +40,7 @@
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
 //! | `mesh` | finite elements |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
+//! | `run` | Algorithm 1 run on it |
 //! | `scan` | one file, many systems: any number of it over a range |
 
 mod array;
@@ -50,6 +51,7 @@ mod market;
 mod measured;
 mod mesh;
 mod oscillator;
+mod run;
 mod scan;
 
 use std::path::Path;
@@ -60,17 +62,19 @@ use serde_json::Value;
 
 use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
-use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::number::{Laurent, Rational};
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
 use crate::system::levels::Stretch;
 use crate::system::{
-    Analysis, Limits, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator, verdict_cost,
+    Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
+    verdict_cost,
 };
 use bonds::Nonlinear;
 use document::{Document, no_system};
 use measured::Measured;
 use oscillator::Oscillator;
+pub use run::{Displacement, RunRequest};
 pub use scan::{Axis, Scan};
 
 /// The schema that this version reads.
@@ -348,6 +352,11 @@ impl SystemScene {
     pub fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
         let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
         self.measured.as_ref().ok_or_else(exact)?.growth_rates(steps)
+    }
+
+    /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.
+    pub fn many_clocks(&self) -> Option<&ManyClocks<Laurent>> {
+        self.oscillator.as_ref().map(|own| &own.clocks)
     }
 
     /// The equilibrium, where there are bonds.
