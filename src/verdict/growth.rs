@@ -79,7 +79,7 @@ impl Runs {
         if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
             return Ok(from_products(products(&ends), verdict, label));
         }
-        limits.allow(schedule.strikes() / 2, Tier::Refine)?;
+        limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
         let (products, nodes) = self.refined(clocks, &schedule, verdict);
         Ok(from_products(products, verdict, label.or(nodes)))
     }

@@ -82,7 +82,7 @@ fn by_refine<S: Decidable>(
     runs: &mut Runs,
 ) -> Result<Option<Verdict>> {
     let schedule = Schedule::two_clocks(clocks.ratio())?;
-    limits.allow(schedule.strikes() / 2, Tier::Refine)?;
+    limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
     let mut verdict = |bits: u32| {
         let ends = refine::run_at_any(clocks, &schedule, bits)?;
         let verdict = ends.signs().verdict();

@@ -5,7 +5,7 @@ use crate::cli::progress::progress;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::report::closings;
 use crate::report::document::Document;
 use crate::scene::shown_range;
@@ -59,12 +59,12 @@ impl Question {
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = self.ratios.list();
         let bar = progress(common.quiet, list.len() as u64, "ratios");
-        let one = |ratio: Ratio| {
+        let one = |&ratio: &Ratio| {
             let found = self.of_ratio(ratio);
             bar.inc(1);
             found
         };
-        let found: Vec<Found> = list.into_par_iter().map(one).collect::<Result<_>>()?;
+        let found: Vec<Found> = try_map(&list, one)?;
         bar.finish_and_clear();
         let (lo, hi) = &self.rho;
         let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());

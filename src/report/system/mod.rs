@@ -1,5 +1,6 @@
 //! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
 
+mod beside;
 #[cfg(feature = "figure")]
 mod chart;
 mod intervals;
@@ -16,15 +17,18 @@ use super::record::Record;
 use super::table::Column;
 use super::text::counted;
 use crate::system::{Analysis, Clocked, Instability, MuCount, Multiplier, Origin, Part};
+pub use beside::Beside;
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
-pub use intervals::document as intervals;
+#[cfg(feature = "figure")]
+pub use intervals::figure as intervals_figure;
+pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
-pub fn document(analysis: &Analysis) -> Document {
+pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let parts = || (1..).zip(&analysis.parts);
     let all: Vec<Own> = parts().flat_map(|(n, part)| multipliers(n, part)).collect();
     let table = record().table("multipliers", "Multipliers over one synchronization period", &all);
@@ -43,7 +47,9 @@ pub fn document(analysis: &Analysis) -> Document {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table).summary_alone(&lines(analysis))
+    let entries = beside::entries(beside, analysis).into_iter();
+    let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
+    document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
@@ -103,7 +109,7 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
-fn lines(analysis: &Analysis) -> Vec<String> {
+fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
@@ -130,6 +136,7 @@ fn lines(analysis: &Analysis) -> Vec<String> {
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", described(unstable)));
     }
+    lines.extend(beside::lines(beside, analysis));
     lines.extend(analysis.measured.iter().flat_map(measured::lines));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
