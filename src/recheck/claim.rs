@@ -3,22 +3,24 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
+#[cfg(feature = "advise")]
+use super::advise;
 use super::context::{Context, Options, Outcome, See};
 use super::{closings, compare, curves, map, polynomial, proposition, survey, tongues, verdict};
 use crate::error::{Error, Result};
 
 macro_rules! claims {
-    ($($name:literal $variant:ident $module:ident;)*) => {
+    ($($(#[$only:meta])? $name:literal $variant:ident $module:ident;)*) => {
         /// A document in typed rows.
         #[derive(Clone, Debug)]
         #[non_exhaustive]
         pub enum Claim {
-            $(#[doc = concat!("`kickdrift/", $name, "/1`.")] $variant(Box<$module::Claim>),)*
+            $($(#[$only])? #[doc = concat!("`kickdrift/", $name, "/1`.")] $variant(Box<$module::Claim>),)*
         }
 
         impl Claim {
             /// NAME of all documents `kickdrift/NAME/1` that can be rechecked.
-            pub const NAMES: &'static [&'static str] = &[$($name),*];
+            pub const NAMES: &'static [&'static str] = &[$($(#[$only])? $name),*];
 
             /// Reads a document: JSON into rows, each field once.
             ///
@@ -33,7 +35,7 @@ macro_rules! claims {
                 let schema = document.remove("schema").unwrap_or_default();
                 let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));
                 match name {
-                    $(Some($name) => Ok(Claim::$variant(Box::new(typed(document)?))),)*
+                    $($(#[$only])? Some($name) => Ok(Claim::$variant(Box::new(typed(document)?))),)*
                     _ => {
                         let known = Claim::NAMES.join(", ");
                         let remedy = format!("can be rechecked: kickdrift/NAME/1, NAME one of {known}");
@@ -45,13 +47,13 @@ macro_rules! claims {
             /// NAME in `kickdrift/NAME/1`.
             pub fn name(&self) -> &'static str {
                 match self {
-                    $(Claim::$variant(_) => $name,)*
+                    $($(#[$only])? Claim::$variant(_) => $name,)*
                 }
             }
 
             fn check(&self, context: &Context) -> Result<Outcome> {
                 match self {
-                    $(Claim::$variant(claim) => claim.check(context),)*
+                    $($(#[$only])? Claim::$variant(claim) => claim.check(context),)*
                 }
             }
         }
@@ -68,6 +70,7 @@ claims! {
     "curves" Curves curves;
     "polynomial" Polynomial polynomial;
     "proposition" Proposition proposition;
+    #[cfg(feature = "advise")] "advise" Advise advise;
 }
 
 impl Claim {

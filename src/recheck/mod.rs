@@ -14,6 +14,7 @@
 //! | curves | arcsines | arctangents; the samples again in doubles |
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
+//! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
 //!
 //! ```
 //! use kickdrift::recheck::{Claim, Options};
@@ -33,6 +34,8 @@ macro_rules! rows {
     };
 }
 
+#[cfg(feature = "advise")]
+mod advise;
 mod claim;
 mod closings;
 mod compare;
