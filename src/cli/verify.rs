@@ -1,6 +1,6 @@
 //! `kickdrift verify`: a document rechecked by another route than the one that made it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
@@ -20,6 +20,9 @@ pub struct Args {
     /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of them.
     #[arg(long)]
     all: bool,
+    /// Where the files are that a system of measured stiffnesses refers to [default: the folder of FILE].
+    #[arg(long, value_name = "FOLDER")]
+    data: Option<PathBuf>,
 }
 
 /// Work that is told before it begins, in kicks, and kicks a second: some tens of seconds.
@@ -33,7 +36,7 @@ impl Args {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
         let claim = Claim::read(&text)?;
-        let options = Options { limits: common.limits(), all: self.all };
+        let options = Options { limits: common.limits(), all: self.all, folder: self.folder() };
         let work = claim.work(&options)?;
         if work > LONG && !common.quiet {
             let seconds = work / KICKS_A_SECOND;
@@ -56,6 +59,11 @@ impl Args {
             ));
         }
         common.write(&document(&outcome, &file.to_string(), name), Format::Text)
+    }
+
+    fn folder(&self) -> PathBuf {
+        let beside = || self.file.parent().unwrap_or(Path::new("")).into();
+        self.data.clone().unwrap_or_else(beside)
     }
 }
 

@@ -8,6 +8,7 @@
 //! is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one left is known by its
 //! missing lock, and the next process that writes to the directory removes it.
 
+use std::cell::RefCell;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -33,10 +34,33 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`], as
 /// [`write_output`].
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    if CAPTURED.with_borrow(Option::is_some) {
+        let mut bytes = Vec::new();
+        content(&mut bytes)?;
+        CAPTURED.with_borrow_mut(|all| all.as_mut().expect("captured").extend(bytes));
+        return Ok(());
+    }
     match path {
         None => to_stdout(content),
         Some(path) => to_path(path, content).map_err(|error| explained(path, error)),
     }
+}
+
+thread_local! {
+    /// What this thread would have written, while it is captured.
+    static CAPTURED: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread, wherever to;
+/// no file and no stream is touched by them.
+///
+/// # Errors
+/// Those of the work.
+pub fn captured(work: impl FnOnce() -> Result<()>) -> Result<Vec<u8>> {
+    CAPTURED.set(Some(Vec::new()));
+    let done = work();
+    let bytes = CAPTURED.take().unwrap_or_default();
+    done.map(|()| bytes)
 }
 
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {

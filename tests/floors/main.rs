@@ -23,11 +23,11 @@ const FLOORS: [(&str, u32); 19] = [
     ("system", 6),
     ("avi", 6),
     ("advise", 7),
-    ("recheck", 7),
     ("scene", 8),
     ("report", 8),
-    ("cli", 9),
-    ("explore", 9),
+    ("recheck", 9),
+    ("cli", 10),
+    ("explore", 10),
 ];
 
 /// Circles that are still there; one that is mended must leave the list.

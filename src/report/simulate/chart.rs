@@ -1,7 +1,6 @@
 //! A run of Algorithm 1 drawn.
 
-use super::Run;
-use crate::avi::Sample;
+use crate::avi::{Run, Sample};
 use crate::report::figure::palette::{GREY, family};
 use crate::report::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
 

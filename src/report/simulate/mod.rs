@@ -3,33 +3,11 @@
 #[cfg(feature = "figure")]
 mod chart;
 
-use crate::avi::Sample;
+use crate::avi::{Run, Sample};
 use crate::report::document::Document;
 use crate::report::table::{Cell, Column, Table};
 #[cfg(feature = "figure")]
 pub use chart::figure;
-
-/// What a run showed.
-#[derive(Clone, Debug)]
-pub struct Run {
-    pub series: Vec<Sample>,
-    /// Measured growth rate of small deviations, per unit time.
-    pub measured: f64,
-    /// Predicted by the system's multipliers.
-    pub predicted: f64,
-    /// The largest difference after running forward and back, relative to the start.
-    pub irreversibility: f64,
-    /// Whether deviations of any size move like small ones.
-    pub linear: bool,
-}
-
-impl Run {
-    /// What cannot be told from no growth: a bounded solution returns to its size only after a beat, and over half the
-    /// run that looks like growth.
-    fn resolution(&self) -> f64 {
-        self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
-    }
-}
 
 /// The document `kickdrift/simulate/1`; the caller adds the input.
 pub fn document(run: &Run) -> Document {
