@@ -262,7 +262,8 @@ impl Claim {
         let steps: Vec<Rational> = match self.input.schemes.get(scheme) {
             Some(steps) => steps.iter().map(|step| step.0.clone()).collect(),
             None => {
-                return holds(false, || format!("there is no scheme {}", scheme + 1)).map(|()| unreachable!());
+                return holds(false, || format!("there is no scheme {}", scheme + 1))
+                    .map(|()| unreachable!());
             }
         };
         let of = |clock: usize| {
