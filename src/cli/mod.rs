@@ -15,6 +15,7 @@ mod polynomial;
 mod progress;
 mod proposition;
 mod ratios;
+mod request;
 mod run;
 mod simulate;
 mod system;
@@ -181,7 +182,7 @@ fn run(cli: &Cli) -> Result<u8> {
 }
 
 fn failure(message: &str) -> u8 {
-    // Where standard error is closed too, the exit code alone has to tell.
+    // Where standard error is closed too, the exit code alone has to say it.
     let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
     2
 }

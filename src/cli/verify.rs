@@ -25,8 +25,8 @@ pub struct Args {
     data: Option<PathBuf>,
 }
 
-/// Work that is told before it begins, in kicks, and kicks a second: some tens of seconds.
-const LONG: u64 = 20_000_000;
+/// Work that is announced before it begins, in kicks, and kicks a second: some tens of seconds.
+const ANNOUNCED_KICKS: u64 = 20_000_000;
 const KICKS_A_SECOND: u64 = 400_000;
 
 impl Args {
@@ -38,7 +38,7 @@ impl Args {
         let claim = Claim::read(&text)?;
         let options = Options { limits: common.limits(), all: self.all, folder: self.folder() };
         let work = claim.work(&options)?;
-        if work > LONG && !common.quiet {
+        if work > ANNOUNCED_KICKS && !common.quiet {
             let seconds = work / KICKS_A_SECOND;
             eprintln!("kickdrift: {file}: about {work} kicks, some {seconds} s on one core");
         }
@@ -86,5 +86,5 @@ fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
         .entry("sample", sample.map_or(Value::Null, |(drawn, of)| json!({"drawn": drawn, "of": of})))
         .entry("not_rechecked", not_rechecked.clone())
         .entry("failures", Vec::<Value>::new())
-        .told(&lines)
+        .summary_alone(&lines)
 }

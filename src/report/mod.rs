@@ -14,11 +14,12 @@ pub mod compare;
 pub mod csv;
 pub mod curves;
 pub mod decimal;
-pub mod digits;
 pub mod document;
 #[cfg(feature = "figure")]
 pub mod figure;
 pub mod file;
+#[cfg(feature = "system")]
+mod friction;
 pub mod latex;
 pub mod map;
 #[cfg(feature = "cli")]

@@ -19,6 +19,9 @@ pub struct Answer {
     pub growth: Growth,
     /// Tr Q, where it is rational and was asked for or is short.
     pub exact_trace: Option<Rational>,
+    /// What friction does to it, where that was asked for.
+    #[cfg(feature = "system")]
+    pub friction: Option<crate::system::friction::Friction>,
 }
 
 /// A rational trace is shown unasked where the period has at most so many kicks.
@@ -65,9 +68,13 @@ impl Answer {
             let (lo, hi) = self.growth.trace.to_f64_enclosure();
             document = document.entry("trace", json!({"lo": lo, "hi": hi, "exact": exact.to_string()}));
         }
+        #[cfg(feature = "system")]
+        if let Some(own) = &self.friction {
+            document = document.input("friction", &own.rate).entry("friction", super::friction::value(own));
+        }
         document
             .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
-            .told(&self.lines())
+            .summary_alone(&self.lines())
     }
 }
 
@@ -86,9 +93,9 @@ fn record() -> Record<'static, Answer> {
             of.growth.trace.to_f64_enclosure().into()
         })
         .field(Column::new("growth_rate").in_words("growth rate").enclosure(), |of| of.growth_rate().into())
-        .field_in("resonance", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
-        .field_in("resonance", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
-        .field_in("resonance", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
+        .at("resonance.m", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
+        .at("resonance.a", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
+        .at("resonance.b", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
         .field(Column::new("decided_by").in_words("decided by").left(), |of| {
             of.decision.decided_by.name().into()
         })
@@ -126,6 +133,8 @@ impl Answer {
             ));
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
+        #[cfg(feature = "system")]
+        lines.extend(self.friction.iter().flat_map(super::friction::lines));
         lines
     }
 

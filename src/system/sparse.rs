@@ -195,13 +195,13 @@ impl Symmetric {
         self.inertia_in_doubles().unknown == 0
     }
 
-    /// What doubles prove of the signs of its eigenvalues; nothing where it is large and sparse: there exact elimination fills
-    /// in little and costs less.
+    /// What doubles prove of the signs of its eigenvalues; nothing where it is large and nearly a chain (three entries a
+    /// row): there exact elimination fills in little and costs less.
     fn inertia_in_doubles(&self) -> Inertia {
         const SMALL: usize = 64;
         let n = self.size();
         let entries: usize = self.rows.iter().map(BTreeMap::len).sum();
-        if n > SMALL && entries < 16 * n {
+        if n > SMALL && entries < 5 * n {
             return Inertia { unknown: n, ..Inertia::default() };
         }
         let mut rounded = Mat::<f64>::zeros(n, n);

@@ -5,7 +5,8 @@ mod chart;
 
 use crate::avi::{Run, Sample};
 use crate::report::document::Document;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::record::Record;
+use crate::report::table::Column;
 #[cfg(feature = "figure")]
 pub use chart::figure;
 
@@ -15,7 +16,7 @@ pub fn document(run: &Run) -> Document {
     let drift = first.zip(last).map(|(a, b)| (b.energy - a.energy) / a.energy.abs());
     let drift = drift.filter(|drift| drift.is_finite()).map(|drift| format!("{drift:.3e}"));
     let of = if run.linear { "" } else { " of small deviations" };
-    let lines = [
+    let mut lines = vec![
         format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
         format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
@@ -30,21 +31,28 @@ pub fn document(run: &Run) -> Document {
             "  growth rate, measured        none: the run overflows".into()
         },
     ];
-    Document::new("simulate")
+    let document = Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)
         .entry("growth_rate_measured", run.measured)
         .entry("linear", run.linear)
-        .entry("irreversibility", run.irreversibility)
-        .rows(table(&run.series))
-        .told(&lines)
+        .entry("irreversibility", run.irreversibility);
+    let document = match run.displacement {
+        Some(off) => {
+            lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
+            document.entry("own_orbit", serde_json::json!({"displacement": off}))
+        }
+        None => document,
+    };
+    document
+        .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
+        .summary_alone(&lines)
 }
 
-fn table(series: &[Sample]) -> Table {
-    let columns = ["time", "energy", "momentum", "amplitude"].map(Column::new).to_vec();
-    let mut table = Table::new("series", "Energy, momentum and amplitude over time", columns);
-    for sample in series {
-        let Sample { time, energy, momentum, amplitude } = *sample;
-        table.push([time, energy, momentum, amplitude].map(Cell::Float).to_vec());
-    }
-    table
+/// What is written of a sample.
+fn record() -> Record<'static, Sample> {
+    Record::new()
+        .field(Column::new("time"), |of: &Sample| of.time.into())
+        .field(Column::new("energy"), |of| of.energy.into())
+        .field(Column::new("momentum"), |of| of.momentum.into())
+        .field(Column::new("amplitude"), |of| of.amplitude.into())
 }
