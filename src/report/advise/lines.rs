@@ -6,7 +6,7 @@ use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Row, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::report::digits::few;
+use crate::report::decimal::few;
 
 /// What no linear analysis of given periods tells.
 pub(super) const UNKNOWN: [&str; 3] = [

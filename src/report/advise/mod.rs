@@ -205,7 +205,7 @@ fn pair_table(advice: &Advice) -> Table {
         .field(Column::new("first").left(), move |of: &(usize, &Pair)| name(of.1.modes[0]))
         .field(Column::new("second").left(), move |of: &(usize, &Pair)| name(of.1.modes[1]))
         .field(Column::new("near").in_words("outer step near").in_unit("fs"), |of: &(usize, &Pair)| {
-            super::digits::rounded(of.1.near, 4).into()
+            super::decimal::rounded(of.1.near, 4).into()
         });
     record.table("pairs", "Where two modes may resonate with each other (first order, not proven)", &pairs)
 }

@@ -1,7 +1,7 @@
 //! Numbers and names for people.
 
 use crate::advise::{Mode, Origin};
-use crate::report::digits::few;
+use crate::report::decimal::few;
 
 /// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure is wider: every digit is that of
 /// both ends' rounding.
