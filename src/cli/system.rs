@@ -109,7 +109,9 @@ impl Args {
         let analysis = scene.decide(self.route(), &limits(common))?;
         match drawing(common)? {
             Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
-            None => common.write(&self.echo(report::document(&analysis), scene), Format::Text),
+            None => {
+                common.write(&self.echo(report::document(&analysis, scene.time_unit()), scene), Format::Text)
+            }
         }
     }
 

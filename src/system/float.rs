@@ -22,7 +22,7 @@ use super::model::System;
 use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
-use crate::number::{Rational, Ring, U};
+use crate::number::{Rational, U};
 use crate::schedule::Weight;
 
 /// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
@@ -147,7 +147,7 @@ fn norm2(row: &[f64]) -> f64 {
 
 /// Runs the half period in doubles.
 pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
-    let mut program = Program::new(system).map(f64::from_rational);
+    let mut program = Program::rounded(system);
     let scales = scales(&program, middle_frequency(system, frame));
     rescale(&mut program, &scales);
     let is_rounded_well = program.entries().all(|x| x.abs() > 1e-290 && x.is_finite());

@@ -22,8 +22,8 @@ pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
-/// The document `kickdrift/system-verdict/1`; the caller adds the input.
-pub fn document(analysis: &Analysis) -> Document {
+/// The document `kickdrift/system-verdict/1`, times in `unit` where it is known; the caller adds the input.
+pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
     let document = Document::new("system-verdict")
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
@@ -35,11 +35,15 @@ pub fn document(analysis: &Analysis) -> Document {
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", analysis.parts.iter().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone());
+    let document = match unit {
+        Some(unit) => document.entry("time_unit", unit),
+        None => document,
+    };
     let document = match &analysis.measured {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table(analysis)).told(&lines(analysis))
+    document.long_rows(table(analysis)).told(&lines(analysis, unit))
 }
 
 fn part(part: &Part) -> Value {
@@ -96,13 +100,14 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
-fn lines(analysis: &Analysis) -> Vec<String> {
+fn lines(analysis: &Analysis, unit: Option<&str>) -> Vec<String> {
+    let suffix = unit.map_or(String::new(), |unit| format!(" {unit}"));
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
         format!("{stable}: {} ({proven})", analysis.kind.name()),
         format!(
-            "  {}, {}, period T = {}",
+            "  {}, {}, period T = {}{suffix}",
             counted(analysis.size, "degree of freedom", "degrees of freedom"),
             counted(analysis.clocks, "clock", "clocks"),
             analysis.period
@@ -116,14 +121,15 @@ fn lines(analysis: &Analysis) -> Vec<String> {
         lines.push(format!("  {parts} independent parts"));
     }
     if !analysis.is_stable() {
-        lines.push(format!("  largest growth rate {:.6} per unit time", analysis.growth_rate()));
+        let per = unit.unwrap_or("unit time");
+        lines.push(format!("  largest growth rate {:.6} per {per}", analysis.growth_rate()));
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", told(unstable)));
     }
-    lines.extend(analysis.measured.iter().flat_map(measured::lines));
+    lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }
