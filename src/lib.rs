@@ -32,7 +32,7 @@
 //! **The prediction.** The fast clock alone turns by θ each step, cos θ = 1 − s/2, so its effective half period is
 //! T½ = π h1/θ. Instability is predicted where q h2 is near m T½, that is p θ near m π. These points lie on the
 //! curves 1/T½ = a/h1 + b/h2 with m = a p + b q ([`resonance::proposition`]); the [tan criterion](resonance::tan) is
-//! exact for every q; how wide a tongue opens about each point is told to first order by
+//! exact for every q; how wide a tongue opens about each point is given to first order by
 //! [`resonance::first_order`].
 //!
 //! The method and the conjecture are those of W. Fong, E. Darve and A. Lew, *Stability of Asynchronous Variational

@@ -211,3 +211,22 @@ fn bad_simulations_are_refused_by_name() {
     assert!(text(message(&one(), 0, &zero())).starts_with("step[0] = 0"));
     assert!(text(message(&one(), 0, &[ratio(1, 1), ratio(2, 1)])).starts_with("steps = 2"));
 }
+
+proptest! {
+    #[test]
+    fn slopes_and_curvatures_are_derivatives(r in 0.8f64..2.5, k in 0.1f64..3.0, beta in 0.1f64..3.0) {
+        let h = 1e-5;
+        for form in [
+            Form::Harmonic { k },
+            Form::Quartic { k, beta },
+            Form::LennardJones { epsilon: k, sigma: 0.9 },
+        ] {
+            let slope = (form.energy(r + h) - form.energy(r - h)) / (2.0 * h);
+            let curvature = (form.slope(r + h) - form.slope(r - h)) / (2.0 * h);
+            // Central differences: h² times a third derivative (up to 10^4 at r = 0.8), and roundoff/h.
+            let scale = 1.0 + form.curvature(r).abs() * 20.0;
+            prop_assert!((slope - form.slope(r)).abs() < 1e-6 * scale);
+            prop_assert!((curvature - form.curvature(r)).abs() < 1e-5 * scale);
+        }
+    }
+}

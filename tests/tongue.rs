@@ -6,8 +6,9 @@ use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Polynomial, Ratio, Rational};
 use kickdrift::propagator::TwoClocks;
+use kickdrift::resonance::dominant_family;
 use kickdrift::tongue::{
-    Closing, Edge, Entry, ExactEdge, Gap, Search, Side, Tongues, Wanted, closings, entries, survey,
+    Closing, Edge, Entry, ExactEdge, Gap, Search, Selection, Side, Tongues, Wanted, closings, entries, survey,
 };
 use kickdrift::verdict::{Decidable, Kind, Limits, decide, growth};
 use num_integer::Integer;
@@ -556,4 +557,31 @@ fn polynomials_have_the_expected_degrees() {
     let polynomials: [Polynomial<Rational>; 4] = entries("5/3".parse().unwrap(), &ratio(2, 7));
     let total: usize = polynomials.iter().map(|f| f.degree().unwrap()).sum();
     assert_eq!(total, 2 * (5 + 3) - 3);
+}
+
+#[test]
+fn windows_hold_what_all_tongues_show() {
+    for (p, q, rho) in [(7, 3, ratio(1, 25)), (3, 11, ratio(2, 1)), (40, 1, ratio(1, 2)), (9, 4, ratio(0, 1))]
+    {
+        let all = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap();
+        for (lo, hi) in [(0.0, 1e300), (1.0, 1.5), (2.4, 2.4), (3.9, 400.0), (-1.0, 1e-9), (2.0, 1.0)] {
+            let meets = |gap: &&Gap| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi);
+            let expected: Vec<u64> = all.iter().filter(meets).map(|gap| gap.m).filter(|_| lo <= hi).collect();
+            let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
+            let found = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().select(&selection).unwrap();
+            assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected, "{p}/{q}: {lo}..{hi}");
+        }
+    }
+}
+
+#[test]
+fn a_family_is_that_of_the_labels() {
+    let tongues = Tongues::new("31/12".parse().unwrap(), &ratio(1, 25)).unwrap();
+    let selection = Selection { a: Some((1, 2)), b: Some((-9, -1)), ..Selection::default() };
+    let found = tongues.select(&selection).unwrap();
+    let expected: Vec<u64> = (1..=tongues.last())
+        .filter(|&m| matches!(dominant_family("31/12".parse().unwrap(), m), (1..=2, -9..=-1)))
+        .collect();
+    assert!(!expected.is_empty());
+    assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected);
 }

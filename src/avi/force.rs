@@ -183,28 +183,3 @@ impl Force<f64> for Bond {
         self.form.energy(Bond::extension(x))
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn slopes_and_curvatures_are_derivatives(r in 0.8f64..2.5, k in 0.1f64..3.0, beta in 0.1f64..3.0) {
-            let h = 1e-5;
-            for form in [
-                Form::Harmonic { k },
-                Form::Quartic { k, beta },
-                Form::LennardJones { epsilon: k, sigma: 0.9 },
-            ] {
-                let slope = (form.energy(r + h) - form.energy(r - h)) / (2.0 * h);
-                let curvature = (form.slope(r + h) - form.slope(r - h)) / (2.0 * h);
-                // Central differences: h² times a third derivative (up to 10^4 at r = 0.8), and roundoff/h.
-                let scale = 1.0 + form.curvature(r).abs() * 20.0;
-                prop_assert!((slope - form.slope(r)).abs() < 1e-6 * scale);
-                prop_assert!((curvature - form.curvature(r)).abs() < 1e-5 * scale);
-            }
-        }
-    }
-}

@@ -18,6 +18,28 @@ pub struct Sample {
     pub amplitude: f64,
 }
 
+/// What a run showed.
+#[derive(Clone, Debug)]
+pub struct Run {
+    pub series: Vec<Sample>,
+    /// Measured growth rate of small deviations, per unit time.
+    pub measured: f64,
+    /// Predicted by the system's multipliers.
+    pub predicted: f64,
+    /// The largest difference after running forward and back, relative to the start.
+    pub irreversibility: f64,
+    /// Whether deviations of any size move like small ones.
+    pub linear: bool,
+}
+
+impl Run {
+    /// Measured growth rates below this are none: a bounded solution returns to its size only after a beat, and over half
+    /// the run that looks like growth.
+    pub fn resolution(&self) -> f64 {
+        self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
+    }
+}
+
 /// The state's line, the amplitude measured from `centre`.
 fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> Sample {
     let x = &simulation.state().x;

@@ -24,5 +24,5 @@ mod simulation;
 
 pub use crate::schedule::Clocks;
 pub use force::{Bond, Force, Form, Linear};
-pub use measure::{Sample, equilibrium, growth_rate, irreversibility, series};
+pub use measure::{Run, Sample, equilibrium, growth_rate, irreversibility, series};
 pub use simulation::{Ends, Simulation, State, Ticks};

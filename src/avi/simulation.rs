@@ -102,7 +102,7 @@ impl<S: Ticks, F: Force<S>> Simulation<S, F> {
         })
     }
 
-    /// Runs for `ticks` more, kicks at the ends as told; afterwards all particles are at the same time. Returns the
+    /// Runs for `ticks` more, kicks at the ends as `ends` says; afterwards all particles are at the same time. Returns the
     /// number of kicks.
     pub fn run(&mut self, ticks: u64, ends: Ends) -> u64 {
         let (start, end) = (self.now, self.now + ticks);

@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
@@ -43,6 +44,11 @@ pub fn of<T>(
     move |text| parse("value", text).map_err(|error| error.remedy().to_string())
 }
 
+/// The same for a type that is read from text and names its field by itself.
+pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
+    text.parse().map_err(|error: Error| error.remedy().to_string())
+}
+
 /// A count, with the remedy that the standard library's message lacks.
 pub fn whole<T: TryFrom<u64>>(text: &str) -> std::result::Result<T, String> {
     let number: u64 = text.parse().map_err(|_| "write a whole number, in digits only, within 64 bits")?;
@@ -60,13 +66,16 @@ impl ValueEnum for Format {
     }
 }
 
+/// How rows that are left out of a text are to be seen.
+pub const TO_SEE_ROWS: &str = "use --format csv, json or latex to see them";
+
 /// More threads than this are a slip of the keyboard; starting them could bring the machine down.
 const MOST_THREADS: usize = 1024;
 
 impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
-        let text = document.render(self.format(&Format::DOCUMENT, default)?)?;
+        let text = document.render_with(self.format(&Format::DOCUMENT, default)?, TO_SEE_ROWS)?;
         write_output(self.output.as_deref(), text.as_bytes())
     }
 

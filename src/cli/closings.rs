@@ -2,19 +2,18 @@
 
 use crate::parallel::*;
 
-use super::args::{Common, whole};
+use super::args::{Common, from_str, of, whole};
 use super::progress::progress;
 use super::ratios::{Flags, Ratios};
-use super::tongues::{parse_list, shown_list};
+use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::parse::parse_range;
-use crate::number::{Laurent, Ratio, Rational};
+use crate::number::parse::parse_rational_range;
+use crate::number::{Ratio, Rational};
 use crate::report::closings::{self, DIGITS};
 use crate::report::document::Document;
-use crate::report::file::write_output;
 use crate::scene::shown_range;
-use crate::tongue::{self, Found, Search};
+use crate::tongue::{self, Found, Labels, Search};
 
 /// Flags of `closings`: a ratio or all of them.
 #[derive(Debug, clap::Args)]
@@ -22,11 +21,11 @@ pub struct Args {
     #[command(flatten)]
     which: Flags,
     /// Only these labels (with --ratio), as 4 or 1,3,7..9.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    m: Option<String>,
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = from_str::<Labels>)]
+    m: Option<Labels>,
     /// The closed range of rho = lambda2/lambda1, positive.
-    #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true)]
-    rho_range: String,
+    #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true, value_parser = of(parse_rational_range))]
+    rho_range: (Rational, Rational),
     /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross.
     #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
@@ -39,7 +38,7 @@ pub struct Args {
 #[derive(Clone, Debug)]
 pub struct Question {
     pub ratios: Ratios,
-    pub m: Option<Vec<(u64, u64)>>,
+    pub m: Option<Labels>,
     pub rho: (Rational, Rational),
     pub samples: usize,
     pub digits: u32,
@@ -54,19 +53,13 @@ const MOST_DIGITS: u32 = 28;
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::DOCUMENT)?;
-        let document = self.question()?.document(common, format == Format::Csv)?;
-        write_output(common.output.as_deref(), document.render(format)?.as_bytes())
+        let request = Request::Closings(self.question()?);
+        common.write(&request.perform(common, format == Format::Csv)?, format)
     }
 
     fn question(&self) -> Result<Question> {
-        let ratios = self.which.ratios()?;
-        let m = self.m.as_ref().map(|text| parse_list(text)).transpose()?;
-        let (lo, hi) = parse_range("rho-range", &self.rho_range)?;
-        let rational = |x: &Laurent| {
-            let remedy = "must be rational; write it without pi";
-            x.as_rational().ok_or_else(|| Error::input("rho-range", x, remedy))
-        };
-        Question::new(ratios, m, (rational(&lo)?, rational(&hi)?), self.samples, self.digits)
+        let Args { which, m, rho_range, samples, digits } = self;
+        Question::new(which.ratios()?, m.clone(), rho_range.clone(), *samples, *digits)
     }
 }
 
@@ -77,7 +70,7 @@ impl Question {
     /// A sum, a number of samples or digits out of range, labels of many ratios.
     pub fn new(
         ratios: Ratios,
-        m: Option<Vec<(u64, u64)>>,
+        m: Option<Labels>,
         rho: (Rational, Rational),
         samples: usize,
         digits: u32,
@@ -118,17 +111,15 @@ impl Question {
         let search = Search { m: None, rho: self.rho.clone(), samples: self.samples };
         match &self.m {
             None => tongue::closings(ratio, &search),
-            Some(labels) => tongue::closings_of(ratio, labels, &search),
+            Some(labels) => tongue::closings_of(ratio, &labels.0, &search),
         }
     }
 
     fn echo(&self, document: Document) -> Document {
-        let document = self.ratios.echo(document);
-        let document = match &self.m {
-            Some(list) => document.input("m", shown_list(list)),
-            None => document,
-        };
-        document
+        let labels = self.m.iter().map(|labels| ("m", labels.to_string()));
+        self.ratios
+            .echo(document)
+            .inputs(labels)
             .input("rho_range", shown_range(&self.rho))
             .input("samples", self.samples)
             .input("digits", self.digits)

@@ -1,17 +1,12 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
 use super::args::{self, Common, of, whole};
+use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::Grid;
 use crate::number::Laurent;
 use crate::number::Rational;
 use crate::number::parse::{parse, parse_rational};
-use crate::report::compare;
-use crate::report::document::Document;
-use crate::resonance::compare::compare_ratios;
-use crate::scene::GridRange;
-use crate::verdict::Limits;
 
 /// Flags of `compare`: either a grid with both stiffnesses, or --max-sum with --rho.
 #[derive(Debug, clap::Args)]
@@ -40,41 +35,20 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        let tolerance = &self.tolerance;
-        let limits = common.limits();
-        let document = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
+        let tolerance = self.tolerance.clone();
+        let request = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
             (Some(lambda1), Some(lambda2), None, None) => {
                 let range = self.grid.range()?;
-                over_grid(&range.of(lambda1.clone(), lambda2.clone())?, &range, tolerance, &limits)?
+                Request::CompareGrid { grid: range.of(lambda1.clone(), lambda2.clone())?, range, tolerance }
             }
             (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
-                over_ratios(max_sum, rho, self.samples, tolerance, &limits)?
+                Request::CompareRatios { max_sum, rho: rho.clone(), samples: self.samples, tolerance }
             }
             _ => {
                 let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
                 return Err(Error::input("flags", "incomplete or mixed", remedy));
             }
         };
-        common.write(&document, Format::Text)
+        common.write(&request.perform(common, true)?, Format::Text)
     }
-}
-
-/// The comparison over all pairs of a grid.
-pub fn over_grid(grid: &Grid, range: &GridRange, tolerance: &Rational, limits: &Limits) -> Result<Document> {
-    let document = compare::document(&grid.compare(tolerance, limits)?, tolerance, ["h1", "h2"]);
-    let (lambda1, lambda2) = grid.lambdas();
-    Ok(document.input("lambda1", lambda1).input("lambda2", lambda2).inputs(range.given()))
-}
-
-/// The comparison over all coprime p + q ≤ max_sum at s = 4k/(samples + 1).
-fn over_ratios(
-    max_sum: u64,
-    rho: &Rational,
-    samples: u64,
-    tolerance: &Rational,
-    limits: &Limits,
-) -> Result<Document> {
-    let all = compare_ratios(max_sum, rho, samples, tolerance, limits)?;
-    let document = compare::document(&all, tolerance, ["s", "rho"]);
-    Ok(document.input("max_sum", max_sum).input("rho", rho).input("samples", samples))
 }

@@ -1,14 +1,13 @@
 //! `kickdrift curves`: the (a, b) families as tables.
 
 use super::args::{Common, of, whole};
+use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range};
 use crate::number::{ExactSign, Laurent, Sign};
-use crate::report::curves;
-use crate::report::document::Document;
-use crate::resonance::{Curve, Families, Window};
-use crate::scene::{GridRange, StepRange, given_families, shown_range};
+use crate::resonance::Families;
+use crate::scene::{StepRange, shown_range};
 
 /// Flags of `curves`.
 #[derive(Debug, clap::Args)]
@@ -47,17 +46,9 @@ impl Args {
             }
         }
         let families = Families { a: *a, b: *b, samples: *samples };
-        let curves = families.curves(lambda1, &Window::new(h1, h2))?;
-        let document = curves::document(&curves)
-            .input("lambda1", lambda1)
-            .input("h1_range", shown_range(h1))
-            .input("h2_range", shown_range(h2))
-            .inputs(given_families(&families));
-        common.write(&document, format)
+        let given = vec![("h1_range", shown_range(h1)), ("h2_range", shown_range(h2))];
+        let ranges = [h1.clone(), h2.clone()];
+        let request = Request::Curves { lambda1: lambda1.clone(), ranges, families, given };
+        common.write(&request.perform(common, true)?, format)
     }
-}
-
-/// The curves of a grid's window as a document.
-pub fn document(lambda1: &Laurent, range: &GridRange, families: &Families, curves: &[Curve]) -> Document {
-    curves::document(curves).input("lambda1", lambda1).inputs(range.given()).inputs(given_families(families))
 }

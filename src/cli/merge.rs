@@ -28,7 +28,7 @@ impl Args {
         output.write(&source, common.output.as_deref())
     }
 
-    /// The parts hold what the colours tell.
+    /// The parts hold what the colours show.
     fn check(&self, format: Format, map: &Map) -> Result<()> {
         let (needs, held) = (self.drawing.products(format)?, map.products);
         for (flag, missing) in

@@ -14,6 +14,7 @@ mod polynomial;
 mod progress;
 mod proposition;
 mod ratios;
+mod request;
 mod run;
 mod simulate;
 mod system;
@@ -22,6 +23,7 @@ mod usage;
 mod verdict;
 mod verify;
 
+use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -32,6 +34,7 @@ use crate::error::Result;
 use crate::format::Format;
 #[cfg(unix)]
 use crate::report::file::abandon;
+use crate::report::file::captured;
 use args::Common;
 
 /// Exact, certified linear stability of multiple-time-step integrators.
@@ -88,21 +91,42 @@ impl Command {
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
+    ExitCode::from(program(std::env::args_os()))
+}
+
+/// Runs the program with these arguments, its own name first, for hosts that bring their own process; its exit code.
+pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     // Without it the next run in the same folder tidies up.
     let _ = tidy_up_when_stopped();
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             // A closed pipe is the reader's choice.
             let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
-            return ExitCode::SUCCESS;
+            return 0;
         }
-        Err(error) => return failure(&usage::explained(&error, &Cli::command())),
+        Err(error) => return failure(&usage::explained(&error, &Cli::command()).to_string()),
     };
     match run(&cli) {
         Ok(code) => code,
         Err(error) => failure(&error.explain(|needed| format!("allow it with --budget {needed}"))),
     }
+}
+
+/// The bytes that the program would write for these arguments, its own name first: those of standard output, or of the
+/// file that `--output` names, which is not touched. Nothing is printed where `--quiet` is among them.
+///
+/// ```
+/// let arguments = ["kickdrift", "verdict", "--lambda1", "1", "--lambda2", "1/4", "--h1", "1", "--h2", "2", "--format", "json"];
+/// let document = kickdrift::cli::answer(arguments.map(Into::into)).unwrap();
+/// assert!(document.starts_with(b"{\n  \"schema\": \"kickdrift/verdict/1\""));
+/// ```
+///
+/// # Errors
+/// What the program prints as its one line.
+pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
+    let cli = Cli::try_parse_from(arguments).map_err(|error| usage::explained(&error, &Cli::command()))?;
+    captured(|| run(&cli).map(drop))
 }
 
 /// An interrupted or terminated process leaves no unfinished file behind, and ends as one without this would.
@@ -124,7 +148,7 @@ fn tidy_up_when_stopped() -> std::io::Result<()> {
     Ok(())
 }
 
-fn run(cli: &Cli) -> Result<ExitCode> {
+fn run(cli: &Cli) -> Result<u8> {
     let common = &cli.common;
     common.set_threads()?;
     if !cli.command.draws() {
@@ -147,11 +171,11 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Simulate(args) => args.run(common)?,
         Command::Generate(args) => args.run(Cli::command(), common)?,
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
-fn failure(message: &str) -> ExitCode {
-    // Where standard error is closed too, the exit code alone has to tell.
+fn failure(message: &str) -> u8 {
+    // Where standard error is closed too, the exit code alone has to say it.
     let _ = writeln!(std::io::stderr(), "kickdrift: {message}");
-    ExitCode::from(2)
+    2
 }

@@ -1,11 +1,9 @@
 //! `kickdrift proposition`: the exhaustive exact check.
 
 use super::args::{Common, whole};
-use crate::error::{Error, Result};
+use super::request::Request;
+use crate::error::Result;
 use crate::format::Format;
-use crate::report::document::Document;
-use crate::report::proposition;
-use crate::resonance::proposition::check;
 
 /// Flags of `proposition`.
 #[derive(Debug, clap::Args)]
@@ -15,31 +13,9 @@ pub struct Args {
     max: u64,
 }
 
-/// Beyond this the witnesses alone would fill gigabytes.
-const MOST: u64 = 400;
-
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        common.write(&document(self.max)?, Format::Text)
+        let request = Request::Proposition { max: self.max };
+        common.write(&request.perform(common, true)?, Format::Text)
     }
-}
-
-/// The check and all witnesses for p, q ≤ max.
-pub fn document(max: u64) -> Result<Document> {
-    check_bound(max)?;
-    let mut witnesses = Vec::new();
-    let check = check(max, |w| witnesses.push(*w));
-    Ok(proposition::document(max, &check, &witnesses))
-}
-
-/// That the check is worth its cost.
-pub fn check_bound(max: u64) -> Result<()> {
-    if max == 0 || max > MOST {
-        return Err(Error::input(
-            "max",
-            max,
-            format!("choose 1 to {MOST}; the number of witnesses grows like its cube"),
-        ));
-    }
-    Ok(())
 }

@@ -2,11 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-
 use super::args::Common;
 use super::plane::DPI;
+use super::progress::progress;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::parse_rational;
@@ -31,10 +29,10 @@ pub struct Args {
     /// A potential's name serves as its index; potentials.NAME.scale is a factor of its stiffness.
     #[arg(long, value_name = "PATH=LO..HI:BY", allow_hyphen_values = true)]
     scan: Vec<String>,
-    /// What the colours of a map tell [default: growth].
+    /// What the colours of a map stand for [default: growth].
     #[arg(long, value_name = "WHAT")]
-    colour: Option<Colour>,
-    /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error tells its cost.
+    colour: Option<Colouring>,
+    /// Decide in exact arithmetic; where it exceeds --budget (products of machine words) the error states its cost.
     #[arg(long)]
     exact: bool,
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
@@ -49,14 +47,6 @@ pub struct Args {
     /// Leave the rigid motions of measured stiffnesses in.
     #[arg(long)]
     keep_rigid: bool,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Colour {
-    /// Exponential growth, linear growth, multipliers at ±1.
-    Verdict,
-    /// The growth rate per unit time.
-    Growth,
 }
 
 impl Args {
@@ -117,18 +107,14 @@ impl Args {
 
     fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {
         let (xs, ys, limits) = (axes.x.values(), axes.y.values(), limits(common));
-        let bar = progress(xs.len() * ys.len(), common.quiet);
+        let bar = progress(common.quiet, (xs.len() * ys.len()) as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.decide(self.route(), &limits);
         let points = scan(&xs, &ys, decide, |done| bar.inc(done as u64));
         bar.finish_and_clear();
         let names = [axes.x.path.clone(), axes.y.path.clone()];
         let map = SystemMap { names, xs, ys, points: points? };
-        let colouring = match self.colour {
-            Some(Colour::Verdict) => Colouring::Verdict,
-            Some(Colour::Growth) | None => Colouring::Growth,
-        };
         if let Some(path) = drawing(common)? {
-            return draw("output", path, &map.figure(colouring, scene.title()));
+            return draw("output", path, &map.figure(self.colour.unwrap_or_default(), scene.title()));
         }
         let document =
             self.echo(map.document(), scene).input("scan_x", &self.scan[0]).input("scan_y", &self.scan[1]);
@@ -183,14 +169,4 @@ fn folder(path: &Path) -> &Path {
 /// A system file, read.
 pub fn read(path: &Path) -> Result<SystemScene> {
     SystemScene::read_in(folder(path), &text(path)?)
-}
-
-/// A bar on standard error, which shows itself on a terminal only.
-fn progress(points: usize, quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(points as u64), ProgressDrawTarget::stderr());
-    let template = "{bar:30} {human_pos} of {human_len} points, {per_sec}, {eta} left";
-    bar.with_style(ProgressStyle::with_template(template).expect("the template is sound"))
 }

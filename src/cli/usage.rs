@@ -4,8 +4,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use crate::error::Error;
 
-/// The one line for an error that the argument parser found.
-pub fn explained(error: &clap::Error, program: &clap::Command) -> String {
+/// An error that the argument parser found, as one of ours.
+pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
     let invalid = || shown(error, ContextKind::InvalidArg);
     let known = match error.kind() {
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand | ErrorKind::MissingSubcommand => {
@@ -27,7 +27,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> String {
         ErrorKind::UnknownArgument => invalid().map(|flag| Error::input("flag", flag, suggestion(error))),
         _ => None,
     };
-    known.unwrap_or_else(|| plain(error)).to_string()
+    known.unwrap_or_else(|| plain(error))
 }
 
 fn bad_value(error: &clap::Error) -> Option<Error> {

@@ -1,7 +1,6 @@
 //! `kickdrift verdict`: is this pair stable?
 
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 use super::args::{Common, Stiffness, of};
 use crate::error::{Error, Result};
@@ -38,7 +37,7 @@ pub struct Args {
 }
 
 impl Args {
-    pub fn run(&self, common: &Common) -> Result<ExitCode> {
+    pub fn run(&self, common: &Common) -> Result<u8> {
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
         let Stiffness { lambda1, lambda2 } = self.stiffness.clone();
         let oscillator = Oscillator::new(lambda1, lambda2, self.h1.clone(), self.h2.clone())?;
@@ -48,7 +47,7 @@ impl Args {
             Some(rational) => self.answer(&oscillator, &rational, common)?,
             None => self.answer(&oscillator, &clocks, common)?,
         };
-        Ok(ExitCode::from(u8::from(self.exit_code && !stable)))
+        Ok(u8::from(self.exit_code && !stable))
     }
 
     /// Whether the pair is stable; the rest of the answer is computed only where it is shown.

@@ -1,6 +1,6 @@
 //! `kickdrift verify`: a document rechecked by another route than the one that made it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
@@ -20,10 +20,13 @@ pub struct Args {
     /// Take the slower route for every pair or ratio of a map or a survey, and not for a random sample of them.
     #[arg(long)]
     all: bool,
+    /// Where the files are that a system of measured stiffnesses refers to [default: the folder of FILE].
+    #[arg(long, value_name = "FOLDER")]
+    data: Option<PathBuf>,
 }
 
-/// Work that is told before it begins, in kicks, and kicks a second: some tens of seconds.
-const LONG: u64 = 20_000_000;
+/// Work that is announced before it begins, in kicks, and kicks a second: some tens of seconds.
+const ANNOUNCED_KICKS: u64 = 20_000_000;
 const KICKS_A_SECOND: u64 = 400_000;
 
 impl Args {
@@ -33,9 +36,9 @@ impl Args {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
         let claim = Claim::read(&text)?;
-        let options = Options { limits: common.limits(), all: self.all };
+        let options = Options { limits: common.limits(), all: self.all, folder: self.folder() };
         let work = claim.work(&options)?;
-        if work > LONG && !common.quiet {
+        if work > ANNOUNCED_KICKS && !common.quiet {
             let seconds = work / KICKS_A_SECOND;
             eprintln!("kickdrift: {file}: about {work} kicks, some {seconds} s on one core");
         }
@@ -56,6 +59,11 @@ impl Args {
             ));
         }
         common.write(&document(&outcome, &file.to_string(), name), Format::Text)
+    }
+
+    fn folder(&self) -> PathBuf {
+        let beside = || self.file.parent().unwrap_or(Path::new("")).into();
+        self.data.clone().unwrap_or_else(beside)
     }
 }
 
@@ -78,5 +86,5 @@ fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
         .entry("sample", sample.map_or(Value::Null, |(drawn, of)| json!({"drawn": drawn, "of": of})))
         .entry("not_rechecked", not_rechecked.clone())
         .entry("failures", Vec::<Value>::new())
-        .told(&lines)
+        .summary_alone(&lines)
 }

@@ -4,7 +4,7 @@ use super::grid::Grid;
 use super::products::Growing;
 use crate::verdict::{Decision, Tier, Verdict};
 
-/// What the map tells about a band of columns, column by column, in each by increasing row.
+/// What the map knows of a band of columns, column by column, in each by increasing row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
     /// The multiplier i of the first column.

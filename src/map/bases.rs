@@ -130,7 +130,7 @@ mod tests {
         fn quotients_of_doubles_are_those_of_integers(q in 1u64..1 << 50, n in 0u64..1 << 25, off in 0u64..3) {
             let q = q >> (n % 50);
             prop_assume!(q > 0);
-            // Next to multiples, where rounding could tell.
+            // Next to multiples, where rounding could matter.
             let p = (n * q).saturating_sub(off) % (1 << 50);
             prop_assert_eq!(quotient(p, q), p / q);
             prop_assert_eq!(quotient(q, p.max(1)), q / p.max(1));

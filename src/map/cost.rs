@@ -1,4 +1,4 @@
-//! What a map costs, told before it begins.
+//! What a map costs, stated before it begins.
 
 use super::grid::Grid;
 use super::shard::Shard;

@@ -7,7 +7,7 @@ use crate::resonance::compare::Comparisons;
 use crate::verdict::Limits;
 
 /// The most columns or rows: their products are then exact in doubles.
-const MOST: u64 = 1 << 26;
+const LARGEST_MULTIPLIER: u64 = 1 << 26;
 
 /// Every step h1 = i d1 in a closed range (a *column*) with every step h2 = j d2 in another (a *row*), i, j ≥ 1.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,7 +159,7 @@ fn multiples(field: &str, step: &Laurent, (lo, hi): (Laurent, Laurent)) -> Resul
 /// ⌊x/step⌋ for step > 0, 0 for x < step; `None` from 2^26 on.
 fn floor(x: &Laurent, step: &Laurent) -> Option<u64> {
     let fits = |n: u64| times(step, n) <= *x;
-    if fits(MOST) {
+    if fits(LARGEST_MULTIPLIER) {
         return None;
     }
     // Binary digits, from the top: exact comparisons, no quotient.

@@ -11,7 +11,7 @@ use crate::vector::instructions::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, label};
 
 impl Work<'_> {
-    /// A second run over the pairs in tongues, a third over those of which it tells too little, and more bits for the
+    /// A second run over the pairs in tongues, a third over those of which it gives too little, and more bits for the
     /// rest.
     pub(super) fn grow(&self, band: &mut Band, products: Products) -> Result<()> {
         let verdict = |n: usize| Verdict::ALL[usize::from(band.verdicts[n])];
@@ -56,7 +56,7 @@ const BLOCKS: [u64; 2] = [4, 1];
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;
 
-/// What is asked for, as far as the filter tells it.
+/// What is asked for, as far as the filter gives it.
 fn quick(n: usize, ends: &Ends, verdict: Verdict, products: Products) -> Option<Growing> {
     let label = if products.label { Some(label(ends, verdict)?) } else { None };
     let growth = || ln_multiplier(ends, verdict.side()).filter(|ln| ln.within(PRECISION));

@@ -17,7 +17,7 @@ use crate::orbit::filter::{End, Ends};
 
 /// Relative errors of factors are added up as long as their sum R is at most this: then products and quotients of
 /// them are off by less than 1.01 R.
-const SMALL: f64 = 1.0 / 300.0;
+const LARGEST_ERROR_SUM: f64 = 1.0 / 300.0;
 
 /// Covers terms of second order.
 const SECOND_ORDER: f64 = 1.01;
@@ -51,7 +51,7 @@ fn by_direction(rho: f64, error: f64) -> Option<Enclosure> {
     let r = rho.sqrt();
     // ρ is off by this; 6u for the roundings of ρ and of its root. NaN fails.
     let off = SECOND_ORDER * (error + 6.0 * U) * rho;
-    if !(error <= SMALL && off <= SMALL * (1.0 - rho)) {
+    if !(error <= LARGEST_ERROR_SUM && off <= LARGEST_ERROR_SUM * (1.0 - rho)) {
         return None;
     }
     // d(2 artanh √ρ) = dρ / (√ρ (1 − ρ)).
@@ -64,7 +64,7 @@ fn by_direction(rho: f64, error: f64) -> Option<Enclosure> {
 fn by_length(z: f64, exponent: i64, error: f64) -> Option<Enclosure> {
     // Below 1, (1) is the better one; a subnormal product has lost digits. NaN fails.
     let ln_z = ln(z, exponent);
-    if !(error <= SMALL && z.is_normal() && ln_z >= 0.0) {
+    if !(error <= LARGEST_ERROR_SUM && z.is_normal() && ln_z >= 0.0) {
         return None;
     }
     // 1/z beside 1; nothing beside 50.

@@ -1,4 +1,4 @@
-//! What a map may tell beside the verdicts, of the pairs that grow.
+//! What a map may give beside the verdicts, of the pairs that grow.
 
 use super::enclosure::Enclosure;
 use crate::number::Ratio;

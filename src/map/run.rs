@@ -165,7 +165,7 @@ pub fn merge(
 }
 
 /// The unstable pairs by the same kernel without its certificate: wrong where rounding says so, and of no use but
-/// to tell what certification costs.
+/// to see what certification costs.
 #[doc(hidden)]
 pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
     let pool = Resources { threads, ..Resources::default() }.pool()?;

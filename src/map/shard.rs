@@ -1,5 +1,8 @@
 //! A grid cut into bands of columns, and its bands dealt out to the parts of a map.
 
+use std::fmt;
+use std::str::FromStr;
+
 use super::grid::Grid;
 use crate::error::{Error, Result};
 
@@ -23,6 +26,26 @@ impl Shard {
             return Ok(Shard { k, n });
         }
         Err(Error::input("shard", format!("{k}/{n}"), "the parts of n are 1/n, 2/n, ..., n/n"))
+    }
+}
+
+impl FromStr for Shard {
+    type Err = Error;
+
+    /// `k/n`.
+    ///
+    /// # Errors
+    /// Another text, and as [`Shard::new`].
+    fn from_str(text: &str) -> Result<Shard> {
+        let terms = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
+        let (k, n) = terms.ok_or_else(|| Error::input("shard", text, "write part and parts as 2/16"))?;
+        Shard::new(k, n)
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.k, self.n)
     }
 }
 

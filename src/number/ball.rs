@@ -10,7 +10,7 @@
 //! let (two, bits) = (Ball::from_integer(&2.into()), 200);
 //! let root = two.sqrt(bits).unwrap();
 //! let error = root.square(bits).sub(&two, bits);
-//! assert_eq!(error.sign(), None); // contains 0: cannot tell, as it must be
+//! assert_eq!(error.sign(), None); // contains 0: undecided, as it must be
 //! assert!(error.radius_log2().unwrap() < -190);
 //! assert_eq!(Ball::pi(bits).compare(&root), Some(std::cmp::Ordering::Greater));
 //! ```
@@ -157,7 +157,7 @@ impl Ball {
         self.mid.bits() <= 64 && *self.mid.magnitude() <= self.rad.into()
     }
 
-    /// The sign that all points of the ball share; `None` if there is none, that is: could not tell.
+    /// The sign that all points of the ball share; `None` if there is none, that is: undecided.
     ///
     /// `Sign::Zero` is answered for the exact ball 0 only.
     pub fn sign(&self) -> Option<Sign> {

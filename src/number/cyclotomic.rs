@@ -245,6 +245,3 @@ impl fmt::Display for Cyclotomic {
         self.field.as_ref().map_or(Ok(()), |field| write!(f, " [c = 2cos(pi/{})]", field.n()))
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -16,9 +16,7 @@ mod enclose;
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
 
-use num_bigint::BigInt;
-use num_integer::Integer;
-use num_traits::{One, Signed, Zero};
+use num_traits::{One, Zero};
 
 use super::operators::ring_operators;
 use super::{ExactSign, Rational, Ring, Sign};
@@ -98,19 +96,6 @@ impl Laurent {
         }))
     }
 
-    /// The square root, if it is c π^k with rational c ≥ 0: it is 0, or self = c² π^2k.
-    pub fn sqrt_monomial(&self) -> Option<Laurent> {
-        if self.is_zero() {
-            return Some(Laurent::zero());
-        }
-        let (k, c) = self.as_monomial()?;
-        let root = |n: &BigInt| Some(n.sqrt()).filter(|root| root * root == *n);
-        if k.is_odd() || c.is_negative() {
-            return None;
-        }
-        Some(Laurent::monomial(Rational::new(root(c.numer())?, root(c.denom())?), k / 2))
-    }
-
     /// a / b if that is rational (b ≠ 0 and the coefficients of a and b are proportional), else `None`.
     pub fn ratio(a: &Laurent, b: &Laurent) -> Option<Rational> {
         let (_, leading) = b.terms.first()?;
@@ -119,20 +104,6 @@ impl Laurent {
         let proportional = a.terms.len() == b.terms.len()
             && a.terms.iter().zip(&b.terms).all(|((j, c), (k, d))| j == k && *c == &ratio * d);
         proportional.then_some(ratio)
-    }
-
-    /// (shift, coefficients, denominator) with self = π^shift Σ coefficients_j π^j / denominator, the
-    /// coefficients integers (first and last not 0; none at all for 0), denominator > 0 least possible.
-    pub fn to_integer_polynomial(&self) -> (i32, Vec<BigInt>, BigInt) {
-        let (Some((low, _)), Some((high, _))) = (self.terms.first(), self.terms.last()) else {
-            return (0, Vec::new(), BigInt::one());
-        };
-        let denominator = self.terms.iter().fold(BigInt::one(), |lcm, (_, c)| lcm.lcm(c.denom()));
-        let mut coefficients = vec![BigInt::zero(); (high - low) as usize + 1];
-        for (k, c) in &self.terms {
-            coefficients[(k - low) as usize] = c.numer() * (&denominator / c.denom());
-        }
-        (*low, coefficients, denominator)
     }
 
     /// The bits of all numerators and denominators.
@@ -235,6 +206,3 @@ impl Ord for Laurent {
         }
     }
 }
-
-#[cfg(test)]
-pub(super) mod tests;

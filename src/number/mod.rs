@@ -5,12 +5,12 @@
 //! | [`Rational`] | ℚ | inspection |
 //! | [`Laurent`] | ℚ[π, 1/π] | coefficients if all vanish (π is transcendental), else balls of growing precision |
 //! | [`Cyclotomic`] | ℚ(2cos(π/n)) | reduced polynomial if it vanishes, else balls of growing precision |
-//! | [`Ball`] | an interval that contains a real number | inspection; may be unable to tell |
+//! | [`Ball`] | an interval that contains a real number | inspection; may be unable to decide |
 //! | [`Polynomial`] | R\[x\] over any ring R | not at all: a [`Ring`] only; real roots by Sturm chains |
 //! | `f64` | doubles | not at all: a [`Ring`] only |
 //!
 //! Exact types know their sign ([`ExactSign`]) and can be enclosed ([`Real`]); a [`Ball`] answers `None` where
-//! it cannot tell; no exact type converts from a double silently ([`rational::from_f64_exact`] is loud).
+//! it cannot decide; no exact type converts from a double silently ([`rational::from_f64_exact`] is loud).
 //!
 //! ```
 //! use kickdrift::number::{ExactSign, Laurent, Real, Sign, parse};
@@ -19,7 +19,7 @@
 //! let h = parse::parse("h", "2/pi").unwrap();
 //! let margin = &(&(&h * &h) * &lambda) - &Laurent::from_integer(4);
 //! assert_eq!(margin.sign(), Sign::Zero);
-//! // The doubles next to h are not on it, and a ball of few bits cannot tell.
+//! // The doubles next to h are not on it, and a ball of few bits cannot decide.
 //! let ball = h.enclosure(53).square(53).mul(&lambda.enclosure(53), 53);
 //! assert_eq!(ball.sub(&Laurent::from_integer(4).enclosure(53), 53).sign(), None);
 //! ```

@@ -14,8 +14,6 @@
 //! ```
 
 mod grammar;
-#[cfg(test)]
-mod tests;
 
 pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};
 
@@ -57,6 +55,13 @@ pub fn parse_range(field: &str, text: &str) -> Result<(Laurent, Laurent)> {
     let (lo, hi) = split_range(field, text, "1/100..7/2")?;
     let (lo, hi) = (parse(field, lo)?, parse(field, hi)?);
     if lo > hi { Err(reversed(field, text)) } else { Ok((lo, hi)) }
+}
+
+/// The closed range `LO..HI` of rationals, LO ≤ HI.
+pub fn parse_rational_range(field: &str, text: &str) -> Result<(Rational, Rational)> {
+    let (lo, hi) = parse_range(field, text)?;
+    let both = lo.as_rational().zip(hi.as_rational());
+    both.ok_or_else(|| Error::input(field, text, "must be rational; write it without pi"))
 }
 
 /// The closed range `LO..HI` of integers, LO ≤ HI.

@@ -183,6 +183,3 @@ impl<R: Ring> Ring for Polynomial<R> {
         a.times(b)
     }
 }
-
-#[cfg(test)]
-mod tests;

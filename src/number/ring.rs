@@ -1,4 +1,4 @@
-//! What a quantity can do: compute ([`Ring`]), tell its sign ([`ExactSign`]), be enclosed ([`Real`]).
+//! What a quantity can do: compute ([`Ring`]), decide its sign ([`ExactSign`]), be enclosed ([`Real`]).
 //!
 //! `f64` is a [`Ring`] and nothing more: it can compute but not certify, so no code that decides a
 //! verdict accepts it.

@@ -1,4 +1,4 @@
-//! The sign of a real number: zero is a value of its own, never "could not tell".
+//! The sign of a real number: zero is a value of its own, never "undecided".
 
 use std::cmp::Ordering;
 use std::ops::{Mul, Neg};

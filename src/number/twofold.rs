@@ -122,9 +122,9 @@ impl Twofold {
 
     /// x to within 2^-100 relative; `None` where the ball is wider than that, negative, or far from 1.
     pub fn from_ball(x: &Ball) -> Option<Twofold> {
-        const FAR: f64 = 1e30;
+        const LARGEST: f64 = 1e30;
         let near = x.mid_f64();
-        if !(1.0 / FAR..=FAR).contains(&near) {
+        if !(1.0 / LARGEST..=LARGEST).contains(&near) {
             return None;
         }
         // 105 places below the leading one.

@@ -43,10 +43,10 @@ impl Ends {
     }
 }
 
-/// Signs, bounds and turns: all that one pair can tell.
-struct Everything;
+/// Signs, bounds and turns: all that is known of one pair.
+struct SignsAndTurns;
 
-impl Watch for Everything {
+impl Watch for SignsAndTurns {
     const MEASURE: bool = true;
     const WIND: bool = true;
 }
@@ -83,7 +83,7 @@ pub fn run(floquet: &Floquet) -> Option<Ends> {
     ends[0]
 }
 
-/// The filter could not tell.
+/// The filter could not decide.
 pub const UNDECIDED: u8 = u8::MAX;
 
 /// At most L pairs, 1 or 16, that run side by side. One certificate serves all: that of the strongest kick, the steepest
@@ -110,17 +110,17 @@ impl<const L: usize> Group<L> {
 
     /// Runs the half periods of the pairs and writes of each what [`run`] returns for one.
     pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
-        let certificate = self.run::<Everything>(pairs);
-        self.tell(pairs, certificate, ends);
+        let certificate = self.run::<SignsAndTurns>(pairs);
+        self.report(pairs, certificate, ends);
     }
 
     /// The same but for the turns, which stay uncounted.
     pub fn measured(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
         let certificate = self.run::<Measured>(pairs);
-        self.tell(pairs, certificate, ends);
+        self.report(pairs, certificate, ends);
     }
 
-    fn tell(&self, pairs: &[Pair], certificate: Option<Certificate>, ends: &mut [Option<Ends>]) {
+    fn report(&self, pairs: &[Pair], certificate: Option<Certificate>, ends: &mut [Option<Ends>]) {
         let Some(certificate) = certificate else { return ends.fill(None) };
         let halves = self.instructions.perform(Finish(self, &certificate));
         for (i, (pair, end)) in pairs.iter().zip(ends).enumerate() {
@@ -296,8 +296,8 @@ mod tests {
         prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
     }
 
-    /// All that groups of `L` lanes tell about at most as many pairs, as text: doubles by their shortest exact name.
-    fn told<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
+    /// All that groups of `L` lanes report on at most as many pairs, as text: doubles by their shortest exact name.
+    fn written<const L: usize>(instructions: Instructions, pairs: &[Pair]) -> String {
         let (mut group, mut text) = (Group::<L>::new(instructions), String::new());
         for pairs in pairs.chunks(L) {
             let mut ends = vec![None; pairs.len()];
@@ -313,7 +313,7 @@ mod tests {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
             let results: Vec<String> = Instructions::available()
-                .map(|set| told::<1>(set, &pairs) + &told::<16>(set, &pairs))
+                .map(|set| written::<1>(set, &pairs) + &written::<16>(set, &pairs))
                 .collect();
             prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
         }

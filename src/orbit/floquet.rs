@@ -143,7 +143,7 @@ impl Turn {
     /// sin α = 2 sin cos: 2u · |2 sin cos| + 2 · 0.18u · √2 + u ≤ 3.6u. tan(α/2) = sin/cos where that is at most
     /// 1: then cos ≥ 0.7, each of both is within 1.26u relatively beside 0.26u: 3.6u in all.
     fn new([cos, sin]: [f64; 2], angle: f64) -> Turn {
-        // The nearest h of the parity that the octant tells.
+        // The nearest h of the parity that the octant gives.
         let odd = sin.abs() > cos.abs();
         let shift = f64::from(u8::from(odd));
         let half_turns = 2 * ((angle / (2.0 * FRAC_PI_2) - shift) / 2.0).round() as i64 + i64::from(odd);

@@ -2,14 +2,17 @@
 //!
 //! Three ways, cheapest first. [`filter`] goes from kick to kick of one clock in doubles, in the [`floquet`]
 //! coordinates of the other, one pair or many side by side; [`plain`] takes kick after kick in doubles, where there are
-//! no such coordinates; [`refine`] takes kick after kick in as many bits as it takes. All of them rest on the theorem
+//! no such coordinates; [`refine`] takes kick after kick in as many bits as it takes,
+//! or leaps over long runs of one clock's kicks. All but the leaps rest on the theorem
 //! of [`bound`]. [`residue`] proves that no entry of the half period is zero.
 
 mod bound;
 mod certificate;
+mod ends;
 pub mod filter;
 pub mod floquet;
 mod kernel;
+mod leap;
 pub mod plain;
 pub mod refine;
 pub mod residue;

@@ -22,12 +22,12 @@ use crate::schedule::{KickDrift, Kicks, Schedule};
 const BITS: u32 = 128;
 
 /// The squared length is kept between the reciprocal of this and this.
-const LONG: f64 = 1e180;
+const LONGEST: f64 = 1e180;
 
-/// A power of two whose square brings a length from beyond [`LONG`] back.
+/// A power of two whose square brings a length from beyond [`LONGEST`] back.
 const SHRINK: f64 = 1.0 / (1u128 << 127) as f64;
 
-/// The signs of A, B, C, D as far as doubles tell; `None` where the theorem's conditions cannot be met, or a strength
+/// The signs of A, B, C, D as far as doubles decide them; `None` where the theorem's conditions cannot be met, or a strength
 /// is no comfortable double.
 pub fn signs<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<PartialSigns> {
     let steps = Steps::new(clocks, schedule)?;
@@ -101,7 +101,7 @@ impl Orbit<'_> {
 
     /// Keeps the squared length in range.
     fn rescale(&mut self) {
-        if !(1.0 / LONG..=LONG).contains(&self.square) {
+        if !(1.0 / LONGEST..=LONGEST).contains(&self.square) {
             // Powers of two: exact.
             let by = if self.square > 1.0 { SHRINK } else { 1.0 / SHRINK };
             (self.x, self.y) = (self.x * by, self.y * by);

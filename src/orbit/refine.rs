@@ -10,37 +10,15 @@ use num_bigint::BigInt;
 use num_traits::{FromPrimitive, Signed, ToPrimitive};
 
 use super::bound::StepBound;
-use crate::number::{Ball, Rational, Real, Sign};
-use crate::propagator::{PartialSigns, TwoClocks};
+use super::ends::Nodes;
+pub use super::ends::{End, Ends};
+use super::leap;
+use crate::number::{Ball, Ratio, Rational, Real, Sign};
+use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
 const HEADROOM: u64 = 32;
-
-/// The even and the odd solution at T/2, in the time unit h1.
-#[derive(Clone, Debug)]
-pub struct Ends {
-    pub even: End,
-    pub odd: End,
-}
-
-/// One solution at T/2: enclosures, certified signs, and the sign changes of x on the way.
-#[derive(Clone, Debug)]
-pub struct End {
-    pub x: Ball,
-    pub v: Ball,
-    pub signs: (Option<Sign>, Option<Sign>),
-    /// `None` where some sign could not be told.
-    pub nodes: Option<u64>,
-}
-
-impl Ends {
-    /// The signs of A, B, C, D as far as this precision tells.
-    pub fn signs(&self) -> PartialSigns {
-        let ((a, c), (b, d)) = (self.even.signs, self.odd.signs);
-        PartialSigns { a, b, c, d }
-    }
-}
 
 /// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
@@ -51,9 +29,17 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Op
 /// The bound's constants are doubles, which cannot tell a precision beyond this one from it.
 const BOUNDED: u32 = 1000;
 
-/// As [`run`]; beyond 1000 bits, where its bound may leave strengths of 10^90 and more no room however many bits there
-/// are, as [`run_balls`] where it must.
+/// The kicks of the half period, or as many as leaping over them costs.
+pub fn kicks(ratio: Ratio) -> u64 {
+    if leap::is_worth(ratio) { leap::kicks(ratio) } else { ratio.kicks() / 2 }
+}
+
+/// As [`run`]; long runs of one clock's kicks by [`leap`]. Beyond 1000 bits, where its bound may leave strengths of 10^90 and
+/// more no room however many bits there are, as [`run_balls`] where it must.
 pub fn run_at_any<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
+    if leap::is_worth(clocks.ratio()) {
+        return Some(leap::run(clocks, schedule, bits));
+    }
     run(clocks, schedule, bits).or_else(|| (bits > BOUNDED).then(|| run_balls(clocks, schedule, bits)))
 }
 
@@ -265,35 +251,4 @@ impl KickDrift<BigInt> for Orbit<'_> {
 fn between(lo: &BigInt, hi: &BigInt) -> Ball {
     let precision = lo.bits().max(hi.bits()).max(64) as u32;
     Ball::from_integer(lo).union(&Ball::from_integer(hi), precision)
-}
-
-/// Counts the sign changes of x from kick to kick.
-///
-/// Where one sign is uncertain, x is near 0 and its neighbours' signs differ: still one change. Equal
-/// neighbours, or two uncertain signs in a row, leave the count unknown.
-#[derive(Clone, Debug, Default)]
-struct Nodes {
-    last: Option<Sign>,
-    uncertain: u32,
-    changes: u64,
-    unknown: bool,
-}
-
-impl Nodes {
-    fn see(&mut self, sign: Option<Sign>) {
-        if sign.is_none() {
-            self.uncertain += 1;
-            return;
-        }
-        let changed = self.last.is_some() && self.last != sign;
-        self.changes += u64::from(changed);
-        // An orbit that begins at x = 0 has no sign there, and no change.
-        self.unknown |= self.uncertain > 1 || (self.uncertain == 1 && self.last.is_some() && !changed);
-        self.uncertain = 0;
-        self.last = sign;
-    }
-
-    fn count(&self) -> Option<u64> {
-        (!self.unknown && self.uncertain == 0).then_some(self.changes)
-    }
 }

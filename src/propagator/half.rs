@@ -1,4 +1,4 @@
-//! The propagator over the synchronization period, and over its half, which tells all about it.
+//! The propagator over the synchronization period, and over its half, which determines it.
 //!
 //! The kick pattern is a palindrome. With H = \[\[A, B\], \[C, D\]\] the propagator from 0 to T/2 (half of each
 //! kick at both ends) and H' = \[\[D, B\], \[C, A\]\] its time reversal, Q = H' H, and AD − BC = 1 gives

@@ -36,13 +36,13 @@ impl HalfSigns {
         [self.a, self.b, self.c, self.d]
     }
 
-    /// The signs of A and C tell where the even solution ends; the label of a tongue needs them.
+    /// The signs of A and C show where the even solution ends; the label of a tongue needs them.
     pub fn even(self) -> (Sign, Sign) {
         (self.a, self.c)
     }
 }
 
-/// The same four signs as far as they are known: `None` is "could not tell", which is not zero.
+/// The same four signs as far as they are known: `None` is "undecided", which is not zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PartialSigns {
     pub a: Option<Sign>,

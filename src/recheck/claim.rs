@@ -4,21 +4,23 @@ use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
 use super::context::{Context, Options, Outcome, See};
+#[cfg(feature = "system")]
+use super::system;
 use super::{closings, compare, curves, map, polynomial, proposition, survey, tongues, verdict};
 use crate::error::{Error, Result};
 
 macro_rules! claims {
-    ($($name:literal $variant:ident $module:ident;)*) => {
+    ($($(#[$condition:meta])? $name:literal $variant:ident $claim:path;)*) => {
         /// A document in typed rows.
         #[derive(Clone, Debug)]
         #[non_exhaustive]
         pub enum Claim {
-            $(#[doc = concat!("`kickdrift/", $name, "/1`.")] $variant(Box<$module::Claim>),)*
+            $($(#[$condition])? #[doc = concat!("`kickdrift/", $name, "/1`.")] $variant(Box<$claim>),)*
         }
 
         impl Claim {
             /// NAME of all documents `kickdrift/NAME/1` that can be rechecked.
-            pub const NAMES: &'static [&'static str] = &[$($name),*];
+            pub const NAMES: &'static [&'static str] = &[$($(#[$condition])? $name),*];
 
             /// Reads a document: JSON into rows, each field once.
             ///
@@ -33,7 +35,7 @@ macro_rules! claims {
                 let schema = document.remove("schema").unwrap_or_default();
                 let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));
                 match name {
-                    $(Some($name) => Ok(Claim::$variant(Box::new(typed(document)?))),)*
+                    $($(#[$condition])? Some($name) => Ok(Claim::$variant(Box::new(typed(document)?))),)*
                     _ => {
                         let known = Claim::NAMES.join(", ");
                         let remedy = format!("can be rechecked: kickdrift/NAME/1, NAME one of {known}");
@@ -45,13 +47,13 @@ macro_rules! claims {
             /// NAME in `kickdrift/NAME/1`.
             pub fn name(&self) -> &'static str {
                 match self {
-                    $(Claim::$variant(_) => $name,)*
+                    $($(#[$condition])? Claim::$variant(_) => $name,)*
                 }
             }
 
             fn check(&self, context: &Context) -> Result<Outcome> {
                 match self {
-                    $(Claim::$variant(claim) => claim.check(context),)*
+                    $($(#[$condition])? Claim::$variant(claim) => claim.check(context),)*
                 }
             }
         }
@@ -59,15 +61,19 @@ macro_rules! claims {
 }
 
 claims! {
-    "tongues" Tongues tongues;
-    "closings" Closings closings;
-    "survey" Survey survey;
-    "verdict" Verdict verdict;
-    "map" Map map;
-    "compare" Compare compare;
-    "curves" Curves curves;
-    "polynomial" Polynomial polynomial;
-    "proposition" Proposition proposition;
+    "tongues" Tongues tongues::Claim;
+    "closings" Closings closings::Claim;
+    "survey" Survey survey::Claim;
+    "verdict" Verdict verdict::Claim;
+    "map" Map map::Claim;
+    "compare" Compare compare::Claim;
+    "curves" Curves curves::Claim;
+    "polynomial" Polynomial polynomial::Claim;
+    "proposition" Proposition proposition::Claim;
+    #[cfg(feature = "system")] "system-verdict" System system::Verdict;
+    #[cfg(feature = "system")] "system-map" SystemMap system::Points;
+    #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Intervals;
+    #[cfg(feature = "system")] "simulate" Simulate system::Simulated;
 }
 
 impl Claim {

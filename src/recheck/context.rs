@@ -1,5 +1,6 @@
 //! What a check is given, and what it finds.
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
@@ -7,12 +8,14 @@ use crate::parallel::*;
 use crate::verdict::Limits;
 
 /// How much is rechecked, and what one row may cost.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Options {
     /// The kicks that one verdict may compose.
     pub limits: Limits,
     /// Whether the slower route takes every pair or tongue of a map or a survey, and not a sample of them.
     pub all: bool,
+    /// Where the files are that a system of measured stiffnesses refers to.
+    pub folder: PathBuf,
 }
 
 /// What is shown of the progress: rows done, rows in all.

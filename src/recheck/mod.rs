@@ -13,6 +13,7 @@
 //! | compare | the half period kick by kick, and the tan criterion | the filter for every pair, the full period for every offender |
 //! | curves | arcsines | arctangents; the samples again in doubles |
 //! | polynomial | products of polynomials | the full period at rational points |
+//! | system-verdict, system-map, system-intervals, simulate | signs, discs, simulation | computed again; exact arithmetic; the dense full period |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
 //!
 //! ```
@@ -44,6 +45,8 @@ mod polynomial;
 mod proposition;
 mod sample;
 mod survey;
+#[cfg(feature = "system")]
+mod system;
 mod tongues;
 mod verdict;
 mod written;

@@ -2,9 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::digits::outward;
-use super::document::{Document, enclosure};
-use super::table::{Cell, Column, Table};
+use super::decimal::outward;
+use super::document::Document;
+use super::record::Record;
+use super::table::{Cell, Column};
 use crate::number::Rational;
 use crate::tongue::{Closing, Enclosure, Found};
 
@@ -15,43 +16,54 @@ pub const DIGITS: u32 = 25;
 ///
 /// With `all_columns` the table is made for programs, else for people and paper.
 pub fn document(found: &[Found], digits: u32, what: &str, all_columns: bool) -> Document {
-    let rows: Vec<Value> =
-        found.iter().flat_map(|of| &of.closings).map(|closing| row(closing, digits)).collect();
+    let closings = || found.iter().flat_map(|of| &of.closings);
     let complete: Vec<Value> = found
         .iter()
         .map(|of| json!({"p": of.ratio.p(), "q": of.ratio.q(), "complete": of.complete}))
         .collect();
     Document::new("closings")
-        .entry("closings", rows)
+        .entry("closings", record(digits, false).all(closings()))
         .entry("ratios", complete)
-        .long_rows(if all_columns { table(found, digits) } else { short_table(found) })
+        .long_rows(record(digits, !all_columns).table("closings", "Closed tongues: Q = I or -I", closings()))
         .summary(&lines(found, what))
 }
 
-fn row(closing: &Closing, digits: u32) -> Value {
-    let exact = closing.exact.as_ref();
-    json!({
-        "p": closing.ratio.p(),
-        "q": closing.ratio.q(),
-        "m": closing.m,
-        "s": quantity(&closing.s, exact.map(|(s, _)| s), digits),
-        "rho": quantity(&closing.rho, exact.map(|(_, rho)| rho), digits),
-        "below_verlet": closing.below_verlet,
-    })
-}
+/// s or ρ of a closing: its enclosure, and its value where that is rational.
+type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
 
-/// `lo, hi, exact, decimal`.
-fn quantity(x: &Enclosure, exact: Option<&Rational>, digits: u32) -> Value {
-    let mut value = enclosure(x.to_f64());
-    let [lo, hi] = ends(x, exact, digits);
-    let map = value.as_object_mut().expect("an enclosure is an object");
-    map.insert("exact".into(), exact.map(ToString::to_string).into());
-    map.insert("decimal".into(), json!({"lo": lo, "hi": hi}));
-    value
-}
-
-fn ends(x: &Enclosure, exact: Option<&Rational>, digits: u32) -> [String; 2] {
-    exact.map_or_else(|| outward(&x.lo, &x.hi, digits), |x| outward(x, x, digits))
+/// What is written of a closing; in the short form s and ρ are one column each, exact where they are rational.
+fn record(digits: u32, short: bool) -> Record<'static, Closing> {
+    let mut record = Record::new()
+        .field(Column::math("p", "p"), |of: &Closing| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into());
+    let sides: [(&str, &str, Side); 2] = [
+        ("s", "s", |of| (&of.s, of.exact.as_ref().map(|(s, _)| s))),
+        ("rho", "\\rho", |of| (&of.rho, of.exact.as_ref().map(|(_, rho)| rho))),
+    ];
+    for (key, formula, side) in sides {
+        let column = Column::math(key, formula).enclosure();
+        let exact = move |of: &Closing| side(of).1.map(Cell::exact).unwrap_or(Cell::Missing);
+        let enclosed = move |of: &Closing| Cell::from(side(of).0.to_f64());
+        if short {
+            record = record.field(column, move |of| match exact(of) {
+                Cell::Missing => enclosed(of),
+                exact => exact,
+            });
+            continue;
+        }
+        let ends = move |of: &Closing| match side(of) {
+            (_, Some(x)) => outward(x, x, digits),
+            (x, None) => outward(&x.lo, &x.hi, digits),
+        };
+        let titled = |part: &str, title: &str| Column::new(&format!("{key}_{part}")).titled(title, title);
+        record = record
+            .field(column, enclosed)
+            .at(format!("{key}.exact"), titled("exact", "exact"), exact)
+            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |of| Cell::exact(&ends(of)[0]))
+            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |of| Cell::exact(&ends(of)[1]));
+    }
+    record.field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |of| of.below_verlet.into())
 }
 
 fn lines(found: &[Found], what: &str) -> Vec<String> {
@@ -70,60 +82,4 @@ fn lines(found: &[Found], what: &str) -> Vec<String> {
             found.len()
         ),
     ]
-}
-
-const CAPTION: &str = "Closed tongues: Q = I or -I";
-
-fn labels() -> Vec<Column> {
-    ["p", "q", "m"].map(|key| Column::new(key).titled(key, &format!("${key}$"))).into()
-}
-
-/// s and ρ exactly where they are rational, else as enclosures.
-fn short_table(found: &[Found]) -> Table {
-    let mut columns = labels();
-    columns.extend(
-        [("s", "$s$"), ("rho", "$\\rho$")]
-            .map(|(key, latex)| Column::new(key).titled(key, latex).enclosure()),
-    );
-    columns.push(Column::new("below_verlet").titled("s < 4", "$s < 4$"));
-    let mut table = Table::new("closings", CAPTION, columns);
-    for closing in found.iter().flat_map(|of| &of.closings) {
-        let exact = closing.exact.as_ref();
-        let shown = |x: &Enclosure, exact: Option<&Rational>| {
-            let (lo, hi) = x.to_f64();
-            exact.map_or(Cell::Enclosure { lo, hi }, |x| Cell::Exact(x.to_string()))
-        };
-        let mut cells: Vec<Cell> =
-            [closing.ratio.p(), closing.ratio.q(), closing.m].map(|n| Cell::Integer(n as i64)).into();
-        cells.push(shown(&closing.s, exact.map(|e| &e.0)));
-        cells.push(shown(&closing.rho, exact.map(|e| &e.1)));
-        cells.push(Cell::Flag(closing.below_verlet));
-        table.push(cells);
-    }
-    table
-}
-
-fn table(found: &[Found], digits: u32) -> Table {
-    let mut columns = labels();
-    for (key, latex) in [("s", "$s$"), ("rho", "$\\rho$")] {
-        columns.push(Column::new(key).titled(key, latex).enclosure());
-        columns.push(Column::new(&format!("{key}_exact")).titled("exact", "exact"));
-        columns.extend(["lo", "hi"].map(|end| Column::new(&format!("{key}_decimal_{end}")).titled(end, end)));
-    }
-    columns.push(Column::new("below_verlet").titled("s < 4", "$s < 4$"));
-    let mut table = Table::new("closings", CAPTION, columns);
-    for closing in found.iter().flat_map(|of| &of.closings) {
-        let mut cells: Vec<Cell> =
-            [closing.ratio.p(), closing.ratio.q(), closing.m].map(|n| Cell::Integer(n as i64)).into();
-        let exact = closing.exact.as_ref();
-        for (x, exact) in [(&closing.s, exact.map(|e| &e.0)), (&closing.rho, exact.map(|e| &e.1))] {
-            let (lo, hi) = x.to_f64();
-            cells.push(Cell::Enclosure { lo, hi });
-            cells.push(exact.map_or(Cell::Missing, |x| Cell::Exact(x.to_string())));
-            cells.extend(ends(x, exact, digits).map(Cell::Exact));
-        }
-        cells.push(Cell::Flag(closing.below_verlet));
-        table.push(cells);
-    }
-    table
 }

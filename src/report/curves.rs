@@ -37,7 +37,7 @@ fn place<'a>(record: Record<'a, Point<'a>>) -> Record<'a, Point<'a>> {
 
 fn value(curve: &Curve) -> Value {
     let record = place(Record::new()).field(Column::new("piece"), |(_, piece, _)| (*piece as u64).into());
-    let points: Vec<Value> = points(curve).map(|point| record.json(&point)).collect();
+    let points: Vec<Value> = points(curve).map(|point| record.entries(&point)).collect();
     json!({"a": curve.a, "b": curve.b, "points": points})
 }
 

@@ -1,21 +1,25 @@
-//! Enclosures as decimals that say how far they can be trusted.
+//! Numbers in decimal that say how far they can be trusted.
 //!
 //! `2.3150964146(1)` means: between 2.3150964145 and 2.3150964147. The digits in parentheses count units of
 //! the last digit, as physicists write uncertainties, but here they bound the error instead of estimating it:
-//! the shown interval always contains the given one, which exact rational arithmetic makes sure of.
+//! the shown interval always contains the given one, which exact rational arithmetic makes sure of. Ends that are asked
+//! for in many digits are written both, rounded outward.
 
 use std::fmt;
+use std::ops::Range;
 
 use num_bigint::BigInt;
-use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-/// As many significant digits as any double needs to be told from its neighbours.
-const MOST_DIGITS: i32 = 17;
+use crate::number::{Rational, rational};
+
+/// As many significant digits as any double needs to differ from its neighbours.
+const MOST_DIGITS: i64 = 17;
 /// The largest uncertainty shown: a single digit, lest a last digit be shown that means nothing.
 const LARGEST_UNCERTAINTY: u32 = 9;
-/// Numbers from 10^-5 up to below 10^7 are written without an exponent.
-const PLAIN: std::ops::Range<i32> = -5..7;
+/// Enclosures from 10^-5 up to below 10^7 are written without an exponent, ends in many digits from 10^-7 up to below 10^21.
+const PLAIN: Range<i64> = -5..7;
+const PLAIN_ENDS: Range<i64> = -7..21;
 
 /// An enclosure made ready to be shown in plain text by [`Display`](fmt::Display).
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +31,7 @@ pub enum Shown {
         /// The decimal digits without a point.
         digits: String,
         /// How many of them stand behind the point (if negative: how many zeros follow).
-        places: i32,
+        places: i64,
         /// The bound on the error, in units of the last digit; 0 if there is none.
         uncertainty: u32,
     },
@@ -49,14 +53,14 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
     if lo == 0.0 && hi == 0.0 {
         return Shown::Concise { negative: false, digits: "0".into(), places: 0, uncertainty: 0 };
     }
-    // Wider than half its size, or around zero: a leading digit in doubt tells less than the two ends.
+    // Wider than half its size, or around zero: a leading digit in doubt says less than the two ends.
     let vague =
         !(lo.is_finite() && hi.is_finite()) || lo > hi || lo * hi.signum() <= 0.0 || hi - lo > small / 2.0;
     if vague {
         return Shown::Ends(lo, hi);
     }
-    let (lo, hi) = (rational(lo), rational(hi));
-    let mut places = MOST_DIGITS - 1 - exponent(small);
+    let [lo, hi] = [lo, hi].map(|end| rational::from_f64_exact(end).expect("the ends are finite"));
+    let mut places = MOST_DIGITS - 1 - exponent_of_double(small);
     loop {
         if let Some(shown) = at_places(&lo, &hi, places) {
             return shown;
@@ -65,22 +69,17 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
     }
 }
 
-fn rational(value: f64) -> BigRational {
-    BigRational::from_float(value).expect("the ends are finite")
-}
-
 /// The decimal exponent of a positive double: value = d.ddd x 10^exponent.
-fn exponent(value: f64) -> i32 {
+fn exponent_of_double(value: f64) -> i64 {
     let text = format!("{value:e}");
     text.split_once('e').and_then(|(_, power)| power.parse().ok()).expect("a finite double has an exponent")
 }
 
 /// The midpoint rounded to `places`, if its distance to both ends fits the uncertainty allowed.
-fn at_places(lo: &BigRational, hi: &BigRational, places: i32) -> Option<Shown> {
-    let ten = BigRational::from_integer(10.into());
-    let scale = ten.pow(places);
+fn at_places(lo: &Rational, hi: &Rational, places: i64) -> Option<Shown> {
+    let scale = power_of_ten(places);
     let (lo, hi) = (lo * &scale, hi * &scale);
-    let middle = ((&lo + &hi) / BigRational::from_integer(2.into())).round();
+    let middle = ((&lo + &hi) / Rational::from_integer(2.into())).round();
     let error = (&middle - lo).abs().max((hi - &middle).abs()).ceil();
     let uncertainty = error.to_integer().to_u32().filter(|&units| units <= LARGEST_UNCERTAINTY)?;
     let mut whole: BigInt = middle.to_integer();
@@ -108,66 +107,79 @@ impl fmt::Display for Shown {
                 (*negative, digits, *places, *uncertainty)
             }
         };
-        let leading = digits.len() as i32 - 1 - places;
-        let plain = places >= 0 && PLAIN.contains(&leading);
-        let behind = if plain { places as usize } else { digits.len() - 1 };
-        let padded = format!("{digits:0>width$}", width = behind + 1);
-        let (whole, fraction) = padded.split_at(padded.len() - behind);
+        let (mantissa, exponent) = placed(digits, places, PLAIN);
         f.write_str(if negative { "-" } else { "" })?;
-        f.write_str(whole)?;
-        if !fraction.is_empty() {
-            write!(f, ".{fraction}")?;
-        }
+        f.write_str(&mantissa)?;
         if uncertainty > 0 {
             write!(f, "({uncertainty})")?;
         }
-        if plain { Ok(()) } else { write!(f, "e{leading}") }
+        exponent.map_or(Ok(()), |exponent| write!(f, "e{exponent}"))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
+/// digits · 10^-places as a mantissa and the power of ten that is to stand behind it, where it is beyond `plain`.
+fn placed(digits: &str, places: i64, plain: Range<i64>) -> (String, Option<i64>) {
+    let leading = digits.len() as i64 - 1 - places;
+    let is_plain = places >= 0 && plain.contains(&leading);
+    let behind = if is_plain { places as usize } else { digits.len() - 1 };
+    let padded = format!("{digits:0>width$}", width = behind + 1);
+    let (whole, fraction) = padded.split_at(padded.len() - behind);
+    let mantissa = if fraction.is_empty() { whole.into() } else { format!("{whole}.{fraction}") };
+    (mantissa, (!is_plain).then_some(leading))
+}
 
-    /// What the text claims, read back from the text alone.
-    fn claimed(text: &str) -> (BigRational, BigRational) {
-        let (mantissa, power) = text.split_once('e').unwrap_or((text, "0"));
-        let (number, units) = mantissa.split_once('(').unwrap_or((mantissa, "0)"));
-        let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
-        let digits: BigInt = format!("{whole}{fraction}").parse().unwrap();
-        let units: BigInt = units.trim_end_matches(')').parse().unwrap();
-        let power = power.parse::<i32>().unwrap() - fraction.len() as i32;
-        let scale = BigRational::from_integer(10.into()).pow(power);
-        let at = |n: BigInt| BigRational::from_integer(n) * &scale;
-        (at(&digits - &units), at(digits + units))
-    }
+/// Both ends with so many significant digits, the lower rounded down and the upper up: what is written contains
+/// [lo, hi], 0 < lo ≤ hi.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::report::decimal::outward;
+/// assert_eq!(outward(&ratio(1, 3), &ratio(1, 3), 20), ["0.33333333333333333333", "0.33333333333333333334"]);
+/// assert_eq!(outward(&ratio(11, 4), &ratio(11, 4), 6), ["2.75", "2.75"]);
+/// ```
+///
+/// # Panics
+/// Where lo ≤ 0 or no digits are asked for.
+pub fn outward(lo: &Rational, hi: &Rational, digits: u32) -> [String; 2] {
+    assert!(lo.is_positive() && digits > 0, "{digits} digits of [{lo}, {hi}]");
+    let places = i64::from(digits) - 1 - exponent(hi);
+    let scale = power_of_ten(places);
+    [written((lo * &scale).floor().to_integer(), places), written((hi * &scale).ceil().to_integer(), places)]
+}
 
-    #[test]
-    fn tiny_and_huge_numbers_get_an_exponent() {
-        assert_eq!(enclosure(1.0, 1.0).to_string(), "1");
-        assert_eq!(enclosure(-0.25, -0.25).to_string(), "-0.25");
-        assert_eq!(enclosure(123456.0, 123458.0).to_string(), "123457(1)");
-        assert_eq!(enclosure(3e20, 3.001e20).to_string(), "3.0005(5)e20");
-    }
+fn power_of_ten(n: i64) -> Rational {
+    Rational::from_integer(10.into()).pow(n as i32)
+}
 
-    proptest! {
-        #[test]
-        fn the_shown_interval_contains_the_given_one(bits in any::<u64>(), steps in 0u64..1_000_000_000_000) {
-            let lo = f64::from_bits(bits);
-            prop_assume!(lo.is_finite());
-            let hi = f64::from_bits(bits + steps);
-            prop_assume!(hi.is_finite());
-            let (lo, hi) = (lo.min(hi), lo.max(hi));
-            let shown = enclosure(lo, hi);
-            prop_assume!(matches!(shown, Shown::Concise { .. }));
-            let (low, high) = claimed(&shown.to_string());
-            prop_assert!(low <= rational(lo) && rational(hi) <= high, "{} for [{:?}, {:?}]", shown, lo, hi);
-            // Sharp: never more than ten times as wide, plus a unit where a double needs 17 digits.
-            let unit = &high - &low;
-            let width = rational(hi) - rational(lo);
-            let ulp = rational(lo.abs().max(hi.abs())) * BigRational::new(1.into(), BigInt::from(10).pow(15));
-            prop_assert!(unit <= width * BigRational::from_integer(20.into()) + ulp);
-        }
+/// e with 10^e ≤ x < 10^(e+1), x > 0.
+fn exponent(x: &Rational) -> i64 {
+    // Lengths in bits give it to within one or two; comparisons decide the rest.
+    let bits = x.numer().bits() as f64 - x.denom().bits() as f64;
+    let estimate = (bits * std::f64::consts::LOG10_2).floor().to_i64().expect("small");
+    (estimate - 2..=estimate + 2).rev().find(|&e| power_of_ten(e) <= *x).expect("the estimate is within two")
+}
+
+/// whole · 10^-places, zeros that say nothing left out.
+fn written(mut whole: BigInt, mut places: i64) -> String {
+    let leading = whole.to_string().len() as i64 - 1 - places;
+    let has_exponent = places < 0 || !PLAIN_ENDS.contains(&leading);
+    while (places > 0 || has_exponent) && !whole.is_zero() && (&whole % 10u8).is_zero() {
+        whole /= 10u8;
+        places -= 1;
     }
+    match placed(&whole.to_string(), places, PLAIN_ENDS) {
+        (mantissa, Some(exponent)) => format!("{mantissa}e{exponent}"),
+        (mantissa, None) => mantissa,
+    }
+}
+
+/// A double of so many significant digits, the nearest in decimal: for people, who need no more of a rounded number.
+pub fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
+}
+
+/// The same in writing: plain where that is short, else with an exponent.
+pub fn few(x: f64, digits: usize) -> String {
+    let x = rounded(x, digits);
+    if x == 0.0 || (1e-4..1e6).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }

@@ -22,7 +22,7 @@ pub struct Document {
     /// Further tables, for LaTeX and text.
     more: Vec<Table>,
     summary: String,
-    all_told: bool,
+    summary_only: bool,
 }
 
 /// Rows beyond this number are left out of the text form, which says so.
@@ -38,7 +38,7 @@ impl Document {
             table: None,
             more: Vec::new(),
             summary: String::new(),
-            all_told: false,
+            summary_only: false,
         }
     }
 
@@ -102,8 +102,8 @@ impl Document {
 
     /// A summary that says all: the text form leaves the rows out.
     #[must_use]
-    pub fn told(mut self, lines: &[String]) -> Self {
-        self.all_told = true;
+    pub fn summary_alone(mut self, lines: &[String]) -> Self {
+        self.summary_only = true;
         self.summary(lines)
     }
 
@@ -117,8 +117,16 @@ impl Document {
     /// # Errors
     /// CSV or LaTeX of a document without rows, and the forms that are not of documents.
     pub fn render(&self, format: Format) -> Result<String> {
+        self.render_with(format, "write them as csv, json or latex")
+    }
+
+    /// The same; `to_see` says in words how rows that are too many for the text form are to be seen.
+    ///
+    /// # Errors
+    /// As [`Document::render`].
+    pub fn render_with(&self, format: Format, to_see: &str) -> Result<String> {
         let table = |format: &str| {
-            let remedy = "this result has no rows; use --format text or json";
+            let remedy = "this result has no rows: choose text or json";
             self.table.as_ref().ok_or_else(|| Error::input("format", format, remedy))
         };
         match format {
@@ -128,7 +136,7 @@ impl Document {
                 let all = std::iter::once(table("latex")?).chain(&self.more).map(latex::document);
                 Ok(all.collect::<Vec<_>>().join("\n"))
             }
-            Format::Text => Ok(self.text()),
+            Format::Text => Ok(self.text(to_see)),
             Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
                 let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
                 Err(Error::input("format", format.name(), remedy))
@@ -165,13 +173,13 @@ impl Document {
         out
     }
 
-    fn text(&self) -> String {
+    fn text(&self, to_see: &str) -> String {
         let mut out = self.summary.clone();
         out.push('\n');
-        for table in self.table.iter().chain(&self.more).filter(|_| !self.all_told) {
+        for table in self.table.iter().chain(&self.more).filter(|_| !self.summary_only) {
             let rows = table.rows().len();
             if rows > ROWS_FOR_PEOPLE {
-                out += &format!("\n{rows} rows: use --format csv, json or latex to see them\n");
+                out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
                 out += &format!("\n{}\n", text::document(table).trim_end());
             }

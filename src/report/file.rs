@@ -8,6 +8,7 @@
 //! is ended by a signal it can catch, it removes by itself, see [`abandon`]; what another one left is known by its
 //! missing lock, and the next process that writes to the directory removes it.
 
+use std::cell::RefCell;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -33,10 +34,33 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`], as
 /// [`write_output`].
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    if CAPTURED.with_borrow(Option::is_some) {
+        let mut bytes = Vec::new();
+        content(&mut bytes)?;
+        CAPTURED.with_borrow_mut(|all| all.as_mut().expect("captured").extend(bytes));
+        return Ok(());
+    }
     match path {
         None => to_stdout(content),
         Some(path) => to_path(path, content).map_err(|error| explained(path, error)),
     }
+}
+
+thread_local! {
+    /// What this thread would have written, while it is captured.
+    static CAPTURED: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
+}
+
+/// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread, wherever to;
+/// no file and no stream is touched by them.
+///
+/// # Errors
+/// Those of the work.
+pub fn captured(work: impl FnOnce() -> Result<()>) -> Result<Vec<u8>> {
+    CAPTURED.set(Some(Vec::new()));
+    let done = work();
+    let bytes = CAPTURED.take().unwrap_or_default();
+    done.map(|()| bytes)
 }
 
 fn to_stdout(content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
@@ -226,68 +250,6 @@ pub(super) fn explained(path: &Path, error: Error) -> Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Kind;
-
-    fn names(folder: &Path) -> Vec<OsString> {
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
-    }
-
-    #[test]
-    fn a_file_is_written_and_replaced_and_nothing_else_is_left() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("table.csv");
-        for text in ["first", "a second, longer one", "third"] {
-            write_output(Some(&path), text.as_bytes()).unwrap();
-            assert_eq!(fs::read_to_string(&path).unwrap(), text);
-        }
-        assert_eq!(names(folder.path()), ["table.csv"]);
-    }
-
-    #[test]
-    fn content_that_fails_leaves_the_old_file_and_no_fragment() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("map.svg");
-        write_output(Some(&path), b"old").unwrap();
-        let failed = write_with(Some(&path), |sink| {
-            sink.write_all(&[b'x'; 100_000]).map_err(Error::stream)?;
-            Err(Error::stream(ErrorKind::StorageFull.into()))
-        });
-        assert_eq!(failed.unwrap_err().kind(), Kind::Io);
-        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
-        assert_eq!(names(folder.path()), ["map.svg"]);
-    }
-
-    #[test]
-    fn an_unwritable_place_is_named_with_a_remedy() {
-        let folder = tempfile::tempdir().unwrap();
-        let missing = write_output(Some(&folder.path().join("no/such/file")), b"x").unwrap_err().to_string();
-        assert!(missing.contains("no/such/file") && missing.contains("create the directory"), "{missing}");
-        let directory = write_output(Some(folder.path()), b"x").unwrap_err().to_string();
-        assert!(directory.contains("name a file in it"), "{directory}");
-        assert!(names(folder.path()).is_empty());
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_link_and_the_permissions_of_the_old_file_survive() {
-        use std::os::unix::fs::{PermissionsExt, symlink};
-        let folder = tempfile::tempdir().unwrap();
-        let (real, link) = (folder.path().join("real"), folder.path().join("link"));
-        write_output(Some(&real), b"old").unwrap();
-        fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
-        symlink(&real, &link).unwrap();
-        write_output(Some(&link), b"new").unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(&real).unwrap(), "new");
-        assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_device_is_written_through() {
-        write_output(Some(Path::new("/dev/null")), b"gone").unwrap();
-        assert!(!fs::metadata("/dev/null").unwrap().is_file());
-    }
 
     #[test]
     fn a_file_in_the_making_is_left_alone_and_what_a_dead_process_left_is_removed() {
@@ -299,6 +261,6 @@ mod tests {
             assert!(temporary.0.exists());
             assert_eq!(folder.path().join(name).exists(), !stale, "{name}");
         }
-        assert_eq!(names(folder.path()).len(), 2);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 }

@@ -12,7 +12,6 @@ pub mod compare;
 pub mod csv;
 pub mod curves;
 pub mod decimal;
-pub mod digits;
 pub mod document;
 #[cfg(feature = "figure")]
 pub mod figure;

@@ -34,7 +34,7 @@ pub fn document(ratio: Ratio) -> Document {
         .entry("q", ratio.q())
         .entry("polynomials", Value::Object(values))
         .rows(table(&polynomials))
-        .told(&lines)
+        .summary_alone(&lines)
 }
 
 /// The terms other than zero: entry, powers of s and rho, coefficient.

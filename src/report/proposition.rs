@@ -1,7 +1,5 @@
 //! The exhaustive check of the Proposition as a document.
 
-use serde_json::Value;
-
 use super::document::Document;
 use super::record::Record;
 use super::table::Column;
@@ -19,13 +17,12 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
         format!("  curves (a, b) at a ratio p/q, each resonant with m = a p + b q  {backward:>9}"),
         format!("  failures                                                        {:>9}", failures.len()),
     ];
-    let failed: Vec<Value> = failures.iter().map(|failure| record().json(failure)).collect();
     Document::new("proposition")
         .input("max", max)
         .entry("holds", failures.is_empty())
         .entry("resonant_points", *forward)
         .entry("curves", *backward)
-        .entry("failures", failed)
+        .entry("failures", record().all(failures))
         .rows(record().table("witnesses", CAPTION, witnesses))
         .summary(&lines)
 }

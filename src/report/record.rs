@@ -9,27 +9,38 @@ use super::table::{Cell, Column, Table};
 /// How the cell of one column is found in a `T`.
 type Find<'a, T> = Box<dyn Fn(&T) -> Cell + Send + Sync + 'a>;
 
-/// Where a cell stands in a JSON document: among its entries, in an object among them, or echoed as input.
+/// Where a cell stands in a JSON document: at a path among its entries, echoed as input, or nowhere.
 enum Place {
-    Entry,
-    Inside(&'static str),
+    Entry(String),
     Input,
+    Nowhere,
 }
 
-/// The columns that are written of a `T`, each with the way to its cell.
+/// One cell: its column, where it is a column of tables, and the way to it.
+struct Field<'a, T> {
+    column: Option<Column>,
+    place: Place,
+    find: Find<'a, T>,
+}
+
+/// The cells that are written of a `T`, each with the way to it.
+///
+/// A path such as `s.decimal.lo` leads into objects of JSON. An object without any value is null, and an enclosure is an
+/// object, `{"lo": , "hi": }`, that may hold more.
 ///
 /// ```
 /// use kickdrift::report::record::Record;
 /// use kickdrift::report::table::Column;
 /// let squares = Record::new()
 ///     .field(Column::math("n", "n"), |n: &u64| (*n).into())
-///     .field(Column::math("square", "n^2"), |n| (n * n).into());
+///     .field(Column::math("square", "n^2"), |n| (n * n).into())
+///     .json("more.cube", |n| n.pow(3).into());
 /// let table = squares.table("squares", "The first squares", &[1, 2]);
 /// assert_eq!(kickdrift::report::csv::document(&table), "n,square\r\n1,1\r\n2,4\r\n");
-/// assert_eq!(squares.json(&3).to_string(), r#"{"n":3,"square":9}"#);
+/// assert_eq!(squares.entries(&3).to_string(), r#"{"n":3,"square":9,"more":{"cube":27}}"#);
 /// ```
 pub struct Record<'a, T> {
-    fields: Vec<(Column, Place, Find<'a, T>)>,
+    fields: Vec<Field<'a, T>>,
 }
 
 impl<T> Default for Record<'_, T> {
@@ -44,42 +55,55 @@ impl<'a, T> Record<'a, T> {
         Record { fields: Vec::new() }
     }
 
-    fn with(mut self, column: Column, place: Place, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.fields.push((column, place, Box::new(find)));
+    fn with(mut self, column: Option<Column>, place: Place, find: Find<'a, T>) -> Self {
+        self.fields.push(Field { column, place, find });
         self
     }
 
-    /// One more field.
+    /// One more field: an entry of JSON and a column of the same name.
     #[must_use]
     pub fn field(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(column, Place::Entry, find)
+        let path = column.key.clone();
+        self.at(path, column, find)
     }
 
-    /// One more field, which JSON has inside the object `group`; an object without any value is null.
+    /// One more field, which JSON has at `path`.
     #[must_use]
-    pub fn field_in(
+    pub fn at(
         self,
-        group: &'static str,
+        path: impl Into<String>,
         column: Column,
         find: impl Fn(&T) -> Cell + Send + Sync + 'a,
     ) -> Self {
-        self.with(column, Place::Inside(group), find)
+        self.with(Some(column), Place::Entry(path.into()), Box::new(find))
+    }
+
+    /// One more entry of JSON alone.
+    #[must_use]
+    pub fn json(self, path: impl Into<String>, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
+        self.with(None, Place::Entry(path.into()), Box::new(find))
+    }
+
+    /// One more column of tables alone.
+    #[must_use]
+    pub fn column(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
+        self.with(Some(column), Place::Nowhere, Box::new(find))
     }
 
     /// One more field, an exact number, which JSON has as input.
     #[must_use]
     pub fn input(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(column, Place::Input, find)
+        self.with(Some(column), Place::Input, Box::new(find))
     }
 
     /// The columns, in order.
     pub fn columns(&self) -> Vec<Column> {
-        self.fields.iter().map(|(column, ..)| column.clone()).collect()
+        self.fields.iter().filter_map(|field| field.column.clone()).collect()
     }
 
     /// The row of one thing: a cell for each column.
     pub fn row(&self, of: &T) -> Vec<Cell> {
-        self.fields.iter().map(|(_, _, find)| find(of)).collect()
+        self.fields.iter().filter(|field| field.column.is_some()).map(|field| (field.find)(of)).collect()
     }
 
     /// The rows of many things.
@@ -93,35 +117,44 @@ impl<'a, T> Record<'a, T> {
     }
 
     /// The entries of one thing, as in JSON; what is echoed as input is not among them.
-    pub fn json(&self, of: &T) -> Value {
+    pub fn entries(&self, of: &T) -> Value {
         let mut entries = Map::new();
-        for (column, place, find) in &self.fields {
-            let value = serde_json::to_value(find(of)).expect("a cell is JSON");
-            match place {
-                Place::Input => {}
-                Place::Entry => drop(entries.insert(column.key.clone(), value)),
-                Place::Inside(group) => {
-                    let group = entries.entry(*group).or_insert(Value::Null);
-                    if !value.is_null() && group.is_null() {
-                        *group = Map::new().into();
-                    }
-                    if let Value::Object(inside) = group {
-                        inside.insert(column.key.clone(), value);
-                    }
-                }
+        for field in &self.fields {
+            if let Place::Entry(path) = &field.place {
+                put(&mut entries, path, serde_json::to_value((field.find)(of)).expect("a cell is JSON"));
             }
         }
         entries.into()
     }
 
+    /// The entries of many things.
+    pub fn all<'b>(&self, all: impl IntoIterator<Item = &'b T>) -> Vec<Value>
+    where
+        T: 'b,
+    {
+        all.into_iter().map(|of| self.entries(of)).collect()
+    }
+
     /// Echoes the inputs of one thing into a document and adds its entries.
     pub fn document(&self, mut document: Document, of: &T) -> Document {
-        for (column, place, find) in &self.fields {
-            if let (Place::Input, Cell::Exact(text)) = (place, find(of)) {
+        for Field { column, place, find } in &self.fields {
+            if let (Place::Input, Some(column), Cell::Exact(text)) = (place, column, find(of)) {
                 document = document.input(&column.key, text);
             }
         }
-        let Value::Object(entries) = self.json(of) else { unreachable!("entries are an object") };
+        let Value::Object(entries) = self.entries(of) else { unreachable!("entries are an object") };
         entries.into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
+    }
+}
+
+/// Puts a value at a path; a group begins with its first value.
+fn put(entries: &mut Map<String, Value>, path: &str, value: Value) {
+    let Some((group, rest)) = path.split_once('.') else { return drop(entries.insert(path.into(), value)) };
+    let group = entries.entry(group).or_insert(Value::Null);
+    if !value.is_null() && group.is_null() {
+        *group = Map::new().into();
+    }
+    if let Value::Object(inside) = group {
+        put(inside, rest, value);
     }
 }

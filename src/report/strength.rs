@@ -16,14 +16,14 @@ pub struct Measured {
 }
 
 /// The largest |a| shown.
-const MOST: i64 = 12;
+const LARGEST_A: i64 = 12;
 
 /// Shades of the colour bar for q.
 const SHADES: u16 = 24;
 
 /// The figure for the angle θ = `share` π: each tongue a dot over its a, the darker the larger its q.
 pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
-    let measured: Vec<&Measured> = measured.iter().filter(|m| m.a.abs() <= MOST).collect();
+    let measured: Vec<&Measured> = measured.iter().filter(|m| m.a.abs() <= LARGEST_A).collect();
     let (first, last) = measured.iter().fold((0, 1), |(lo, hi), m| (m.a.min(lo), m.a.max(hi)));
     let law: Vec<[f64; 2]> =
         (first..=last).map(|a| [a as f64, strength(a, share * std::f64::consts::PI).abs()]).collect();

@@ -2,19 +2,22 @@
 
 use serde_json::{Value, json};
 
-use super::decimal;
-use super::digits::rounded;
-use super::document::{Document, enclosure};
-use super::table::{Cell, Column, Table};
+use super::decimal::{self, rounded};
+use super::document::Document;
+use super::record::Record;
+use super::table::{Cell, Column};
 use crate::tongue::{Spread, Survey, Thin};
 
 /// Digits that people need of a quotient of widths.
-const FEW: usize = 4;
+const DIGITS: usize = 4;
 
 /// The document `kickdrift/survey/1`.
 pub fn document(survey: &Survey) -> Document {
     let closed: Vec<Value> =
         survey.closed.iter().map(|(ratio, m)| json!({"p": ratio.p(), "q": ratio.q(), "m": m})).collect();
+    let of = format!("for all p + q up to {} at rho = {}", survey.max_sum, survey.rho);
+    let widths = format!("Width over first-order width, by the dominant family (a, b), {of}");
+    let thinnest = format!("The thinnest tongues that begin below s = 4, {of}");
     Document::new("survey")
         .input("max_sum", survey.max_sum)
         .input("rho", &survey.rho)
@@ -30,26 +33,11 @@ pub fn document(survey: &Survey) -> Document {
                 "on_edge": survey.predicted_on_edge, "inside": survey.predicted_inside,
             }),
         )
-        .entry("width_ratios", survey.width_ratios.iter().map(spread).collect::<Vec<_>>())
-        .entry("thinnest", survey.thinnest.iter().map(thin).collect::<Vec<_>>())
-        .long_rows(widths(survey))
-        .and_rows(thinnest(survey))
+        .entry("width_ratios", spreads(None).all(&survey.width_ratios))
+        .entry("thinnest", thin().all(&survey.thinnest))
+        .long_rows(spreads(Some(DIGITS)).table("width_ratios", &widths, &survey.width_ratios))
+        .and_rows(thin().table("thinnest", &thinnest, &survey.thinnest))
         .summary(&lines(survey))
-}
-
-fn spread(spread: &Spread) -> Value {
-    json!({
-        "abs_a": spread.abs_a, "count": spread.count, "least": spread.least,
-        "lower_quartile": spread.lower_quartile, "median": spread.median,
-        "upper_quartile": spread.upper_quartile, "largest": spread.largest,
-    })
-}
-
-fn thin(thin: &Thin) -> Value {
-    json!({
-        "p": thin.ratio.p(), "q": thin.ratio.q(), "m": thin.m, "a": thin.a, "b": thin.b,
-        "s": thin.s, "width": enclosure(thin.width),
-    })
 }
 
 fn lines(survey: &Survey) -> Vec<String> {
@@ -91,49 +79,28 @@ fn lines(survey: &Survey) -> Vec<String> {
     lines
 }
 
-fn widths(survey: &Survey) -> Table {
-    let columns = vec![
-        Column::new("abs_a").titled("|a|", "$|a|$"),
-        Column::new("count").titled("tongues", "tongues"),
-        Column::new("least"),
-        Column::new("lower_quartile").titled("lower quartile", "lower quartile"),
-        Column::new("median"),
-        Column::new("upper_quartile").titled("upper quartile", "upper quartile"),
-        Column::new("largest"),
-    ];
-    let caption = format!(
-        "Width over first-order width, by the dominant family (a, b), for all p + q up to {} at rho = {}",
-        survey.max_sum, survey.rho
-    );
-    let mut table = Table::new("width_ratios", &caption, columns);
-    for spread in &survey.width_ratios {
-        let Spread { least, lower_quartile, median, upper_quartile, largest, .. } = *spread;
-        let five = [least, lower_quartile, median, upper_quartile, largest];
-        let mut cells = vec![Cell::Integer(spread.abs_a as i64), Cell::Integer(spread.count as i64)];
-        cells.extend(five.map(|x| Cell::Float(rounded(x, FEW))));
-        table.push(cells);
-    }
-    table
+/// What is written of the widths of a family, in so many significant digits where a number is given.
+fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
+    let float = move |x: f64| Cell::Float(digits.map_or(x, |digits| rounded(x, digits)));
+    let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
+    Record::new()
+        .field(Column::new("abs_a").titled("|a|", "$|a|$"), |of: &Spread| of.abs_a.into())
+        .field(titled("count", "tongues"), |of| of.count.into())
+        .field(Column::new("least"), move |of| float(of.least))
+        .field(titled("lower_quartile", "lower quartile"), move |of| float(of.lower_quartile))
+        .field(Column::new("median"), move |of| float(of.median))
+        .field(titled("upper_quartile", "upper quartile"), move |of| float(of.upper_quartile))
+        .field(Column::new("largest"), move |of| float(of.largest))
 }
 
-fn thinnest(survey: &Survey) -> Table {
-    let mut columns: Vec<Column> =
-        ["p", "q", "m", "a", "b"].map(|key| Column::new(key).titled(key, &format!("${key}$"))).into();
-    columns.push(Column::new("s").titled("s", "$s$"));
-    columns.push(Column::new("width").enclosure());
-    let caption = format!(
-        "The thinnest tongues that begin below s = 4, for all p + q up to {} at rho = {}",
-        survey.max_sum, survey.rho
-    );
-    let mut table = Table::new("thinnest", &caption, columns);
-    for thin in &survey.thinnest {
-        let mut cells: Vec<Cell> =
-            [thin.ratio.p() as i64, thin.ratio.q() as i64, thin.m as i64, thin.a, thin.b]
-                .map(Cell::Integer)
-                .into();
-        let (lo, hi) = thin.width;
-        cells.extend([Cell::Float(thin.s), Cell::Enclosure { lo, hi }]);
-        table.push(cells);
-    }
-    table
+/// What is written of a thin tongue.
+fn thin() -> Record<'static, Thin> {
+    Record::new()
+        .field(Column::math("p", "p"), |of: &Thin| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into())
+        .field(Column::math("a", "a"), |of| of.a.into())
+        .field(Column::math("b", "b"), |of| of.b.into())
+        .field(Column::math("s", "s"), |of| of.s.into())
+        .field(Column::new("width").enclosure(), |of| of.width.into())
 }

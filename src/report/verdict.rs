@@ -67,7 +67,7 @@ impl Answer {
         }
         document
             .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
-            .told(&self.lines())
+            .summary_alone(&self.lines())
     }
 }
 
@@ -86,9 +86,9 @@ fn record() -> Record<'static, Answer> {
             of.growth.trace.to_f64_enclosure().into()
         })
         .field(Column::new("growth_rate").in_words("growth rate").enclosure(), |of| of.growth_rate().into())
-        .field_in("resonance", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
-        .field_in("resonance", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
-        .field_in("resonance", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
+        .at("resonance.m", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
+        .at("resonance.a", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
+        .at("resonance.b", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
         .field(Column::new("decided_by").in_words("decided by").left(), |of| {
             of.decision.decided_by.name().into()
         })

@@ -85,7 +85,7 @@ impl<S: Real> Angle<S> {
     /// for some m ≥ 1.
     ///
     /// Decided: θ/π is rational only where 2 cos θ is an algebraic integer. For rational s that leaves
-    /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always tell.
+    /// s = 1, 2, 3, and no transcendental s at all; elsewhere more bits always decide.
     pub fn is_resonant(&self, p: u64, tolerance: &Rational) -> bool {
         if let Some((_, distance)) = self.rational_nearest(p) {
             return distance.abs() <= *tolerance;
@@ -127,28 +127,5 @@ impl<S: Real> TwoClocks<S> {
     /// The fast clock's angle; `None` beyond its Verlet limit s = 4.
     pub fn angle(&self) -> Option<Angle<S>> {
         Angle::new(self.fast().clone())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::number::rational::ratio;
-
-    #[test]
-    fn a_resonance_is_at_distance_zero_and_its_neighbour_is_not() {
-        let nearest = |s: Rational, p: u64| Angle::new(s).unwrap().nearest(p, 64);
-        let told = |s: Rational, p: u64| (nearest(s.clone(), p).m, nearest(s, p).distance.to_f64_enclosure());
-        for (s, p, m) in [(1, 3, 1), (1, 6, 2), (2, 2, 1), (2, 8, 4), (3, 3, 2)] {
-            assert_eq!(told(ratio(s, 1), p), (m, (0.0, 0.0)), "s = {s}, p = {p}");
-        }
-        // Half-way, and below the first resonance.
-        assert_eq!([3, 1].map(|p| told(ratio(2, 1), p)), [(1, (0.5, 0.5)), (1, (-0.5, -0.5))]);
-        // 1/3, enclosed by neighbouring doubles: the nearest one lies below it.
-        assert_eq!(told(ratio(1, 1), 4), (1, (1.0 / 3.0, (1.0_f64 / 3.0).next_up())));
-        // Elsewhere an enclosure that holds the exact value, and never only 0.
-        let beside = ratio(1_000_000_000_000_000_001, 1_000_000_000_000_000_000);
-        let (m, (lo, hi)) = told(beside, 3);
-        assert!(m == 1 && lo < hi && hi > 0.0);
     }
 }

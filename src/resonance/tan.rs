@@ -73,7 +73,7 @@ fn exact_forms<S: ExactSign>(clocks: &TwoClocks<S>) -> HalfSigns {
     HalfSigns::new(a, b, c, d)
 }
 
-/// The verdict, where balls of so many bits tell enough of the four signs.
+/// The verdict, where balls of so many bits decide enough of the four signs.
 fn enclosed_forms<S: Real, const BITS: u32>(clocks: &TwoClocks<S>) -> Option<Verdict> {
     let enclosed = clocks.map(|x| Enclosed::<BITS>(x.enclosure(BITS)));
     let [a, b, c, d] = forms(&enclosed).map(|form| form.sign());
@@ -273,7 +273,7 @@ mod tests {
                 let clocks = TwoClocks::new(ratio_of_steps, ratio(s, 10), ratio(k, 10));
                 let signs = crate::propagator::half_period(&clocks).signs();
                 assert_eq!(exact_forms(&clocks).all(), signs.all(), "{ratio_of_steps}, {s}/10, {k}/10");
-                // 512 bits tell all but the edges, and of those nothing false.
+                // 512 bits decide all but the edges, and of those nothing false.
                 let enclosed = enclosed_forms::<_, 512>(&clocks);
                 let edge = matches!(signs.verdict(), Verdict::Parabolic(_) | Verdict::Coexistence(_));
                 assert!(

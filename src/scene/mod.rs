@@ -25,14 +25,16 @@ mod want;
 
 use crate::error::{Error, Result};
 use crate::map::Grid;
-use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
+use crate::number::parse::{
+    parse, parse_integer_range, parse_range, parse_ratio, parse_rational, parse_rational_range,
+};
 use crate::number::{Laurent, Ratio, Rational};
 use crate::resonance::Families;
 
 pub use document::{Document, Quantity};
 pub use grid::{GridRange, shown_range};
 #[cfg(feature = "system")]
-pub use system::{Axis, Scan, SystemScene};
+pub use system::{Axis, Displacement, RunRequest, Scan, SystemScene};
 pub use want::{Product, Want};
 
 /// What is to be computed: what the file gives, read once, and checked as far as it can be without computing.
@@ -131,7 +133,7 @@ impl Scene {
             max: document.max,
             max_sum: document.max_sum,
             rho: rational("rho", &document.rho)?,
-            rho_range: Quantity::read(document.rho_range.as_ref(), "rho_range", rational_range)?,
+            rho_range: Quantity::read(document.rho_range.as_ref(), "rho_range", parse_rational_range)?,
             window: document.window.as_ref().map(window).transpose()?,
             colour: document.colour.as_ref().map(|text| colour(text)).transpose()?,
             want: document.want.iter().map(|text| Want::new(text)).collect::<Result<_>>()?,
@@ -234,12 +236,6 @@ impl Scene {
     fn has_rho(&self) -> Result<()> {
         if self.rho.is_some() { Ok(()) } else { self.lambda1().and(self.lambda2()).map(drop) }
     }
-}
-
-fn rational_range(field: &str, text: &str) -> Result<(Rational, Rational)> {
-    let (lo, hi) = parse_range(field, text)?;
-    let both = lo.as_rational().zip(hi.as_rational());
-    both.ok_or_else(|| Error::input(field, text, "must be rational; write it without pi"))
 }
 
 fn colour(text: &str) -> Result<String> {

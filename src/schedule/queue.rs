@@ -20,13 +20,13 @@ enum Order {
 }
 
 /// Up to here a look through all clocks is faster than a heap.
-const FEW: usize = 8;
+const SCANNED_CLOCKS: usize = 8;
 
 impl Queue {
     /// All clocks at their first strikes.
     pub fn new(clocks: &[Clock]) -> Self {
         let first = clocks.iter().map(|clock| clock.offset());
-        let order = if clocks.len() <= FEW {
+        let order = if clocks.len() <= SCANNED_CLOCKS {
             Order::Few(first.collect())
         } else {
             Order::Many(first.enumerate().map(|(k, time)| Reverse((time, k))).collect())
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn the_heap_and_the_look_through_give_one_order() {
         // Ties everywhere: steps 6, 4, 3, 12, 4, ... and phases 0 and 1/2.
-        let clocks: Vec<_> = (0..FEW)
+        let clocks: Vec<_> = (0..SCANNED_CLOCKS)
             .map(|k| [6, 4, 3, 12][k % 4])
             .enumerate()
             .map(|(k, step)| Clock::new(step, if k % 3 == 2 { step / 2 } else { 0 }))

@@ -58,7 +58,7 @@ pub use peak::Peak;
 pub use question::{Progress, Question, Range, Stiffness, Window};
 pub use request::{Quantity, Request, Tongue, TongueEdge};
 pub use row::{ExactEdge, Law, Predicted, Resonance, Row, Side, Wanted};
-pub use select::Selection;
+pub use select::{Labels, Selection};
 pub use string::Entry;
 pub use survey::{Spread, Survey, Thin, survey};
 pub use tongues::Tongues;

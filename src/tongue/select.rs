@@ -10,17 +10,58 @@
 //! assert!(tongues.effort().doubles < 20); // of 99 tongues
 //! ```
 
+use std::fmt;
+use std::str::FromStr;
+
 use super::edge::{Edges, counts};
 use super::gap::Gap;
 use super::string::lanes::LANES;
 use crate::error::{Error, Result};
+use crate::number::parse::{parse_integer, parse_integer_range};
 use crate::resonance::dominant_family;
+
+/// Labels as closed ranges, in writing `4`, `1,3`, `7..9` and such.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Labels(pub Vec<(u64, u64)>);
+
+impl FromStr for Labels {
+    type Err = Error;
+
+    /// # Errors
+    /// Another text, an empty range, a label below 1.
+    fn from_str(text: &str) -> Result<Self> {
+        let label = |m: i64| {
+            let positive = u64::try_from(m).ok().filter(|&m| m > 0);
+            positive.ok_or_else(|| Error::input("m", text, "labels begin at 1"))
+        };
+        let part = |part: &str| {
+            if part.trim().is_empty() {
+                return Err(Error::input("m", text, "has an empty item: list labels as 1,3,7..9"));
+            }
+            let (from, upto) = match part.contains("..") {
+                true => parse_integer_range("m", part)?,
+                false => parse_integer("m", part).map(|m| (m, m))?,
+            };
+            Ok((label(from)?, label(upto)?))
+        };
+        text.split(',').map(part).collect::<Result<_>>().map(Labels)
+    }
+}
+
+impl fmt::Display for Labels {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, &(from, upto)) in self.0.iter().enumerate() {
+            let comma = if i > 0 { "," } else { "" };
+            if from == upto { write!(f, "{comma}{from}") } else { write!(f, "{comma}{from}..{upto}") }?;
+        }
+        Ok(())
+    }
+}
 
 /// Conditions that all must hold; what is `None` is no condition.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
-    /// Closed ranges of the label.
-    pub m: Option<Vec<(u64, u64)>>,
+    pub m: Option<Labels>,
     /// Closed ranges of the dominant family's a and b.
     pub a: Option<(i64, i64)>,
     pub b: Option<(i64, i64)>,
@@ -50,7 +91,7 @@ impl Selection {
     /// # Errors
     /// A label beyond the last tongue.
     pub(crate) fn check_labels(&self, edges: &Edges, last: u64) -> Result<()> {
-        let ranges = self.m.iter().flatten();
+        let ranges = self.m.iter().flat_map(|labels| &labels.0);
         match ranges.flat_map(|&(from, upto)| [from, upto]).find(|m| !(1..=last).contains(m)) {
             None => Ok(()),
             Some(m) => {
@@ -65,7 +106,7 @@ impl Selection {
         let (first, last) = self.s.map_or((1, last), |window| labels_within(edges, window, last));
         let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
         let wanted = |m: u64| {
-            let listed = self.m.as_ref().is_none_or(|list| list.iter().any(|&(a, b)| a <= m && m <= b));
+            let listed = self.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| a <= m && m <= b));
             let any = self.a.is_none() && self.b.is_none();
             listed
                 && (any || {
@@ -110,47 +151,10 @@ pub(crate) fn runs(labels: &[u64]) -> Vec<(u64, u64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::Ratio;
-    use crate::number::rational::ratio;
-    use crate::tongue::Tongues;
 
     #[test]
     fn runs_hold_every_label() {
         assert_eq!(runs(&[2, 3, 6, 7, 20]), [(2, 7), (20, 20)]);
         assert_eq!(runs(&[]), []);
-    }
-
-    #[test]
-    fn windows_hold_what_all_tongues_show() {
-        for (p, q, rho) in
-            [(7, 3, ratio(1, 25)), (3, 11, ratio(2, 1)), (40, 1, ratio(1, 2)), (9, 4, ratio(0, 1))]
-        {
-            let all = Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap();
-            for (lo, hi) in [(0.0, 1e300), (1.0, 1.5), (2.4, 2.4), (3.9, 400.0), (-1.0, 1e-9), (2.0, 1.0)] {
-                let meets = |gap: &&Gap| gap.lower.lo <= hi && gap.upper.is_none_or(|upper| lo <= upper.hi);
-                let expected: Vec<u64> =
-                    all.iter().filter(meets).map(|gap| gap.m).filter(|_| lo <= hi).collect();
-                let selection = Selection { s: Some((lo, hi)), ..Selection::default() };
-                let found =
-                    Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().select(&selection).unwrap();
-                assert_eq!(
-                    found.iter().map(|gap| gap.m).collect::<Vec<_>>(),
-                    expected,
-                    "{p}/{q}: {lo}..{hi}"
-                );
-            }
-        }
-    }
-
-    #[test]
-    fn a_family_is_that_of_the_labels() {
-        let tongues = Tongues::new("31/12".parse().unwrap(), &ratio(1, 25)).unwrap();
-        let selection = Selection { a: Some((1, 2)), b: Some((-9, -1)), ..Selection::default() };
-        let found = tongues.select(&selection).unwrap();
-        let expected: Vec<u64> = (1..=tongues.last())
-            .filter(|&m| matches!(dominant_family("31/12".parse().unwrap(), m), (1..=2, -9..=-1)))
-            .collect();
-        assert!(!expected.is_empty());
-        assert_eq!(found.iter().map(|gap| gap.m).collect::<Vec<_>>(), expected);
     }
 }

@@ -200,14 +200,6 @@ impl Tongues {
         self.edges.refine(edge, digits)
     }
 
-    /// Whether all tongues of one parity of m are proven open.
-    ///
-    /// # Errors
-    /// Where the schedule is too long.
-    pub fn is_open(&self, odd: bool) -> Result<bool> {
-        self.open.is_proven(&self.edges, odd)
-    }
-
     /// s = 4 sin²(m π/(2p)), where p θ = m π: the paper's eq. (9).
     pub fn resonance(&self, m: u64, bits: u32) -> Ball {
         self.edges.resonance(m, bits)

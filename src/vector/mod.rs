@@ -115,9 +115,9 @@ mod tests {
     use crate::vector::instructions::{Instructions, Kernel};
 
     /// Three numbers for each of sixteen lanes, and what all operations make of them.
-    struct Everything([[f64; LANES]; 3]);
+    struct EveryOperation([[f64; LANES]; 3]);
 
-    impl Kernel for Everything {
+    impl Kernel for EveryOperation {
         type Output = Vec<[u64; LANES]>;
 
         fn run<V: Vector>(self) -> Self::Output {
@@ -187,11 +187,11 @@ mod tests {
             }
             // A normal number that is not near an end of the range.
             numbers[2] = numbers[2].map(|x| if x.is_normal() { x } else { 1.0 });
-            let portable = Instructions::Portable.compute(Everything(numbers));
+            let portable = Instructions::Portable.compute(EveryOperation(numbers));
             for set in Instructions::available() {
-                assert_eq!(set.compute(Everything(numbers)), portable);
-                assert_eq!(set.compute_by_register(Everything(numbers)), portable);
-                assert_eq!(set.compute_alone(Everything(numbers)), portable);
+                assert_eq!(set.compute(EveryOperation(numbers)), portable);
+                assert_eq!(set.compute_by_register(EveryOperation(numbers)), portable);
+                assert_eq!(set.compute_alone(EveryOperation(numbers)), portable);
             }
         }
     }

@@ -24,15 +24,22 @@ use crate::propagator::TwoClocks;
 /// assert!(answer.trace()?.mid_f64() > 2.0);
 /// # Ok::<(), kickdrift::error::Error>(())
 /// ```
+///
+/// As JSON: the verdict, its tier, and the growth, null where it was not asked for yet.
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(bound = ""))]
 pub struct Answer<S> {
     /// Stable or not, and on which side.
     pub verdict: Verdict,
     /// The tier that proved it.
     pub decided_by: Tier,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) clocks: TwoClocks<S>,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) limits: Limits,
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub(super) runs: Runs,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "where_known"))]
     pub(super) growth: OnceLock<Growth>,
 }
 
@@ -42,6 +49,14 @@ pub struct Answer<S> {
 pub struct Decision {
     pub verdict: Verdict,
     pub decided_by: Tier,
+}
+
+#[cfg(feature = "serde")]
+fn where_known<Z: serde::Serializer>(
+    growth: &OnceLock<Growth>,
+    out: Z,
+) -> std::result::Result<Z::Ok, Z::Error> {
+    serde::Serialize::serialize(&growth.get(), out)
 }
 
 impl<S: Decidable> Answer<S> {

@@ -20,8 +20,10 @@ use crate::orbit::{filter, refine};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 
-/// How a pair moves over one synchronization period.
+/// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value between them,
+/// `{"lo": , "hi": }`.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Growth {
     /// Tr Q.
     pub trace: Ball,
@@ -55,7 +57,7 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    /// The label, where the filter's run tells it.
+    /// The label, where the filter's run gives it.
     pub fn label(&self, verdict: Verdict) -> Option<u64> {
         label(self.filtered.as_ref()?.as_ref()?, verdict)
     }
@@ -77,12 +79,12 @@ impl Runs {
         if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
             return Ok(from_products(products(&ends), verdict, label));
         }
-        limits.allow(schedule.strikes() / 2, Tier::Refine)?;
+        limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
         let (products, nodes) = self.refined(clocks, &schedule, verdict);
         Ok(from_products(products, verdict, label.or(nodes)))
     }
 
-    /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes tell it.
+    /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes give it.
     fn refined<S: Decidable>(
         &self,
         clocks: &TwoClocks<S>,

@@ -82,7 +82,7 @@ fn by_refine<S: Decidable>(
     runs: &mut Runs,
 ) -> Result<Option<Verdict>> {
     let schedule = Schedule::two_clocks(clocks.ratio())?;
-    limits.allow(schedule.strikes() / 2, Tier::Refine)?;
+    limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
     let mut verdict = |bits: u32| {
         let ends = refine::run_at_any(clocks, &schedule, bits)?;
         let verdict = ends.signs().verdict();
@@ -93,7 +93,7 @@ fn by_refine<S: Decidable>(
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }
-    // No entry is zero: some precision tells all four signs. Where 2^14 bits do not suffice, the periods are short in
+    // No entry is zero: some precision decides all four signs. Where 2^14 bits do not suffice, the periods are short in
     // practice, and exact arithmetic is the shorter way.
     Ok((10..15).map(|log2| 1 << log2).find_map(verdict))
 }

@@ -49,7 +49,7 @@ mod tests {
 
     #[test]
     fn the_closed_form_is_what_kicks_and_drifts_give() {
-        let mut told = 0;
+        let mut decided = 0;
         for (p, q) in [(1, 1), (5, 3), (4, 3), (3, 8), (12, 1), (1, 7), (101, 64)] {
             for s in [-3, -1, 1, 8, 10, 25, 39, 41, 77] {
                 let zero = Rational::from_integer(0.into());
@@ -58,12 +58,12 @@ mod tests {
                     let Some(verdict) = verdict(&clocks) else { continue };
                     let slow_way = decide_from(Tier::Refine, &clocks, &Limits::default()).unwrap().verdict;
                     assert_eq!(verdict, slow_way, "{p}/{q}, s = {s}/10, {clocks:?}");
-                    told += 1;
+                    decided += 1;
                 }
             }
         }
         // s = 1 is theta = pi/3: Q = ±I for some of the n.
-        assert!(told > 110 && told < 126, "{told}");
+        assert!(decided > 110 && decided < 126, "{decided}");
     }
 
     #[test]

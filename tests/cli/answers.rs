@@ -193,6 +193,23 @@ fn stiffnesses_far_beyond_doubles_are_answered_too() {
     assert_eq!(verdict["resonance"].to_string(), r#"{"m":60,"a":0,"b":12}"#);
 }
 
+/// No machine follows 10^12 kicks one by one within a test: s = 1 turns by π/3, so that they come to a turn by a multiple of π/3.
+#[test]
+fn a_slow_step_of_ever_so_many_fast_ones_is_leapt_over() {
+    let desk = Desk::new();
+    for (step, same) in
+        [("1000000000001", "1000001"), ("1000000000002", "1000002"), ("1000000000000", "1000000")]
+    {
+        let kind = |step: &str| {
+            let ended =
+                desk.run(&["verdict", "--lambda1", "1", "--lambda2", "1/10", "--h1", "1", "--h2", step]);
+            assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+            ended.stdout.lines().next().unwrap().to_string()
+        };
+        assert_eq!(kind(step), kind(same), "{step}");
+    }
+}
+
 #[test]
 fn compare_agrees_with_tan_everywhere_and_lists_its_offenders() {
     for line in [format!("compare {GRID}"), "compare --max-sum 9 --rho 1/25 --samples 30".into()] {

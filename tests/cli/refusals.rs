@@ -82,8 +82,8 @@ fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
     refused(&desk, &verdict("10", "1", "1", "1.000000000000000000000001"), &["h2/h1"]);
     let frugal = [&verdict("10", "1", "0.01", "1.01")[..], &["--exact", "--budget", "50"]].concat();
     refused(&desk, &frugal, &["kicks", "--budget 77"]);
-    // s = 1, 3 | p: an exact edge, which only the exact tier can tell from its neighbourhood.
-    refused(&desk, &verdict("1", "1/10", "1", "300003"), &["exact tier", " s;", "--budget"]);
+    let exact = [&verdict("1", "1/10", "1", "300003")[..], &["--exact"]].concat();
+    refused(&desk, &exact, &["exact tier", " s;", "--budget"]);
     refused(&desk, &["polynomial", "--ratio", "1000/7"], &["1000/7", "--budget 1007"]);
 }
 

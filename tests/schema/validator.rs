@@ -77,8 +77,9 @@ impl Validator {
         for (key, value) in keywords {
             match key.as_str() {
                 "$ref" => self.check(self.target(value).expect("was followed before"), instance, at, errors),
-                "properties" | "additionalProperties" => self.members(keywords, key, instance, at, errors),
-                "items" | "prefixItems" => self.elements(keywords, key, instance, at, errors),
+                "properties" | "additionalProperties" | "items" | "prefixItems" => {
+                    self.parts(keywords, key, instance, at, errors);
+                }
                 "then" | "else" => {
                     let holds = keywords.get("if").is_some_and(|condition| self.fits(condition, instance));
                     if keywords.contains_key("if") && holds == (key == "then") {
@@ -91,8 +92,8 @@ impl Validator {
         }
     }
 
-    /// The members of an object, those named and the others.
-    fn members(
+    /// The members of an object or the elements of an array: those with a schema of their own, and the others.
+    fn parts(
         &self,
         all: &Map<String, Value>,
         key: &str,
@@ -100,31 +101,24 @@ impl Validator {
         at: &str,
         errors: &mut Vec<String>,
     ) {
-        let named = all.get("properties").and_then(Value::as_object);
-        for (name, member) in instance.as_object().into_iter().flatten() {
-            let own = named.and_then(|named| named.get(name));
-            let schema = if key == "properties" { own } else { all.get(key).filter(|_| own.is_none()) };
-            if let Some(schema) = schema {
-                self.check(schema, member, &format!("{at}/{name}"), errors);
+        let (named, parts): (&str, Vec<(String, &Value)>) = match (key, instance) {
+            ("properties" | "additionalProperties", Value::Object(members)) => {
+                ("properties", members.iter().map(|(name, member)| (name.clone(), member)).collect())
             }
-        }
-    }
-
-    /// The elements of an array, the first ones and the others.
-    fn elements(
-        &self,
-        all: &Map<String, Value>,
-        key: &str,
-        instance: &Value,
-        at: &str,
-        errors: &mut Vec<String>,
-    ) {
-        let first = all.get("prefixItems").and_then(Value::as_array);
-        for (i, element) in instance.as_array().into_iter().flatten().enumerate() {
-            let own = first.and_then(|first| first.get(i));
-            let schema = if key == "prefixItems" { own } else { all.get(key).filter(|_| own.is_none()) };
+            ("prefixItems" | "items", Value::Array(elements)) => (
+                "prefixItems",
+                elements.iter().enumerate().map(|(i, element)| (i.to_string(), element)).collect(),
+            ),
+            _ => return,
+        };
+        for (name, part) in parts {
+            let own = all.get(named).and_then(|schemas| match schemas {
+                Value::Array(first) => first.get(name.parse::<usize>().expect("an index")),
+                schemas => schemas.get(&name),
+            });
+            let schema = if key == named { own } else { all.get(key).filter(|_| own.is_none()) };
             if let Some(schema) = schema {
-                self.check(schema, element, &format!("{at}/{i}"), errors);
+                self.check(schema, part, &format!("{at}/{name}"), errors);
             }
         }
     }

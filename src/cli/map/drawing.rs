@@ -1,7 +1,5 @@
 //! How a map is drawn.
 
-use clap::ValueEnum;
-
 use super::Map;
 use crate::cli::args::of;
 use crate::error::{Error, Result};
@@ -16,9 +14,9 @@ use crate::scene::FAMILIES;
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
 pub struct Drawing {
-    /// What the colours of a figure tell [default: verdict].
+    /// What the colours of a figure stand for [default: verdict].
     #[arg(long, value_name = "WHAT")]
-    colour: Option<Colour>,
+    colour: Option<Colouring>,
     /// Draw the curves (a, b) over a figure.
     #[arg(long)]
     curves: bool,
@@ -30,27 +28,10 @@ pub struct Drawing {
     b: Option<(i64, i64)>,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Colour {
-    /// Exponential growth, linear growth, closed tongues.
-    Verdict,
-    /// The growth rate per unit time.
-    Growth,
-    /// The a of the dominant family.
-    Family,
-    /// Slow steps until the amplitude is tenfold.
-    Tenfold,
-}
-
 impl Drawing {
-    /// What the colours tell.
+    /// What the colours stand for.
     pub fn colouring(&self) -> Colouring {
-        match self.colour {
-            None | Some(Colour::Verdict) => Colouring::Verdict,
-            Some(Colour::Growth) => Colouring::Growth,
-            Some(Colour::Family) => Colouring::Family,
-            Some(Colour::Tenfold) => Colouring::Tenfold,
-        }
+        self.colour.unwrap_or_default()
     }
 
     /// What has to be computed for the drawing: nothing where none is made.

@@ -7,7 +7,7 @@ mod source;
 
 use std::path::PathBuf;
 
-use super::args::{self, Common, Stiffness};
+use super::args::{self, Common, Stiffness, from_str};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Products, Shard};
@@ -23,10 +23,10 @@ pub struct Args {
     stiffness: Stiffness,
     #[command(flatten)]
     grid: args::Grid,
-    /// Tell the tongue's label m of each growing pair, and its dominant family (a, b).
+    /// Give the tongue's label m of each growing pair, and its dominant family (a, b).
     #[arg(long)]
     label: bool,
-    /// Tell the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
+    /// Give the growth rate of each growing pair, and the slow steps until its amplitude is tenfold.
     #[arg(long)]
     growth: bool,
     #[command(flatten)]
@@ -35,8 +35,8 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
     /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
-    #[arg(long, value_name = "K/N", allow_hyphen_values = true)]
-    shard: Option<String>,
+    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = from_str::<Shard>)]
+    shard: Option<Shard>,
 }
 
 impl Args {
@@ -49,24 +49,22 @@ impl Args {
         let map = Map::new(self.stiffness.clone(), self.grid.range()?, products)?;
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
         let source = Source::compute(common, shard, store.map(Part::into_store));
-        let output = Output { map: &map, format, drawing: &self.drawing, part: self.shard.as_deref() };
+        let output = Output { map: &map, format, drawing: &self.drawing, part: self.shard };
         output.write(&source, common.output.as_deref())
     }
 
     /// The part of the map to compute.
     fn shard(&self, format: Format) -> Result<Shard> {
-        let Some(text) = &self.shard else { return Ok(Shard::WHOLE) };
-        let terms = text.split_once('/').and_then(|(k, n)| Some((k.parse().ok()?, n.parse().ok()?)));
-        let (k, n) = terms.ok_or_else(|| Error::input("--shard", text, "write part and parts as 2/16"))?;
+        let Some(shard) = self.shard else { return Ok(Shard::WHOLE) };
         if self.resume.is_none() {
             let remedy = "needs --resume DIR, where the part is kept for kickdrift merge";
-            return Err(Error::input("--shard", text, remedy));
+            return Err(Error::input("--shard", shard, remedy));
         }
         if !matches!(format, Format::Json | Format::Text) {
             let remedy =
                 "a part has only a summary (json, text): kickdrift merge makes the rest of all parts";
-            return Err(Error::input("--shard", text, remedy));
+            return Err(Error::input("--shard", shard, remedy));
         }
-        Shard::new(k, n)
+        Ok(shard)
     }
 }

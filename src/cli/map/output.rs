@@ -6,7 +6,7 @@ use super::{Drawing, Map, Source};
 use crate::cli::plane::DPI;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::{Band, Grid, Products};
+use crate::map::{Band, Grid, Products, Shard};
 use crate::report::csv;
 use crate::report::document::Document;
 use crate::report::file::{write_output, write_with};
@@ -21,7 +21,7 @@ pub struct Output<'a> {
     pub format: Format,
     pub drawing: &'a Drawing,
     /// K/N where the map is not whole.
-    pub part: Option<&'a str>,
+    pub part: Option<Shard>,
 }
 
 /// Rows that a document holds in memory at most; text shows them up to a number that fits a terminal.
@@ -71,9 +71,10 @@ impl Output<'_> {
     fn echo(&self, document: Document) -> Document {
         let document = echo(document, &self.map.grid, &self.map.range);
         let Products { label, growth } = self.map.products;
-        let flags =
-            [("label", label.then_some("true")), ("growth", growth.then_some("true")), ("shard", self.part)];
-        document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?.to_string()))))
+        let flag = |given: bool| given.then(|| "true".to_string());
+        let part = self.part.map(|shard| shard.to_string());
+        let flags = [("label", flag(label)), ("growth", flag(growth)), ("shard", part)];
+        document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?))))
     }
 
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {

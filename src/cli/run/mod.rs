@@ -1,4 +1,4 @@
-//! `kickdrift run`: the products that a scene wants, nothing else, and what two of them share only once.
+//! `kickdrift run`: the products that a scene wants, nothing else; a grid is decided once, however many products show it.
 
 mod summary;
 mod tongues;

@@ -17,7 +17,7 @@ impl Summary {
     pub fn add(&mut self, want: Want, path: &Path, work: &Work) {
         let file = path.display().to_string();
         self.lines.push(file.clone());
-        // A product's summary is told once, with its first file.
+        // A product's summary is shown once, with its first file.
         let known = self.products.iter().any(|p| p["product"] == want.product.name());
         if let Some(summary) = work.summary(want.product).filter(|_| !known) {
             self.lines.extend(summary.lines().map(|line| format!("    {line}")));

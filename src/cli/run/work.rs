@@ -1,13 +1,16 @@
 //! The products of a scene, computed.
 
 use std::cell::{OnceCell, RefCell};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 use super::tongues;
-use crate::cli::args::Common;
+use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::plane::{DPI, Verdicts};
+use crate::cli::request::{Request, THINNEST};
 use crate::cli::tongues as answers;
-use crate::cli::{closings, compare, curves, map, polynomial, proposition};
+use crate::cli::{closings, map};
 use crate::error::Result;
 use crate::format::Format;
 use crate::map::Products;
@@ -36,10 +39,10 @@ pub struct Work<'a> {
     /// Filled with the verdicts, taken when written.
     arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
-    documents: [OnceCell<Document>; 7],
-    /// What the tongues told, once they were written.
+    documents: Made<Document>,
+    /// What stands out among the tongues, once they were written.
     tongues: OnceCell<Tally>,
-    figures: [OnceCell<Figure>; 3],
+    figures: Made<Figure>,
 }
 
 impl<'a> Work<'a> {
@@ -55,9 +58,9 @@ impl<'a> Work<'a> {
             verdicts: OnceCell::new(),
             arrays: RefCell::default(),
             curves: OnceCell::new(),
-            documents: Default::default(),
+            documents: Made::default(),
             tongues: OnceCell::new(),
-            figures: Default::default(),
+            figures: Made::default(),
         }
     }
 
@@ -76,7 +79,7 @@ impl<'a> Work<'a> {
 
     /// The bytes of one product's file, where they fit memory.
     fn bytes(&self, want: Want) -> Result<Vec<u8>> {
-        let text = |format| Ok(self.document(want.product)?.render(format)?.into_bytes());
+        let text = |format| Ok(self.document(want.product)?.render_with(format, TO_SEE_ROWS)?.into_bytes());
         if want.product == Product::Tongues {
             return self.tongues(want.format);
         }
@@ -87,66 +90,55 @@ impl<'a> Work<'a> {
         }
     }
 
-    fn document(&self, product: Product) -> Result<&Document> {
-        let slot = match product {
-            Product::Map => 0,
-            Product::Curves => 1,
-            Product::Compare => 2,
-            Product::Proposition => 3,
-            Product::Polynomial => 4,
-            Product::Closings => 5,
-            Product::Survey => 6,
-            Product::Tongues => unreachable!("tongues are streamed"),
-            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
-        };
-        once(&self.documents[slot], || self.make_document(product))
-    }
-
-    fn make_document(&self, product: Product) -> Result<Document> {
-        let scene = self.scene;
-        match product {
+    fn document(&self, product: Product) -> Result<Rc<Document>> {
+        self.documents.get(product, || match product {
             Product::Map => {
                 let Verdicts { tally, marked } = self.verdicts()?;
-                Ok(map::document(&scene.grid()?, scene.range()?, tally, marked))
+                Ok(map::document(&self.scene.grid()?, self.scene.range()?, tally, marked))
             }
+            _ => self.request(product)?.perform(self.common, false),
+        })
+    }
+
+    /// What a scene asks by wanting a product that one document is.
+    fn request(&self, product: Product) -> Result<Request> {
+        let scene = self.scene;
+        Ok(match product {
             Product::Curves => {
-                Ok(curves::document(scene.lambda1()?, scene.range()?, &self.families(), self.curves()?))
+                let (range, families) = (scene.range()?, self.families());
+                let (ranges, given) = (range.ranges().clone(), range.given().into());
+                Request::Curves { lambda1: scene.lambda1()?.clone(), ranges, families, given }
             }
             Product::Compare => {
                 let tolerance = scene.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
-                compare::over_grid(&scene.grid()?, scene.range()?, &tolerance, &self.limits)
+                Request::CompareGrid { grid: scene.grid()?, range: scene.range()?.clone(), tolerance }
             }
-            Product::Proposition => proposition::document(scene.max.unwrap_or(60)),
-            Product::Polynomial => {
-                let ratio = scene.ratio()?;
-                polynomial::check(ratio, None)?;
-                Ok(crate::report::polynomial::document(ratio))
-            }
+            Product::Proposition => Request::Proposition { max: scene.max.unwrap_or(60) },
+            Product::Polynomial => Request::Polynomial { ratio: scene.ratio()? },
             Product::Closings => {
                 let range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
-                closings::Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?
-                    .document(self.common, false)
+                let question = closings::Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?;
+                Request::Closings(question)
             }
             Product::Survey => {
-                let max_sum = scene.max_sum.expect("the scene was checked");
-                answers::survey(max_sum, &tongues::stiffness(scene)?.rho, answers::THINNEST)
+                let (max_sum, rho) =
+                    (scene.max_sum.expect("the scene was checked"), tongues::stiffness(scene)?.rho);
+                Request::Survey { max_sum, rho, thinnest: THINNEST }
             }
-            Product::Tongues => unreachable!("tongues are streamed"),
-            Product::Atlas | Product::Figure | Product::Overlay => unreachable!("a figure is no document"),
-        }
+            Product::Map | Product::Tongues | Product::Atlas | Product::Figure | Product::Overlay => {
+                unreachable!("of the grid, streamed, or drawn")
+            }
+        })
     }
 
     /// A figure.
-    fn figure(&self, product: Product) -> Result<&Figure> {
-        let slot = match product {
-            Product::Figure => 0,
-            Product::Overlay => 1,
-            _ => return once(&self.figures[2], || tongues::atlas(self.scene, self.common)),
-        };
-        once(&self.figures[slot], || {
+    fn figure(&self, product: Product) -> Result<Rc<Figure>> {
+        self.figures.get(product, || {
+            if product == Product::Atlas {
+                return tongues::atlas(self.scene, self.common);
+            }
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
-            let draw: fn(&Window, &plane::Cloud, &[Curve], &str) -> Figure =
-                if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
+            let draw = if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
             Ok(draw(&window, &cloud, self.curves()?, &self.scene.title))
         })
     }
@@ -156,7 +148,7 @@ impl<'a> Work<'a> {
         let growth = self.scene.max_sum.is_none();
         let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
         let (bytes, tally) = answers::bytes(&question, self.common, format)?;
-        // Every format tells the same.
+        // It is the same in every format.
         let _ = self.tongues.set(tally);
         Ok(bytes)
     }
@@ -195,6 +187,27 @@ impl<'a> Work<'a> {
     fn window(&self) -> Result<Window> {
         let [h1, h2] = self.scene.range()?.ranges();
         Ok(Window::new(h1, h2))
+    }
+}
+
+/// What was made for some products, to be written in more than one format.
+struct Made<T>(RefCell<BTreeMap<Product, Rc<T>>>);
+
+impl<T> Default for Made<T> {
+    fn default() -> Self {
+        Made(RefCell::default())
+    }
+}
+
+impl<T> Made<T> {
+    /// What is there, or is made now.
+    fn get(&self, product: Product, make: impl FnOnce() -> Result<T>) -> Result<Rc<T>> {
+        if let Some(known) = self.0.borrow().get(&product) {
+            return Ok(known.clone());
+        }
+        let made = Rc::new(make()?);
+        self.0.borrow_mut().insert(product, made.clone());
+        Ok(made)
     }
 }
 

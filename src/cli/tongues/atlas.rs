@@ -15,7 +15,7 @@ use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
 use crate::tongue::{Quantity, Tongue, TongueEdge, Wanted};
 
-/// What the colours tell.
+/// What the colours stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Colour {
     /// The a of the dominant family.

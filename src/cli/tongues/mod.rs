@@ -4,20 +4,21 @@ mod atlas;
 mod output;
 mod question;
 mod strength;
-mod survey;
 
 use clap::ValueEnum;
 
-use super::args::{Common, whole};
+use super::args::{Common, from_str, of, whole};
 use super::ratios::{Flags, Ratios};
+use super::request::{Request, THINNEST};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::parse::{parse, parse_integer, parse_integer_range, parse_range, parse_rational};
-use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
+use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
+use crate::number::rational::ratio;
+use crate::number::{Laurent, Rational};
+use crate::tongue::{self, Labels, Range, Selection, Stiffness, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::bytes;
-pub use question::{MOST_SUM, Question, shown_list};
-pub use survey::{THINNEST, document as survey};
+pub use question::{MOST_SUM, Question};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
@@ -25,33 +26,33 @@ pub struct Args {
     #[command(flatten)]
     which: Flags,
     /// rho = lambda2/lambda1, not negative.
-    #[arg(long, value_name = "R", allow_hyphen_values = true)]
-    rho: Option<String>,
-    /// The fast stiffness: edges are told in h1 and h2 too.
-    #[arg(long, value_name = "X", allow_hyphen_values = true)]
-    lambda1: Option<String>,
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    rho: Option<Rational>,
+    /// The fast stiffness: edges are given in h1 and h2 too.
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda1: Option<Laurent>,
     /// The slow stiffness, in place of --rho.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true)]
-    lambda2: Option<String>,
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda2: Option<Laurent>,
     /// Only tongues that meet this closed range of h1 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h1_range: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    h1_range: Option<Range>,
     /// Only tongues that meet this closed range of h2 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    h2_range: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    h2_range: Option<Range>,
     /// Only these labels, as 4 or 1,3,7..9.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    m: Option<String>,
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = from_str::<Labels>)]
+    m: Option<Labels>,
     /// Only tongues whose dominant family has its a in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    a: Option<String>,
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    a: Option<(i64, i64)>,
     /// Only tongues whose dominant family has its b in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true)]
-    b: Option<String>,
-    /// Tell the edges to so many significant digits, as decimals.
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    b: Option<(i64, i64)>,
+    /// Give the edges to so many significant digits, as decimals.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: Option<u32>,
-    /// What to tell beside the edges [default: all; with --max-sum all but growth, the dearest].
+    /// What to compute beside the edges [default: all; with --max-sum all but growth, the dearest].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<Columns>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
@@ -63,15 +64,15 @@ pub struct Args {
     /// What a figure (--output FILE.svg, FILE.pdf or FILE.png) shows [default: atlas].
     #[arg(long, value_name = "WHAT")]
     figure: Option<Drawn>,
-    /// What the colours of an atlas tell [default: family].
+    /// What the colours of an atlas stand for [default: family].
     #[arg(long, value_name = "WHAT")]
     colour: Option<Colour>,
     /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
-    #[arg(long, value_name = "THETA", allow_hyphen_values = true)]
-    theta: Option<String>,
+    #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = of(parse))]
+    theta: Option<Laurent>,
 }
 
-/// What may be told of a tongue beside p, q, m, (a, b), its edges and its width.
+/// What may be computed of a tongue beside p, q, m, (a, b), its edges and its width.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Columns {
     /// Nothing else.
@@ -103,11 +104,9 @@ impl Args {
         let format = common.format_of_table(forms)?;
         self.check(format)?;
         match (format, self.figure) {
-            _ if self.survey => {
-                survey::run(self.ratios()?, &self.stiffness()?, self.thinnest, common, format)
-            }
+            _ if self.survey => common.write(&self.all_tongues()?.perform(common, true)?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
-                let theta = parse("theta", self.theta.as_deref().unwrap_or("pi/2"))?;
+                let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
                 strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
             }
             (Format::Svg | Format::Pdf | Format::Png, _) => {
@@ -152,9 +151,14 @@ impl Args {
 
     /// A survey and a figure of strengths are of all tongues.
     fn check_bare(&self) -> Result<()> {
-        let Args { h1_range, h2_range, m, a, b, .. } = self;
-        let given = [("h1-range", h1_range), ("h2-range", h2_range), ("m", m), ("a", a), ("b", b)];
-        match given.iter().find(|(_, text)| text.is_some()) {
+        let given = [
+            ("h1-range", self.h1_range.is_some()),
+            ("h2-range", self.h2_range.is_some()),
+            ("m", self.m.is_some()),
+            ("a", self.a.is_some()),
+            ("b", self.b.is_some()),
+        ];
+        match given.iter().find(|(_, given)| *given) {
             Some((flag, _)) => Err(Error::input(
                 &format!("--{flag}"),
                 "given",
@@ -164,36 +168,29 @@ impl Args {
         }
     }
 
+    fn all_tongues(&self) -> Result<Request> {
+        let Ratios::UpTo(max_sum) = self.ratios()? else {
+            return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
+        };
+        let (rho, thinnest) = (self.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
+        Ok(Request::Survey { max_sum, rho, thinnest })
+    }
+
     fn ratios(&self) -> Result<Ratios> {
         self.which.ratios()?.within(MOST_SUM)
     }
 
     fn stiffness(&self) -> Result<Stiffness> {
-        let quantity =
-            |field: &str, text: &Option<String>| text.as_ref().map(|text| parse(field, text)).transpose();
-        let rho = self.rho.as_ref().map(|text| parse_rational("rho", text)).transpose()?;
-        Stiffness::new(rho, quantity("lambda1", &self.lambda1)?, quantity("lambda2", &self.lambda2)?)
+        Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
     }
 
     fn question(&self, wanted: Wanted) -> Result<Question> {
-        let range = |field: &str, text: &Option<String>| {
-            text.as_ref().map(|text| parse_range(field, text)).transpose()
-        };
-        let integers = |field: &str, text: &Option<String>| {
-            text.as_ref().map(|text| parse_integer_range(field, text)).transpose()
-        };
-        let window =
-            Window { h1: range("h1-range", &self.h1_range)?, h2: range("h2-range", &self.h2_range)? };
-        let selection = Selection {
-            m: self.m.as_ref().map(|text| parse_list(text)).transpose()?,
-            a: integers("a", &self.a)?,
-            b: integers("b", &self.b)?,
-            s: None,
-        };
+        let window = Window { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
+        let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
-        let request = Request { wanted, lambda1: None, digits: self.digits };
+        let request = tongue::Request { wanted, lambda1: None, digits: self.digits };
         Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
@@ -212,22 +209,4 @@ impl Args {
             }
         }
     }
-}
-
-/// `4`, `1,3`, `7..9` and such, as closed ranges of labels.
-pub fn parse_list(text: &str) -> Result<Vec<(u64, u64)>> {
-    let label = |m: i64| {
-        u64::try_from(m).ok().filter(|&m| m > 0).ok_or_else(|| Error::input("m", text, "labels begin at 1"))
-    };
-    let part = |part: &str| {
-        if part.trim().is_empty() {
-            return Err(Error::input("m", text, "has an empty item: list labels as 1,3,7..9"));
-        }
-        let (from, upto) = match part.contains("..") {
-            true => parse_integer_range("m", part)?,
-            false => parse_integer("m", part).map(|m| (m, m))?,
-        };
-        Ok((label(from)?, label(upto)?))
-    };
-    text.split(',').map(part).collect()
 }

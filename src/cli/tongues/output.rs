@@ -6,14 +6,14 @@ use std::path::Path;
 use crate::parallel::*;
 
 use super::Question;
-use crate::cli::args::Common;
+use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::csv;
 use crate::report::document::Document;
 use crate::report::file::{write_output, write_with};
 use crate::report::stream::JsonRows;
-use crate::report::tongues::{Rows, Tally, json_row};
+use crate::report::tongues::{CAPTION, Tally, record};
 use crate::tongue::Tongue;
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
@@ -37,7 +37,7 @@ pub fn write(question: &Question, common: &Common, target: Format) -> Result<()>
     }
 }
 
-/// The bytes of a scene's product, and what they tell.
+/// The bytes of a scene's product, and what stands out in them.
 ///
 /// # Errors
 /// As [`Question::each`].
@@ -66,7 +66,8 @@ fn stream(question: &Question, common: &Common, path: Option<&Path>, write: Stre
 fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let head = question.echo(Document::new("tongues"));
     let mut out = JsonRows::begin(sink, &head, "tongues")?;
-    let row = |tongue: &Tongue| json_row(tongue, &question.asked.request).to_string();
+    let record = record(&question.asked.request, false);
+    let row = |tongue: &Tongue| record.entries(tongue).to_string();
     let tally = each_row(question, common, row, |row| out.row(row))?;
     out.end(&tally.entries())?;
     Ok(tally)
@@ -77,12 +78,12 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 /// # Errors
 /// As [`json`].
 fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
-    let rows = Rows::all(&question.asked.request);
-    let columns = rows.columns();
+    let record = record(&question.asked.request, false);
+    let columns = record.columns();
     csv::write_header(sink, &columns)?;
     let row = |tongue: &Tongue| {
         let mut line = Vec::new();
-        csv::write_rows(&mut line, &columns, [rows.cells(tongue)]).expect("memory takes all");
+        csv::write_rows(&mut line, &columns, [record.row(tongue)]).expect("memory takes all");
         line
     };
     each_row(question, common, row, |line| sink.write_all(line).map_err(Error::stream))
@@ -112,7 +113,7 @@ fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
     let (tally, document) = summed_up(question, common, ROWS_FOR_PEOPLE)?;
     let mut text = document.render(Format::Text)?;
     if tally.count > ROWS_FOR_PEOPLE {
-        text += &format!("\n{} rows: use --format csv, json or latex to see them\n", tally.count);
+        text += &format!("\n{} rows: {TO_SEE_ROWS}\n", tally.count);
     }
     Ok((text, tally))
 }
@@ -132,13 +133,13 @@ fn latex(question: &Question, common: &Common) -> Result<(String, Tally)> {
 
 /// The summary, and the rows up to a number.
 fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
-    let rows = Rows::short(&question.asked.request);
-    let (mut tally, mut table) = (Tally::default(), rows.table());
+    let record = record(&question.asked.request, true);
+    let (mut tally, mut table) = (Tally::default(), record.table("tongues", CAPTION, []));
     question.each(common, |part| {
         for tongue in part {
             tally.add(tongue);
             if tally.count <= most {
-                table.push(rows.cells(tongue));
+                table.push(record.row(tongue));
             }
         }
         Ok(())

@@ -71,7 +71,7 @@ impl Question {
             ("lambda2", lambda2.as_ref().map(ToString::to_string)),
             ("h1_range", range(&asked.window.h1)),
             ("h2_range", range(&asked.window.h2)),
-            ("m", m.as_ref().map(|list| shown_list(list))),
+            ("m", m.as_ref().map(ToString::to_string)),
             ("a", integers(*a)),
             ("b", integers(*b)),
             ("digits", asked.request.digits.map(|digits| digits.to_string())),
@@ -83,11 +83,4 @@ impl Question {
     pub fn words(&self) -> String {
         format!("{} at rho = {}", self.ratios.words(), self.asked.stiffness.rho)
     }
-}
-
-/// A list of labels as it is written: `1,4..7`.
-pub fn shown_list(list: &[(u64, u64)]) -> String {
-    let shown =
-        |&(from, upto): &(u64, u64)| if from == upto { from.to_string() } else { format!("{from}..{upto}") };
-    list.iter().map(shown).collect::<Vec<_>>().join(",")
 }

@@ -16,7 +16,7 @@ use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Stiffness, Tongues};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
-const AROUND: (i64, i64) = (1, 50);
+const HALF_WINDOW: (i64, i64) = (1, 50);
 
 /// Draws the tongues about p θ = m π near one angle.
 ///
@@ -46,7 +46,7 @@ pub fn run(
             format!("no tongue with p + q <= {max_sum} is near this angle: choose a larger --max-sum");
         return Err(Error::input("theta", theta, remedy));
     }
-    let (n, d) = AROUND;
+    let (n, d) = HALF_WINDOW;
     let title = format!(
         "All tongues with *p* + *q* ≤ {max_sum}, *θ* = {} ± π{n}/{d}, *ρ* = {}",
         typeset(theta),
@@ -64,7 +64,7 @@ fn typeset(theta: &Laurent) -> String {
 
 /// The tongues with m/p near the share, in the order of p + q, p, m.
 fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<Measured>> {
-    let around = rational::ratio(AROUND.0, AROUND.1);
+    let around = rational::ratio(HALF_WINDOW.0, HALF_WINDOW.1);
     let rho = rational::to_f64(&stiffness.rho);
     let one = |ratio: Ratio| -> Result<Vec<Measured>> {
         let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);

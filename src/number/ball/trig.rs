@@ -103,7 +103,7 @@ impl Ball {
             return None;
         }
         if self.radius().top().is_some_and(|top| top > -3) {
-            // Wide: arcsin increases, so the ends (clipped) tell.
+            // Wide: arcsin increases, so the ends (clipped) decide.
             let lower = if one.compare_exact(&lower.neg()).is_lt() { one.neg() } else { lower };
             let upper = if one.compare_exact(&upper).is_lt() { one } else { upper };
             return Some(lower.asin(bits)?.union(&upper.asin(bits)?, bits));

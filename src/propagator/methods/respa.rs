@@ -52,30 +52,3 @@ pub fn power<S: Ring>(mut q: Matrix2<S>, mut m: u64) -> Matrix2<S> {
     }
     result
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn powers_of_the_fast_step_are_rotations(h1 in 0.1f64..1.0, s in 0.1f64..3.9, m in 0u64..50) {
-            let lambda1 = s / (h1 * h1);
-            let exact = power(verlet::velocity_form(h1, lambda1), m);
-            // Condition: entries of G, G⁻¹ below 10, angle error m ulp / sin th below 50 · 1e-16 / 0.15.
-            prop_assert!((exact - rotated(h1, m, lambda1)).amax() < 1e-11);
-        }
-    }
-
-    #[test]
-    fn the_trace_is_the_papers_formula() {
-        let (h1, m, lambda1, lambda2) = (0.3, 7, 2.0, 0.5);
-        let s: f64 = h1 * h1 * lambda1;
-        let theta = (1.0 - s / 2.0f64).acos();
-        let alpha = h1 * h1 * 7.0 * lambda2 / (2.0 * theta.sin());
-        let formula = 2.0 * ((7.0 * theta).cos() - alpha * (7.0 * theta).sin());
-        // A dozen products of numbers of size about 1.
-        assert!((propagator(h1, m, lambda1, lambda2).trace() - formula).abs() < 1e-13);
-    }
-}

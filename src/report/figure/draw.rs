@@ -1,15 +1,16 @@
 //! A panel onto the canvas: layers, frame, ticks, numbers, labels, title.
 
-use super::axis::{Axis, Tick};
+use super::axis::Tick;
 use super::canvas::{Anchor, Canvas, Element, Path, Pen, Set};
-use super::clip::{self, Rect};
+use super::clip;
 use super::font::Face;
 use super::key;
 use super::label::Label;
-use super::layout::{
-    CAPITAL, DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Site, TICK, TITLE, WORDS, ticks, widest_number,
-};
+use super::layout::Site;
 use super::marks;
+use super::measure::{
+    CAPITAL, DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, TITLE, WORDS, set, ticks, widest_number,
+};
 use super::palette::{Colour, INK};
 use super::panel::{Note, Panel};
 
@@ -17,33 +18,6 @@ use super::panel::{Note, Panel};
 const HAIR: f64 = 0.5;
 /// Lines of a grid.
 const FAINT: Colour = Colour(0xe4, 0xe5, 0xe8);
-
-/// From data to the page.
-#[derive(Clone, Copy)]
-pub(super) struct Plane<'a> {
-    pub x: &'a Axis,
-    pub y: &'a Axis,
-    pub frame: Rect,
-}
-
-impl Plane<'_> {
-    pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        [self.across(self.x.unit(x)), self.down(self.y.unit(y))]
-    }
-
-    fn across(&self, unit: f64) -> f64 {
-        self.frame[0] + unit * (self.frame[2] - self.frame[0])
-    }
-
-    fn down(&self, unit: f64) -> f64 {
-        self.frame[3] - unit * (self.frame[3] - self.frame[1])
-    }
-}
-
-/// A plain setting; the fields not given here are the common ones.
-pub(super) fn set(size: f64, anchor: Anchor) -> Set {
-    Set { size, anchor, turn: 0.0, colour: INK, halo: false }
-}
 
 /// Draws the whole panel around and in its frame.
 pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Site) {

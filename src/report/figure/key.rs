@@ -2,11 +2,10 @@
 
 use super::canvas::{Anchor, Canvas, Element, Patch, Path, Pen, Set};
 use super::clip::Rect;
-use super::draw::{Plane, set};
 use super::label::Label;
 use super::layer::{Layer, Mark, Shape};
-use super::layout::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, TICK, WORDS, ticks, widest_number};
 use super::marks;
+use super::measure::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, WORDS, set, ticks, widest_number};
 use super::palette::{INK, WHITE};
 use super::panel::{ColourBar, Panel, Place};
 use crate::report::figure::Axis;

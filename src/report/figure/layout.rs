@@ -3,34 +3,18 @@
 //! Frames in one row have one height, frames in one column one width, and all of a row or column line up,
 //! whatever stands beside them. Lengths are points.
 
-use super::axis::{Axis, Tick};
 use super::clip::Rect;
 use super::font::Face;
 use super::key;
 use super::label::Label;
+use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, widest_number};
 use super::panel::{Panel, Place};
 
-/// Sizes of letters.
-pub(super) const NUMBER: f64 = 8.0;
-pub(super) const WORDS: f64 = 9.0;
-pub(super) const TITLE: f64 = 9.5;
-/// Ticks point outward, away from the data.
-pub(super) const TICK: f64 = 2.8;
-pub(super) const MINOR_TICK: f64 = 1.6;
-/// Between a tick and its number, a number and the label, the frame and the edge of the paper.
-pub(super) const GAP: f64 = 2.2;
 /// The paper's rim.
 const RIM: f64 = 3.0;
 /// Between two panels side by side, and one above the other.
 const BESIDE: f64 = 11.0;
 const BELOW: f64 = 18.0;
-/// The least distance between two labelled ticks.
-const APART: [f64; 2] = [34.0, 24.0];
-/// Height of a capital relative to the size of the letters.
-pub(super) const CAPITAL: f64 = 0.72;
-/// Height of a digit, and of a line of labels with its indices, relative to the size of the letters.
-pub(super) const DIGIT: f64 = 0.66;
-pub(super) const LINE: f64 = 1.15;
 
 /// Where a panel stands on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,35 +80,6 @@ fn starts(
         .collect()
 }
 
-/// The ticks of a horizontal (0) or vertical (1) axis of the given length: as many as fit without crowding.
-pub(super) fn ticks(axis: &Axis, direction: usize, length: f64) -> Vec<Tick> {
-    let mut most = (length / APART[direction]) as usize + 1;
-    loop {
-        let ticks = axis.marks(most);
-        let labelled: Vec<&Tick> = ticks.iter().filter(|tick| tick.label.is_some()).collect();
-        let crowded = labelled.windows(2).any(|pair| {
-            let apart = (axis.unit(pair[1].at) - axis.unit(pair[0].at)).abs() * length;
-            let wide = |tick: &Tick| number_width(tick);
-            let needed =
-                if direction == 0 { (wide(pair[0]) + wide(pair[1])) / 2.0 + 6.0 } else { 1.2 * NUMBER };
-            apart < needed
-        });
-        if !crowded || most <= 2 {
-            return ticks;
-        }
-        most -= 1;
-    }
-}
-
-fn number_width(tick: &Tick) -> f64 {
-    tick.label.as_ref().map_or(0.0, |label| NUMBER * Label::new(label).width)
-}
-
-/// The width of the widest number on a vertical axis.
-pub(super) fn widest_number(axis: &Axis, length: f64) -> f64 {
-    ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)
-}
-
 fn above(panel: &Panel, width: f64) -> f64 {
     let title = if panel.title.is_empty() { 0.0 } else { title_height(panel) };
     let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width) } else { 0.0 };
@@ -164,6 +119,7 @@ fn right(panel: &Panel, height: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::figure::Axis;
 
     fn panel(label: &str) -> Panel {
         Panel::new(Axis::linear("x", 0.0, 1.0), Axis::linear(label, 0.0, 1.0))
@@ -180,21 +136,6 @@ mod tests {
             let (wide, high) = (frame[2] - frame[0], frame[3] - frame[1]);
             assert!(frame[0] >= left(panel, high) && frame[1] >= above(panel, wide), "{frame:?}");
             assert!(frame[2] + right(panel, high) <= 400.0 && frame[3] + below(panel) <= 300.0, "{frame:?}");
-        }
-    }
-
-    #[test]
-    fn numbers_never_touch() {
-        for length in [15.0, 40.0, 90.0, 300.0] {
-            let axis = Axis::linear("", 0.731610, 0.731625);
-            let at: Vec<(f64, f64)> = ticks(&axis, 0, length)
-                .iter()
-                .filter(|tick| tick.label.is_some())
-                .map(|tick| (axis.unit(tick.at) * length, number_width(tick)))
-                .collect();
-            // Two numbers are the fewest an axis shows, even on one too short for them.
-            let apart = at.windows(2).all(|w| w[1].0 - w[0].0 >= (w[0].1 + w[1].1) / 2.0);
-            assert!(apart || at.len() <= 2, "{length}: {at:?}");
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::canvas::{Canvas, Element, Image, Path, Pen};
 use super::clip;
-use super::draw::Plane;
 use super::layer::{Cells, Layer, Mark, Picture, Run, Shape, Stroke};
+use super::measure::Plane;
 use super::palette::{Colour, WHITE};
 
 /// Cells overlap by this much (points), or hairlines of paper would show between neighbours in every rasterizer.

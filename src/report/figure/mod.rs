@@ -23,6 +23,7 @@
 //! | `layer` | lines, dots, areas, cells, pictures |
 //! | `panel` | axes, layers, notes, legend, colour bar |
 //! | `layout` | where everything goes |
+//! | `measure` | sizes of letters, ticks that fit, from data to the page |
 //! | `draw` | a panel onto the canvas |
 //! | `key` | legends and colour bars onto the canvas |
 //! | `marks` | layers onto the canvas |
@@ -45,6 +46,7 @@ mod label;
 mod layer;
 mod layout;
 mod marks;
+mod measure;
 mod outline;
 pub mod palette;
 mod panel;

@@ -44,7 +44,7 @@ impl Counts {
 }
 
 /// How many families the summary for people lists.
-const FAMILIES_TOLD: usize = 6;
+const FAMILIES_LISTED: usize = 6;
 
 /// What the summary reports.
 #[derive(Clone, Debug, Default)]
@@ -113,11 +113,11 @@ impl Tally {
         if !self.families.is_empty() {
             let mut families: Vec<(&i64, &u64)> = self.families.iter().collect();
             families.sort_by_key(|(a, pairs)| (std::cmp::Reverse(**pairs), **a));
-            let told: Vec<String> =
-                families.iter().take(FAMILIES_TOLD).map(|(a, pairs)| format!("a = {a}: {pairs}")).collect();
-            let others = families.len().saturating_sub(FAMILIES_TOLD);
+            let listed: Vec<String> =
+                families.iter().take(FAMILIES_LISTED).map(|(a, pairs)| format!("a = {a}: {pairs}")).collect();
+            let others = families.len().saturating_sub(FAMILIES_LISTED);
             let others = if others > 0 { format!(", {others} others") } else { String::new() };
-            lines.push(format!("  dominant families {}{others}", told.join(", ")));
+            lines.push(format!("  dominant families {}{others}", listed.join(", ")));
         }
         if let Some(Fastest { steps: [h1, h2], rate, tenfold }) = &self.fastest {
             let [rate, tenfold] = [rate, tenfold].map(|x| enclosure(x.lo, x.hi));

@@ -17,7 +17,7 @@ pub struct Segment {
     pub to: [f64; 2],
     /// The a of its dominant family.
     pub a: i64,
-    /// Its fastest growth per unit time, where colours tell it.
+    /// Its fastest growth per unit time, where colours show it.
     pub rate: Option<f64>,
     pub closed: bool,
 }
@@ -36,7 +36,7 @@ pub struct Atlas<'a> {
 /// becomes a dot.
 const WIDTH: f64 = 0.55;
 const ACROSS: f64 = 320.0;
-/// A line in the legend, wide enough to tell its colour.
+/// A line in the legend, wide enough to show its colour.
 const SAMPLE: f64 = 2.0;
 /// Curves, behind the tongues.
 const PALE: Colour = Colour(0xc2, 0xc5, 0xcc);

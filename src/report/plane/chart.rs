@@ -9,21 +9,23 @@ use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;
 
-/// What colours tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What colours stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colouring {
-    /// The kind of instability.
+    /// Exponential growth, linear growth, closed tongues.
+    #[default]
     Verdict,
-    /// The growth rate.
+    /// The growth rate per unit time.
     Growth,
-    /// The dominant family.
+    /// The a of the dominant family.
     Family,
     /// Slow steps until the amplitude is tenfold.
     Tenfold,
 }
 
 impl Colouring {
-    /// What the map has to tell for these colours.
+    /// What the map has to compute for these colours.
     pub fn needs(self) -> Products {
         Products { label: self == Colouring::Family, growth: self.by_growth() }
     }

@@ -3,7 +3,7 @@
 use crate::map::Grid;
 
 /// The most cells along a side: at 110 mm of paper each is a third of a point, and nothing smaller is drawn.
-const MOST: usize = 900;
+const MOST_CELLS: usize = 900;
 
 /// One value for each cell of at most 900 x 900, a cell standing for one pair of a small grid and for a block of a
 /// large one. Of the values put into a cell the largest stays.
@@ -20,7 +20,7 @@ pub(super) struct Raster<T> {
 impl<T: Copy + PartialOrd> Raster<T> {
     pub fn new(grid: &Grid) -> Self {
         let (columns, rows) = grid.shape();
-        let cells = [columns.min(MOST), rows.min(MOST)];
+        let cells = [columns.min(MOST_CELLS), rows.min(MOST_CELLS)];
         Raster {
             first: [grid.columns().0, grid.rows().0],
             pairs: [columns, rows],

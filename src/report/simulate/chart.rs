@@ -1,12 +1,11 @@
 //! A run of Algorithm 1 drawn.
 
-use super::Run;
-use crate::avi::Sample;
+use crate::avi::{Run, Sample};
 use crate::report::figure::palette::{GREY, family};
 use crate::report::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
 
 /// A quantity that grows by more than this is drawn on a logarithmic scale.
-const MANIFOLD: f64 = 100.0;
+const LINEAR_RANGE: f64 = 100.0;
 
 /// The title of a file is drawn where it fits the paper.
 const LONGEST_TITLE: usize = 90;
@@ -26,7 +25,7 @@ fn panel(run: &Run, label: &str, value: fn(&Sample) -> f64, colour: usize) -> Pa
     let (lo, hi) =
         points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p[1]), hi.max(p[1])));
     let end = points.last().map_or(1.0, |p| p[0]).max(f64::MIN_POSITIVE);
-    let axis = if lo > 0.0 && hi > MANIFOLD * lo {
+    let axis = if lo > 0.0 && hi > LINEAR_RANGE * lo {
         Axis::log(label, lo / 1.5, hi * 1.5)
     } else {
         let margin = if hi > lo { (hi - lo) * 0.05 } else { hi.abs().max(1.0) * 0.05 };

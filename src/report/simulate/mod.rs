@@ -3,33 +3,12 @@
 #[cfg(feature = "figure")]
 mod chart;
 
-use crate::avi::Sample;
+use crate::avi::{Run, Sample};
 use crate::report::document::Document;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::record::Record;
+use crate::report::table::Column;
 #[cfg(feature = "figure")]
 pub use chart::figure;
-
-/// What a run showed.
-#[derive(Clone, Debug)]
-pub struct Run {
-    pub series: Vec<Sample>,
-    /// Measured growth rate of small deviations, per unit time.
-    pub measured: f64,
-    /// Predicted by the system's multipliers.
-    pub predicted: f64,
-    /// The largest difference after running forward and back, relative to the start.
-    pub irreversibility: f64,
-    /// Whether deviations of any size move like small ones.
-    pub linear: bool,
-}
-
-impl Run {
-    /// What cannot be told from no growth: a bounded solution returns to its size only after a beat, and over half the
-    /// run that looks like growth.
-    fn resolution(&self) -> f64 {
-        self.series.last().filter(|s| s.time > 0.0).map_or(f64::INFINITY, |s| 2.0 / s.time)
-    }
-}
 
 /// The document `kickdrift/simulate/1`; the caller adds the input.
 pub fn document(run: &Run) -> Document {
@@ -57,16 +36,15 @@ pub fn document(run: &Run) -> Document {
         .entry("growth_rate_measured", run.measured)
         .entry("linear", run.linear)
         .entry("irreversibility", run.irreversibility)
-        .rows(table(&run.series))
-        .told(&lines)
+        .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
+        .summary_alone(&lines)
 }
 
-fn table(series: &[Sample]) -> Table {
-    let columns = ["time", "energy", "momentum", "amplitude"].map(Column::new).to_vec();
-    let mut table = Table::new("series", "Energy, momentum and amplitude over time", columns);
-    for sample in series {
-        let Sample { time, energy, momentum, amplitude } = *sample;
-        table.push([time, energy, momentum, amplitude].map(Cell::Float).to_vec());
-    }
-    table
+/// What is written of a sample.
+fn record() -> Record<'static, Sample> {
+    Record::new()
+        .field(Column::new("time"), |of: &Sample| of.time.into())
+        .field(Column::new("energy"), |of| of.energy.into())
+        .field(Column::new("momentum"), |of| of.momentum.into())
+        .field(Column::new("amplitude"), |of| of.amplitude.into())
 }

@@ -8,18 +8,20 @@ use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place,
 use crate::system::scan::Point;
 use crate::verdict::Kind;
 
-/// What colours tell.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What colours stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colouring {
-    /// The kind of instability.
+    /// Exponential growth, linear growth, multipliers at ±1.
     Verdict,
-    /// The growth rate.
+    /// The growth rate per unit time.
+    #[default]
     Growth,
 }
 
 /// Points in points of paper.
-const LEAST: f64 = 0.35;
-const EDGE: f64 = 2.4;
+const LEAST_SIZE: f64 = 0.35;
+const EDGE_SIZE: f64 = 2.4;
 
 impl SystemMap {
     /// The unstable points in colour, the edges marked.
@@ -61,7 +63,7 @@ impl SystemMap {
             (Kind::Coexistence, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
         ] {
             if self.count(kind) > 0 {
-                let cells = self.cells(vec![colour], kind, |_| 0).at_least(EDGE);
+                let cells = self.cells(vec![colour], kind, |_| 0).at_least(EDGE_SIZE);
                 panel = panel.with(Layer::cells(cells).labelled(name));
             }
         }
@@ -76,7 +78,7 @@ impl SystemMap {
     /// The points of one kind as cells.
     fn cells(&self, colours: Vec<Colour>, kind: Kind, class: impl Fn(&Point) -> u16) -> Cells {
         let ((x, dx), (y, dy)) = (pitch(&self.xs), pitch(&self.ys));
-        let mut cells = Cells::new([x, y], [dx, dy], colours).at_least(LEAST);
+        let mut cells = Cells::new([x, y], [dx, dy], colours).at_least(LEAST_SIZE);
         for (n, point) in self.points.iter().enumerate().filter(|(_, point)| point.kind == kind) {
             let (i, j) = (n % self.xs.len(), n / self.xs.len());
             cells.push(i as u32, j as u32, class(point));

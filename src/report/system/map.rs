@@ -3,8 +3,9 @@
 use serde_json::json;
 
 use crate::number::Rational;
-use crate::report::digits::rounded;
+use crate::report::decimal::rounded;
 use crate::report::document::Document;
+use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use crate::system::scan::Point;
 use crate::verdict::Kind;
@@ -61,23 +62,15 @@ impl SystemMap {
     }
 
     fn table(&self) -> Table {
-        let columns = vec![
-            Column::new("x").in_words(&self.names[0]),
-            Column::new("y").in_words(&self.names[1]),
-            Column::new("kind").left(),
-            Column::new("proven"),
-            Column::new("growth_rate").titled("growth rate", "growth rate"),
-        ];
-        let mut table = Table::new("verdicts", "Verdicts over two numbers of the system", columns);
-        for point in &self.points {
-            table.push(vec![
-                Cell::Exact(point.at.0.to_string()),
-                Cell::Exact(point.at.1.to_string()),
-                Cell::Text(point.kind.name().into()),
-                Cell::Flag(point.is_proof),
-                Cell::Float(rounded(point.growth_rate, DIGITS)),
-            ]);
-        }
-        table
+        let [x, y] = &self.names;
+        Record::new()
+            .field(Column::new("x").in_words(x), |of: &Point| Cell::exact(&of.at.0))
+            .field(Column::new("y").in_words(y), |of| Cell::exact(&of.at.1))
+            .field(Column::new("kind").left(), |of| of.kind.name().into())
+            .field(Column::new("proven"), |of| of.is_proof.into())
+            .field(Column::new("growth_rate").titled("growth rate", "growth rate"), |of| {
+                rounded(of.growth_rate, DIGITS).into()
+            })
+            .table("verdicts", "Verdicts over two numbers of the system", &self.points)
     }
 }

@@ -12,9 +12,10 @@ use serde_json::{Value, json};
 
 use super::decimal;
 use super::document::{Document, enclosure};
-use super::table::{Cell, Column, Table};
+use super::record::Record;
+use super::table::Column;
 use super::text::counted;
-use crate::system::{Analysis, Clocked, Instability, MuCount, Origin, Part};
+use crate::system::{Analysis, Clocked, Instability, MuCount, Multiplier, Origin, Part};
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
 pub use intervals::document as intervals;
@@ -24,6 +25,9 @@ pub use modes::figure;
 
 /// The document `kickdrift/system-verdict/1`, times in `unit` where it is known; the caller adds the input.
 pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
+    let parts = || (1..).zip(&analysis.parts);
+    let all: Vec<Own> = parts().flat_map(|(n, part)| multipliers(n, part)).collect();
+    let table = record().table("multipliers", "Multipliers over one synchronization period", &all);
     let document = Document::new("system-verdict")
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
@@ -33,7 +37,7 @@ pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
         .entry("proven", analysis.is_proof())
         .entry("growth_rate", analysis.growth_rate())
         .entry("rigid_modes", analysis.rigid_modes.len())
-        .entry("parts", analysis.parts.iter().map(part).collect::<Vec<_>>())
+        .entry("parts", parts().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone());
     let document = match unit {
         Some(unit) => document.entry("time_unit", unit),
@@ -43,18 +47,21 @@ pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table(analysis)).told(&lines(analysis, unit))
+    document.long_rows(table).summary_alone(&lines(analysis, unit))
 }
 
-fn part(part: &Part) -> Value {
-    let multiplier = |m: &crate::system::Multiplier| json!({"mu": {"re": m.mu.re, "im": m.mu.im}, "radius": m.radius, "lambda": {"re": m.lambda.re, "im": m.lambda.im}});
+fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
+    part.multipliers.iter().map(move |own| (n, part, own))
+}
+
+fn part((n, part): (u64, &Part)) -> Value {
     json!({
         "dofs": part.dofs,
         "size": part.size,
         "period": part.period.to_string(),
         "kind": part.kind.name(),
         "decided_by": part.evidence.name(),
-        "multipliers": part.multipliers.iter().map(multiplier).collect::<Vec<_>>(),
+        "multipliers": multipliers(n, part).map(|own| record().entries(&own)).collect::<Vec<_>>(),
         "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
         "roots": part.roots.as_ref().map(roots),
         "oscillator": part.oscillator.as_ref().map(clocked),
@@ -127,7 +134,7 @@ fn lines(analysis: &Analysis, unit: Option<&str>) -> Vec<String> {
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
-        lines.push(format!("  {}", told(unstable)));
+        lines.push(format!("  {}", described(unstable)));
     }
     lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
@@ -161,7 +168,7 @@ fn terms(family: &[i64], h: &str) -> String {
 }
 
 /// One unstable multiplier in words.
-fn told(unstable: &Instability) -> String {
+fn described(unstable: &Instability) -> String {
     let lambda = unstable.multiplier.lambda;
     let mut line = match unstable.origin {
         Origin::RealPair => format!("multiplier {:.6}: one mode, ", lambda.re),
@@ -178,33 +185,29 @@ fn told(unstable: &Instability) -> String {
     line
 }
 
-fn table(analysis: &Analysis) -> Table {
-    let columns = vec![
-        Column::new("part"),
-        Column::new("kind").left(),
-        Column::new("decided_by").titled("decided by", "decided by").left(),
-        Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"),
-        Column::new("mu_im").titled("Im mu", "$\\operatorname{Im}\\mu$"),
-        Column::new("radius"),
-        Column::new("lambda_abs").titled("|lambda|", "$|\\lambda|$"),
-        Column::new("growth_rate").titled("growth rate", "growth rate"),
-    ];
-    let mut table = Table::new("multipliers", "Multipliers over one synchronization period", columns);
-    for (n, part) in (1..).zip(&analysis.parts) {
-        let period = part.period.to_f64();
-        for multiplier in &part.multipliers {
-            let length = multiplier.lambda.norm();
-            table.push(vec![
-                Cell::Integer(n),
-                Cell::Text(part.kind.name().into()),
-                Cell::Text(part.evidence.name().into()),
-                Cell::Float(multiplier.mu.re),
-                Cell::Float(multiplier.mu.im),
-                multiplier.radius.map_or(Cell::Missing, Cell::Float),
-                Cell::Float(length),
-                Cell::Float(length.ln() / period),
-            ]);
-        }
-    }
-    table
+/// A multiplier, its part, and the part's number from 1.
+type Own<'a> = (u64, &'a Part, &'a Multiplier);
+
+/// What is written of a multiplier.
+fn record<'a>() -> Record<'a, Own<'a>> {
+    let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
+    Record::new()
+        .column(Column::new("part"), |&(n, ..): &Own| n.into())
+        .column(Column::new("kind").left(), |(_, part, _)| part.kind.name().into())
+        .column(titled("decided_by", "decided by").left(), |(_, part, _)| part.evidence.name().into())
+        .at("mu.re", Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"), |(.., m)| {
+            m.mu.re.into()
+        })
+        .at("mu.im", Column::new("mu_im").titled("Im mu", "$\\operatorname{Im}\\mu$"), |(.., m)| {
+            m.mu.im.into()
+        })
+        .field(Column::new("radius"), |(.., m)| m.radius.into())
+        .json("lambda.re", |(.., m)| m.lambda.re.into())
+        .json("lambda.im", |(.., m)| m.lambda.im.into())
+        .column(Column::new("lambda_abs").titled("|lambda|", "$|\\lambda|$"), |(.., m)| {
+            m.lambda.norm().into()
+        })
+        .column(titled("growth_rate", "growth rate"), |(_, part, m)| {
+            (m.lambda.norm().ln() / part.period.to_f64()).into()
+        })
 }

@@ -6,7 +6,7 @@ use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Sha
 use crate::system::{Analysis, Instability, Origin};
 
 /// The most shapes on one page: the fastest.
-const MOST: usize = 4;
+const MOST_SHAPES: usize = 4;
 /// Millimetres of paper for the multipliers and for one shape.
 const SPECTRUM: f64 = 62.0;
 const SHAPE: f64 = 42.0;
@@ -17,7 +17,7 @@ const STEMS: usize = 60;
 pub fn figure(analysis: &Analysis, title: &str) -> Figure {
     let mut growing: Vec<&Instability> = analysis.parts.iter().flat_map(|part| &part.instabilities).collect();
     growing.sort_by(|a, b| b.growth_rate.total_cmp(&a.growth_rate));
-    let shown = &growing[..growing.len().min(MOST)];
+    let shown = &growing[..growing.len().min(MOST_SHAPES)];
     let height = SPECTRUM + SHAPE * shown.len() as f64;
     let first = Figure::double_column(height).columns(1).named(title).with(spectrum(analysis, shown));
     (1..).zip(shown).fold(first, |figure, (n, unstable)| figure.with(shape(n, unstable)))
@@ -65,7 +65,7 @@ fn shape(n: usize, unstable: &Instability) -> Panel {
     let (real, imaginary) = (points(&unstable.shape), points(&unstable.quadrature));
     let mut panel =
         Panel::new(Axis::linear("degree of freedom", -0.5, last + 0.5), Axis::linear("shape", -1.15, 1.15))
-            .titled(&format!("{n}  {}", told(unstable)))
+            .titled(&format!("{n}  {}", described(unstable)))
             .with(Layer::lines(vec![vec![[-0.5, 0.0], [last + 0.5, 0.0]]], Stroke::THIN.in_colour(GREY)));
     let beats = unstable.origin == Origin::Collision;
     if beats {
@@ -86,7 +86,7 @@ fn shape(n: usize, unstable: &Instability) -> Panel {
 }
 
 /// Kind, growth and resonance, in the notation of labels.
-fn told(unstable: &Instability) -> String {
+fn described(unstable: &Instability) -> String {
     let kind = match unstable.origin {
         Origin::RealPair => "real pair",
         Origin::Collision => "collision",

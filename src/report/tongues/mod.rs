@@ -2,14 +2,11 @@
 //!
 //! | file | what is in it |
 //! |---|---|
-//! | `json` | one row of JSON |
-//! | `rows` | the same as cells: all columns, or those that fit paper |
+//! | `rows` | what is written of one: every column, or those that fit paper |
 //! | `tally` | what stands out among many |
 
-mod json;
 mod rows;
 mod tally;
 
-pub use json::row as json_row;
-pub use rows::Rows;
+pub use rows::{CAPTION, record};
 pub use tally::Tally;

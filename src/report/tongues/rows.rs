@@ -1,199 +1,197 @@
-//! Tongues as cells.
+//! What is written of a tongue.
 
-use super::json::{decimal, side};
-use crate::report::digits::rounded;
-use crate::report::table::{Cell, Column, Table};
-use crate::tongue::{Quantity, Request, Tongue, TongueEdge};
+use crate::report::decimal::{outward, rounded};
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge};
 
-/// Turns tongues into rows of cells.
-#[derive(Clone, Debug)]
-pub struct Rows {
-    request: Request,
-    /// For people and paper: the columns that fit a line, rounded numbers in a few digits.
-    short: bool,
-}
+/// The caption of a table of tongues.
+pub const CAPTION: &str =
+    "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step";
 
 /// Digits that people need of a number that is rounded anyway.
-const FEW: usize = 4;
+const DIGITS: usize = 4;
 
-impl Rows {
-    /// Every column.
-    pub fn all(request: &Request) -> Self {
-        Rows { request: request.clone(), short: false }
+/// Every column and every entry of JSON: `p, q, m, a, b, lower, upper, closed, width` and what else is wanted, null where
+/// a tongue has none of it. In the `short` form only the columns that fit a line, rounded numbers in a few digits.
+pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
+    let record = Record::new()
+        .field(Column::math("p", "p"), |of: &Tongue| of.row.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.row.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.row.gap.m.into())
+        .field(Column::math("a", "a"), |of| of.row.family.map(|(a, _)| a).into())
+        .field(Column::math("b", "b"), |of| of.row.family.map(|(_, b)| b).into());
+    let record = Edge { end: "lower", sign: '-', find: |of| Some(&of.lower) }.of(record, request, short);
+    let record = Edge { end: "upper", sign: '+', find: |of| of.upper.as_ref() }.of(record, request, short);
+    let closed = |of: &Tongue| Cell::from(of.row.gap.closed);
+    let record = if short { record } else { record.field(Column::new("closed"), closed) };
+    let record = record.field(Column::new("width").enclosure(), move |of| match of.row.gap.upper {
+        Some(_) if of.row.gap.closed && short => "closed".into(),
+        Some(_) => of.row.gap.width.into(),
+        None => Cell::Missing,
+    });
+    wanted(record, request, short)
+}
+
+/// An edge: what it is called, its sign in formulas, and where it is.
+#[derive(Clone, Copy)]
+struct Edge {
+    end: &'static str,
+    sign: char,
+    find: fn(&Tongue) -> Option<&TongueEdge>,
+}
+
+impl Edge {
+    fn s(self, of: &Tongue) -> Option<&Quantity> {
+        (self.find)(of).map(|edge| &edge.s)
     }
 
-    /// The columns that fit a line.
-    pub fn short(request: &Request) -> Self {
-        Rows { request: request.clone(), short: true }
+    /// h1 (0) or h2 (1).
+    fn step(self, of: &Tongue, n: usize) -> Option<&Quantity> {
+        (self.find)(of)?.steps.as_ref().map(|steps| &steps[n])
     }
 
-    /// An empty table.
-    pub fn table(&self) -> Table {
-        Table::new(
-            "tongues",
-            "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step",
-            self.columns(),
-        )
-    }
-
-    /// The columns, in order.
-    pub fn columns(&self) -> Vec<Column> {
-        let math = |key: &str| Column::new(key).titled(key, &format!("${key}$"));
-        let mut columns: Vec<Column> = ["p", "q", "m", "a", "b"].map(math).into();
-        for (end, sign) in [("lower", "-"), ("upper", "+")] {
-            columns.push(Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure());
-            columns.push(Column::new(&format!("{end}_entry")).titled("of", "of").left());
-            if self.request.wanted.exact {
-                columns.push(Column::new(&format!("{end}_exact")).titled("exact", "exact").left());
-                if !self.short {
-                    columns.push(Column::new(&format!("{end}_on")).left());
+    /// `lo, hi, entry`, with digits `decimal`, with closed forms `exact, on`, with L1 `h1, h2`.
+    fn of<'a>(self, record: Record<'a, Tongue>, request: &'a Request, short: bool) -> Record<'a, Tongue> {
+        let Edge { end, sign, find } = self;
+        let path = |key: &str| format!("{end}.{key}");
+        let column = |key: &str| Column::new(&format!("{end}_{key}"));
+        let title = Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure();
+        let mut record = record.field(title, move |of| self.s(of).map(ends).into());
+        if request.digits.is_some() {
+            record = record
+                .json(path("decimal.lo"), move |of| decimal(self.s(of), request, 0))
+                .json(path("decimal.hi"), move |of| decimal(self.s(of), request, 1));
+        }
+        record = record.at(path("entry"), column("entry").titled("of", "of").left(), move |of| {
+            find(of).map(|edge| edge.entry.name()).into()
+        });
+        if request.wanted.exact {
+            let exact = move |of: &Tongue| find(of)?.exact.as_ref().map(Cell::exact);
+            let on = move |of: &Tongue| Cell::from(find(of).and_then(|edge| Some(edge.on?.name())));
+            let title = column("exact").titled("exact", "exact").left();
+            record = if short {
+                record.column(title, move |of| exact(of).unwrap_or_else(|| on(of)))
+            } else {
+                let exact = move |of: &Tongue| exact(of).unwrap_or(Cell::Missing);
+                record.at(path("exact"), title, exact).at(path("on"), column("on").left(), on)
+            };
+        }
+        if request.digits.is_some() {
+            for (n, side) in ["lo", "hi"].into_iter().enumerate() {
+                let title = column(&format!("decimal_{side}")).titled(&format!("{end} {side}"), side);
+                record = record.column(title, move |of| decimal(self.s(of), request, n));
+            }
+        }
+        if request.lambda1.is_some() {
+            for (n, h) in ["h1", "h2"].into_iter().enumerate() {
+                let formula = format!("$h_{}^{sign}$", n + 1);
+                let title = column(h).titled(&format!("{h} {end}"), &formula).enclosure();
+                record = record.at(path(h), title, move |of| self.step(of, n).map(ends).into());
+                if request.digits.is_some() {
+                    record = record
+                        .json(path(&format!("{h}.decimal.lo")), move |of| {
+                            decimal(self.step(of, n), request, 0)
+                        })
+                        .json(path(&format!("{h}.decimal.hi")), move |of| {
+                            decimal(self.step(of, n), request, 1)
+                        });
                 }
             }
-            self.add_digits(&mut columns, end);
-            self.add_steps(&mut columns, end, sign);
         }
-        columns.push(Column::new("closed"));
-        columns.push(Column::new("width").enclosure());
-        self.add_wanted(&mut columns);
-        if self.short {
-            columns.retain(|column| column.key != "closed");
-        }
-        columns
+        record
     }
+}
 
-    fn add_digits(&self, columns: &mut Vec<Column>, end: &str) {
-        if self.request.digits.is_some() {
-            columns.extend(["lo", "hi"].map(|side| {
-                Column::new(&format!("{end}_decimal_{side}")).titled(&format!("{end} {side}"), side)
-            }));
+fn ends(quantity: &Quantity) -> (f64, f64) {
+    (quantity.lo, quantity.hi)
+}
+
+/// The lower (0) or the upper (1) end in writing, to the digits that are asked for.
+fn decimal(quantity: Option<&Quantity>, request: &Request, end: usize) -> Cell {
+    let precise = quantity.and_then(|quantity| quantity.precise.as_ref()).zip(request.digits);
+    precise.map_or(Cell::Missing, |(x, digits)| Cell::exact(&outward(&x.lo, &x.hi, digits)[end]))
+}
+
+/// Growth, predicted point and first-order law.
+fn wanted<'a>(mut record: Record<'a, Tongue>, request: &'a Request, short: bool) -> Record<'a, Tongue> {
+    let float = move |x: Option<f64>| Cell::from(x.map(|x| if short { rounded(x, DIGITS) } else { x }));
+    let titled = |key: &str, title: &str| {
+        Column::new(key).titled(title, &title.replace("√lambda1", "$\\sqrt{\\Lambda_1}$"))
+    };
+    let has_steps = request.lambda1.is_some();
+    if request.wanted.growth {
+        let s = move |of: &Tongue| float(of.row.peak.map(|peak| peak.s));
+        let ln_multiplier = move |of: &Tongue| float(of.row.peak.map(|peak| peak.ln_multiplier));
+        let rate = move |of: &Tongue| float(of.row.peak.map(|peak| peak.rate));
+        let tenfold = move |of: &Tongue| float(of.row.peak.map(|peak| peak.slow_steps_to_tenfold));
+        if !short {
+            record = record.at("growth.s", titled("growth_s", "fastest at s"), s).at(
+                "growth.ln_multiplier",
+                titled("ln_multiplier", "ln multiplier"),
+                ln_multiplier,
+            );
         }
-    }
-
-    fn add_steps(&self, columns: &mut Vec<Column>, end: &str, sign: &str) {
-        if self.request.lambda1.is_some() {
-            columns.extend([1, 2].map(|i| {
-                let title = format!("h{i} {end}");
-                Column::new(&format!("{end}_h{i}")).titled(&title, &format!("$h_{i}^{sign}$")).enclosure()
-            }));
+        if !(short && has_steps) {
+            record = record.at("growth.rate", titled("rate", "growth/√lambda1"), rate);
         }
+        record = record.json("growth.steps_until_tenfold", tenfold);
+        if has_steps {
+            let title = titled("growth_rate", "growth rate");
+            record = record.at("growth.growth_rate", title, move |of| float(of.growth_rate));
+        }
+        record = record.column(titled("steps_until_tenfold", "tenfold in"), tenfold);
     }
-
-    fn add_wanted(&self, columns: &mut Vec<Column>) {
-        let (wanted, short) = (&self.request.wanted, self.short);
-        let mut add = |key: &str, title: &str, only_long: bool| {
-            if !(short && only_long) {
-                columns
-                    .push(Column::new(key).titled(title, &title.replace("√lambda1", "$\\sqrt{\\Lambda_1}$")));
-            }
+    if request.wanted.predicted {
+        let point = |of: &Tongue| of.row.predicted.as_ref().map(|point| point.s);
+        let place = |of: &Tongue| Cell::from(of.row.predicted.as_ref().map(|point| side(point.side)));
+        let position = |of: &Tongue| Cell::from(of.row.predicted.as_ref().map(|point| point.side.name()));
+        let distance = |of: &Tongue| of.row.predicted.as_ref().map(|point| point.distance);
+        let side = titled("side", "predicted point");
+        record = if short {
+            record.column(side, place)
+        } else {
+            record
+                .at("predicted.s", titled("predicted_s", "predicted s"), move |of| float(point(of)))
+                .at("predicted.side", side, place)
+                .at("predicted.position", titled("position", "position"), position)
+                .at("predicted.distance", titled("distance", "distance"), move |of| float(distance(of)))
         };
-        if wanted.growth {
-            add("growth_s", "fastest at s", true);
-            add("ln_multiplier", "ln multiplier", true);
-            add("rate", "growth/√lambda1", self.request.lambda1.is_some());
-            if self.request.lambda1.is_some() {
-                add("growth_rate", "growth rate", false);
-            }
-            add("steps_until_tenfold", "tenfold in", false);
-        }
-        if wanted.predicted {
-            add("predicted_s", "predicted s", true);
-            add("side", "predicted point", false);
-            add("position", "position", true);
-            add("distance", "distance", true);
-        }
-        if wanted.first_order {
-            add("first_order_centre", "centre to first order", true);
-            add("centre_error", "its error", true);
-            add("first_order_width", "width to first order", true);
-            add("width_error", "its error", true);
-            add("width_ratio", "width/first order", false);
-        }
     }
-
-    /// The cells of one tongue.
-    pub fn cells(&self, tongue: &Tongue) -> Vec<Cell> {
-        let row = &tongue.row;
-        let integer = |n: Option<i64>| n.map_or(Cell::Missing, Cell::Integer);
-        let mut cells = vec![
-            Cell::Integer(row.ratio.p() as i64),
-            Cell::Integer(row.ratio.q() as i64),
-            Cell::Integer(row.gap.m as i64),
-            integer(row.family.map(|(a, _)| a)),
-            integer(row.family.map(|(_, b)| b)),
-        ];
-        self.add_edge(&mut cells, Some(&tongue.lower));
-        self.add_edge(&mut cells, tongue.upper.as_ref());
-        if !self.short {
-            cells.push(Cell::Flag(row.gap.closed));
+    if request.wanted.first_order {
+        fn law(of: &Tongue) -> Option<&Law> {
+            of.row.first_order.as_ref()
         }
-        let (lo, hi) = row.gap.width;
-        cells.push(match row.gap.upper {
-            Some(_) if row.gap.closed && self.short => Cell::Text("closed".into()),
-            Some(_) => Cell::Enclosure { lo, hi },
-            None => Cell::Missing,
-        });
-        self.add_numbers(&mut cells, tongue);
-        cells
+        let width = move |of: &Tongue| float(law(of).map(|own| own.law.width));
+        if !short {
+            let its_error = |key| titled(key, "its error");
+            record = record
+                .at("first_order.centre", titled("first_order_centre", "centre to first order"), move |of| {
+                    float(law(of).map(|own| own.law.centre))
+                })
+                .json("first_order.width", width)
+                .json("first_order.ln_multiplier", move |of| float(law(of).map(|own| own.law.ln_multiplier)))
+                .at("first_order.centre_error", its_error("centre_error"), move |of| {
+                    float(law(of).map(|own| own.centre_error))
+                })
+                .column(titled("first_order_width", "width to first order"), width)
+                .at("first_order.width_error", its_error("width_error"), move |of| {
+                    float(law(of).map(|own| own.width_error))
+                });
+        }
+        record =
+            record.at("first_order.width_ratio", titled("width_ratio", "width/first order"), move |of| {
+                float(law(of).map(|own| own.width_ratio))
+            });
     }
+    record
+}
 
-    fn add_edge(&self, cells: &mut Vec<Cell>, edge: Option<&TongueEdge>) {
-        let enclosed = |q: &Quantity| Cell::Enclosure { lo: q.lo, hi: q.hi };
-        cells.push(edge.map_or(Cell::Missing, |edge| enclosed(&edge.s)));
-        cells.push(edge.map_or(Cell::Missing, |edge| Cell::Text(edge.entry.name().into())));
-        if self.request.wanted.exact {
-            let rational = edge.and_then(|edge| edge.exact.as_ref()).map(|s| Cell::Exact(s.to_string()));
-            let on = edge.and_then(|edge| edge.on).map(|on| Cell::Text(on.name().into()));
-            cells.push(if self.short { rational.or(on.clone()) } else { rational }.unwrap_or(Cell::Missing));
-            if !self.short {
-                cells.push(on.unwrap_or(Cell::Missing));
-            }
-        }
-        if self.request.digits.is_some() {
-            let decimal = edge.and_then(|edge| decimal(&edge.s, &self.request));
-            cells.extend(decimal.map_or([Cell::Missing, Cell::Missing], |ends| ends.map(Cell::Exact)));
-        }
-        if self.request.lambda1.is_some() {
-            let steps = edge.and_then(|edge| edge.steps.as_ref());
-            cells
-                .extend(steps.map_or([Cell::Missing, Cell::Missing], |steps| steps.each_ref().map(enclosed)));
-        }
-    }
-
-    fn add_numbers(&self, cells: &mut Vec<Cell>, tongue: &Tongue) {
-        let (wanted, row, short) = (&self.request.wanted, &tongue.row, self.short);
-        let float = |x: Option<f64>| {
-            x.map_or(Cell::Missing, |x| Cell::Float(if short { rounded(x, FEW) } else { x }))
-        };
-        let mut add = |cell: Cell, only_long: bool| {
-            if !(short && only_long) {
-                cells.push(cell);
-            }
-        };
-        if wanted.growth {
-            let peak = row.peak.as_ref();
-            add(float(peak.map(|peak| peak.s)), true);
-            add(float(peak.map(|peak| peak.ln_multiplier)), true);
-            add(float(peak.map(|peak| peak.rate)), self.request.lambda1.is_some());
-            if self.request.lambda1.is_some() {
-                add(float(tongue.growth_rate), false);
-            }
-            add(float(peak.map(|peak| peak.slow_steps_to_tenfold)), false);
-        }
-        if wanted.predicted {
-            let predicted = row.predicted.as_ref();
-            let text = |words: Option<&str>| words.map_or(Cell::Missing, |words| Cell::Text(words.into()));
-            add(float(predicted.map(|p| p.s)), true);
-            add(text(predicted.map(|p| side(p.side))), false);
-            add(text(predicted.map(|p| p.side.name())), true);
-            add(float(predicted.map(|p| p.distance)), true);
-        }
-        if wanted.first_order {
-            let law = row.first_order.as_ref();
-            add(float(law.map(|l| l.law.centre)), true);
-            add(float(law.map(|l| l.centre_error)), true);
-            add(float(law.map(|l| l.law.width)), true);
-            add(float(law.map(|l| l.width_error)), true);
-            add(float(law.map(|l| l.width_ratio)), false);
-        }
+/// Which of three places: the words of documents.
+pub fn side(side: Side) -> &'static str {
+    match side {
+        Side::Inside => "inside",
+        Side::OnLower | Side::OnUpper => "on the edge",
+        Side::Below | Side::Above => "outside",
     }
 }

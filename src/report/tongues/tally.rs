@@ -2,9 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::json::side;
-use crate::report::decimal;
-use crate::report::digits::few;
+use super::rows::side;
+use crate::report::decimal::{self, few};
 use crate::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.

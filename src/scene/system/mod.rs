@@ -38,6 +38,7 @@
 //! | `document` | the fields |
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
 //! | `measured`, `array` | stiffnesses by reference to NumPy's files |
+//! | `run` | Algorithm 1 run on it |
 //! | `scan` | one file, many systems: any number of it over a range |
 
 mod array;
@@ -46,6 +47,7 @@ mod document;
 mod linear;
 mod measured;
 mod oscillator;
+mod run;
 mod scan;
 
 use std::path::Path;
@@ -56,14 +58,15 @@ use serde_json::Value;
 
 use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
-use crate::number::Rational;
 use crate::number::rational::to_f64;
+use crate::number::{Laurent, Rational};
 use crate::system::levels::Stretch;
-use crate::system::{Analysis, Limits, Potential, Route, System, decide_by, decide_oscillator};
+use crate::system::{Analysis, Limits, ManyClocks, Potential, Route, System, decide_by, decide_oscillator};
 use bonds::Nonlinear;
 use document::{Document, no_system};
 use measured::Measured;
 use oscillator::Oscillator;
+pub use run::{Displacement, RunRequest};
 pub use scan::{Axis, Scan};
 
 /// The schema that this version reads.
@@ -250,6 +253,11 @@ impl SystemScene {
     pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
         let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
         self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
+    }
+
+    /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.
+    pub fn many_clocks(&self) -> Option<&ManyClocks<Laurent>> {
+        self.oscillator.as_ref().map(|own| &own.clocks)
     }
 
     /// The equilibrium, where there are bonds.

@@ -102,7 +102,7 @@ fn rounded(x: &Laurent) -> Rational {
     }
     let balls = (7..).map(|log2| x.enclosure(1 << log2));
     let close = |ball: &Ball| ball.relative_accuracy_bits() > 60;
-    // Powers of π are independent over ℚ: x is not 0, so some precision tells its leading bits.
+    // Powers of π are independent over ℚ: x is not 0, so some precision gives its leading bits.
     balls.into_iter().find(close).expect("precisions without end").lower()
 }
 

@@ -14,7 +14,7 @@ use crate::number::Rational;
 use crate::number::parse::parse_rational;
 
 /// The most values of an axis, and the most points of a map.
-const MOST: usize = 100_000;
+const MOST_POINTS: usize = 100_000;
 
 /// The values that one number of the file takes: lo, lo + by, ... up to hi, exactly.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,11 +44,11 @@ impl Axis {
             return Err(Error::input("scan", text, "the range is empty: write the smaller number first"));
         }
         let last = ((&axis.hi - &axis.lo) / &axis.by).floor().to_integer();
-        if last >= MOST.into() {
+        if last >= MOST_POINTS.into() {
             return Err(Error::input(
                 "scan",
                 text,
-                format!("at most {MOST} values: choose a larger spacing"),
+                format!("at most {MOST_POINTS} values: choose a larger spacing"),
             ));
         }
         Ok(axis)
@@ -88,11 +88,11 @@ impl Scan {
         SystemScene::read_in(folder, text)?;
         let template: Value = serde_json::from_str(text).map_err(no_system)?;
         let points = x.values().len().saturating_mul(y.values().len());
-        if points > MOST {
+        if points > MOST_POINTS {
             return Err(Error::input(
                 "scan",
                 format!("{points} points"),
-                format!("at most {MOST}: choose larger spacings"),
+                format!("at most {MOST_POINTS}: choose larger spacings"),
             ));
         }
         let mut file = template.clone();

@@ -66,7 +66,7 @@ pub(crate) fn certify(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Res
         {
             return closing;
         }
-        // Closer still: the middle's order tells which half holds the crossing.
+        // Closer still: the middle's order decides which half holds the crossing.
         let two = Rational::from_integer(2.into());
         let middle = (&lo + &hi) / two;
         let (below, at) = (orders(ratio, &lo, Some(m))?, orders(ratio, &middle, Some(m))?);

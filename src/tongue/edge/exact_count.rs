@@ -1,4 +1,4 @@
-//! Zeros counted exactly: for those so close that counts in doubles cannot tell them apart.
+//! Zeros counted exactly: for those so close that counts in doubles cannot separate them.
 
 use std::ops::RangeInclusive;
 
@@ -76,7 +76,7 @@ impl KickDrift<BigInt> for IntegerOrbit {
     }
 }
 
-/// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot tell them
+/// Isolates a zero by halving with proven counts: for zeros so close that counts in doubles cannot separate them
 /// apart. `around`, if given, is where doubles saw it.
 pub(crate) fn isolate(
     function: &EntryFunction,

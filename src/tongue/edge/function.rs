@@ -47,7 +47,7 @@ impl EntryFunction {
     }
 
     /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie
-    /// below s, if those bits tell.
+    /// below s, if those bits decide it.
     pub fn value(&self, s: &Rational, bits: u32) -> (Ball, Option<u64>) {
         let mut working = bits;
         while working <= BITS_BEFORE_EXACT * bits {

@@ -1,4 +1,4 @@
-//! Eigenvalues told apart by counts.
+//! Eigenvalues separated by counts.
 
 use std::ops::RangeInclusive;
 

@@ -5,7 +5,7 @@
 //! taken. The interval at the start is a few units in the last place of a double, where the entry is straight to
 //! nearly as many digits again: so N begins that large, and the number of correct digits doubles with every two
 //! signs. The proof is nothing but a change of sign. A sign comes from the refine tier of [`crate::verdict`], with as many bits as the cell is small,
-//! and from exact arithmetic where that cannot tell: then the point may be the zero itself.
+//! and from exact arithmetic where that cannot decide: then the point may be the zero itself.
 
 use std::ops::RangeInclusive;
 
@@ -22,7 +22,7 @@ use crate::number::{Ball, Rational, Sign};
 const STRAIGHT: u32 = 12;
 
 /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
-/// where that there is one is neither known nor told by the sign changes along the two ends' orbits.
+/// where that there is one is neither known nor shown by the sign changes along the two ends' orbits.
 pub(crate) fn shrink(
     function: &EntryFunction,
     start: &Enclosure,
@@ -36,7 +36,7 @@ pub(crate) fn shrink(
     let mut ends: Option<(Ball, Ball)> = None;
     while !interval.is_below(relative) {
         cells = cells.min(goal.saturating_sub(interval.digits()) + 3);
-        // Enough bits to tell the entry's sign a cell away from the zero, as a rule.
+        // Enough bits to decide the entry's sign a cell away from the zero, as a rule.
         let bits = (interval.digits() + cells + 96).next_multiple_of(32);
         let (below, above) = match ends.take() {
             Some(ends) => ends,

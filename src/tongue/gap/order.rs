@@ -102,7 +102,7 @@ impl Gap {
     }
 }
 
-/// The tongue, if orbits over an interval that holds both edges tell its width.
+/// The tongue, if orbits over an interval that holds both edges give its width.
 fn by_tunnelling<D: Digits>(
     edges: &Edges,
     m: u64,

@@ -52,7 +52,7 @@ const FAINT: i64 = -400;
 /// Powers of two beyond this are taken in two factors, and below its double make nothing of any number met here.
 const RANGE: i64 = 900;
 
-/// Two edges told apart.
+/// Two edges separated.
 pub(crate) struct Apart {
     /// Whether s_X < s_Y, else s_X > s_Y.
     pub in_order: bool,

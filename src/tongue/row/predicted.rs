@@ -31,11 +31,6 @@ impl Side {
             Side::Above => "above",
         }
     }
-
-    /// Whether the point lies off the closed tongue.
-    pub fn is_outside(self) -> bool {
-        matches!(self, Side::Below | Side::Above)
-    }
 }
 
 /// The paper's point p θ = m π (eq. (9)) and the tongue that belongs to it.
@@ -107,7 +102,7 @@ fn compare(s: &Ball, edge: &Edge) -> Option<Sign> {
 }
 
 /// The predicted point lies within an edge's enclosure: the verdict there, in exact cyclotomic numbers if
-/// need be, tells on which side of the edge.
+/// need be, decides on which side of the edge.
 fn decide_side(edges: &Edges, gap: &Gap, at_lower: bool) -> Result<Side> {
     let edge = if at_lower { &gap.lower } else { gap.upper.as_ref().expect("a finite tongue") };
     let on = if at_lower { Side::OnLower } else { Side::OnUpper };

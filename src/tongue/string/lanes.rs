@@ -37,14 +37,14 @@ pub(crate) fn logarithm(x: f64) -> i64 {
 }
 
 /// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less than 2^120.
-const LONG: f64 = f64::from_bits((1023 + 200) << 52);
+const LONGEST: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// The power of two that brings a length back into range, and by how many places.
 #[inline(always)]
 pub(crate) fn rescaling(length: f64) -> (f64, i64) {
     match length {
-        _ if length > LONG => (1.0 / LONG, 200),
-        _ if length < 1.0 / LONG => (LONG, -200),
+        _ if length > LONGEST => (1.0 / LONGEST, 200),
+        _ if length < 1.0 / LONGEST => (LONGEST, -200),
         _ => (1.0, 0),
     }
 }

@@ -1,5 +1,8 @@
 //! The resonance predictions against the trace, each by its own route.
 
+mod angle;
+mod family;
+
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Cyclotomic, Ratio, Rational, Ring, Sign};
 use kickdrift::propagator::TwoClocks;

@@ -2,8 +2,9 @@ use std::time::{Duration, Instant};
 
 use proptest::prelude::*;
 
-use super::*;
-use crate::number::laurent::tests::any_laurent;
+use crate::laurent::any_laurent;
+use kickdrift::number::Rational;
+use kickdrift::number::parse::*;
 
 fn shown(text: &str) -> String {
     parse("x", text).map_or_else(|error| error.to_string(), |value| value.to_string())

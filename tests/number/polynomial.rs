@@ -1,8 +1,9 @@
-use num_traits::Signed;
+use num_traits::{One, Signed, Zero};
 use proptest::prelude::*;
 
-use super::*;
-use crate::number::rational::ratio;
+use kickdrift::number::Rational;
+use kickdrift::number::polynomial::*;
+use kickdrift::number::rational::ratio;
 
 type Q = Polynomial<Rational>;
 

@@ -1,7 +1,10 @@
 use proptest::prelude::*;
 
-use super::*;
-use crate::number::rational::{ratio, to_f64};
+use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::{
+    Ball, Cyclotomic, CyclotomicField, ExactSign, Polynomial, Rational, Real, Ring, Sign,
+};
+use num_traits::{One, Zero};
 
 fn integers(coefficients: &[i64]) -> Polynomial<Rational> {
     Polynomial::new(coefficients.iter().map(|&c| ratio(c, 1)).collect())
@@ -33,7 +36,7 @@ fn degrees_and_roots() {
         let units = (1..2 * n).filter(|k| num_integer::gcd(*k, 2 * n) == 1).count();
         assert_eq!(field.degree(), units / 2, "n = {n}");
         // ψ at a ball about c holds 0 and is small.
-        let c = field.generator(300);
+        let c = field.two_cos(1).enclosure(300);
         let value = field
             .minimal_polynomial()
             .coefficients()

@@ -1,5 +1,7 @@
 //! The ladder: every tier right, every tier's certificate honest.
 
+mod kind;
+
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Ratio, Rational, Real, Sign, parse};
 use kickdrift::propagator::{Oscillator, TwoClocks, full_period, half_period};

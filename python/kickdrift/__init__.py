@@ -1,0 +1,69 @@
+"""Exact, certified linear stability of multiple-time-step integrators: velocity Verlet, r-RESPA, AVI.
+
+Numbers are exact: ``"0.3"`` is 3/10, ``"pi^2/25"`` means what it says, Fractions, Decimals and SymPy's rationals are
+taken as they are. **A float means exactly that double**: ``0.3`` is 5404319552844595/18014398509481984.
+
+>>> import kickdrift as kd
+>>> print(kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.98"))
+unstable: hyperbolic, Tr Q < -2; exponential growth
+  h2/h1        98/1: 98 fast and 1 slow kicks in the period T = 49/50
+  ...
+"""
+
+from kickdrift._document import Document, Row, Table
+from kickdrift._errors import BudgetError, KickdriftError
+from kickdrift._map import Map, map
+from kickdrift._native import Number
+from kickdrift._numbers import Exact, Labels, Range, number
+from kickdrift._program import main
+from kickdrift._recheck import Recheck, recheck
+from kickdrift._system import Run, System, SystemVerdict, simulate
+from kickdrift._tables import (
+    Closings,
+    Comparison,
+    Curves,
+    Proposition,
+    Tongues,
+    closings,
+    compare,
+    curves,
+    proposition,
+    tongues,
+)
+from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
+
+__all__ = [
+    "BudgetError",
+    "Closings",
+    "Comparison",
+    "Curves",
+    "Document",
+    "Exact",
+    "KickdriftError",
+    "Labels",
+    "Map",
+    "Number",
+    "Proposition",
+    "Range",
+    "Recheck",
+    "Row",
+    "Run",
+    "System",
+    "SystemVerdict",
+    "Table",
+    "Tongues",
+    "Verdict",
+    "Verdicts",
+    "closings",
+    "compare",
+    "curves",
+    "decide",
+    "main",
+    "map",
+    "number",
+    "proposition",
+    "recheck",
+    "simulate",
+    "tongues",
+    "verdicts",
+]

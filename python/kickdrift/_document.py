@@ -1,0 +1,173 @@
+"""Results as documents: JSON to the last byte as the program writes it, tables for notebooks and for pandas."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, overload
+
+from kickdrift import _native
+from kickdrift._errors import needs
+
+if TYPE_CHECKING:
+    import pandas
+
+#: A row of a result: its fields by name, read only.
+Row = Mapping[str, Any]
+
+_SHOWN = 20
+
+
+def ask(arguments: Sequence[str], form: str = "json") -> str:
+    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg."""
+    target = ["--output", "answer.svg"] if form == "svg" else ["--format", form]
+    return _native.answer([*arguments, *target, "--quiet"]).decode()
+
+
+def given(**options: str | int | None) -> list[str]:
+    """Options that are not None, as flags."""
+    pairs = ((name, value) for name, value in options.items() if value is not None)
+    return [f"--{name.replace('_', '-')}={value}" for name, value in pairs]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Document:
+    """A result, frozen, with the text of its JSON document.
+
+    Two results are equal where their documents are.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.proposition(max=3)
+    >>> found.to_json() == kd.proposition(max=3).to_json()
+    True
+    >>> found.data["schema"]
+    'kickdrift/proposition/1'
+    """
+
+    _json: str
+
+    def to_json(self) -> str:
+        """The document that the program writes for the same question, byte for byte.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> print(kd.decide(lambda1=1, lambda2=0, h1=1, h2=1).to_json()[:36])
+        {
+          "schema": "kickdrift/verdict/1",
+        """
+        return self._json
+
+    @cached_property
+    def data(self) -> Mapping[str, Any]:
+        """The document as nested mappings and lists; numbers with a point are doubles."""
+        return MappingProxyType(json.loads(self._json))
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, Document) and self._json == other._json
+
+    def __hash__(self) -> int:
+        return hash(self._json)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Table(Document, Sequence[Row]):
+    """A result that is rows: a sequence of read-only mappings.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.tongues("5/3", rho="1/25")
+    >>> len(found), found[3]["m"], found[3]["lower"]["lo"] < found[3]["upper"]["hi"]
+    (7, 4, True)
+    """
+
+    _arguments: tuple[str, ...]
+    _rows_are: str
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """The rows, in the document's order; enclosures are mappings with ``lo`` and ``hi``."""
+        return tuple(MappingProxyType(row) for row in self.data[self._rows_are])
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @overload
+    def __getitem__(self, index: int) -> Row: ...
+    @overload
+    def __getitem__(self, index: slice) -> Sequence[Row]: ...
+    def __getitem__(self, index: int | slice) -> Row | Sequence[Row]:
+        return self.rows[index]
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def to_csv(self) -> str:
+        """The rows as CSV, all columns; computed again in that form."""
+        return ask(self._arguments, "csv")
+
+    def to_latex(self) -> str:
+        """The rows as a LaTeX table; computed again in that form."""
+        return ask(self._arguments, "latex")
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The rows as a data frame; the parts of a field stand beside each other, as ``lower_lo`` and ``lower_hi``.
+
+        Raises
+        ------
+        KickdriftError
+            Where pandas is not installed.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> frame = kd.tongues("5/3", rho="1/25").to_pandas()
+        >>> bool((frame.lower_lo <= frame.lower_hi).all())
+        True
+        """
+        return frame(dict(_flat(row)) for row in self.rows)
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self)} {self._rows_are}: {', '.join(self._given())})"
+
+    def _given(self) -> list[str]:
+        return [f"{key} = {value}" for key, value in self.data["input"].items()]
+
+    def _repr_html_(self) -> str:
+        """A table of the first rows for a notebook."""
+        flat = [dict(_flat(row)) for row in self.rows[:_SHOWN]]
+        names = list(dict.fromkeys(name for row in flat for name in row))
+        head = "".join(f"<th>{html.escape(name)}</th>" for name in names)
+        cells = ("".join(f"<td>{html.escape(_cell(row.get(name)))}</td>" for name in names) for row in flat)
+        body = "".join(f"<tr>{row}</tr>" for row in cells)
+        more = f"<p>{len(self) - _SHOWN} more rows</p>" if len(self) > _SHOWN else ""
+        title = html.escape(f"{type(self).__name__}: {', '.join(self._given())}")
+        return f"<p>{title}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
+    """Rows as a data frame."""
+    try:
+        import pandas as pd
+    except ImportError:
+        raise needs("pandas", "pandas") from None
+    return pd.DataFrame(list(rows))
+
+
+def _flat(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    for name, value in row.items():
+        if isinstance(value, Mapping):
+            yield from _flat(value, f"{before}{name}_")
+        else:
+            yield f"{before}{name}", value
+
+
+def _cell(value: object) -> str:
+    return "" if value is None else f"{value:.10g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,88 @@
+"""Errors: what is wrong, with which value, and what to do instead."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+class KickdriftError(ValueError):
+    """Input that makes no sense, or a file that cannot be read.
+
+    Attributes
+    ----------
+    field : str
+        The argument that is wrong, or the path.
+    value : str or None
+        Its value as it was given; ``None`` where it is missing.
+    remedy : str
+        What to do instead.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> try:
+    ...     kd.decide(lambda1=1, lambda2=1, h1="0,3", h2=1)
+    ... except kd.KickdriftError as error:
+    ...     print(error.field, error.value)
+    h1 0,3
+    """
+
+    def __init__(self, field: str, value: str | None, remedy: str) -> None:
+        self.field = field
+        self.value = value
+        self.remedy = remedy
+        about = f"{field} missing" if value is None else f"{field} = {_short(value)}"
+        super().__init__(f"{about}: {remedy}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.field, self.value, self.remedy)
+
+
+class BudgetError(KickdriftError):
+    """Work that costs more than its limit, reported before it begins.
+
+    Attributes
+    ----------
+    field : str
+        The work, and what it would cost.
+    needed : int or None
+        The ``budget`` that allows it; ``None`` where none does.
+    remedy : str
+        What to do instead.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> try:
+    ...     kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/1000003", h2="1/999983", budget=1000)
+    ... except kd.BudgetError as error:
+    ...     print(error.needed, error.remedy)
+    499992 choose steps with a simpler ratio
+
+    A double is rarely the number its writer meant: 0.98 is not 98 times 0.01, so their ratio has 53 bits.
+
+    >>> try:
+    ...     kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=0.01, h2=0.98)
+    ... except kd.BudgetError as error:
+    ...     print(error.needed)
+    None
+    """
+
+    def __init__(self, field: str, needed: int | None, remedy: str) -> None:
+        self.needed = needed
+        allow = None if needed is None else f"allow it with budget={needed}"
+        super().__init__(field, None, remedy)
+        self.args = (f"{field}: {', or '.join(part for part in (allow, remedy) if part)}",)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.field, self.needed, self.remedy)
+
+
+def _short(value: str) -> str:
+    line = "".join(" " if ord(c) < 32 else c for c in value)
+    return line if len(line) <= 60 else f"{line[:30]}...{line[-15:]} ({len(line)} characters)"
+
+
+def needs(package: str, extra: str) -> KickdriftError:
+    """The error where an optional package is not installed."""
+    return KickdriftError(package, "not installed", f"install it by pip install 'kickdrift[{extra}]'")

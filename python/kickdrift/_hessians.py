@@ -1,0 +1,311 @@
+"""Hessians of groups of forces by differences, at a minimum and along the integrator's own periodic orbit.
+
+Coordinates are mass-weighted throughout, x = M^½ (r - r0): a kick of strength h is v -= h K x, a drift x += h v.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from kickdrift import _plot
+from kickdrift._errors import KickdriftError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Doubles: TypeAlias = npt.NDArray[np.float64]
+Force: TypeAlias = Callable[[Doubles], Doubles]
+"""The force of one group at positions: (n, 3) to (n, 3), energy/length."""
+
+Progress: TypeAlias = Callable[[int, int], None]
+"""Called with the columns done and the columns in all."""
+
+
+def hessian(
+    force: Force,
+    positions: Doubles,
+    masses: Doubles,
+    difference: float,
+    columns: Sequence[int] | None = None,
+    progress: Progress | None = None,
+) -> tuple[Doubles, float]:
+    """A mass-weighted Hessian by central differences of fourth order, and an estimate of its error.
+
+    Parameters
+    ----------
+    force : callable
+        (n, 3) to (n, 3).
+    positions : array, shape (n, 3)
+    masses : array, shape (n,)
+    difference : float
+        d; forces are taken at distances d and 2d.
+    columns : sequence of int, optional
+        The degrees of freedom to keep, all 3n unless given: the others stand still.
+
+    Returns
+    -------
+    (array, float)
+        The symmetric part, and the error as a 2-norm: the correction from second to fourth order, of which what is left
+        is a small part, plus the antisymmetric part.
+    """
+    kept = np.arange(positions.size) if columns is None else np.asarray(columns)
+    root = np.sqrt(np.repeat(masses, 3))[kept]
+    second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
+    for place, column in enumerate(kept):
+        near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
+        second[:, place], fourth[:, place] = near, (4 * near - far) / 3
+        if progress is not None:
+            progress(place + 1, len(kept))
+    second, fourth = (-matrix / np.outer(root, root) for matrix in (second, fourth))
+    symmetric = (fourth + fourth.T) / 2
+    error = norm(fourth - second) + norm(fourth - symmetric)
+    return symmetric, error
+
+
+def norm(matrix: Doubles) -> float:
+    """The 2-norm; of an empty matrix 0."""
+    return float(np.linalg.norm(matrix, 2)) if matrix.size else 0.0
+
+
+def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:
+    moved = positions.copy()
+    moved.flat[column] += width
+    ahead = force(moved).ravel()
+    moved.flat[column] -= 2 * width
+    return (ahead - force(moved).ravel()) / (2 * width)
+
+
+def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float, steps: int = 30) -> Doubles:
+    """The minimum beside the positions, by Newton's method with the soft directions left out.
+
+    Raises
+    ------
+    KickdriftError
+        Where Newton's method does not arrive: the positions are not near a minimum.
+    """
+    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))
+    smallest, idle = np.inf, 0
+    for _ in range(steps):
+        pull = force(own).ravel() / root
+        size = float(np.linalg.norm(pull))
+        # Rounding ends the fall of the force: two steps without a tenth less are the end.
+        idle = idle + 1 if size > 0.9 * smallest else 0
+        if idle == 2:
+            break
+        smallest = min(smallest, size)
+        stiffness, _ = hessian(force, own, masses, difference)
+        own += (_solve(stiffness, pull) / root).reshape(own.shape)
+    scale = norm(stiffness) * 1e-3 * float(np.sqrt(masses.max()))
+    if not smallest < 1e-6 * scale:
+        raise KickdriftError("positions", f"force {smallest:.1e}", "are not near a minimum: minimize them first")
+    return own
+
+
+#: Directions softer than this part of the stiffest are rigid motions: they are left where they are.
+_SOFT = 1e-7
+
+
+def _solve(matrix: Doubles, right: Doubles) -> Doubles:
+    values, vectors = np.linalg.eigh(matrix)
+    firm = np.abs(values) > _SOFT * np.abs(values).max()
+    solved: Doubles = vectors[:, firm] @ ((vectors[:, firm].T @ right) / values[firm])
+    return solved
+
+
+@dataclass(frozen=True)
+class Kick:
+    """One strike of the clocks: its time, and how long each group acts; at the ends of a period half as long."""
+
+    time: Fraction
+    groups: tuple[tuple[int, Fraction], ...]
+
+
+def schedule(steps: Sequence[Fraction]) -> tuple[Kick, ...]:
+    """The kicks of the first half of a period, halved at both its ends."""
+    period = _common(steps)
+    half = period / 2
+    times = sorted({step * k for step in steps for k in range(int(half / step) + 1)} | {Fraction(0), half})
+    kicks = []
+    for time in times:
+        weight = Fraction(1, 2) if time in (0, half) else Fraction(1)
+        groups = tuple((k, weight * step) for k, step in enumerate(steps) if (time / step).denominator == 1)
+        kicks.append(Kick(time, groups))
+    return tuple(kicks)
+
+
+def _common(steps: Sequence[Fraction]) -> Fraction:
+    common = steps[0]
+    for step in steps[1:]:
+        ratio = common / step
+        common *= ratio.denominator
+    return common
+
+
+@dataclass(frozen=True, eq=False)
+class Monodromy:
+    """What small deviations from a state do over one period of the clocks, in doubles: measured, not proven.
+
+    Attributes
+    ----------
+    about : str
+        ``orbit``: the integrator's own periodic orbit; ``minimum``: the minimum of the total energy, which is no fixed
+        point of the integrator where the groups' own forces do not vanish there.
+    positions : array, shape (n, 3)
+        The state in the middle of a kick of every clock, at rest.
+    away : float
+        The largest distance of an atom from the minimum.
+    period : Fraction
+        The period of the clocks.
+    half : array, shape (2n', 2n')
+        The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n.
+    residual : float
+        The step that Newton's method would take next, relative to the extent of the atoms; 0 about a minimum.
+    """
+
+    about: str
+    positions: Doubles
+    away: float
+    period: Fraction
+    half: Doubles
+    residual: float
+
+    @cached_property
+    def matrix(self) -> Doubles:
+        """The propagator of mass-weighted deviations over a period: half of it, and the same backwards."""
+        n = len(self.half) // 2
+        a, b, c, d = self.half[:n, :n], self.half[:n, n:], self.half[n:, :n], self.half[n:, n:]
+        back = np.block([[d.T, b.T], [c.T, a.T]])
+        return np.asarray(back @ self.half)
+
+    @cached_property
+    def multipliers(self) -> npt.NDArray[np.complex128]:
+        """The eigenvalues of the period, from those of half of it: lambda + 1/lambda = 2 + 4 mu."""
+        n = len(self.half) // 2
+        mu = np.linalg.eigvals(self.half[:n, n:].T @ self.half[n:, :n]).astype(np.complex128)
+        trace = 2 + 4 * mu
+        root = np.sqrt(mu * (mu + 1)) * 4
+        return np.concatenate([(trace + root) / 2, (trace - root) / 2])
+
+    @property
+    def growth_rate(self) -> float:
+        """The largest growth rate, 1/time; what rounding and differences make of rigid motions counts as none."""
+        rate = float(np.log(np.abs(self.multipliers).max())) / float(self.period)
+        return rate if rate * float(self.period) > ROUGH else 0.0
+
+    @property
+    def stable(self) -> bool:
+        """Whether no deviation is seen to grow."""
+        return self.growth_rate == 0.0
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the multipliers in the complex plane."""
+        return _plot.multipliers(self.multipliers, ax)
+
+    def __repr__(self) -> str:
+        words = "stable" if self.stable else f"growth rate {self.growth_rate:.4g}"
+        return f"Monodromy(about the {self.about}: {words}, an estimate)"
+
+
+#: Multipliers of rigid motions are 1, twofold and not diagonalizable: an error e of the Hessians moves them by about
+#: its root, and these errors are 1e-12 or so.
+ROUGH = 1e-5
+
+
+def compose(
+    forces: Sequence[Force],
+    steps: Sequence[Fraction],
+    start: Doubles,
+    masses: Doubles,
+    difference: float,
+    still: bool = False,
+) -> tuple[Doubles, Doubles]:
+    """The propagator over half a period along the orbit from rest at ``start``, or about ``start`` itself where
+    ``still``, and the mass-weighted velocity at its end."""
+    size, root = start.size, np.sqrt(np.repeat(masses, 3))
+    half, position, speed = np.eye(2 * size), start.copy(), np.zeros(size)
+    known: dict[int, Doubles] = {}
+    last = Fraction(0)
+    for kick in schedule(steps):
+        drift = float(kick.time - last)
+        half[:size] += drift * half[size:]
+        if not still:
+            position += (drift * speed / root).reshape(position.shape)
+        for group, duration in kick.groups:
+            if still and group in known:
+                stiffness = known[group]
+            else:
+                stiffness = known[group] = hessian(forces[group], position, masses, difference)[0]
+            half[size:] -= float(duration) * (stiffness @ half[:size])
+            if not still:
+                speed += float(duration) * forces[group](position).ravel() / root
+        last = kick.time
+    return half, speed
+
+
+def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, masses: Doubles) -> Doubles:
+    """The mass-weighted velocity after half a period from rest."""
+    root, position, speed, last = np.sqrt(np.repeat(masses, 3)), start.copy(), np.zeros(start.size), Fraction(0)
+    for kick in schedule(steps):
+        position += (float(kick.time - last) * speed / root).reshape(position.shape)
+        for group, duration in kick.groups:
+            speed += float(duration) * forces[group](position).ravel() / root
+        last = kick.time
+    return speed
+
+
+def _damped(size_at: Callable[[float], float], size: float) -> float | None:
+    """The largest part of a Newton step, 1, 1/2, ..., that makes the size smaller by a tenth; rounding ends that."""
+    return next((part for part in (0.5**k for k in range(8)) if size_at(part) < 0.9 * size), None)
+
+
+def monodromy(
+    forces: Mapping[str, Force],
+    steps: Sequence[Fraction],
+    at: Doubles,
+    masses: Doubles,
+    difference: float,
+    about: str,
+) -> Monodromy:
+    """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
+
+    The orbit starts at rest in the middle of a kick of every clock; so it is symmetric in time, and it is closed where
+    it is at rest again after half a period: n equations for n positions.
+
+    Raises
+    ------
+    KickdriftError
+        An unknown ``about``, or no orbit found.
+    """
+    own = list(forces.values())
+    period = _common(steps)
+    if about == "minimum":
+        half, _ = compose(own, steps, at, masses, difference, still=True)
+        return Monodromy(about, at, 0.0, period, half, 0.0)
+    if about != "orbit":
+        raise KickdriftError("about", about, "choose orbit or minimum")
+    root, start = np.sqrt(np.repeat(masses, 3)), at.copy()
+    extent = float(np.ptp(at, axis=0).max()) or 1.0
+
+    def size_at(part: float) -> float:
+        return float(np.abs(_swing(own, steps, start + part * move, masses)).max())
+
+    while True:
+        half, speed = compose(own, steps, start, masses, difference)
+        move = np.linalg.lstsq(half[len(speed) :, : len(speed)], -speed, rcond=_SOFT)[0]
+        move = (move / root).reshape(start.shape)
+        residual = float(np.abs(move).max()) / extent
+        part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
+        if part is None:
+            break
+        start = start + part * move
+    if residual > 1e-9:
+        raise KickdriftError("about", "orbit", f"Newton's method finds none (residual {residual:.1e}): try minimum")
+    away = float(np.linalg.norm(start - at, axis=1).max())
+    return Monodromy(about, start, away, period, half, residual)

@@ -1,0 +1,244 @@
+"""Maps: the verdicts of whole grids of steps."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from kickdrift import _native, _plot
+from kickdrift._document import Document, ask, given
+from kickdrift._errors import KickdriftError, needs
+from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._verdict import _STABLE, TIERS, VERDICTS
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+    from matplotlib.axes import Axes
+
+_FEW = 4_000_000
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Map:
+    """The verdicts of a grid as arrays (columns of h1, rows of h2), every one proven.
+
+    Examples
+    --------
+    Figure 1 of the paper, coarsely:
+
+    >>> import kickdrift as kd
+    >>> figure1 = kd.map(lambda1="pi^2", lambda2="pi^2/25", step="1/25", h1=("1/25", "2/pi"), h2=("1/25", "7/2"))
+    >>> figure1
+    Map(15 x 87 pairs: 110 unstable)
+    >>> figure1.verdict.dtype, figure1.verdict.shape, figure1.names[figure1.verdict[0, 48]]
+    (dtype('uint8'), (15, 87), 'hyperbolic+')
+    """
+
+    _map: _native.Map
+    _arguments: tuple[str, ...]
+    arrays: Mapping[str, npt.NDArray[Any]]
+    """All arrays by name, as in the program's ``map.npz``."""
+
+    names = VERDICTS
+    tier_names = TIERS
+
+    @property
+    def h1(self) -> npt.NDArray[np.float64]:
+        """The steps of the columns, rounded."""
+        return self.arrays["h1"]
+
+    @property
+    def h2(self) -> npt.NDArray[np.float64]:
+        """The steps of the rows, rounded."""
+        return self.arrays["h2"]
+
+    @property
+    def verdict(self) -> npt.NDArray[np.uint8]:
+        """Positions in ``Map.names``, shape (len(h1), len(h2))."""
+        return self.arrays["verdict"]
+
+    @property
+    def tier(self) -> npt.NDArray[np.uint8]:
+        """The deciding tiers, positions in ``Map.tier_names``."""
+        return self.arrays["tier"]
+
+    @property
+    def stable(self) -> npt.NDArray[np.bool_]:
+        """Whether each pair is stable."""
+        return _STABLE[self.verdict]
+
+    @property
+    def growth_rate(self) -> npt.NDArray[np.float64]:
+        """Growth rates per unit time, NaN where nothing grows exponentially; asked for by ``growth=True``."""
+        return self._asked("growth_rate", "growth")
+
+    @property
+    def m(self) -> npt.NDArray[np.int64]:
+        """Labels, -1 where nothing grows exponentially; of a map asked for with ``label=True``."""
+        return self._asked("m", "label")
+
+    def _asked(self, name: str, product: str) -> npt.NDArray[Any]:
+        if name not in self.arrays:
+            raise KickdriftError(name, "not computed", f"ask for it: map(..., {product}=True)")
+        return self.arrays[name]
+
+    @cached_property
+    def document(self) -> Document:
+        """The document ``kickdrift/map/1``: the counts."""
+        return Document(self._map.render("json"))
+
+    def to_json(self) -> str:
+        """The document of ``kickdrift map``, byte for byte: the counts."""
+        return self.document.to_json()
+
+    def to_csv(self) -> str:
+        """A row for each pair that is unstable or on an edge; computed again in that form."""
+        return ask(self._arguments, "csv")
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The arrays over the coordinates h1 and h2, none of them copied.
+
+        Raises
+        ------
+        KickdriftError
+            Where xarray is not installed.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> data = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1)).to_xarray()
+        >>> dict(data.sizes)
+        {'h1': 5, 'h2': 10}
+        """
+        try:
+            import xarray as xr
+        except ImportError:
+            raise needs("xarray", "dask") from None
+        planes = {name: (("h1", "h2"), values) for name, values in self.arrays.items() if values.ndim == 2}
+        attributes = {"verdict_names": list(VERDICTS), "tier_names": list(TIERS), **self.document.data["input"]}
+        return xr.Dataset(planes, coords={"h1": self.h1, "h2": self.h2}, attrs=attributes)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row a pair, by h1, then h2; the kind by name."""
+        try:
+            import pandas as pd
+        except ImportError:
+            raise needs("pandas", "pandas") from None
+        h1, h2 = (axis.ravel() for axis in np.meshgrid(self.h1, self.h2, indexing="ij"))
+        kinds = pd.Categorical.from_codes(self.verdict.ravel().astype(np.int8), categories=pd.Index(VERDICTS))
+        more = {name: values.ravel() for name, values in self.arrays.items() if name in _MORE}
+        return pd.DataFrame({"h1": h1, "h2": h2, "verdict": kinds, "stable": self.stable.ravel(), **more})
+
+    def plot(self, ax: Axes | None = None, colour: Literal["verdict", "growth"] = "verdict") -> Axes:
+        """Draw the map: unstable pairs dark, or their growth rates.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
+        >>> small.plot().get_xlabel()
+        '$h_1$'
+        """
+        if colour == "growth":
+            return _plot.grid(self.h1, self.h2, self.growth_rate, "growth rate", ax)
+        return _plot.grid(self.h1, self.h2, ~self.stable, None, ax)
+
+    def to_svg(self) -> str:
+        """The program's figure of the verdicts as SVG."""
+        return self._map.svg(self.verdict, self.tier)
+
+    def _repr_svg_(self) -> str | None:
+        return self.to_svg() if self.verdict.size <= _FEW else None
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(self._map.render('text').rstrip())}</pre>"
+
+    def __repr__(self) -> str:
+        columns, rows = self.verdict.shape
+        return f"Map({columns} x {rows} pairs: {self.document.data['unstable']} unstable)"
+
+
+_MORE = ("m", "a", "b", "growth_rate", "growth_rate_error")
+
+
+def map(
+    *,
+    lambda1: Exact,
+    lambda2: Exact,
+    h1: Range,
+    h2: Range,
+    step: Exact | None = None,
+    step1: Exact | None = None,
+    step2: Exact | None = None,
+    label: bool = False,
+    growth: bool = False,
+    budget: int | None = None,
+    threads: int | None = None,
+) -> Map:
+    """Decide every pair of a grid: all positive multiples of the spacings in closed ranges of h1 and h2.
+
+    Parameters
+    ----------
+    lambda1, lambda2 : Exact
+        The stiffnesses, 1/time².
+    h1, h2 : Range
+        The closed ranges of steps, time.
+    step : Exact, optional
+        The spacing of both steps; ``step1`` and ``step2`` are their own where they differ.
+    label : bool
+        Also the tongue's label m of each growing pair, and its dominant family (a, b).
+    growth : bool
+        Also the growth rate of each growing pair and its proven error.
+    budget : int, optional
+        The most kicks that one pair may compose; a map may compose 10^4 times as many.
+    threads : int, optional
+        One a core unless given.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+    BudgetError
+        A map that would compose more kicks than the budget allows, before the work begins.
+    KeyboardInterrupt
+        Within a second of Ctrl-C.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.map(lambda1="pi^2", lambda2="pi^2/25", step="1/10", h1=("1/10", "2/pi"), h2=("1/10", 3), growth=True)
+    >>> bool((found.growth_rate[~found.stable] > 0).any())
+    True
+    """
+    steps = [step if own is None else own for own in (step1, step2)]
+    for name, own in zip(("step", "step2"), steps, strict=True):
+        if own is None:
+            raise KickdriftError(name, None, "a grid needs a spacing, as step='1/100'")
+    ends = [_ends("h1", h1), _ends("h2", h2)]
+    made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads or 0)
+    arguments = ["map"] + given(
+        lambda1=text("lambda1", lambda1),
+        lambda2=text("lambda2", lambda2),
+        step1=text("step1", steps[0]),
+        step2=text("step2", steps[1]),
+        h1_range=range_text("h1", h1),
+        h2_range=range_text("h2", h2),
+        budget=budget,
+    )
+    arguments += [flag for flag, asked in (("--label", label), ("--growth", growth)) if asked]
+    return Map(made, tuple(arguments), MappingProxyType(arrays))
+
+
+def _ends(field: str, value: Range) -> list[Exact]:
+    lo, dots, hi = range_text(field, value).partition("..")
+    if not (dots and lo and hi):
+        raise KickdriftError(field, str(value), "give a pair (lo, hi), or a text as '1/100..7/2'")
+    return [lo, hi]

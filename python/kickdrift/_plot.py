@@ -1,0 +1,100 @@
+"""Drawings on matplotlib's axes, in the colours of the program's figures where these have some."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from kickdrift._errors import needs
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def axes(ax: Axes | None) -> Axes:
+    """The axes given, or those of a new figure."""
+    if ax is not None:
+        return ax
+    try:
+        from matplotlib.figure import Figure
+        from matplotlib.pyplot import figure
+    except ImportError:
+        raise needs("matplotlib", "plot") from None
+    made: Figure = figure(layout="constrained")
+    return made.add_subplot()
+
+
+def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+    """Bars from edge to edge in s; a tongue without an end reaches the edge of the axes."""
+    own = axes(ax)
+    from matplotlib import colormaps
+
+    colours = colormaps["tab10"]
+    end = 1.15 * max(row["lower"]["hi"] for row in rows) if rows else 4.0
+    for place, row in enumerate(rows):
+        lo = row["lower"]["lo"]
+        hi = end if row["upper"] is None else row["upper"]["hi"]
+        own.barh(place, hi - lo, left=lo, color=colours((row["a"] or 0) % 10), edgecolor="none")
+    own.set_yticks(range(len(rows)), [f"{row['p']}/{row['q']}, m = {row['m']}" for row in rows])
+    own.set_xlabel(r"$s = h_1^2 \lambda_1$")
+    return own
+
+
+def curves(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+    """One line a family."""
+    own = axes(ax)
+    from matplotlib import colormaps
+
+    colours = colormaps["tab10"]
+    for (a, _), (h1, h2) in _families(rows).items():
+        own.plot(h1, h2, color=colours(a % 10), linewidth=0.8)
+    own.set_xlabel("$h_1$")
+    own.set_ylabel("$h_2$")
+    return own
+
+
+def _families(rows: Sequence[Mapping[str, Any]]) -> dict[tuple[int, int], tuple[list[float], list[float]]]:
+    found: dict[tuple[int, int], tuple[list[float], list[float]]] = {}
+    for row in rows:
+        own = found.setdefault((row["a"], row["b"]), ([], []))
+        for point in row["points"]:
+            own[0].append(point["h1"])
+            own[1].append(point["h2"])
+    return found
+
+
+def grid(
+    h1: npt.NDArray[np.float64],
+    h2: npt.NDArray[np.float64],
+    values: npt.NDArray[Any],
+    label: str | None,
+    ax: Axes | None,
+) -> Axes:
+    """An image of values over the (h1, h2) plane: grey where they are of verdicts, else with a bar of colours."""
+    own = axes(ax)
+    halves = [(x[-1] - x[0]) / max(len(x) - 1, 1) / 2 or 0.5 for x in (h1, h2)]
+    extent = (h1[0] - halves[0], h1[-1] + halves[0], h2[0] - halves[1], h2[-1] + halves[1])
+    colours = "Greys" if label is None else "viridis"
+    image = own.imshow(values.T, origin="lower", extent=extent, aspect="auto", cmap=colours, interpolation="nearest")
+    own.set_xlabel("$h_1$")
+    own.set_ylabel("$h_2$")
+    if label is not None and own.figure is not None:
+        own.figure.colorbar(image, ax=own, label=label)
+    return own
+
+
+def multipliers(values: npt.NDArray[np.complex128], ax: Axes | None) -> Axes:
+    """Multipliers in the complex plane with the unit circle."""
+    own = axes(ax)
+    turn = np.linspace(0, 2 * np.pi, 361)
+    own.plot(np.cos(turn), np.sin(turn), color="0.7", linewidth=0.8)
+    outside = np.abs(values) > 1 + 1e-9
+    own.plot(values.real[~outside], values.imag[~outside], "o", markersize=3, color="#1b7837")
+    own.plot(values.real[outside], values.imag[outside], "o", markersize=4, color="#b2182b")
+    own.set_aspect("equal")
+    own.set_xlabel("Re")
+    own.set_ylabel("Im")
+    return own

@@ -1,0 +1,360 @@
+"""Systems: many clocks, many degrees of freedom."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from kickdrift import _plot
+from kickdrift._document import Document, Table, ask, given
+from kickdrift._errors import KickdriftError
+from kickdrift._native import Number
+from kickdrift._numbers import Exact, Range, range_text, text
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+_SCHEMA = "kickdrift/system/1"
+_FILE, _ARRAYS = "system.json", "arrays.npz"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class System:
+    """Masses and potentials, each with a clock of its own: M x'' + sum of K_k x = 0.
+
+    Parameters
+    ----------
+    document : mapping
+        As in a system file, without ``schema``: ``masses``, ``potentials`` and so on; numbers are exact, a float is
+        that double. Arrays of doubles stand by reference, ``{"npz": "arrays.npz", "array": NAME}``.
+    arrays : mapping of str to array, optional
+        The arrays referred to.
+    notes : sequence of str, optional
+        What was left out or estimated while the system was made.
+
+    Examples
+    --------
+    Two masses, a stiff bond between them and a soft tether to a wall:
+
+    >>> import kickdrift as kd
+    >>> system = kd.System({"masses": [1, 1], "potentials": [
+    ...     {"step": "1/10", "springs": [[0, 1, 10]]}, {"step": "1/2", "springs": [[0, None, "1/2"]]}]})
+    >>> system.decide().stable
+    True
+    """
+
+    document: Mapping[str, Any]
+    arrays: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
+    notes: Sequence[str] = ()
+    _path: Path | None = None
+
+    @staticmethod
+    def read(path: str | PathLike[str]) -> System:
+        """Read a system file.
+
+        Raises
+        ------
+        KickdriftError
+            A file that cannot be read; what stands in it is checked when it is used.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> try:
+        ...     kd.System.read("nowhere.json")
+        ... except kd.KickdriftError as error:
+        ...     print(error.field)
+        nowhere.json
+        """
+        own = Path(path)
+        try:
+            document = json.loads(own.read_text(), parse_float=str)
+        except (OSError, ValueError) as cause:
+            raise KickdriftError(str(path), "not read", f"{cause}: name a system file") from cause
+        return System(MappingProxyType(document), _path=own)
+
+    @staticmethod
+    def from_hessians(
+        masses: npt.ArrayLike,
+        potentials: Mapping[str, tuple[Exact, npt.ArrayLike]],
+        *,
+        positions: npt.ArrayLike | None = None,
+        accuracy: float = 1e-6,
+        title: str = "",
+        notes: Sequence[str] = (),
+    ) -> System:
+        """Make a system of measured Hessians.
+
+        Parameters
+        ----------
+        masses : array of doubles, shape (n,) or (n/3,)
+            One for each degree of freedom, or for each particle of three.
+        potentials : mapping of str to (step, Hessian)
+            A step (Exact, time) and a symmetric matrix of doubles, shape (n, n), energy/length², by name.
+        positions : array of doubles, shape (n/3, 3), optional
+            By which rigid motions are projected out; else the null space of the total is.
+        accuracy : float
+            How well the Hessians are known, relative to their norms; verdicts tell whether they stand within it.
+
+        Raises
+        ------
+        KickdriftError
+            Shapes that do not fit together, when the system is decided.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kickdrift as kd
+        >>> stiff, soft = np.diag([400.0, 400.0]), np.array([[1.0, -1.0], [-1.0, 1.0]])
+        >>> system = kd.System.from_hessians([1.0, 1.0], {"stiff": ("1/40", stiff), "soft": ("1/10", soft)})
+        >>> system.decide().stable
+        True
+        """
+        arrays = {"masses": np.asarray(masses, dtype=np.float64)}
+        entries = []
+        for number, (name, (step, hessian)) in enumerate(potentials.items()):
+            arrays[f"hessian{number}"] = np.asarray(hessian, dtype=np.float64)
+            entries.append({"name": name, "step": text("step", step), "stiffness": _at(f"hessian{number}")})
+        document: dict[str, Any] = {"title": title} if title else {}
+        document |= {"masses": _at("masses"), "accuracy": float(accuracy), "potentials": entries}
+        if positions is not None:
+            arrays["positions"] = np.asarray(positions, dtype=np.float64)
+            document["positions"] = _at("positions")
+        return System(MappingProxyType(document), MappingProxyType(arrays), tuple(notes))
+
+    def save(self, folder: str | PathLike[str]) -> Path:
+        """Write ``system.json`` and ``arrays.npz`` to a folder; return the path of the former."""
+        own = Path(folder)
+        own.mkdir(parents=True, exist_ok=True)
+        if self.arrays:
+            np.savez(own / _ARRAYS, allow_pickle=False, **self.arrays)
+        document = {"schema": _SCHEMA} | {key: value for key, value in self.document.items() if key != "schema"}
+        path = own / _FILE
+        path.write_text(json.dumps(_exact(document), indent=2) + "\n")
+        return path
+
+    @contextmanager
+    def _file(self) -> Iterator[str]:
+        if self._path is not None:
+            yield str(self._path)
+            return
+        with tempfile.TemporaryDirectory(prefix="kickdrift-") as folder:
+            yield str(self.save(folder))
+
+    def _ask(self, command: str, options: Sequence[str], form: str = "json") -> str:
+        with self._file() as path:
+            return ask([command, path, *options], form)
+
+    def decide(
+        self, *, exact: bool = False, accuracy: float | None = None, keep_rigid: bool = False, budget: int | None = None
+    ) -> SystemVerdict:
+        """Decide whether the system is stable, and find what grows.
+
+        Parameters
+        ----------
+        exact : bool
+            Exact arithmetic alone.
+        accuracy : float, optional
+            How well measured Hessians are known, in place of the system's own number.
+        keep_rigid : bool
+            Leave the rigid motions of measured Hessians in.
+        budget : int, optional
+            The most products of machine words.
+
+        Raises
+        ------
+        KickdriftError, BudgetError
+            A system that makes no sense; more work than the budget allows.
+        """
+        options = given(accuracy=None if accuracy is None else str(accuracy), budget=budget)
+        options += [flag for flag, asked in (("--exact", exact), ("--keep-rigid", keep_rigid)) if asked]
+        return SystemVerdict(self._ask("system", options), self, tuple(options))
+
+    def intervals(self, outer: Range, *, width: float = 1e-4, accuracy: float | None = None) -> Table:
+        """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
+
+        Parameters
+        ----------
+        outer : Range
+            The closed range of outer steps, rational.
+        width : float
+            The relative width above which no interval is missed.
+        accuracy : float, optional
+            How well the Hessians are known.
+        """
+        options = given(
+            intervals=f"outer={range_text('outer', outer)}",
+            width=str(width),
+            accuracy=None if accuracy is None else str(accuracy),
+        )
+        return Table(self._ask("system", options), ("system", *options), "stretches")
+
+    def __repr__(self) -> str:
+        potentials = self.document.get("potentials", ())
+        steps = ", ".join(f"{p.get('name', k)}: step {p['step']}" for k, p in enumerate(potentials))
+        return f"System({self.document.get('title') or 'untitled'}; {steps or 'built'})"
+
+
+def _at(name: str) -> dict[str, str]:
+    return {"npz": _ARRAYS, "array": name}
+
+
+def _exact(value: Any) -> Any:
+    """Whatever stands for an exact number as its text; JSON would round it or not know it."""
+    if isinstance(value, Mapping):
+        return {key: _exact(own) for key, own in value.items()}
+    if isinstance(value, list | tuple):
+        return [_exact(own) for own in value]
+    if value is None or isinstance(value, bool | str):
+        return value
+    return value if isinstance(value, int) else text("number", value)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SystemVerdict(Document):
+    """The verdict on a system, with its parts, the modes that grow, and of measured Hessians the margin.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, "pi^2"]]},
+    ...                                                  {"step": "0.98", "springs": [[0, None, "pi^2/25"]]}]})
+    >>> verdict = system.decide()
+    >>> verdict.stable, verdict.kind, verdict.proven
+    (False, 'hyperbolic', True)
+    """
+
+    system: System
+    _options: tuple[str, ...]
+
+    @property
+    def stable(self) -> bool:
+        """Whether all powers of the propagator stay bounded."""
+        return bool(self.data["stable"])
+
+    @property
+    def kind(self) -> str:
+        """elliptic, hyperbolic, parabolic or coexistence."""
+        return str(self.data["kind"])
+
+    @property
+    def proven(self) -> bool:
+        """False where some part rests on doubles without a bound; a warning says so."""
+        return bool(self.data["proven"])
+
+    @property
+    def growth_rate(self) -> float:
+        """The largest growth rate per unit time, rounded; 0 if stable."""
+        return float(self.data["growth_rate"])
+
+    @property
+    def period(self) -> Number:
+        """The synchronization period, exactly."""
+        return Number(self.data["period"])
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What limits the verdict, in words; what was left out when the system was made comes first."""
+        return (*self.system.notes, *self.data["warnings"])
+
+    @property
+    def measured(self) -> Mapping[str, Any] | None:
+        """Of measured Hessians: ``accuracy``, ``holds`` within it, ``margin``, ``first_unstable`` outer step."""
+        found = self.data.get("measured")
+        return None if found is None else MappingProxyType(found)
+
+    @cached_property
+    def multipliers(self) -> npt.NDArray[np.complex128]:
+        """The multipliers of one period as far as the document has them, rounded; each beside its inverse."""
+        every = [own["lambda"] for part in self.data["parts"] for own in part["multipliers"] or ()]
+        values = np.array([complex(own["re"], own["im"]) for own in every], dtype=np.complex128)
+        return np.concatenate([values, 1 / values])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the multipliers in the complex plane, those off the unit circle red."""
+        return _plot.multipliers(self.multipliers, ax)
+
+    def to_svg(self) -> str:
+        """The program's figure: multipliers, and shapes of growing modes."""
+        return self.system._ask("system", self._options, "svg")
+
+    def _repr_svg_(self) -> str:
+        return self.to_svg()
+
+    def __bool__(self) -> bool:
+        return self.stable
+
+    def __repr__(self) -> str:
+        words = "stable" if self.stable else f"unstable, growth rate {self.growth_rate:.6g}"
+        return f"SystemVerdict({words}, {self.kind}{'' if self.proven else ', an estimate'})"
+
+    def __str__(self) -> str:
+        return self.system._ask("system", self._options, "text").rstrip()
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(Document):
+    """A simulation by Algorithm 1: energy, momentum and amplitude, and measured growth beside the predicted one.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
+    >>> kd.simulate(system, periods=10)
+    Run(10 periods)
+    """
+
+    def __repr__(self) -> str:
+        return f"Run({self.data['input']['periods']} periods)"
+
+
+def simulate(
+    system: System,
+    *,
+    periods: int = 200,
+    displace: Exact | Sequence[Exact] = "1/10",
+    staggered: bool = False,
+    budget: int | None = None,
+) -> Run:
+    """Run Algorithm 1 on a system and measure growth beside the prediction.
+
+    Parameters
+    ----------
+    system : System
+        Its bonds may be nonlinear: the prediction is that about the equilibrium.
+    periods : int
+        Synchronization periods to run.
+    displace : Exact, or one for each degree of freedom
+        The starting displacement, length; one number moves the first degree of freedom alone.
+    staggered : bool
+        Algorithm 1 as it stands: whole kicks at the start of a period. Otherwise they are halved.
+    budget : int, optional
+        The most work.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input; more work than the budget allows.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> chain = kd.System({"build": {"kind": "chain", "masses": 4, "stiffness": [10, 1], "steps": ["1/20", "1/4"]}})
+    >>> kd.simulate(chain, periods=5, displace="1/100").data["schema"]
+    'kickdrift/simulate/1'
+    """
+    parts = list(displace) if isinstance(displace, list | tuple | np.ndarray) else [displace]
+    moved = ",".join(text("displace", part) for part in parts)
+    options = given(periods=periods, displace=moved, budget=budget) + (["--staggered"] if staggered else [])
+    return Run(system._ask("simulate", options))

@@ -1,0 +1,361 @@
+"""Results that are rows: tongues, closings, curves, the Proposition, comparisons."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Literal
+
+from kickdrift import _plot
+from kickdrift._document import Table, ask, frame, given
+from kickdrift._numbers import Exact, Labels, Range, labels_text, range_text, text
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+
+
+def _text(field: str, value: Exact | None) -> str | None:
+    return None if value is None else text(field, value)
+
+
+def _range(field: str, value: Range | None) -> str | None:
+    return None if value is None else range_text(field, value)
+
+
+class Tongues(Table):
+    """Unstable intervals in s = h1² lambda1, each with its label m, family (a, b), two certified edges and width.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.tongues("7/3", rho="1/25", m="3..5")
+    >>> [row["m"] for row in found]
+    [3, 4, 5]
+    """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the tongues as bars from edge to edge in s, one line a tongue, coloured by the family's a.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.tongues("7/3", rho="1/25").plot().get_xlabel()
+        '$s = h_1^2 \\\\lambda_1$'
+        """
+        return _plot.tongues(self.rows, ax)
+
+    def to_svg(self) -> str:
+        """The atlas in the (h1, h2) plane as SVG, of tongues asked for with ``lambda1``, ``h1`` and ``h2``."""
+        skipped = ("--digits", "--columns")
+        return ask([part for part in self._arguments if not part.startswith(skipped)], "svg")
+
+    def _repr_svg_(self) -> str | None:
+        asked = self.data["input"]
+        return self.to_svg() if {"lambda1", "h1_range", "h2_range"} <= asked.keys() else None
+
+
+def tongues(
+    ratio: Exact | None = None,
+    *,
+    max_sum: int | None = None,
+    rho: Exact | None = None,
+    lambda1: Exact | None = None,
+    lambda2: Exact | None = None,
+    h1: Range | None = None,
+    h2: Range | None = None,
+    m: Labels | None = None,
+    a: str | None = None,
+    b: str | None = None,
+    digits: int | None = None,
+    columns: Iterable[Literal["edges", "exact", "growth", "predicted", "first-order"]] | None = None,
+) -> Tongues:
+    """Find every unstable interval of one ratio of steps, or of all, with certified edges.
+
+    Parameters
+    ----------
+    ratio : Exact, optional
+        h2/h1 = p/q; or instead
+    max_sum : int, optional
+        All coprime p + q up to this number.
+    rho : Exact, optional
+        lambda2/lambda1 >= 0, rational; or give both stiffnesses.
+    lambda1, lambda2 : Exact, optional
+        The stiffnesses, 1/time²; with ``lambda1`` edges are told in h1 and h2 too.
+    h1, h2 : Range, optional
+        Only tongues that meet these closed ranges of steps (needs ``lambda1``).
+    m : Labels, optional
+        Only these labels.
+    a, b : str, optional
+        Only dominant families in these ranges, as ``"0..2"``.
+    digits : int, optional
+        Tell the edges to so many significant digits, as decimals.
+    columns : iterable of str, optional
+        What to tell beside the edges; all unless given, and without growth for many ratios.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> tongue = kd.tongues("7/3", rho="1/25", m=4, digits=30)[0]
+    >>> tongue["lower"]["entry"], tongue["closed"]
+    ('C', False)
+    """
+    arguments = ["tongues"] + given(
+        ratio=_text("ratio", ratio),
+        max_sum=max_sum,
+        rho=_text("rho", rho),
+        lambda1=_text("lambda1", lambda1),
+        lambda2=_text("lambda2", lambda2),
+        h1_range=_range("h1", h1),
+        h2_range=_range("h2", h2),
+        m=None if m is None else labels_text(m),
+        a=a,
+        b=b,
+        digits=digits,
+        columns=None if columns is None else ",".join(columns),
+    )
+    return Tongues(ask(arguments), tuple(arguments), "tongues")
+
+
+class Closings(Table):
+    """Where tongues close: pairs (s, rho) at which a resonance does not destabilize.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> closed = kd.closings("5/3")[0]
+    >>> closed["m"], closed["s"]["exact"], closed["rho"]["exact"]
+    (4, '11/4', '114/55')
+    """
+
+
+def closings(
+    ratio: Exact | None = None,
+    *,
+    max_sum: int | None = None,
+    m: Labels | None = None,
+    rho: Range | None = None,
+    samples: int | None = None,
+    digits: int | None = None,
+) -> Closings:
+    """Find where tongues close.
+
+    Parameters
+    ----------
+    ratio : Exact, optional
+        h2/h1 = p/q; or instead
+    max_sum : int, optional
+        All coprime p + q up to this number, at most 200.
+    m : Labels, optional
+        Only these labels, with ``ratio``.
+    rho : Range, optional
+        The closed range of lambda2/lambda1, rational and positive; 1/10000..100 unless given.
+    samples : int, optional
+        Values of rho between which edges are seen to cross; 400 unless given.
+    digits : int, optional
+        Significant digits of s and rho.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> len(kd.closings(max_sum=8))
+    4
+    """
+    arguments = ["closings"] + given(
+        ratio=_text("ratio", ratio),
+        max_sum=max_sum,
+        m=None if m is None else labels_text(m),
+        rho_range=_range("rho", rho),
+        samples=samples,
+        digits=digits,
+    )
+    return Closings(ask(arguments), tuple(arguments), "closings")
+
+
+class Curves(Table):
+    """The resonance curves 1/T½ = a/h1 + b/h2, sampled.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> [(curve["a"], curve["b"]) for curve in kd.curves(a="0..1", b="0..1", samples=50)]
+    [(0, 1)]
+    """
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row a point: a, b, h1, h2 and so on."""
+        points = ({"a": row["a"], "b": row["b"], **point} for row in self.rows for point in row["points"])
+        return frame(points)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the curves in the (h1, h2) plane.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.curves(a="0..1", b="0..1").plot().get_ylabel()
+        '$h_2$'
+        """
+        return _plot.curves(self.rows, ax)
+
+
+def curves(
+    *,
+    lambda1: Exact = "pi^2",
+    h1: Range = ("1/1000", "2/pi"),
+    h2: Range = ("1/1000", "7/2"),
+    a: str = "0..3",
+    b: str = "-12..12",
+    samples: int = 400,
+) -> Curves:
+    """Sample the (a, b) families of resonance curves.
+
+    Parameters
+    ----------
+    lambda1 : Exact
+        The fast stiffness, 1/time².
+    h1, h2 : Range
+        The closed ranges of steps.
+    a, b : str
+        Ranges of integers, as ``"-2..3"``.
+    samples : int
+        Points a curve, evenly spaced in theta.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> curve = kd.curves(a="1..1", b="0..0", samples=3)
+    >>> curve.data["input"]["lambda1"]
+    'pi^2'
+    """
+    arguments = ["curves"] + given(
+        lambda1=text("lambda1", lambda1),
+        h1_range=range_text("h1", h1),
+        h2_range=range_text("h2", h2),
+        a=a,
+        b=b,
+        samples=samples,
+    )
+    return Curves(ask(arguments), tuple(arguments), "curves")
+
+
+class Proposition(Table):
+    """The paper's Proposition checked: a witness (a, b) for each resonant point (p, q, m).
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.proposition(max=5).holds
+    True
+    """
+
+    @property
+    def holds(self) -> bool:
+        """Whether no point fails."""
+        return bool(self.data["holds"])
+
+
+def proposition(max: int | None = None) -> Proposition:
+    """Check the Proposition exhaustively and exactly, with witnesses.
+
+    Parameters
+    ----------
+    max : int, optional
+        The bound on p and q.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.proposition(max=2).rows[0]["b"]
+    1
+    """
+    arguments = ["proposition"] + given(max=max)
+    return Proposition(ask(arguments), tuple(arguments), "witnesses")
+
+
+class Comparison(Table):
+    """The trace verdict against the tan criterion and against resonance; its rows are the disagreements.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.compare(max_sum=6, rho="1/25", samples=9).data["pairs"]
+    99
+    """
+
+
+def compare(
+    *,
+    lambda1: Exact | None = None,
+    lambda2: Exact | None = None,
+    step: Exact | None = None,
+    h1: Range | None = None,
+    h2: Range | None = None,
+    max_sum: int | None = None,
+    rho: Exact | None = None,
+    samples: int | None = None,
+    tolerance: Exact | None = None,
+    budget: int | None = None,
+) -> Comparison:
+    """Compare the trace with its predictions, over a grid or over ratios.
+
+    Parameters
+    ----------
+    lambda1, lambda2, step, h1, h2
+        A grid as for :func:`map`; or instead
+    max_sum, rho, samples
+        All coprime p + q up to ``max_sum`` at lambda2/lambda1 = ``rho``, at ``samples`` values of s in (0, 4).
+    tolerance : Exact, optional
+        How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
+    budget : int, optional
+        The most kicks that one verdict may compose.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input; more work than the budget allows.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.compare(lambda1="pi^2", lambda2="pi^2/25", step="1/10", h1=("1/10", "2/pi"), h2=("1/10", 3))
+    >>> found.data["pairs"]
+    180
+    """
+    arguments = ["compare"] + given(
+        lambda1=_text("lambda1", lambda1),
+        lambda2=_text("lambda2", lambda2),
+        step=_text("step", step),
+        h1_range=_range("h1", h1),
+        h2_range=_range("h2", h2),
+        max_sum=max_sum,
+        rho=_text("rho", rho),
+        samples=samples,
+        tolerance=_text("tolerance", tolerance),
+        budget=budget,
+    )
+    return Comparison(ask(arguments), tuple(arguments), "offenders")

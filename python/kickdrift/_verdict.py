@@ -1,0 +1,308 @@
+"""Verdicts: is a pair of steps stable?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from kickdrift import _native
+from kickdrift._document import Document
+from kickdrift._errors import KickdriftError
+from kickdrift._native import Number
+from kickdrift._numbers import Exact
+
+if TYPE_CHECKING:
+    import pandas
+
+VERDICTS, TIERS = (tuple(names) for names in _native.names())
+"""The seven verdicts by their codes, a kind and the sign of the trace where it is 2 or -2 or beyond; and the three
+tiers of the ladder: doubles with a proven bound, more bits, exact arithmetic."""
+
+_STABLE = np.array([name.startswith(("elliptic", "coexistence")) for name in VERDICTS])
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Verdict:
+    """A proven answer about one pair of steps.
+
+    Trace, growth rate and label cost hundreds of verdicts, so they are computed when they are first asked for.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> verdict = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.98")
+    >>> verdict.stable, verdict.kind, verdict.ratio, verdict.m, verdict.family
+    (False, 'hyperbolic', (98, 1), 1, (0, 1))
+    >>> bool(verdict)
+    False
+    """
+
+    _pair: _native.Pair
+
+    @property
+    def stable(self) -> bool:
+        """Whether all powers of the propagator stay bounded."""
+        return self._pair.stable
+
+    @property
+    def kind(self) -> str:
+        """``elliptic`` and ``coexistence`` are stable, ``parabolic`` grows linearly, ``hyperbolic`` exponentially."""
+        return self._pair.kind
+
+    @property
+    def side(self) -> int:
+        """1 where Tr Q >= 2, -1 where Tr Q <= -2, 0 between."""
+        return self._pair.side
+
+    @property
+    def decided_by(self) -> str:
+        """The tier that proved it: filter, refine or exact."""
+        return self._pair.decided_by
+
+    @property
+    def ratio(self) -> tuple[int, int]:
+        """(p, q), h2/h1 = p/q in lowest terms: p fast and q slow kicks in a period."""
+        return self._pair.terms
+
+    @property
+    def lambda1(self) -> Number:
+        """The fast stiffness, 1/time²."""
+        return self._pair.quantities[0]
+
+    @property
+    def lambda2(self) -> Number:
+        """The slow stiffness, 1/time²."""
+        return self._pair.quantities[1]
+
+    @property
+    def h1(self) -> Number:
+        """The fast step."""
+        return self._pair.quantities[2]
+
+    @property
+    def h2(self) -> Number:
+        """The slow step."""
+        return self._pair.quantities[3]
+
+    @property
+    def period(self) -> Number:
+        """T = p h1 = q h2, after which both clocks meet again."""
+        return self._pair.quantities[4]
+
+    @cached_property
+    def document(self) -> Document:
+        """The document ``kickdrift/verdict/1``."""
+        return Document(self._pair.render("json"))
+
+    @property
+    def trace(self) -> tuple[float, float]:
+        """Doubles that enclose Tr Q; infinite where it is beyond them."""
+        return _ends(self.document.data["trace"])
+
+    @property
+    def growth_rate(self) -> tuple[float, float]:
+        """Doubles that enclose the growth rate per unit time; zeros where nothing grows exponentially."""
+        return _ends(self.document.data["growth_rate"])
+
+    @property
+    def m(self) -> int | None:
+        """The half turns of the growing solution in a period, where it grows."""
+        m: int | None = (self.document.data["resonance"] or {}).get("m")
+        return m
+
+    @property
+    def family(self) -> tuple[int, int] | None:
+        """(a, b) with m = a p + b q, the dominant family of resonances."""
+        found = self.document.data["resonance"]
+        return None if not found or found["a"] is None else (found["a"], found["b"])
+
+    def to_json(self) -> str:
+        """The document of ``kickdrift verdict``, byte for byte."""
+        return self.document.to_json()
+
+    def to_csv(self) -> str:
+        """The document's one row as CSV."""
+        return self._pair.render("csv")
+
+    def to_latex(self) -> str:
+        """The document's one row as a LaTeX table."""
+        return self._pair.render("latex")
+
+    def __bool__(self) -> bool:
+        return self.stable
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Verdict) and self.to_json() == other.to_json()
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._pair.quantities))
+
+    def __repr__(self) -> str:
+        words = "stable" if self.stable else "unstable"
+        given = ", ".join(f"{name}={getattr(self, name)}" for name in ("lambda1", "lambda2", "h1", "h2"))
+        return f"Verdict({words}, {self.kind}, {given})"
+
+    def __str__(self) -> str:
+        return self._pair.render("text").rstrip()
+
+    def _repr_html_(self) -> str:
+        colour = "#1b7837" if self.stable else "#b2182b"
+        return f"<pre style='border-left: 4px solid {colour}; padding-left: 1em'>{self}</pre>"
+
+
+def _ends(enclosure: Any) -> tuple[float, float]:
+    lo, hi = (
+        float(np.copysign(np.inf, sign)) if end is None else float(end)
+        for end, sign in ((enclosure["lo"], -1), (enclosure["hi"], 1))
+    )
+    return lo, hi
+
+
+def decide(
+    *, lambda1: Exact, lambda2: Exact, h1: Exact, h2: Exact, exact: bool = False, budget: int | None = None
+) -> Verdict:
+    """Decide whether a pair of steps is stable: proven, never guessed.
+
+    Parameters
+    ----------
+    lambda1, lambda2 : Exact
+        The stiffnesses of the fast and the slow force, 1/time²: k/m, or (2 pi/P)² for a force of period P.
+    h1, h2 : Exact
+        The fast and the slow step, time; h2/h1 must be rational.
+    exact : bool
+        Decide in exact arithmetic alone, and show the exact trace where it is rational.
+    budget : int, optional
+        The most kicks that one tier may compose; 10^8 unless given.
+
+    Raises
+    ------
+    KickdriftError
+        Bad input, with its field, value and remedy.
+    BudgetError
+        A period of more kicks than the budget allows, before the work begins.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> print(kd.decide(lambda1="11/4", lambda2="57/10", h1=1, h2="5/3"))
+    stable: coexistence, Q = I; a tongue is closed here
+      h2/h1        5/3: 5 fast and 3 slow kicks in the period T = 5
+      trace        2
+                   = 2 exactly
+      decided by   exact
+    """
+    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, budget))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Verdicts:
+    """The verdicts of many pairs.
+
+    Attributes
+    ----------
+    code : array of uint8, the broadcast shape
+        Positions in ``Verdicts.names``.
+    tier : array of uint8, the same shape
+        The deciding tiers, positions in ``Verdicts.tier_names``.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2=["0.9", "0.98", "1"])
+    >>> found.stable.tolist(), found.names[found.code[1]]
+    ([True, False, True], 'hyperbolic-')
+    """
+
+    code: npt.NDArray[np.uint8]
+    tier: npt.NDArray[np.uint8]
+
+    names = VERDICTS
+    tier_names = TIERS
+
+    @property
+    def stable(self) -> npt.NDArray[np.bool_]:
+        """Whether each pair is stable."""
+        return _STABLE[self.code]
+
+    @property
+    def kind(self) -> npt.NDArray[np.str_]:
+        """The kind of each: elliptic, parabolic, coexistence or hyperbolic."""
+        return np.array([name.rstrip("+-") for name in VERDICTS])[self.code]
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row a pair, in the order of the flattened arrays: stable, kind, decided_by."""
+        import pandas as pd
+
+        tiers = np.array(TIERS)[self.tier.ravel()]
+        return pd.DataFrame({"stable": self.stable.ravel(), "kind": self.kind.ravel(), "decided_by": tiers})
+
+    def __len__(self) -> int:
+        return len(self.code)
+
+    def __repr__(self) -> str:
+        unstable = int(self.code.size - np.count_nonzero(self.stable))
+        return f"Verdicts({self.code.size} pairs of shape {self.code.shape}: {unstable} unstable)"
+
+
+def verdicts(
+    *, lambda1: Any, lambda2: Any, h1: Any, h2: Any, budget: int | None = None, threads: int | None = None
+) -> Verdicts:
+    """Decide many pairs at once, side by side in the processor and on all cores, without Python's lock.
+
+    Parameters
+    ----------
+    lambda1, lambda2, h1, h2 : Exact, or arrays or nested lists of such
+        As for :func:`decide`; arrays broadcast as NumPy's do. Each value is read once, however often it is broadcast.
+        Arrays of doubles mean exactly these doubles: their quotients rarely have short periods, so give integers,
+        Fractions or texts.
+    budget : int, optional
+        The most kicks that one pair may compose; 10^8 unless given.
+    threads : int, optional
+        One a core unless given.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        As :func:`decide`, for the first pair that has such an error.
+    KeyboardInterrupt
+        Within a second of Ctrl-C.
+
+    Examples
+    --------
+    A stiffness per row, a step per column:
+
+    >>> import kickdrift as kd
+    >>> found = kd.verdicts(lambda1=[["pi^2"], [1]], lambda2="1/25", h1="1/10", h2=["1", "5/2", "7/2"])
+    >>> found.stable.shape
+    (2, 3)
+    """
+    fields = {"lambda1": lambda1, "lambda2": lambda2, "h1": h1, "h2": h2}
+    arrays = [_array(field, value) for field, value in fields.items()]
+    try:
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    except ValueError as error:
+        shapes = ", ".join(str(array.shape) for array in arrays)
+        raise KickdriftError("lambda1, lambda2, h1, h2", shapes, f"give shapes that broadcast: {error}") from None
+    values = [array.ravel().tolist() for array in arrays]
+    positions = [_positions(array, shape) for array in arrays]
+    code, tier = _native.verdicts(values, positions, budget, threads or 0)
+    return Verdicts(code.reshape(shape), tier.reshape(shape))
+
+
+def _array(field: str, value: Any) -> npt.NDArray[Any]:
+    if isinstance(value, np.ndarray):
+        return value
+    # Texts and Fractions stay what they are.
+    try:
+        return np.array(value, dtype=object)
+    except ValueError:
+        raise KickdriftError(field, type(value).__name__, "give nested lists of equal lengths") from None
+
+
+def _positions(array: npt.NDArray[Any], shape: tuple[int, ...]) -> npt.NDArray[np.int64]:
+    own = np.arange(array.size, dtype=np.int64).reshape(array.shape)
+    return np.ascontiguousarray(np.broadcast_to(own, shape)).ravel()

@@ -1,0 +1,149 @@
+"""Systems of ASE: one calculator for each group of forces.
+
+Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from kickdrift._errors import KickdriftError, needs
+from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm
+from kickdrift._numbers import Exact, number
+from kickdrift._system import System
+
+try:
+    from ase import Atoms, units
+except ImportError:
+    raise needs("ase", "ase") from None
+
+#: The difference of positions, Å.
+DIFFERENCE = 1e-3
+
+
+def system(
+    atoms: Any,
+    groups: Mapping[str, tuple[Any, Exact]],
+    *,
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+    progress: Progress | None = None,
+) -> System:
+    """Make a system of ASE's: the Hessian of each calculator at the minimum of all, with its measured error.
+
+    Parameters
+    ----------
+    atoms : ase.Atoms
+        Not changed; constraints of ASE's are an error.
+    groups : mapping of str to (calculator, step)
+        The forces, and how often each is integrated, in fs exactly.
+    minimize : bool
+        Go to the minimum beside the positions first, by Newton's method.
+    difference : float
+        The difference of positions, Å.
+    progress : callable, optional
+        Called with the columns done and the columns in all, for each group.
+
+    Returns
+    -------
+    System
+        In fs; its ``accuracy`` is the largest estimated error of a Hessian over its norm.
+
+    Raises
+    ------
+    KickdriftError
+        No group, a step that is not positive, constraints, positions that are near no minimum.
+
+    Examples
+    --------
+    >>> import ase
+    >>> from ase.calculators.emt import EMT
+    >>> import kickdrift.ase
+    >>> found = kickdrift.ase.system(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 5)})
+    >>> found.decide().stable
+    True
+    """
+    forces, steps, masses = _forces(atoms, groups)
+    where = _start(atoms, forces, masses, minimize, difference)
+    potentials: dict[str, tuple[Exact, Doubles]] = {}
+    accuracy, root = 0.0, np.sqrt(np.repeat(masses, 3))
+    for (name, force), step in zip(forces.items(), steps, strict=True):
+        matrix, error = hessian(force, where, masses, difference, None, progress)
+        accuracy = max(accuracy, error / max(norm(matrix), 1e-300))
+        potentials[name] = (step, matrix * np.outer(root, root))
+    # A periodic cell has no rotations: there the null space of the total tells what is rigid.
+    free = None if atoms.pbc.any() else where
+    accuracy = min(max(accuracy, 1e-12), 0.09)
+    title = f"{len(atoms)} atoms, fs and Å"
+    return System.from_hessians(masses, potentials, positions=free, accuracy=accuracy, title=title)
+
+
+def oscillations(
+    atoms: Any,
+    groups: Mapping[str, tuple[Any, Exact]],
+    *,
+    about: str = "orbit",
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+) -> Monodromy:
+    """Measure what small deviations do over a period, about the integrator's own orbit or about the minimum.
+
+    Parameters
+    ----------
+    atoms, groups, minimize, difference
+        As for :func:`system`.
+    about : str
+        ``"orbit"`` or ``"minimum"``.
+
+    Examples
+    --------
+    >>> import ase
+    >>> from ase.calculators.emt import EMT
+    >>> import kickdrift.ase
+    >>> kickdrift.ase.oscillations(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 5)}).stable
+    True
+    """
+    forces, steps, masses = _forces(atoms, groups)
+    where = _start(atoms, forces, masses, minimize, difference)
+    return monodromy(forces, steps, where, masses, difference, about)
+
+
+def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:
+    if not groups:
+        raise KickdriftError("groups", None, "give a calculator and a step for each group of forces")
+    if atoms.constraints:
+        raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
+    forces, steps = {}, []
+    for name, (calculator, step) in groups.items():
+        own = number(step).fraction
+        if own <= 0:
+            raise KickdriftError(f"groups[{name}]", str(step), "a step must be positive")
+        forces[name] = _force(atoms, calculator)
+        steps.append(own)
+    # From eV to u Å²/fs².
+    return forces, steps, np.asarray(atoms.get_masses(), dtype=np.float64)
+
+
+def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
+    own = Atoms(numbers=atoms.numbers, positions=atoms.positions, cell=atoms.cell, pbc=atoms.pbc)
+    own.set_masses(atoms.get_masses())
+    own.set_initial_charges(atoms.get_initial_charges())
+    own.calc = calculator
+
+    def of(positions: Doubles) -> Doubles:
+        own.set_positions(positions)
+        return np.asarray(own.get_forces() * units.fs**2, dtype=np.float64)
+
+    return of
+
+
+def _start(atoms: Any, forces: Mapping[str, Force], masses: Doubles, minimize: bool, difference: float) -> Doubles:
+    where = np.array(atoms.positions, dtype=np.float64)
+    if not minimize:
+        return where
+    every = list(forces.values())
+    return minimum(lambda x: np.sum([force(x) for force in every], axis=0), where, masses, difference)

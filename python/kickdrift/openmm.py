@@ -1,0 +1,392 @@
+"""Systems of OpenMM: its force groups, masses and integrators, as they are run.
+
+Units: lengths in nm, times in ps, energies in kJ/mol, so stiffness over mass is 1/ps². A step is exact: a number of ps,
+or a quantity of OpenMM, which is read as it is printed (4.4 fs is 22/5 fs, whatever the double).
+
+What decides is the dynamics of small deviations. Friction and noise of Langevin integrators, barostats and thermostats
+are left out, and ``notes`` say so.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from kickdrift._errors import KickdriftError, needs
+from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm
+from kickdrift._numbers import Exact, number
+from kickdrift._system import System
+
+try:
+    import openmm as mm
+    from openmm import unit
+except ImportError:
+    raise needs("openmm", "openmm") from None
+
+#: The difference of positions, nm: force fields are smooth on this length.
+DIFFERENCE = 1e-4
+
+
+@dataclass(frozen=True)
+class _Engine:
+    """A context for forces by group."""
+
+    context: Any
+    masses: Doubles
+    count: int
+
+    def force(self, groups: int) -> Force:
+        """The forces of some groups, bits of a mask, at positions in nm, in kJ/mol/nm."""
+
+        def of(positions: Doubles) -> Doubles:
+            self.context.setPositions(positions)
+            state = self.context.getState(getForces=True, groups=groups)
+            return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)
+
+        return of
+
+
+def system(
+    system: Any,
+    positions: Any,
+    *,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    atoms: Sequence[int] | None = None,
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+    progress: Progress | None = None,
+) -> System:
+    """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
+
+    Parameters
+    ----------
+    system : openmm.System
+        Not changed. Hydrogen mass repartitioning comes along with the masses.
+    positions : Quantity or array, shape (n, 3), nm
+    integrator : openmm.Integrator, optional
+        Verlet, MTSIntegrator or their Langevin kin; or instead
+    steps : mapping of int to step, optional
+        The step of each force group: ps exactly, or a quantity.
+    atoms : sequence of int, optional
+        Only the Hessians of these atoms; all others stand still.
+    minimize : bool
+        Go to the minimum beside the positions, in a copy.
+    difference : float
+        The difference of positions, nm.
+    progress : callable, optional
+        Called with the columns done and the columns in all, for each group.
+
+    Returns
+    -------
+    System
+        Its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` say what is left out.
+        Constraints are met by RATTLE: deviations along them are projected out, the curvature they bring is kept.
+
+    Raises
+    ------
+    KickdriftError
+        Groups that are never integrated, massless particles, positions that are near no minimum.
+
+    Examples
+    --------
+    Two atoms on a spring of 1000 kJ/mol/nm², and walls of 10:
+
+    >>> import openmm
+    >>> import kickdrift.openmm
+    >>> own, bond = openmm.System(), openmm.HarmonicBondForce()
+    >>> walls = openmm.CustomExternalForce("5*(x^2+y^2+z^2)")
+    >>> walls.setForceGroup(1)
+    >>> for atom in range(2):
+    ...     _ = own.addParticle(1.0), walls.addParticle(atom)
+    >>> _ = bond.addBond(0, 1, 0.0, 1000.0), own.addForce(bond), own.addForce(walls)
+    >>> found = kickdrift.openmm.system(own, [[0, 0, 0], [0, 0, 0]], steps={0: "1/200", 1: "1/50"})
+    >>> found.decide().stable
+    True
+    """
+    clocks = _clocks(system, integrator, steps)
+    engine = _engine(system)
+    notes = _notes(system, integrator)
+    where = _positions(positions, engine.count)
+    constraints = _constraints(system)
+    if minimize:
+        where = _minimized(system, engine, where, constraints, difference)
+    chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
+    if chosen is not None:
+        constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
+    frame = _frame(where, engine.masses, constraints, chosen)
+    potentials: dict[str, tuple[Exact, Doubles]] = {}
+    accuracy = 0.0
+    for step, groups in _levels(clocks).items():
+        force = engine.force(sum(1 << group for group in groups))
+        matrix, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        if constraints:
+            matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
+        matrix = frame.T @ matrix @ frame
+        accuracy = max(accuracy, error / max(norm(matrix), 1e-300))
+        potentials[", ".join(f"group {group}" for group in groups)] = (step, (matrix + matrix.T) / 2)
+    free = not constraints and chosen is None and not system.usesPeriodicBoundaryConditions()
+    if chosen is not None:
+        notes.append(f"only {len(atoms or ())} of {engine.count} atoms move")
+    masses = engine.masses if free else np.ones(frame.shape[1])
+    if free:
+        root = np.sqrt(np.repeat(masses, 3))
+        potentials = {name: (step, own * np.outer(root, root)) for name, (step, own) in potentials.items()}
+    return System.from_hessians(
+        masses,
+        potentials,
+        positions=where if free else None,
+        accuracy=min(max(accuracy, 1e-12), 0.09),
+        title=f"{engine.count} particles, ps and nm",
+        notes=notes,
+    )
+
+
+def oscillations(
+    system: Any,
+    positions: Any,
+    *,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    about: str = "orbit",
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+) -> Monodromy:
+    """Measure what small deviations do over a period, about the integrator's own periodic orbit: what a run shows.
+
+    Bonded and nonbonded forces balance at a minimum, none vanishes there; so each slow kick displaces the atoms and the
+    fast forces swing them back. The orbit of that is found by Newton's method, with Hessians at each kick.
+
+    Parameters
+    ----------
+    system, positions, integrator, steps, minimize, difference
+        As for :func:`system`.
+    about : str
+        ``"orbit"``, or ``"minimum"``: the fixed point of all forces together, good to some hundredths of a fs near the
+        first unstable step, with rates good to 10 % there and worse beyond.
+
+    Returns
+    -------
+    Monodromy
+        An estimate in doubles; :func:`system` gives what can be proven, about the minimum.
+
+    Raises
+    ------
+    KickdriftError
+        As :func:`system`; a system with constraints; an orbit that is not found.
+
+    Examples
+    --------
+    >>> import openmm
+    >>> import kickdrift.openmm
+    >>> own, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
+    >>> _ = own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
+    >>> kickdrift.openmm.oscillations(own, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
+    Monodromy(about the minimum: stable, an estimate)
+    """
+    clocks = _clocks(system, integrator, steps)
+    if system.getNumConstraints():
+        remedy = "orbits of constrained systems are not followed: use system(...), which is about the minimum"
+        raise KickdriftError("system", f"{system.getNumConstraints()} constraints", remedy)
+    engine = _engine(system)
+    where = _positions(positions, engine.count)
+    if minimize:
+        where = _minimized(system, engine, where, [], difference)
+    levels = _levels(clocks)
+    forces = {str(groups): engine.force(sum(1 << group for group in groups)) for groups in levels.values()}
+    return monodromy(forces, list(levels), where, engine.masses, difference, about)
+
+
+def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
+    """The groups of each step, the smallest first."""
+    levels: dict[Fraction, list[int]] = {}
+    for group, step in sorted(clocks.items(), key=lambda item: (item[1], item[0])):
+        levels.setdefault(step, []).append(group)
+    return levels
+
+
+def _clocks(system: Any, integrator: Any, steps: Mapping[int, Any] | None) -> dict[int, Fraction]:
+    """The step of each force group, ps; all groups of the system are there."""
+    if (steps is None) == (integrator is None):
+        raise KickdriftError("steps", "both" if steps is not None else None, "give either steps or an integrator")
+    groups = {force.getForceGroup() for force in system.getForces() if not _moves_nothing(force)}
+    clocks = _of_integrator(integrator, groups) if steps is None else {g: _step(g, own) for g, own in steps.items()}
+    missing = sorted(groups - clocks.keys())
+    if missing:
+        names = [force.getName() for force in system.getForces() if force.getForceGroup() in missing]
+        remedy = f"is never integrated ({', '.join(names)}): give it a step"
+        raise KickdriftError("steps", f"group {missing[0]}", remedy)
+    return {group: step for group, step in clocks.items() if group in groups}
+
+
+def _moves_nothing(force: Any) -> bool:
+    return isinstance(force, mm.CMMotionRemover) or _is_bath(force)
+
+
+def _is_bath(force: Any) -> bool:
+    return "Barostat" in type(force).__name__ or isinstance(force, mm.AndersenThermostat)
+
+
+def _step(group: int, value: Any) -> Fraction:
+    field = f"steps[{group}]"
+    if unit.is_quantity(value):
+        factor = value.unit.conversion_factor_to(unit.picosecond)
+        step = Fraction(repr(float(value._value))) * Fraction(repr(float(factor)))
+    else:
+        step = number(value).fraction
+    if step <= 0:
+        raise KickdriftError(field, str(value), "a step must be positive")
+    return step
+
+
+#: How OpenMM's multiple-time-step integrators write a kick of group G, N times a step.
+_KICK = re.compile(r"v\+(?P<half>0?\.5\*)?\(?dt(?:/(?P<parts>\d+))?\)?\*f(?P<group>\d*)/m$")
+
+
+def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
+    step = Fraction(Decimal(repr(float(integrator.getStepSize()._value))))
+    plain = (mm.VerletIntegrator, mm.LangevinIntegrator, mm.LangevinMiddleIntegrator)
+    if isinstance(integrator, plain):
+        mask = integrator.getIntegrationForceGroups()
+        return {group: step for group in groups if mask >> group & 1}
+    clocks: dict[int, Fraction] = {}
+    if isinstance(integrator, mm.CustomIntegrator):
+        for number_ in range(integrator.getNumComputations()):
+            _, variable, expression = integrator.getComputationStep(number_)
+            found = _KICK.match(expression.replace(" ", "")) if variable == "v" else None
+            if found:
+                own = [int(found["group"])] if found["group"] else sorted(groups)
+                clocks |= dict.fromkeys(own, step / int(found["parts"] or 1))
+    if not clocks:
+        remedy = "its steps are not known from its form: give steps={group: step} instead"
+        raise KickdriftError("integrator", type(integrator).__name__, remedy)
+    return clocks
+
+
+def _engine(system: Any) -> _Engine:
+    count = system.getNumParticles()
+    masses = np.array([system.getParticleMass(n)._value for n in range(count)])
+    if (masses <= 0).any():
+        remedy = "has no mass: virtual sites and frozen particles are not handled"
+        raise KickdriftError("system", f"particle {int(np.argmin(masses))}", remedy)
+    # The Reference platform computes in doubles: differences of its forces are good to ten digits.
+    integrator = mm.VerletIntegrator(0.001)
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Reference"))
+    return _Engine(context, masses, count)
+
+
+def _positions(positions: Any, count: int) -> Doubles:
+    own = positions.value_in_unit(unit.nanometer) if unit.is_quantity(positions) else positions
+    array = np.array([[float(x) for x in row] for row in own], dtype=np.float64)
+    if array.shape != (count, 3):
+        raise KickdriftError("positions", f"shape {array.shape}", f"give shape ({count}, 3)")
+    return array
+
+
+def _notes(system: Any, integrator: Any) -> list[str]:
+    notes = [f"{force.getName()} is left out" for force in system.getForces() if _is_bath(force)]
+    if integrator is not None and "Langevin" in type(integrator).__name__:
+        notes.append("friction and noise of the integrator are left out")
+    if system.getNumConstraints():
+        notes.append(
+            f"{system.getNumConstraints()} constraints: deviations along them are projected out, RATTLE assumed"
+        )
+    return notes
+
+
+_Constraint = tuple[int, int, float]
+
+
+def _constraints(system: Any) -> list[_Constraint]:
+    every = (system.getConstraintParameters(n) for n in range(system.getNumConstraints()))
+    return [(i, j, float(distance._value)) for i, j, distance in every]
+
+
+def _minimized(
+    system: Any, engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float
+) -> Doubles:
+    """The minimum in the engine's own context: the system given and its contexts stay as they are."""
+    engine.context.setPositions(where)
+    mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=1e-4)
+    near = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    if constraints:
+        return _constrained_minimum(engine, near, constraints, difference)
+    groups = {force.getForceGroup() for force in system.getForces()}
+    return minimum(engine.force(sum(1 << group for group in groups)), near, engine.masses, difference)
+
+
+def _constrained_minimum(
+    engine: _Engine, near: Doubles, constraints: Sequence[_Constraint], difference: float
+) -> Doubles:
+    """Newton's method along the constraints, each step put back on them."""
+    force, where, masses = engine.force(-1), near, engine.masses
+    root = np.sqrt(np.repeat(masses, 3))
+    smallest, idle = np.inf, 0
+    for _ in range(30):
+        frame = _frame(where, masses, constraints, None)
+        pull = frame.T @ (force(where).ravel() / root)
+        size = float(np.linalg.norm(pull))
+        idle = idle + 1 if size > 0.9 * smallest else 0
+        if idle == 2:
+            break
+        smallest = min(smallest, size)
+        matrix, _ = hessian(force, where, masses, difference)
+        matrix = frame.T @ (matrix + _curvature(force(where), where, masses, constraints, None)) @ frame
+        values, vectors = np.linalg.eigh(matrix)
+        firm = np.abs(values) > 1e-7 * np.abs(values).max()
+        move = vectors[:, firm] @ ((vectors[:, firm].T @ pull) / values[firm])
+        engine.context.setPositions(where + ((frame @ move) / root).reshape(where.shape))
+        engine.context.applyConstraints(1e-12)
+        where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    return where
+
+
+def _gradients(where: Doubles, masses: Doubles, constraints: Sequence[_Constraint]) -> Doubles:
+    """Mass-weighted gradients of (|r_i - r_j|² - d²)/2, one a row."""
+    rows = np.zeros((len(constraints), where.size))
+    for row, (i, j, _) in zip(rows, constraints, strict=True):
+        apart = where[i] - where[j]
+        row[3 * i : 3 * i + 3], row[3 * j : 3 * j + 3] = apart, -apart
+    return rows / np.sqrt(np.repeat(masses, 3))
+
+
+def _frame(
+    where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
+) -> Doubles:
+    """An orthonormal basis of the deviations that the constraints allow, mass-weighted."""
+    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
+    if not constraints:
+        return np.eye(len(kept))
+    rows = _gradients(where, masses, constraints)[:, kept]
+    _, sizes, vectors = np.linalg.svd(rows)
+    rank = int((sizes > 1e-10 * sizes.max()).sum())
+    return np.asarray(vectors[rank:].T)
+
+
+def _curvature(
+    force: Doubles, where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
+) -> Doubles:
+    """What constraints add to a group's Hessian: their forces turn as the atoms move.
+
+    The group's force along the constraints is sum of l_c grad g_c; the constraints take it up, so the force left is
+    that of the Hessian K + sum of l_c grad grad g_c, since the constraint forces are -l_c grad g_c.
+    """
+    rows = _gradients(where, masses, constraints)
+    pull = force.ravel() / np.sqrt(np.repeat(masses, 3))
+    factors = np.linalg.lstsq(rows.T, pull, rcond=None)[0]
+    added = np.zeros((where.size, where.size))
+    for factor, (i, j, _) in zip(factors, constraints, strict=True):
+        for axis in range(3):
+            at, to = 3 * i + axis, 3 * j + axis
+            added[at, at] += factor / masses[i]
+            added[to, to] += factor / masses[j]
+            added[at, to] -= factor / np.sqrt(masses[i] * masses[j])
+            added[to, at] -= factor / np.sqrt(masses[i] * masses[j])
+    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
+    return np.asarray(added[np.ix_(kept, kept)])

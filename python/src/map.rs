@@ -1,0 +1,191 @@
+//! The verdicts of a grid as NumPy arrays, each made once.
+
+use std::sync::atomic::AtomicBool;
+
+use kickdrift::error::Result;
+use kickdrift::format::Format;
+use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
+use kickdrift::number::Laurent;
+use kickdrift::report::map::{Rows, Tally, document, marked};
+use kickdrift::report::plane::{Chart, Colouring};
+use kickdrift::scene::GridRange;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::raised;
+use crate::job;
+use crate::number::quantity;
+use crate::pair::{form, limits};
+
+/// Columns of all pairs, column by column.
+#[derive(Default)]
+struct Arrays {
+    verdict: Vec<u8>,
+    tier: Vec<u8>,
+    labels: Option<[Vec<i64>; 3]>,
+    rates: Option<[Vec<f64>; 2]>,
+}
+
+/// A computed map without its arrays, which Python holds.
+#[pyclass(frozen, module = "kickdrift._native")]
+pub struct Map {
+    grid: Grid,
+    range: GridRange,
+    products: Products,
+    tally: Tally,
+}
+
+/// The first and the last multiplier of the columns and of the rows of a grid.
+#[pyfunction]
+pub fn multipliers(
+    stiffness: [Bound<'_, PyAny>; 2],
+    steps: [Bound<'_, PyAny>; 2],
+    ranges: [[Bound<'_, PyAny>; 2]; 2],
+) -> PyResult<[(u64, u64); 2]> {
+    let (grid, _) = grid(&stiffness, &steps, &ranges)?;
+    Ok([grid.columns(), grid.rows()])
+}
+
+/// Decides all pairs of a grid: the map, and its arrays by name.
+#[pyfunction]
+pub fn map<'py>(
+    py: Python<'py>,
+    stiffness: [Bound<'py, PyAny>; 2],
+    steps: [Bound<'py, PyAny>; 2],
+    ranges: [[Bound<'py, PyAny>; 2]; 2],
+    products: (bool, bool),
+    budget: Option<u64>,
+    threads: usize,
+) -> PyResult<(Map, Bound<'py, PyDict>)> {
+    let (grid, range) = grid(&stiffness, &steps, &ranges)?;
+    let products = Products { label: products.0, growth: products.1 };
+    let (map, arrays) = job::run(py, move |stopped| {
+        let mut map = Map { grid, range, products, tally: Tally::default() };
+        let arrays = map.compute(threads, budget, stopped)?;
+        Ok((map, arrays))
+    })?;
+    let arrays = arrays.into_python(py, &map.grid)?;
+    Ok((map, arrays))
+}
+
+fn grid(
+    stiffness: &[Bound<'_, PyAny>; 2],
+    steps: &[Bound<'_, PyAny>; 2],
+    [h1, h2]: &[[Bound<'_, PyAny>; 2]; 2],
+) -> PyResult<(Grid, GridRange)> {
+    let both = |names: [&str; 2], [x, y]: &[Bound<'_, PyAny>; 2]| -> PyResult<[Laurent; 2]> {
+        Ok([quantity(names[0], x)?, quantity(names[1], y)?])
+    };
+    let [lambda1, lambda2] = both(["lambda1", "lambda2"], stiffness)?;
+    let steps = both(["step1", "step2"], steps)?;
+    let ranges = [both(["h1", "h1"], h1)?, both(["h2", "h2"], h2)?].map(|[lo, hi]| (lo, hi));
+    let range = GridRange::new(steps, ranges);
+    let grid = range.of(lambda1, lambda2).map_err(|error| raised(&error))?;
+    Ok((grid, range))
+}
+
+impl Map {
+    fn compute(&mut self, threads: usize, budget: Option<u64>, stopped: &AtomicBool) -> Result<Arrays> {
+        let Map { grid, products, tally, .. } = self;
+        let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped) };
+        let pairs = grid.pairs() as usize;
+        let mut arrays = Arrays {
+            verdict: Vec::with_capacity(pairs),
+            tier: Vec::with_capacity(pairs),
+            labels: products.label.then(|| [-1, 0, 0].map(|none| vec![none; pairs])),
+            rates: products.growth.then(|| [(); 2].map(|()| vec![f64::NAN; pairs])),
+        };
+        Task::of(grid).with(*products).within(resources).for_each_band(|_, band| {
+            tally.add(grid, &band);
+            arrays.add(grid, &band);
+            Ok(())
+        })?;
+        Ok(arrays)
+    }
+}
+
+impl Arrays {
+    fn add(&mut self, grid: &Grid, band: &Band) {
+        let first = self.verdict.len();
+        self.verdict.extend(&band.verdicts);
+        self.tier.extend(&band.tiers);
+        if band.growing.is_empty() {
+            return;
+        }
+        for pair in marked(grid, band) {
+            let Some(growing) = pair.growing else { continue };
+            let (n, found) = (first + growing.position as usize, pair.found());
+            if let Some([m, a, b]) = &mut self.labels {
+                m[n] = found.m.map_or(-1, |m| m as i64);
+                (a[n], b[n]) = found.family.unwrap_or_default();
+            }
+            if let (Some([rate, error]), Some(own)) = (&mut self.rates, found.rate) {
+                (rate[n], error[n]) = (own.middle(), own.error());
+            }
+        }
+    }
+
+    fn into_python<'py>(self, py: Python<'py>, grid: &Grid) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        let each = |(first, last): (u64, u64)| first..=last;
+        let steps = |steps: Vec<f64>| PyArray1::from_vec(py, steps);
+        all.set_item("h1", steps(each(grid.columns()).map(|i| grid.h1(i).to_f64()).collect()))?;
+        all.set_item("h2", steps(each(grid.rows()).map(|j| grid.h2(j).to_f64()).collect()))?;
+        all.set_item("verdict", shaped(py, grid, self.verdict)?)?;
+        all.set_item("tier", shaped(py, grid, self.tier)?)?;
+        for (name, values) in ["m", "a", "b"].into_iter().zip(self.labels.into_iter().flatten()) {
+            all.set_item(name, shaped(py, grid, values)?)?;
+        }
+        for (name, values) in
+            ["growth_rate", "growth_rate_error"].into_iter().zip(self.rates.into_iter().flatten())
+        {
+            all.set_item(name, shaped(py, grid, values)?)?;
+        }
+        Ok(all)
+    }
+}
+
+/// The vector itself as an array (columns, rows): nothing is copied.
+fn shaped<'py, T: numpy::Element>(
+    py: Python<'py>,
+    grid: &Grid,
+    values: Vec<T>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let (columns, rows) = grid.shape();
+    PyArray1::from_vec(py, values).reshape([columns, rows])
+}
+
+#[pymethods]
+impl Map {
+    /// The document in the form json or text; tables of many rows are the program's.
+    fn render(&self, format: &str) -> PyResult<String> {
+        let rows = (self.tally.counts.marked() == 0).then(|| Rows::new(&self.grid, self.products).table(&[]));
+        let (lambda1, lambda2) = self.grid.lambdas();
+        let Products { label, growth } = self.products;
+        let asked = [("label", label), ("growth", growth)].into_iter().filter(|(_, asked)| *asked);
+        let document = document(&self.tally, rows)
+            .input("lambda1", lambda1)
+            .input("lambda2", lambda2)
+            .inputs(self.range.given())
+            .inputs(asked.map(|(name, _)| (name, "true".to_string())));
+        document.render(form(format)).map_err(|error| raised(&error))
+    }
+
+    /// The picture of the verdicts, from the arrays.
+    fn svg(&self, verdict: &Bound<'_, PyArray2<u8>>, tier: &Bound<'_, PyArray2<u8>>) -> PyResult<String> {
+        let (verdict, tier) = (verdict.readonly(), tier.readonly());
+        let (verdict, tier) = (verdict.as_slice()?, tier.as_slice()?);
+        let rows = self.grid.shape().1;
+        let mut chart = Chart::new(&self.grid, Colouring::Verdict);
+        let columns = self.grid.columns().0..;
+        for ((first, verdicts), tiers) in columns.zip(verdict.chunks(rows)).zip(tier.chunks(rows)) {
+            let (verdicts, tiers) = (verdicts.to_vec(), tiers.to_vec());
+            let (growing, counters) = (Vec::new(), Counters::default());
+            chart.add(&self.grid, &Band { first, columns: 1, rows, verdicts, tiers, growing, counters });
+        }
+        let figure = chart.figure(&self.grid, &self.tally.counts, &[]);
+        let bytes = figure.file(Format::Svg, 300.0).map_err(|error| raised(&error))?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}

@@ -1,0 +1,167 @@
+//! Exact numbers from what Python has, and back.
+
+use std::cmp::Ordering;
+
+use kickdrift::number::parse::{MAX_BITS, parse};
+use kickdrift::number::{Laurent, Rational};
+use num_bigint::BigInt;
+use pyo3::basic::CompareOp;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyFloat, PyInt, PyString};
+
+use crate::error::{raised, refused};
+
+/// An exact number: a sum of c π^k with rational c.
+#[pyclass(frozen, module = "kickdrift")]
+#[derive(Clone)]
+pub struct Number(pub Laurent);
+
+#[pymethods]
+impl Number {
+    #[new]
+    fn new(value: &Bound<'_, PyAny>) -> PyResult<Number> {
+        quantity("number", value).map(Number)
+    }
+
+    fn __str__(&self) -> String {
+        self.0.to_string()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Number('{}')", self.0)
+    }
+
+    fn __float__(&self) -> f64 {
+        self.0.to_f64()
+    }
+
+    fn __bool__(&self) -> bool {
+        !self.0.terms().is_empty()
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<(Py<PyAny>, (String,))> {
+        Ok((slf.get_type().into_any().unbind(), (slf.get().0.to_string(),)))
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        match self.0.as_rational() {
+            Some(rational) => rational.into_pyobject(py)?.hash(),
+            None => PyString::new(py, &self.0.to_string()).hash(),
+        }
+    }
+
+    /// Equality and order with whatever denotes an exact number; anything else is neither.
+    fn __richcmp__(&self, other: &Bound<'_, PyAny>, op: CompareOp) -> PyResult<Py<PyAny>> {
+        let py = other.py();
+        if other.is_instance_of::<PyString>() {
+            return Ok(py.NotImplemented());
+        }
+        let Ok(other) = quantity("number", other) else { return Ok(py.NotImplemented()) };
+        let order: Ordering = self.0.cmp(&other);
+        Ok(PyBool::new(py, op.matches(order)).to_owned().into_any().unbind())
+    }
+
+    #[getter]
+    fn fraction<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let remedy = "is irrational: use float(...), str(...) or to_sympy()";
+        let rational =
+            self.0.as_rational().ok_or_else(|| refused(py, "number", self.0.to_string(), remedy))?;
+        Ok(rational.into_pyobject(py)?.into_any())
+    }
+
+    #[getter]
+    fn is_rational(&self) -> bool {
+        self.0.as_rational().is_some()
+    }
+
+    fn to_sympy<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("sympy")?.call_method1("sympify", (self.0.to_string().replace('^', "**"),))
+    }
+}
+
+/// The exact number that a value denotes; an error names the field.
+#[pyfunction]
+pub fn number(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Number> {
+    quantity(field, value).map(Number)
+}
+
+/// What a value of Python denotes, exactly; a double is the number that it is to its last bit.
+pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
+    let py = value.py();
+    if let Ok(number) = value.cast::<Number>() {
+        return Ok(number.get().0.clone());
+    }
+    if let Ok(text) = value.cast::<PyString>() {
+        return read(field, &text.to_string_lossy());
+    }
+    if value.is_instance_of::<PyBool>() {
+        return Err(unknown(field, value));
+    }
+    if let Ok(double) = value.cast::<PyFloat>() {
+        let finite = Laurent::try_from(double.value());
+        return finite.map_err(|_| refused(py, field, double.to_string(), "must be finite"));
+    }
+    if let Ok(integer) = value.cast::<PyInt>() {
+        return bounded(field, value, Rational::from_integer(integer.extract()?));
+    }
+    if let Some((above, below)) = terms(field, value)? {
+        return bounded(field, value, Rational::new(above, below));
+    }
+    if of_sympy(value) {
+        let inexact = value.call_method1("has", (py.import("sympy")?.getattr("Float")?,))?;
+        if inexact.is_truthy()? {
+            return Err(refused(
+                py,
+                field,
+                value.to_string(),
+                "holds a rounded number: write it as sympy.Rational",
+            ));
+        }
+        return read(field, &value.str()?.to_string_lossy());
+    }
+    Err(unknown(field, value))
+}
+
+/// Text; powers as Python writes them, too.
+fn read(field: &str, text: &str) -> PyResult<Laurent> {
+    parse(field, &text.replace("**", "^")).map_err(|error| raised(&error))
+}
+
+/// Numerator and denominator of fractions, of NumPy's and SymPy's numbers, decimals and the like.
+fn terms(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Option<(BigInt, BigInt)>> {
+    let both = (value.getattr("numerator"), value.getattr("denominator"));
+    if let (Ok(above), Ok(below)) = both
+        && let (Ok(above), Ok(below)) = (above.extract::<BigInt>(), below.extract::<BigInt>())
+        && below != BigInt::ZERO
+    {
+        return Ok(Some((above, below)));
+    }
+    let Ok(method) = value.getattr("as_integer_ratio") else { return Ok(None) };
+    // Infinities and NaN have none.
+    let Ok(ratio) = method.call0() else {
+        return Err(refused(value.py(), field, value.to_string(), "must be finite"));
+    };
+    let (above, below): (Bound<'_, PyAny>, Bound<'_, PyAny>) = ratio.extract()?;
+    Ok(Some((above.extract()?, below.extract()?)))
+}
+
+fn bounded(field: &str, value: &Bound<'_, PyAny>, rational: Rational) -> PyResult<Laurent> {
+    if rational.numer().bits().max(rational.denom().bits()) > MAX_BITS {
+        let remedy = format!("has more than {MAX_BITS} bits above or below: choose a simpler number");
+        let shown = value.get_type().name()?.to_string();
+        return Err(refused(value.py(), field, shown, &remedy));
+    }
+    Ok(Laurent::from_rational(rational))
+}
+
+fn of_sympy(value: &Bound<'_, PyAny>) -> bool {
+    let module = value.get_type().module().map(|module| module.to_string());
+    module.is_ok_and(|module| module == "sympy" || module.starts_with("sympy."))
+}
+
+fn unknown(field: &str, value: &Bound<'_, PyAny>) -> PyErr {
+    let shown = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
+    let remedy = "give an int, a Fraction, a Decimal, a text such as 'pi^2/25', a SymPy number, or a float, which means \
+                  exactly that double";
+    refused(value.py(), field, shown, remedy)
+}

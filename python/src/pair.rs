@@ -1,0 +1,131 @@
+//! One pair of steps, decided; trace, growth and label when they are asked for.
+
+use kickdrift::error::Result;
+use kickdrift::format::Format;
+use kickdrift::number::{Laurent, Rational};
+use kickdrift::propagator::Oscillator;
+use kickdrift::report::document::Document;
+use kickdrift::report::verdict::Answer as Report;
+use kickdrift::verdict::{Answer, Decision, Growth, Limits, Tier, decide_from};
+use pyo3::prelude::*;
+
+use crate::error::raised;
+use crate::job;
+use crate::number::{Number, quantity};
+
+enum Found {
+    Rational(Answer<Rational>),
+    Pi(Answer<Laurent>),
+}
+
+impl Found {
+    fn decision(&self) -> Decision {
+        match self {
+            Found::Rational(answer) => answer.decision(),
+            Found::Pi(answer) => answer.decision(),
+        }
+    }
+
+    fn growth(&self) -> Result<&Growth> {
+        match self {
+            Found::Rational(answer) => answer.growth(),
+            Found::Pi(answer) => answer.growth(),
+        }
+    }
+}
+
+/// A decided pair.
+#[pyclass(frozen, module = "kickdrift._native")]
+pub struct Pair {
+    oscillator: Oscillator,
+    found: Found,
+    exact: bool,
+}
+
+/// Decides one pair of steps.
+#[pyfunction]
+pub fn decide(
+    py: Python<'_>,
+    lambda1: &Bound<'_, PyAny>,
+    lambda2: &Bound<'_, PyAny>,
+    h1: &Bound<'_, PyAny>,
+    h2: &Bound<'_, PyAny>,
+    exact: bool,
+    budget: Option<u64>,
+) -> PyResult<Pair> {
+    let quantities = (quantity("lambda1", lambda1)?, quantity("lambda2", lambda2)?);
+    let steps = (quantity("h1", h1)?, quantity("h2", h2)?);
+    let oscillator =
+        Oscillator::new(quantities.0, quantities.1, steps.0, steps.1).map_err(|error| raised(&error))?;
+    let first = if exact { Tier::Exact } else { Tier::Filter };
+    job::run(py, move |_| {
+        let (clocks, limits) = (oscillator.clocks(), limits(budget));
+        // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
+        let found = match clocks.as_rational() {
+            Some(rational) => Found::Rational(decide_from(first, &rational, &limits)?),
+            None => Found::Pi(decide_from(first, &clocks, &limits)?),
+        };
+        Ok(Pair { oscillator, found, exact })
+    })
+}
+
+/// The work one verdict may cost.
+pub fn limits(budget: Option<u64>) -> Limits {
+    budget.map_or_else(Limits::default, |kicks| Limits { kicks })
+}
+
+#[pymethods]
+impl Pair {
+    #[getter]
+    fn stable(&self) -> bool {
+        self.found.decision().verdict.is_stable()
+    }
+
+    #[getter]
+    fn kind(&self) -> &'static str {
+        self.found.decision().verdict.kind().name()
+    }
+
+    #[getter]
+    fn side(&self) -> i8 {
+        self.found.decision().verdict.side()
+    }
+
+    #[getter]
+    fn decided_by(&self) -> &'static str {
+        self.found.decision().decided_by.name()
+    }
+
+    #[getter]
+    fn terms(&self) -> (u64, u64) {
+        self.oscillator.ratio().terms()
+    }
+
+    /// lambda1, lambda2, h1, h2 and the period.
+    #[getter]
+    fn quantities(&self) -> [Number; 5] {
+        let own = &self.oscillator;
+        [own.lambda1(), own.lambda2(), own.h1(), own.h2(), &own.period()].map(|x| Number(x.clone()))
+    }
+
+    /// The document in one of its forms: json, csv, latex or text.
+    fn render(slf: &Bound<'_, Self>, format: &str) -> PyResult<String> {
+        let format = form(format);
+        let own = slf.clone().unbind();
+        // Growth may take a while: it is computed when it is first asked for.
+        job::run(slf.py(), move |_| own.get().document()?.render(format))
+    }
+}
+
+impl Pair {
+    fn document(&self) -> Result<Document> {
+        let (decision, growth) = (self.found.decision(), self.found.growth()?.clone());
+        let exact_trace = Report::exact_trace(&self.oscillator.clocks(), self.exact);
+        Ok(Report { oscillator: self.oscillator.clone(), decision, growth, exact_trace }.document())
+    }
+}
+
+/// A document's form by its name; text for anything else.
+pub fn form(name: &str) -> Format {
+    Format::DOCUMENT.into_iter().find(|format| format.name() == name).unwrap_or(Format::Text)
+}

@@ -1,0 +1,126 @@
+"""Verdicts: one pair, many pairs."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import kickdrift as kd
+
+PAIRS = [
+    ("pi^2", "pi^2/25", "1/100", "0.98"),
+    ("11/4", "57/10", "1", "5/3"),
+    ("10", "2/5", "0.631", "3.499"),
+    ("4", "0", "1", "1"),
+    ("1", "-1/9", "1/2", "3/2"),
+]
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("exact", [False, True])
+def test_documents_are_those_of_the_program(program: Callable[..., str], pair: tuple[str, ...], exact: bool) -> None:
+    lambda1, lambda2, h1, h2 = pair
+    verdict = kd.decide(lambda1=lambda1, lambda2=lambda2, h1=h1, h2=h2, exact=exact)
+    flags = [f"--{name}={value}" for name, value in zip(("lambda1", "lambda2", "h1", "h2"), pair, strict=True)]
+    flags += ["--exact"] if exact else []
+    assert verdict.to_json() == program("verdict", *flags, "--format", "json")
+    assert verdict.to_csv() == program("verdict", *flags, "--format", "csv")
+    assert verdict.to_latex() == program("verdict", *flags, "--format", "latex")
+    assert f"{verdict}\n" == program("verdict", *flags, "--format", "text")
+
+
+def test_a_verdict_tells_all_that_its_document_does() -> None:
+    verdict = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.98")
+    assert (verdict.stable, verdict.kind, verdict.side, verdict.decided_by) == (False, "hyperbolic", -1, "filter")
+    assert verdict.ratio == (98, 1) and verdict.period == Fraction(49, 50) and verdict.m == 1
+    assert verdict.family == (0, 1) and verdict.lambda1 == kd.number("pi^2") and verdict.h2 == Fraction(49, 50)
+    assert verdict.h1 == Fraction(1, 100)
+    lo, hi = verdict.trace
+    assert lo <= hi < -2 and 0 < verdict.growth_rate[0] <= verdict.growth_rate[1]
+    assert "unstable" in repr(verdict) and "Tr Q < -2" in verdict._repr_html_() and not verdict
+    same = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="49/50")
+    assert same == verdict and hash(same) == hash(verdict) and verdict != 1
+    with pytest.raises(AttributeError):
+        verdict.stable = True  # type: ignore[misc]
+    calm = kd.decide(lambda1=1, lambda2=0, h1=1, h2="1/2")
+    assert calm.m is None and calm.family is None and calm.growth_rate == (0.0, 0.0) and calm.lambda2 == 0
+    assert bool(calm) and "stable" in repr(calm)
+
+
+def test_many_verdicts_are_those_of_one_at_a_time() -> None:
+    rng = random.Random(7)
+    h1 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
+    h2 = [Fraction(rng.randint(1, 300), 100) for _ in range(60)]
+    lambdas = ["pi^2", "11/4"]
+    found = kd.verdicts(lambda1=[[own] for own in lambdas], lambda2="1/25", h1=h1, h2=h2)
+    assert found.code.shape == (2, 60) == found.stable.shape and len(found) == 2
+    for (row, lambda1), (column, steps) in itertools.product(enumerate(lambdas), enumerate(zip(h1, h2, strict=True))):
+        one = kd.decide(lambda1=lambda1, lambda2="1/25", h1=steps[0], h2=steps[1])
+        assert found.stable[row, column] == one.stable and found.kind[row, column] == one.kind
+        sign = {1: "+", 0: "", -1: "-"}[one.side]
+        assert found.names[found.code[row, column]] == one.kind + sign
+    frame = found.to_pandas()
+    assert len(frame) == 120 and frame.stable.sum() == np.count_nonzero(found.stable)
+    assert "120 pairs of shape (2, 60)" in repr(found)
+
+
+def test_arrays_of_doubles_mean_these_doubles() -> None:
+    steps = np.array([0.5, 0.25, 0.125])
+    found = kd.verdicts(lambda1=np.float64(10.0), lambda2=np.int64(1), h1=steps, h2=steps[::-1] * 4)
+    for code, one, other in zip(found.code, steps, steps[::-1] * 4, strict=True):
+        alone = kd.decide(lambda1=10, lambda2=1, h1=Fraction(one), h2=Fraction(other))
+        assert found.names[code].startswith(alone.kind)
+    assert kd.verdicts(lambda1=1, lambda2=1, h1=1, h2=1).code.shape == ()
+    assert kd.verdicts(lambda1=1, lambda2=1, h1=[], h2=1).code.shape == (0,)
+
+
+def test_what_does_not_fit_is_refused_by_name() -> None:
+    with pytest.raises(kd.KickdriftError, match="broadcast"):
+        kd.verdicts(lambda1=[1, 2], lambda2=1, h1=[1, 2, 3], h2=1)
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.verdicts(lambda1=1, lambda2=1, h1=["1", "x"], h2=1)
+    assert (caught.value.field, caught.value.value) == ("h1", "x")
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.verdicts(lambda1=1, lambda2=1, h1=["1", "-1"], h2=1)
+    assert caught.value.field == "h1"
+    with pytest.raises(kd.BudgetError):
+        kd.verdicts(lambda1=1, lambda2=1, h1=0.1, h2=0.3, budget=1000)
+    with pytest.raises(kd.KickdriftError):
+        kd.verdicts(lambda1=1, lambda2=1, h1=[[1], [1, 2]], h2=1)
+
+
+LONG = {
+    "decide": "kd.decide(lambda1='pi^2', lambda2='pi^2/25', h1='1/1000000007', h2='1/999999937', budget=10**12)",
+    "map": "kd.map(lambda1='pi^2', lambda2='pi^2/25', step='1/9000', h1=('1/9000', '2/pi'), h2=('1/9000', '7/2'))",
+    "tongues": "kd.tongues(max_sum=400, rho='1/25')",
+    "verdicts": "kd.verdicts(lambda1=1, lambda2='1/25', h1='1/1000003', h2=[f'{n}/1000033' for n in range(1, 60000)])",
+}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="SIGINT is sent as POSIX has it")
+@pytest.mark.parametrize("call", LONG)
+def test_ctrl_c_is_heard_within_a_second(call: str) -> None:
+    code = (
+        "import time, kickdrift as kd\n"
+        "print('ready', flush=True)\n"
+        f"try:\n    {LONG[call]}\n    print('done', flush=True)\n"
+        "except KeyboardInterrupt:\n    print('heard', flush=True)\n    import os; os._exit(0)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout is not None and child.stdout.readline() == "ready\n"
+        time.sleep(1.0)
+        sent = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        assert child.stdout.readline() == "heard\n"
+        # A loaded machine may take as long again to run the handler.
+        assert time.monotonic() - sent < 2.0

@@ -1,0 +1,290 @@
+//! Long runs of one clock's steps: a power of one step's matrix, by squaring, in balls.
+//!
+//! Between two kicks of the slower clock the faster one, the *base*, strikes n times, and its step (drift, then kick) is one
+//! matrix M of determinant 1. So n steps cost some 2 log₂ n products of matrices instead of n kicks. Each squaring widens the
+//! balls by a few units, which a few more bits make good.
+//!
+//! The sign changes of x over m steps, from x₀ to x_m, follow from the two signs: with s the base's strength in its own unit
+//! of time and cos θ = 1 − s/2,
+//!
+//! * 0 < s < 4: x_j = R cos(φ + jθ), which crosses 0 ⌊mθ/π⌋ times or once more; its parity is that of the two signs;
+//! * s ≥ 4: (−1)^j x_j is a sum of two exponentials of one base, or linear, and changes its sign once at most: m changes or
+//!   m − 1, by the same parity.
+
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::ToPrimitive;
+
+use super::ends::{End, Ends, Nodes};
+use crate::number::{Ball, Ratio, Rational, Real, Sign};
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
+
+/// From so many base steps between two kicks of the other clock on, powers are cheaper than kicks whatever the bits.
+const LONG_RUN: u64 = 1000;
+
+/// x is near 0 at one strike, hardly at two in a row, never at three.
+const NEAR_ZERO: u64 = 3;
+
+/// Whether the base strikes so often between two kicks of the other clock that leaping pays.
+pub fn is_worth(ratio: Ratio) -> bool {
+    let (p, q) = ratio.terms();
+    p.max(q) / p.min(q) >= LONG_RUN
+}
+
+/// The cost of a run in kicks: products of matrices, between two kicks of the other clock.
+pub fn kicks(ratio: Ratio) -> u64 {
+    const MATRICES: u64 = 8 * 2 * 64;
+    MATRICES.saturating_add(ratio.p().min(ratio.q()).saturating_mul(16))
+}
+
+/// The even and the odd solution at T/2; no condition, enclosures as wide as `bits` bits make them.
+pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
+    let mut leaps = Leaps::new(clocks, schedule, bits);
+    Ends { even: leaps.end(1, 0), odd: leaps.end(0, 1) }
+}
+
+/// [[a, b], [c, d]]
+type Matrix = [Ball; 4];
+
+struct Leaps {
+    bits: u32,
+    /// Ticks in the unit of time h1, of the base's step and of the other clock's, and of T/2.
+    unit: u64,
+    base: u64,
+    other: u64,
+    end: u64,
+    /// The strengths of the base, of the other clock and of both.
+    strengths: [Ball; 3],
+    /// (Whether s < 4, θ/π); `None` where these bits do not tell.
+    base_turn: Option<Option<Ball>>,
+    /// Powers of a step that were made already.
+    powers: Vec<(u64, Matrix)>,
+}
+
+impl Leaps {
+    fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Self {
+        let steps = [schedule.clocks()[0].step(), schedule.clocks()[1].step()];
+        let [fast, slow, both] = clocks.enclosures(bits);
+        let (base, other, strengths) = if steps[0] <= steps[1] {
+            (steps[0], steps[1], [fast, slow, both])
+        } else {
+            (steps[1], steps[0], [slow, fast, both])
+        };
+        let mut own = Leaps {
+            bits,
+            unit: steps[0],
+            base,
+            other,
+            end: schedule.period() / 2,
+            strengths,
+            base_turn: None,
+            powers: Vec::new(),
+        };
+        own.base_turn = own.turn();
+        own
+    }
+
+    /// `Some(Some(θ/π))` for 0 < s < 4, `Some(None)` for s ≥ 4.
+    fn turn(&self) -> Option<Option<Ball>> {
+        let bits = self.bits;
+        let s = self.strengths[0].mul(&self.time(self.base), bits);
+        let beyond = s.sub(&Ball::from_integer(&4.into()), bits);
+        match (s.sign()?, beyond.sign()?) {
+            (Sign::Positive, Sign::Negative) => {
+                let cosine = Ball::one().sub(&s.scale2(-1), bits);
+                Some(Some(cosine.acos(bits)?.div(&Ball::pi(bits), bits)?))
+            }
+            (Sign::Positive, _) => Some(None),
+            _ => None,
+        }
+    }
+
+    fn time(&self, ticks: u64) -> Ball {
+        Ball::from_rational(&Rational::new(ticks.into(), self.unit.into()), self.bits)
+    }
+
+    fn end(&mut self, x: u8, v: u8) -> End {
+        let [x, v] = [x, v].map(|n| Ball::from_integer(&n.into()));
+        let mut orbit = Orbit { x, v, nodes: Nodes::default() };
+        let strengths = self.strengths.clone();
+        let bits = self.bits;
+        orbit.see();
+        orbit.kick(&strengths[2].scale2(-1), bits);
+        let mut now = 0;
+        while now < self.end {
+            let next = ((now / self.other + 1) * self.other).min(self.end);
+            // The base's strikes strictly between.
+            let (first, last) = (now / self.base + 1, next.div_ceil(self.base) - 1);
+            if first <= last {
+                orbit.drift(&self.time(first * self.base - now), bits);
+                orbit.see();
+                orbit.kick(&strengths[0], bits);
+                self.leap(&mut orbit, last - first);
+                now = last * self.base;
+            }
+            orbit.drift(&self.time(next - now), bits);
+            orbit.see();
+            now = next;
+            let strength = match (now.is_multiple_of(self.base), now.is_multiple_of(self.other)) {
+                (true, true) => &strengths[2],
+                (true, false) => &strengths[0],
+                (false, true) => &strengths[1],
+                (false, false) => break,
+            };
+            let part = if now == self.end { strength.scale2(-1) } else { strength.clone() };
+            orbit.kick(&part, bits);
+        }
+        let signs = (orbit.x.sign(), orbit.v.sign());
+        End { signs, nodes: orbit.nodes.count(), x: orbit.x, v: orbit.v }
+    }
+
+    /// `steps` steps: a few one by one until x has a certain sign, then all at once but for the last few, before which x is near
+    /// 0 again.
+    fn leap(&mut self, orbit: &mut Orbit, steps: u64) {
+        let mut left = steps;
+        for _ in 0..NEAR_ZERO.min(steps) {
+            if orbit.nodes.last_certain().is_some() {
+                break;
+            }
+            self.step(orbit);
+            left -= 1;
+        }
+        for rest in 0..NEAR_ZERO.min(left) {
+            let next = orbit.moved(&self.power(left - rest), self.bits);
+            let signs = orbit.nodes.last_certain().zip(certain(&next.x));
+            if signs.is_none() && rest + 1 < NEAR_ZERO.min(left) {
+                continue;
+            }
+            let changes = signs.and_then(|(before, after)| self.changes(left - rest, before != after));
+            let mut nodes = orbit.nodes.clone();
+            nodes.pass(changes, certain(&next.x));
+            *orbit = Orbit { nodes, ..next };
+            left = rest;
+            break;
+        }
+        (0..left).for_each(|_| self.step(orbit));
+    }
+
+    fn step(&self, orbit: &mut Orbit) {
+        orbit.drift(&self.time(self.base), self.bits);
+        orbit.see();
+        orbit.kick(&self.strengths[0], self.bits);
+    }
+
+    /// The sign changes of x over so many steps, odd or even in number; `None` where it is not known.
+    fn changes(&self, steps: u64, is_odd: bool) -> Option<u64> {
+        let fits = |n: &u64| n.is_odd() == is_odd;
+        let Some(turn) = self.base_turn.as_ref()? else {
+            return [steps, steps.checked_sub(1)?].into_iter().find(fits);
+        };
+        let turns = turn.mul(&Ball::from_integer(&BigInt::from(steps)), self.bits);
+        let whole = |x: Rational| x.floor().to_integer().to_u64();
+        let (least, most) = (whole(turns.lower())?, whole(turns.upper())? + 1);
+        let mut possible = (least..=most.min(least + 2)).filter(fits);
+        possible.next().filter(|_| possible.next().is_none() && most <= least + 2)
+    }
+
+    /// Mⁿ by squaring.
+    fn power(&mut self, n: u64) -> Matrix {
+        if let Some((_, known)) = self.powers.iter().find(|(m, _)| *m == n) {
+            return known.clone();
+        }
+        let (drift, kick, bits) = (self.time(self.base), &self.strengths[0], self.bits);
+        // x ← x + t v, then v ← v − k x.
+        let turned = Ball::one().sub(&kick.mul(&drift, bits), bits);
+        let step = [Ball::one(), drift, kick.neg(), turned];
+        let mut result = [Ball::one(), Ball::zero(), Ball::zero(), Ball::one()];
+        for bit in (0..64 - n.leading_zeros()).rev() {
+            result = product(&result, &result, bits);
+            if n >> bit & 1 == 1 {
+                result = product(&step, &result, bits);
+            }
+        }
+        // Two lengths of runs alternate, and each may be cut twice.
+        self.powers.truncate(5);
+        self.powers.insert(0, (n, result.clone()));
+        result
+    }
+}
+
+fn product(m: &Matrix, n: &Matrix, bits: u32) -> Matrix {
+    let [a, b, c, d] = m;
+    let row = |x: &Ball, y: &Ball, i: usize| x.mul(&n[i], bits).add(&y.mul(&n[i + 2], bits), bits);
+    [row(a, b, 0), row(a, b, 1), row(c, d, 0), row(c, d, 1)]
+}
+
+/// A solution on its way, and its sign changes from strike to strike so far.
+#[derive(Clone)]
+struct Orbit {
+    x: Ball,
+    v: Ball,
+    nodes: Nodes,
+}
+
+fn certain(x: &Ball) -> Option<Sign> {
+    x.sign().filter(|&sign| sign != Sign::Zero)
+}
+
+impl Orbit {
+    fn drift(&mut self, time: &Ball, bits: u32) {
+        self.x = self.x.add(&self.v.mul(time, bits), bits);
+    }
+
+    fn kick(&mut self, strength: &Ball, bits: u32) {
+        self.v = self.v.sub(&strength.mul(&self.x, bits), bits);
+    }
+
+    fn see(&mut self) {
+        self.nodes.see(certain(&self.x));
+    }
+
+    fn moved(&self, [a, b, c, d]: &Matrix, bits: u32) -> Orbit {
+        let row = |m: &Ball, n: &Ball| m.mul(&self.x, bits).add(&n.mul(&self.v, bits), bits);
+        Orbit { x: row(a, b), v: row(c, d), ..self.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::refine;
+    use super::*;
+    use crate::number::rational::ratio;
+
+    /// Both routes at these bits: signs, label and enclosures agree.
+    fn agree(p: u64, q: u64, s: Rational, rho: Rational) {
+        let own = Ratio::new(p, q).unwrap();
+        let clocks = TwoClocks::with_rho(own, s.clone(), rho.clone());
+        let schedule = Schedule::two_clocks(own).unwrap();
+        let (leapt, stepped) = (run(&clocks, &schedule, 400), refine::run(&clocks, &schedule, 400).unwrap());
+        for (one, other) in [(&leapt.even, &stepped.even), (&leapt.odd, &stepped.odd)] {
+            let name = format!("p/q = {own}, s = {s}, rho = {rho}");
+            assert!(one.x.compare(&other.x).is_none() || one.x.sign() == Some(Sign::Zero), "{name}");
+            assert!(one.v.compare(&other.v).is_none() || one.v.sign() == Some(Sign::Zero), "{name}");
+            if one.signs.0.is_some_and(|sign| sign != Sign::Zero) {
+                assert_eq!(one.signs.0, other.signs.0, "{name}");
+            }
+            if let (Some(own), Some(known)) = (one.nodes, other.nodes) {
+                assert_eq!(own, known, "sign changes, {name}");
+            }
+        }
+        let base = if p > q { s } else { s * rho * ratio((p * p) as i64, (q * q) as i64) };
+        let counted = leapt.even.nodes.is_some() || leapt.odd.nodes.is_some();
+        assert!(counted || base == ratio(4, 1), "{own}, {base}: no count");
+    }
+
+    #[test]
+    fn leaps_and_kicks_agree_in_values_signs_and_sign_changes() {
+        for (p, q) in [(1000, 1), (1, 1001), (2003, 2), (3001, 3), (3, 4001), (5003, 4)] {
+            for s in
+                [ratio(1, 1), ratio(2, 1), ratio(31, 10), ratio(1, 1_000_000), ratio(4, 1), ratio(41, 10)]
+            {
+                // The strength of the base in its own unit is s for p > q; else ρ sets it.
+                for rho in [ratio(1, 25), ratio(3, 7), ratio(1, 1_000_000)] {
+                    let s = if p > q { s.clone() } else { &s * ratio((q * q) as i64, (p * p) as i64) / &rho };
+                    agree(p, q, s, rho);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The dense full period of a system in doubles: its traces, its powers.
+
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
+
+use crate::avi::Run;
+use crate::number::{Laurent, Rational};
+use crate::recheck::context::{Checked, Fault, holds};
+use crate::scene::{RunRequest, SystemScene};
+use crate::system::{Analysis, full_period};
+
+/// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
+/// the sums of them.
+const ROUNDED: f64 = 1e-9;
+
+/// Tr Q = Σ (λ + 1/λ) and Tr Q² = Σ (λ² + 1/λ²), a rigid mode counting as λ = 1.
+pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
+    let mut turns = vec![Complex64::new(2.0, 0.0); analysis.rigid_modes.len()];
+    for part in &analysis.parts {
+        let times = Laurent::ratio(&analysis.period, &part.period).filter(Rational::is_integer);
+        let times = times.and_then(|times| i32::try_from(times.to_integer()).ok());
+        let times =
+            times.ok_or_else(|| Fault::Wrong("the period of a part does not divide the whole".into()))?;
+        turns.extend(part.multipliers.iter().map(|own| {
+            let power = own.lambda.powi(times);
+            power + power.inv()
+        }));
+    }
+    let q: DMatrix<f64> = full_period(scene.system());
+    let (norm, n) = (q.norm(), scene.system().size() as f64);
+    let sums = [
+        (q.trace(), turns.iter().sum::<Complex64>(), norm),
+        ((&q * &q).trace(), turns.iter().map(|turn| turn * turn - 2.0).sum(), norm * norm),
+    ];
+    let largest: f64 = turns.iter().map(|turn| turn.norm_sqr().max(1.0)).sum();
+    sums.into_iter().try_for_each(|(trace, sum, size)| {
+        // Roundings of the product, and those of the multipliers.
+        let off = 1e-12 * n * size + ROUNDED * largest;
+        let right = !size.is_finite() || (sum - trace).norm() <= off;
+        holds(right, || format!("the multipliers add up to {sum}, the trace of the full period to {trace}"))
+    })
+}
+
+/// The series of a linear run by powers of the full period: z after k periods is Qᵏ z₀.
+pub fn linear_run(scene: &SystemScene, request: &RunRequest, run: &Run) -> Checked {
+    let (system, centre) = (scene.system(), scene.equilibrium());
+    let n = system.size();
+    let q: DMatrix<f64> = full_period(system);
+    let shift = request.displacement.of(n)?;
+    let mut state = DVector::from_fn(2 * n, |i, _| shift.get(i).copied().unwrap_or(0.0));
+    // The amplitude of what moves about an equilibrium far from 0 has its roundoff.
+    let far = centre.map_or(0.0, |x| x.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+    let mut largest: f64 = 0.0;
+    for (k, sample) in run.series.iter().enumerate() {
+        let amplitude = state.rows(0, n).amax();
+        largest = largest.max(state.amax());
+        // A kick and a drift round by some units, whose errors move like the state itself.
+        let off = 1e-12 * (1 + k) as f64 * q.norm() * (largest + far);
+        let right = !off.is_finite() || (sample.amplitude - amplitude).abs() <= off;
+        holds(right, || format!("the amplitude after {k} periods is {amplitude}, not {}", sample.amplitude))?;
+        state = &q * state;
+    }
+    Ok(())
+}

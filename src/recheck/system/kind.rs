@@ -1,0 +1,29 @@
+//! The kind of a system in exact arithmetic.
+
+use crate::error::{Error, Result};
+use crate::recheck::context::{Checked, same};
+use crate::scene::SystemScene;
+use crate::system::{Limits, decide_exact};
+use crate::verdict::Kind;
+
+/// The kind by characteristic polynomials over ℚ; of an oscillator with π by the four signs over ℚ\[π\].
+///
+/// # Errors
+/// A budget error with the cost, before any work.
+pub fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Kind> {
+    let Some(clocks) = scene.many_clocks() else {
+        return Ok(decide_exact(scene.system(), limits)?.kind);
+    };
+    let kicks = clocks.schedule().strikes();
+    // Kick by kick over ℚ[π], whose numbers grow by some words with each kick.
+    let cost = kicks.saturating_mul(kicks).saturating_mul(kicks);
+    if cost > limits.products {
+        return Err(Error::budget(format!("exact signs after {kicks} kicks"), cost));
+    }
+    Ok(clocks.half_signs().verdict().kind())
+}
+
+/// Kinds agree, a part that is at rest apart.
+pub fn same_kind(found: Kind, truth: Kind) -> Checked {
+    same("kind", found.name(), truth.name())
+}

@@ -1,0 +1,68 @@
+//! Rationals: rounding to doubles and back.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::*;
+use num_bigint::BigInt;
+use num_traits::{Signed, Zero};
+use proptest::prelude::*;
+
+/// Nearest with ties to even, straight from the definition.
+fn is_nearest(x: &Rational, rounded: f64) -> bool {
+    let distance = |d: f64| (from_f64_exact(d).expect("finite") - x).abs();
+    let (own, below, above) = (distance(rounded), rounded.next_down(), rounded.next_up());
+    let even = rounded.to_bits().is_multiple_of(2);
+    [below, above]
+        .iter()
+        .filter(|d| d.is_finite())
+        .all(|&d| own < distance(d) || (own == distance(d) && even))
+}
+
+fn is_enclosure(x: &Rational, (lo, hi): (f64, f64)) -> bool {
+    let exact = |d: f64| from_f64_exact(d).expect("finite");
+    let tight = if lo == hi { exact(lo) == *x } else { lo.next_up() == hi };
+    tight && exact(lo) <= *x && *x <= exact(hi)
+}
+
+#[test]
+fn corners_of_the_double_range() {
+    let max = from_f64_exact(f64::MAX).unwrap();
+    let half_ulp = scale2(&1.into(), 969);
+    assert_eq!(to_f64(&(&max + &half_ulp)), f64::MAX);
+    assert_eq!(to_f64(&(&max + &half_ulp + &half_ulp)), f64::INFINITY);
+    assert_eq!(enclose_f64(&(&max + &half_ulp)), (f64::MAX, f64::INFINITY));
+    assert_eq!(enclose_f64(&-(&max + &half_ulp)), (f64::NEG_INFINITY, -f64::MAX));
+    let tiny = scale2(&1.into(), -1075); // half the least subnormal: the tie goes to 0
+    assert_eq!((to_f64(&tiny), enclose_f64(&tiny)), (0.0, (0.0, f64::from_bits(1))));
+    assert_eq!(to_f64(&(&tiny * ratio(3, 2))), f64::from_bits(1));
+    assert_eq!(to_f64(&scale2(&1.into(), -100_000)), 0.0);
+    assert_eq!(enclose_f64(&-scale2(&1.into(), -100_000)), (-f64::from_bits(1), -0.0));
+    assert_eq!(to_f64(&from_f64_exact(f64::MIN_POSITIVE).unwrap()), f64::MIN_POSITIVE);
+    let below_normal = from_f64_exact(f64::MIN_POSITIVE.next_down()).unwrap();
+    assert_eq!(to_f64(&below_normal), f64::MIN_POSITIVE.next_down());
+}
+
+proptest! {
+    #[test]
+    fn doubles_survive_the_round_trip(bits: u64) {
+        let x = f64::from_bits(bits);
+        prop_assume!(x.is_finite());
+        let exact = from_f64_exact(x).unwrap();
+        prop_assert_eq!(to_f64(&exact), x);
+        prop_assert_eq!(enclose_f64(&exact), (x, x));
+    }
+
+    #[test]
+    fn rounding_follows_its_definition(p: i64, q in 1i64.., k in -1140i64..960) {
+        let x = ratio(p, q) * scale2(&1.into(), k);
+        prop_assume!(!x.is_zero());
+        prop_assert!(is_nearest(&x, to_f64(&x)));
+        prop_assert!(is_enclosure(&x, enclose_f64(&x)));
+    }
+
+    #[test]
+    fn ties_go_to_even(mantissa in 1u64 << 52..(1 << 53) - 1, k in -1080i64..900) {
+        let tie = scale2(&(BigInt::from(mantissa) * 2 + 1), k);
+        prop_assert!(is_nearest(&tie, to_f64(&tie)));
+        prop_assert!(is_enclosure(&tie, enclose_f64(&tie)));
+    }
+}
