@@ -1,12 +1,7 @@
 //! Work spread over threads; without the feature `parallel` one piece after the other. Same results, same order.
-//!
-//! Who works in parallel imports everything from here instead of rayon's prelude. Names of rayon that the library
-//! does not use yet are added to `sequential` when it does.
 
-#[cfg(feature = "parallel")]
-pub(crate) use rayon::prelude::*;
-#[cfg(not(feature = "parallel"))]
-pub(crate) use sequential::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::error::Result;
 
@@ -54,31 +49,59 @@ impl Pool {
     }
 }
 
-/// Rayon's names for the iterators of the standard library.
-#[cfg(not(feature = "parallel"))]
-// Which of them are used depends on the other features.
-#[allow(dead_code, unused_imports)]
-mod sequential {
-    pub(crate) trait IntoParallelIterator: IntoIterator + Sized {
-        fn into_par_iter(self) -> Self::IntoIter {
-            self.into_iter()
+/// `work` of each item, in the items' order.
+pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    let found: Result<Vec<R>> = try_map(items, |item| Ok(work(item)));
+    found.expect("none of these fails")
+}
+
+/// The same of what may fail.
+///
+/// # Errors
+/// That of the first item which fails, whatever the threads; items after it may be left out.
+pub(crate) fn try_map<T: Sync, R: Send>(
+    items: &[T],
+    work: impl Fn(&T) -> Result<R> + Sync,
+) -> Result<Vec<R>> {
+    let places: Vec<Mutex<Option<Result<R>>>> = items.iter().map(|_| Mutex::new(None)).collect();
+    let failed = AtomicUsize::new(usize::MAX);
+    each(items.len(), &|n| {
+        if n < failed.load(Ordering::Relaxed) {
+            let found = work(&items[n]);
+            if found.is_err() {
+                failed.fetch_min(n, Ordering::Relaxed);
+            }
+            *places[n].lock().expect("one thread a place") = Some(found);
         }
+    });
+    // Up to the first error every place is filled.
+    places.into_iter().map_while(|place| place.into_inner().expect("one thread a place")).collect()
+}
+
+/// `work` of 0, 1, ..., n − 1, in any order: the only place that is compiled with the threads' machinery.
+fn each(n: usize, work: &(dyn Fn(usize) + Sync)) {
+    #[cfg(feature = "parallel")]
+    {
+        use rayon::prelude::*;
+        (0..n).into_par_iter().for_each(work);
     }
+    #[cfg(not(feature = "parallel"))]
+    (0..n).for_each(work);
+}
 
-    impl<I: IntoIterator> IntoParallelIterator for I {}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
 
-    pub(crate) trait ParallelSlice<T> {
-        fn par_iter(&self) -> std::slice::Iter<'_, T>;
-        fn par_chunks(&self, length: usize) -> std::slice::Chunks<'_, T>;
-    }
-
-    impl<T> ParallelSlice<T> for [T] {
-        fn par_iter(&self) -> std::slice::Iter<'_, T> {
-            self.iter()
-        }
-
-        fn par_chunks(&self, length: usize) -> std::slice::Chunks<'_, T> {
-            self.chunks(length)
+    #[test]
+    fn results_come_in_order_and_of_errors_the_first() {
+        let items: Vec<u64> = (0..1000).collect();
+        assert_eq!(map(&items, |n| n * n)[999], 999 * 999);
+        let odd = |n: &u64| if *n > 700 { Err(Error::input("n", n, "too large")) } else { Ok(*n) };
+        assert_eq!(try_map(&items[..701], odd).unwrap(), items[..701]);
+        for _ in 0..20 {
+            assert!(try_map(&items, odd).unwrap_err().to_string().contains("701"));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `kickdrift closings`: where tongues close.
 
-use crate::parallel::*;
+use crate::parallel::try_map;
 
 use super::args::{Common, from_str, of, whole};
 use super::progress::progress;
@@ -95,12 +95,12 @@ impl Question {
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = self.ratios.list();
         let bar = progress(common.quiet, list.len() as u64, "ratios");
-        let one = |ratio: Ratio| {
+        let one = |&ratio: &Ratio| {
             let found = self.of_ratio(ratio);
             bar.inc(1);
             found
         };
-        let found: Vec<Found> = list.into_par_iter().map(one).collect::<Result<_>>()?;
+        let found: Vec<Found> = try_map(&list, one)?;
         bar.finish_and_clear();
         let (lo, hi) = &self.rho;
         let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());

@@ -111,7 +111,7 @@ impl Grid {
     /// A negative tolerance, and as [`compare`](crate::resonance::compare::compare).
     pub fn compare(&self, tolerance: &Rational, limits: &Limits) -> Result<Comparisons> {
         let columns: Vec<u64> = (self.columns.0..=self.columns.1).collect();
-        Comparisons::gather(columns, tolerance, |i, found| {
+        Comparisons::gather(&columns, tolerance, |&i, found| {
             (self.rows.0..=self.rows.1).try_for_each(|j| {
                 let (clocks, place) = (self.clocks(i, j)?, || [self.h1(i), self.h2(j)]);
                 match clocks.as_rational() {

@@ -10,7 +10,7 @@ use super::shard::{Numbered, Shard, bands};
 use super::store::Store;
 use super::work::Work;
 use crate::error::{Error, Result};
-use crate::parallel::*;
+use crate::parallel::{map, try_map};
 use crate::verdict::{Limits, Verdict};
 
 /// A grid whose pairs are to be decided, and what else is asked of them.
@@ -95,8 +95,7 @@ impl<'a> Map<'a> {
         };
         let mut counters = Counters::default();
         for group in shard.bands(grid).chunks(AHEAD * pool.size()) {
-            let done: Vec<(u64, Band)> =
-                pool.install(|| group.par_iter().map(obtain).collect::<Result<_>>())?;
+            let done = pool.install(|| try_map(group, obtain))?;
             for (n, band) in done {
                 counters.add(&band.counters);
                 see(n, band)?;
@@ -172,5 +171,5 @@ pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
     let (bases, limits) = (Bases::new(grid), Limits::default());
     let all: Vec<(u64, usize)> = bands(grid).collect();
     let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &limits, columns).uncertified_unstable();
-    pool.install(|| all.par_iter().map(count).sum())
+    pool.install(|| map(&all, count)).into_iter().sum()
 }

@@ -5,7 +5,7 @@ use super::work::LANES;
 use crate::error::Result;
 use crate::orbit::filter::{Group, UNDECIDED};
 use crate::orbit::floquet::{Floquet, Pair};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::vector::instructions::Instructions;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
@@ -33,12 +33,12 @@ pub fn decide_all<S: Decidable + Sync>(
     pairs: &[TwoClocks<S>],
     resources: &Resources,
 ) -> Result<Vec<Decision>> {
-    let some = |pairs: &[TwoClocks<S>]| {
+    let some = |pairs: &&[TwoClocks<S>]| {
         resources.go_on()?;
         together(pairs, &resources.limits)
     };
-    let done: Vec<Vec<Decision>> =
-        resources.pool()?.install(|| pairs.par_chunks(TOGETHER).map(some).collect::<Result<_>>())?;
+    let chunks: Vec<_> = pairs.chunks(TOGETHER).collect();
+    let done = resources.pool()?.install(|| try_map(&chunks, some))?;
     Ok(done.concat())
 }
 

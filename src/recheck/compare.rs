@@ -6,7 +6,7 @@ use super::written::{Ends, Range, Written, nullable, ratios};
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::resonance::compare::Outcome as Rule;
 use crate::verdict::{Kind, Tier, Verdict};
@@ -108,10 +108,8 @@ impl Place for Placed<'_> {
 impl Claim {
     pub fn check(&self, context: &Context) -> Result<Outcome> {
         let pairs = self.input.pairs()?;
-        let lines: Vec<Line> = (0..pairs.lines())
-            .into_par_iter()
-            .map(|line| self.line(&pairs, line, context))
-            .collect::<Result<_>>()?;
+        let all: Vec<usize> = (0..pairs.lines()).collect();
+        let lines = try_map(&all, |&line| self.line(&pairs, line, context))?;
         let mut places = lines.iter().flat_map(|(.., places)| places.iter().copied());
         let rows: Vec<Placed> = self.offenders.iter().map(|row| Placed { row, at: places.next() }).collect();
         let missing = places.count();

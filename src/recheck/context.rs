@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::verdict::Limits;
 
 /// How much is rechecked, and what one row may cost.
@@ -90,13 +90,13 @@ impl Context<'_> {
     /// Checks all rows, side by side: what does not hold, in their order.
     pub fn rows<T: Place>(&self, rows: &[T], check: impl Fn(&T) -> Checked + Sync) -> Result<Vec<Failure>> {
         let (done, of) = (AtomicU64::new(0), rows.len() as u64);
-        let one = |(i, row): (usize, &T)| {
+        let one = |&(i, row): &(usize, &T)| {
             let failure = self.failure(i as u64 + 1, || row.place(), check(row));
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             self.see.inspect(|see| see(done, of));
             failure
         };
-        let found: Vec<_> = rows.par_iter().enumerate().map(one).collect::<Result<_>>()?;
+        let found: Vec<_> = try_map(&rows.iter().enumerate().collect::<Vec<_>>(), one)?;
         Ok(found.into_iter().flatten().collect())
     }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::parallel::*;
+use crate::parallel::try_map;
 use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds, same};
@@ -145,7 +145,7 @@ impl Claim {
                 let wrong = || format!("is {}, side {}, kick by kick", truth.kind().name(), truth.side());
                 context.failure(1, name, holds(told == truth, wrong))
             };
-            let failures: Vec<_> = own.par_iter().map(one).collect::<Result<_>>()?;
+            let failures: Vec<_> = try_map(own, one)?;
             found.failures.extend(failures.into_iter().flatten());
             found.add(grid, &band);
             (next, done) = (rest, done + pairs);

@@ -20,7 +20,7 @@ use super::angle::Nearest;
 use super::tan;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
 
@@ -191,19 +191,19 @@ impl Comparisons {
     ///
     /// # Errors
     /// A negative tolerance, and those of the parts.
-    pub fn gather<T: Send>(
-        items: Vec<T>,
+    pub fn gather<T: Sync>(
+        items: &[T],
         tolerance: &Rational,
-        part: impl Fn(T, &mut Comparisons) -> Result<()> + Send + Sync,
+        part: impl Fn(&T, &mut Comparisons) -> Result<()> + Sync,
     ) -> Result<Comparisons> {
         if *tolerance < Rational::default() {
             return Err(Error::input("tolerance", tolerance, "must not be negative"));
         }
-        let one = |item: T| {
+        let one = |item: &T| {
             let mut found = Comparisons::default();
             part(item, &mut found).map(|()| found)
         };
-        let parts: Vec<Comparisons> = items.into_par_iter().map(one).collect::<Result<_>>()?;
+        let parts: Vec<Comparisons> = try_map(items, one)?;
         Ok(parts.into_iter().fold(Comparisons::default(), |mut all, mut part| {
             all.tally = all.tally.plus(&part.tally);
             all.offenders.append(&mut part.offenders);
@@ -229,7 +229,8 @@ pub fn compare_ratios(
     if !(1..=1_000_000).contains(&samples) {
         return Err(Error::input("samples", samples, "choose 1 to 1000000"));
     }
-    Comparisons::gather(Ratio::up_to(max_sum).collect(), tolerance, |ratio: Ratio, found| {
+    let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
+    Comparisons::gather(&ratios, tolerance, |&ratio, found| {
         (1..=samples).try_for_each(|k| {
             let s = Rational::new((4 * k).into(), (samples + 1).into());
             let place = || [Laurent::from(&s), Laurent::from(rho)];

@@ -12,7 +12,7 @@
 use super::curve::{Curve, Window, curve, curve_within};
 use crate::error::{Error, Result};
 use crate::number::Laurent;
-use crate::parallel::*;
+use crate::parallel::try_map;
 
 /// Curves (a, b): closed ranges of a and b, and the number of samples of each in 0 < θ < π.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Families {
         }
         let pairs: Vec<(i64, i64)> =
             (self.a.0..=self.a.1).flat_map(|a| (self.b.0..=self.b.1).map(move |b| (a, b))).collect();
-        let curves: Result<Vec<Curve>> = pairs.into_par_iter().map(|(a, b)| sample(a, b)).collect();
-        Ok(curves?.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
+        let curves = try_map(&pairs, |&(a, b)| sample(a, b))?;
+        Ok(curves.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
     }
 }

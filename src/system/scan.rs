@@ -1,6 +1,6 @@
 //! Maps of a system: its verdict over two parameters.
 
-use crate::parallel::*;
+use crate::parallel::try_map;
 
 use super::analysis::Analysis;
 use crate::error::Result;
@@ -45,7 +45,7 @@ pub fn scan(
     };
     let mut points = Vec::with_capacity(pairs.len());
     for group in pairs.chunks(AHEAD) {
-        points.extend(group.par_iter().map(point).collect::<Result<Vec<_>>>()?);
+        points.extend(try_map(group, point)?);
         see(group.len());
     }
     Ok(points)

@@ -6,7 +6,7 @@ use super::select::Selection;
 use super::tongues::Tongues;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Ratio, Rational, Sign};
-use crate::parallel::*;
+use crate::parallel::try_map;
 
 /// ρ, and the stiffnesses where they are given.
 #[derive(Clone, Debug)]
@@ -152,7 +152,7 @@ impl Question {
             watch.expect(self.ratios.len() as u64);
         }
         for batch in self.ratios.chunks(BATCH) {
-            let parts: Vec<Vec<Tongue>> = batch.par_iter().map(one).collect::<Result<_>>()?;
+            let parts: Vec<Vec<Tongue>> = try_map(batch, one)?;
             for part in &parts {
                 see(part)?;
             }
@@ -168,12 +168,12 @@ impl Question {
         let window = self.stiffness.lambda1.as_ref().and_then(|lambda1| self.window.of_ratio(ratio, lambda1));
         let gaps = tongues.select(&Selection { s: window.or(self.selection.s), ..self.selection.clone() })?;
         watch.expect(gaps.len() as u64);
-        let chunk = |gaps: &[Gap]| {
+        let chunk = |gaps: &&[Gap]| {
             let answers = gaps.iter().map(|gap| self.request.answer(&tongues, gap)).collect();
             watch.advance(gaps.len() as u64);
             answers
         };
-        let parts: Vec<Vec<Tongue>> = gaps.par_chunks(CHUNK).map(chunk).collect::<Result<_>>()?;
+        let parts: Vec<Vec<Tongue>> = try_map(&gaps.chunks(CHUNK).collect::<Vec<_>>(), chunk)?;
         Ok(parts.into_iter().flatten().collect())
     }
 }

@@ -15,7 +15,7 @@ use super::row::{Row, Side, Wanted};
 use super::tongues::Tongues;
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
-use crate::parallel::*;
+use crate::parallel::try_map;
 
 /// What all coprime p + q ≤ N have to say at one ρ, about the tongues whose lower edge has s < 4.
 #[derive(Clone, Debug, PartialEq)]
@@ -72,7 +72,7 @@ pub struct Spread {
 /// As [`Tongues::new`].
 pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
     let wanted = Wanted { family: true, predicted: true, first_order: true, ..Wanted::default() };
-    let one = |ratio: Ratio| -> Result<(Vec<Row>, (u64, u64))> {
+    let one = |&ratio: &Ratio| -> Result<(Vec<Row>, (u64, u64))> {
         let tongues = Tongues::new(ratio, rho)?;
         let gaps = tongues.below(4)?;
         let rows = gaps.iter().map(|gap| tongues.row(gap, &wanted)).collect::<Result<_>>()?;
@@ -80,7 +80,7 @@ pub fn survey(max_sum: u64, rho: &Rational, keep: usize) -> Result<Survey> {
         Ok((rows, (effort.doubles, effort.precise)))
     };
     let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
-    let parts: Vec<_> = ratios.into_par_iter().map(one).collect::<Result<_>>()?;
+    let parts: Vec<_> = try_map(&ratios, one)?;
     let mut survey = Survey::empty(max_sum, rho, parts.len() as u64);
     let mut by_family: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
     for (rows, (doubles, precise)) in &parts {

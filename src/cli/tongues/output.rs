@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use crate::parallel::*;
+use crate::parallel::map;
 
 use super::Question;
 use crate::cli::args::{Common, TO_SEE_ROWS};
@@ -99,7 +99,7 @@ fn each_row<T: Send>(
     let mut tally = Tally::default();
     question.each(common, |part| {
         part.iter().for_each(|tongue| tally.add(tongue));
-        let rendered: Vec<T> = part.par_iter().map(&render).collect();
+        let rendered: Vec<T> = map(part, &render);
         rendered.iter().try_for_each(&mut put)
     })?;
     Ok(tally)

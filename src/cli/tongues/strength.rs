@@ -1,6 +1,6 @@
 //! The figure of measured widths against the first-order law.
 
-use crate::parallel::*;
+use crate::parallel::try_map;
 use num_traits::{ToPrimitive, Zero};
 
 use super::atlas::share_of_pi;
@@ -66,7 +66,7 @@ fn typeset(theta: &Laurent) -> String {
 fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<Measured>> {
     let around = rational::ratio(HALF_WINDOW.0, HALF_WINDOW.1);
     let rho = rational::to_f64(&stiffness.rho);
-    let one = |ratio: Ratio| -> Result<Vec<Measured>> {
+    let one = |&ratio: &Ratio| -> Result<Vec<Measured>> {
         let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);
         let terms = Rational::from_integer(ratio.p().into());
         let from = whole(((share - &around) * &terms).ceil()).max(1);
@@ -84,6 +84,6 @@ fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<
         Ok(gaps.iter().map(measured).collect())
     };
     let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
-    let all: Vec<Vec<Measured>> = ratios.into_par_iter().map(one).collect::<Result<_>>()?;
+    let all: Vec<Vec<Measured>> = try_map(&ratios, one)?;
     Ok(all.into_iter().flatten().collect())
 }

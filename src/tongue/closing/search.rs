@@ -23,7 +23,7 @@ use num_traits::Signed;
 use super::certify::{Closing, Order, certify, orders};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
-use crate::parallel::*;
+use crate::parallel::try_map;
 use crate::tongue::edge::Enclosure;
 use crate::tongue::gap::count_closings;
 use crate::tongue::string::Entry;
@@ -103,8 +103,8 @@ pub fn closings_of(ratio: Ratio, labels: &[(u64, u64)], search: &Search) -> Resu
         return Err(Error::input("m", m, format!("{ratio} has the finite tongues 1 to {last}")));
     }
     let labels: Vec<u64> = (1..=last).filter(|m| labels.iter().any(|(a, b)| a <= m && m <= b)).collect();
-    let of = |m| closings(ratio, &Search { m: Some(m), ..search.clone() });
-    let found: Vec<Found> = labels.into_par_iter().map(of).collect::<Result<_>>()?;
+    let of = |&m: &u64| closings(ratio, &Search { m: Some(m), ..search.clone() });
+    let found: Vec<Found> = try_map(&labels, of)?;
     let complete = found.iter().all(|found| found.complete);
     Ok(Found { ratio, closings: found.into_iter().flat_map(|found| found.closings).collect(), complete })
 }
