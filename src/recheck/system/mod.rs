@@ -139,7 +139,7 @@ impl Verdict {
         let (input, limits) = (self.input()?, limits(context));
         let scene = input.scene(context)?;
         let analysis = scene.decide(input.route(), &limits)?;
-        let again = report::document(&analysis).value();
+        let again = report::document(&analysis, scene.time_unit()).value();
         if analysis.measured.is_some() {
             return self.outcome(
                 context,
