@@ -28,6 +28,9 @@ pub struct Run {
     pub predicted: f64,
     /// The largest difference after running forward and back, relative to the start.
     pub irreversibility: f64,
+    /// How far the integrator's own orbit, about which growth is predicted and measured, lies from the equilibrium; `None` where
+    /// the equilibrium is one.
+    pub displacement: Option<f64>,
     /// Whether deviations of any size move like small ones.
     pub linear: bool,
 }
@@ -140,19 +143,7 @@ pub fn equilibrium(bonds: &[Bond], start: &[f64]) -> Result<Vec<f64>> {
     let (n, mut x) = (start.len(), start.to_vec());
     for _ in 0..ITERATIONS {
         let (mut force, mut hessian) = (nalgebra::DVector::zeros(n), nalgebra::DMatrix::zeros(n, n));
-        for bond in bonds {
-            let own = bond.particles();
-            let at: Vec<f64> = own.iter().map(|&i| x[i]).collect();
-            let mut f = vec![0.0; own.len()];
-            bond.force(&at, &mut f);
-            let curvature = bond.curvature(&at);
-            for (a, &i) in own.iter().enumerate() {
-                force[i] += f[a];
-                for (b, &j) in own.iter().enumerate() {
-                    hessian[(i, j)] += if a == b { curvature } else { -curvature };
-                }
-            }
-        }
+        bonds.iter().for_each(|bond| bond.add_to(&x, &mut force, &mut hessian));
         let singular = || {
             Error::input(
                 "near",

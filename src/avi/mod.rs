@@ -20,9 +20,11 @@
 
 mod force;
 mod measure;
+mod orbit;
 mod simulation;
 
 pub use crate::schedule::Clocks;
 pub use force::{Bond, Force, Form, Linear};
 pub use measure::{Run, Sample, equilibrium, growth_rate, irreversibility, series};
+pub use orbit::{Clocked, PeriodicOrbit};
 pub use simulation::{Ends, Simulation, State, Ticks};

@@ -2,24 +2,28 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::Common;
+use indicatif::ProgressBar;
+
+use super::args::{Common, of};
 use super::plane::DPI;
 use super::progress::progress;
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::figure::Figure;
 use crate::report::file::write_output;
-use crate::report::system::{self as report, Colouring, SystemMap};
+use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Axis, Scan, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Limits, Route};
 
 /// Flags of `system`.
 ///
-/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, or the map of --scan.
+/// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, the map of --scan, or the
+/// growth over the intervals of --intervals.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -44,6 +48,10 @@ pub struct Args {
     /// The relative width above which no interval is missed [default: 1e-4].
     #[arg(long, value_name = "W", requires = "intervals")]
     width: Option<f64>,
+    /// A rate of friction per unit time: the velocities times exp(-G t) in the middle of every drift, as in BAOAB. Tells whether
+    /// the spectral radius stays below 1, and the friction that masks a resonance.
+    #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
+    friction: Option<Rational>,
     /// Leave the rigid motions of measured stiffnesses in.
     #[arg(long)]
     keep_rigid: bool,
@@ -60,6 +68,9 @@ impl Args {
         }
         if self.keep_rigid {
             scene = scene.keeping_rigid()?;
+        }
+        if let Some(rate) = &self.friction {
+            scene = scene.with_friction(rate.clone())?;
         }
         if let Some(range) = &self.intervals {
             return self.intervals(&scene, range, common);
@@ -90,17 +101,31 @@ impl Args {
         let read = |text: &str| Ok(to_f64(&parse_rational("intervals", text)?));
         let width = self.width.unwrap_or(1e-4);
         let (inner_steps, stretches) = scene.stretches((read(lo)?, read(hi)?), width)?;
+        if let Some(path) = drawing(common)? {
+            let rates = scene.growth_rates(&report::sampled(&stretches))?;
+            return draw(
+                "output",
+                path,
+                &report::intervals_figure(&stretches, &rates, inner_steps, scene.title()),
+            );
+        }
         let document =
             report::intervals(&stretches, inner_steps).input("intervals", range).input("width", width);
         common.write(&self.echo(document, scene), Format::Text)
     }
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
+        let waiting = waiting(scene, common.quiet);
         let analysis = scene.decide(self.route(), &limits(common))?;
+        waiting.finish_and_clear();
         match drawing(common)? {
             Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
             None => {
-                common.write(&self.echo(report::document(&analysis, scene.time_unit()), scene), Format::Text)
+                let limits = limits(common);
+                let (friction, orbit) = (scene.friction(&limits)?, scene.own_orbit(&limits)?);
+                let (unit, labels) = (scene.time_unit(), scene.labels());
+                let beside = Beside { unit, friction: friction.as_ref(), orbit: orbit.as_ref(), labels };
+                common.write(&self.echo(report::document(&analysis, &beside), scene), Format::Text)
             }
         }
     }
@@ -128,6 +153,10 @@ impl Args {
             .input_json("system", scene.source().clone());
         let document = if self.exact { document.input("exact", "true") } else { document };
         let document = if self.keep_rigid { document.input("keep_rigid", "true") } else { document };
+        let document = match &self.friction {
+            Some(rate) => document.input("friction", rate),
+            None => document,
+        };
         self.accuracy.map_or(document.clone(), |accuracy| document.input("accuracy", accuracy))
     }
 }
@@ -169,4 +198,21 @@ fn folder(path: &Path) -> &Path {
 /// A system file, read.
 pub fn read(path: &Path) -> Result<SystemScene> {
     SystemScene::read_in(folder(path), &text(path)?)
+}
+
+/// Products of doubles a second, roughly; and from how many on a verdict is announced.
+const PACE: u64 = 1_000_000_000;
+
+/// What a long verdict will cost, said on standard error before it begins, on a terminal only.
+fn waiting(scene: &SystemScene, quiet: bool) -> ProgressBar {
+    let cost = scene.cost();
+    if quiet || cost < 2 * PACE {
+        return ProgressBar::hidden();
+    }
+    let spinner = ProgressBar::new_spinner();
+    let (n, seconds) = (scene.size(), cost / PACE);
+    spinner
+        .set_message(format!("{n} degrees of freedom: some {:.0e} products, {seconds} s or so", cost as f64));
+    spinner.enable_steady_tick(std::time::Duration::from_millis(100));
+    spinner
 }

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use super::args::{Common, Stiffness, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::Laurent;
-use crate::number::parse::parse;
+use crate::number::parse::{parse, parse_rational};
+use crate::number::{Laurent, Rational};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::report::certificate;
 use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::verdict::Answer;
+use crate::system::ManyClocks;
+use crate::system::friction::{Friction, damped_oscillator};
 use crate::verdict::{Decidable, Tier, Verdict, decide_from};
 
 /// Flags of `verdict`.
@@ -31,6 +33,10 @@ pub struct Args {
     /// Also write a Coq proof of the verdict, for rational input; check it with proofs/tools/certificate.sh.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
+    /// A rate of friction per unit time: v times exp(-G t) in the middle of every drift, as in BAOAB. Tells whether the spectral
+    /// radius stays below 1, and the smallest friction that masks a resonance.
+    #[arg(long, value_name = "G", value_parser = of(parse_rational))]
+    friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
     #[arg(long)]
     exit_code: bool,
@@ -63,7 +69,8 @@ impl Args {
         let document = (!silent).then(|| -> Result<Document> {
             let (decision, growth) = (answer.decision(), answer.growth()?.clone());
             let exact_trace = Answer::exact_trace(&oscillator.clocks(), self.exact);
-            Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace }.document())
+            let friction = self.friction(oscillator)?;
+            Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction }.document())
         });
         let document = document.transpose()?;
         if let Some(path) = &self.certificate {
@@ -71,6 +78,17 @@ impl Args {
         }
         document.map_or(Ok(()), |document| common.write(&document, Format::Text))?;
         Ok(answer.verdict.is_stable())
+    }
+}
+
+impl Args {
+    fn friction(&self, oscillator: &Oscillator) -> Result<Option<Friction>> {
+        let Some(rate) = &self.friction else { return Ok(None) };
+        let two = oscillator.clocks();
+        let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
+        let strengths = vec![two.fast().clone(), two.slow().clone()];
+        let clocks = ManyClocks::new(&steps, &[Rational::default(), Rational::default()], strengths)?;
+        damped_oscillator(&clocks, oscillator.h1(), rate).map(Some)
     }
 }
 

@@ -1,5 +1,7 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
+use serde::de::IgnoredAny;
+
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, growth_again, ln_multiplier};
 use super::written::{Ends, Written, nullable};
@@ -26,6 +28,7 @@ rows! {
         #[serde(deserialize_with = "nullable")]
         resonance: Option<Resonance>,
         decided_by: Written<Tier>,
+        friction: Option<IgnoredAny>,
     }
 
     struct Input {
@@ -33,6 +36,8 @@ rows! {
         lambda2: Written<Laurent>,
         h1: Written<Laurent>,
         h2: Written<Laurent>,
+        #[serde(rename = "friction")]
+        _friction: Option<Written<Rational>>,
     }
 
     struct Trace {
@@ -71,11 +76,14 @@ impl Claim {
         let row = std::slice::from_ref(self);
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, |row| row.holds(context.limits()))?;
         outcome.not_rechecked.push("decided_by: the tier depends on the version of the program");
+        if self.friction.is_some() {
+            outcome.not_rechecked.push("friction: its spectral radius and the masking friction");
+        }
         Ok(outcome)
     }
 
     fn holds(&self, limits: &Limits) -> Checked {
-        let Input { lambda1, lambda2, h1, h2 } = &self.input;
+        let Input { lambda1, lambda2, h1, h2, .. } = &self.input;
         let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())
             .map_err(|error| Fault::Wrong(error.to_string()))?;
         let clocks = oscillator.clocks();

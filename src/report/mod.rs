@@ -16,6 +16,8 @@ pub mod document;
 #[cfg(feature = "figure")]
 pub mod figure;
 pub mod file;
+#[cfg(feature = "system")]
+mod friction;
 pub mod latex;
 pub mod map;
 #[cfg(feature = "cli")]

@@ -19,6 +19,9 @@ pub struct Answer {
     pub growth: Growth,
     /// Tr Q, where it is rational and was asked for or is short.
     pub exact_trace: Option<Rational>,
+    /// What friction does to it, where that was asked for.
+    #[cfg(feature = "system")]
+    pub friction: Option<crate::system::friction::Friction>,
 }
 
 /// A rational trace is shown unasked where the period has at most so many kicks.
@@ -64,6 +67,10 @@ impl Answer {
         if let Some(exact) = &self.exact_trace {
             let (lo, hi) = self.growth.trace.to_f64_enclosure();
             document = document.entry("trace", json!({"lo": lo, "hi": hi, "exact": exact.to_string()}));
+        }
+        #[cfg(feature = "system")]
+        if let Some(own) = &self.friction {
+            document = document.input("friction", &own.rate).entry("friction", super::friction::value(own));
         }
         document
             .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
@@ -126,6 +133,8 @@ impl Answer {
             ));
         }
         lines.push(format!("  decided by   {}", self.decision.decided_by.name()));
+        #[cfg(feature = "system")]
+        lines.extend(self.friction.iter().flat_map(super::friction::lines));
         lines
     }
 

@@ -83,6 +83,21 @@ pub struct Instability {
     pub resonance: Option<Resonance>,
 }
 
+impl Instability {
+    /// Turns and scales the shape so that its longest entry is 1.
+    pub(super) fn normalize(&mut self) {
+        let entries = || self.shape.iter().zip(&self.quadrature).map(|(&re, &im)| Complex64::new(re, im));
+        let longer = |a: Complex64, b: Complex64| if b.norm_sqr() > a.norm_sqr() { b } else { a };
+        let longest = entries().fold(Complex64::new(0.0, 0.0), longer);
+        if longest.norm_sqr() == 0.0 {
+            return;
+        }
+        let scaled: Vec<Complex64> = entries().map(|z| z / longest).collect();
+        self.shape = scaled.iter().map(|z| z.re).collect();
+        self.quadrature = scaled.iter().map(|z| z.im).collect();
+    }
+}
+
 /// An invariant part that was decided by itself.
 #[derive(Clone, Debug)]
 pub struct Part {

@@ -1,14 +1,55 @@
 //! The multipliers of a piece, and what the unstable ones are.
 
+use std::cell::OnceCell;
+
 use faer::c64;
 
 use super::analysis::{Instability, Multiplier, exponent};
 use super::float::FloatBlocks;
-use super::modes::{NormalModes, Origin};
+use super::modes::{NormalModes, Origin, Resonance};
 use super::piece::{Piece, ROUGH};
 use super::spectrum::{Spectrum, from_segment};
 use crate::number::rational::to_f64;
 use crate::verdict::Kind;
+
+/// All multipliers over a period by increasing real part of μ, and if hyperbolic the unstable ones, whose shapes are v_i/a_i.
+pub(super) fn explained(
+    spectrum: &Spectrum,
+    scales: &[f64],
+    kind: Kind,
+    period: f64,
+    resonance: impl Fn(&[c64], Origin, c64) -> Option<Resonance>,
+) -> (Vec<Multiplier>, Vec<Instability>) {
+    let mut order: Vec<usize> = (0..spectrum.mu.len()).collect();
+    order.sort_by(|&i, &j| spectrum.mu[i].re.total_cmp(&spectrum.mu[j].re));
+    let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], spectrum.radius);
+    let multipliers = order.iter().map(multiplier).collect();
+    if kind != Kind::Hyperbolic {
+        return (multipliers, Vec::new());
+    }
+    // Conjugates tell the same; the farthest one from stability is there even if no disc is clear of it.
+    let upper = |i: &&usize| spectrum.mu[**i].im >= 0.0;
+    let farthest = order
+        .iter()
+        .filter(upper)
+        .max_by(|a, b| from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b])));
+    let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > spectrum.radius.unwrap_or(ROUGH);
+    let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
+    let instability = |&i: &usize| {
+        let z = exponent(spectrum.mu[i]);
+        let origin = if spectrum.mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision };
+        let shape: Vec<_> = (0..scales.len()).map(|k| spectrum.vectors[(k, i)] / scales[k]).collect();
+        Instability {
+            multiplier: multiplier(&i),
+            origin,
+            growth_rate: z.re / period,
+            resonance: resonance(&shape, origin, z),
+            shape: shape.iter().map(|c| c.re).collect(),
+            quadrature: shape.iter().map(|c| c.im).collect(),
+        }
+    };
+    (multipliers, unstable.map(instability).collect())
+}
 
 impl Piece {
     /// All multipliers by increasing real part of μ; of a hyperbolic piece the unstable ones explained, their shapes
@@ -19,56 +60,22 @@ impl Piece {
         blocks: &FloatBlocks,
         kind: Kind,
     ) -> (Vec<Multiplier>, Vec<Instability>) {
-        let mut order: Vec<usize> = (0..spectrum.mu.len()).collect();
-        order.sort_by(|&i, &j| spectrum.mu[i].re.total_cmp(&spectrum.mu[j].re));
-        let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], spectrum.radius);
-        let multipliers = order.iter().map(multiplier).collect();
-        if kind != Kind::Hyperbolic {
-            return (multipliers, Vec::new());
-        }
-        let modes = NormalModes::new(&self.system, &self.frame);
-        let period = to_f64(&self.system.period());
-        // Conjugates tell the same; the farthest one from stability is there even if no disc is clear of it.
-        let upper = |i: &&usize| spectrum.mu[**i].im >= 0.0;
-        let farthest = order
-            .iter()
-            .filter(upper)
-            .max_by(|a, b| from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b])));
-        let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > spectrum.radius.unwrap_or(ROUGH);
-        let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
-        let instability = |&i: &usize| {
-            let z = exponent(spectrum.mu[i]);
-            let origin = if spectrum.mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision };
-            let shape: Vec<_> = (0..blocks.m).map(|k| spectrum.vectors[(k, i)] / blocks.scales[k]).collect();
-            let resonance = modes.as_ref().map(|modes| modes.resonance(&self.system, &shape, origin, z));
-            Instability {
-                multiplier: multiplier(&i),
-                origin,
-                growth_rate: z.re / period,
-                shape: shape.iter().map(|c| c.re).collect(),
-                quadrature: shape.iter().map(|c| c.im).collect(),
-                resonance,
-            }
+        let modes = OnceCell::new();
+        let resonance = |shape: &[c64], origin, z| {
+            let modes = modes.get_or_init(|| NormalModes::new(&self.system, &self.frame));
+            modes.as_ref().map(|modes| modes.resonance(&self.system, shape, origin, z))
         };
-        (multipliers, unstable.map(instability).collect())
+        explained(spectrum, &blocks.scales, kind, to_f64(&self.system.period()), resonance)
     }
 
     /// Brings a shape from the piece's coordinates to those of the whole system of `n`, its longest entry 1.
     pub(super) fn place_shape(&self, instability: &mut Instability, n: usize, dofs: &[usize]) {
         let (re, im) = (self.lifted(&instability.shape), self.lifted(&instability.quadrature));
-        let entry = |i: usize| c64::new(re[i], im[i]);
-        let longest = (0..dofs.len())
-            .map(entry)
-            .fold(c64::new(0.0, 0.0), |a, b| if b.norm_sqr() > a.norm_sqr() { b } else { a });
-        instability.shape = vec![0.0; n];
-        instability.quadrature = vec![0.0; n];
-        if longest.norm_sqr() == 0.0 {
-            return;
-        }
+        (instability.shape, instability.quadrature) = (vec![0.0; n], vec![0.0; n]);
         for (local, &i) in dofs.iter().enumerate() {
-            let value = entry(local) / longest;
-            (instability.shape[i], instability.quadrature[i]) = (value.re, value.im);
+            (instability.shape[i], instability.quadrature[i]) = (re[local], im[local]);
         }
+        instability.normalize();
     }
 
     /// A position in the piece's coordinates as one of its component.

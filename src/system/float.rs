@@ -145,11 +145,17 @@ fn norm2(row: &[f64]) -> f64 {
     rest + sums.iter().sum::<f64>()
 }
 
-/// Runs the half period in doubles.
-pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
+/// The coefficients in doubles, positions a_i x_i and momenta p_i/a_i in place of x_i and p_i, and the a_i.
+pub(super) fn scaled_program(system: &System, frame: &Frame) -> (Program<f64>, Vec<f64>) {
     let mut program = Program::rounded(system);
     let scales = scales(&program, middle_frequency(system, frame));
     rescale(&mut program, &scales);
+    (program, scales)
+}
+
+/// Runs the half period in doubles.
+pub(super) fn half_period(system: &System, frame: &Frame) -> FloatBlocks {
+    let (program, scales) = scaled_program(system, frame);
     let is_rounded_well = program.entries().all(|x| x.abs() > 1e-290 && x.is_finite());
     let mut rows = Rows::identity(system.size());
     program.run(system.schedule().half_period(), &mut rows);

@@ -12,15 +12,19 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `model`, `sparse`, `builders` | what a system is, and the usual ones |
+//! | `model`, `sparse`, `builders`, `mesh` | what a system is, and the usual ones; finite elements |
 //! | `compose` | kicks and drifts that touch only the degrees of freedom of their potential |
 //! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
 //! | `scalar`, `enclose`, `single` | K clocks on one oscillator: exact, in balls, decided |
 //! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
+//! | `large` | thousands of degrees of freedom: two signs, and the mode that grows fastest |
 //! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
 //! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
 //! | `decide`, `piece` | the verdict, part by part |
 //! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
+//! | `period` | whole periods in doubles, with friction or a stiffness of its own for each kick |
+//! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
+//! | `along` | about a periodic orbit: a Hessian for each kick |
 //! | `scan` | maps |
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
@@ -37,6 +41,7 @@
 //! assert!(analysis.is_stable());
 //! ```
 
+mod along;
 mod analysis;
 mod bauer_fike;
 pub mod builders;
@@ -48,15 +53,19 @@ mod exact;
 mod explain;
 mod float;
 mod frame;
+pub mod friction;
 mod inertia;
 mod integers;
+mod large;
 pub mod levels;
 mod limits;
 mod measured;
+pub mod mesh;
 mod model;
 mod modes;
 mod modular;
 mod norm;
+mod period;
 mod piece;
 mod roots;
 mod scalar;
@@ -67,8 +76,9 @@ mod sparse;
 mod spectrum;
 mod split;
 
+pub use along::{OwnOrbit, decide_along};
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
-pub use compose::{full_period, half_period};
+pub use compose::{full_period, half_period, verdict_cost};
 pub use decide::{decide_by, decide_system};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
 pub use limits::{Limits, Route};

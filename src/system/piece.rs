@@ -5,6 +5,7 @@ use super::compose::check_length;
 use super::exact::{MuCount, decide_by_signs, decide_exact};
 use super::float;
 use super::frame::Frame;
+use super::large;
 use super::limits::{Limits, Route, degrees_of_freedom};
 use super::model::System;
 use super::signs::{self, Forms};
@@ -40,13 +41,7 @@ pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
     if frame.rigid.is_empty() && !may_split(&component) {
         return vec![Piece { system: component, frame, columns: None }];
     }
-    // The M-orthogonal complement of the rigid modes.
-    let conditions = frame.rigid.iter().map(|(_, n)| {
-        let image = component.mass().times(n).into_iter().enumerate();
-        image.filter(|(_, x)| *x != Rational::default()).collect()
-    });
-    let complement: Subspace =
-        null_space(conditions.collect(), component.size()).into_iter().map(|(_, z)| z).collect();
+    let complement = complement(&component, &frame);
     if complement.is_empty() {
         return Vec::new();
     }
@@ -64,6 +59,15 @@ pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
         Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) }
     };
     subspaces.into_iter().map(piece).collect()
+}
+
+/// A basis of the M-orthogonal complement of the rigid modes.
+pub(super) fn complement(component: &System, frame: &Frame) -> Subspace {
+    let conditions = frame.rigid.iter().map(|(_, n)| {
+        let image = component.mass().times(n).into_iter().enumerate();
+        image.filter(|(_, x)| *x != Rational::default()).collect()
+    });
+    null_space(conditions.collect(), component.size()).into_iter().map(|(_, z)| z).collect()
 }
 
 impl Piece {
@@ -93,6 +97,10 @@ impl Piece {
         // What may be refused is asked for before anything else is computed.
         let asked = (how.0 == Route::Exact).then(|| decide_exact(&self.system, how.1)).transpose()?;
         check_length(&self.system, how.1)?;
+        if let Some(part) = asked.is_none().then(|| large::decide(&self.system, &self.frame)).flatten() {
+            warnings.push(large::NOTE.into());
+            return Ok(part);
+        }
         let blocks = float::half_period(&self.system, &self.frame);
         let spectrum = Spectrum::new(&blocks);
         let signed = || Some((signs::judge(&mut Forms::new(&blocks)?)?, Evidence::Signs));
@@ -140,7 +148,7 @@ impl Piece {
 /// 10^-12; a double eigenvalue splits by the square root of that.
 pub(super) const ROUGH: f64 = 1e-6;
 
-fn estimate(spectrum: &Spectrum) -> Kind {
+pub(super) fn estimate(spectrum: &Spectrum) -> Kind {
     let unstable = spectrum.mu.iter().any(|&mu| from_segment(mu) > ROUGH);
     if unstable { Kind::Hyperbolic } else { Kind::Elliptic }
 }

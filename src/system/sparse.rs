@@ -238,14 +238,14 @@ pub(super) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Sy
     }
 }
 
-/// What doubles prove of the signs of the eigenvalues of Σ X_k; nothing where it is large and sparse: there exact elimination
-/// fills in little and costs less.
+/// What doubles prove of the signs of the eigenvalues of Σ X_k; nothing where it is large and nearly a chain (three entries
+/// a row): there exact elimination fills in little and costs less.
 pub(super) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
     let n = parts.first().map_or(0, |own| own.size());
     let entries: usize = parts.iter().flat_map(|own| &own.rows).map(BTreeMap::len).sum();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
-    if n > SMALL && entries < 16 * n {
+    if n > SMALL && entries < 5 * n {
         return unknown;
     }
     let (mut sum, mut size) = (Mat::<f64>::zeros(n, n), 0.0);

@@ -162,13 +162,13 @@ fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
 }
 
 /// Bounds on F with the computed eigenvectors; see [`bauer_fike`].
-fn residual(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<Residual> {
+pub(super) fn residual(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<Residual> {
     let (v, d) = real_form(mu, v)?;
     bauer_fike(s, delta, &v, &d)
 }
 
 /// The connected components of the union of the discs of one radius.
-fn components(mu: &[c64], radius: f64) -> Vec<Vec<usize>> {
+pub(super) fn components(mu: &[c64], radius: f64) -> Vec<Vec<usize>> {
     let mut open: Vec<usize> = (0..mu.len()).collect();
     let mut components = Vec::new();
     while let Some(first) = open.pop() {

@@ -42,6 +42,7 @@ rows! {
         exact: Option<Written<bool>>,
         keep_rigid: Option<Written<bool>>,
         accuracy: Option<Written<Rational>>,
+        friction: Option<Written<Rational>>,
         scan_x: Option<String>,
         scan_y: Option<String>,
         intervals: Option<String>,
@@ -117,6 +118,9 @@ impl Input {
         if self.keep_rigid.is_some() {
             scene = scene.keeping_rigid()?;
         }
+        if let Some(rate) = &self.friction {
+            scene = scene.with_friction((**rate).clone())?;
+        }
         Ok(scene)
     }
 
@@ -139,7 +143,10 @@ impl Verdict {
         let (input, limits) = (self.input()?, limits(context));
         let scene = input.scene(context)?;
         let analysis = scene.decide(input.route(), &limits)?;
-        let again = report::document(&analysis, scene.time_unit()).value();
+        let (friction, orbit) = (scene.friction(&limits)?, scene.own_orbit(&limits)?);
+        let (unit, labels) = (scene.time_unit(), scene.labels());
+        let beside = report::Beside { unit, friction: friction.as_ref(), orbit: orbit.as_ref(), labels };
+        let again = report::document(&analysis, &beside).value();
         if analysis.measured.is_some() {
             return self.outcome(
                 context,

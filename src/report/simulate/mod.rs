@@ -16,7 +16,7 @@ pub fn document(run: &Run) -> Document {
     let drift = first.zip(last).map(|(a, b)| (b.energy - a.energy) / a.energy.abs());
     let drift = drift.filter(|drift| drift.is_finite()).map(|drift| format!("{drift:.3e}"));
     let of = if run.linear { "" } else { " of small deviations" };
-    let lines = [
+    let mut lines = vec![
         format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
         format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
@@ -31,11 +31,19 @@ pub fn document(run: &Run) -> Document {
             "  growth rate, measured        none: the run overflows".into()
         },
     ];
-    Document::new("simulate")
+    let document = Document::new("simulate")
         .entry("growth_rate_predicted", run.predicted)
         .entry("growth_rate_measured", run.measured)
         .entry("linear", run.linear)
-        .entry("irreversibility", run.irreversibility)
+        .entry("irreversibility", run.irreversibility);
+    let document = match run.displacement {
+        Some(off) => {
+            lines.push(format!("  growth, about the integrator's own orbit, {off:.3e} from the equilibrium"));
+            document.entry("own_orbit", serde_json::json!({"displacement": off}))
+        }
+        None => document,
+    };
+    document
         .rows(record().table("series", "Energy, momentum and amplitude over time", &run.series))
         .summary_alone(&lines)
 }

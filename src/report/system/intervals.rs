@@ -1,11 +1,70 @@
 //! Stretches of outer steps: rows, and the unstable ones in words.
 
 use crate::report::document::Document;
+#[cfg(feature = "figure")]
+use crate::report::figure::palette::{GREY, HYPERBOLIC, INK};
+#[cfg(feature = "figure")]
+use crate::report::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
 use crate::report::record::Record;
 use crate::report::table::Column;
 use crate::report::text::counted;
 use crate::system::Holds;
 use crate::system::levels::Stretch;
+
+/// Growth rates drawn of an unstable stretch.
+pub const SAMPLES: usize = 24;
+
+/// The steps of all unstable stretches whose growth is drawn: from end to end, the ends left out, where it is 0.
+pub fn sampled(stretches: &[Stretch]) -> Vec<f64> {
+    let unstable = stretches.iter().filter(|own| own.verdict != Holds::Stable);
+    let inside = |own: &Stretch| {
+        let (lo, width) = (own.lo, own.hi - own.lo);
+        (0..SAMPLES).map(move |k| lo + width * (k as f64 + 0.5) / SAMPLES as f64)
+    };
+    unstable.flat_map(inside).collect()
+}
+
+/// Outer step across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
+#[cfg(feature = "figure")]
+pub fn figure(stretches: &[Stretch], rates: &[Option<f64>], inner_steps: u64, title: &str) -> Figure {
+    let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
+    let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
+    let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
+    let shade = |verdict: Holds| {
+        let own = stretches.iter().filter(|own| own.verdict == verdict);
+        own.map(|own| vec![[own.lo, 0.0], [own.hi, 0.0], [own.hi, top], [own.lo, top]]).collect::<Vec<_>>()
+    };
+    let mut line = vec![[lo, 0.0]];
+    let mut samples = sampled(stretches).into_iter().zip(rates);
+    for own in stretches.iter().filter(|own| own.verdict != Holds::Stable) {
+        line.push([own.lo, 0.0]);
+        line.extend(samples.by_ref().take(SAMPLES).filter_map(|(step, rate)| Some([step, (*rate)?])));
+        line.push([own.hi, 0.0]);
+    }
+    line.push([hi, 0.0]);
+    let unstable = shade(Holds::Unstable).len();
+    let mut panel =
+        Panel::new(Axis::linear("outer step (time)", lo, hi), Axis::linear("growth rate (1/time)", 0.0, top))
+            .titled(&format!(
+                "{}, {}",
+                counted(unstable, "unstable interval", "unstable intervals"),
+                counted(
+                    inner_steps as usize,
+                    "inner step in each outer one",
+                    "inner steps in each outer one"
+                )
+            ));
+    for (verdict, colour, name) in
+        [(Holds::Unstable, HYPERBOLIC, "proven unstable"), (Holds::NotTold, GREY, "nothing proven")]
+    {
+        let outlines = shade(verdict);
+        if !outlines.is_empty() {
+            panel = panel.with(Layer::areas(outlines, colour, 0.25).labelled(name));
+        }
+    }
+    let line = Layer::lines(vec![line], Stroke::LINE.in_colour(INK)).labelled("growth rate");
+    Figure::double_column(80.0).named(title).with(panel.with(line).legend(Place::Above))
+}
 
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.
 pub fn document(stretches: &[Stretch], inner_steps: u64) -> Document {

@@ -1,5 +1,6 @@
 //! The verdict on a system of many clocks and degrees of freedom: as a document, its modes drawn, and maps of it.
 
+mod beside;
 #[cfg(feature = "figure")]
 mod chart;
 mod intervals;
@@ -16,15 +17,18 @@ use super::record::Record;
 use super::table::Column;
 use super::text::counted;
 use crate::system::{Analysis, Clocked, Instability, MuCount, Multiplier, Origin, Part};
+pub use beside::Beside;
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
-pub use intervals::document as intervals;
+#[cfg(feature = "figure")]
+pub use intervals::figure as intervals_figure;
+pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
-/// The document `kickdrift/system-verdict/1`, times in `unit` where it is known; the caller adds the input.
-pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
+/// The document `kickdrift/system-verdict/1`; the caller adds the input.
+pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let parts = || (1..).zip(&analysis.parts);
     let all: Vec<Own> = parts().flat_map(|(n, part)| multipliers(n, part)).collect();
     let table = record().table("multipliers", "Multipliers over one synchronization period", &all);
@@ -39,15 +43,13 @@ pub fn document(analysis: &Analysis, unit: Option<&str>) -> Document {
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", parts().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone());
-    let document = match unit {
-        Some(unit) => document.entry("time_unit", unit),
-        None => document,
-    };
     let document = match &analysis.measured {
         Some(own) => document.entry("measured", measured::value(own)),
         None => document,
     };
-    document.long_rows(table).summary_alone(&lines(analysis, unit))
+    let entries = beside::entries(beside, analysis).into_iter();
+    let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
+    document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
@@ -107,8 +109,8 @@ fn origin(origin: Origin) -> &'static str {
     }
 }
 
-fn lines(analysis: &Analysis, unit: Option<&str>) -> Vec<String> {
-    let suffix = unit.map_or(String::new(), |unit| format!(" {unit}"));
+fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
+    let suffix = beside.unit.map_or(String::new(), |unit| format!(" {unit}"));
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
@@ -128,7 +130,7 @@ fn lines(analysis: &Analysis, unit: Option<&str>) -> Vec<String> {
         lines.push(format!("  {parts} independent parts"));
     }
     if !analysis.is_stable() {
-        let per = unit.unwrap_or("unit time");
+        let per = beside.unit.unwrap_or("unit time");
         lines.push(format!("  largest growth rate {:.6} per {per}", analysis.growth_rate()));
     }
     lines
@@ -136,6 +138,7 @@ fn lines(analysis: &Analysis, unit: Option<&str>) -> Vec<String> {
     for unstable in analysis.parts.iter().flat_map(|part| &part.instabilities) {
         lines.push(format!("  {}", described(unstable)));
     }
+    lines.extend(beside::lines(beside, analysis));
     lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines

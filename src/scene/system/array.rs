@@ -1,4 +1,4 @@
-//! Arrays by reference: NumPy's `.npy` files, and the members of `.npz` archives.
+//! Arrays by reference: NumPy's `.npy` files, the members of `.npz` archives, and Matrix Market's files (see `market`).
 //!
 //! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or Fortran's).
 
@@ -9,17 +9,19 @@ use std::path::Path;
 use nalgebra::DMatrix;
 use serde::Deserialize;
 
+use super::market;
 use crate::error::{Error, Result};
 
 /// The most elements read: 4096 x 4096.
 const MOST_ELEMENTS: usize = 1 << 24;
 
-/// `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "fast"}`; paths are relative to the file that holds them.
+/// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}` or `{"mm": "k.mtx"}`; paths are relative to the file that holds them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields, untagged)]
 pub(super) enum Reference {
     Npy { npy: String },
     Npz { npz: String, array: String },
+    Mm { mm: String },
 }
 
 /// The elements as doubles, in C order.
@@ -36,6 +38,12 @@ impl Reference {
     pub fn read(&self, field: &str, folder: &Path) -> Result<Array> {
         let io = |path: &Path, cause: std::io::Error| Error::io(path.display(), &cause).caused_by(cause);
         let (path, bytes) = match self {
+            Reference::Mm { mm } => {
+                let path = folder.join(mm);
+                let text = std::fs::read_to_string(&path).map_err(|cause| io(&path, cause))?;
+                let read = market::parse(&text).map_err(|why| Error::input(field, mm, why));
+                return read.map(|(shape, values)| Array { shape, values });
+            }
             Reference::Npy { npy } => {
                 let path = folder.join(npy);
                 let bytes = std::fs::read(&path).map_err(|cause| io(&path, cause))?;

@@ -2,11 +2,12 @@
 
 use super::document::{BondDocument, Document, Number, PotentialDocument, ends};
 use super::linear::numbers;
-use crate::avi::{self, Bond, Form};
+use crate::avi::{self, Bond, Clocked, Form};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::{Potential, Symmetric, System};
+use crate::schedule::Schedule;
+use crate::system::{Limits, OwnOrbit, Potential, Symmetric, System, decide_along};
 
 /// A system with bonds as it is simulated: harmonic springs are bonds too.
 #[derive(Clone, Debug)]
@@ -17,6 +18,33 @@ pub(super) struct Nonlinear {
     pub equilibrium: Vec<f64>,
     /// Whether all forms are harmonic: the linear system is then the system itself.
     pub is_harmonic: bool,
+}
+
+/// An orbit as near to the equilibrium as Newton's method leaves both is the equilibrium.
+const NEAR: f64 = 1e-12;
+
+impl Nonlinear {
+    /// `None` where the equilibrium is the orbit.
+    pub fn own_orbit(&self, masses: &[f64], limits: &Limits) -> Result<Option<OwnOrbit>> {
+        let mut clocks: Vec<(&Rational, &Rational)> = self.steps.iter().zip(&self.phases).collect();
+        clocks.sort();
+        clocks.dedup();
+        let place = |own| clocks.binary_search(&own).expect("one of them");
+        let clock_of: Vec<usize> = self.steps.iter().zip(&self.phases).map(place).collect();
+        let steps: Vec<_> = clocks.iter().map(|(step, _)| (*step).clone()).collect();
+        let phases: Vec<_> = clocks.iter().map(|(_, phase)| (*phase).clone()).collect();
+        let schedule = Schedule::new(&steps, &phases)?;
+        let clocked = Clocked { masses, bonds: &self.bonds, clock_of: &clock_of, schedule: &schedule };
+        let orbit = clocked.periodic_orbit(&self.equilibrium)?;
+        let off = orbit.start.iter().zip(&self.equilibrium).map(|(y, x)| (y - x).abs());
+        let displacement = off.fold(0.0, f64::max);
+        let scale = self.equilibrium.iter().fold(1.0, |a: f64, x| a.max(x.abs()));
+        if displacement <= NEAR * scale {
+            return Ok(None);
+        }
+        let analysis = decide_along(masses, &schedule, &orbit.hessians, limits)?;
+        Ok(Some(OwnOrbit { start: orbit.start, displacement, analysis }))
+    }
 }
 
 impl Document {

@@ -4,6 +4,7 @@ use num_traits::ToPrimitive;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::mesh::MeshDocument;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
@@ -88,6 +89,9 @@ pub(super) struct Document {
     pub potentials: Option<Vec<PotentialDocument>>,
     pub near: Option<Vec<Number>>,
     pub build: Option<Build>,
+    pub mesh: Option<MeshDocument>,
+    pub labels: Option<Vec<String>>,
+    pub friction: Option<Number>,
 }
 
 #[derive(Clone, Debug, Deserialize)]

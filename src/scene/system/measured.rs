@@ -48,6 +48,8 @@ struct Document {
     positions: Option<Reference>,
     accuracy: Option<Number>,
     potentials: Vec<PotentialDocument>,
+    #[serde(rename = "labels")]
+    _labels: Option<Vec<String>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -160,11 +162,14 @@ impl Measured {
             );
             return Ok(analysis);
         };
-        let n = self.potentials[0].1.nrows() as u64;
-        limits.allow(n.saturating_pow(3).saturating_mul(200), || {
-            format!("eigenvalues and factorizations of {n} rows")
-        })?;
+        let n = self.size();
+        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {n} rows"))?;
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
+    }
+
+    /// The products that a verdict costs, roughly.
+    pub fn cost(&self) -> u64 {
+        (self.size() as u64).saturating_pow(3).saturating_mul(200)
     }
 
     /// The number of inner steps, and the verdicts on a range of outer ones.
@@ -175,6 +180,13 @@ impl Measured {
         })?;
         let inner_steps = outer.inner_steps();
         Ok((inner_steps, self.kernel()?.stretches(inner_steps, range, width)?))
+    }
+
+    /// The growth rate at each outer step, as many inner ones as in the file; `None` where none is told.
+    pub fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
+        let (inner_steps, kernel) =
+            (self.outer().map_or(1, |(outer, _)| outer.inner_steps()), self.kernel()?);
+        steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
     }
 
     /// The eigenbasis, computed when it is first asked for.

@@ -28,7 +28,9 @@
 //! * A `stiffness` by reference, `{"npy": "h.npy"}` or `{"npz": "data.npz", "array": "h"}`, makes it a system of measured
 //!   doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted` says that the matrices are,
 //!   `accuracy` how well they are known.
-//! * In place of masses and potentials, `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
+//! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
+//!   in the middle of every drift.
+//! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
 //!   `{"kind": "tethered-pair", "masses": [...], "stiffness": [bond, tether], "steps": [bond, tether]}`.
@@ -37,7 +39,8 @@
 //! |---|---|
 //! | `document` | the fields |
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
-//! | `measured`, `array` | stiffnesses by reference to NumPy's files |
+//! | `mesh` | finite elements |
+//! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `run` | Algorithm 1 run on it |
 //! | `scan` | one file, many systems: any number of it over a range |
 
@@ -45,7 +48,9 @@ mod array;
 mod bonds;
 mod document;
 mod linear;
+mod market;
 mod measured;
+mod mesh;
 mod oscillator;
 mod run;
 mod scan;
@@ -60,8 +65,12 @@ use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
+use crate::system::friction::{Friction, damped_oscillator, damped_system};
 use crate::system::levels::Stretch;
-use crate::system::{Analysis, Limits, ManyClocks, Potential, Route, System, decide_by, decide_oscillator};
+use crate::system::{
+    Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
+    verdict_cost,
+};
 use bonds::Nonlinear;
 use document::{Document, no_system};
 use measured::Measured;
@@ -75,6 +84,21 @@ const SCHEMA: &str = "kickdrift/system/1";
 /// The longest file, in bytes.
 const LONGEST: usize = 16 << 20;
 
+/// A label for each of n degrees of freedom, from one each or from one for each particle in space.
+fn spread(labels: &[String], n: usize) -> Result<Vec<String>> {
+    match labels.len() {
+        k if k == n => Ok(labels.to_vec()),
+        k if 3 * k == n => {
+            Ok(labels.iter().flat_map(|own| ["x", "y", "z"].map(|axis| format!("{own} {axis}"))).collect())
+        }
+        k => {
+            let remedy =
+                format!("there are {n} degrees of freedom: give a label for each, or for each three");
+            Err(Error::input("labels", k, remedy))
+        }
+    }
+}
+
 /// A system file, read and checked.
 #[derive(Clone, Debug)]
 pub struct SystemScene {
@@ -85,6 +109,10 @@ pub struct SystemScene {
     nonlinear: Option<Nonlinear>,
     oscillator: Option<Oscillator>,
     measured: Option<Measured>,
+    /// One for each degree of freedom.
+    labels: Option<Vec<String>>,
+    /// γ per unit time.
+    friction: Option<Rational>,
 }
 
 impl SystemScene {
@@ -139,14 +167,18 @@ impl SystemScene {
         if schema != SCHEMA {
             return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
-        let measured = Some(Measured::read(&source, folder)?);
+        let measured = Measured::read(&source, folder)?;
+        let labels = source.get("labels").map(Vec::<String>::deserialize).transpose().map_err(no_system)?;
+        let labels = labels.map(|own| spread(&own, measured.size())).transpose()?;
         Ok(SystemScene {
             source,
             title,
             system: OnceLock::new(),
             nonlinear: None,
             oscillator: None,
-            measured,
+            measured: Some(measured),
+            labels,
+            friction: None,
         })
     }
 
@@ -155,13 +187,25 @@ impl SystemScene {
             return Err(Error::input("schema", &document.schema, format!("this version reads {SCHEMA}")));
         }
         let title = document.title.clone().unwrap_or_default();
-        match &document.build {
-            Some(build) if document.masses.is_none() && document.potentials.is_none() => {
-                Ok(SystemScene::linear(source, title, build.system()?))
+        let is_explicit = document.masses.is_some() || document.potentials.is_some();
+        let mut scene = match (&document.build, &document.mesh) {
+            (Some(build), None) if !is_explicit => SystemScene::linear(source, title, build.system()?),
+            (None, Some(mesh)) if !is_explicit => {
+                let (system, labels) = mesh.system()?;
+                SystemScene { labels: Some(labels), ..SystemScene::linear(source, title, system) }
             }
-            Some(_) => Err(Error::input("build", "given", "give either build, or masses and potentials")),
-            None => SystemScene::explicit(source, title, &document),
+            (None, None) => SystemScene::explicit(source, title, &document)?,
+            _ => {
+                let remedy = "give either build, or mesh, or masses and potentials";
+                let field = if document.build.is_some() { "build" } else { "mesh" };
+                return Err(Error::input(field, "given", remedy));
+            }
+        };
+        if let Some(labels) = &document.labels {
+            scene.labels = Some(spread(labels, scene.system().size())?);
         }
+        let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
+        friction.map_or(Ok(scene.clone()), |rate| scene.with_friction(rate))
     }
 
     fn explicit(source: Value, title: String, document: &Document) -> Result<SystemScene> {
@@ -186,7 +230,16 @@ impl SystemScene {
 
     fn linear(source: Value, title: String, system: System) -> SystemScene {
         let system = OnceLock::from(system);
-        SystemScene { source, title, system, nonlinear: None, oscillator: None, measured: None }
+        SystemScene {
+            source,
+            title,
+            system,
+            nonlinear: None,
+            oscillator: None,
+            measured: None,
+            labels: None,
+            friction: None,
+        }
     }
 
     /// The same with another accuracy of its measured stiffnesses, relative to their norms.
@@ -208,6 +261,39 @@ impl SystemScene {
             || Error::input("rigid motions", "kept", "is for stiffnesses by reference: these are exact");
         self.measured = Some(self.measured.ok_or_else(exact)?.keeping_rigid());
         Ok(self)
+    }
+
+    /// The same with friction of a rate per unit time, O in the middle of every drift.
+    ///
+    /// # Errors
+    /// A rate that is not positive; stiffnesses by reference.
+    pub fn with_friction(mut self, rate: Rational) -> Result<SystemScene> {
+        if rate <= Rational::default() {
+            return Err(Error::input("friction", rate, "a rate of friction must be positive"));
+        }
+        if self.measured.is_some() {
+            return Err(Error::input("friction", rate, "is for exact stiffnesses: these stand by reference"));
+        }
+        self.friction = Some(rate);
+        Ok(self)
+    }
+
+    /// What the friction of the file does; `None` where it has none.
+    ///
+    /// # Errors
+    /// As [`damped_system`]; an oscillator that involves π takes its rounded stiffnesses, and is refused where its steps are
+    /// irrational.
+    pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
+        let Some(rate) = &self.friction else { return Ok(None) };
+        if let Some(own) = &self.oscillator {
+            return damped_oscillator(&own.clocks, &own.unit, rate).map(Some);
+        }
+        damped_system(self.system(), rate, limits).map(Some)
+    }
+
+    /// What each degree of freedom is called, where the file tells.
+    pub fn labels(&self) -> Option<&[String]> {
+        self.labels.as_deref()
     }
 
     /// The whole input, as it was read.
@@ -243,6 +329,19 @@ impl SystemScene {
         }
     }
 
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.measured.as_ref().map_or_else(|| self.system().size(), Measured::size)
+    }
+
+    /// The products of doubles that the verdict costs, roughly, where doubles prove it.
+    pub fn cost(&self) -> u64 {
+        match &self.measured {
+            Some(measured) => measured.cost(),
+            None => verdict_cost(self.system()),
+        }
+    }
+
     /// The number of inner steps in an outer one, and the verdicts on all outer steps of a range, at that number: stretches
     /// that cover it, no interval wider than `width` (relative) missed.
     ///
@@ -255,6 +354,16 @@ impl SystemScene {
         self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
     }
 
+    /// The largest growth rate at each of the outer steps, per unit time, rounded, at the file's number of inner steps; `None` where
+    /// it is not told.
+    ///
+    /// # Errors
+    /// As [`SystemScene::stretches`].
+    pub fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
+        let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
+        self.measured.as_ref().ok_or_else(exact)?.growth_rates(steps)
+    }
+
     /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.
     pub fn many_clocks(&self) -> Option<&ManyClocks<Laurent>> {
         self.oscillator.as_ref().map(|own| &own.clocks)
@@ -263,6 +372,17 @@ impl SystemScene {
     /// The equilibrium, where there are bonds.
     pub fn equilibrium(&self) -> Option<&[f64]> {
         self.nonlinear.as_ref().map(|n| n.equilibrium.as_slice())
+    }
+
+    /// The integrator's own periodic orbit beside the equilibrium, and the verdict about it; `None` where there are no nonlinear
+    /// bonds, or where the equilibrium is the orbit.
+    ///
+    /// # Errors
+    /// Where no orbit is found; as [`decide_along`].
+    pub fn own_orbit(&self, limits: &Limits) -> Result<Option<OwnOrbit>> {
+        let Some(nonlinear) = self.nonlinear.as_ref().filter(|own| !own.is_harmonic) else { return Ok(None) };
+        let masses: Vec<f64> = self.masses()?.iter().map(to_f64).collect();
+        nonlinear.own_orbit(&masses, limits)
     }
 
     /// Whether the system of [`SystemScene::system`] is all there is: no bond but harmonic ones.

@@ -70,7 +70,8 @@ impl RunRequest {
 const DEVIATION: f64 = 1e-6;
 
 impl SystemScene {
-    /// Runs Algorithm 1 from rest at the displacement: the bonds themselves about their equilibrium, linear systems about 0;
+    /// Runs Algorithm 1 from rest at the displacement: the bonds themselves about the integrator's own orbit, or the equilibrium
+    /// where that is one, linear systems about 0;
     /// and predicts the growth by the multipliers.
     ///
     /// # Errors
@@ -81,17 +82,23 @@ impl SystemScene {
         if request.periods == 0 || request.periods > most {
             return Err(Error::input("periods", request.periods, format!("choose 1 to {most}")));
         }
-        let predicted = self.decide(Route::Cheapest, limits)?.growth_rate();
+        let own = self.own_orbit(limits)?;
+        let predicted = match &own {
+            Some(orbit) => orbit.analysis.growth_rate(),
+            None => self.decide(Route::Cheapest, limits)?.growth_rate(),
+        };
         let shift = request.displacement.of(self.system().size())?;
         let rest = vec![0.0; shift.len()];
-        let Some(centre) = self.equilibrium() else {
+        let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| self.equilibrium())
+        else {
             let make = || self.linear_simulation(shift.clone(), rest.clone());
-            return request.measure(make, &rest, (predicted, true), limits);
+            return request.measure(make, &rest, (predicted, None, true), limits);
         };
         let start: Vec<f64> = centre.iter().zip(&shift).map(|(x, d)| x + d).collect();
         let make =
             || Ok(self.nonlinear_simulation(start.clone(), rest.clone())?.expect("a system with bonds"));
-        request.measure(make, centre, (predicted, self.is_linear()), limits)
+        let displacement = own.as_ref().map(|orbit| orbit.displacement);
+        request.measure(make, centre, (predicted, displacement, self.is_linear()), limits)
     }
 }
 
@@ -100,7 +107,7 @@ impl RunRequest {
         &self,
         make: impl Fn() -> Result<Simulation<f64, F>>,
         centre: &[f64],
-        (predicted, linear): (f64, bool),
+        (predicted, displacement, linear): (f64, Option<f64>, bool),
         limits: &Limits,
     ) -> Result<Run> {
         let mut simulation = make()?;
@@ -115,8 +122,10 @@ impl RunRequest {
             return Err(Error::input("displace", &self.displacement, remedy));
         }
         let series = series(&mut simulation, centre, self.periods as usize, (period, self.ends));
-        let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, self.ends));
+        // The symmetric form is at rest at t = 0 on its own orbit; the multipliers are those of the staggered one.
+        let form = if displacement.is_some() { Ends::Symmetric } else { self.ends };
+        let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, form));
         let irreversibility = irreversibility(&mut make()?, period);
-        Ok(Run { series, measured, predicted, irreversibility, linear })
+        Ok(Run { series, measured, predicted, irreversibility, linear, displacement })
     }
 }

@@ -2,6 +2,7 @@
 
 use super::kernel::{Kernel, Outer};
 use crate::error::{Error, Result};
+use crate::system::analysis::exponent;
 use crate::system::measured::Holds;
 use crate::verdict::Kind;
 
@@ -20,6 +21,13 @@ pub struct Stretch {
 const WIDEST: f64 = 0.05;
 
 impl Kernel {
+    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, in doubles; `None` where the fast spectrum is beyond the
+    /// linear limit of the inner step.
+    pub fn growth_rate(&self, outer: &Outer) -> Option<f64> {
+        let (_, spectrum) = self.beyond(outer, 0.0)?;
+        Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
+    }
+
     /// The verdicts on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as stretches that cover them. A step H' in
     /// place of H is the factor (H'/H)² on every stiffness, so a verdict on all stiffnesses within ε holds for H² (1 ± ε). Where
     /// nothing is proven for ε = `width`, a stretch of that relative width is told of as such: no interval wider than it is

@@ -1,0 +1,89 @@
+//! What stands beside a system's verdict: the unit of time, friction, the integrator's own orbit, what the growing modes move.
+
+use serde_json::{Value, json};
+
+use crate::report::friction;
+use crate::system::friction::Friction;
+use crate::system::{Analysis, OwnOrbit};
+
+/// What is known beside the verdict at the equilibrium and without friction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Beside<'a> {
+    /// The unit of time, where it has a name.
+    pub unit: Option<&'a str>,
+    pub friction: Option<&'a Friction>,
+    pub orbit: Option<&'a OwnOrbit>,
+    /// What each degree of freedom is called.
+    pub labels: Option<&'a [String]>,
+}
+
+/// The degrees of freedom told of a growing mode: those that move most.
+const TOLD: usize = 4;
+
+/// The entries of a document.
+pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, Value)> {
+    let moving = |labels: &&[String]| {
+        let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
+        let one =
+            |(i, amplitude): (usize, f64)| json!({"dof": i, "label": labels[i], "amplitude": amplitude});
+        let told = modes.map(|mode| Value::from(moving(mode).into_iter().map(one).collect::<Vec<_>>()));
+        Value::from(told.collect::<Vec<_>>())
+    };
+    let orbit = own.orbit.map(|own| {
+        let about = &own.analysis;
+        json!({
+            "displacement": own.displacement, "start": own.start, "kind": about.kind.name(), "stable": about.is_stable(),
+            "proven": about.is_proof(), "growth_rate": about.growth_rate(),
+        })
+    });
+    let all = [
+        ("time_unit", own.unit.map(Value::from)),
+        ("friction", own.friction.map(friction::value)),
+        ("own_orbit", orbit),
+        ("moving", own.labels.as_ref().map(moving)),
+    ];
+    all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+}
+
+/// The same for people.
+pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
+    let mut lines = Vec::new();
+    if let Some(labels) = own.labels {
+        let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
+        for (n, mode) in (1..).zip(modes) {
+            let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
+            lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
+        }
+    }
+    lines.extend(own.orbit.map(|orbit| orbit_line(orbit, analysis)));
+    lines.extend(own.friction.into_iter().flat_map(friction::lines));
+    lines
+}
+
+/// The degrees of freedom with the longest entries of a shape, and these.
+fn moving(mode: &crate::system::Instability) -> Vec<(usize, f64)> {
+    let length = |i: usize| mode.shape[i].hypot(mode.quadrature[i]);
+    let mut order: Vec<usize> = (0..mode.shape.len()).filter(|&i| length(i) > 0.0).collect();
+    order.sort_by(|&a, &b| length(b).total_cmp(&length(a)).then(a.cmp(&b)));
+    let told = |&i: &usize| (i, if mode.quadrature[i] == 0.0 { mode.shape[i] } else { length(i) });
+    order.iter().take(TOLD).map(told).collect()
+}
+
+fn orbit_line(own: &OwnOrbit, analysis: &Analysis) -> String {
+    let (here, there) = (analysis.growth_rate(), own.analysis.growth_rate());
+    let growth = match (here > 0.0, there > 0.0) {
+        (true, true) => format!(
+            "growth rate {there:.6}, {:+.1} % of that at the equilibrium",
+            100.0 * (there / here - 1.0)
+        ),
+        (false, true) => format!("growth rate {there:.6}, though none at the equilibrium"),
+        (true, false) => "no growth, though some at the equilibrium".into(),
+        (false, false) => "no growth, as at the equilibrium".into(),
+    };
+    let proven = if own.analysis.is_proof() { "proven for its Hessians" } else { "NOT proven" };
+    format!(
+        "  the above speaks about the equilibrium; about the integrator's own orbit, {:.3e} beside it, where a run stays: {} ({proven}), {growth}",
+        own.displacement,
+        own.analysis.kind.name(),
+    )
+}

@@ -1,0 +1,235 @@
+//! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven discs.
+
+use super::{Damping, damped, masking};
+use crate::error::{Error, Result};
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::{Ball, Laurent, Rational, Real, U};
+use crate::system::ManyClocks;
+use crate::system::compose::connected;
+use crate::system::float::scaled_program;
+use crate::system::frame::Frame;
+use crate::system::limits::{Limits, degrees_of_freedom};
+use crate::system::model::System;
+use crate::system::norm;
+use crate::system::period::{Drifts, Stiff, follow};
+use crate::system::piece::complement;
+use crate::system::spectrum::{components, residual};
+
+/// What friction does to a system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    /// γ, per unit time.
+    pub rate: Rational,
+    /// Where the spectral radius lies, rigid motions apart; `None`: doubles do not tell.
+    pub damping: Option<Damping>,
+    /// ln ρ(Q)/T of the part where it is largest, enclosed, per unit time: below 0 the slowest decay, above 0 the growth;
+    /// `None` where doubles bound nothing.
+    pub growth: Option<(f64, f64)>,
+    /// The friction that masks every resonance.
+    pub masking: Mask,
+}
+
+/// Whether there is something to mask, and by which friction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Mask {
+    /// Nothing grows without friction (many degrees of freedom: at a friction of 10^-6 a period).
+    NotNeeded,
+    /// Something does, and this masks it.
+    At(Masked),
+    /// Not found: no friction that is proven to mask, or a period too long for the polynomial in c.
+    NotTold,
+}
+
+impl Mask {
+    /// The friction that masks both.
+    fn and(self, other: Mask) -> Mask {
+        match (self, other) {
+            (Mask::NotNeeded, one) | (one, Mask::NotNeeded) => one,
+            (Mask::At(a), Mask::At(b)) => Mask::At(Masked {
+                rate: (a.rate.0.max(b.rate.0), a.rate.1.max(b.rate.1)),
+                stays: a.stays.zip(b.stays).map(|(a, b)| a && b),
+            }),
+            _ => Mask::NotTold,
+        }
+    }
+}
+
+/// The friction that masks the resonances of a system.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Masked {
+    /// One oscillator: γ* is in \[lo, hi\], every smaller friction leaves it growing. More of them: at lo something is proven
+    /// to grow, at hi nothing does.
+    pub rate: (f64, f64),
+    /// Whether every friction above hi is proven to mask, too; `None`: not asked (many degrees of freedom).
+    pub stays: Option<bool>,
+}
+
+/// The relative width to which a masking friction of many degrees of freedom is bisected: what linear theory is good for.
+const WIDTH: f64 = 1e-4;
+
+/// What friction of the rate γ per unit time does to a system, and how much of it masks its resonances.
+///
+/// # Errors
+/// A rate that is not positive; budget errors, before the work.
+pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
+    if *rate <= Rational::default() {
+        return Err(Error::input("friction", rate, "a rate of friction must be positive"));
+    }
+    let parts = parts(system);
+    for part in &parts {
+        let n = part.size() as u64;
+        let kicks = part.schedule().strikes();
+        // Some 60 eigenvalue problems of 2n rows to bisect, each 25 (2n)³.
+        let cost = n
+            .pow(3)
+            .saturating_mul(if n > 1 { 12_000 } else { 0 })
+            .saturating_add(kicks.saturating_mul(2 * n.pow(3)));
+        limits
+            .allow(cost, || format!("the eigenvalues of a period of {}", degrees_of_freedom(part.size())))?;
+    }
+    let all = parts.iter().map(|part| at(part, rate)).collect::<Result<Vec<_>>>()?;
+    let masks = parts.iter().map(masked).collect::<Result<Vec<_>>>()?;
+    let growth = all.iter().map(|(_, growth)| *growth).collect::<Option<Vec<_>>>();
+    Ok(Friction {
+        rate: rate.clone(),
+        damping: worst(all.iter().map(|(damping, _)| *damping)),
+        growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
+        masking: masks.into_iter().fold(Mask::NotNeeded, Mask::and),
+    })
+}
+
+/// The same for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is h_1, the unit of time of the
+/// clocks, and γ is per unit of what `unit` is in.
+///
+/// # Errors
+/// As [`damped`].
+pub fn damped_oscillator<S: Real>(
+    clocks: &ManyClocks<S>,
+    unit: &Laurent,
+    rate: &Rational,
+) -> Result<Friction> {
+    let own = damped(clocks, &(unit * &Laurent::from_rational(rate.clone())))?;
+    let period = (unit * &Laurent::from_rational(clocks.period())).enclosure(BITS);
+    let ln = own.radius.ln(BITS).and_then(|ln| ln.div(&period, BITS));
+    let per_time =
+        |rate: &Ball| rate.div(&unit.enclosure(BITS), BITS).expect("a step > 0").to_f64_enclosure();
+    Ok(Friction {
+        rate: rate.clone(),
+        damping: Some(own.damping),
+        growth: ln.map(|ln| ln.to_f64_enclosure()),
+        masking: match masking(clocks) {
+            Ok(None) => Mask::NotNeeded,
+            Ok(Some(mask)) => Mask::At(Masked { rate: per_time(&mask.rate), stays: Some(mask.stays) }),
+            Err(_) => Mask::NotTold,
+        },
+    })
+}
+
+/// Bits of the quotients that are told.
+const BITS: u32 = 128;
+
+/// Growing if any part is; not told if any other is not.
+fn worst(parts: impl Iterator<Item = Option<Damping>>) -> Option<Damping> {
+    let all: Vec<_> = parts.collect();
+    if all.contains(&Some(Damping::Growing)) {
+        return Some(Damping::Growing);
+    }
+    let all = all.into_iter().collect::<Option<Vec<_>>>()?;
+    Some(if all.contains(&Damping::Marginal) { Damping::Marginal } else { Damping::Damped })
+}
+
+/// The connected components, rigid modes left out.
+fn parts(system: &System) -> Vec<System> {
+    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
+    let own = |dofs: Vec<usize>| {
+        let component = system.component(&dofs)?;
+        let frame = Frame::new(&component);
+        if frame.rigid.is_empty() {
+            return Some(component);
+        }
+        let space = complement(&component, &frame);
+        (!space.is_empty()).then(|| component.restricted(&space))
+    };
+    connected(system.size(), graphs).into_iter().filter_map(own).collect()
+}
+
+type At = (Option<Damping>, Option<(f64, f64)>);
+
+/// Where ρ lies, and ln ρ/T.
+fn at(part: &System, rate: &Rational) -> Result<At> {
+    if let Some(clocks) = part.as_many_clocks() {
+        let unit = Laurent::from_rational(part.clocks()[0].step.clone());
+        let own = damped_oscillator(&clocks, &unit, rate)?;
+        return Ok((own.damping, own.growth));
+    }
+    // ln x and the quotient are off by some roundings of |ln x| + 1.
+    let period = to_f64(&part.period());
+    let per_time = |(lo, hi): (f64, f64)| {
+        let [lo, hi] = [lo, hi].map(f64::ln);
+        ((lo - 4.0 * U * (lo.abs() + 1.0)) / period, (hi + 4.0 * U * (hi.abs() + 1.0)) / period)
+    };
+    let frame = Frame::whole(part.size());
+    let (program, _) = scaled_program(part, &frame);
+    // Entries within one rounding of the true ones are in the bound of [`follow`].
+    let kicks: Vec<_> =
+        program.kicks.iter().map(|kick| Stiff { rows: kick.rows.clone(), off: 0.0 }).collect();
+    let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()) };
+    let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
+    Ok(match q.error.and_then(|error| spectral_radius(&q.matrix(), error)) {
+        Some((lo, hi)) => {
+            let damping =
+                if hi < 1.0 { Some(Damping::Damped) } else { (lo > 1.0).then_some(Damping::Growing) };
+            (damping, Some(per_time((lo.max(f64::MIN_POSITIVE), hi))))
+        }
+        None => (None, None),
+    })
+}
+
+/// An enclosure of the spectral radius of all matrices within `error` of q: no eigenvalue outside the discs, and one at least
+/// in each connected component of them.
+fn spectral_radius(q: &faer::Mat<f64>, error: f64) -> Option<(f64, f64)> {
+    let eigen = q.eigen().ok()?;
+    let values: Vec<_> = (0..q.nrows()).map(|i| eigen.S()[i]).collect();
+    let radius = 1.01 * residual(q, error + U * norm::frobenius(q), &values, &eigen.U().to_owned())?.norm;
+    let far = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let least =
+        |component: &Vec<usize>| component.iter().map(|&i| values[i].norm()).fold(f64::INFINITY, f64::min);
+    let lower = components(&values, radius).iter().map(least).fold(0.0, f64::max);
+    Some(((lower - radius).next_down(), (far + radius).next_up()))
+}
+
+/// The friction that masks what grows.
+fn masked(part: &System) -> Result<Mask> {
+    if let Some(clocks) = part.as_many_clocks() {
+        let unit = Laurent::from_rational(part.clocks()[0].step.clone());
+        return Ok(damped_oscillator(&clocks, &unit, &Rational::from_integer(1.into()))?.masking);
+    }
+    let side =
+        |rate: f64| -> Result<Option<Damping>> { Ok(at(part, &from_f64_exact(rate).expect("finite"))?.0) };
+    // A friction that is next to none: does anything grow?
+    let period = to_f64(&part.period());
+    let mut lo = 1e-6 / period;
+    if side(lo)? != Some(Damping::Growing) {
+        return Ok(Mask::NotNeeded);
+    }
+    let mut hi = 1.0 / period;
+    for _ in 0..40 {
+        match side(hi)? {
+            Some(Damping::Damped) => break,
+            _ => hi *= 2.0,
+        }
+    }
+    if side(hi)? != Some(Damping::Damped) {
+        return Ok(Mask::NotTold);
+    }
+    while hi > lo * (1.0 + WIDTH) {
+        let middle = if hi > 4.0 * lo { (lo * hi).sqrt() } else { (lo + hi) / 2.0 };
+        match side(middle)? {
+            Some(Damping::Growing) => lo = middle,
+            Some(Damping::Damped) => hi = middle,
+            // So near to 1 that doubles do not tell: the bracket is as narrow as it gets.
+            _ => break,
+        }
+    }
+    Ok(Mask::At(Masked { rate: (lo, hi), stays: None }))
+}

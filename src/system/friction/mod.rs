@@ -1,0 +1,61 @@
+//! Friction: Ornstein and Uhlenbeck's step O in the middle of every drift, as BAOAB and its relatives do.
+//!
+//! Between two kick times a time t apart the state goes through D(t/2) O D(t/2), O: v → c v (+ noise), c = exp(−γ t).
+//! With one level this is BAOAB, with r-RESPA its multiple-time-step form (the innermost step a BAOAB one). Means and
+//! covariances of the chain stay bounded iff the *spectral radius* ρ(Q) of the noiseless period is below 1. Friction is no
+//! longer reversible, so the whole period decides, not its half. For one oscillator
+//!
+//! ```text
+//!     det Q = exp(−γ T),     ρ(Q) < 1  iff  |Tr Q| < 1 + det Q   (Jury),
+//! ```
+//!
+//! and a linear resonance is *masked* by every γ for which ρ(Q) < 1 although the frictionless period grows.
+//!
+//! | file | what |
+//! |---|---|
+//! | `scalar` | one oscillator: exact for a rational c, enclosed for a rate γ |
+//! | `masking` | the smallest friction that masks a resonance of one oscillator, from the polynomial Tr Q(c) |
+//! | `matrices` | many degrees of freedom, in doubles with a proven bound |
+//!
+//! ```
+//! use kickdrift::number::{Rational, rational::ratio};
+//! use kickdrift::system::ManyClocks;
+//! use kickdrift::system::friction::{Damping, damped, masking};
+//! // s = h1² L1 = 9/4, rho = 1/25, h2 = 7/2 h1: in the tongue m = 4.
+//! let (steps, phases) = ([ratio(1, 1), ratio(7, 2)], [ratio(0, 1), ratio(0, 1)]);
+//! let clocks = ManyClocks::new(&steps, &phases, vec![ratio(12, 5), ratio(12 * 7, 5 * 25 * 2)]).unwrap();
+//! let mask = masking(&clocks).unwrap().expect("it grows without friction");
+//! let at = |rate: Rational| damped(&clocks, &rate).unwrap().damping;
+//! assert_eq!(at(mask.rate.lower() / ratio(2, 1)), Damping::Growing);
+//! assert_eq!(at(mask.rate.upper() * ratio(2, 1)), Damping::Damped);
+//! ```
+
+mod masking;
+mod matrices;
+mod scalar;
+
+pub use masking::{Masking, masking};
+pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_system};
+pub use scalar::{Damped, damped, damped_exactly};
+
+/// Where the spectral radius of a period with friction lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damping {
+    /// Below 1: means and covariances are bounded.
+    Damped,
+    /// At 1, exactly: a free direction, whose covariance grows linearly.
+    Marginal,
+    /// Above 1: exponential growth in spite of the friction.
+    Growing,
+}
+
+impl Damping {
+    /// The name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Damping::Damped => "damped",
+            Damping::Marginal => "marginal",
+            Damping::Growing => "growing",
+        }
+    }
+}

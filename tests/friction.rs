@@ -1,0 +1,151 @@
+//! Friction: O-steps in the middle of every drift.
+
+use kickdrift::number::parse::parse;
+use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::{Laurent, Rational};
+use kickdrift::system::friction::{Damping, Mask, Masked, damped, damped_exactly, damped_system, masking};
+use kickdrift::system::{Limits, ManyClocks, Potential, Symmetric, System, builders};
+use nalgebra::Matrix2;
+
+fn two_clocks(ratio_of_steps: Rational, fast: Rational, slow: Rational) -> ManyClocks<Rational> {
+    ManyClocks::new(&[ratio(1, 1), ratio_of_steps], &[ratio(0, 1), ratio(0, 1)], vec![fast, slow]).unwrap()
+}
+
+/// Two periods, 10 and 40 fs, outer step 4.8 fs at 10:1; the unit of time is h_1 = 0.48 fs.
+fn ten_and_forty() -> ManyClocks<Laurent> {
+    let strength = |text: &str| parse("strength", text).unwrap();
+    let steps = [ratio(1, 1), ratio(10, 1)];
+    // h_1² (2π/10)², h_1 h_2 (2π/40)².
+    let strengths = vec![strength("4*pi^2*144/62500"), strength("40*pi^2*144/1000000")];
+    ManyClocks::new(&steps, &[ratio(0, 1), ratio(0, 1)], strengths).unwrap()
+}
+
+#[test]
+fn the_resonance_of_periods_ten_and_forty_is_masked_between_38_and_39_per_picosecond() {
+    let clocks = ten_and_forty();
+    let mask = masking(&clocks).unwrap().expect("it grows");
+    let per_picosecond = mask.rate.mid_f64() / 0.48e-3;
+    assert!(38.0 < per_picosecond && per_picosecond < 39.0, "{per_picosecond}");
+    assert!(mask.stays && mask.rate.relative_accuracy_bits() > 40);
+    // The growth without friction is 19.43 per picosecond: about half of that.
+    assert!((per_picosecond / 19.43 - 2.0).abs() < 0.02, "{per_picosecond}");
+    let at = |rate: Rational| damped(&clocks, &rate).unwrap();
+    // 38 and 39 per picosecond, in 1/h_1.
+    assert_eq!(at(ratio(38 * 48, 100_000)).damping, Damping::Growing);
+    assert_eq!(at(ratio(39 * 48, 100_000)).damping, Damping::Damped);
+}
+
+#[test]
+fn nothing_masks_what_does_not_grow() {
+    let stable = two_clocks(ratio(2, 1), ratio(1, 10), ratio(1, 10));
+    assert!(masking(&stable).unwrap().is_none());
+    assert_eq!(damped(&stable, &ratio(1, 1000)).unwrap().damping, Damping::Damped);
+}
+
+/// The period by plain matrices in doubles.
+fn plain(clocks: &ManyClocks<Rational>, rate: f64) -> Matrix2<f64> {
+    let tick = to_f64(clocks.schedule().tick());
+    clocks.schedule().symmetric_period().fold(Matrix2::identity(), |m, event| {
+        let t = event.drift as f64 * tick;
+        let drift = Matrix2::new(1.0, t / 2.0, 0.0, 1.0);
+        let friction = Matrix2::new(1.0, 0.0, 0.0, (-rate * t).exp());
+        let weight = if event.weight == kickdrift::schedule::Weight::Half { 0.5 } else { 1.0 };
+        event.clocks().fold(drift * friction * drift * m, |m, clock| {
+            Matrix2::new(1.0, 0.0, -weight * to_f64(&clocks.strengths()[clock]), 1.0) * m
+        })
+    })
+}
+
+#[test]
+fn spectral_radii_are_those_of_the_plain_product() {
+    for (p, q, s, rho, rate) in
+        [(7, 2, 2.4, 0.04, 0.05), (10, 1, 0.9, 0.06, 0.001), (5, 3, 2.55, 0.1, 0.3), (3, 2, 3.9, 0.5, 1.0)]
+    {
+        let exact = |x: f64| Rational::from_float(x).unwrap();
+        let slow = exact(s * rho) * ratio(p, q);
+        let clocks = two_clocks(ratio(p, q), exact(s), slow);
+        let own = damped(&clocks, &exact(rate)).unwrap();
+        let m = plain(&clocks, rate);
+        let radius = m.complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max);
+        // Some 20 products of matrices of norm 10 at most.
+        assert!((own.radius.mid_f64() - radius).abs() < 1e-12 * radius, "{p}/{q}: {radius}");
+        assert_eq!(own.damping == Damping::Growing, radius > 1.0);
+    }
+}
+
+#[test]
+fn a_rational_factor_is_decided_exactly_on_either_side_of_the_masking_friction_and_on_it() {
+    // One clock, s = 9/2 > 4: Q = [[1 - k m, m], [-k c, c]], m = (1 + c)/2 a tick of 1, so 1 + c + Tr = 2 + 2 c - k (1 + c)/2.
+    // Above k = 4 no friction masks it.
+    let one = |k: Rational| ManyClocks::new(&[ratio(1, 1)], &[ratio(0, 1)], vec![k]).unwrap();
+    for c in [ratio(0, 1), ratio(1, 2), ratio(9, 10)] {
+        assert_eq!(damped_exactly(&one(ratio(9, 2)), &c).unwrap(), Damping::Growing);
+        assert_eq!(damped_exactly(&one(ratio(4, 1)), &c).unwrap(), Damping::Marginal);
+        assert_eq!(damped_exactly(&one(ratio(7, 2)), &c).unwrap(), Damping::Damped);
+        assert_eq!(damped_exactly(&one(ratio(0, 1)), &c).unwrap(), Damping::Marginal);
+    }
+    assert!(damped_exactly(&one(ratio(1, 1)), &ratio(1, 1)).is_err());
+    // Balls on both sides of an enclosed masking friction agree with it.
+    let clocks = two_clocks(ratio(7, 2), ratio(12, 5), ratio(12 * 7, 250));
+    let mask = masking(&clocks).unwrap().unwrap();
+    let (lo, hi) = mask.rate.to_f64_enclosure();
+    let tick = to_f64(clocks.schedule().tick());
+    let factor = |rate: f64| Rational::from_float((-rate * tick).exp()).unwrap();
+    assert_eq!(damped_exactly(&clocks, &factor(lo * (1.0 - 1e-9))).unwrap(), Damping::Growing);
+    assert_eq!(damped_exactly(&clocks, &factor(hi * (1.0 + 1e-9))).unwrap(), Damping::Damped);
+}
+
+#[test]
+fn a_period_of_many_ticks_is_masked_as_well() {
+    // 30/29: a polynomial of degree 870.
+    let clocks = two_clocks(ratio(30, 29), ratio(2, 1), ratio(2 * 30, 29 * 3));
+    if let Some(mask) = masking(&clocks).unwrap() {
+        let rate = mask.rate.mid_f64();
+        let radius = |rate: f64| {
+            plain(&clocks, rate).complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max)
+        };
+        assert!(radius(rate * 0.999) > 1.0 && radius(rate * 1.001) < 1.0);
+    }
+}
+
+#[test]
+fn a_system_of_independent_oscillators_is_masked_by_what_masks_its_worst() {
+    let clocks = two_clocks(ratio(7, 2), ratio(12, 5), ratio(12 * 7, 250));
+    let mask = masking(&clocks).unwrap().unwrap().rate.to_f64_enclosure();
+    // The same oscillator twice, turned by (3, 4, 5), beside one that does not grow, steps 1/2 and 7/4.
+    let turn = [vec![ratio(3, 5), ratio(-4, 5)], vec![ratio(4, 5), ratio(3, 5)]];
+    let matrix = |a: Rational, b: Rational| Symmetric::diagonal(&[a, b]).congruent(&turn);
+    let potentials = vec![
+        Potential::new(matrix(ratio(4 * 12, 5), ratio(1, 2)), ratio(1, 2)),
+        Potential::new(matrix(ratio(4 * 12, 125), ratio(1, 100)), ratio(7, 4)),
+    ];
+    let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), potentials).unwrap();
+    let found = damped_system(&system, &ratio(1, 100), &Limits::default()).unwrap();
+    assert_eq!(found.damping, Some(Damping::Growing));
+    let Mask::At(Masked { rate: (lo, hi), .. }) = found.masking else { panic!("{found:?}") };
+    // In units of time: h_1 = 1/2.
+    assert!(lo <= 2.0 * mask.1 && 2.0 * mask.0 <= hi && hi < 1.001 * lo, "{lo} {hi} {mask:?}");
+    let enough = damped_system(&system, &ratio(3, 1), &Limits::default()).unwrap();
+    assert_eq!(enough.damping, Some(Damping::Damped));
+    assert!(enough.growth.unwrap().1 < 0.0);
+}
+
+#[test]
+fn rigid_motions_are_set_apart_under_friction() {
+    // A free pair: only its vibration counts.
+    let mut bond = Symmetric::zero(2);
+    bond.add_spring(0, Some(1), &ratio(2, 1));
+    let system = System::new(
+        Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]),
+        vec![Potential::new(bond, ratio(1, 10))],
+    )
+    .unwrap();
+    assert_eq!(
+        damped_system(&system, &ratio(1, 1), &Limits::default()).unwrap().damping,
+        Some(Damping::Damped)
+    );
+    let chain =
+        builders::alternating_chain(6, [&ratio(10, 1), &ratio(1, 1)], [&ratio(1, 4), &ratio(1, 2)]).unwrap();
+    let found = damped_system(&chain, &ratio(1, 2), &Limits::default()).unwrap();
+    assert_eq!((found.damping, found.masking), (Some(Damping::Damped), Mask::NotNeeded));
+}

@@ -1,0 +1,118 @@
+//! Meshes of finite elements with a step for each element.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::scene::SystemScene;
+use kickdrift::system::{Analysis, Limits, Route};
+use kickdrift::verdict::Kind;
+
+fn decided(text: &str) -> Analysis {
+    SystemScene::read(text).unwrap().decide(Route::Cheapest, &Limits::default()).unwrap()
+}
+
+/// Two bars between walls, lengths 3:2, each at C times its Courant step.
+fn two_bars(courant: &Rational) -> Analysis {
+    let text = std::fs::read_to_string("data/scenes/two-bars.json").unwrap();
+    decided(&text.replace("\"87/100\"", &format!("\"{courant}\"")))
+}
+
+#[test]
+fn two_bars_are_unstable_for_courant_numbers_in_one_interval_below_1_and_nowhere_else() {
+    for k in 1..=1000 {
+        let analysis = two_bars(&ratio(k, 1000));
+        assert!(analysis.is_proof());
+        assert_eq!(analysis.is_stable(), !(856..=885).contains(&k), "C = {k}/1000");
+    }
+    for (c, stable) in [(8557, true), (8559, false), (8857, false), (8859, true)] {
+        assert_eq!(two_bars(&ratio(c, 10_000)).is_stable(), stable, "{c}");
+    }
+    let rate = two_bars(&ratio(87, 100)).growth_rate();
+    // The slow step is 3 C.
+    let slow_steps = 10f64.ln() / (rate * 3.0 * 0.87);
+    assert!((slow_steps - 77.3).abs() < 0.05, "{slow_steps}");
+}
+
+/// A plate held at its left edge, its cells 1, 2, 4 and 8 wide and high in four groups each, two triangles a cell; the step of an
+/// element is h times the smaller side of its cell.
+fn plate(columns: usize, rows: usize, h: &Rational) -> String {
+    let group = |i: usize, n: usize| i * 4 / n;
+    let places = |n: usize| {
+        (0..n).fold(vec![0], |mut places, i| {
+            places.push(places[i] + (1 << group(i, n)));
+            places
+        })
+    };
+    let (xs, ys) = (places(columns), places(rows));
+    let nodes: Vec<String> = ys.iter().flat_map(|y| xs.iter().map(move |x| format!("[{x}, {y}]"))).collect();
+    let at = |i: usize, j: usize| j * (columns + 1) + i;
+    let (mut elements, mut classes) = (Vec::new(), Vec::new());
+    for j in 0..rows {
+        for i in 0..columns {
+            elements.push(format!("[{}, {}, {}]", at(i, j), at(i + 1, j), at(i + 1, j + 1)));
+            elements.push(format!("[{}, {}, {}]", at(i, j), at(i + 1, j + 1), at(i, j + 1)));
+            classes.extend([
+                group(i, columns).min(group(j, rows)).to_string(),
+                group(i, columns).min(group(j, rows)).to_string(),
+            ]);
+        }
+    }
+    let fixed: Vec<String> = (0..=rows).map(|j| at(0, j).to_string()).collect();
+    let steps: Vec<String> = (0..4).map(|k| format!("\"{}\"", h * ratio(1 << k, 1))).collect();
+    format!(
+        r#"{{"schema": "kickdrift/system/1", "mesh": {{"nodes": [{}], "elements": [{}], "fixed": [{}], "young": 1,
+        "poisson": "3/10", "density": 1, "classes": [{}], "steps": [{}]}}}}"#,
+        nodes.join(", "),
+        elements.join(", "),
+        fixed.join(", "),
+        classes.join(", "),
+        steps.join(", ")
+    )
+}
+
+#[test]
+fn a_plate_is_stable_at_small_steps_and_beyond_them_its_worst_mode_is_told() {
+    let mut told = (0, 0);
+    for h in [ratio(1, 5), ratio(2, 5), ratio(1, 2), ratio(3, 5), ratio(7, 10)] {
+        let scene = SystemScene::read(&plate(8, 8, &h)).unwrap();
+        let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        if analysis.kind == Kind::Hyperbolic {
+            told.1 += 1;
+            assert_eq!(scene.labels().unwrap().len(), analysis.size);
+        } else {
+            told.0 += 1;
+        }
+    }
+    assert!(told.0 > 0 && told.1 > 0, "{told:?}");
+}
+
+#[test]
+fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_is_that_of_a_run() {
+    let stable = decided(&plate(24, 12, &ratio(1, 5)));
+    assert!(stable.size >= 600 && stable.is_stable() && stable.is_proof());
+    let scene = SystemScene::read(&plate(24, 12, &ratio(7, 10))).unwrap();
+    let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert!(analysis.kind == Kind::Hyperbolic && analysis.is_proof());
+    let mode = &analysis.parts[0].instabilities[0];
+    let rest = vec![0.0; analysis.size];
+    let mut run = scene.linear_simulation(mode.shape.clone(), rest.clone()).unwrap();
+    let measured = kickdrift::avi::growth_rate(&mut run, &rest, 1.0, (40, kickdrift::avi::Ends::Symmetric));
+    assert!((measured / mode.growth_rate - 1.0).abs() < 1e-6, "{measured} {}", mode.growth_rate);
+    assert!(mode.growth_rate * to_f64(&scene.system().period()) > 0.0);
+}
+
+#[test]
+fn what_is_no_mesh_is_refused_by_name() {
+    let refused = |old: &str, new: &str| {
+        let text = std::fs::read_to_string("data/scenes/two-bars.json").unwrap();
+        assert!(text.contains(old));
+        SystemScene::read(&text.replace(old, new)).unwrap_err().field().to_string()
+    };
+    assert_eq!(refused("[1, 2]", "[1, 3]"), "mesh.elements[1]");
+    assert_eq!(refused("[0, 2],", "[0, 9],"), "mesh.fixed[1]");
+    assert_eq!(refused("\"young\": 1", "\"young\": 0"), "mesh.young");
+    assert_eq!(refused("\"density\": 1", "\"density\": -1"), "mesh.density");
+    assert_eq!(refused("[3], [5]", "[3], [3]"), "mesh.elements[1]");
+    assert_eq!(refused("\"courant\": \"87/100\"", "\"steps\": [1]"), "mesh.steps");
+    assert_eq!(refused("\"courant\": \"87/100\"", "\"step\": 0"), "potentials[0].step");
+    assert_eq!(refused("\"mesh\"", "\"masses\": [1], \"mesh\""), "mesh");
+}
