@@ -59,7 +59,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 35] = [
+const LINES: [&str; 39] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -82,6 +82,10 @@ const LINES: [&str; 35] = [
     "simulate data/scenes/diatomic-tether.json --periods 5",
     "simulate data/scenes/lennard-jones.json --periods 5",
     "simulate data/scenes/bar-resonant.json --periods 5 --staggered",
+    "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98 --friction 1/2",
+    "system data/scenes/two-bars.json --friction 1/10",
+    "system data/scenes/tension.json --friction 1/2",
+    "simulate data/scenes/tension.json --periods 20",
     "system data/scenes/three-clocks.json",
     "system data/scenes/bar-resonant.json",
     "system data/scenes/water4.json --accuracy 1e-7",

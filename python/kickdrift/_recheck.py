@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from kickdrift import _native
 from kickdrift._errors import KickdriftError
+from kickdrift._system import SystemVerdict
 
 
+@runtime_checkable
 class HasJson(Protocol):
     """A result with a document."""
 
@@ -50,7 +54,13 @@ class Recheck:
         return self.holds
 
 
-def recheck(document: HasJson | str | PathLike[str], *, all: bool = False, budget: int | None = None) -> Recheck:
+def recheck(
+    document: HasJson | str | PathLike[str],
+    *,
+    all: bool = False,
+    budget: int | None = None,
+    folder: str | PathLike[str] | None = None,
+) -> Recheck:
     """Find every claim of a document again by another route than the one that made it.
 
     Parameters
@@ -61,6 +71,9 @@ def recheck(document: HasJson | str | PathLike[str], *, all: bool = False, budge
         Take the slower route for every pair or tongue of a map or survey, and not for a sample.
     budget : int, optional
         The most kicks that one verdict may compose.
+    folder : path, optional
+        Where the files are that a system of measured Hessians refers to; for a verdict on a system and for a file it
+        is known.
 
     Raises
     ------
@@ -74,15 +87,30 @@ def recheck(document: HasJson | str | PathLike[str], *, all: bool = False, budge
     >>> found.holds, found.rows
     (True, 7)
     """
-    outcome = _native.recheck(_text(document), all, budget)
-    rows, route, sample, not_rechecked, failures = outcome
+    with _folder(document, folder) as place:
+        rows, route, sample, not_rechecked, failures = _native.recheck(_text(document), all, budget, place)
     return Recheck(rows, route, sample, tuple(not_rechecked), tuple(failures))
 
 
+@contextmanager
+def _folder(document: HasJson | str | PathLike[str], folder: str | PathLike[str] | None) -> Iterator[str]:
+    if folder is None and isinstance(document, SystemVerdict):
+        with document.system._file() as path:
+            yield str(Path(path).parent)
+    elif folder is None and not isinstance(document, HasJson) and not _is_json(document):
+        yield str(Path(document).parent)
+    else:
+        yield str(folder or "")
+
+
+def _is_json(document: object) -> bool:
+    return isinstance(document, str) and document.lstrip().startswith("{")
+
+
 def _text(document: HasJson | str | PathLike[str]) -> str:
-    if hasattr(document, "to_json"):
-        return str(document.to_json())
-    if isinstance(document, str) and document.lstrip().startswith("{"):
+    if isinstance(document, HasJson):
+        return document.to_json()
+    if isinstance(document, str) and _is_json(document):
         return document
     try:
         return Path(document).read_text()

@@ -1,6 +1,7 @@
 //! The program itself: run as such, or for the bytes that it would write.
 
 use std::ffi::OsString;
+use std::path::PathBuf;
 
 use kickdrift::cli;
 use kickdrift::recheck::{Claim, Options};
@@ -30,9 +31,15 @@ type Outcome = (u64, String, Option<(u64, u64)>, Vec<String>, Vec<(u64, String, 
 
 /// Finds the claims of a document again by another route.
 #[pyfunction]
-pub fn recheck(py: Python<'_>, text: String, all: bool, budget: Option<u64>) -> PyResult<Outcome> {
+pub fn recheck(
+    py: Python<'_>,
+    text: String,
+    all: bool,
+    budget: Option<u64>,
+    folder: PathBuf,
+) -> PyResult<Outcome> {
     job::run(py, move |_| {
-        let options = Options { limits: limits(budget), all };
+        let options = Options { limits: limits(budget), all, folder };
         let outcome = Claim::read(&text)?.recheck(&options, None)?;
         let not_rechecked = outcome.not_rechecked.iter().map(ToString::to_string).collect();
         let failures = outcome.failures.iter();

@@ -172,6 +172,7 @@ def test_verdicts_on_systems_are_those_of_the_program(program: Callable[..., str
     assert f"{verdict}\n" == program("system", str(path), "--format", "text")
     assert verdict.data["stable"] == verdict.stable == bool(verdict) and verdict.kind == verdict.data["kind"]
     assert float(verdict.period) > 0 and verdict.proven in (True, False) and "SystemVerdict(" in repr(verdict)
+    assert kd.recheck(verdict).holds
     assert len(verdict.plot().lines) == 3 and "<svg" in (verdict._repr_svg_())[:400]
 
 
@@ -186,6 +187,7 @@ def test_a_system_made_in_python_is_that_of_its_file(program: Callable[..., str]
     assert verdict.to_json() == program("system", str(path), "--format", "json")
     assert kd.System.read(path).decide().to_json() == verdict.to_json()
     assert verdict.measured is not None and verdict.measured["accuracy"] == 1e-7
+    assert kd.recheck(verdict).holds and kd.recheck(verdict.to_json(), folder=tmp_path).holds
     assert "made" in repr(system) and "fast: step 1/40" in repr(system)
     table = system.intervals(("1/100", "1/5"), width=1e-2)
     assert table.to_json() == program(

@@ -52,11 +52,11 @@ fn a_table_is_a_booktabs_float() {
   \caption{Edges of R\&D}
   \label{tab:edges}
   \begin{tabular}{rrl}
-\toprule
-$\Lambda_2$ & $s$ & note \\
-\midrule
-$\pi^{2}/25$ & $2.318285(6)$ & a\_b \\
-\bottomrule
+    \toprule
+    $\Lambda_2$ & $s$ & note \\
+    \midrule
+    $\pi^{2}/25$ & $2.318285(6)$ & a\_b \\
+    \bottomrule
   \end{tabular}
 \end{table}
 ";

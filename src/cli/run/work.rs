@@ -7,10 +7,10 @@ use std::rc::Rc;
 
 use super::tongues;
 use crate::cli::args::{Common, TO_SEE_ROWS};
+use crate::cli::map;
 use crate::cli::plane::{DPI, Verdicts};
-use crate::cli::request::{Request, THINNEST};
+use crate::cli::request::{Question, Request, THINNEST};
 use crate::cli::tongues as answers;
-use crate::cli::{closings, map};
 use crate::error::Result;
 use crate::format::Format;
 use crate::map::Products;
@@ -117,7 +117,7 @@ impl<'a> Work<'a> {
             Product::Polynomial => Request::Polynomial { ratio: scene.ratio()? },
             Product::Closings => {
                 let range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
-                let question = closings::Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?;
+                let question = Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?;
                 Request::Closings(question)
             }
             Product::Survey => {
@@ -147,7 +147,8 @@ impl<'a> Work<'a> {
     fn tongues(&self, format: Format) -> Result<Vec<u8>> {
         let growth = self.scene.max_sum.is_none();
         let question = tongues::question(self.scene, Wanted { growth, ..Wanted::all() })?;
-        let (bytes, tally) = answers::bytes(&question, self.common, format)?;
+        let mut bytes = Vec::new();
+        let tally = answers::put(&question, self.common, format, &mut bytes)?;
         // It is the same in every format.
         let _ = self.tongues.set(tally);
         Ok(bytes)

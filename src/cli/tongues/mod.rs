@@ -17,7 +17,7 @@ use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
 use crate::tongue::{self, Labels, Range, Selection, Stiffness, Wanted, Window};
 pub use atlas::{Atlas, Colour};
-pub use output::bytes;
+pub use output::put;
 pub use question::{MOST_SUM, Question};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.

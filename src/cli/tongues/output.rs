@@ -1,7 +1,6 @@
 //! Tongues as rows: streamed where they may be many.
 
 use std::io::Write;
-use std::path::Path;
 
 use crate::parallel::map;
 
@@ -11,7 +10,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::csv;
 use crate::report::document::Document;
-use crate::report::file::{write_output, write_with};
+use crate::report::file::write_with;
 use crate::report::stream::JsonRows;
 use crate::report::tongues::{CAPTION, Tally, record};
 use crate::tongue::Tongue;
@@ -23,46 +22,28 @@ const ROWS_FOR_PEOPLE: u64 = 60;
 /// Computes the tongues and writes them as the flags say.
 ///
 /// # Errors
-/// As [`Question::each`], an unwritable place, a format that is not one of rows.
-pub fn write(question: &Question, common: &Common, target: Format) -> Result<()> {
-    let path = common.output.as_deref();
-    match target {
-        Format::Json => stream(question, common, path, json),
-        Format::Csv => stream(question, common, path, rows),
-        Format::Text => write_output(path, text(question, common)?.0.as_bytes()),
-        Format::Latex => write_output(path, latex(question, common)?.0.as_bytes()),
+/// As [`put`], and an unwritable place.
+pub fn write(question: &Question, common: &Common, format: Format) -> Result<()> {
+    write_with(common.output.as_deref(), |sink| put(question, common, format, sink).map(drop))
+}
+
+/// Computes the tongues and writes them to a sink, row by row where they may be many: what stands out in them.
+///
+/// # Errors
+/// As [`Question::each`], those of the sink, and too many rows for LaTeX.
+pub fn put(question: &Question, common: &Common, format: Format, sink: &mut dyn Write) -> Result<Tally> {
+    match format {
+        Format::Json => json(question, common, sink),
+        Format::Csv => rows(question, common, sink),
+        Format::Text => text(question, common, sink),
+        Format::Latex => latex(question, common, sink),
         Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
             unreachable!("neither a figure nor arrays are rows")
         }
     }
 }
 
-/// The bytes of a scene's product, and what stands out in them.
-///
-/// # Errors
-/// As [`Question::each`].
-pub fn bytes(question: &Question, common: &Common, format: Format) -> Result<(Vec<u8>, Tally)> {
-    let mut bytes = Vec::new();
-    let tally = match format {
-        Format::Csv => rows(question, common, &mut bytes)?,
-        Format::Text => return text(question, common).map(|(text, tally)| (text.into_bytes(), tally)),
-        Format::Latex => return latex(question, common).map(|(text, tally)| (text.into_bytes(), tally)),
-        _ => json(question, common, &mut bytes)?,
-    };
-    Ok((bytes, tally))
-}
-
-/// Writes rows to a sink as they come.
-type Stream = fn(&Question, &Common, &mut dyn Write) -> Result<Tally>;
-
-fn stream(question: &Question, common: &Common, path: Option<&Path>, write: Stream) -> Result<()> {
-    write_with(path, |sink| write(question, common, sink).map(drop))
-}
-
 /// The document `kickdrift/tongues/1`; the counts stand behind the rows.
-///
-/// # Errors
-/// As [`Question::each`], and those of the sink.
 fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let head = question.echo(Document::new("tongues"));
     let mut out = JsonRows::begin(sink, &head, "tongues")?;
@@ -74,9 +55,6 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 }
 
 /// All columns as CSV.
-///
-/// # Errors
-/// As [`json`].
 fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let record = record(&question.asked.request, false);
     let columns = record.columns();
@@ -106,29 +84,25 @@ fn each_row<T: Send>(
 }
 
 /// A summary, and the rows where they fit a terminal.
-///
-/// # Errors
-/// As [`Question::each`].
-fn text(question: &Question, common: &Common) -> Result<(String, Tally)> {
+fn text(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let (tally, document) = summed_up(question, common, ROWS_FOR_PEOPLE)?;
     let mut text = document.render(Format::Text)?;
     if tally.count > ROWS_FOR_PEOPLE {
         text += &format!("\n{} rows: {TO_SEE_ROWS}\n", tally.count);
     }
-    Ok((text, tally))
+    sink.write_all(text.as_bytes()).map_err(Error::stream)?;
+    Ok(tally)
 }
 
 /// A table for papers.
-///
-/// # Errors
-/// As [`Question::each`], and too many rows.
-fn latex(question: &Question, common: &Common) -> Result<(String, Tally)> {
+fn latex(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let (tally, document) = summed_up(question, common, MOST_ROWS)?;
     if tally.count > MOST_ROWS {
         let cost = format!("{} rows are too many for a LaTeX table", tally.count);
         return Err(Error::too_much(cost, "write csv or json"));
     }
-    Ok((document.render(Format::Latex)?, tally))
+    sink.write_all(document.render(Format::Latex)?.as_bytes()).map_err(Error::stream)?;
+    Ok(tally)
 }
 
 /// The summary, and the rows up to a number.

@@ -13,6 +13,8 @@ pub struct Beside<'a> {
     pub unit: Option<&'a str>,
     pub friction: Option<&'a Friction>,
     pub orbit: Option<&'a OwnOrbit>,
+    /// That an orbit was searched for in vain.
+    pub is_orbit_missing: bool,
     /// What each degree of freedom is called.
     pub labels: Option<&'a [String]>,
 }
@@ -54,6 +56,10 @@ pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
             let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
             lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
         }
+    }
+    if own.is_orbit_missing {
+        let line = "  about the equilibrium; an orbit of the integrator's own beside it was not found";
+        lines.push(line.into());
     }
     lines.extend(own.orbit.map(|orbit| orbit_line(orbit, analysis)));
     lines.extend(own.friction.into_iter().flat_map(friction::lines));

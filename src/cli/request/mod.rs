@@ -1,7 +1,8 @@
 //! What is asked for: arguments and scenes end here, in the same requests, and each is performed in one way.
 
+mod closings;
+
 use super::args::Common;
-use super::closings;
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::{Laurent, Ratio, Rational};
@@ -12,6 +13,7 @@ use crate::resonance::proposition::check;
 use crate::resonance::{Families, Window};
 use crate::scene::{GridRange, StepRange, given_families};
 use crate::tongue;
+pub use closings::Question;
 
 /// A question that one document answers.
 #[derive(Clone, Debug)]
@@ -32,7 +34,7 @@ pub enum Request {
     /// The half period in s and rho.
     Polynomial { ratio: Ratio },
     /// Where tongues close.
-    Closings(closings::Question),
+    Closings(Question),
     /// All tongues of all coprime p + q ≤ `max_sum`, the `thinnest` of them listed.
     Survey { max_sum: u64, rho: Rational, thinnest: usize },
 }
