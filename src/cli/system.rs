@@ -7,7 +7,7 @@ use indicatif::ProgressBar;
 use super::args::{Common, of};
 use super::plane::DPI;
 use super::progress::progress;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
@@ -122,9 +122,13 @@ impl Args {
             Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
             None => {
                 let limits = limits(common);
-                let (friction, orbit) = (scene.friction(&limits)?, scene.own_orbit(&limits)?);
-                let beside =
-                    Beside { friction: friction.as_ref(), orbit: orbit.as_ref(), labels: scene.labels() };
+                let friction = scene.friction(&limits)?;
+                let (orbit, is_orbit_missing) = match scene.own_orbit(&limits) {
+                    Err(error) if error.kind() == Kind::Input => (None, true),
+                    found => (found?, false),
+                };
+                let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
+                let beside = Beside { unit: scene.time_unit(), friction, orbit, is_orbit_missing, labels };
                 common.write(&self.echo(report::document(&analysis, &beside), scene), Format::Text)
             }
         }

@@ -143,9 +143,14 @@ impl Verdict {
         let (input, limits) = (self.input()?, limits(context));
         let scene = input.scene(context)?;
         let analysis = scene.decide(input.route(), &limits)?;
-        let (friction, orbit) = (scene.friction(&limits)?, scene.own_orbit(&limits)?);
+        let friction = scene.friction(&limits)?;
+        let orbit = match scene.own_orbit(&limits) {
+            Err(error) if error.kind() == Reason::Input => None,
+            found => found?,
+        };
+        let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
         let beside =
-            report::Beside { friction: friction.as_ref(), orbit: orbit.as_ref(), labels: scene.labels() };
+            report::Beside { unit: scene.time_unit(), friction, orbit, labels, ..report::Beside::default() };
         let again = report::document(&analysis, &beside).value();
         if analysis.measured.is_some() {
             return self.outcome(

@@ -1,4 +1,4 @@
-//! What stands beside a system's verdict: friction, the integrator's own orbit, what the growing modes move.
+//! What stands beside a system's verdict: the unit of time, friction, the integrator's own orbit, what the growing modes move.
 
 use serde_json::{Value, json};
 
@@ -9,8 +9,12 @@ use crate::system::{Analysis, OwnOrbit};
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
+    /// The unit of time, where it has a name.
+    pub unit: Option<&'a str>,
     pub friction: Option<&'a Friction>,
     pub orbit: Option<&'a OwnOrbit>,
+    /// That an orbit was searched for in vain.
+    pub is_orbit_missing: bool,
     /// What each degree of freedom is called.
     pub labels: Option<&'a [String]>,
 }
@@ -35,6 +39,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         })
     });
     let all = [
+        ("time_unit", own.unit.map(Value::from)),
         ("friction", own.friction.map(friction::value)),
         ("own_orbit", orbit),
         ("moving", own.labels.as_ref().map(moving)),
@@ -51,6 +56,10 @@ pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
             let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
             lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
         }
+    }
+    if own.is_orbit_missing {
+        let line = "  about the equilibrium; an orbit of the integrator's own beside it was not found";
+        lines.push(line.into());
     }
     lines.extend(own.orbit.map(|orbit| orbit_line(orbit, analysis)));
     lines.extend(own.friction.into_iter().flat_map(friction::lines));

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use super::SystemScene;
 use crate::avi::{Ends, Force, Run, Simulation, growth_rate, irreversibility, series};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::system::{Limits, Route};
@@ -82,7 +82,11 @@ impl SystemScene {
         if request.periods == 0 || request.periods > most {
             return Err(Error::input("periods", request.periods, format!("choose 1 to {most}")));
         }
-        let own = self.own_orbit(limits)?;
+        // Without an orbit to be found: about the equilibrium.
+        let own = self.own_orbit(limits).or_else(|error| match error.kind() {
+            Kind::Input => Ok(None),
+            _ => Err(error),
+        })?;
         let predicted = match &own {
             Some(orbit) => orbit.analysis.growth_rate(),
             None => self.decide(Route::Cheapest, limits)?.growth_rate(),
