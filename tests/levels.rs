@@ -183,6 +183,8 @@ fn sixteen_waters_are_stable_up_to_4_4_fs_and_unstable_from_there() {
     for step in ["0.00442", "0.0045", "0.0047"] {
         let own = at(step);
         assert_eq!((&own["stable"], &own["proven"]), (&false.into(), &true.into()), "{step}");
+        // For all Hessians within 10^-6 of these, too.
+        assert_eq!(own["measured"]["holds"], "unstable", "{step}");
     }
     let island = water("water16", 10, "0.005", "");
     assert_eq!(
@@ -192,16 +194,64 @@ fn sixteen_waters_are_stable_up_to_4_4_fs_and_unstable_from_there() {
         island["warnings"]
     );
     assert_eq!(island["measured"]["above_unstable"], true);
+    assert_eq!(island["measured"]["holds"], "stable");
+    assert!(number(&island["measured"]["margin"]) > 1e-6, "{island}");
 }
 
 #[test]
 fn four_waters_are_unstable_where_their_simulation_blows_up() {
-    for (step, stable) in
-        [("0.0044", true), ("0.00445", false), ("0.0045", false), ("0.00455", false), ("0.0047", false)]
-    {
+    for (step, stable) in [
+        ("0.0044", true),
+        ("0.00445", false),
+        ("0.0045", false),
+        ("0.00455", false),
+        ("0.0047", false),
+        ("0.0048", true),
+    ] {
         let own = water("water4", 9, step, "");
         assert_eq!((&own["stable"], &own["proven"]), (&stable.into(), &true.into()), "{step}: {own}");
+        let holds = if stable { "stable" } else { "unstable" };
+        assert_eq!(own["measured"]["holds"], holds, "{step}");
     }
+}
+
+#[test]
+fn modes_counted_unstable_grow_in_the_dense_period() {
+    let (mut numbers, mut counted, mut beyond) = (Numbers(17), 0, 0);
+    for trial in 0..300 {
+        let (fast, slow) = numbers.levels(2 + trial % 4);
+        let inner = 1 + trial as u64 % 6;
+        // Up to just below the Verlet limit of the fast stiffness, h = 2.
+        let step = inner as f64 * (0.3 + 1.65 * numbers.next().abs());
+        let (kernel, outer) = (kernel(&fast, &slow), Outer::new(step, inner).unwrap());
+        if !kernel.has_real_unstable_mode(&outer, 1e-9) {
+            continue;
+        }
+        counted += 1;
+        let largest = largest_multiplier(&fast, &slow, step, inner);
+        assert!(largest > 1.0 + 1e-9, "{trial}: {largest}");
+        beyond += usize::from(kernel.first_unstable(inner).is_none_or(|(_, hi)| step > 1.05 * hi));
+    }
+    assert!(counted > 30 && beyond > 10, "{counted} {beyond}");
+}
+
+#[test]
+fn what_the_index_proves_stable_stays_bounded_in_the_dense_period() {
+    let (mut numbers, mut beyond) = (Numbers(19), 0);
+    for trial in 0..300 {
+        let (fast, slow) = numbers.levels(2 + trial % 4);
+        let inner = 2 + trial as u64 % 6;
+        let step = inner as f64 * (0.3 + 1.65 * numbers.next().abs());
+        let (kernel, outer) = (kernel(&fast, &slow), Outer::new(step, inner).unwrap());
+        if kernel.is_in_first_region(&outer, 1e-9) {
+            assert!(kernel.is_stable_by_index(&outer, 1e-9), "{trial}");
+        } else if kernel.is_stable_by_index(&outer, 1e-9) {
+            beyond += 1;
+            // Near ±1 multipliers are good to the root of roundoff.
+            assert!(largest_multiplier(&fast, &slow, step, inner) < 1.0 + 1e-6, "{trial}");
+        }
+    }
+    assert!(beyond > 10, "{beyond}");
 }
 
 #[test]

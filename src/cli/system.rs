@@ -128,7 +128,7 @@ impl Args {
                     found => (found?, false),
                 };
                 let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
-                let beside = Beside { friction, orbit, is_orbit_missing, labels };
+                let beside = Beside { unit: scene.time_unit(), friction, orbit, is_orbit_missing, labels };
                 common.write(&self.echo(report::document(&analysis, &beside), scene), Format::Text)
             }
         }

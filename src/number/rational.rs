@@ -19,6 +19,11 @@ pub fn ratio(p: i64, q: i64) -> Rational {
     Rational::new(p.into(), q.into())
 }
 
+/// The double nearest to a b, ties to even, without reducing the product.
+pub fn product_to_f64(a: &Rational, b: &Rational) -> f64 {
+    float::nearest_quotient(&(a.numer() * b.numer()), &(a.denom() * b.denom()))
+}
+
 /// The double nearest to x, ties to even; ±∞ from 2^1024 − 2^970 on.
 pub fn to_f64(x: &Rational) -> f64 {
     float::nearest_quotient(x.numer(), x.denom())

@@ -20,9 +20,19 @@ fn times_blocks(v: &Mat<f64>, d: &Mat<f64>) -> Mat<f64> {
     })
 }
 
-/// More than ‖F‖₂, V⁻¹ S V = D + F, for the true S, which is within `delta` of the given one, and a normal D of blocks of
-/// size 1 and 2.
-pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<f64> {
+/// Bounds on F, V⁻¹ S V = D + F.
+#[derive(Clone, Debug)]
+pub(super) struct Residual {
+    /// More than ‖F‖₂.
+    pub norm: f64,
+    /// More than the Euclidean norm of each row of F.
+    pub rows: Vec<f64>,
+}
+
+/// Those for the true S, which is within `delta` of the given one, and a normal D of blocks of size 1 and 2.
+///
+/// With W V = I − Y, F = (I − Y)⁻¹ W (S V − V D), and the rows of (I − Y)⁻¹ W are within ‖Y‖ ‖W‖/(1 − ‖Y‖) of those of W.
+pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<Residual> {
     let m = v.ncols();
     let w = v.partial_piv_lu().inverse();
     let vd = times_blocks(v, d);
@@ -35,6 +45,8 @@ pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -
         return None;
     }
     let off = residual + rounding + delta * norm::spectral(v);
-    let radius = 1.01 * norm::spectral(&w) * off / (1.0 - y);
-    radius.is_finite().then_some(radius)
+    let norm = 1.01 * norm::spectral(&w) * off / (1.0 - y);
+    let row = |i: usize| (0..m).map(|j| w[(i, j)] * w[(i, j)]).sum::<f64>().sqrt();
+    let rows = (0..m).map(|i| 1.01 * (row(i) + nw * y / (1.0 - y)) * off).collect();
+    norm.is_finite().then_some(Residual { norm, rows })
 }

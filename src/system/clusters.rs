@@ -57,7 +57,7 @@ fn by_clusters(pencil: &Pencil, mu: &[c64], vectors: &Mat<c64>, close: f64) -> O
     for cluster in &clusters {
         (cluster.first..cluster.first + cluster.size).for_each(|k| d[(k, k)] = cluster.mean);
     }
-    let r = 1.01 * bauer_fike(pencil.s, pencil.s_error, &v, &d)?;
+    let r = 1.01 * bauer_fike(pencil.s, pencil.s_error, &v, &d)?.norm;
     let inside = |c: &Cluster| c.mean + r < 0.0 && c.mean - r > -1.0;
     if !clusters.iter().all(inside) {
         return Some(false);

@@ -17,6 +17,7 @@ use super::limits::Limits;
 use super::model::{Potential, System};
 use super::sparse::Symmetric;
 use crate::error::Result;
+use crate::number::rational::product_to_f64;
 use crate::number::{Rational, Ring};
 use crate::schedule::{Event, Weight};
 
@@ -64,21 +65,44 @@ pub(super) struct Kick<S> {
     pub islands: Vec<usize>,
 }
 
+/// The islands of M, and the rows of M⁻¹.
+pub(super) fn inverse_mass(system: &System) -> (Vec<Vec<usize>>, Vec<Row<Rational>>) {
+    let islands = connected(system.size(), [system.mass()]);
+    let inverse = inverse(system.mass(), &islands);
+    (islands, inverse)
+}
+
 impl Program<Rational> {
     pub fn new(system: &System) -> Self {
-        let islands = connected(system.size(), [system.mass()]);
+        Program::over(system, |x, factor| x * factor)
+    }
+}
+
+impl Program<f64> {
+    /// Each coefficient the double nearest to it.
+    pub fn rounded(system: &System) -> Self {
+        Program::over(system, product_to_f64)
+    }
+}
+
+impl<S> Program<S> {
+    /// Over the scalars that `product` makes of two rationals.
+    fn over(system: &System, product: impl Fn(&Rational, &Rational) -> S) -> Self {
+        let (islands, inverse_mass) = inverse_mass(system);
         let mut island_of = vec![0; system.size()];
         for (k, island) in islands.iter().enumerate() {
             island.iter().for_each(|&i| island_of[i] = k);
         }
-        let inverse_mass = inverse(system.mass(), &islands);
+        let one = Rational::one();
+        let row = |row: &Row<Rational>| row.iter().map(|(j, x)| (*j, product(x, &one))).collect();
+        let inverse_mass = inverse_mass.iter().map(row).collect();
         let kick = |(clock, ticks): (&Potential, u64)| {
             let factor = system.tick() * system.tick() * Rational::from_integer(ticks.into());
             let rows: Vec<_> = clock
                 .stiffness
                 .support()
                 .into_iter()
-                .map(|i| (i, clock.stiffness.row(i).iter().map(|(&j, x)| (j, x * &factor)).collect()))
+                .map(|i| (i, clock.stiffness.row(i).iter().map(|(&j, x)| (j, product(x, &factor))).collect()))
                 .collect();
             let mut islands: Vec<_> = rows.iter().map(|(i, _)| island_of[*i]).collect();
             islands.sort_unstable();
@@ -89,9 +113,7 @@ impl Program<Rational> {
         let kicks = system.clocks().iter().zip(steps).map(kick).collect();
         Program { inverse_mass, islands, island_of, kicks }
     }
-}
 
-impl<S> Program<S> {
     /// The same program over another scalar.
     pub fn map<U>(&self, convert: impl Fn(&S) -> U) -> Program<U> {
         let row = |row: &Row<S>| row.iter().map(|(j, x)| (*j, convert(x))).collect::<Row<U>>();

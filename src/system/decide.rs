@@ -39,7 +39,7 @@ pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
 /// As [`decide_system`]; by [`Route::Exact`] also where exact arithmetic exceeds the budget.
 pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analysis> {
     let mut warnings = Vec::new();
-    if !system.total_stiffness().is_positive_semidefinite() {
+    if !system.is_total_semidefinite() {
         warnings.push(
             "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
         );

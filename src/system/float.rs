@@ -22,7 +22,7 @@ use super::model::System;
 use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
-use crate::number::{Rational, Ring, U};
+use crate::number::{Rational, U};
 use crate::schedule::Weight;
 
 /// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
@@ -147,7 +147,7 @@ fn norm2(row: &[f64]) -> f64 {
 
 /// The coefficients in doubles, positions a_i x_i and momenta p_i/a_i in place of x_i and p_i, and the a_i.
 pub(super) fn scaled_program(system: &System, frame: &Frame) -> (Program<f64>, Vec<f64>) {
-    let mut program = Program::new(system).map(f64::from_rational);
+    let mut program = Program::rounded(system);
     let scales = scales(&program, middle_frequency(system, frame));
     rescale(&mut program, &scales);
     (program, scales)

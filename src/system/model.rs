@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
+use faer::Mat;
 use num_traits::{Signed, Zero};
 
-use super::sparse::{Symmetric, null_space};
+use super::sparse::{Symmetric, inertia_of_sum, is_sum_semidefinite, null_space};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::schedule::Schedule;
@@ -125,16 +126,30 @@ impl System {
         total
     }
 
+    /// Whether Σ K_k has no negative eigenvalue, exactly.
+    pub(super) fn is_total_semidefinite(&self) -> bool {
+        is_sum_semidefinite(&self.stiffnesses(), || self.total_stiffness())
+    }
+
+    /// Σ K_k, rounded.
+    pub(super) fn rounded_total(&self) -> Mat<f64> {
+        let zero = Mat::zeros(self.size(), self.size());
+        self.clocks.iter().fold(zero, |sum, clock| sum + clock.stiffness.rounded())
+    }
+
+    fn stiffnesses(&self) -> Vec<&Symmetric> {
+        self.clocks.iter().map(|clock| &clock.stiffness).collect()
+    }
+
     /// The common null vectors of all potentials as they were given, which move freely: (coordinate where it alone is
     /// 1, vector) pairs. A direction in which potentials of one clock cancel is none of them: it drifts, but only as
     /// long as they cancel, and is called what it is, parabolic.
     pub fn rigid_modes(&self) -> Vec<(usize, Vec<Rational>)> {
         // Common null vectors are null vectors of the sum: look among those.
-        let total = self.total_stiffness();
-        if total.is_surely_regular() {
+        if inertia_of_sum(&self.stiffnesses()).unknown == 0 {
             return Vec::new();
         }
-        let candidates: Vec<_> = total.null_space().into_iter().map(|(_, z)| z).collect();
+        let candidates: Vec<_> = self.total_stiffness().null_space().into_iter().map(|(_, z)| z).collect();
         let mut conditions = Vec::new();
         for potential in &self.potentials {
             let images: Vec<_> = candidates.iter().map(|z| potential.stiffness.times(z)).collect();

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side, c64};
 
-use super::compose::Program;
+use super::compose::inverse_mass as of_mass;
 use super::frame::Frame;
 use super::model::System;
 use super::scalar::shortest_family;
@@ -52,13 +52,7 @@ pub(super) struct NormalModes {
 ///
 /// Highest by Gershgorin's rows of M⁻¹ K, lowest by a few steps of inverse iteration.
 pub(super) fn frequency_range(system: &System, frame: &Frame) -> Option<(f64, f64)> {
-    let (m, total) = (frame.kept.len(), system.total_stiffness());
-    let mut stiffness = Mat::<f64>::zeros(m, m);
-    for (a, i) in frame.kept.iter().enumerate() {
-        for (b, j) in frame.kept.iter().enumerate() {
-            stiffness[(a, b)] = total.row(*i).get(j).map_or(0.0, to_f64);
-        }
-    }
+    let (m, stiffness) = (frame.kept.len(), kept_stiffness(system, frame));
     let masses: Vec<f64> = frame.kept.iter().map(|&i| to_f64(&system.mass().get(i, i))).collect();
     let row = |a: usize| (0..m).map(|b| stiffness[(a, b)].abs()).sum::<f64>() / masses[a];
     let highest = (0..m).map(row).fold(0.0, f64::max).sqrt();
@@ -74,11 +68,17 @@ pub(super) fn frequency_range(system: &System, frame: &Frame) -> Option<(f64, f6
     Some((growth.sqrt().recip(), highest))
 }
 
+/// Σ K_k in the frame's coordinates, rounded.
+fn kept_stiffness(system: &System, frame: &Frame) -> Mat<f64> {
+    let (m, total) = (frame.kept.len(), system.rounded_total());
+    Mat::from_fn(m, m, |a, b| total[(frame.kept[a], frame.kept[b])])
+}
+
 /// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G u.
 fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)> {
     let (n, m) = (system.size(), frame.kept.len());
     let mut inverse_mass = Mat::<f64>::zeros(n, n);
-    for (i, row) in Program::new(system).inverse_mass.iter().enumerate() {
+    for (i, row) in of_mass(system).1.iter().enumerate() {
         row.iter().for_each(|(j, x)| inverse_mass[(i, *j)] = to_f64(x));
     }
     let mut projection = Mat::<f64>::zeros(m, n);
@@ -87,13 +87,7 @@ fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)
         frame.rigid.iter().for_each(|(own, n)| projection[(a, *own)] = -to_f64(&n[i]));
     }
     let reduced = &projection * &inverse_mass * projection.transpose();
-    let total = system.total_stiffness();
-    let mut stiffness = Mat::<f64>::zeros(m, m);
-    for (a, i) in frame.kept.iter().enumerate() {
-        for (b, j) in frame.kept.iter().enumerate() {
-            stiffness[(a, b)] = total.row(*i).get(j).map_or(0.0, to_f64);
-        }
-    }
+    let stiffness = kept_stiffness(system, frame);
     let g = reduced.llt(Side::Lower).ok()?.L().to_owned();
     let symmetric = g.transpose() * &stiffness * &g;
     Some((g, symmetric))

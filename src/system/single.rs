@@ -80,7 +80,7 @@ pub fn decide_oscillator(
     // Over Q[π] the degree grows with each kick too.
     let exact = |kicks: f64| 0.15 * kicks.powi(4);
     let part = decide_clocks(clocks, rounded, period.clone(), exact, limits)?;
-    let warnings = if rounded.total_stiffness().is_positive_semidefinite() {
+    let warnings = if rounded.is_total_semidefinite() {
         Vec::new()
     } else {
         vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]

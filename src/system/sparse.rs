@@ -1,6 +1,7 @@
 //! Symmetric rational matrices by rows, zeros left out: what a mass or a stiffness is.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use faer::Mat;
 use nalgebra::DMatrix;
@@ -69,10 +70,15 @@ impl Symmetric {
     }
 
     fn add_at(&mut self, i: usize, j: usize, x: &Rational) {
-        let entry = self.rows[i].entry(j).or_insert_with(Rational::zero);
-        *entry += x;
-        if entry.is_zero() {
-            self.rows[i].remove(&j);
+        match self.rows[i].entry(j) {
+            Entry::Vacant(place) if !x.is_zero() => drop(place.insert(x.clone())),
+            Entry::Vacant(_) => {}
+            Entry::Occupied(mut place) => {
+                *place.get_mut() += x;
+                if place.get().is_zero() {
+                    place.remove();
+                }
+            }
         }
     }
 
@@ -171,11 +177,7 @@ impl Symmetric {
 
     /// Whether xᵀ self x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by elimination over ℚ.
     pub fn is_positive_semidefinite(&self) -> bool {
-        match self.inertia_in_doubles() {
-            Inertia { negative: 1.., .. } => false,
-            Inertia { unknown: 0, .. } => true,
-            _ => self.pivots().is_some(),
-        }
+        is_sum_semidefinite(&[self], || self.clone())
     }
 
     /// Whether xᵀ self x > 0 for all x ≠ 0, exactly: by its entries where it is diagonal, else as for semidefinite ones.
@@ -183,34 +185,20 @@ impl Symmetric {
         if self.is_diagonal() {
             return (0..self.size()).all(|i| self.get(i, i).is_positive());
         }
-        match self.inertia_in_doubles() {
+        match inertia_of_sum(&[self]) {
             Inertia { negative: 1.., .. } => false,
             Inertia { unknown: 0, .. } => true,
             _ => self.pivots() == Some(self.size()),
         }
     }
 
-    /// Whether doubles prove that it has no null vector; `false` may also mean that they do not tell.
-    pub(super) fn is_surely_regular(&self) -> bool {
-        self.inertia_in_doubles().unknown == 0
-    }
-
-    /// What doubles prove of the signs of its eigenvalues; nothing where it is large and nearly a chain (three entries a
-    /// row): there exact elimination fills in little and costs less.
-    fn inertia_in_doubles(&self) -> Inertia {
-        const SMALL: usize = 64;
-        let n = self.size();
-        let entries: usize = self.rows.iter().map(BTreeMap::len).sum();
-        if n > SMALL && entries < 5 * n {
-            return Inertia { unknown: n, ..Inertia::default() };
-        }
-        let mut rounded = Mat::<f64>::zeros(n, n);
+    /// The entries, each rounded.
+    pub(super) fn rounded(&self) -> Mat<f64> {
+        let mut rounded = Mat::<f64>::zeros(self.size(), self.size());
         for (i, row) in self.rows.iter().enumerate() {
             row.iter().for_each(|(&j, x)| rounded[(i, j)] = to_f64(x));
         }
-        // Each entry within u of its size, or within the smallest double: Frobenius's norm of all that.
-        let slack = 1.01 * U * norm::frobenius(&rounded) + n as f64 * f64::MIN_POSITIVE;
-        if slack.is_finite() { proven(&rounded, slack) } else { Inertia { unknown: n, ..Inertia::default() } }
+        rounded
     }
 
     /// The number of positive pivots of a semidefinite matrix (its rank), or `None` if it is not one.
@@ -239,6 +227,37 @@ impl Symmetric {
     pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
         null_space(self.rows.clone(), self.size())
     }
+}
+
+/// Whether xᵀ (Σ X_k) x ≥ 0 for all x, exactly: by an inertia in doubles where that proves it, else by elimination over ℚ.
+pub(super) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Symmetric) -> bool {
+    match inertia_of_sum(parts) {
+        Inertia { negative: 1.., .. } => false,
+        Inertia { unknown: 0, .. } => true,
+        _ => sum().pivots().is_some(),
+    }
+}
+
+/// What doubles prove of the signs of the eigenvalues of Σ X_k; nothing where it is large and nearly a chain (three entries
+/// a row): there exact elimination fills in little and costs less.
+pub(super) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
+    const SMALL: usize = 64;
+    let n = parts.first().map_or(0, |own| own.size());
+    let entries: usize = parts.iter().flat_map(|own| &own.rows).map(BTreeMap::len).sum();
+    let unknown = Inertia { unknown: n, ..Inertia::default() };
+    if n > SMALL && entries < 5 * n {
+        return unknown;
+    }
+    let (mut sum, mut size) = (Mat::<f64>::zeros(n, n), 0.0);
+    for rounded in parts.iter().map(|own| own.rounded()) {
+        sum += &rounded;
+        size += norm::frobenius(&rounded);
+    }
+    // Each entry of each part within u of its size, or within the smallest double, and a rounding for each sum, each at most u
+    // times the sum of the parts' sizes: Frobenius's norm of all that.
+    let terms = parts.len() as f64;
+    let slack = 1.01 * terms * (U * size + n as f64 * f64::MIN_POSITIVE);
+    if slack.is_finite() { proven(&sum, slack) } else { unknown }
 }
 
 impl TryFrom<&DMatrix<Rational>> for Symmetric {

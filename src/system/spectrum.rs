@@ -15,7 +15,7 @@
 
 use faer::{Mat, c64};
 
-use super::bauer_fike::bauer_fike;
+use super::bauer_fike::{Residual, bauer_fike};
 use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
@@ -28,6 +28,8 @@ pub(super) struct Spectrum {
     pub mu: Vec<c64>,
     /// The radius of the discs; `None` where the bound's conditions fail.
     pub radius: Option<f64>,
+    /// Bounds on the rows of F.
+    rows: Vec<f64>,
     /// One column for each, in the coordinates of [`FloatBlocks`].
     pub vectors: Mat<c64>,
     /// S, and how far the true one can be.
@@ -51,8 +53,10 @@ impl Spectrum {
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
         let vectors = eigen.U().to_owned();
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
-        let radius = s_error.filter(|_| finite).and_then(|delta| radius(&s, delta, &mu, &vectors));
-        finite.then_some(Spectrum { mu, radius, vectors, s, s_error })
+        let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
+        let radius = residual.as_ref().map(|own| own.norm);
+        let rows = residual.map_or(Vec::new(), |own| own.rows);
+        finite.then_some(Spectrum { mu, radius, rows, vectors, s, s_error })
     }
 
     /// What the discs prove, or the clusters, if anything.
@@ -78,7 +82,7 @@ impl Spectrum {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);
-        if components.iter().any(off) {
+        if components.iter().any(off) || (0..self.mu.len()).any(|i| self.is_encircled(i)) {
             return Some(Kind::Hyperbolic);
         }
         let inside = |component: &Vec<usize>| match component.as_slice() {
@@ -89,6 +93,30 @@ impl Spectrum {
             _ => false,
         };
         components.iter().all(inside).then_some(Kind::Elliptic)
+    }
+}
+
+impl Spectrum {
+    /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, so that it holds as
+    /// many of S as of D.
+    ///
+    /// (D − z) y = −F y with |y| = 1 gives |d_j − z| |y_j| ≤ ρ_j, so an eigenvalue z has Σ (ρ_j/|d_j − z|)² ≥ 1 (for both rows of
+    /// a conjugate pair the nearer of the two). Rows differ where some eigenvectors are nearly dependent: those that are not keep
+    /// their small discs. The radii tried go down by fifths, to a hundredth of the distance.
+    fn is_encircled(&self, i: usize) -> bool {
+        let off = 0.99 * from_segment(self.mu[i]);
+        if self.rows.get(i).is_none_or(|own| *own >= off) {
+            return false;
+        }
+        let escape = |radius: f64| {
+            let term = |(z, row): (&c64, &f64)| {
+                let distance = |z: c64| ((z - self.mu[i]).norm() - radius).abs();
+                let nearer = distance(*z).min(distance(z.conj()));
+                (row / nearer).powi(2)
+            };
+            self.mu.iter().zip(&self.rows).map(term).sum::<f64>() < 0.99
+        };
+        (0..20).map(|k| off * 0.8f64.powi(k)).any(escape)
     }
 }
 
@@ -133,8 +161,8 @@ fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
     Some((real, d))
 }
 
-/// More than ‖F‖₂ with the computed eigenvectors; see [`bauer_fike`].
-pub(super) fn radius(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<f64> {
+/// Bounds on F with the computed eigenvectors; see [`bauer_fike`].
+pub(super) fn residual(s: &Mat<f64>, delta: f64, mu: &[c64], v: &Mat<c64>) -> Option<Residual> {
     let (v, d) = real_form(mu, v)?;
     bauer_fike(s, delta, &v, &d)
 }

@@ -11,7 +11,7 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use super::compose::Program;
+use super::compose::inverse_mass;
 use super::model::System;
 use super::roots;
 use super::sparse::null_space;
@@ -66,12 +66,12 @@ pub(super) fn invariant_subspaces(system: &System) -> Option<Vec<Subspace>> {
 pub(super) fn may_split(system: &System) -> bool {
     let n = system.size();
     let inverse = dense_inverse(system).map(|x| to_f64(&x));
-    let rounded = |k: &super::Symmetric| DMatrix::from_fn(n, n, |i, j| k.row(i).get(&j).map_or(0.0, to_f64));
     let products: Vec<[DMatrix<f64>; 2]> = system
         .clocks()
         .iter()
         .map(|clock| {
-            let k = rounded(&clock.stiffness);
+            let rounded = clock.stiffness.rounded();
+            let k = DMatrix::from_fn(n, n, |i, j| rounded[(i, j)]);
             [&inverse * &k, inverse.abs() * k.abs()]
         })
         .collect();
@@ -88,7 +88,7 @@ pub(super) fn may_split(system: &System) -> bool {
 
 fn dense_inverse(system: &System) -> DMatrix<Rational> {
     let mut inverse = DMatrix::from_element(system.size(), system.size(), Rational::zero());
-    for (i, row) in Program::new(system).inverse_mass.into_iter().enumerate() {
+    for (i, row) in inverse_mass(system).1.into_iter().enumerate() {
         row.into_iter().for_each(|(j, x)| inverse[(i, j)] = x);
     }
     inverse

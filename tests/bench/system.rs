@@ -1,14 +1,20 @@
 //! Systems: the verdict on the half period with sparse kicks against the obvious way, the dense 2n x 2n propagator of
 //! the full period and a general eigenvalue routine; and the rate of kicks of the simulation.
 //!
-//! Run with `cargo bench --bench system`. Fails where a promise is broken: a second, a factor of 8 (where kicks are
+//! Run with `cargo bench --bench system`. Dense random systems come first: n = 66 within 50 ms, a map of 182 points of n = 12
+//! within a second, n = 1,000 in two levels within 5 s and 50 outer steps of it within 60 s. Fails where a promise is broken: a second, a factor of 8 (where kicks are
 //! many), 10^7 kicks/s. With few kicks a period there is little to compose, and the eigenvalues remain: those of the
 //! 2n x 2n matrix alone cost some five times those of the n x n one with the vectors that prove them.
 
 use kickdrift::avi::{Clocks, Ends, Linear, Simulation, State};
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::system::{Limits, System, builders, decide_system};
+use kickdrift::scene::{Axis, Scan, SystemScene};
+use kickdrift::system::levels::{Hessians, Kernel, Outer};
+use kickdrift::system::scan::scan;
+use kickdrift::system::{Holds, Limits, Route, System, builders, decide_system};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 mod common;
 mod dense;
@@ -51,7 +57,103 @@ fn simulation() {
     assert!(rate >= 1e7, "{rate} kicks a second");
 }
 
+/// Numbers that repeat, in [−1, 1).
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// G Gᵀ/n plus a multiple of the identity, G random.
+    fn definite(&mut self, n: usize, scale: f64) -> Vec<Vec<f64>> {
+        let g: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| self.next()).collect()).collect();
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (i.max(j), i.min(j));
+            let product: f64 = g[i].iter().zip(&g[j]).map(|(x, y)| x * y).sum();
+            scale * (product / n as f64 + f64::from(u8::from(i == j)) * 0.1)
+        };
+        (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+    }
+}
+
+/// The file of a random dense system of two levels, `inner` inner steps in the outer one.
+fn dense_file(n: usize, seed: u64, inner: u64, outer: &str) -> String {
+    let mut numbers = Numbers(seed);
+    let rows = |k: Vec<Vec<f64>>| format!("{k:?}");
+    let (fast, slow) = (rows(numbers.definite(n, 1.0)), rows(numbers.definite(n, 0.05)));
+    format!(
+        r#"{{"schema": "kickdrift/system/1", "masses": {:?}, "potentials": [
+        {{"name": "fast", "step": "{outer}/{inner}", "stiffness": {fast}}}, {{"name": "slow", "step": "{outer}", "stiffness": {slow}}}]}}"#,
+        vec![1; n],
+    )
+}
+
+/// Dense files as people have them: a whole verdict, from the text on; the verdict alone beside the dense way; a map.
+fn dense() {
+    for (n, promised) in [(10, 0.01), (12, 0.01), (66, 0.05)] {
+        for outer in ["1", "14/5"] {
+            let text = dense_file(n, 7, 4, outer);
+            let read = || SystemScene::read(&text).expect("a system");
+            let decide =
+                |scene: &SystemScene| scene.decide(Route::Cheapest, &Limits::default()).expect("a verdict");
+            let (own, analysis) = least(3, 1.0, || decide(&read()));
+            let scene = read();
+            let (alone, _) = least(3, 1.0, || decide(&scene));
+            let (other, _) = least(3, 1.0, || multipliers(scene.system()));
+            println!(
+                "dense {n}, outer step {outer}: {} by {} in {:.2} ms; alone {:.3} ms, dense way {:.3} ms",
+                analysis.kind.name(),
+                analysis.parts[0].evidence.name(),
+                1e3 * own,
+                1e3 * alone,
+                1e3 * other
+            );
+            assert!(analysis.is_proof() && own < promised, "{own} s");
+        }
+    }
+    let text = dense_file(12, 7, 4, "1");
+    let axis = |text: &str| Axis::parse(text).expect("an axis");
+    let (x, y) = ("potentials.slow.step=4/20..52/20:4/20", "potentials.slow.scale=1/10..14/10:1/10");
+    let axes = Scan::read(&text, axis(x), axis(y)).expect("a map");
+    let (xs, ys, limits) = (axes.x.values(), axes.y.values(), Limits::default());
+    let decide = |x: &_, y: &_| axes.at(x, y)?.decide(Route::Cheapest, &limits);
+    let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, |_| ()).expect("a map"));
+    println!("map of {} points, n = 12: {:.0} ms", points.len(), 1e3 * own);
+    assert!(points.len() == 182 && own < 1.0);
+}
+
+/// Two levels of 1,000 degrees of freedom: a whole verdict, and those at 50 outer steps.
+fn levels() {
+    let n = 1000;
+    let mut numbers = Numbers(5);
+    let mut matrix = |scale: f64| {
+        let rows = numbers.definite(n, scale);
+        DMatrix::from_fn(n, n, |i, j| rows[i][j])
+    };
+    let (fast, slow) = (matrix(1.0), matrix(0.05));
+    let hessians = || Hessians::new(&fast, &slow, 1e-6).expect("two Hessians");
+    let (making, kernel) = least(1, 0.0, || Kernel::new(&hessians()).expect("a basis"));
+    let (first, analysis) = least(1, 0.0, || {
+        let outer = Outer::new(4.0, 4).expect("a step");
+        kernel.decide(&outer, &ratio(4, 1), 1e-6)
+    });
+    println!("n = 1000: basis {making:.2} s, {} with its margin {first:.2} s", analysis.kind.name());
+    let (lo, hi) = analysis.measured.and_then(|own| own.first_unstable).expect("a first unstable step");
+    let steps: Vec<f64> = (1..=50).map(|k| (0.8 + 0.005 * f64::from(k)) * lo).collect();
+    let (own, verdicts) = least(1, 0.0, || {
+        let verdict = |&step: &f64| kernel.verdict_within(&Outer::new(step, 4).expect("a step"), 1e-6);
+        steps.par_iter().map(verdict).collect::<Vec<_>>()
+    });
+    let stable = verdicts.iter().filter(|own| **own == Holds::Stable).count();
+    println!("    first unstable {lo:.6} to {hi:.6}; 50 outer steps, {stable} stable, in {own:.1} s");
+    assert!(analysis.parts[0].evidence.is_proof() && making + first < 5.0 && own < 60.0);
+}
+
 fn main() {
+    dense();
+    levels();
     for (steps, kicks, promised) in [
         ([ratio(1, 4), ratio(3, 10), ratio(7, 20)], 107, 8.0),
         ([ratio(1, 8), ratio(1, 4), ratio(1, 1)], 13, 1.5),

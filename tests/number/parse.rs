@@ -115,6 +115,14 @@ proptest! {
     }
 
     #[test]
+    fn plain_decimals_are_what_the_grammar_makes_of_them(
+        text in "-?[0-9]{0,14}[.]?[0-9]{0,14}(e[-+]?[0-9]{1,3})?",
+    ) {
+        // Within parentheses a number is read by the grammar.
+        prop_assert_eq!(parse("x", &text).ok(), parse("x", &format!("({text})")).ok());
+    }
+
+    #[test]
     fn decimals_are_exact(p: i64, places in 0usize..25) {
         let digits = format!("{:0>width$}", p.unsigned_abs(), width = places + 1);
         let (whole, fraction) = digits.split_at(digits.len() - places);

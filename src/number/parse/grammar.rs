@@ -30,6 +30,9 @@ type Parsed<T> = Result<T, Remedy>;
 
 /// The value of a whole text.
 pub(super) fn evaluate(text: &str) -> Parsed<Laurent> {
+    if let Some(value) = decimal(text) {
+        return Ok(Laurent::from_rational(value));
+    }
     if text.chars().nth(MAX_CHARACTERS).is_some() {
         return Err(format!("longer than {MAX_CHARACTERS} characters; write the number shorter"));
     }
@@ -43,6 +46,37 @@ pub(super) fn evaluate(text: &str) -> Parsed<Laurent> {
     let mut parser = Parser { characters: &characters, at: 0, depth: 0, effort: 0 };
     let value = parser.sum()?;
     if parser.at < characters.len() { Err(parser.unexpected()) } else { Ok(value) }
+}
+
+/// A plain decimal of at most 25 digits and a power of ten between 10^-36 and 10^12, as data mostly are: in machine words, in a
+/// twentieth of the time that the grammar takes. `None` for everything else, errors among it.
+fn decimal(text: &str) -> Option<Rational> {
+    let (negative, text) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
+    let (digits, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let (whole, fraction) = digits.split_once('.').unwrap_or((digits, "0"));
+    let is_number = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    if !is_number(fraction)
+        || !(is_number(whole) || whole.is_empty() && digits.starts_with('.'))
+        || whole.len() + fraction.len() > 25
+        || !is_number(exponent.strip_prefix(['-', '+']).unwrap_or(exponent))
+    {
+        return None;
+    }
+    let read = |value: u128, part: &str| part.bytes().fold(value, |n, b| 10 * n + u128::from(b - b'0'));
+    let mut mantissa = read(read(0, whole), fraction);
+    let scale: i32 = exponent.parse::<i32>().ok()?.checked_sub(fraction.len() as i32)?;
+    if !(-36..=12).contains(&scale) {
+        return None;
+    }
+    let (mut denominator, places) = (1u128, scale.min(0).unsigned_abs());
+    mantissa *= 10u128.pow(scale.max(0).unsigned_abs());
+    let twos = mantissa.trailing_zeros().min(places);
+    (mantissa, denominator) = (mantissa >> twos, denominator << (places - twos));
+    for _ in 0..places {
+        if mantissa.is_multiple_of(5) { mantissa /= 5 } else { denominator *= 5 }
+    }
+    let mantissa = BigInt::from(mantissa);
+    Some(Rational::new_raw(if negative { -mantissa } else { mantissa }, denominator.into()))
 }
 
 /// Is there white space between two characters of numbers or names, as in `1 000` or `2 pi`?

@@ -149,7 +149,8 @@ impl Verdict {
             found => found?,
         };
         let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
-        let beside = report::Beside { friction, orbit, labels, ..report::Beside::default() };
+        let beside =
+            report::Beside { unit: scene.time_unit(), friction, orbit, labels, ..report::Beside::default() };
         let again = report::document(&analysis, &beside).value();
         if analysis.measured.is_some() {
             return self.outcome(

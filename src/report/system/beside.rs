@@ -1,4 +1,4 @@
-//! What stands beside a system's verdict: friction, the integrator's own orbit, what the growing modes move.
+//! What stands beside a system's verdict: the unit of time, friction, the integrator's own orbit, what the growing modes move.
 
 use serde_json::{Value, json};
 
@@ -9,6 +9,8 @@ use crate::system::{Analysis, OwnOrbit};
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Beside<'a> {
+    /// The unit of time, where it has a name.
+    pub unit: Option<&'a str>,
     pub friction: Option<&'a Friction>,
     pub orbit: Option<&'a OwnOrbit>,
     /// That an orbit was searched for in vain.
@@ -37,6 +39,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         })
     });
     let all = [
+        ("time_unit", own.unit.map(Value::from)),
         ("friction", own.friction.map(friction::value)),
         ("own_orbit", orbit),
         ("moving", own.labels.as_ref().map(moving)),

@@ -22,8 +22,8 @@ pub(super) fn value(own: &Measured) -> Value {
     })
 }
 
-/// The same for people.
-pub(super) fn lines(own: &Measured) -> Vec<String> {
+/// The same for people; `unit` is that of times, after a space.
+pub(super) fn lines(own: &Measured, unit: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(r) = &own.removed {
         lines.push(format!(
@@ -48,7 +48,7 @@ pub(super) fn lines(own: &Measured) -> Vec<String> {
         };
         let first = decimal::enclosure(lo, hi);
         lines.push(format!(
-            "  first unstable outer step with as many inner ones: {first}; every smaller one is proven stable{place}"
+            "  first unstable outer step with as many inner ones: {first}{unit}; every smaller one is proven stable{place}"
         ));
     }
     lines

@@ -110,12 +110,13 @@ fn origin(origin: Origin) -> &'static str {
 }
 
 fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
+    let suffix = beside.unit.map_or(String::new(), |unit| format!(" {unit}"));
     let stable = if analysis.is_stable() { "stable" } else { "unstable" };
     let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
     let mut lines = vec![
         format!("{stable}: {} ({proven})", analysis.kind.name()),
         format!(
-            "  {}, {}, period T = {}",
+            "  {}, {}, period T = {}{suffix}",
             counted(analysis.size, "degree of freedom", "degrees of freedom"),
             counted(analysis.clocks, "clock", "clocks"),
             analysis.period
@@ -129,7 +130,8 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         lines.push(format!("  {parts} independent parts"));
     }
     if !analysis.is_stable() {
-        lines.push(format!("  largest growth rate {:.6} per unit time", analysis.growth_rate()));
+        let per = beside.unit.unwrap_or("unit time");
+        lines.push(format!("  largest growth rate {:.6} per {per}", analysis.growth_rate()));
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
@@ -137,7 +139,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         lines.push(format!("  {}", described(unstable)));
     }
     lines.extend(beside::lines(beside, analysis));
-    lines.extend(analysis.measured.iter().flat_map(measured::lines));
+    lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }

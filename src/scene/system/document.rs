@@ -25,7 +25,7 @@ impl From<Value> for Number {
     fn from(value: Value) -> Self {
         match value {
             Value::String(text) => Number::Text(text),
-            Value::Number(number) => Number::Json(number.to_string()),
+            Value::Number(number) => Number::Json(number.as_str().into()),
             other => Number::Other(other),
         }
     }
@@ -81,6 +81,8 @@ impl Number {
 pub(super) struct Document {
     pub schema: String,
     pub title: Option<String>,
+    #[serde(rename = "time_unit")]
+    _time_unit: Option<String>,
     pub masses: Option<Vec<Number>>,
     pub mass_matrix: Option<Vec<Vec<Number>>>,
     pub potentials: Option<Vec<PotentialDocument>>,

@@ -40,6 +40,8 @@ struct Document {
     _schema: String,
     #[serde(rename = "title")]
     _title: Option<String>,
+    #[serde(rename = "time_unit")]
+    _time_unit: Option<String>,
     #[serde(default)]
     mass_weighted: bool,
     masses: Option<Reference>,

@@ -17,6 +17,7 @@
 //!
 //! * All quantities are exact, texts or JSON numbers (0.1 is 1/10), without π; indices count from 0. One mass alone may have π in
 //!   its mass, stiffnesses and steps, as `"pi^2/25"`: K clocks on one oscillator.
+//! * `time_unit`, if given, is the name of the unit of steps and periods, as "ps": answers name it.
 //! * `masses`, or `mass_matrix` by rows.
 //! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j null for a
 //!   wall), `stiffness` (by rows), `bonds` (a named form between i and j, without j to a wall at 0). They add up, times
@@ -137,8 +138,12 @@ impl SystemScene {
         if measured::is_by_reference(&source) {
             return SystemScene::from_json_in(folder, source);
         }
-        // From the text, for an error to name its line.
-        SystemScene::new(serde_json::from_str(text).map_err(no_system)?, source)
+        let document = match Document::deserialize(&source) {
+            Ok(document) => document,
+            // Once more from the text, for the error to name its line.
+            Err(_) => serde_json::from_str(text).map_err(no_system)?,
+        };
+        SystemScene::new(document, source)
     }
 
     /// Reads a system from JSON that was parsed already, such as the one that a document echoes.
@@ -299,6 +304,11 @@ impl SystemScene {
     /// The title, or nothing.
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The name of the unit in which the file's times are, where it gives one.
+    pub fn time_unit(&self) -> Option<&str> {
+        self.source.get("time_unit").and_then(Value::as_str)
     }
 
     /// The linear system: that at the equilibrium, where there are nonlinear bonds; rounded to doubles (and, where steps

@@ -15,7 +15,7 @@ use crate::system::model::System;
 use crate::system::norm;
 use crate::system::period::{Drifts, Stiff, follow};
 use crate::system::piece::complement;
-use crate::system::spectrum::{components, radius};
+use crate::system::spectrum::{components, residual};
 
 /// What friction does to a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -192,7 +192,7 @@ fn at(part: &System, rate: &Rational) -> Result<At> {
 fn spectral_radius(q: &faer::Mat<f64>, error: f64) -> Option<(f64, f64)> {
     let eigen = q.eigen().ok()?;
     let values: Vec<_> = (0..q.nrows()).map(|i| eigen.S()[i]).collect();
-    let radius = 1.01 * radius(q, error + U * norm::frobenius(q), &values, &eigen.U().to_owned())?;
+    let radius = 1.01 * residual(q, error + U * norm::frobenius(q), &values, &eigen.U().to_owned())?.norm;
     let far = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
     let least =
         |component: &Vec<usize>| component.iter().map(|&i| values[i].norm()).fold(f64::INFINITY, f64::min);

@@ -19,9 +19,11 @@ impl Kernel {
     /// The verdict at an outer step, for the matrices given and for all within `accuracy`.
     pub fn decide(&self, outer: &Outer, period: &Rational, accuracy: f64) -> Analysis {
         let region = self.is_in_first_region(outer, 0.0);
-        let near = !region && self.is_just_beyond_first_region(outer, 0.0);
-        let beyond = (!region && !near).then(|| self.beyond(outer, 0.0)).flatten();
-        let (kind, evidence) = match (&beyond, region, near) {
+        let stable = region || self.is_stable_by_index(outer, 0.0);
+        let counted = !stable && self.has_real_unstable_mode(outer, 0.0);
+        let beyond =
+            (!region && !(counted && self.is_symmetric(outer))).then(|| self.beyond(outer, 0.0)).flatten();
+        let (kind, evidence) = match (&beyond, stable, counted) {
             (_, true, _) => (Kind::Elliptic, Evidence::Signs),
             (_, _, true) => (Kind::Hyperbolic, Evidence::Signs),
             (Some((Some(kind), _)), ..) => (*kind, Evidence::Discs),
@@ -120,6 +122,12 @@ impl Kernel {
             }
         };
         (multipliers, unstable.map(instability).collect())
+    }
+
+    /// Whether p θ < π for every mode, so that cos p θ − V^½ M V^½ tells all multipliers.
+    fn is_symmetric(&self, outer: &Outer) -> bool {
+        let highest = self.values.last().copied().unwrap_or(0.0);
+        Half::new(outer.inner_square * highest, outer.inner_steps).rises()
     }
 
     /// The μ, a radius where one is proven, and the eigenvectors in the basis of the modes: those of the spectrum, or, where

@@ -93,7 +93,7 @@ impl Kernel {
 
     /// Whether all matrices as in [`Kernel::is_in_first_region`] are proven unstable.
     pub fn is_unstable(&self, outer: &Outer, epsilon: f64) -> bool {
-        self.is_just_beyond_first_region(outer, epsilon)
+        self.has_real_unstable_mode(outer, epsilon)
             || matches!(self.beyond(outer, epsilon), Some((Some(Kind::Hyperbolic), _)))
     }
 }

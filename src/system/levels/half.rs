@@ -13,8 +13,8 @@ pub(super) struct Half {
     pub b: Interval,
     pub c: Interval,
     pub d: Interval,
-    /// Whether p θ < π for sure: the odd solution is positive all the way and still rising at the end.
-    pub rises: bool,
+    /// How often the odd solution changes its sign up to the end, of those at kicks and there; `None` where one is not certain.
+    pub changes: Option<usize>,
 }
 
 impl Half {
@@ -22,23 +22,39 @@ impl Half {
         let (s, zero, one) = (Interval::point(s), Interval::point(0.0), Interval::point(1.0));
         let kick = s.half();
         let (mut even, mut odd) = ([one, zero], [zero, one]);
-        let mut positive = true;
+        let (mut changes, mut last) = (Some(0), true);
+        let mut see = |x: Interval| {
+            let sign = x.sign();
+            changes = changes.zip(sign).map(|(n, sign)| n + usize::from(sign != last));
+            last = sign.unwrap_or(last);
+        };
         for _ in 0..p / 2 {
             for [x, v] in [&mut even, &mut odd] {
                 *v = *v - kick * *x;
                 *x = *x + *v;
                 *v = *v - kick * *x;
             }
-            positive &= odd[0].lo > 0.0;
+            see(odd[0]);
         }
         if p % 2 == 1 {
             for [x, v] in [&mut even, &mut odd] {
                 *v = *v - kick * *x;
                 *x = *x + v.half();
             }
+            see(odd[0]);
         }
         let ([a, c], [b, d]) = (even, odd);
-        Half { a, b, c, d, rises: positive && b.lo > 0.0 && d.lo > 0.0 }
+        Half { a, b, c, d, changes }
+    }
+
+    /// Whether the odd solution moves towards 0 at the end; `None` where that is not certain.
+    pub fn turns_back(&self) -> Option<bool> {
+        Some(self.b.sign()? != self.d.sign()?)
+    }
+
+    /// Whether p θ < π for sure: the odd solution is positive all the way and still rising at the end.
+    pub fn rises(&self) -> bool {
+        self.changes == Some(0) && self.turns_back() == Some(false)
     }
 
     /// a/b = sin θ cot(p θ/2) or 2 sin(θ/2) cot: decreasing in s while p θ < 2 π.
@@ -76,7 +92,7 @@ mod tests {
                     assert!(got.radius() < 1e-13, "{got:?}");
                 }
                 // One step alone has no angle beyond π.
-                assert!(p == 1 || own.rises == (turn < 1.0), "{p} {turn}");
+                assert!(p == 1 || own.rises() == (turn < 1.0), "{p} {turn}");
             }
         }
     }

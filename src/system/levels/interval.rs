@@ -28,6 +28,11 @@ impl Interval {
         (self.hi - self.mid()).max(self.mid() - self.lo).next_up()
     }
 
+    /// Whether it is above 0; `None` where 0 is in it.
+    pub fn sign(self) -> Option<bool> {
+        if self.lo > 0.0 { Some(true) } else { (self.hi < 0.0).then_some(false) }
+    }
+
     pub fn half(self) -> Self {
         Interval::outward(self.lo / 2.0, self.hi / 2.0)
     }

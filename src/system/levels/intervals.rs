@@ -84,8 +84,11 @@ impl Kernel {
         if self.is_in_first_region(outer, epsilon) {
             return Holds::Stable;
         }
-        if self.is_just_beyond_first_region(outer, epsilon) {
+        if self.has_real_unstable_mode(outer, epsilon) {
             return Holds::Unstable;
+        }
+        if self.is_stable_by_index(outer, epsilon) {
+            return Holds::Stable;
         }
         match self.beyond(outer, epsilon) {
             Some((Some(Kind::Elliptic), _)) => Holds::Stable,

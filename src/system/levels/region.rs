@@ -1,20 +1,19 @@
 //! The first stable region: verdict, margin, and where it ends.
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use super::half::Half;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
-use crate::number::U;
 use crate::system::inertia::is_definite;
 use crate::system::norm;
 
 /// The halves of all modes with every stiffness shifted by as much as errors and `epsilon` allow.
 pub(super) struct Shifted {
     /// Fast stiffnesses decreased, increased.
-    less: Vec<Half>,
-    more: Vec<Half>,
+    pub less: Vec<Half>,
+    pub more: Vec<Half>,
     /// ‖E₂‖ times half an outer kick, and the rounding of that product's entries.
-    slow_slack: f64,
+    pub slow_slack: f64,
 }
 
 impl Kernel {
@@ -29,7 +28,7 @@ impl Kernel {
     }
 
     /// diag(d) + sign (p/2) h² S'.
-    fn with_slow(&self, outer: &Outer, sign: f64, diagonal: &[f64]) -> Mat<f64> {
+    pub(super) fn with_slow(&self, outer: &Outer, sign: f64, diagonal: &[f64]) -> Mat<f64> {
         let factor = sign * outer.half_kick();
         let m = self.size();
         let mut form = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
@@ -40,7 +39,7 @@ impl Kernel {
     /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven to be in the first stable region.
     pub fn is_in_first_region(&self, outer: &Outer, epsilon: f64) -> bool {
         let shifted = self.shifted(outer, epsilon);
-        if !shifted.more.iter().all(|half| half.rises) || !shifted.less.iter().all(|half| half.d.lo > 0.0) {
+        if !shifted.more.iter().all(|half| half.rises()) || !shifted.less.iter().all(|half| half.d.lo > 0.0) {
             return false;
         }
         let stretch: Vec<f64> = shifted.more.iter().map(|half| half.stretch().lo).collect();
@@ -49,36 +48,27 @@ impl Kernel {
             && is_definite(&self.with_slow(outer, 1.0, &restoring), shifted.slow_slack)
     }
 
-    /// The largest ε, within a percent, for which [`Kernel::is_in_first_region`] holds; `None` where it does not for 0.
+    /// The largest ε, within a percent (in the first stable region) or a tenth, for which [`Kernel::is_stable`] holds; `None` where
+    /// it does not for 0.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
-        if !self.is_in_first_region(outer, 0.0) {
+        let (stable, width): (fn(&Kernel, &Outer, f64) -> bool, f64) =
+            match self.is_in_first_region(outer, 0.0) {
+                true => (Kernel::is_in_first_region, 1.01),
+                false => (Kernel::is_stable_by_index, 1.1),
+            };
+        if !stable(self, outer, 0.0) {
             return None;
         }
         // By halves of the exponent: below 10^-15 the errors of the eigenbasis are larger than the margin.
         let (mut lo, mut hi) = (1e-15_f64, 1.0_f64);
-        if !self.is_in_first_region(outer, lo) {
+        if !stable(self, outer, lo) {
             return Some(0.0);
         }
-        while hi > 1.01 * lo {
+        while hi > width * lo {
             let middle = (lo * hi).sqrt();
-            *(if self.is_in_first_region(outer, middle) { &mut lo } else { &mut hi }) = middle;
+            *(if stable(self, outer, middle) { &mut lo } else { &mut hi }) = middle;
         }
         Some(lo)
-    }
-
-    /// Whether all F + E₁, S + E₂ as in [`Kernel::is_in_first_region`] are proven unstable next to that region: W > 0, so that
-    /// all μ are real, and P or R has a negative direction.
-    pub fn is_just_beyond_first_region(&self, outer: &Outer, epsilon: f64) -> bool {
-        let shifted = self.shifted(outer, epsilon);
-        if !shifted.more.iter().chain(&shifted.less).all(|half| half.rises) {
-            return false;
-        }
-        // The upper bounds of both forms.
-        let stretch: Vec<f64> = shifted.less.iter().map(|half| half.stretch().hi).collect();
-        let restoring: Vec<f64> = shifted.more.iter().map(|half| half.restoring().hi).collect();
-        [(-1.0, stretch), (1.0, restoring)].iter().any(|(sign, diagonal)| {
-            has_negative_direction(&self.with_slow(outer, *sign, diagonal), shifted.slow_slack)
-        })
     }
 
     /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is proven unstable.
@@ -103,23 +93,4 @@ impl Kernel {
         let steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
         steps.into_iter().find(|&step| unstable(step)).map(|step| (lo, step))
     }
-}
-
-/// Whether every symmetric matrix within `slack` has a negative eigenvalue, by the quotient of an approximate eigenvector.
-fn has_negative_direction(form: &Mat<f64>, slack: f64) -> bool {
-    let m = form.nrows();
-    let Ok(eigen) = form.self_adjoint_eigen(Side::Lower) else { return false };
-    let z: Vec<f64> = (0..m).map(|i| eigen.U()[(i, 0)]).collect();
-    let (mut value, mut size, mut length) = (0.0, 0.0, 0.0);
-    for i in 0..m {
-        length += z[i] * z[i];
-        for j in 0..m {
-            let term = z[i] * form[(i, j)] * z[j];
-            value += term;
-            size += term.abs();
-        }
-    }
-    // m² terms of two roundings each, summed one by one.
-    let rounding = 1.01 * ((m * m) as f64 + 4.0) * U * size;
-    value + rounding + 1.01 * slack * length < 0.0
 }

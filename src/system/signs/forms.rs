@@ -27,7 +27,7 @@ pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
             let w = forms.w().definite();
             let sign = if w != 0 { w } else { forms.z().definite() };
             if sign == 0 {
-                return None;
+                return counts_differ(p, r, forms).then_some(Kind::Hyperbolic);
             }
             let (p, r) = (p.times(sign), r.times(sign));
             let both = |f: fn(&Inertia) -> usize| f(&p) + f(&r);
@@ -45,6 +45,17 @@ pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
         Inertia { zero: 1.., .. } => Some(Kind::Parabolic),
         _ => Some(Kind::Elliptic),
     }
+}
+
+/// Whether the number of negative eigenvalues of P or R is told and differs from that of W or Z: as many μ are real and outside
+/// \[−1, 0\].
+fn counts_differ(p: Inertia, r: Inertia, forms: &mut impl Inertias) -> bool {
+    let told = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
+    let differ = |own: Inertia| {
+        let count = told(own);
+        count.is_some() && [p, r].into_iter().filter_map(told).any(|other| Some(other) != count)
+    };
+    differ(forms.w()) || differ(forms.z())
 }
 
 /// The forms of a half period in doubles, within the bound on its error.
