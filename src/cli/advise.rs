@@ -28,11 +28,10 @@ const EXAMPLES: &str = "Examples:
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
-    /// A period or a wavenumber, as 10fs, OH=10fs or OH=3700/cm; once for each force. Of K steps the last K - 1 entries are on the slower
-    /// clocks, all before them on the fastest.
+    /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
     #[arg(long, value_name = "[NAME=]T")]
     period: Vec<String>,
-    /// A bond: its force constant (k of E = k x^2/2, K of E = K x^2), two masses in amu, and, if not 1, how many hydrogens the heavy atom has.
+    /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
     #[arg(long, value_name = "NAME:k=X,M1,M2[,N]")]
     bond: Vec<String>,
     /// The clocks of modes, 1 the fastest, as OH=1,bend=2.
@@ -41,7 +40,7 @@ pub struct Args {
     /// The steps from the innermost to the outermost one; again for another scheme.
     #[arg(long, value_name = "0.5fs,4fs")]
     steps: Vec<String>,
-    /// The input of an engine (OpenMM, LAMMPS, GROMACS, NAMD, Tinker, i-PI), for its steps; with a serialized OpenMM system, twice.
+    /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, for its steps; twice with an OpenMM system
     #[arg(long, value_name = "FILE")]
     engine: Vec<PathBuf>,
     /// How far every period may be off.

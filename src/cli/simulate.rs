@@ -22,8 +22,7 @@ pub struct Args {
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]
     displace: Displacement,
-    /// Algorithm 1 as it stands: whole kicks at the start of a period, none at its end. Without it these kicks are halved,
-    /// which makes the run symmetric in time.
+    /// Algorithm 1 as it stands: whole kicks at the start of a period, none at its end [default: halves at both]
     #[arg(long)]
     staggered: bool,
     /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.

@@ -29,8 +29,7 @@ pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// A map: a number of the file over a range, as potentials.1.step=1/10..2:1/20 (LO..HI in steps of BY). Give it twice.
-    /// A potential's name serves as its index; potentials.NAME.scale is a factor of its stiffness.
+    /// A map over two numbers of the file, as potentials.1.step=1/10..2:1/20 and potentials.NAME.scale=1..2:1/10; give it twice
     #[arg(long, value_name = "PATH=LO..HI:BY", allow_hyphen_values = true)]
     scan: Vec<String>,
     /// What the colours of a map stand for [default: growth].
@@ -48,8 +47,7 @@ pub struct Args {
     /// The relative width above which no interval is missed [default: 1e-4].
     #[arg(long, value_name = "W", requires = "intervals")]
     width: Option<f64>,
-    /// A rate of friction per unit time: the velocities times exp(-G t) in the middle of every drift, as in BAOAB. Tells whether
-    /// the spectral radius stays below 1, and the friction that masks a resonance.
+    /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
     /// Leave the rigid motions of measured stiffnesses in.

@@ -33,8 +33,7 @@ pub struct Args {
     /// Also write a Coq proof of the verdict, for rational input; check it with proofs/tools/certificate.sh.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// A rate of friction per unit time: v times exp(-G t) in the middle of every drift, as in BAOAB. Tells whether the spectral
-    /// radius stays below 1, and the smallest friction that masks a resonance.
+    /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational))]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.

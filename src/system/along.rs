@@ -42,9 +42,9 @@ pub struct OwnOrbit {
 /// use kickdrift::number::rational::ratio;
 /// use kickdrift::schedule::Schedule;
 /// use kickdrift::system::{Limits, decide_along};
-/// use nalgebra::dmatrix;
+/// use nalgebra::DMatrix;
 /// let schedule = Schedule::new(&[ratio(1, 2), ratio(1, 1)], &[ratio(0, 1), ratio(0, 1)])?;
-/// let (stiff, soft) = (dmatrix![4.0], dmatrix![0.1]);
+/// let [stiff, soft] = [4.0, 0.1].map(|k| DMatrix::from_element(1, 1, k));
 /// // Half a period: both clocks at 0, the fast one in the middle of the period.
 /// let hessians = [vec![stiff.clone(), soft], vec![stiff * 1.01]];
 /// let about = decide_along(&[1.0], &schedule, &hessians, &Limits::default())?;

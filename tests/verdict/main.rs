@@ -155,14 +155,14 @@ fn extreme_scales_are_decided() {
     }
 }
 
-/// One update decides; trace and label would take half a million kicks.
+/// Fifty updates decide; trace and label would take fifty thousand kicks.
 #[test]
 fn growth_is_computed_only_when_it_is_asked_for() {
-    let clocks = TwoClocks::with_rho("1000001/1".parse().unwrap(), ratio(1, 7), ratio(1, 25_000_000));
+    let clocks = TwoClocks::with_rho("100003/101".parse().unwrap(), ratio(1, 7), ratio(1, 25_000_000));
     let answer = decide(&clocks, &Limits { kicks: 1000 }).unwrap();
     assert_eq!(answer.decided_by, Tier::Filter);
-    assert_eq!(answer.growth().unwrap_err().needed(), Some(500_001));
-    assert_eq!(answer.trace().unwrap_err().needed(), Some(500_001));
+    assert_eq!(answer.growth().unwrap_err().needed(), Some(50_052));
+    assert_eq!(answer.trace().unwrap_err().needed(), Some(50_052));
 }
 
 #[test]
