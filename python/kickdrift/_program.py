@@ -31,4 +31,4 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         return _native.main(["kickdrift", *sys.argv[1:]])
     # In a process of its own: the program ends its process where it is stopped by a signal.
-    return subprocess.call([sys.executable, "-m", "kickdrift", *arguments])
+    return subprocess.call([sys.executable, "-P", "-m", "kickdrift", *arguments])

@@ -116,7 +116,7 @@ def test_ctrl_c_is_heard_within_a_second(call: str) -> None:
         f"try:\n    {LONG[call]}\n    print('done', flush=True)\n"
         "except KeyboardInterrupt:\n    print('heard', flush=True)\n    import os; os._exit(0)\n"
     )
-    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True) as child:
+    with subprocess.Popen([sys.executable, "-P", "-c", code], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout is not None and child.stdout.readline() == "ready\n"
         time.sleep(1.0)
         sent = time.monotonic()
