@@ -81,6 +81,7 @@
 //! | 6 | [`tongue`] | every unstable interval of a ratio, its edges, and where tongues close |
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
+//! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
 //! | 7 | [`recheck`] | every document's claims found again by another route |
 //! | 8 | [`scene`] | input documents → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
@@ -96,11 +97,14 @@
 //! | feature | adds |
 //! |---|---|
 //! | `system` | `system`: many clocks, many degrees of freedom (faer) |
+//! | `advise` | `advise`: which steps are safe for these periods (roxmltree) |
 //! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
 //! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
 //! | `figure` | `report::figure` and the drawings of results |
 //! | `cli` | the program (default) |
 
+#[cfg(feature = "advise")]
+pub mod advise;
 pub mod avi;
 #[cfg(feature = "cli")]
 pub mod cli;

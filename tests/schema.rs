@@ -59,7 +59,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 39] = [
+const LINES: [&str; 42] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -99,6 +99,9 @@ const LINES: [&str; 39] = [
     "tongues --survey --max-sum 12 --rho 1/25",
     "closings --ratio 5/3 --m 4",
     "closings --max-sum 9 --samples 50",
+    "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",
+    "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 --on 3000/cm=1 --steps 1fs,2fs",
+    "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs --band 0",
 ];
 
 #[test]
@@ -237,8 +240,10 @@ fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
         for key in document.as_object().unwrap().keys() {
             let mut broken = document.clone();
             broken.as_object_mut().unwrap().remove(key);
-            let optional = ["families", "fastest", "predicted_points", "measured"].contains(&key.as_str())
-                && name != "system-map";
+            let optional =
+                ["families", "fastest", "friction", "measured", "moving", "own_orbit", "predicted_points"]
+                    .contains(&key.as_str())
+                    && name != "system-map";
             assert_eq!(validator.is_valid(&broken), optional, "{name} without {key}");
             let mut broken = document.clone();
             broken[key] = json!({"surprise": 1.5});

@@ -11,7 +11,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, overload
 
 from kickdrift import _native
-from kickdrift._errors import needs
+from kickdrift._errors import required
 
 if TYPE_CHECKING:
     import pandas
@@ -154,11 +154,8 @@ class Table(Document, Sequence[Row]):
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
     """Rows as a data frame."""
-    try:
-        import pandas as pd
-    except ImportError:
-        raise needs("pandas", "pandas") from None
-    return pd.DataFrame(list(rows))
+    made: pandas.DataFrame = required("pandas", "pandas").DataFrame(list(rows))
+    return made
 
 
 def _flat(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 
@@ -81,6 +82,14 @@ class BudgetError(KickdriftError):
 def _short(value: str) -> str:
     line = "".join(" " if ord(c) < 32 else c for c in value)
     return line if len(line) <= 60 else f"{line[:30]}...{line[-15:]} ({len(line)} characters)"
+
+
+def required(package: str, extra: str) -> Any:
+    """An optional package."""
+    try:
+        return import_module(package)
+    except ImportError:
+        raise needs(package, extra) from None
 
 
 def needs(package: str, extra: str) -> KickdriftError:

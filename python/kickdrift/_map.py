@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from kickdrift import _native, _plot
 from kickdrift._document import Document, ask, given
-from kickdrift._errors import KickdriftError, needs
+from kickdrift._errors import KickdriftError, required
 from kickdrift._numbers import Exact, Range, range_text, text
 from kickdrift._verdict import _STABLE, TIERS, VERDICTS
 
@@ -118,24 +118,23 @@ class Map:
         >>> dict(data.sizes)
         {'h1': 5, 'h2': 10}
         """
-        try:
-            import xarray as xr
-        except ImportError:
-            raise needs("xarray", "dask") from None
         planes = {name: (("h1", "h2"), values) for name, values in self.arrays.items() if values.ndim == 2}
         attributes = {"verdict_names": list(VERDICTS), "tier_names": list(TIERS), **self.document.data["input"]}
-        return xr.Dataset(planes, coords={"h1": self.h1, "h2": self.h2}, attrs=attributes)
+        made: xarray.Dataset = required("xarray", "dask").Dataset(
+            planes, coords={"h1": self.h1, "h2": self.h2}, attrs=attributes
+        )
+        return made
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a pair, by h1, then h2; the kind by name."""
-        try:
-            import pandas as pd
-        except ImportError:
-            raise needs("pandas", "pandas") from None
+        pd = required("pandas", "pandas")
         h1, h2 = (axis.ravel() for axis in np.meshgrid(self.h1, self.h2, indexing="ij"))
         kinds = pd.Categorical.from_codes(self.verdict.ravel().astype(np.int8), categories=pd.Index(VERDICTS))
         more = {name: values.ravel() for name, values in self.arrays.items() if name in _MORE}
-        return pd.DataFrame({"h1": h1, "h2": h2, "verdict": kinds, "stable": self.stable.ravel(), **more})
+        made: pandas.DataFrame = pd.DataFrame(
+            {"h1": h1, "h2": h2, "verdict": kinds, "stable": self.stable.ravel(), **more}
+        )
+        return made
 
     def plot(self, ax: Axes | None = None, colour: Literal["verdict", "growth"] = "verdict") -> Axes:
         """Draw the map: unstable pairs dark, or their growth rates.

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._errors import needs
+from kickdrift._errors import required
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,17 +18,12 @@ def axes(ax: Axes | None) -> Axes:
     """The axes given, or those of a new figure."""
     if ax is not None:
         return ax
-    try:
-        from matplotlib.figure import Figure
-        from matplotlib.pyplot import figure
-    except ImportError:
-        raise needs("matplotlib", "plot") from None
-    made: Figure = figure(layout="constrained")
-    return made.add_subplot()
+    made: Axes = required("matplotlib.pyplot", "plot").figure(layout="constrained").add_subplot()
+    return made
 
 
 def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
-    """Bars from edge to edge in s; a tongue without an end reaches the edge of the axes."""
+    """Bars from edge to edge in s, up to 4 unless all begin beyond."""
     own = axes(ax)
     from matplotlib import colormaps
 
@@ -37,7 +32,12 @@ def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     for place, row in enumerate(rows):
         lo = row["lower"]["lo"]
         hi = end if row["upper"] is None else row["upper"]["hi"]
-        own.barh(place, hi - lo, left=lo, color=colours((row["a"] or 0) % 10), edgecolor="none")
+        # A line about each bar: a tongue thinner than a pixel shows all the same.
+        colour = colours((row["a"] or 0) % 10)
+        own.barh(place, hi - lo, left=lo, color=colour, edgecolor=colour, linewidth=1.2)
+    # Beyond s = 4 the fast clock alone is unstable.
+    if any(row["lower"]["lo"] < 4 for row in rows):
+        own.set_xlim(0, 4.2)
     own.set_yticks(range(len(rows)), [f"{row['p']}/{row['q']}, m = {row['m']}" for row in rows])
     own.set_xlabel(r"$s = h_1^2 \lambda_1$")
     return own
@@ -78,7 +78,15 @@ def grid(
     halves = [(x[-1] - x[0]) / max(len(x) - 1, 1) / 2 or 0.5 for x in (h1, h2)]
     extent = (h1[0] - halves[0], h1[-1] + halves[0], h2[0] - halves[1], h2[-1] + halves[1])
     colours = "Greys" if label is None else "viridis"
-    image = own.imshow(values.T, origin="lower", extent=extent, aspect="auto", cmap=colours, interpolation="nearest")
+    image = own.imshow(
+        values.T,
+        origin="lower",
+        extent=extent,
+        aspect="auto",
+        cmap=colours,
+        interpolation="nearest",
+        norm=None if label is None else "log",
+    )
     own.set_xlabel("$h_1$")
     own.set_ylabel("$h_2$")
     if label is not None and own.figure is not None:

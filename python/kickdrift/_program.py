@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import subprocess
 import sys
 from collections.abc import Sequence
 
@@ -14,7 +15,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     arguments : sequence of str, optional
-        What follows the program's name; those of the process unless given.
+        What follows the program's name, for a process of its own; this process's arguments unless given.
 
     Returns
     -------
@@ -27,4 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     >>> kd.main(["verdict", "--lambda1", "1", "--lambda2", "0", "--h1", "1", "--h2", "1", "--exit-code", "--quiet"])
     0
     """
-    return _native.main(["kickdrift", *(sys.argv[1:] if arguments is None else arguments)])
+    if arguments is None:
+        return _native.main(["kickdrift", *sys.argv[1:]])
+    # In a process of its own: the program ends its process where it is stopped by a signal.
+    return subprocess.call([sys.executable, "-m", "kickdrift", *arguments])

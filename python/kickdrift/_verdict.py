@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._document import Document
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, required
 from kickdrift._native import Number
 from kickdrift._numbers import Exact
 
@@ -235,10 +235,13 @@ class Verdicts:
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a pair, in the order of the flattened arrays: stable, kind, decided_by."""
-        import pandas as pd
-
-        tiers = np.array(TIERS)[self.tier.ravel()]
-        return pd.DataFrame({"stable": self.stable.ravel(), "kind": self.kind.ravel(), "decided_by": tiers})
+        columns = {
+            "stable": self.stable.ravel(),
+            "kind": self.kind.ravel(),
+            "decided_by": np.array(TIERS)[self.tier.ravel()],
+        }
+        made: pandas.DataFrame = required("pandas", "pandas").DataFrame(columns)
+        return made
 
     def __len__(self) -> int:
         return len(self.code)

@@ -121,7 +121,8 @@ impl Pair {
     fn document(&self) -> Result<Document> {
         let (decision, growth) = (self.found.decision(), self.found.growth()?.clone());
         let exact_trace = Report::exact_trace(&self.oscillator.clocks(), self.exact);
-        Ok(Report { oscillator: self.oscillator.clone(), decision, growth, exact_trace }.document())
+        let oscillator = self.oscillator.clone();
+        Ok(Report { oscillator, decision, growth, exact_trace, friction: None }.document())
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 done, 1 unstable (only with `verdict --exit-code`), 2 error, with one line on standard error.
 
+mod advise;
 mod args;
 mod closings;
 mod compare;
@@ -71,6 +72,8 @@ enum Command {
     Closings(closings::Args),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
     System(system::Args),
+    /// Which steps are safe for these periods or bonds, for how long, and why.
+    Advise(advise::Args),
     /// Runs Algorithm 1 on a system and shows energy and growth against the prediction.
     Simulate(simulate::Args),
     /// Reads a scene file and computes the products that it wants.
@@ -84,8 +87,11 @@ enum Command {
 impl Command {
     /// Whether its output may be a figure or arrays.
     fn draws(&self) -> bool {
-        use Command::{Closings, Generate, Map, Merge, Run, System, Tongues};
-        matches!(self, Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_) | Generate(_))
+        use Command::{Advise, Closings, Generate, Map, Merge, Run, System, Tongues};
+        matches!(
+            self,
+            Advise(_) | Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_) | Generate(_)
+        )
     }
 }
 
@@ -168,6 +174,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Closings(args) => args.run(common)?,
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => args.run(common)?,
+        Command::Advise(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Generate(args) => args.run(Cli::command(), common)?,
     }

@@ -3,6 +3,8 @@
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 
+#[cfg(feature = "advise")]
+use super::advise;
 use super::context::{Context, Options, Outcome, See};
 #[cfg(feature = "system")]
 use super::system;
@@ -70,6 +72,8 @@ claims! {
     "curves" Curves curves::Claim;
     "polynomial" Polynomial polynomial::Claim;
     "proposition" Proposition proposition::Claim;
+    #[cfg(feature = "advise")]
+    "advise" Advise advise::Claim;
     #[cfg(feature = "system")] "system-verdict" System system::Verdict;
     #[cfg(feature = "system")] "system-map" SystemMap system::Points;
     #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Intervals;

@@ -6,6 +6,8 @@
 //! not at all. On it stand a [`document::Document`] for every kind of result, one file or folder each, and the drawings
 //! of the (h1, h2) [`plane`].
 
+#[cfg(feature = "advise")]
+pub mod advise;
 pub mod certificate;
 pub mod closings;
 pub mod compare;

@@ -34,13 +34,6 @@ pub(super) fn cost(system: &System) -> u64 {
     rows.saturating_mul(2 * system.size() as u64 + OVERHEAD)
 }
 
-/// The products of doubles that a verdict costs, roughly: the half period and all eigenvalues, some 60 n³ of them with
-/// their proof.
-pub fn verdict_cost(system: &System) -> u64 {
-    let n = system.size() as u64;
-    cost(system).saturating_add(n.saturating_pow(3).saturating_mul(60))
-}
-
 /// That a half period may be composed kick by kick.
 ///
 /// # Errors

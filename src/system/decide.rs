@@ -12,8 +12,9 @@
 //! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
 
 use super::analysis::Analysis;
-use super::compose::connected;
+use super::compose::{self, connected};
 use super::frame::Frame;
+use super::large;
 use super::limits::{Limits, Route};
 use super::model::System;
 use super::piece::{pieces, unit};
@@ -65,6 +66,14 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
+}
+
+/// The products of doubles that a verdict costs, roughly, at the pace of eigenvalue iterations: the half period, and all
+/// eigenvalues with their proof; of large systems some products of matrices, which are twenty times as fast.
+pub fn verdict_cost(system: &System) -> u64 {
+    let n = system.size() as u64;
+    let per_cube = if system.size() < large::LARGE { 60 } else { 2 };
+    compose::cost(system).saturating_add(n.saturating_pow(3).saturating_mul(per_cube))
 }
 
 fn severity(kind: &Kind) -> u8 {

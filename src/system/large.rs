@@ -29,7 +29,7 @@ use crate::schedule::Weight;
 use crate::verdict::Kind;
 
 /// From so many degrees of freedom on.
-const LARGE: usize = 600;
+pub(super) const LARGE: usize = 600;
 
 /// What is left out of the answer.
 pub(super) const NOTE: &str =

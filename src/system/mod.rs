@@ -78,8 +78,8 @@ mod split;
 
 pub use along::{OwnOrbit, decide_along};
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
-pub use compose::{full_period, half_period, verdict_cost};
-pub use decide::{decide_by, decide_system};
+pub use compose::{full_period, half_period};
+pub use decide::{decide_by, decide_system, verdict_cost};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
 pub use limits::{Limits, Route};
 pub use measured::{Holds, Measured, Removed};

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 22] = [
+const DOCUMENTS: [&str; 26] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -29,6 +29,10 @@ const DOCUMENTS: [&str; 22] = [
     "tongues --max-sum 9 --rho 1e-12",
     "closings --max-sum 9 --digits 3",
     "tongues --ratio 3/2 --rho 1/25 --lambda1 2 --digits 20",
+    "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",
+    "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period CH=3000/cm --period slow=40fs --steps 1fs,2fs",
+    "advise --period 19.45fs --steps 2fs,4fs",
+    "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs",
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {

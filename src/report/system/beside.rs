@@ -57,12 +57,12 @@ pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
             lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
         }
     }
+    lines.extend(own.friction.into_iter().flat_map(friction::lines));
     if own.is_orbit_missing {
         let line = "  about the equilibrium; an orbit of the integrator's own beside it was not found";
         lines.push(line.into());
     }
     lines.extend(own.orbit.map(|orbit| orbit_line(orbit, analysis)));
-    lines.extend(own.friction.into_iter().flat_map(friction::lines));
     lines
 }
 

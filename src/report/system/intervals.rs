@@ -11,17 +11,22 @@ use crate::report::text::counted;
 use crate::system::Holds;
 use crate::system::levels::Stretch;
 
-/// Growth rates drawn of an unstable stretch.
-pub const SAMPLES: usize = 24;
+/// Growth rates drawn over the whole range, and at least of a stretch.
+const SAMPLES: f64 = 400.0;
+const FEWEST: f64 = 24.0;
 
-/// The steps of all unstable stretches whose growth is drawn: from end to end, the ends left out, where it is 0.
+/// The steps at which growth is drawn: all over the stretches that are not proven stable.
 pub fn sampled(stretches: &[Stretch]) -> Vec<f64> {
     let unstable = stretches.iter().filter(|own| own.verdict != Holds::Stable);
-    let inside = |own: &Stretch| {
-        let (lo, width) = (own.lo, own.hi - own.lo);
-        (0..SAMPLES).map(move |k| lo + width * (k as f64 + 0.5) / SAMPLES as f64)
-    };
-    unstable.flat_map(inside).collect()
+    unstable.flat_map(|own| inside(own, stretches)).collect()
+}
+
+/// Those within one stretch, its ends left out.
+fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
+    let range = all.last().map_or(1.0, |last| last.hi) - all.first().map_or(0.0, |first| first.lo);
+    let (lo, width) = (own.lo, own.hi - own.lo);
+    let count = (SAMPLES * width / range).max(FEWEST).ceil();
+    (0..count as u32).map(move |k| lo + width * (f64::from(k) + 0.5) / count)
 }
 
 /// Outer step across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
@@ -34,14 +39,17 @@ pub fn figure(stretches: &[Stretch], rates: &[Option<f64>], inner_steps: u64, ti
         let own = stretches.iter().filter(|own| own.verdict == verdict);
         own.map(|own| vec![[own.lo, 0.0], [own.hi, 0.0], [own.hi, top], [own.lo, top]]).collect::<Vec<_>>()
     };
-    let mut line = vec![[lo, 0.0]];
-    let mut samples = sampled(stretches).into_iter().zip(rates);
-    for own in stretches.iter().filter(|own| own.verdict != Holds::Stable) {
-        line.push([own.lo, 0.0]);
-        line.extend(samples.by_ref().take(SAMPLES).filter_map(|(step, rate)| Some([step, (*rate)?])));
-        line.push([own.hi, 0.0]);
+    let mut line = Vec::new();
+    let mut rates = rates.iter();
+    for own in stretches {
+        // 0 over what is proven stable; elsewhere what was computed.
+        match own.verdict {
+            Holds::Stable => line.extend([[own.lo, 0.0], [own.hi, 0.0]]),
+            _ => line.extend(
+                inside(own, stretches).zip(&mut rates).filter_map(|(step, rate)| Some([step, (*rate)?])),
+            ),
+        }
     }
-    line.push([hi, 0.0]);
     let unstable = shade(Holds::Unstable).len();
     let mut panel =
         Panel::new(Axis::linear("outer step (time)", lo, hi), Axis::linear("growth rate (1/time)", 0.0, top))

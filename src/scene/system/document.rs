@@ -4,7 +4,6 @@ use num_traits::ToPrimitive;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::mesh::MeshDocument;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
@@ -130,6 +129,39 @@ pub(super) enum Build {
     StiffSoft { pairs: Number, stiff: Number, steps: [Number; 2] },
     GradedBar { elements: Number, classes: Number, courant: Number },
     TetheredPair { masses: [Number; 2], stiffness: [Number; 2], steps: [Number; 2] },
+}
+
+/// Finite elements, see the reader of meshes.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct MeshDocument {
+    pub nodes: Vec<Vec<Number>>,
+    pub elements: Vec<Vec<Number>>,
+    #[serde(default)]
+    pub fixed: Vec<Fixed>,
+    pub young: Number,
+    pub density: Number,
+    pub poisson: Option<Number>,
+    pub thickness: Option<Number>,
+    pub plane: Option<Plane>,
+    pub step: Option<Number>,
+    pub steps: Option<Vec<Number>>,
+    pub classes: Option<Vec<Number>>,
+    pub courant: Option<Number>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Fixed {
+    Axis([Number; 2]),
+    Node(Number),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Plane {
+    Stress,
+    Strain,
 }
 
 /// The two ends of what joins i and j, j `None` for a wall.

@@ -20,46 +20,13 @@
 use std::collections::BTreeSet;
 
 use num_traits::{One, Zero};
-use serde::Deserialize;
 
-use super::document::{LARGEST, Number};
+use super::document::{Fixed, LARGEST, MeshDocument, Number, Plane};
 use super::linear::numbers;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::System;
 use crate::system::mesh::{Material, Mesh, root};
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MeshDocument {
-    nodes: Vec<Vec<Number>>,
-    elements: Vec<Vec<Number>>,
-    #[serde(default)]
-    fixed: Vec<Fixed>,
-    young: Number,
-    density: Number,
-    poisson: Option<Number>,
-    thickness: Option<Number>,
-    plane: Option<Plane>,
-    step: Option<Number>,
-    steps: Option<Vec<Number>>,
-    classes: Option<Vec<Number>>,
-    courant: Option<Number>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
-enum Fixed {
-    Axis([Number; 2]),
-    Node(Number),
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-enum Plane {
-    Stress,
-    Strain,
-}
 
 impl MeshDocument {
     /// The system, and a label for each degree of freedom.

@@ -1,6 +1,8 @@
 //! Many degrees of freedom with friction: the eigenvalues of the whole period in doubles, within proven discs.
 
-use super::{Damping, damped, masking};
+use super::damping::Damping;
+use super::masking::masking;
+use super::scalar::damped;
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Rational, Real, U};

@@ -30,32 +30,12 @@
 //! assert_eq!(at(mask.rate.upper() * ratio(2, 1)), Damping::Damped);
 //! ```
 
+mod damping;
 mod masking;
 mod matrices;
 mod scalar;
 
+pub use damping::Damping;
 pub use masking::{Masking, masking};
 pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_system};
 pub use scalar::{Damped, damped, damped_exactly};
-
-/// Where the spectral radius of a period with friction lies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Damping {
-    /// Below 1: means and covariances are bounded.
-    Damped,
-    /// At 1, exactly: a free direction, whose covariance grows linearly.
-    Marginal,
-    /// Above 1: exponential growth in spite of the friction.
-    Growing,
-}
-
-impl Damping {
-    /// The name in documents.
-    pub fn name(self) -> &'static str {
-        match self {
-            Damping::Damped => "damped",
-            Damping::Marginal => "marginal",
-            Damping::Growing => "growing",
-        }
-    }
-}

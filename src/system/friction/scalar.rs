@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Damping;
+use super::damping::Damping;
 use crate::error::{Error, Result};
 use crate::number::{Ball, ExactSign, Rational, Real, Ring, Sign};
 use crate::schedule::{KickDrift, Kicks};

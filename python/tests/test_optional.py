@@ -1,0 +1,37 @@
+"""What is not installed is asked for by its extra."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import kickdrift as kd
+
+GRID: dict[str, Any] = {"lambda1": 1, "lambda2": 1, "step": "1/4", "h1": ("1/4", 1), "h2": ("1/4", 1)}
+
+
+@pytest.mark.parametrize(
+    ("package", "extra", "use"),
+    [
+        ("pandas", "pandas", lambda: kd.tongues("5/3", rho=1).to_pandas()),
+        ("pandas", "pandas", lambda: kd.verdicts(lambda1=1, lambda2=1, h1=1, h2=[1]).to_pandas()),
+        ("pandas", "pandas", lambda: kd.map(**GRID).to_pandas()),
+        ("xarray", "dask", lambda: kd.map(**GRID).to_xarray()),
+        ("matplotlib.pyplot", "plot", lambda: kd.map(**GRID).plot()),
+        ("openmm", "openmm", lambda: importlib.import_module("kickdrift.openmm")),
+        ("ase", "ase", lambda: importlib.import_module("kickdrift.ase")),
+        ("zarr", "dask", lambda: importlib.import_module("kickdrift.dask")),
+    ],
+)
+def test_what_is_not_installed_is_named(
+    package: str, extra: str, use: Callable[[], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for module in ("openmm", "ase", "dask"):
+        monkeypatch.delitem(sys.modules, f"kickdrift.{module}", raising=False)
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(kd.KickdriftError, match=rf"pip install 'kickdrift\[{extra}\]'"):
+        use()

@@ -1,0 +1,332 @@
+//! What is answered: scheme by scheme, and what to do.
+
+use num_traits::{One, ToPrimitive, Zero};
+
+use super::interval::{Intervals, Unstable};
+use super::levels::{Found, Levels, Scheme};
+use super::mode::Mode;
+use super::question::{Question, is_stable};
+use crate::error::Result;
+use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
+use crate::number::{Ball, Laurent, Ratio, Rational};
+use crate::system::Limits;
+
+const BITS: u32 = 128;
+
+/// What to think of a scheme, the best first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// Proven stable for every period in the band, and below all that is published.
+    Safe,
+    /// Proven stable for every period in the band; beyond a published limit.
+    Caution,
+    /// Below the first unstable interval of the periods given, not of all in the band.
+    Near,
+    /// Stable for the periods given, but above an unstable interval.
+    Island,
+    /// Unstable.
+    Unstable,
+}
+
+impl Status {
+    pub const ALL: [Status; 5] =
+        [Status::Safe, Status::Caution, Status::Near, Status::Island, Status::Unstable];
+
+    /// The name in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Status::Safe => "safe",
+            Status::Caution => "caution",
+            Status::Near => "near",
+            Status::Island => "island",
+            Status::Unstable => "unstable",
+        }
+    }
+}
+
+/// One fast mode at one scheme, with the stiffest modes on the other clocks.
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Its place in [`Advice::modes`].
+    pub mode: usize,
+    pub found: Found,
+    /// Outer steps until an amplitude is tenfold, enclosed; `None` unless it grows exponentially.
+    pub tenfold_steps: Option<(f64, f64)>,
+    /// The first unstable interval of outer steps at the ratio of the scheme. Its upper end and growth are known for one or two clocks.
+    pub first: Option<Unstable>,
+    /// Of two clocks: the unstable intervals next to a stable scheme, below and above; of an unstable one the one that holds it.
+    pub below: Option<Unstable>,
+    pub above: Option<Unstable>,
+    pub inside: Option<Unstable>,
+}
+
+/// Two modes that a coupling can make resonate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    pub modes: [usize; 2],
+    /// The outer step near which w_i + w_j = 2 π/H, at the ratio of the scheme; first order, rounded.
+    pub near: f64,
+}
+
+/// The answer about one scheme.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    pub scheme: Scheme,
+    pub status: Status,
+    pub rows: Vec<Row>,
+    /// Every outer step below this, in fs, at this ratio, is proven stable for every period in the band.
+    pub band_edge: (f64, f64),
+    /// The longest outer step, a multiple of the step before it, that is proven stable for every period in the band; `None`: not even
+    /// that step itself.
+    pub largest: Option<Rational>,
+    /// The same, and below T/3 of the fastest mode.
+    pub safe: Option<Rational>,
+    /// Where nothing is known to be on the outermost clock: the shortest period there, in fs, for which the scheme is proven stable for
+    /// every period in the band; rounded up.
+    pub needs: Option<f64>,
+    pub pairs: Vec<Pair>,
+    /// Where it grows: whether an amplitude is tenfold within the run.
+    pub within_run: Option<bool>,
+}
+
+/// All answers.
+#[derive(Clone, Debug)]
+pub struct Advice {
+    pub modes: Vec<Mode>,
+    pub band: Rational,
+    pub length: Option<Rational>,
+    /// The place of the fastest mode on any clock but the outermost.
+    pub fastest: usize,
+    pub schemes: Vec<Answer>,
+    /// Whether a clock is without a mode.
+    pub silent: bool,
+}
+
+impl Question {
+    /// The answer: each mode at each scheme decided by the certified ladder.
+    ///
+    /// # Errors
+    /// A budget error where a ratio of steps makes too long a period.
+    pub fn answer(self) -> Result<Advice> {
+        let schemes = self.schemes.iter().map(|scheme| self.of_scheme(scheme)).collect::<Result<_>>()?;
+        let faster = self.faster();
+        let stiffness = |&i: &usize| &self.modes[i].stiffness;
+        let fastest = faster.into_iter().max_by(|i, j| stiffness(i).cmp(stiffness(j))).expect("a mode");
+        let silent = self.stiffest().iter().any(Option::is_none);
+        Ok(Advice { fastest, silent, schemes, modes: self.modes, band: self.band, length: self.length })
+    }
+
+    fn of_scheme(&self, scheme: &Scheme) -> Result<Answer> {
+        let rows =
+            self.faster().into_iter().map(|mode| self.row(scheme, mode)).collect::<Result<Vec<_>>>()?;
+        let corner = self.corner(scheme);
+        let in_band = corner.in_first_region(&Ball::one()) == Some(true);
+        let ends = rows.iter().filter_map(|row| row.first.as_ref()).map(|first| first.lower);
+        let edge = ends.fold((f64::INFINITY, f64::INFINITY), |a, b| (a.0.min(b.0), a.1.min(b.1)));
+        let shrink =
+            |x: f64| from_f64_exact(x).map_or((x, x), |x| enclose_f64(&(x * (Rational::one() - &self.band))));
+        let largest = self.largest(scheme)?;
+        let third = self.faster().into_iter().map(|i| self.modes[i].part(3).0).fold(f64::INFINITY, f64::min);
+        let third = from_f64_exact(third).unwrap_or_else(Rational::zero);
+        let safe = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third));
+        let outer = scheme.outer();
+        let status = if rows.iter().any(|row| !is_stable(row.found.kind)) {
+            Status::Unstable
+        } else if in_band {
+            if *outer < third { Status::Safe } else { Status::Caution }
+        } else if rows.iter().all(|row| row.is_before_first(outer)) {
+            Status::Near
+        } else {
+            Status::Island
+        };
+        let slowest_tenfold =
+            rows.iter().filter_map(|row| row.tenfold_steps).map(|(_, hi)| hi).fold(f64::INFINITY, f64::min);
+        let grows = slowest_tenfold.is_finite();
+        let time = slowest_tenfold * to_f64(outer);
+        let within_run = self.length.as_ref().filter(|_| grows).map(|length| time <= to_f64(length));
+        let needs = self.needs(scheme, in_band);
+        let pairs = self.pairs(scheme);
+        let band_edge = (shrink(edge.0).0, shrink(edge.1).1);
+        Ok(Answer {
+            scheme: scheme.clone(),
+            status,
+            rows,
+            band_edge,
+            largest,
+            safe,
+            needs,
+            pairs,
+            within_run,
+        })
+    }
+
+    /// One mass with the shortest periods of the band: the corner that covers all of it.
+    fn corner<'a>(&self, scheme: &'a Scheme) -> Levels<'a> {
+        let shorter = Rational::one() - &self.band;
+        let factor = Laurent::from_rational((&shorter * &shorter).recip());
+        let of = |i: Option<usize>| i.map_or_else(Laurent::zero, |i| &self.modes[i].stiffness * &factor);
+        Levels { scheme, stiffness: self.stiffest().into_iter().map(of).collect() }
+    }
+
+    fn row(&self, scheme: &Scheme, mode: usize) -> Result<Row> {
+        let levels = Levels { scheme, stiffness: self.with(mode) };
+        let found = levels.decide(&Limits::default())?;
+        let tenfold_steps = (found.rate.0 > 0.0).then(|| tenfold(found.rate, scheme.outer()));
+        let mut row = Row { mode, found, tenfold_steps, first: None, below: None, above: None, inside: None };
+        let outer = to_f64(scheme.outer());
+        let (fast, slow) =
+            (&levels.stiffness[0], levels.stiffness.get(1).cloned().unwrap_or_else(Laurent::zero));
+        if scheme.steps().len() > 2 || fast.is_zero() {
+            let (lo, hi) = levels.first_region_ends()?;
+            row.first = Some(Unstable {
+                label: 1,
+                lower: scaled((lo, hi), scheme.outer()),
+                upper: None,
+                worst: None,
+            });
+            return Ok(row);
+        }
+        let ratio = Ratio::try_from(&(scheme.outer() / scheme.inner()))?;
+        let intervals = Intervals::new(ratio, fast, &slow)?;
+        row.first = Some(intervals.first()?);
+        if is_stable(row.found.kind) {
+            [row.below, row.above] = intervals.about(outer)?;
+        } else if let Some(label) = row.found.label {
+            row.inside = intervals.get(label)?;
+        }
+        Ok(row)
+    }
+
+    /// The largest multiple of the step before the outermost one at which the corner of the band is in the first region.
+    fn largest(&self, scheme: &Scheme) -> Result<Option<Rational>> {
+        let step = scheme.last_but_one();
+        if scheme.steps().len() == 1 {
+            let edge = self.corner(scheme).first_region_ends()?.0;
+            return Ok(from_f64_exact(edge).map(|edge| edge * step));
+        }
+        let times = |p: u64| step * Rational::from_integer(p.into());
+        let holds = |p: u64| -> Result<bool> {
+            // One level less where the outermost step is the one before it.
+            let stable = |levels: &Levels| levels.in_first_region(&Ball::one()) == Some(true);
+            if p == 1 {
+                let merged = Scheme::new(scheme.steps()[..scheme.steps().len() - 1].to_vec())?;
+                let mut stiffness = self.corner(scheme).stiffness;
+                let last = stiffness.pop().expect("at least two clocks");
+                *stiffness.last_mut().expect("at least one clock") += last;
+                return Ok(stable(&Levels { scheme: &merged, stiffness }));
+            }
+            let other = scheme.with_outer(times(p))?;
+            Ok(stable(&Levels { scheme: &other, stiffness: self.corner(scheme).stiffness }))
+        };
+        if !holds(1)? {
+            return Ok(None);
+        }
+        let mut found = 1;
+        if scheme.steps().len() == 2 {
+            // p θ < π and sin θ cot(p θ/2) > (p/2) h² L2 (proofs/REGION.md, section 2): both fail for good as p grows.
+            let mut beyond = 2;
+            while beyond < MOST_INNER_STEPS && holds(beyond)? {
+                (found, beyond) = (beyond, 2 * beyond);
+            }
+            while beyond - found > 1 {
+                let middle = found + (beyond - found) / 2;
+                if holds(middle)? { found = middle } else { beyond = middle }
+            }
+        } else {
+            while found < MOST_STEPS_OF_MANY && holds(found + 1)? {
+                found += 1;
+            }
+        }
+        Ok(Some(times(found)))
+    }
+
+    /// See [`Answer::needs`].
+    fn needs(&self, scheme: &Scheme, in_band: bool) -> Option<f64> {
+        let mut corner = self.corner(scheme);
+        if !in_band || scheme.steps().len() < 2 || !corner.stiffness.last()?.is_zero() {
+            return None;
+        }
+        let mut stable = |slow: f64| {
+            *corner.stiffness.last_mut().expect("at least two clocks") =
+                Laurent::from_rational(from_f64_exact(slow)?);
+            corner.in_first_region(&Ball::one()).filter(|&holds| holds)
+        };
+        // From a period of 2 π 10^8 fs down.
+        let mut lo = 1e-16;
+        stable(lo)?;
+        let mut hi = lo;
+        while stable(hi).is_some() && hi < 1e16 {
+            (lo, hi) = (hi, 4.0 * hi);
+        }
+        while hi > 1.000_001 * lo {
+            let middle = (lo * hi).sqrt();
+            if stable(middle).is_some() { lo = middle } else { hi = middle }
+        }
+        let shorter = Ball::from_rational(&(Rational::one() - &self.band), BITS);
+        let frequency = Ball::from_rational(&from_f64_exact(lo)?, BITS).sqrt(BITS)?.mul(&shorter, BITS);
+        Some(Ball::pi(BITS).scale2(1).div(&frequency, BITS)?.to_f64_enclosure().1)
+    }
+
+    fn pairs(&self, scheme: &Scheme) -> Vec<Pair> {
+        let faster = self.faster();
+        let period = |i: usize| self.modes[i].part(1).0;
+        let parts = to_f64(&(scheme.outer() / scheme.inner()));
+        let near = |i: usize, j: usize| {
+            // Turns of both in an outer step of length x, as velocity Verlet with the inner step makes them.
+            let angle =
+                |x: f64, t: f64| 2.0 * parts * (std::f64::consts::PI * x / (parts * t)).min(1.0).asin();
+            let turns = |x: f64| angle(x, period(i)) + angle(x, period(j));
+            let (mut lo, mut hi) = (0.0, period(i).max(period(j)) * parts);
+            for _ in 0..60 {
+                let middle = (lo + hi) / 2.0;
+                if turns(middle) < 2.0 * std::f64::consts::PI { lo = middle } else { hi = middle }
+            }
+            lo
+        };
+        let ordered =
+            faster.iter().enumerate().flat_map(|(n, &i)| faster[n + 1..].iter().map(move |&j| [i, j]));
+        ordered.map(|modes| Pair { modes, near: near(modes[0], modes[1]) }).collect()
+    }
+}
+
+/// Beyond these the step before the outermost one is so short that nobody means it.
+const MOST_INNER_STEPS: u64 = 100_000;
+const MOST_STEPS_OF_MANY: u64 = 300;
+
+impl Row {
+    /// Whether the outer step is proven to lie before the first unstable interval.
+    fn is_before_first(&self, outer: &Rational) -> bool {
+        let edge = self.first.as_ref().and_then(|first| from_f64_exact(first.lower.0));
+        edge.is_some_and(|edge| *outer < edge)
+    }
+}
+
+/// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
+fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
+    if scheme.steps().len() == 1 {
+        return Some(largest.min(limit).clone());
+    }
+    let step = scheme.last_but_one();
+    let mut count = (largest.min(limit) / step).floor();
+    if &count * step == *limit {
+        count -= Rational::one();
+    }
+    (count.to_f64()? >= 1.0).then(|| count * step)
+}
+
+/// ln 10 over the rate, in steps of this length.
+fn tenfold((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
+    let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
+    let step = Ball::from_rational(step, BITS);
+    let over = |rate: f64| {
+        let rate = from_f64_exact(rate).map(|rate| Ball::from_rational(&rate, BITS).mul(&step, BITS));
+        rate.and_then(|rate| ten.div(&rate, BITS)).map(|steps| steps.to_f64_enclosure())
+    };
+    (over(hi).map_or(0.0, |steps| steps.0), over(lo).map_or(f64::INFINITY, |steps| steps.1))
+}
+
+/// Factors of a step as steps, rounded outward.
+fn scaled((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
+    let times = |t: f64| enclose_f64(&(from_f64_exact(t).expect("a finite factor") * step));
+    (times(lo).0, times(hi).1)
+}

@@ -1,0 +1,32 @@
+//! What simulation engines write about their time steps, read as they read it.
+//!
+//! | engine | notation | dt is | scheme |
+//! |---|---|---|---|
+//! | OpenMM | `MTSIntegrator(4*femtoseconds, [(0,1),(1,8)])`, and `MTSLangevinIntegrator`; serialized XML | the outermost step | recursive half kicks |
+//! | LAMMPS | `timestep`, `run_style respa N factors` (the first factor is the innermost one), `units` | the outermost step | half kicks |
+//! | GROMACS | `mts`, `mts-level2-factor`, `dt` in ps | the innermost step | leap-frog, slow forces times the factor: conjugate |
+//! | NAMD | `timestep`, `nonbondedFreq`, `fullElectFrequency` | the innermost step | impulses; `MTSAlgorithm naive` is not symplectic |
+//! | Tinker | `INTEGRATOR RESPA`, `RESPA-INNER`; the outer step is no part of the key file | – | half kicks |
+//! | i-PI | `<timestep>`, `<nmts>`, level 0 the outermost | the outermost step | half kicks |
+//!
+//! Keys that have no say in this are passed over, as the engines pass over none; the reading lists what was used. A text is
+//! rewritten in place: only the numbers that change are touched.
+//!
+//! ```
+//! use kickdrift::advise::engine::{Engine, read};
+//! use kickdrift::number::rational::ratio;
+//! let reading = read(&["dt = 0.0005 ; ps\nmts = yes\nmts-level2-factor = 8\n"], None)?;
+//! assert_eq!(reading.engine, Engine::Gromacs);
+//! assert_eq!(reading.scheme.steps(), [ratio(1, 2), ratio(4, 1)]); // fs
+//! assert_eq!(reading.rewritten(&ratio(3, 1))?, "dt = 0.0005 ; ps\nmts = yes\nmts-level2-factor = 6\n");
+//! # Ok::<(), kickdrift::error::Error>(())
+//! ```
+
+mod lines;
+mod openmm;
+mod read;
+mod reading;
+mod xml;
+
+pub use read::read;
+pub use reading::{Engine, Reading, not_nested};

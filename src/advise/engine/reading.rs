@@ -1,0 +1,206 @@
+//! What an engine's text says, and the text with other steps.
+
+use std::ops::Range;
+
+use crate::advise::levels::Scheme;
+use crate::advise::unit::decimal;
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::parse::parse_rational;
+
+/// A simulation engine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Engine {
+    OpenMm,
+    Lammps,
+    Gromacs,
+    Namd,
+    Tinker,
+    Ipi,
+}
+
+impl Engine {
+    pub const ALL: [Engine; 6] =
+        [Engine::OpenMm, Engine::Lammps, Engine::Gromacs, Engine::Namd, Engine::Tinker, Engine::Ipi];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Engine::OpenMm => "OpenMM",
+            Engine::Lammps => "LAMMPS",
+            Engine::Gromacs => "GROMACS",
+            Engine::Namd => "NAMD",
+            Engine::Tinker => "Tinker",
+            Engine::Ipi => "i-PI",
+        }
+    }
+
+    /// Which step its dt is.
+    pub fn dt(self) -> &'static str {
+        match self {
+            Engine::OpenMm | Engine::Lammps | Engine::Ipi => "dt is the outermost step",
+            Engine::Gromacs | Engine::Namd => "dt is the innermost step",
+            Engine::Tinker => "dt, given when a run starts, is the outermost step",
+        }
+    }
+}
+
+/// What a number in the text is, as a function of the steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Place {
+    /// The outermost step in units of so many fs.
+    Outer(Unit),
+    /// How often level k (0 the innermost) is evaluated in an outermost step.
+    PerOuter(usize),
+    /// The outermost step over the one before it.
+    LastRatio,
+    /// The outermost step over the innermost one.
+    OuterOverInner,
+    /// A whole line to add at the end, with the last ratio behind it.
+    Append(&'static str),
+}
+
+/// A unit of time, in fs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Unit(pub &'static str);
+
+pub(super) const FS: Unit = Unit("1");
+pub(super) const PS: Unit = Unit("1000");
+
+impl Unit {
+    pub fn size(self) -> Rational {
+        parse_rational("unit", self.0).expect("units are numbers")
+    }
+}
+
+/// What an engine's text says.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    pub engine: Engine,
+    pub scheme: Scheme,
+    /// What is on each clock, the innermost first, in the engine's own words.
+    pub forces: Vec<String>,
+    /// The keys that were used, as they stand in the text.
+    pub used: Vec<String>,
+    /// What its writer should know: what the engine would refuse, what was not read.
+    pub remarks: Vec<String>,
+    text: String,
+    pub(super) places: Vec<(Range<usize>, Place)>,
+}
+
+/// Texts longer than this are no input of an engine.
+pub(super) const LONGEST: usize = 10_000_000;
+
+/// Levels and counts beyond these are slips of the keyboard.
+pub(super) const MOST_LEVELS: usize = 16;
+pub(super) const MOST_COUNT: u64 = 1_000_000;
+
+/// Why engines refuse a scheme, where steps are not multiples of each other.
+pub fn not_nested(scheme: &Scheme) -> Option<String> {
+    let pair = scheme.steps().windows(2).find(|pair| !(&pair[1] / &pair[0]).is_integer())?;
+    Some(format!("{} fs is no multiple of {} fs", decimal(&pair[1]), decimal(&pair[0])))
+}
+
+impl Reading {
+    pub(super) fn new(engine: Engine, text: &str, scheme: Scheme) -> Reading {
+        Reading {
+            engine,
+            scheme,
+            forces: vec![],
+            used: vec![],
+            remarks: vec![],
+            text: text.into(),
+            places: vec![],
+        }
+    }
+
+    /// The text with another outermost step, all inner steps as they are.
+    ///
+    /// # Errors
+    /// A step that is not a multiple of the one before it, or (where evaluations are counted per outermost step) of another one;
+    /// a text in which the steps do not stand.
+    pub fn rewritten(&self, outer: &Rational) -> Result<String> {
+        let steps = self.scheme.steps();
+        let shown = format!("{} fs", decimal(outer));
+        if self.places.is_empty() {
+            return Err(Error::input("outer step", shown, "the text has no place for it"));
+        }
+        let before = self.scheme.last_but_one();
+        if steps.len() > 1 && !(outer / before).is_integer() {
+            return Err(Error::input(
+                "outer step",
+                shown,
+                format!("choose a multiple of {} fs", decimal(before)),
+            ));
+        }
+        let levels = steps.len();
+        let step = |k: usize| if k + 1 == levels { outer } else { &steps[k] };
+        let whole = |over: &Rational| {
+            let count = outer / over;
+            let remedy = format!("choose a multiple of {} fs", decimal(over));
+            let whole = count.is_integer().then(|| count.to_integer().to_string());
+            whole.ok_or_else(|| Error::input("outer step", &shown, remedy))
+        };
+        let mut text = self.text.clone();
+        let mut places = self.places.clone();
+        places.sort_by_key(|(range, _)| std::cmp::Reverse(range.start));
+        for (range, place) in places {
+            let number = match place {
+                Place::Outer(unit) => decimal(&(outer / unit.size())),
+                Place::PerOuter(k) => whole(step(k))?,
+                Place::LastRatio => whole(before)?,
+                Place::OuterOverInner => whole(self.scheme.inner())?,
+                Place::Append(key) => {
+                    let gap = if self.text.ends_with('\n') || self.text.is_empty() { "" } else { "\n" };
+                    format!("{gap}{key} {}\n", whole(before)?)
+                }
+            };
+            text.replace_range(range, &number);
+        }
+        Ok(text)
+    }
+
+    /// The lines of the rewritten text that differ from the text's own.
+    ///
+    /// # Errors
+    /// As [`Reading::rewritten`].
+    pub fn changed_lines(&self, outer: &Rational) -> Result<Vec<String>> {
+        let new = self.rewritten(outer)?;
+        let old: Vec<&str> = self.text.lines().collect();
+        let differs = |(i, line): &(usize, &str)| old.get(*i) != Some(line);
+        Ok(new.lines().enumerate().filter(differs).map(|(_, line)| line.trim().to_string()).collect())
+    }
+}
+
+/// A positive number that stands in a text.
+pub(super) fn number(field: &str, text: &str) -> Result<Rational> {
+    // Engines read 1d0 and 1E0; a name or a formula is none.
+    let plain = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e' | 'E' | 'd' | 'D');
+    let sound = !text.is_empty() && text.len() < 40 && text.chars().all(plain);
+    let lower = text.to_ascii_lowercase().replace('d', "e");
+    // Exponents beyond those of doubles are none of steps.
+    let small = lower
+        .split_once('e')
+        .is_none_or(|(_, power)| power.parse::<i32>().is_ok_and(|power| power.abs() < 300));
+    let value = if sound && small { parse_rational(field, &lower).ok() } else { None };
+    let remedy = || {
+        Error::input(field, text, "write a positive number here (variables and formulas are not evaluated)")
+    };
+    value.filter(|value| *value > Rational::default()).ok_or_else(remedy)
+}
+
+/// A positive whole number that stands in a text.
+pub(super) fn count(field: &str, text: &str) -> Result<u64> {
+    let count = text.parse::<u64>().ok().filter(|n| (1..=MOST_COUNT).contains(n));
+    count.ok_or_else(|| Error::input(field, text, "write a whole number from 1 to a million"))
+}
+
+/// Steps from the innermost to the outermost one, equal ones once.
+pub(super) fn scheme(mut steps: Vec<Rational>) -> Result<Scheme> {
+    steps.dedup();
+    Scheme::new(steps)
+}
+
+pub(super) fn times(step: &Rational, n: u64) -> Rational {
+    step * Rational::from_integer(n.into())
+}

@@ -1,0 +1,195 @@
+//! XML: i-PI's input, OpenMM's serialized integrators and systems.
+
+use std::collections::BTreeMap;
+
+use roxmltree::{Document, Node};
+
+use super::reading::{Engine, FS, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times};
+use crate::error::{Error, Result};
+use crate::number::Rational;
+
+/// Elements nested more deeply than this are none of an engine's.
+const DEEPEST: usize = 200;
+
+fn parse(text: &str) -> Result<Document<'_>> {
+    let mut depth: usize = 0;
+    for (i, _) in text.match_indices('<') {
+        match text.as_bytes().get(i + 1) {
+            Some(b'/') => depth = depth.saturating_sub(1),
+            Some(b'!' | b'?') => {}
+            _ if text[i..].find('>').is_some_and(|end| !text[i..i + end].ends_with('/')) => depth += 1,
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return Err(Error::input("engine", "XML nested too deeply", "give the engine's own input"));
+        }
+    }
+    Document::parse(text).map_err(|cause| Error::input("engine", "XML", format!("cannot be read: {cause}")))
+}
+
+/// The engine by the root element.
+pub(super) fn recognized(text: &str) -> Option<Engine> {
+    let document = parse(text).ok()?;
+    match document.root_element().tag_name().name() {
+        "simulation" => Some(Engine::Ipi),
+        "Integrator" | "System" => Some(Engine::OpenMm),
+        _ => None,
+    }
+}
+
+fn named<'a>(root: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
+    root.descendants().find(|node| node.is_element() && node.tag_name().name() == name)
+}
+
+/// The text of an element with its place, without white space around.
+fn words<'a>(node: Node<'a, '_>, text: &'a str) -> (&'a str, usize) {
+    let Some(child) = node.children().find(Node::is_text) else { return ("", 0) };
+    let range = child.range();
+    let own = text.get(range.clone()).unwrap_or_default();
+    let start = range.start + (own.len() - own.trim_start().len());
+    (own.trim(), start)
+}
+
+/// `<timestep>`, the outermost step; `<nmts>`, the iterations of each level, level 0 the outermost.
+pub(super) fn ipi(text: &str) -> Result<Reading> {
+    let document = parse(text)?;
+    let root = document.root_element();
+    let timestep = named(root, "timestep").ok_or_else(|| {
+        Error::missing("timestep", "give it, as <timestep units='femtosecond'> 4.0 </timestep>")
+    })?;
+    let unit = match timestep.attribute("units") {
+        Some("femtosecond") => FS,
+        Some("picosecond") => PS,
+        Some("second") => Unit("1e15"),
+        // CODATA 2018: 2.4188843265857(47)e-17 s; the last digits are measured.
+        None | Some("atomic_unit" | "automatic") => Unit("0.024188843265857"),
+        Some(other) => {
+            return Err(Error::input(
+                "timestep units",
+                other,
+                "write femtosecond, picosecond, second or atomic_unit",
+            ));
+        }
+    };
+    let (value, start) = words(timestep, text);
+    let outer = number("timestep", value)? * unit.size();
+    let mut reading = Reading::new(Engine::Ipi, text, scheme(vec![outer.clone()])?);
+    reading.used.push(format!("timestep {value}"));
+    let Some(nmts) = named(root, "nmts") else {
+        reading.forces = vec!["all forces".into()];
+        reading.places = vec![(start..start + value.len(), Place::Outer(unit))];
+        return Ok(reading);
+    };
+    let (list, from) = words(nmts, text);
+    reading.used.push(format!("nmts {list}"));
+    let inside = list
+        .strip_prefix('[')
+        .and_then(|list| list.strip_suffix(']'))
+        .ok_or_else(|| Error::input("nmts", list, "write [1,2]"))?;
+    let (mut steps, mut step, mut at, mut last) = (Vec::new(), outer, from + 1, 0..0);
+    for (level, part) in inside.split(',').enumerate() {
+        let own = part.trim();
+        let n = count("nmts", own)?;
+        if level >= MOST_LEVELS {
+            return Err(Error::input("nmts", list, "there are at most 16 levels"));
+        }
+        let place = at + (part.len() - part.trim_start().len());
+        last = place..place + own.len();
+        at += part.len() + 1;
+        step /= times(&Rational::from_integer(1.into()), n);
+        steps.push(step.clone());
+    }
+    steps.reverse();
+    let levels = steps.len();
+    reading.scheme = scheme(steps)?;
+    reading.forces = (0..levels).rev().map(|level| format!("mts_weights of level {level}")).collect();
+    if reading.scheme.steps().len() < levels {
+        reading.remarks.push("levels of equal steps are told as one".into());
+        reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
+    }
+    if levels == 2
+        && reading.scheme.steps().len() == 2
+        && inside.split(',').next().map(str::trim) == Some("1")
+    {
+        reading.places =
+            vec![(start..start + value.len(), Place::Outer(unit)), (last, Place::OuterOverInner)];
+    } else if levels == 1 && inside.trim() == "1" {
+        reading.places = vec![(start..start + value.len(), Place::Outer(unit))];
+    }
+    Ok(reading)
+}
+
+/// A serialized integrator: for a custom one the evaluations of each group stand in its computations, `v+0.5*(dt/8)*f1/m`.
+/// `None` for a text that holds none.
+pub(super) fn openmm(text: &str) -> Result<Option<Reading>> {
+    if !text.trim_start().starts_with('<') {
+        return Ok(None);
+    }
+    let document = parse(text)?;
+    let root = document.root_element();
+    let Some(node) = named(root, "Integrator") else { return Ok(None) };
+    let attribute = node.attributes().find(|attribute| attribute.name() == "stepSize");
+    let size =
+        attribute.ok_or_else(|| Error::missing("stepSize", "a serialized integrator has it, in ps"))?;
+    let outer = number("stepSize", size.value())? * PS.size();
+    let kind = node.attribute("type").unwrap_or("Integrator");
+    let mut counts: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
+    for computation in node.descendants().filter_map(|node| node.attribute("expression")) {
+        let expression: String = computation.chars().filter(|c| !c.is_whitespace()).collect();
+        let Some((n, group)) = expression.strip_prefix("v+0.5*(dt/").and_then(|rest| rest.split_once(")*f"))
+        else {
+            continue;
+        };
+        let group =
+            group.strip_suffix("/m").and_then(|group| group.parse::<u64>().ok()).filter(|group| *group < 32);
+        let Some(group) = group else { continue };
+        let groups = counts.entry(count("expression", n)?).or_default();
+        if !groups.contains(&group) {
+            groups.push(group);
+        }
+    }
+    let mut reading = Reading::new(Engine::OpenMm, text, scheme(vec![outer.clone()])?);
+    reading.used = vec![format!("{kind} stepSize {}", size.value())];
+    if counts.is_empty() {
+        if kind == "CustomIntegrator" {
+            let remedy = "its computations are not those of MTSIntegrator: give the steps themselves";
+            return Err(Error::input("Integrator", kind, remedy));
+        }
+        reading.forces = vec!["all forces".into()];
+        reading.places = vec![(size.range_value(), Place::Outer(PS))];
+        return Ok(Some(reading));
+    }
+    let steps = counts.keys().rev().map(|n| &outer / times(&Rational::from_integer(1.into()), *n)).collect();
+    reading.scheme = scheme(steps)?;
+    let words = |groups: &Vec<u64>| {
+        groups.iter().map(|group| format!("group {group}")).collect::<Vec<_>>().join(", ")
+    };
+    reading.forces = counts.values().rev().map(words).collect();
+    reading
+        .remarks
+        .push("a serialized MTSIntegrator holds its loops written out: make it anew with other steps".into());
+    Ok(Some(reading))
+}
+
+/// The groups of a serialized system's forces.
+pub(super) fn groups(text: &str, groups: &mut BTreeMap<u64, Vec<String>>) -> Result<()> {
+    let document = parse(text)?;
+    let Some(system) = named(document.root_element(), "System") else { return Ok(()) };
+    for force in system.descendants().filter(|node| node.tag_name().name() == "Force") {
+        let name = force.attribute("type").unwrap_or("Force");
+        let own = force.attribute("forceGroup").unwrap_or("0");
+        let bad = || {
+            Error::input(
+                &format!("forceGroup of {name}"),
+                own,
+                "a force group is a whole number from 0 to 31",
+            )
+        };
+        groups.entry(own.parse().ok().filter(|g| *g < 32).ok_or_else(bad)?).or_default().push(name.into());
+        let reciprocal = force.attribute("recipForceGroup").and_then(|own| own.parse::<u64>().ok());
+        if let Some(group) = reciprocal.filter(|group| *group < 32) {
+            groups.entry(group).or_default().push(format!("{name}, reciprocal space"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! The unstable intervals of an outer step at a fixed ratio: tongues, told in fs.
+
+use crate::error::Result;
+use crate::number::rational::from_f64_exact;
+use crate::number::{Ball, Laurent, Ratio, Rational, Real};
+use crate::tongue::{Gap, Tongues};
+
+const BITS: u32 = 128;
+
+/// Outer steps that are unstable, at the ratio of the steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unstable {
+    /// m, the half turns of the growing solution in a synchronization period.
+    pub label: u64,
+    /// Both ends in fs, enclosed; no upper end beyond the fast clock's own limit, nor where the two are one point.
+    pub lower: (f64, f64),
+    pub upper: Option<(f64, f64)>,
+    /// Where growth is fastest.
+    pub worst: Option<Worst>,
+}
+
+/// The fastest growth in an interval; rounded to some nine digits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// Per fs.
+    pub rate: f64,
+    /// Outer steps until an amplitude is tenfold,
+    pub steps: f64,
+    /// and fs.
+    pub time: f64,
+}
+
+/// The tongues of one fast stiffness and one slow one at a ratio of steps.
+pub(crate) struct Intervals<'a> {
+    /// For ρ rounded down and up: edges fall as ρ rises, so the two enclose those of an irrational ρ.
+    tongues: [Tongues; 2],
+    ratio: Ratio,
+    fast: &'a Laurent,
+}
+
+impl<'a> Intervals<'a> {
+    /// Of stiffnesses that are on the clocks h1 and h2 = h1 p/q.
+    pub fn new(ratio: Ratio, fast: &'a Laurent, slow: &Laurent) -> Result<Self> {
+        let [lo, hi] = match Laurent::ratio(slow, fast) {
+            Some(rho) => [rho.clone(), rho],
+            None => {
+                let rho = slow
+                    .enclosure(BITS)
+                    .div(&fast.enclosure(BITS), BITS)
+                    .expect("the fast stiffness is positive");
+                [rho.lower(), rho.upper()]
+            }
+        };
+        Ok(Intervals { tongues: [Tongues::new(ratio, &lo)?, Tongues::new(ratio, &hi)?], ratio, fast })
+    }
+
+    fn last(&self) -> u64 {
+        self.tongues[0].last()
+    }
+
+    /// √(s/L1) p/q, the outer step, over an enclosure of s.
+    fn step(&self, lo: f64, hi: f64) -> (f64, f64) {
+        let stiffness = self.fast.enclosure(BITS);
+        let ratio = Ball::from_rational(&Rational::from(self.ratio), BITS);
+        let of = |s: f64| {
+            let s = Ball::from_rational(&from_f64_exact(s).expect("an edge is finite"), BITS);
+            s.div(&stiffness, BITS).and_then(|square| square.sqrt(BITS)).expect("s > 0").mul(&ratio, BITS)
+        };
+        (of(lo).to_f64_enclosure().0, of(hi).to_f64_enclosure().1)
+    }
+
+    fn gaps(&self, label: u64) -> Result<[Gap; 2]> {
+        Ok([self.tongues[0].gap(label)?, self.tongues[1].gap(label)?])
+    }
+
+    /// Tongue `label`; `None` where it is closed.
+    pub fn get(&self, label: u64) -> Result<Option<Unstable>> {
+        let [low, high] = self.gaps(label)?;
+        if low.closed || high.closed {
+            return Ok(None);
+        }
+        let lower = self.step(high.lower.lo, low.lower.hi);
+        let upper = low.upper.zip(high.upper).map(|(low, high)| self.step(high.lo, low.hi));
+        let peak = self.tongues[0].peak(&low)?;
+        let worst = peak.map(|peak| {
+            let rate = peak.growth_rate(self.fast);
+            Worst { rate, steps: peak.slow_steps_to_tenfold, time: std::f64::consts::LN_10 / rate }
+        });
+        Ok(Some(Unstable { label, lower, upper, worst }))
+    }
+
+    /// The first tongue, at which the stable region that begins at step 0 ends; without an upper end where it is closed, as without a slow force.
+    pub fn first(&self) -> Result<Unstable> {
+        let [low, high] = self.gaps(1)?;
+        let lower = self.step(high.lower.lo, low.lower.hi);
+        Ok(self.get(1)?.unwrap_or(Unstable { label: 1, lower, upper: None, worst: None }))
+    }
+
+    /// The nearest open tongues about a stable outer step: the one below it, the one above it.
+    pub fn about(&self, outer: f64) -> Result<[Option<Unstable>; 2]> {
+        // Lower edges rise with the label: the first label whose tongue begins above the step.
+        let (mut lo, mut hi) = (1, self.last() + 1);
+        while lo < hi {
+            let middle = lo + (hi - lo) / 2;
+            let [low, high] = self.gaps(middle)?;
+            let begins = self.step(high.lower.lo, low.lower.hi).0;
+            if begins > outer { hi = middle } else { lo = middle + 1 }
+        }
+        let below = (1..lo).rev().map(|label| self.get(label)).find_map(Result::transpose).transpose()?;
+        let above =
+            (lo..=self.last()).map(|label| self.get(label)).find_map(Result::transpose).transpose()?;
+        Ok([below, above])
+    }
+}

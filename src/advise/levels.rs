@@ -1,0 +1,265 @@
+//! One mass under several potentials, each on its own clock: a verdict, and the first stable region.
+//!
+//! **The first region covers every molecule.** The action J of a path over the half period (proofs/REGION.md) decreases where a stiffness
+//! increases, in Loewner's order. So let one mass with the stiffnesses λ_1, ..., λ_K on its clocks satisfy conditions (1) and (2) of the
+//! theorem there. Then *any number* of coupled modes whose stiffness matrices are 0 ≤ K_k ≤ λ_k I with a definite sum is stable, at these steps and
+//! at all smaller ones of the same ratios: longer periods, other couplings, and sums of two modes included. One mass of the stiffest
+//! potentials is therefore all that has to be looked at.
+//!
+//! For one mass the conditions are positivity of two orbits. Eliminating the nodes of J from t = 0 on, its pivots are quotients of consecutive
+//! positions, so
+//!
+//! ```text
+//!     (1)  J free at 0, held at T/2 > 0:   the even orbit (x, v) = (1, 0) has x > 0 at every kick time and at T/2;
+//!     (2)  J held at 0, free at T/2 > 0:   the odd orbit (0, 1) has x > 0 at every kick time, and v > 0 at the end.
+//! ```
+
+use num_traits::Zero;
+
+use crate::error::{Error, Result};
+use crate::number::rational::from_f64_exact;
+use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
+use crate::schedule::{KickDrift, Kicks, Schedule};
+use crate::system::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
+use crate::verdict::Kind;
+
+/// Bits of the orbits' balls: in the first region these widen by e^(π/2) roundings.
+const BITS: u32 = 128;
+
+/// The steps of one integrator in fs, increasing.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scheme {
+    steps: Vec<Rational>,
+}
+
+impl Scheme {
+    /// From the innermost step to the outermost one.
+    ///
+    /// # Errors
+    /// No step, one that is not positive, one that is not longer than the one before.
+    pub fn new(steps: Vec<Rational>) -> Result<Scheme> {
+        if steps.is_empty() {
+            return Err(Error::missing(
+                "steps",
+                "give the steps from the innermost to the outermost one, as 0.5fs,4fs",
+            ));
+        }
+        let shown = || steps.iter().map(|step| format!("{step}fs")).collect::<Vec<_>>().join(",");
+        if steps.iter().any(|step| step.sign() != Sign::Positive) {
+            return Err(Error::input("steps", shown(), "a step must be positive"));
+        }
+        if steps.windows(2).any(|pair| pair[0] >= pair[1]) {
+            return Err(Error::input(
+                "steps",
+                shown(),
+                "write the shortest step first, each longer than the one before",
+            ));
+        }
+        // That the clocks meet again within what can be counted.
+        Schedule::new(&steps, &vec![Rational::zero(); steps.len()])?;
+        Ok(Scheme { steps })
+    }
+
+    /// The steps, the innermost first.
+    pub fn steps(&self) -> &[Rational] {
+        &self.steps
+    }
+
+    /// The innermost step.
+    pub fn inner(&self) -> &Rational {
+        &self.steps[0]
+    }
+
+    /// The outermost step.
+    pub fn outer(&self) -> &Rational {
+        self.steps.last().expect("at least one step")
+    }
+
+    /// The step whose multiple the outermost one is, for as many levels as there are; the step itself where it is alone.
+    pub fn last_but_one(&self) -> &Rational {
+        &self.steps[self.steps.len().saturating_sub(2)]
+    }
+
+    /// The same with another outermost step.
+    pub(crate) fn with_outer(&self, outer: Rational) -> Result<Scheme> {
+        let mut steps = self.steps.clone();
+        *steps.last_mut().expect("at least one step") = outer;
+        Scheme::new(steps)
+    }
+}
+
+/// One mass, and the stiffness over mass (1/fs²) on each clock of a scheme.
+#[derive(Clone, Debug)]
+pub struct Levels<'a> {
+    pub scheme: &'a Scheme,
+    /// One a step, 0 where nothing is known to be on that clock.
+    pub stiffness: Vec<Laurent>,
+}
+
+/// What is proven of one mass at one scheme.
+#[derive(Clone, Debug)]
+pub struct Found {
+    pub kind: Kind,
+    /// Tr Q over the synchronization period.
+    pub trace: (f64, f64),
+    /// m, the half turns of the growing solution in a period.
+    pub label: Option<u64>,
+    /// The growth rate per fs; zero unless it grows exponentially.
+    pub rate: (f64, f64),
+}
+
+impl Levels<'_> {
+    /// The verdict, by the certified ladder.
+    ///
+    /// # Errors
+    /// A budget error where what would tell exceeds the limits.
+    pub fn decide(&self, limits: &Limits) -> Result<Found> {
+        // A clock that kicks with strength 0 is silent, and a system has none such; two clocks keep it, for their ratio's sake.
+        let heard: Vec<usize> = (0..self.stiffness.len()).filter(|&k| !self.stiffness[k].is_zero()).collect();
+        let Some(&first) = heard.first() else {
+            return Err(Error::missing("period", "give the period of at least one force"));
+        };
+        let unit = Laurent::from_rational(self.scheme.steps[first].clone());
+        let clocks = self.clocks(&heard)?;
+        let potential = |&k: &usize| {
+            let stiffness = Symmetric::diagonal(&[self.stiffness[k].enclosure(BITS).lower()]);
+            Potential::new(stiffness, self.scheme.steps[k].clone())
+        };
+        let mass = Symmetric::diagonal(&[Rational::from_integer(1.into())]);
+        let rounded = System::new(mass, heard.iter().map(potential).collect())?;
+        let analysis = decide_oscillator(&clocks, &rounded, &unit, limits)?;
+        let clocked = analysis.parts[0].oscillator.as_ref().expect("one oscillator");
+        let rate = match analysis.kind {
+            Kind::Hyperbolic => rate(&clocked.trace, &analysis.period.enclosure(BITS)),
+            _ => (0.0, 0.0),
+        };
+        Ok(Found { kind: analysis.kind, trace: clocked.trace.to_f64_enclosure(), label: clocked.label, rate })
+    }
+
+    fn clocks(&self, heard: &[usize]) -> Result<ManyClocks<Laurent>> {
+        let first = &self.scheme.steps[heard[0]];
+        let steps: Vec<Rational> = heard.iter().map(|&k| &self.scheme.steps[k] / first).collect();
+        let strength = |&k: &usize| {
+            let square = first * &self.scheme.steps[k];
+            &Laurent::from_rational(square) * &self.stiffness[k]
+        };
+        ManyClocks::new(&steps, &vec![Rational::zero(); steps.len()], heard.iter().map(strength).collect())
+    }
+
+    /// Whether conditions (1) and (2) hold for the stiffnesses times `factor`: `None` where the balls do not tell.
+    pub fn in_first_region(&self, factor: &Ball) -> Option<bool> {
+        let steps = &self.scheme.steps;
+        let schedule = Schedule::new(steps, &vec![Rational::zero(); steps.len()]).ok()?;
+        let tick = Ball::from_rational(schedule.tick(), BITS);
+        let strengths = steps.iter().zip(&self.stiffness).map(|(step, stiffness)| {
+            let own = Ball::from_rational(step, BITS).mul(&stiffness.enclosure(BITS), BITS);
+            own.mul(factor, BITS)
+        });
+        let kicks = Kicks::of_clocks(strengths, |k| [k.clone(), k.scale2(-1)]);
+        let (zero, one) = (Ball::zero(), Ball::one());
+        let mut orbits = Orbits {
+            even: [one.clone(), zero.clone()],
+            odd: [zero, one],
+            tick,
+            started: false,
+            left: false,
+            doubtful: false,
+        };
+        for event in schedule.half_period() {
+            kicks.lead([event], &mut orbits);
+            if orbits.left {
+                return Some(false);
+            }
+        }
+        orbits.see_end();
+        if orbits.left { Some(false) } else { (!orbits.doubtful).then_some(true) }
+    }
+
+    /// The factors of all steps, at fixed ratios, up to which the first region provably reaches and beyond which it provably has ended:
+    /// neighbours, or as close as balls can tell. The conditions hold at every smaller step (proofs/REGION.md), so a bisection finds them.
+    ///
+    /// # Errors
+    /// Where no factor in the range of doubles ends it: there is no stiffness.
+    pub fn first_region_ends(&self) -> Result<(f64, f64)> {
+        let square = |t: f64| {
+            let t = from_f64_exact(t).expect("a finite factor");
+            Ball::from_rational(&(&t * &t), BITS)
+        };
+        let at = |t: f64| self.in_first_region(&square(t));
+        let none = || Error::missing("period", "give the period of at least one force");
+        let mut hi = (-60..60).map(|k| 2f64.powi(k)).find(|&t| at(t) == Some(false)).ok_or_else(none)?;
+        let mut lo = hi / 2.0;
+        // The factor before this one was not told to have left: it is inside, or on the edge itself.
+        while at(lo) != Some(true) {
+            lo *= 0.999;
+            if lo < hi / 4.0 {
+                return Err(none());
+            }
+        }
+        while lo.next_up() < hi {
+            let middle = lo + (hi - lo) / 2.0;
+            match at(middle) {
+                Some(true) => lo = middle,
+                Some(false) => hi = middle,
+                None => break,
+            }
+        }
+        Ok((lo, hi))
+    }
+}
+
+/// ln μ/T, ln μ = acosh(|Tr|/2) = 2 asinh √((|Tr| − 2)/4), in 1/fs.
+fn rate(trace: &Ball, period: &Ball) -> (f64, f64) {
+    let excess = trace.abs().sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
+    let ln = excess.sqrt_clipped(BITS).map(|root| root.asinh(BITS).scale2(1));
+    ln.and_then(|ln| ln.div(period, BITS)).map_or((0.0, f64::INFINITY), |rate| rate.to_f64_enclosure())
+}
+
+/// The even and the odd orbit, (x, v) each.
+struct Orbits {
+    even: [Ball; 2],
+    odd: [Ball; 2],
+    tick: Ball,
+    /// Whether time has passed: the odd orbit begins at 0.
+    started: bool,
+    /// Whether a condition has failed for sure.
+    left: bool,
+    doubtful: bool,
+}
+
+impl Orbits {
+    fn must_be_positive(&mut self, sign: Option<Sign>) {
+        match sign {
+            Some(Sign::Positive) => {}
+            Some(_) => self.left = true,
+            None => self.doubtful = true,
+        }
+    }
+
+    fn see_end(&mut self) {
+        self.must_be_positive(self.odd[1].sign());
+    }
+}
+
+impl KickDrift<Ball> for Orbits {
+    fn drift(&mut self, ticks: u64) {
+        let time = self.tick.mul(&Ball::from_integer(&ticks.into()), BITS);
+        for [x, v] in [&mut self.even, &mut self.odd] {
+            *x = x.add(&v.mul(&time, BITS), BITS);
+        }
+        self.started = true;
+    }
+
+    fn arrive(&mut self) {
+        if self.started {
+            self.must_be_positive(self.even[0].sign());
+            self.must_be_positive(self.odd[0].sign());
+        }
+    }
+
+    fn kick(&mut self, strength: &Ball) {
+        for [x, v] in [&mut self.even, &mut self.odd] {
+            *v = v.sub(&strength.mul(x, BITS), BITS);
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Which steps are safe for these periods, for how long, and why.
+//!
+//! Periods or bonds on the clocks of a multiple-time-step integrator become one mass under several potentials. What is answered is of three
+//! kinds, kept apart:
+//!
+//! * **proven** (linear): the verdict at each scheme of steps, the unstable intervals about it, and the first stable region with a band of
+//!   periods: below its end no molecule whose periods are at least as long is unstable, however its modes are coupled (module `levels`,
+//!   proofs/REGION.md, THEORY section 11);
+//! * **published** (nonlinear): outer steps of T/3 and T/4, with their source ([`PUBLISHED`]);
+//! * **unknown**: whether the periods given are the fastest, how anharmonic they are, what another temperature does.
+//!
+//! A stable step *above* the first unstable interval is an island: periods move, intervals can be 0.006 fs wide, so it is never recommended.
+//!
+//! | file | what |
+//! |---|---|
+//! | [`unit`] | fs, 1/cm, amu, kcal/mol/A²: exactly |
+//! | `mode` | periods, wavenumbers, bonds → stiffnesses |
+//! | `levels` | one mass, K clocks: verdict, first stable region |
+//! | `interval` | unstable intervals of the outer step |
+//! | `question`, `answer` | what is asked, what is answered |
+//! | `caution` | what is published |
+//! | [`engine`] | the input of simulation engines |
+//!
+//! ```
+//! use kickdrift::advise::{Mode, Question, Scheme, Status};
+//! use kickdrift::number::rational::ratio;
+//! let modes = vec![Mode::from_period("10fs")?, Mode::from_period("40fs")?];
+//! let schemes = vec![Scheme::new(vec![ratio(1, 2), ratio(4, 1)])?, Scheme::new(vec![ratio(1, 2), ratio(5, 1)])?];
+//! let advice = Question::new(modes, schemes, ratio(1, 20))?.answer()?;
+//! let [four, five] = &advice.schemes[..] else { unreachable!() };
+//! // 4 fs is stable, and stays so if all periods are 5 % shorter; 5 fs lies above an unstable interval.
+//! assert_eq!((four.status, five.status), (Status::Caution, Status::Island));
+//! let first = five.rows[0].first.as_ref().unwrap();
+//! assert!(4.6875 < first.lower.0 && first.upper.unwrap().1 < 4.9795);
+//! assert_eq!(four.safe, Some(ratio(3, 1))); // fs: below T/3 too
+//! # Ok::<(), kickdrift::error::Error>(())
+//! ```
+
+mod answer;
+mod caution;
+pub mod engine;
+mod interval;
+mod levels;
+mod mode;
+mod question;
+pub mod unit;
+
+pub use answer::{Advice, Answer, Pair, Row, Status};
+pub use caution::{Caution, PUBLISHED};
+pub use interval::{Unstable, Worst};
+pub use levels::{Found, Levels, Scheme};
+pub use mode::{Mode, Origin};
+pub use question::Question;

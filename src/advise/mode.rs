@@ -1,0 +1,240 @@
+//! What vibrates: a stiffness over a mass, on one of the clocks.
+//!
+//! A period T is the stiffness (2 π/T)² of unit mass, exactly, in ℚ\[π\]; a bond is its force constant over its reduced mass.
+//!
+//! ```
+//! use kickdrift::advise::Mode;
+//! let mode = Mode::from_period("OH=10fs")?;
+//! assert_eq!((mode.name.as_str(), mode.stiffness.to_string()), ("OH", "pi^2/25".to_string()));
+//! // CHARMM's TIP3P: E = K x².
+//! let bond = Mode::from_bond("OH:K=450kcal/mol/A^2,15.999,1.008", None)?;
+//! let (lo, hi) = bond.period();
+//! assert!(9.970 < lo && hi < 9.971);
+//! # Ok::<(), kickdrift::error::Error>(())
+//! ```
+
+use super::unit::{self, Dimension};
+use crate::error::{Error, Result};
+use crate::number::{Ball, Laurent, Rational, Real};
+
+/// Where a stiffness comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    Period,
+    Wavenumber,
+    /// E = k x²/2, as GROMACS and OpenMM write it.
+    Half,
+    /// E = K x², as Amber and CHARMM write it: k = 2 K.
+    Whole,
+}
+
+impl Origin {
+    /// In words, in documents.
+    pub fn name(self) -> &'static str {
+        match self {
+            Origin::Period => "period",
+            Origin::Wavenumber => "wavenumber",
+            Origin::Half => "k of E = k x^2/2",
+            Origin::Whole => "K of E = K x^2",
+        }
+    }
+}
+
+/// A vibration and the clock that its force is on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    pub name: String,
+    pub origin: Origin,
+    /// k/m in 1/fs², exactly; c π^k.
+    pub stiffness: Laurent,
+    /// 0 is the fastest clock; `None` where that follows from its place in the list.
+    pub clock: Option<usize>,
+    /// The period in fs with the masses as given, where heavy hydrogens have changed it; rounded.
+    pub before: Option<f64>,
+}
+
+/// Periods are told in doubles from so many bits.
+const BITS: u32 = 96;
+
+impl Mode {
+    fn new(name: &str, origin: Origin, stiffness: Laurent) -> Mode {
+        Mode { name: name.trim().into(), origin, stiffness, clock: None, before: None }
+    }
+
+    /// `NAME=10fs`, `10fs`, `NAME=3700/cm`: a period or a wavenumber.
+    ///
+    /// # Errors
+    /// Names the period, with a unit that is missing or unknown.
+    pub fn from_period(text: &str) -> Result<Mode> {
+        let (name, value) = text.split_once('=').unwrap_or((text, text));
+        let power = || Error::input("period", text.trim(), "must be a rational times a power of pi");
+        let (origin, period) = if unit::dimension(value) == Some(Dimension::Wavenumber) {
+            let wavenumber = unit::measured("period", value, Dimension::Wavenumber)?;
+            (Origin::Wavenumber, unit::period_of_wavenumber(&wavenumber).ok_or_else(power)?)
+        } else {
+            (Origin::Period, unit::measured("period", value, Dimension::Time)?)
+        };
+        let turn = Laurent::monomial(Rational::from_integer(2.into()), 1);
+        let frequency = turn.checked_div(&period).ok_or_else(power)?;
+        Ok(Mode::new(name, origin, &frequency * &frequency))
+    }
+
+    /// `NAME:k=1106kcal/mol/A^2,15.999,1.008`: a force constant (k of E = k x²/2, K of E = K x²) and two masses in amu, behind them the
+    /// number of hydrogens on the heavy atom where it is not 1. With `hydrogen`, a mass in amu, every hydrogen (1.1 amu and less) takes
+    /// that mass and its heavy atom loses what its hydrogens have gained.
+    ///
+    /// # Errors
+    /// Names the bond and the part that is wrong: no k or K, a unit, a mass, a heavy atom that would be left without mass.
+    pub fn from_bond(text: &str, hydrogen: Option<&Rational>) -> Result<Mode> {
+        let form = || {
+            let remedy = "write NAME:k=CONSTANT,MASS,MASS, as OH:K=450kcal/mol/A^2,15.999,1.008 (k of E = k x^2/2, K of E = K x^2)";
+            Error::input("bond", text.trim(), remedy)
+        };
+        let (name, rest) = text.split_once(':').ok_or_else(form)?;
+        let mut parts = rest.split(',');
+        let constant = parts.next().unwrap_or_default().trim();
+        let (origin, constant, double) = match constant.split_once('=') {
+            Some(("k", value)) => (Origin::Half, value, 1),
+            Some(("K", value)) => (Origin::Whole, value, 2),
+            _ => return Err(form()),
+        };
+        let k = unit::measured(&format!("bond {name}"), constant, Dimension::Stiffness)?;
+        let k = &k * &Laurent::from_integer(double);
+        let masses: Vec<Rational> = parts.by_ref().take(2).map(|m| mass(name, m)).collect::<Result<_>>()?;
+        let [m1, m2] = <[Rational; 2]>::try_from(masses).map_err(|_| form())?;
+        let count = match parts.next().map(|n| n.trim().parse::<u8>()) {
+            None => 1,
+            Some(Ok(n @ 1..=4)) => n,
+            Some(_) => {
+                return Err(Error::input(&format!("bond {name}"), text, "a heavy atom has 1 to 4 hydrogens"));
+            }
+        };
+        if parts.next().is_some() {
+            return Err(form());
+        }
+        let over = |[m1, m2]: [&Rational; 2]| &k * &Laurent::from_rational(m1.recip() + m2.recip());
+        let mut mode = Mode::new(name, origin, over([&m1, &m2]));
+        if let Some(hydrogen) = hydrogen {
+            let before = mode.middle();
+            let [m1, m2] = heavier(name, [m1, m2], hydrogen, count)?;
+            mode.stiffness = over([&m1, &m2]);
+            mode.before = (mode.middle() != before).then_some(before);
+        }
+        Ok(mode)
+    }
+
+    /// 2 π/√stiffness in fs, enclosed.
+    pub fn period(&self) -> (f64, f64) {
+        self.period_ball().to_f64_enclosure()
+    }
+
+    fn middle(&self) -> f64 {
+        self.period_ball().mid_f64()
+    }
+
+    /// The period over `parts`, enclosed: T/5 and the like.
+    pub fn part(&self, parts: u64) -> (f64, f64) {
+        let parts = Ball::from_integer(&parts.into());
+        self.period_ball().div(&parts, BITS).expect("at least one part").to_f64_enclosure()
+    }
+
+    /// T/π, velocity Verlet's own limit, enclosed.
+    pub fn verlet(&self) -> (f64, f64) {
+        self.period_ball().div(&Ball::pi(BITS), BITS).expect("pi > 0").to_f64_enclosure()
+    }
+
+    fn period_ball(&self) -> Ball {
+        let frequency = self.stiffness.enclosure(BITS).sqrt(BITS).expect("stiffnesses are positive");
+        Ball::pi(BITS).scale2(1).div(&frequency, BITS).expect("stiffnesses are positive")
+    }
+}
+
+fn mass(bond: &str, text: &str) -> Result<Rational> {
+    let field = format!("bond {bond}: mass");
+    let with_unit = unit::dimension(text).map_or_else(|| format!("{}amu", text.trim()), |_| text.into());
+    unit::rational(&field, &with_unit, Dimension::Mass)
+        .map_err(|error| Error::input(&field, text.trim(), error.remedy()))
+}
+
+/// Atoms up to this mass, in amu, are hydrogens (deuterium is none).
+fn is_hydrogen(mass: &Rational) -> bool {
+    *mass <= Rational::new(11.into(), 10.into())
+}
+
+/// The masses after repartitioning: the sum over the heavy atom and its hydrogens stays.
+fn heavier(bond: &str, masses: [Rational; 2], hydrogen: &Rational, count: u8) -> Result<[Rational; 2]> {
+    let light = masses.each_ref().map(is_hydrogen);
+    if light[0] == light[1] {
+        return Ok(masses);
+    }
+    let (h, heavy) = if light[0] { (0, 1) } else { (1, 0) };
+    let gain = (hydrogen - &masses[h]) * Rational::from_integer(count.into());
+    let left = &masses[heavy] - gain;
+    if left <= Rational::default() {
+        let remedy =
+            format!("heavy hydrogens of {} amu would leave its heavy atom no mass", unit::decimal(hydrogen));
+        return Err(Error::input(&format!("bond {bond}"), unit::decimal(&masses[heavy]), remedy));
+    }
+    let mut all = masses;
+    (all[h], all[heavy]) = (hydrogen.clone(), left);
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    fn period(bond: &str, hydrogen: Option<&Rational>) -> String {
+        format!("{:.2}", Mode::from_bond(bond, hydrogen).unwrap().middle())
+    }
+
+    #[test]
+    fn the_bonds_of_force_fields_have_their_known_periods() {
+        let bonds = [
+            ("OH:K=553kcal/mol/A^2,15.999,1.008", "8.99"),
+            ("OH:k=1106kcal/mol/A^2,1.008,15.999", "8.99"),
+            ("OH:k=462750.4kJ/mol/nm^2,15.999amu,1.008amu", "8.99"),
+            ("OH:K=450kcal/mol/A^2,15.999,1.008", "9.97"),
+            ("NH:K=434kcal/mol/A^2,14.007,1.008", "10.11"),
+            ("CH:K=340kcal/mol/A^2,12.011,1.008", "11.36"),
+            ("CC:K=310kcal/mol/A^2,12.011,12.011", "30.23"),
+            ("CO:K=570kcal/mol/A^2,12.011,15.999", "23.83"),
+        ];
+        for (bond, expected) in bonds {
+            assert_eq!(period(bond, None), expected, "{bond}");
+        }
+        // K read as k would be a period √2 too long.
+        assert_eq!(period("OH:k=553kcal/mol/A^2,15.999,1.008", None), "12.72");
+    }
+
+    #[test]
+    fn heavy_hydrogens_slow_their_bond_down() {
+        let heavy = ratio(3024, 1000);
+        // Of a methyl group and of an amide.
+        assert_eq!(period("CH:K=340kcal/mol/A^2,12.011,1.008,3", Some(&heavy)), "16.69");
+        assert_eq!(period("NH:K=434kcal/mol/A^2,14.007,1.008", Some(&heavy)), "16.20");
+        // No hydrogen, no change.
+        let bond = Mode::from_bond("CC:K=310kcal/mol/A^2,12.011,12.011", Some(&heavy)).unwrap();
+        assert_eq!(bond.before, None);
+        let error = Mode::from_bond("CH:K=340kcal/mol/A^2,12.011,1.008,4", Some(&ratio(5, 1))).unwrap_err();
+        assert!(error.remedy().contains("no mass"), "{error}");
+    }
+
+    #[test]
+    fn a_bond_that_is_not_one_is_told_apart() {
+        for text in [
+            "OH",
+            "OH:553kcal/mol/A^2,1,2",
+            "OH:k=553,1,2",
+            "OH:k=553kcal/mol/A^2,1",
+            "OH:k=5N/m,1,2,9",
+            "OH:k=5N/m,1,2,1,1",
+            "OH:k=5N/m,0,2",
+        ] {
+            let error = Mode::from_bond(text, None).unwrap_err();
+            assert!(error.field().starts_with("bond") && !error.remedy().is_empty(), "{text}: {error}");
+        }
+        assert!(Mode::from_period("1+pi fs").is_err());
+    }
+}

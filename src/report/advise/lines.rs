@@ -1,0 +1,267 @@
+//! What a person can act on: a line for each scheme, then what to do, then why.
+
+use super::words::{nearest, told};
+use crate::advise::engine::{Reading, not_nested};
+use crate::advise::unit::decimal;
+use crate::advise::{Advice, Answer, Row, Status, Unstable};
+use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::report::decimal::few;
+
+/// What no linear analysis of given periods tells.
+pub(super) const UNKNOWN: [&str; 3] = [
+    "whether a faster mode exists than those given: coupled modes are faster than two-body formulas say",
+    "how far anharmonic motion, another temperature or other surroundings move the periods beyond the band",
+    "how much the nonlinear resonances near T/3 and T/4 heat this system",
+];
+
+/// Both ends, each to five digits.
+fn interval(of: &Unstable) -> String {
+    match of.upper {
+        Some(upper) => format!("{}-{} fs", nearest(of.lower, 5), nearest(upper, 5)),
+        None => format!("{} fs and above", nearest(of.lower, 5)),
+    }
+}
+
+/// A length of time in the unit that suits it.
+fn time(x: &Rational) -> String {
+    let over = |n: u64| x / Rational::from_integer(n.into());
+    let one = Rational::from_integer(1.into());
+    let units = [(1_000_000_000_000_000, "s"), (1_000_000, "ns"), (1000, "ps")];
+    let found = units.into_iter().find(|(n, _)| over(*n) >= one);
+    found.map_or_else(|| fs(x), |(n, unit)| format!("{} {unit}", decimal(&over(n))))
+}
+
+fn percent(x: &Rational) -> String {
+    format!("{} %", decimal(&(x * Rational::from_integer(100.into()))))
+}
+
+fn fs(x: &Rational) -> String {
+    format!("{} fs", decimal(x))
+}
+
+/// All lines.
+pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
+    let mut lines: Vec<String> = advice.schemes.iter().map(|answer| line(advice, answer)).collect();
+    lines.push(action(advice, &advice.schemes[0]));
+    if let Some(reading) = reading {
+        lines.extend(engine(&advice.schemes[0], reading));
+    }
+    lines.extend(reasons(advice));
+    lines
+}
+
+/// The outer step that is advised, where it is another one than that of the scheme.
+pub(super) fn advised(answer: &Answer) -> Option<&Rational> {
+    let outer = answer.safe.as_ref().or(answer.largest.as_ref())?;
+    (outer != answer.scheme.outer() && answer.needs.is_none()).then_some(outer)
+}
+
+/// The engine's own lines with the step that is advised, and what was read.
+fn engine(answer: &Answer, reading: &Reading) -> Vec<String> {
+    let name = reading.engine.name();
+    let mut lines = Vec::new();
+    if let Some(changed) = advised(answer).and_then(|outer| reading.changed_lines(outer).ok()) {
+        lines.extend(changed.iter().map(|line| format!("  write      {line}")));
+    }
+    let steps: Vec<String> = reading.scheme.steps().iter().map(fs).collect();
+    let forces = reading.forces.iter().zip(&steps).map(|(forces, step)| format!("{step}: {forces}"));
+    lines.push(format!("  {name:10} {}; {}", reading.engine.dt(), forces.collect::<Vec<_>>().join("; ")));
+    lines.push(format!("  used       {}", reading.used.join("; ")));
+    lines.extend(reading.remarks.iter().map(|remark| format!("  note       {remark}")));
+    lines
+}
+
+/// "  4 fs  stable; next unstable interval ...".
+fn line(advice: &Advice, answer: &Answer) -> String {
+    let outer = to_f64(answer.scheme.outer());
+    let third = advice.modes[advice.fastest].part(3);
+    // The row that says most: one that grows, else the one whose first unstable interval is the lowest.
+    let grows = |row: &&Row| row.found.rate.1;
+    let worst = answer.rows.iter().max_by(|a, b| grows(a).total_cmp(&grows(b)));
+    let lowest = |row: &&Row| row.first.as_ref().map_or(f64::INFINITY, |first| first.lower.0);
+    let first = answer.rows.iter().min_by(|a, b| lowest(a).total_cmp(&lowest(b)));
+    let below = first.and_then(|row| row.first.as_ref());
+    let margin = |lower: (f64, f64)| nearest((lower.0 - outer, lower.1 - outer), 3);
+    let next = || {
+        let named = below.map_or_else(String::new, |next| {
+            let lower = || nearest(next.lower, 5);
+            let what = match next.upper {
+                Some(_) => format!("next unstable interval {}", interval(next)),
+                None if answer.scheme.steps().len() == 1 => format!("unstable from {} fs on", lower()),
+                None if advice.silent => format!("resonance at {} fs", lower()),
+                None => format!("unstable steps begin at {} fs", lower()),
+            };
+            format!("; {what}, margin {} fs", margin(next.lower))
+        });
+        let needs = answer.needs.map_or_else(String::new, |slow| {
+            format!("; proven for slow forces of periods above {} fs", few(slow * 1.005, 3))
+        });
+        named + &needs
+    };
+    let what = match answer.status {
+        Status::Safe => format!("safe{}", next()),
+        Status::Caution => format!("stable{}; caution: not below T/3 = {} fs", next(), nearest(third, 3)),
+        Status::Near => {
+            format!("stable{}: less than the band of {}: do not use", next(), percent(&advice.band))
+        }
+        Status::Island => island(answer, outer),
+        Status::Unstable => unstable(answer, worst),
+    };
+    let within = match (answer.within_run, &advice.length) {
+        (Some(true), Some(length)) => format!("; within the run of {}", time(length)),
+        (Some(false), Some(length)) => format!("; not within the run of {}", time(length)),
+        _ => String::new(),
+    };
+    format!("{:7} {what}{within}", fs(answer.scheme.outer()))
+}
+
+fn island(answer: &Answer, outer: f64) -> String {
+    let below = answer
+        .rows
+        .iter()
+        .filter_map(|row| row.below.as_ref())
+        .max_by(|a, b| a.lower.0.total_cmp(&b.lower.0));
+    let first = answer
+        .rows
+        .iter()
+        .filter_map(|row| row.first.as_ref())
+        .min_by(|a, b| a.lower.0.total_cmp(&b.lower.0));
+    match (below, below.and_then(|below| below.upper), first) {
+        (Some(below), Some(upper), _) => {
+            let worst = below.worst.map_or_else(String::new, |worst| {
+                format!(" (worst: tenfold in {} fs)", nearest((worst.time, worst.time), 3))
+            });
+            let above = nearest((outer - upper.1, outer - upper.0), 2);
+            format!("stable, but {above} fs above the unstable {}{worst}: do not use", interval(below))
+        }
+        (_, _, Some(first)) => format!(
+            "stable, but above an unstable step: these begin at {} fs: do not use",
+            nearest(first.lower, 5)
+        ),
+        _ => "stable, but not proven to lie below every unstable step: do not use".into(),
+    }
+}
+
+fn unstable(answer: &Answer, worst: Option<&Row>) -> String {
+    let Some(row) = worst else { return "unstable".into() };
+    let Some((lo, hi)) = row.tenfold_steps else {
+        return "unstable: on the edge of an unstable interval, where amplitudes grow linearly".into();
+    };
+    let outer = to_f64(answer.scheme.outer());
+    let rate = (1000.0 * row.found.rate.0, 1000.0 * row.found.rate.1);
+    let inside =
+        row.inside.as_ref().map_or_else(String::new, |inside| format!(", within {}", interval(inside)));
+    let friction = nearest((2.0 * rate.0, 2.0 * rate.1), 2);
+    format!(
+        "unstable{inside}: tenfold in {} outer steps = {} fs, {}/ps (a friction of some {friction}/ps would mask it): do not use",
+        nearest((lo, hi), 3),
+        nearest((lo * outer, hi * outer), 3),
+        nearest(rate, 4)
+    )
+}
+
+/// The advice itself.
+fn action(advice: &Advice, answer: &Answer) -> String {
+    let (scheme, band) = (&answer.scheme, percent(&advice.band));
+    let fastest = &advice.modes[advice.fastest];
+    if scheme.steps().len() == 1 {
+        let edge = down(answer.band_edge.0);
+        return format!(
+            "advice: keep the step below {edge} fs (proven for all periods within {band}); T/10 = {} fs resolves {}",
+            nearest(fastest.part(10), 3),
+            told(fastest)
+        );
+    }
+    if let Some(slow) = answer.needs {
+        return format!(
+            "advice: give the period of the slow force; {} is proven stable (all periods within {band}) where it is above {} fs",
+            fs(scheme.outer()),
+            few(slow * 1.005, 3)
+        );
+    }
+    if let (None, Some(why)) = (&answer.largest, not_nested(scheme)) {
+        return format!(
+            "advice: {why}, so the clocks meet late and thin resonances begin early: choose steps that are multiples of each other"
+        );
+    }
+    let step = scheme.last_but_one();
+    let times = |outer: &Rational| format!("{} of {}", decimal(&(outer / step)), fs(step));
+    let third = nearest(fastest.part(3), 3);
+    match (&answer.safe, &answer.largest) {
+        (Some(safe), Some(largest)) if safe == largest => {
+            format!(
+                "advice: outer step {} ({}), the longest that is proven stable for all periods within {band}",
+                fs(safe),
+                times(safe)
+            )
+        }
+        (Some(safe), Some(largest)) => format!(
+            "advice: outer step {} ({}): below T/3 = {third} fs and proven stable for all periods within {band}; {} ({}) is proven too, but drift is \
+             published beyond T/3",
+            fs(safe),
+            times(safe),
+            fs(largest),
+            times(largest)
+        ),
+        (None, Some(largest)) => format!(
+            "advice: up to {} ({}) is proven stable for all periods within {band}; T/3 = {third} fs is below the step of {}: shorten that one first",
+            fs(largest),
+            times(largest),
+            fs(step)
+        ),
+        _ => format!(
+            "advice: no outer step is proven stable with {} inside: {} needs inner steps below T/pi = {} fs, better T/10 = {} fs",
+            fs(step),
+            told(fastest),
+            nearest(fastest.verlet(), 3),
+            nearest(fastest.part(10), 3)
+        ),
+    }
+}
+
+/// Three digits, rounded down.
+fn down(x: f64) -> String {
+    let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    few((x * size).floor() / size, 3)
+}
+
+/// What is proven, published, unknown.
+fn reasons(advice: &Advice) -> Vec<String> {
+    let fastest = &advice.modes[advice.fastest];
+    let answer = &advice.schemes[0];
+    let ratios: Vec<String> =
+        answer.scheme.steps().windows(2).map(|pair| decimal(&(&pair[1] / &pair[0]))).collect();
+    let ratio =
+        if ratios.is_empty() { String::new() } else { format!(" at the ratio {}", ratios.join(" x ")) };
+    let mut lines = vec![
+        format!(
+            "  proven     every outer step below {} fs{ratio} is stable for all periods within {}{}",
+            down(answer.band_edge.0),
+            percent(&advice.band),
+            if advice.silent {
+                ", without the force of the clock that has no period"
+            } else {
+                ", and for any number of coupled modes that are no stiffer: sums of two modes included"
+            }
+        ),
+        format!(
+            "  published  {}: outer steps near T/3 = {} fs and T/4 = {} fs meet nonlinear resonances (Ma, Izaguirre, Skeel 2003); grompp warns \
+             above an inner step of T/5 = {} fs, notes above T/10 = {} fs",
+            told(fastest),
+            nearest(fastest.part(3), 4),
+            nearest(fastest.part(4), 4),
+            nearest(fastest.part(5), 4),
+            nearest(fastest.part(10), 4)
+        ),
+        format!("  unknown    {}", UNKNOWN[0]),
+    ];
+    if let Some(why) = not_nested(&answer.scheme) {
+        lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));
+    }
+    if advice.silent {
+        let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the one told";
+        lines.push(line.into());
+    }
+    lines
+}

@@ -1,0 +1,93 @@
+//! `advise`: what a person is told, and what the program refuses.
+
+use super::support::{Desk, json, run, stdout, words};
+
+const WATER: &str = "advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs";
+
+#[test]
+fn the_first_lines_can_be_acted_on() {
+    let text = stdout(&words(WATER, &[]));
+    let lines: Vec<&str> = text.lines().take(3).collect();
+    assert_eq!(
+        lines,
+        [
+            "4 fs    stable; next unstable interval 4.6768-4.9679 fs, margin 0.677 fs; caution: not below T/3 = 3.33 fs",
+            "5 fs    stable, but 0.021 fs above the unstable 4.6875-4.9795 fs (worst: tenfold in 116 fs): do not use",
+            "advice: outer step 3 fs (6 of 0.5 fs): below T/3 = 3.33 fs and proven stable for all periods within 5 %; 4 fs (8 of 0.5 fs) is \
+             proven too, but drift is published beyond T/3",
+        ]
+    );
+    for word in ["  proven ", "  published ", "  unknown ", "Ma, Izaguirre, Skeel 2003"] {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+}
+
+#[test]
+fn an_engine_s_line_is_rewritten() {
+    let desk = Desk::new();
+    desk.write(
+        "in.lmp",
+        "units real\npair_style lj/cut 10\ntimestep 4.0\nrun_style respa 2 8 bond 1 pair 2\n",
+    );
+    let ended = desk.run(&words("advise --engine in.lmp --period OH=10fs --period 40fs", &[]));
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(
+        ended.stdout.contains("  write      timestep 3\n  write      run_style respa 2 6 bond 1 pair 2\n"),
+        "{}",
+        ended.stdout
+    );
+    assert!(ended.stdout.contains("dt is the outermost step; 0.5 fs: bond; 4 fs: pair"), "{}", ended.stdout);
+    let document =
+        desk.run(&words("advise --engine in.lmp --period OH=10fs --period 40fs --format json", &[]));
+    desk.write("d.json", &document.stdout);
+    assert_eq!(desk.run(&["verify", "d.json"]).code, Some(0));
+}
+
+#[test]
+fn every_form_is_written() {
+    let desk = Desk::new();
+    for (name, begins) in [
+        ("a.csv", "scheme,outer"),
+        ("a.tex", "\\begin{table}"),
+        ("a.svg", "<svg"),
+        ("a.pdf", "%PDF"),
+        ("a.png", "\u{fffd}PNG"),
+    ] {
+        let ended = desk.run(&words(WATER, &["--output", name]));
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{name}");
+        let bytes = desk.read(name);
+        assert!(String::from_utf8_lossy(&bytes).contains(begins), "{name}");
+    }
+}
+
+#[test]
+fn what_is_missing_is_named_with_a_remedy() {
+    let cases = [
+        ("advise --steps 1fs,2fs", "period missing"),
+        ("advise --period 10fs", "steps missing"),
+        ("advise --period 10 --steps 1fs", "period = 10: has no unit: write 10fs"),
+        ("advise --period 10fs --steps 1,2fs", "steps = 1: has no unit: write 1fs"),
+        ("advise --period OH=10fs --steps 1fs,2fs --on OH=3", "choose a clock from 1 to 2"),
+        ("advise --period OH=10fs --steps 1fs,2fs --on NH=1", "there is no mode of this name"),
+        ("advise --period OH=10fs --steps 1fs,2fs --band 100%", "band"),
+        ("advise --period OH=10fs --steps 1fs,2fs --hmr 3.024", "a period has no masses"),
+        ("advise --engine nowhere.mdp --period 10fs", "nowhere.mdp"),
+    ];
+    for (line, expected) in cases {
+        let ended = run(&words(line, &[]));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line}");
+        assert!(
+            ended.stderr.contains(expected) && ended.stderr.trim_end().lines().count() == 1,
+            "{line}: {}",
+            ended.stderr
+        );
+    }
+}
+
+#[test]
+fn exact_inputs_are_echoed() {
+    let document = json(&words(WATER, &[]));
+    assert_eq!(document["input"]["modes"][0]["stiffness"], "pi^2/25");
+    assert_eq!(document["schemes"][0]["safe"], "3");
+    assert_eq!(document["schemes"][1]["status"], "island");
+}

@@ -1,0 +1,245 @@
+//! What simulation engines write about their steps: read as they read it, rewritten, and read again; damaged texts are refused in one line.
+
+#![cfg(feature = "advise")]
+
+use kickdrift::advise::engine::{Engine, Reading, not_nested, read};
+use kickdrift::advise::unit::decimal;
+use kickdrift::error::{Error, Kind};
+use kickdrift::number::rational::ratio;
+
+/// A text of each notation, and its steps.
+const TEXTS: [(Engine, &str, &str); 12] = [
+    (
+        Engine::OpenMm,
+        "from openmm import *\nintegrator = MTSIntegrator(4*femtoseconds, [(0,1), (1,2), (2,8)])\n",
+        "0.5,2,4",
+    ),
+    (
+        Engine::OpenMm,
+        "force.setForceGroup(1)\ni = MTSLangevinIntegrator(300*kelvin, 1/picosecond, 0.004*unit.picoseconds, groups=[(1,8),\n  (0,1)])\n",
+        "0.5,4",
+    ),
+    (Engine::OpenMm, "<Integrator stepSize=\".002\" type=\"VerletIntegrator\" version=\"1\"/>", "2"),
+    (
+        Engine::Lammps,
+        "units real # kcal\npair_style lj/cut 10\ntimestep 4.0\nrun_style respa 4 2 2 2 &\n bond 1 dihedral 2 pair 3 kspace 4\n",
+        "0.5,1,2,4",
+    ),
+    (Engine::Lammps, "units metal\ntimestep 0.001\nrun_style verlet\n", "1"),
+    (
+        Engine::Gromacs,
+        "; comment\nintegrator = md\ndt = 0.002\nmts = yes\nmts-levels = 2\nmts_level2_factor = 2\nmts-level2-forces = longrange-nonbonded pair\nconstraints = h-bonds\n",
+        "2,4",
+    ),
+    (Engine::Gromacs, "dt=0.001\nmts=yes", "1,2"),
+    (Engine::Gromacs, "integrator = md\ndt = 0.0005\n", "0.5"),
+    (
+        Engine::Namd,
+        "structure a.psf\ntimestep 1.0 # fs\nnonbondedFreq 2\nfullElectFrequency = 4\nstepspercycle 20\n",
+        "1,2,4",
+    ),
+    (Engine::Tinker, "parameters amoeba\nINTEGRATOR RESPA\nRESPA-INNER 0.5\n", "0.5,4"),
+    (
+        Engine::Ipi,
+        "<simulation><system><motion mode='dynamics'><dynamics mode='nve'><timestep units='femtosecond'> 4.0 </timestep><nmts> [1, 8] </nmts></dynamics></motion></system></simulation>",
+        "0.5,4",
+    ),
+    (Engine::Ipi, "<simulation>\n<timestep units=\"picosecond\">0.001</timestep></simulation>", "1"),
+];
+
+fn steps(reading: &Reading) -> String {
+    reading.scheme.steps().iter().map(decimal).collect::<Vec<_>>().join(",")
+}
+
+fn of(text: &str) -> Result<Reading, Error> {
+    read(&[text], Some(&ratio(4, 1)))
+}
+
+#[test]
+fn each_notation_is_read_as_its_engine_reads_it() {
+    for (engine, text, expected) in TEXTS {
+        let reading = of(text).unwrap_or_else(|error| panic!("{text}: {error}"));
+        assert_eq!((reading.engine, steps(&reading).as_str()), (engine, expected), "{text}");
+        assert!(!reading.used.is_empty() && !engine.dt().is_empty());
+        assert_eq!(reading.forces.len(), reading.scheme.steps().len(), "{text}: {:?}", reading.forces);
+    }
+}
+
+#[test]
+fn what_is_rewritten_reads_as_the_new_steps_and_goes_back() {
+    let mut rewritten = 0;
+    for (engine, text, _) in TEXTS {
+        let reading = of(text).unwrap();
+        let before = reading.scheme.last_but_one().clone();
+        let outer = &before * ratio(3, 1);
+        let Ok(new) = reading.rewritten(&outer) else {
+            // The outer step of Tinker is no part of its key file.
+            assert!(engine == Engine::Tinker, "{text}");
+            continue;
+        };
+        let again = of(&new).unwrap();
+        let (old, own) = (reading.scheme.steps(), again.scheme.steps());
+        assert_eq!(*again.scheme.outer(), outer, "{new}");
+        assert_eq!((old.len(), &old[..old.len() - 1]), (own.len(), &own[..own.len() - 1]), "{new}");
+        let back = of(&again.rewritten(reading.scheme.outer()).unwrap()).unwrap();
+        assert_eq!(steps(&back), steps(&reading));
+        if old.len() > 1 {
+            assert!(!reading.changed_lines(&outer).unwrap().is_empty());
+            assert!(reading.rewritten(&(&before * ratio(5, 2))).is_err(), "no multiple: {text}");
+        }
+        rewritten += 1;
+    }
+    assert_eq!(rewritten, 11);
+}
+
+#[test]
+fn only_the_numbers_change() {
+    let (_, text, _) = TEXTS[3];
+    let new = of(text).unwrap().rewritten(&ratio(6, 1)).unwrap();
+    assert_eq!(new, text.replace("timestep 4.0", "timestep 6").replace("respa 4 2 2 2", "respa 4 2 2 3"));
+    let new = of(TEXTS[1].1).unwrap().rewritten(&ratio(3, 1)).unwrap();
+    assert_eq!(new, TEXTS[1].1.replace("0.004", "0.003").replace("(1,8)", "(1,6)"));
+    assert_eq!(
+        of(TEXTS[6].1).unwrap().rewritten(&ratio(3, 1)).unwrap(),
+        "dt=0.001\nmts=yes\nmts-level2-factor = 3\n"
+    );
+}
+
+#[test]
+fn a_serialized_mts_integrator_tells_its_groups() {
+    let step = |n: u32, group: u32| {
+        format!("<Computation expression=\"v+0.5*(dt/{n})*f{group}/m\" target=\"v\" type=\"1\"/>")
+    };
+    let text = format!(
+        "<?xml version=\"1.0\" ?>\n<Integrator constraintTolerance=\"1e-05\" stepSize=\".004\" type=\"CustomIntegrator\"><Computations>{}{}</Computations></Integrator>",
+        step(1, 1),
+        step(2, 0)
+    );
+    let system = |group: u32| {
+        format!(
+            "<System><Forces><Force forceGroup=\"{group}\" type=\"HarmonicBondForce\"/><Force forceGroup=\"1\" type=\"NonbondedForce\"/></Forces></System>"
+        )
+    };
+    let reading = read(&[&text, &system(0)], None).unwrap();
+    assert_eq!(steps(&reading), "2,4");
+    assert_eq!(reading.forces, ["group 0 (HarmonicBondForce)", "group 1 (NonbondedForce)"]);
+    let error = read(&[&text, &system(5)], None).unwrap_err();
+    assert!(error.remedy().starts_with("group 5 would never be integrated"), "{error}");
+    // A system alone has no steps.
+    assert!(read(&[&system(0)], None).unwrap_err().to_string().contains("no steps"));
+}
+
+#[test]
+fn forces_that_openmm_would_silently_drop_are_an_error() {
+    let groups: String = (0..8).map(|group| format!("forces[{group}].setForceGroup({group})\n")).collect();
+    let error =
+        of(&format!("{groups}integrator = MTSIntegrator(4*femtoseconds, [(1,1),(0,2)])")).unwrap_err();
+    assert_eq!(error.field(), "force groups");
+    assert!(error.remedy().contains("groups 2, 3, 4, 5, 6, 7 would never be integrated"), "{error}");
+    // Groups by variables are not followed, which is told.
+    let reading =
+        of("f.setForceGroup(i)\nintegrator = MTSIntegrator(4*femtoseconds, [(1,1),(0,2)])").unwrap();
+    assert!(reading.remarks[0].contains("variables"));
+}
+
+#[test]
+fn what_an_engine_refuses_is_said_and_what_is_not_symplectic_is_refused() {
+    let error = of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nMTSAlgorithm naive\n").unwrap_err();
+    assert!(error.field() == "MTSAlgorithm" && error.remedy().contains("not symplectic"), "{error}");
+    // 1, 2 and 3 fs: NAMD wants multiples; the scheme is answered all the same.
+    let reading = of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 3\n").unwrap();
+    assert_eq!(steps(&reading), "1,2,3");
+    assert_eq!(reading.remarks, ["NAMD itself refuses this: 3 fs is no multiple of 2 fs"]);
+    assert!(not_nested(&of(TEXTS[0].1).unwrap().scheme).is_none());
+    for (text, field) in [
+        ("units lj\npair_style lj/cut 2.5\ntimestep 0.005\n", "units"),
+        ("dt = 0.002\nmts = yes\nmts-levels = 3\n", "mts-levels"),
+        ("units real\ntimestep ${dt}\n", "timestep"),
+        ("i = MTSIntegrator(dt, [(0,1)])", "dt"),
+        ("i = MTSIntegrator(4*femtoseconds, [(0,2),(1,3)])", "groups"),
+        ("i = MTSIntegrator(4*femtoseconds, groups)", "groups"),
+        ("hello", "engine"),
+    ] {
+        assert_eq!(of(text).unwrap_err().field(), field, "{text}");
+    }
+    assert!(read(&[TEXTS[9].1], None).unwrap_err().to_string().starts_with("outer step missing"));
+}
+
+#[test]
+fn unknown_keys_are_passed_over_and_what_was_used_is_listed() {
+    let text = "; my run\nnstxout = 100\ndt = 0.001\nmts = yes\ngen-vel = no\nmts-level2-factor = 4\nrcoulomb = 1.0\n";
+    let reading = of(text).unwrap();
+    assert_eq!(
+        reading.used,
+        ["dt = 0.001", "mts-level2-factor = 4", "mts-level2-forces = longrange-nonbonded"]
+    );
+}
+
+#[test]
+fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut random = |n: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % n.max(1) as u64) as usize
+    };
+    let bits = [
+        "0",
+        "-1",
+        "1e999",
+        "99999999999999999999",
+        "(",
+        ")",
+        "[",
+        "]",
+        ",",
+        "=",
+        "<",
+        "/>",
+        "&",
+        "#",
+        ";",
+        "\n",
+        "\u{e9}",
+        "*",
+        "respa",
+        "yes",
+        "",
+        "\0",
+        "0x",
+        "1d0",
+    ];
+    let (mut good, mut bad) = (0, 0);
+    for _ in 0..10_000 {
+        let mut text: Vec<char> = TEXTS[random(TEXTS.len())].1.chars().collect();
+        for _ in 0..=random(3) {
+            let (at, until) = (random(text.len() + 1), random(8));
+            let upto = (at + until).min(text.len());
+            match random(3) {
+                0 => drop(text.drain(at..upto)),
+                1 => drop(text.splice(at..at, bits[random(bits.len())].chars().collect::<Vec<_>>())),
+                _ => drop(text.splice(at..upto, bits[random(bits.len())].chars().collect::<Vec<_>>())),
+            }
+        }
+        let text: String = text.into_iter().collect();
+        match of(&text) {
+            Ok(reading) => {
+                good += 1;
+                // What is read can be rewritten or says why not.
+                let outer = reading.scheme.last_but_one() * ratio(2, 1);
+                if let Ok(new) = reading.rewritten(&outer) {
+                    let again = of(&new).map(|again| again.scheme.outer().clone());
+                    assert!(again.is_err() || again.unwrap() == outer, "{text:?}\n{new:?}");
+                }
+            }
+            Err(error) => {
+                bad += 1;
+                let message = error.to_string();
+                assert!(!message.contains('\n') && error.kind() != Kind::Io, "{message}");
+                assert!(!error.field().is_empty() && !error.remedy().is_empty(), "{text:?}: {message}");
+            }
+        }
+    }
+    assert!(good > 1000 && bad > 1000, "{good} {bad}");
+}
