@@ -527,3 +527,30 @@ fn bad_systems_are_refused_by_name() {
     let short = Symmetric::dense("K", &[vec![ratio(1, 1), ratio(2, 1)], vec![ratio(2, 1)]]);
     assert!(short.unwrap_err().to_string().starts_with("K[1] = 1 entries"));
 }
+
+/// Two elements of a bar, lengths 3 and 2, its ends fixed: one mass of half of each, with C l/c for the step of each.
+fn two_elements(courant: &Rational) -> System {
+    let spring = |length: i64| {
+        let stiffness = Symmetric::diagonal(&[ratio(1, length)]);
+        Potential::new(stiffness, courant * ratio(length, 1))
+    };
+    System::new(Symmetric::diagonal(&[ratio(5, 2)]), vec![spring(3), spring(2)]).unwrap()
+}
+
+#[test]
+fn a_smaller_courant_number_can_destabilize_a_bar() {
+    let decide = |thousandths: i64| {
+        let analysis = decide_system(&two_elements(&ratio(thousandths, 10_000)), &Limits::default()).unwrap();
+        assert!(analysis.is_proof());
+        analysis
+    };
+    for courant in [10_000, 9_500, 8_859, 8_557, 8_000, 5_000] {
+        assert!(decide(courant).is_stable(), "{courant}");
+    }
+    for courant in [8_559, 8_600, 8_700, 8_800, 8_857] {
+        assert!(!decide(courant).is_stable(), "{courant}");
+    }
+    // Tenfold in 77.3 of the slow steps, 3 C.
+    let steps = 10f64.ln() / (decide(8_700).growth_rate() * 3.0 * 0.87);
+    assert!((steps - 77.3).abs() < 0.05, "{steps}");
+}
