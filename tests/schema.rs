@@ -240,10 +240,18 @@ fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
         for key in document.as_object().unwrap().keys() {
             let mut broken = document.clone();
             broken.as_object_mut().unwrap().remove(key);
-            let optional =
-                ["families", "fastest", "friction", "measured", "moving", "own_orbit", "predicted_points"]
-                    .contains(&key.as_str())
-                    && name != "system-map";
+            let optional = [
+                "families",
+                "fastest",
+                "friction",
+                "measured",
+                "moving",
+                "own_orbit",
+                "predicted_points",
+                "time_unit",
+            ]
+            .contains(&key.as_str())
+                && name != "system-map";
             assert_eq!(validator.is_valid(&broken), optional, "{name} without {key}");
             let mut broken = document.clone();
             broken[key] = json!({"surprise": 1.5});

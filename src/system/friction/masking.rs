@@ -51,7 +51,7 @@ pub fn masking<S: Real>(clocks: &ManyClocks<S>) -> Result<Option<Masking>> {
         let tick = Ball::from_rational(clocks.schedule().tick(), bits);
         let rate = |c: &Ball| c.ln(bits).and_then(|ln| ln.neg().div(&tick, bits));
         let (Some(slow), Some(fast)) = (rate(&hi), rate(&lo)) else { continue };
-        let below = |side| Bernstein::of(&trace, side, bits).is_positive_up_to(&lo);
+        let below = |side| Bernstein::of(&trace, side, bits).proves_positive_up_to(&lo);
         return Ok(Some(Masking { rate: slow.union(&fast, bits), stays: below(1) && below(-1) }));
     }
     Err(Error::budget("a resonance this weak", HIGHEST).or("choose steps nearer to its middle"))
@@ -186,7 +186,7 @@ impl Bernstein {
     }
 
     /// Whether it is proven positive on (0, c\].
-    fn is_positive_up_to(self, c: &Ball) -> bool {
+    fn proves_positive_up_to(self, c: &Ball) -> bool {
         let mut open = vec![(self, 0)];
         while let Some((own, depth)) = open.pop() {
             let is_beyond = own.lo.compare(c).is_some_and(std::cmp::Ordering::is_ge);

@@ -22,7 +22,7 @@ impl Kernel {
         let stable = region || self.is_stable_by_index(outer, 0.0);
         let counted = !stable && self.has_real_unstable_mode(outer, 0.0);
         let beyond =
-            (!region && !(counted && self.is_symmetric(outer))).then(|| self.beyond(outer, 0.0)).flatten();
+            (!(region || counted && self.is_symmetric(outer))).then(|| self.beyond(outer, 0.0)).flatten();
         let (kind, evidence) = match (&beyond, stable, counted) {
             (_, true, _) => (Kind::Elliptic, Evidence::Signs),
             (_, _, true) => (Kind::Hyperbolic, Evidence::Signs),

@@ -51,11 +51,9 @@ impl Kernel {
     /// The largest ε, within a percent (in the first stable region) or a tenth, for which [`Kernel::is_stable`] holds; `None` where
     /// it does not for 0.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
-        let (stable, width): (fn(&Kernel, &Outer, f64) -> bool, f64) =
-            match self.is_in_first_region(outer, 0.0) {
-                true => (Kernel::is_in_first_region, 1.01),
-                false => (Kernel::is_stable_by_index, 1.1),
-            };
+        let is_in_region = self.is_in_first_region(outer, 0.0);
+        let stable = if is_in_region { Kernel::is_in_first_region } else { Kernel::is_stable_by_index };
+        let width = if is_in_region { 1.01 } else { 1.1 };
         if !stable(self, outer, 0.0) {
             return None;
         }
