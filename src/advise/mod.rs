@@ -13,7 +13,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | [`unit`] | fs, 1/cm, amu, kcal/mol/A²: exactly |
+//! | [`mod@unit`] | fs, 1/cm, amu, kcal/mol/A²: exactly |
 //! | `mode` | periods, wavenumbers, bonds → stiffnesses |
 //! | `levels` | one mass, K clocks: verdict, first stable region |
 //! | `interval` | unstable intervals of the outer step |

@@ -71,8 +71,10 @@ pub fn figure(advice: &Advice, title: &str) -> Figure {
     let pairs = answer.pairs.iter().map(|pair| pair.modes.map(|i| advice.modes[i].name.as_str()).join(" + "));
     let ticks =
         names.chain(pairs).enumerate().map(|(i, name)| Tick { at: place(i), label: Some(name) }).collect();
+    // Above the rows there is room for two lines of labels.
+    let top = rows as f64 + 0.6;
     let x = Axis::linear(&format!("outer step (fs), {}", ratio(answer)), 0.0, right);
-    let mut panel = Panel::new(x, Axis::linear("", -0.7, rows as f64 - 0.3).ticks(ticks))
+    let mut panel = Panel::new(x, Axis::linear("", -0.7, top).ticks(ticks))
         .with(areas(&safe, SAFE).labelled("proven stable, all periods in the band"))
         .with(areas(&caution, CAUTION).labelled("the same, beyond T/3 (published drift)"))
         .with(Layer::lines(hatch(&caution, pitch, false), Stroke::THIN))
@@ -94,20 +96,20 @@ pub fn figure(advice: &Advice, title: &str) -> Figure {
                 .labelled("two modes may resonate (first order)"),
         );
     }
-    for (outer, answer) in outers.iter().zip(&advice.schemes) {
-        let line = vec![vec![[*outer, -0.7], [*outer, rows as f64 - 0.3]]];
+    for (i, (outer, answer)) in outers.iter().zip(&advice.schemes).enumerate() {
+        let line = vec![vec![[*outer, -0.7], [*outer, top]]];
         let label =
             format!("{} fs: {}", crate::advise::unit::decimal(answer.scheme.outer()), answer.status.name());
-        let note = Note::new([*outer, rows as f64 - 0.3], &label)
-            .anchored(Anchor::Middle, [0.0, 6.5])
-            .in_colour(INK);
+        let (anchor, shift) = if *outer > 0.8 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
+        let height = rows as f64 + if i % 2 == 0 { 0.25 } else { -0.15 };
+        let note = Note::new([*outer, height], &label).anchored(anchor, [shift, 0.0]).in_colour(INK);
         panel = panel.with(Layer::lines(line, Stroke::LINE)).note(note);
     }
     if let Some(safe) = answer.safe.as_ref().map(to_f64) {
-        let line = vec![vec![[safe, -0.7], [safe, rows as f64 - 0.3]]];
+        let line = vec![vec![[safe, -0.7], [safe, top]]];
         panel = panel.with(Layer::lines(line, Stroke::DASHED.in_colour(COEXISTENCE)).labelled("recommended"));
     }
-    Figure::new(150.0, 46.0 + 9.0 * rows as f64).named(title).with(panel.legend(Place::Above))
+    Figure::new(150.0, 54.0 + 9.0 * rows as f64).named(title).with(panel.legend(Place::Above))
 }
 
 fn ratio(answer: &Answer) -> String {

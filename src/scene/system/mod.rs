@@ -378,7 +378,7 @@ impl SystemScene {
     /// bonds, or where the equilibrium is the orbit.
     ///
     /// # Errors
-    /// Where no orbit is found; as [`decide_along`].
+    /// Where no orbit is found; as [`decide_along`](crate::system::decide_along).
     pub fn own_orbit(&self, limits: &Limits) -> Result<Option<OwnOrbit>> {
         let Some(nonlinear) = self.nonlinear.as_ref().filter(|own| !own.is_harmonic) else { return Ok(None) };
         let masses: Vec<f64> = self.masses()?.iter().map(to_f64).collect();
