@@ -74,7 +74,7 @@
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
 //! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
-//! | 3 | `orbit` | orbits followed with proven bounds: Floquet coordinates, filter, refine |
+//! | 3 | `orbit` | orbits followed with proven bounds: Floquet coordinates, filter, refine, leaps over long runs |
 //! | 4 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
 //! | 5 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
 //! | 6 | [`map`] | the verdicts of whole grids of steps, pairs side by side |
@@ -82,10 +82,10 @@
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
-//! | 7 | [`recheck`] | every document's claims found again by another route |
 //! | 8 | [`scene`] | input documents → library types |
-//! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PNG |
-//! | 9 | [`cli`] | arguments → a scene → the library → a report |
+//! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
+//! | 9 | [`recheck`] | every document's claims found again by another route |
+//! | 10 | [`cli`] | arguments → a scene → the library → a report |
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
 //! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].

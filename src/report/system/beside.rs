@@ -51,8 +51,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
 pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(labels) = own.labels {
-        let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
-        for (n, mode) in (1..).zip(modes) {
+        for (n, mode) in super::fastest(analysis).0 {
             let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
             lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
         }
