@@ -41,6 +41,8 @@ pub struct Nodes {
 }
 
 impl Nodes {
+    // Called at every kick, from another file.
+    #[inline]
     pub fn see(&mut self, sign: Option<Sign>) {
         if sign.is_none() {
             self.uncertain += 1;
