@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::report::friction;
 use crate::system::friction::Friction;
-use crate::system::{Analysis, OwnOrbit};
+use crate::system::{Analysis, Instability, OwnOrbit};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -51,7 +51,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
 pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(labels) = own.labels {
-        for (n, mode) in super::fastest(analysis).0 {
+        for (n, mode) in fastest(analysis).0 {
             let told: Vec<_> = moving(mode).iter().map(|&(i, x)| format!("{} {x:.3}", labels[i])).collect();
             lines.push(format!("  growing mode {n} moves most: {}", told.join(", ")));
         }
@@ -65,8 +65,21 @@ pub(super) fn lines(own: &Beside, analysis: &Analysis) -> Vec<String> {
     lines
 }
 
+/// The growing modes that a person is shown.
+const SHOWN_MODES: usize = 12;
+
+/// The fastest growing modes, each with its number in the document, in the document's order; and how many are left out.
+pub(super) fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize) {
+    let mut modes: Vec<_> = (1..).zip(analysis.parts.iter().flat_map(|part| &part.instabilities)).collect();
+    modes.sort_by(|a, b| b.1.growth_rate.total_cmp(&a.1.growth_rate));
+    let left_out = modes.len().saturating_sub(SHOWN_MODES);
+    modes.truncate(SHOWN_MODES);
+    modes.sort_by_key(|(n, _)| *n);
+    (modes, left_out)
+}
+
 /// The degrees of freedom with the longest entries of a shape, and these.
-fn moving(mode: &crate::system::Instability) -> Vec<(usize, f64)> {
+fn moving(mode: &Instability) -> Vec<(usize, f64)> {
     let length = |i: usize| mode.shape[i].hypot(mode.quadrature[i]);
     let mut order: Vec<usize> = (0..mode.shape.len()).filter(|&i| length(i) > 0.0).collect();
     order.sort_by(|&a, &b| length(b).total_cmp(&length(a)).then(a.cmp(&b)));

@@ -135,7 +135,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
-    let (growing, left_out) = fastest(analysis);
+    let (growing, left_out) = beside::fastest(analysis);
     lines.extend(growing.iter().map(|(_, unstable)| format!("  {}", described(unstable))));
     if left_out > 0 {
         let modes = counted(left_out, "mode grows", "modes grow");
@@ -145,19 +145,6 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
-}
-
-/// The growing modes that a person is shown.
-const SHOWN_MODES: usize = 12;
-
-/// The fastest growing modes, each with its number in the document, in the document's order; and how many are left out.
-fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize) {
-    let mut modes: Vec<_> = (1..).zip(analysis.parts.iter().flat_map(|part| &part.instabilities)).collect();
-    modes.sort_by(|a, b| b.1.growth_rate.total_cmp(&a.1.growth_rate));
-    let left_out = modes.len().saturating_sub(SHOWN_MODES);
-    modes.truncate(SHOWN_MODES);
-    modes.sort_by_key(|(n, _)| *n);
-    (modes, left_out)
 }
 
 /// Trace, label and families of one oscillator in words.

@@ -3,6 +3,7 @@
 //! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or Fortran's).
 
 use std::fs::File;
+#[cfg(feature = "npz")]
 use std::io::Read;
 use std::path::Path;
 
