@@ -15,10 +15,11 @@ use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::ToPrimitive;
 
-use super::ends::{End, Ends, Nodes};
+use super::balls::BallOrbit;
+use super::ends::{End, Ends};
 use crate::number::{Ball, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
-use crate::schedule::Schedule;
+use crate::schedule::{KickDrift, Schedule};
 
 /// From so many base steps between two kicks of the other clock on, powers are cheaper than kicks whatever the bits.
 const LONG_RUN: u64 = 1000;
@@ -41,107 +42,85 @@ pub fn kicks(ratio: Ratio) -> u64 {
 /// The even and the odd solution at T/2; no condition, enclosures as wide as `bits` bits make them.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
     let mut leaps = Leaps::new(clocks, schedule, bits);
-    Ends { even: leaps.end(1, 0), odd: leaps.end(0, 1) }
+    Ends { even: leaps.end([1, 0]), odd: leaps.end([0, 1]) }
 }
 
 /// [[a, b], [c, d]]
 type Matrix = [Ball; 4];
 
-struct Leaps {
+/// How the base alone moves.
+enum Turn {
+    /// θ/π, for 0 < s < 4.
+    By(Ball),
+    /// s ≥ 4: no rotation.
+    None,
+}
+
+struct Leaps<'a> {
+    schedule: &'a Schedule,
     bits: u32,
-    /// Ticks in the unit of time h1, of the base's step and of the other clock's, and of T/2.
-    unit: u64,
+    /// The steps of the base and of the other clock, in ticks.
     base: u64,
     other: u64,
-    end: u64,
     /// The strengths of the base, of the other clock and of both.
     strengths: [Ball; 3],
-    /// (Whether s < 4, θ/π); `None` where these bits do not tell.
-    base_turn: Option<Option<Ball>>,
-    /// Powers of a step that were made already.
+    /// `None` where these bits do not tell.
+    turn: Option<Turn>,
+    /// A step's matrix, and powers of it that were made already.
+    step: Matrix,
     powers: Vec<(u64, Matrix)>,
 }
 
-impl Leaps {
-    fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Self {
-        let steps = [schedule.clocks()[0].step(), schedule.clocks()[1].step()];
+impl<'a> Leaps<'a> {
+    fn new<S: Real>(clocks: &TwoClocks<S>, schedule: &'a Schedule, bits: u32) -> Self {
+        let [first, second] = [0, 1].map(|k| schedule.clocks()[k].step());
         let [fast, slow, both] = clocks.enclosures(bits);
-        let (base, other, strengths) = if steps[0] <= steps[1] {
-            (steps[0], steps[1], [fast, slow, both])
+        let (base, other, strengths) = if first <= second {
+            (first, second, [fast, slow, both])
         } else {
-            (steps[1], steps[0], [slow, fast, both])
+            (second, first, [slow, fast, both])
         };
-        let mut own = Leaps {
-            bits,
-            unit: steps[0],
-            base,
-            other,
-            end: schedule.period() / 2,
-            strengths,
-            base_turn: None,
-            powers: Vec::new(),
-        };
-        own.base_turn = own.turn();
-        own
+        let time = BallOrbit::new([0, 0], schedule, bits).time(base);
+        let s = strengths[0].mul(&time, bits);
+        // x ← x + t v, then v ← v − k x.
+        let step = [Ball::one(), time, strengths[0].neg(), Ball::one().sub(&s, bits)];
+        Leaps { schedule, bits, base, other, turn: turn(&s, bits), strengths, step, powers: Vec::new() }
     }
 
-    /// `Some(Some(θ/π))` for 0 < s < 4, `Some(None)` for s ≥ 4.
-    fn turn(&self) -> Option<Option<Ball>> {
-        let bits = self.bits;
-        let s = self.strengths[0].mul(&self.time(self.base), bits);
-        let beyond = s.sub(&Ball::from_integer(&4.into()), bits);
-        match (s.sign()?, beyond.sign()?) {
-            (Sign::Positive, Sign::Negative) => {
-                let cosine = Ball::one().sub(&s.scale2(-1), bits);
-                Some(Some(cosine.acos(bits)?.div(&Ball::pi(bits), bits)?))
-            }
-            (Sign::Positive, _) => Some(None),
-            _ => None,
-        }
-    }
-
-    fn time(&self, ticks: u64) -> Ball {
-        Ball::from_rational(&Rational::new(ticks.into(), self.unit.into()), self.bits)
-    }
-
-    fn end(&mut self, x: u8, v: u8) -> End {
-        let [x, v] = [x, v].map(|n| Ball::from_integer(&n.into()));
-        let mut orbit = Orbit { x, v, nodes: Nodes::default() };
-        let strengths = self.strengths.clone();
-        let bits = self.bits;
-        orbit.see();
-        orbit.kick(&strengths[2].scale2(-1), bits);
-        let mut now = 0;
-        while now < self.end {
-            let next = ((now / self.other + 1) * self.other).min(self.end);
+    fn end(&mut self, start: [u8; 2]) -> End {
+        let mut orbit = BallOrbit::new(start, self.schedule, self.bits);
+        let [base, other, both] = self.strengths.clone();
+        let (mut now, end) = (0, self.schedule.period() / 2);
+        orbit.arrive();
+        orbit.kick(&both.scale2(-1));
+        while now < end {
+            let next = ((now / self.other + 1) * self.other).min(end);
             // The base's strikes strictly between.
             let (first, last) = (now / self.base + 1, next.div_ceil(self.base) - 1);
             if first <= last {
-                orbit.drift(&self.time(first * self.base - now), bits);
-                orbit.see();
-                orbit.kick(&strengths[0], bits);
+                orbit.drift(first * self.base - now);
+                orbit.arrive();
+                orbit.kick(&base);
                 self.leap(&mut orbit, last - first);
                 now = last * self.base;
             }
-            orbit.drift(&self.time(next - now), bits);
-            orbit.see();
+            orbit.drift(next - now);
+            orbit.arrive();
             now = next;
             let strength = match (now.is_multiple_of(self.base), now.is_multiple_of(self.other)) {
-                (true, true) => &strengths[2],
-                (true, false) => &strengths[0],
-                (false, true) => &strengths[1],
+                (true, true) => &both,
+                (true, false) => &base,
+                (false, true) => &other,
                 (false, false) => break,
             };
-            let part = if now == self.end { strength.scale2(-1) } else { strength.clone() };
-            orbit.kick(&part, bits);
+            orbit.kick(&if now == end { strength.scale2(-1) } else { strength.clone() });
         }
-        let signs = (orbit.x.sign(), orbit.v.sign());
-        End { signs, nodes: orbit.nodes.count(), x: orbit.x, v: orbit.v }
+        orbit.end()
     }
 
     /// `steps` steps: a few one by one until x has a certain sign, then all at once but for the last few, before which x is near
     /// 0 again.
-    fn leap(&mut self, orbit: &mut Orbit, steps: u64) {
+    fn leap(&mut self, orbit: &mut BallOrbit, steps: u64) {
         let mut left = steps;
         for _ in 0..NEAR_ZERO.min(steps) {
             if orbit.nodes.last_certain().is_some() {
@@ -151,32 +130,38 @@ impl Leaps {
             left -= 1;
         }
         for rest in 0..NEAR_ZERO.min(left) {
-            let next = orbit.moved(&self.power(left - rest), self.bits);
-            let signs = orbit.nodes.last_certain().zip(certain(&next.x));
+            let mut next = self.moved(orbit, left - rest);
+            let signs = orbit.nodes.last_certain().zip(next.sign());
             if signs.is_none() && rest + 1 < NEAR_ZERO.min(left) {
                 continue;
             }
             let changes = signs.and_then(|(before, after)| self.changes(left - rest, before != after));
-            let mut nodes = orbit.nodes.clone();
-            nodes.pass(changes, certain(&next.x));
-            *orbit = Orbit { nodes, ..next };
-            left = rest;
+            next.nodes.pass(changes, next.sign());
+            (*orbit, left) = (next, rest);
             break;
         }
         (0..left).for_each(|_| self.step(orbit));
     }
 
-    fn step(&self, orbit: &mut Orbit) {
-        orbit.drift(&self.time(self.base), self.bits);
-        orbit.see();
-        orbit.kick(&self.strengths[0], self.bits);
+    fn step(&self, orbit: &mut BallOrbit) {
+        orbit.drift(self.base);
+        orbit.arrive();
+        orbit.kick(&self.strengths[0]);
+    }
+
+    /// The orbit after n steps, its sign changes not counted yet.
+    fn moved(&mut self, orbit: &BallOrbit, n: u64) -> BallOrbit {
+        let ([a, b, c, d], bits) = (self.power(n), self.bits);
+        let row = |m: &Ball, n: &Ball| m.mul(&orbit.x, bits).add(&n.mul(&orbit.v, bits), bits);
+        orbit.at(row(&a, &b), row(&c, &d))
     }
 
     /// The sign changes of x over so many steps, odd or even in number; `None` where it is not known.
     fn changes(&self, steps: u64, is_odd: bool) -> Option<u64> {
         let fits = |n: &u64| n.is_odd() == is_odd;
-        let Some(turn) = self.base_turn.as_ref()? else {
-            return [steps, steps.checked_sub(1)?].into_iter().find(fits);
+        let turn = match self.turn.as_ref()? {
+            Turn::By(turn) => turn,
+            Turn::None => return [steps, steps.checked_sub(1)?].into_iter().find(fits),
         };
         let turns = turn.mul(&Ball::from_integer(&BigInt::from(steps)), self.bits);
         let whole = |x: Rational| x.floor().to_integer().to_u64();
@@ -190,15 +175,11 @@ impl Leaps {
         if let Some((_, known)) = self.powers.iter().find(|(m, _)| *m == n) {
             return known.clone();
         }
-        let (drift, kick, bits) = (self.time(self.base), &self.strengths[0], self.bits);
-        // x ← x + t v, then v ← v − k x.
-        let turned = Ball::one().sub(&kick.mul(&drift, bits), bits);
-        let step = [Ball::one(), drift, kick.neg(), turned];
         let mut result = [Ball::one(), Ball::zero(), Ball::zero(), Ball::one()];
         for bit in (0..64 - n.leading_zeros()).rev() {
-            result = product(&result, &result, bits);
+            result = product(&result, &result, self.bits);
             if n >> bit & 1 == 1 {
-                result = product(&step, &result, bits);
+                result = product(&self.step, &result, self.bits);
             }
         }
         // Two lengths of runs alternate, and each may be cut twice.
@@ -208,41 +189,23 @@ impl Leaps {
     }
 }
 
+/// How a base of strength s in its own unit of time turns; `None` where the ball does not tell.
+fn turn(s: &Ball, bits: u32) -> Option<Turn> {
+    let beyond = s.sub(&Ball::from_integer(&4.into()), bits);
+    match (s.sign()?, beyond.sign()?) {
+        (Sign::Positive, Sign::Negative) => {
+            let cosine = Ball::one().sub(&s.scale2(-1), bits);
+            Some(Turn::By(cosine.acos(bits)?.div(&Ball::pi(bits), bits)?))
+        }
+        (Sign::Positive, _) => Some(Turn::None),
+        _ => None,
+    }
+}
+
 fn product(m: &Matrix, n: &Matrix, bits: u32) -> Matrix {
     let [a, b, c, d] = m;
     let row = |x: &Ball, y: &Ball, i: usize| x.mul(&n[i], bits).add(&y.mul(&n[i + 2], bits), bits);
     [row(a, b, 0), row(a, b, 1), row(c, d, 0), row(c, d, 1)]
-}
-
-/// A solution on its way, and its sign changes from strike to strike so far.
-#[derive(Clone)]
-struct Orbit {
-    x: Ball,
-    v: Ball,
-    nodes: Nodes,
-}
-
-fn certain(x: &Ball) -> Option<Sign> {
-    x.sign().filter(|&sign| sign != Sign::Zero)
-}
-
-impl Orbit {
-    fn drift(&mut self, time: &Ball, bits: u32) {
-        self.x = self.x.add(&self.v.mul(time, bits), bits);
-    }
-
-    fn kick(&mut self, strength: &Ball, bits: u32) {
-        self.v = self.v.sub(&strength.mul(&self.x, bits), bits);
-    }
-
-    fn see(&mut self) {
-        self.nodes.see(certain(&self.x));
-    }
-
-    fn moved(&self, [a, b, c, d]: &Matrix, bits: u32) -> Orbit {
-        let row = |m: &Ball, n: &Ball| m.mul(&self.x, bits).add(&n.mul(&self.v, bits), bits);
-        Orbit { x: row(a, b), v: row(c, d), ..self.clone() }
-    }
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! or leaps over long runs of one clock's kicks. All but the leaps rest on the theorem
 //! of [`bound`]. [`residue`] proves that no entry of the half period is zero.
 
+mod balls;
 mod bound;
 mod certificate;
 mod ends;

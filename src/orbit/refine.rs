@@ -9,11 +9,12 @@
 use num_bigint::BigInt;
 use num_traits::{FromPrimitive, Signed, ToPrimitive};
 
+use super::balls::BallOrbit;
 use super::bound::StepBound;
 use super::ends::Nodes;
 pub use super::ends::{End, Ends};
 use super::leap;
-use crate::number::{Ball, Ratio, Rational, Real, Sign};
+use crate::number::{Ball, Ratio, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Kicks, Schedule};
 
@@ -52,41 +53,11 @@ pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, e
 pub fn run_balls<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Ends {
     let kicks = Kicks::of_two_clocks(clocks.enclosures(bits), |k| [k.clone(), k.scale2(-1)]);
     let end = |x: u8, v: u8| {
-        let [x, v] = [x, v].map(|n| Ball::from_integer(&n.into()));
-        let ticks = schedule.clocks()[0].step();
-        let mut orbit = BallOrbit { x, v, bits, ticks, nodes: Nodes::default() };
+        let mut orbit = BallOrbit::new([x, v], schedule, bits);
         kicks.lead(schedule.half_period(), &mut orbit);
-        let BallOrbit { x, v, nodes, .. } = orbit;
-        let signs = (x.sign(), v.sign());
-        End { x, v, signs, nodes: nodes.count() }
+        orbit.end()
     };
     Ends { even: end(1, 0), odd: end(0, 1) }
-}
-
-/// A solution on its way in balls of `bits` bits.
-struct BallOrbit {
-    x: Ball,
-    v: Ball,
-    bits: u32,
-    /// Ticks in the unit of time h1.
-    ticks: u64,
-    nodes: Nodes,
-}
-
-impl KickDrift<Ball> for BallOrbit {
-    fn drift(&mut self, ticks: u64) {
-        let time = Ball::from_rational(&Rational::new(ticks.into(), self.ticks.into()), self.bits);
-        self.x = self.x.add(&self.v.mul(&time, self.bits), self.bits);
-    }
-
-    fn arrive(&mut self) {
-        // Balls of rationals can be exactly zero: no sign, as if it were uncertain.
-        self.nodes.see(self.x.sign().filter(|&sign| sign != Sign::Zero));
-    }
-
-    fn kick(&mut self, strength: &Ball) {
-        self.v = self.v.sub(&strength.mul(&self.x, self.bits), self.bits);
-    }
 }
 
 /// The lengths and strengths of the events, and the constants of the bound.
