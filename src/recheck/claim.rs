@@ -5,7 +5,7 @@ use serde_json::{Map, Value};
 
 #[cfg(feature = "advise")]
 use super::advise;
-use super::context::{Context, Options, Outcome, See};
+use super::context::{Context, Options, Outcome, REMEDY, See};
 #[cfg(feature = "system")]
 use super::system;
 use super::{closings, compare, curves, map, polynomial, proposition, survey, tongues, verdict};
@@ -100,8 +100,6 @@ impl Claim {
         }
     }
 }
-
-const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
 
 /// All fields by their types; one that is wrong is named by its path.
 fn typed<T: DeserializeOwned>(document: Map<String, Value>) -> Result<T> {

@@ -7,6 +7,9 @@ use crate::error::{Error, Result};
 use crate::parallel::try_map;
 use crate::verdict::Limits;
 
+/// What to do with a document that cannot be read.
+pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be rechecked";
+
 /// How much is rechecked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {

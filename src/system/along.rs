@@ -93,14 +93,16 @@ pub fn decide_along(
         Error::input("hessians", "too long a period for doubles", "choose steps with a simpler ratio")
     })?;
     let time = schedule.tick() * Rational::from_integer(schedule.period().into());
-    let told = spectrum.map(|own| explained(&own, &blocks.scales, kind, to_f64(&time), |_, _, _| None));
-    let (multipliers, mut instabilities) = told.unwrap_or_default();
+    let explained = spectrum.map(|own| {
+        let shape = |i| own.shape(i, &blocks.scales);
+        explained((&own.mu, own.radius), shape, kind, to_f64(&time), |_, _, _| None)
+    });
+    let (multipliers, mut instabilities) = explained.unwrap_or_default();
     instabilities.iter_mut().for_each(Instability::normalize);
-    let period = Laurent::from_rational(time);
     let part = Part {
         dofs: (0..n).collect(),
         size: n,
-        period: period.clone(),
+        period: Laurent::from_rational(time),
         kind,
         evidence,
         multipliers,
@@ -108,20 +110,9 @@ pub fn decide_along(
         roots: None,
         oscillator: None,
     };
-    Ok(Analysis {
-        size: n,
-        clocks: schedule.clocks().len(),
-        period,
-        kind,
-        rigid_modes: Vec::new(),
-        parts: vec![part],
-        warnings: if kind == Kind::Elliptic || evidence.is_proof() {
-            Vec::new()
-        } else {
-            vec![NOT_PROVEN.into()]
-        },
-        measured: None,
-    })
+    let silent = kind == Kind::Elliptic || evidence.is_proof();
+    let warnings = if silent { Vec::new() } else { vec![NOT_PROVEN.into()] };
+    Ok(Analysis::of_part(part, schedule.clocks().len(), warnings))
 }
 
 const NOT_PROVEN: &str = "doubles do not prove the verdict along the orbit: it is an estimate";

@@ -152,6 +152,20 @@ pub struct Analysis {
 }
 
 impl Analysis {
+    /// That of a system which is one part, all of its degrees of freedom its own.
+    pub(super) fn of_part(part: Part, clocks: usize, warnings: Vec<String>) -> Self {
+        Analysis {
+            size: part.dofs.len(),
+            clocks,
+            period: part.period.clone(),
+            kind: part.kind,
+            rigid_modes: Vec::new(),
+            parts: vec![part],
+            warnings,
+            measured: None,
+        }
+    }
+
     /// Whether powers of the propagator stay bounded, rigid modes apart.
     pub fn is_stable(&self) -> bool {
         matches!(self.kind, Kind::Elliptic | Kind::Coexistence)

@@ -12,33 +12,31 @@ use super::spectrum::{Spectrum, from_segment};
 use crate::number::rational::to_f64;
 use crate::verdict::Kind;
 
-/// All multipliers over a period by increasing real part of μ, and if hyperbolic the unstable ones, whose shapes are v_i/a_i.
+/// All multipliers over a period by increasing real part of μ (within a radius where one is proven), and if hyperbolic the
+/// unstable ones with the shapes of their solutions.
 pub(super) fn explained(
-    spectrum: &Spectrum,
-    scales: &[f64],
+    (mu, radius): (&[c64], Option<f64>),
+    shape: impl Fn(usize) -> Vec<c64>,
     kind: Kind,
     period: f64,
     resonance: impl Fn(&[c64], Origin, c64) -> Option<Resonance>,
 ) -> (Vec<Multiplier>, Vec<Instability>) {
-    let mut order: Vec<usize> = (0..spectrum.mu.len()).collect();
-    order.sort_by(|&i, &j| spectrum.mu[i].re.total_cmp(&spectrum.mu[j].re));
-    let multiplier = |&i: &usize| Multiplier::new(spectrum.mu[i], spectrum.radius);
+    let mut order: Vec<usize> = (0..mu.len()).collect();
+    order.sort_by(|&i, &j| mu[i].re.total_cmp(&mu[j].re));
+    let multiplier = |&i: &usize| Multiplier::new(mu[i], radius);
     let multipliers = order.iter().map(multiplier).collect();
     if kind != Kind::Hyperbolic {
         return (multipliers, Vec::new());
     }
     // Conjugates tell the same; the farthest one from stability is there even if no disc is clear of it.
-    let upper = |i: &&usize| spectrum.mu[**i].im >= 0.0;
-    let farthest = order
-        .iter()
-        .filter(upper)
-        .max_by(|a, b| from_segment(spectrum.mu[**a]).total_cmp(&from_segment(spectrum.mu[**b])));
-    let clear = |i: &&usize| from_segment(spectrum.mu[**i]) > spectrum.radius.unwrap_or(ROUGH);
+    let upper = |i: &&usize| mu[**i].im >= 0.0;
+    let distance = |i: &usize| from_segment(mu[*i]);
+    let farthest = order.iter().filter(upper).max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let clear = |i: &&usize| distance(i) > radius.unwrap_or(ROUGH);
     let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
     let instability = |&i: &usize| {
-        let z = exponent(spectrum.mu[i]);
-        let origin = if spectrum.mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision };
-        let shape: Vec<_> = (0..scales.len()).map(|k| spectrum.vectors[(k, i)] / scales[k]).collect();
+        let (z, shape) = (exponent(mu[i]), shape(i));
+        let origin = if mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision };
         Instability {
             multiplier: multiplier(&i),
             origin,
@@ -65,7 +63,8 @@ impl Piece {
             let modes = modes.get_or_init(|| NormalModes::new(&self.system, &self.frame));
             modes.as_ref().map(|modes| modes.resonance(&self.system, shape, origin, z))
         };
-        explained(spectrum, &blocks.scales, kind, to_f64(&self.system.period()), resonance)
+        let shape = |i| spectrum.shape(i, &blocks.scales);
+        explained((&spectrum.mu, spectrum.radius), shape, kind, to_f64(&self.system.period()), resonance)
     }
 
     /// Brings a shape from the piece's coordinates to those of the whole system of `n`, its longest entry 1.

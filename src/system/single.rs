@@ -79,23 +79,13 @@ pub fn decide_oscillator(
     let period = Laurent::from_rational(clocks.period()) * unit.clone();
     // Over Q[π] the degree grows with each kick too.
     let exact = |kicks: f64| 0.15 * kicks.powi(4);
-    let part = decide_clocks(clocks, rounded, period.clone(), exact, limits)?;
+    let part = decide_clocks(clocks, rounded, period, exact, limits)?;
     let warnings = if rounded.is_total_semidefinite() {
         Vec::new()
     } else {
         vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]
     };
-    let (size, clocks, kind) = (1, clocks.strikes().len(), part.kind);
-    Ok(Analysis {
-        size,
-        clocks,
-        period,
-        kind,
-        rigid_modes: Vec::new(),
-        parts: vec![part],
-        warnings,
-        measured: None,
-    })
+    Ok(Analysis::of_part(part, clocks.strikes().len(), warnings))
 }
 
 /// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.

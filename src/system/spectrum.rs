@@ -46,6 +46,11 @@ impl Spectrum {
         Spectrum::of(s, s_error)
     }
 
+    /// The i-th solution's positions, from coordinates that are scaled by `scales`.
+    pub fn shape(&self, i: usize, scales: &[f64]) -> Vec<c64> {
+        scales.iter().enumerate().map(|(k, scale)| self.vectors[(k, i)] / scale).collect()
+    }
+
     /// That of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
     pub fn of(s: Mat<f64>, s_error: Option<f64>) -> Option<Spectrum> {
         let m = s.nrows();

@@ -13,7 +13,7 @@ use std::ops::Deref;
 use serde::de::IgnoredAny;
 use serde_json::{Map, Value};
 
-use super::context::{Checked, Context, Outcome};
+use super::context::{Checked, Context, Outcome, REMEDY};
 use super::sample::sample;
 use super::written::Written;
 use crate::avi::{Ends, Run};
@@ -90,7 +90,7 @@ impl Document {
     fn input(&self) -> Result<Input> {
         let input = self.0.get("input").cloned().unwrap_or_default();
         serde_json::from_value(input).map_err(|fault| {
-            let why = format!("{fault}; whole documents, as kickdrift wrote them, can be rechecked");
+            let why = format!("{fault}; {REMEDY}");
             Error::input("input", "not what the schema says", why)
         })
     }
@@ -135,7 +135,7 @@ fn limits(context: &Context) -> Limits {
 }
 
 fn missing(field: &str) -> Error {
-    Error::missing(field, "whole documents, as kickdrift wrote them, can be rechecked")
+    Error::missing(field, REMEDY)
 }
 
 impl Verdict {

@@ -6,14 +6,12 @@ use num_complex::Complex64;
 use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::number::{Laurent, Rational};
-use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part, exponent};
+use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part};
+use crate::system::explain::explained;
 use crate::system::measured::Measured;
-use crate::system::modes::Origin;
-use crate::system::spectrum::{Spectrum, from_segment};
+use crate::system::piece::estimate;
+use crate::system::spectrum::Spectrum;
 use crate::verdict::Kind;
-
-/// As for rational systems: what eigenvalues in doubles may be off by where nothing is proven.
-const ROUGH: f64 = 1e-6;
 
 impl Kernel {
     /// The verdict at an outer step, for the matrices given and for all within `accuracy`.
@@ -27,19 +25,15 @@ impl Kernel {
             (_, true, _) => (Kind::Elliptic, Evidence::Signs),
             (_, _, true) => (Kind::Hyperbolic, Evidence::Signs),
             (Some((Some(kind), _)), ..) => (*kind, Evidence::Discs),
-            (Some((None, spectrum)), ..) if spectrum.mu.iter().all(|&mu| from_segment(mu) < ROUGH) => {
-                (Kind::Elliptic, Evidence::Estimate)
-            }
-            _ => (Kind::Hyperbolic, Evidence::Estimate),
+            (Some((None, spectrum)), ..) => (estimate(spectrum), Evidence::Estimate),
+            (None, ..) => (Kind::Hyperbolic, Evidence::Estimate),
         };
         let (multipliers, instabilities) =
             self.multipliers(outer, kind, beyond.map(|(_, spectrum)| spectrum));
-        let period = Laurent::from_rational(period.clone());
-        let size = self.size();
         let part = Part {
             dofs: (0..self.modes.nrows()).collect(),
-            size,
-            period: period.clone(),
+            size: self.size(),
+            period: Laurent::from_rational(period.clone()),
             kind,
             evidence,
             multipliers,
@@ -47,16 +41,8 @@ impl Kernel {
             roots: None,
             oscillator: None,
         };
-        Analysis {
-            size: self.modes.nrows(),
-            clocks: 2,
-            period,
-            kind,
-            rigid_modes: Vec::new(),
-            parts: vec![part],
-            warnings: self.warnings(evidence),
-            measured: Some(self.measured(outer, accuracy)),
-        }
+        let measured = Some(self.measured(outer, accuracy));
+        Analysis { measured, ..Analysis::of_part(part, 2, self.warnings(evidence)) }
     }
 
     fn warnings(&self, evidence: Evidence) -> Vec<String> {
@@ -102,26 +88,12 @@ impl Kernel {
         let Some((mu, radius, shapes)) = self.eigenvalues(outer, spectrum) else { return Default::default() };
         let mut order: Vec<usize> = (0..mu.len()).collect();
         order.sort_by(|&i, &j| mu[i].re.total_cmp(&mu[j].re).then(mu[i].im.total_cmp(&mu[j].im)));
-        let multipliers = order.iter().map(|&i| Multiplier::new(mu[i], radius)).collect();
-        if kind != Kind::Hyperbolic {
-            return (multipliers, Vec::new());
-        }
-        let upper = || order.iter().copied().filter(|&i| mu[i].im >= 0.0);
-        let farthest = upper().max_by(|&i, &j| from_segment(mu[i]).total_cmp(&from_segment(mu[j])));
-        let unstable =
-            upper().filter(|&i| from_segment(mu[i]) > radius.unwrap_or(ROUGH) || Some(i) == farthest);
-        let instability = |i: usize| {
-            let (shape, quadrature) = self.shape(&shapes(i));
-            Instability {
-                multiplier: Multiplier::new(mu[i], radius),
-                origin: if mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision },
-                growth_rate: exponent(mu[i]).re / outer.step,
-                shape,
-                quadrature,
-                resonance: None,
-            }
-        };
-        (multipliers, unstable.map(instability).collect())
+        let sorted: Vec<_> = order.iter().map(|&i| mu[i]).collect();
+        let shape = |i: usize| self.shape(&shapes(order[i]));
+        let (multipliers, mut instabilities) =
+            explained((&sorted, radius), shape, kind, outer.step, |_, _, _| None);
+        instabilities.iter_mut().for_each(Instability::normalize);
+        (multipliers, instabilities)
     }
 
     /// Whether p θ < π for every mode, so that cos p θ − V^½ M V^½ tells all multipliers.
@@ -159,21 +131,11 @@ impl Kernel {
         Some((mu, None, Box::new(shape)))
     }
 
-    /// Mass-weighted positions of a combination of the modes, the longest entry 1.
-    fn shape(&self, amplitudes: &[Complex64]) -> (Vec<f64>, Vec<f64>) {
-        let n = self.modes.nrows();
-        let entry = |i: usize| {
-            amplitudes
-                .iter()
-                .enumerate()
-                .fold(Complex64::new(0.0, 0.0), |sum, (k, c)| sum + c * self.modes[(i, k)])
-        };
-        let all: Vec<Complex64> = (0..n).map(entry).collect();
-        let longest = all
-            .iter()
-            .copied()
-            .fold(Complex64::new(0.0, 0.0), |a, b| if b.norm_sqr() > a.norm_sqr() { b } else { a });
-        let scaled = |z: &Complex64| if longest.norm_sqr() > 0.0 { z / longest } else { *z };
-        (all.iter().map(|z| scaled(z).re).collect(), all.iter().map(|z| scaled(z).im).collect())
+    /// Mass-weighted positions of a combination of the modes.
+    fn shape(&self, amplitudes: &[Complex64]) -> Vec<Complex64> {
+        let nothing = Complex64::new(0.0, 0.0);
+        let entry =
+            |i| amplitudes.iter().enumerate().fold(nothing, |sum, (k, c)| sum + c * self.modes[(i, k)]);
+        (0..self.modes.nrows()).map(entry).collect()
     }
 }
