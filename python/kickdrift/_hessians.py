@@ -82,6 +82,21 @@ def _difference(force: Force, positions: Doubles, column: int, width: float) -> 
     return (ahead - force(moved).ravel()) / (2 * width)
 
 
+def descend(pull: Callable[[], Doubles], move: Callable[[Doubles], None], steps: int = 30) -> float:
+    """Move along what pulls until rounding ends its fall; the smallest pull that was seen."""
+    smallest, idle = np.inf, 0
+    for _ in range(steps):
+        pulled = pull()
+        size = float(np.linalg.norm(pulled))
+        # Rounding ends the fall of the force: two steps without a tenth less are the end.
+        idle = idle + 1 if size > 0.9 * smallest else 0
+        if idle == 2:
+            break
+        smallest = min(smallest, size)
+        move(pulled)
+    return float(smallest)
+
+
 def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float, steps: int = 30) -> Doubles:
     """The minimum beside the positions, by Newton's method with the soft directions left out.
 
@@ -91,17 +106,17 @@ def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float
         Where Newton's method does not arrive: the positions are not near a minimum.
     """
     own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))
-    smallest, idle = np.inf, 0
-    for _ in range(steps):
-        pull = force(own).ravel() / root
-        size = float(np.linalg.norm(pull))
-        # Rounding ends the fall of the force: two steps without a tenth less are the end.
-        idle = idle + 1 if size > 0.9 * smallest else 0
-        if idle == 2:
-            break
-        smallest = min(smallest, size)
+    stiffness = np.zeros((own.size, own.size))
+
+    def pull() -> Doubles:
+        return force(own).ravel() / root
+
+    def move(pulled: Doubles) -> None:
+        nonlocal own, stiffness
         stiffness, _ = hessian(force, own, masses, difference)
-        own += (_solve(stiffness, pull) / root).reshape(own.shape)
+        own = own + (soft_solve(stiffness, pulled) / root).reshape(own.shape)
+
+    smallest = descend(pull, move, steps)
     scale = norm(stiffness) * 1e-3 * float(np.sqrt(masses.max()))
     if not smallest < 1e-6 * scale:
         raise KickdriftError("positions", f"force {smallest:.1e}", "are not near a minimum: minimize them first")
@@ -112,7 +127,7 @@ def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float
 _SOFT = 1e-7
 
 
-def _solve(matrix: Doubles, right: Doubles) -> Doubles:
+def soft_solve(matrix: Doubles, right: Doubles) -> Doubles:
     values, vectors = np.linalg.eigh(matrix)
     firm = np.abs(values) > _SOFT * np.abs(values).max()
     solved: Doubles = vectors[:, firm] @ ((vectors[:, firm].T @ right) / values[firm])

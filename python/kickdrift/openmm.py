@@ -19,7 +19,18 @@ from typing import Any
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
-from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm
+from kickdrift._hessians import (
+    Doubles,
+    Force,
+    Monodromy,
+    Progress,
+    descend,
+    hessian,
+    minimum,
+    monodromy,
+    norm,
+    soft_solve,
+)
 from kickdrift._numbers import Exact, number
 from kickdrift._system import System
 
@@ -326,24 +337,22 @@ def _constrained_minimum(
 ) -> Doubles:
     """Newton's method along the constraints, each step put back on them."""
     force, where, masses = engine.force(-1), near, engine.masses
-    root = np.sqrt(np.repeat(masses, 3))
-    smallest, idle = np.inf, 0
-    for _ in range(30):
-        frame = _frame(where, masses, constraints, None)
-        pull = frame.T @ (force(where).ravel() / root)
-        size = float(np.linalg.norm(pull))
-        idle = idle + 1 if size > 0.9 * smallest else 0
-        if idle == 2:
-            break
-        smallest = min(smallest, size)
+    root, frame = np.sqrt(np.repeat(masses, 3)), _frame(where, masses, constraints, None)
+
+    def pull() -> Doubles:
+        return frame.T @ (force(where).ravel() / root)
+
+    def move(pulled: Doubles) -> None:
+        nonlocal where, frame
         matrix, _ = hessian(force, where, masses, difference)
         matrix = frame.T @ (matrix + _curvature(force(where), where, masses, constraints, None)) @ frame
-        values, vectors = np.linalg.eigh(matrix)
-        firm = np.abs(values) > 1e-7 * np.abs(values).max()
-        move = vectors[:, firm] @ ((vectors[:, firm].T @ pull) / values[firm])
-        engine.context.setPositions(where + ((frame @ move) / root).reshape(where.shape))
+        step = frame @ soft_solve(matrix, pulled)
+        engine.context.setPositions(where + (step / root).reshape(where.shape))
         engine.context.applyConstraints(1e-12)
         where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+        frame = _frame(where, masses, constraints, None)
+
+    descend(pull, move)
     return where
 
 
