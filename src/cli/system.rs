@@ -104,7 +104,12 @@ impl Args {
             return draw(
                 "output",
                 path,
-                &report::intervals_figure(&stretches, &rates, inner_steps, scene.title()),
+                &report::intervals_figure(
+                    &stretches,
+                    &rates,
+                    inner_steps,
+                    (scene.title(), scene.time_unit().unwrap_or("time")),
+                ),
             );
         }
         let document =

@@ -7,7 +7,7 @@ use super::clip::Rect;
 use super::font::Face;
 use super::key;
 use super::label::Label;
-use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, widest_number};
+use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, overhang, widest_number};
 use super::panel::{Panel, Place};
 
 /// The paper's rim.
@@ -38,7 +38,7 @@ pub(super) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -
     for _ in 0..2 {
         vertical = panels.iter().map(|panel| (above(panel, wide), below(panel))).collect();
         high = share(rows, &vertical, row, height);
-        horizontal = panels.iter().map(|panel| (left(panel, high), right(panel, high))).collect();
+        horizontal = panels.iter().map(|panel| (left(panel, high), right(panel, wide, high))).collect();
         wide = share(columns, &horizontal, column, width);
     }
     let xs = starts(columns, &horizontal, column, wide + BESIDE);
@@ -108,11 +108,12 @@ fn left(panel: &Panel, height: f64) -> f64 {
     TICK + GAP + widest_number(&panel.y, height) + 1.5 + label
 }
 
-fn right(panel: &Panel, height: f64) -> f64 {
+fn right(panel: &Panel, width: f64, height: f64) -> f64 {
     match &panel.bar {
         Some(bar) => key::bar_width(bar, height),
-        // The last number of the horizontal axis reaches over the frame by half its width.
-        None => 7.0,
+        // The last number of the horizontal axis reaches over the frame, by half its width at most: over the rim, too, but not
+        // over the paper.
+        None => (overhang(&panel.x, width) - RIM).max(7.0),
     }
 }
 
@@ -126,6 +127,16 @@ mod tests {
     }
 
     #[test]
+    fn a_long_last_number_stays_on_the_page() {
+        let x = Axis::linear("x", 0.0043, 0.0045);
+        let panel = Panel::new(x.clone(), Axis::linear("y", 0.0, 1.0));
+        let [left, _, right, _] = sites(&[panel], 1, 400.0, 200.0)[0].frame;
+        let beyond = overhang(&x, right - left);
+        assert!(beyond > 7.0 + RIM, "{beyond}: no such number");
+        assert!(right + beyond <= 400.0, "{right} + {beyond}");
+    }
+
+    #[test]
     fn frames_line_up_and_stay_on_the_page() {
         let panels = [panel("y").titled("a"), panel(""), panel("y"), panel("").titled("d")];
         let found: Vec<Rect> = sites(&panels, 2, 400.0, 300.0).iter().map(|site| site.frame).collect();
@@ -135,7 +146,10 @@ mod tests {
         for (frame, panel) in found.iter().zip(&panels) {
             let (wide, high) = (frame[2] - frame[0], frame[3] - frame[1]);
             assert!(frame[0] >= left(panel, high) && frame[1] >= above(panel, wide), "{frame:?}");
-            assert!(frame[2] + right(panel, high) <= 400.0 && frame[3] + below(panel) <= 300.0, "{frame:?}");
+            assert!(
+                frame[2] + right(panel, wide, high) <= 400.0 && frame[3] + below(panel) <= 300.0,
+                "{frame:?}"
+            );
         }
     }
 }

@@ -75,6 +75,12 @@ fn number_width(tick: &Tick) -> f64 {
     tick.label.as_ref().map_or(0.0, |label| NUMBER * Label::new(label).width)
 }
 
+/// By how much the numbers of a horizontal axis reach beyond its right end.
+pub(super) fn overhang(axis: &Axis, length: f64) -> f64 {
+    let beyond = |tick: &Tick| number_width(tick) / 2.0 - (1.0 - axis.unit(tick.at)) * length;
+    ticks(axis, 0, length).iter().map(beyond).fold(0.0, f64::max)
+}
+
 /// The width of the widest number on a vertical axis.
 pub(super) fn widest_number(axis: &Axis, length: f64) -> f64 {
     ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)

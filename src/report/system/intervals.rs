@@ -31,7 +31,12 @@ fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
 
 /// Outer step across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
 #[cfg(feature = "figure")]
-pub fn figure(stretches: &[Stretch], rates: &[Option<f64>], inner_steps: u64, title: &str) -> Figure {
+pub fn figure(
+    stretches: &[Stretch],
+    rates: &[Option<f64>],
+    inner_steps: u64,
+    (title, time): (&str, &str),
+) -> Figure {
     let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
     let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
     let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
@@ -51,17 +56,15 @@ pub fn figure(stretches: &[Stretch], rates: &[Option<f64>], inner_steps: u64, ti
         }
     }
     let unstable = shade(Holds::Unstable).len();
-    let mut panel =
-        Panel::new(Axis::linear("outer step (time)", lo, hi), Axis::linear("growth rate (1/time)", 0.0, top))
-            .titled(&format!(
-                "{}, {}",
-                counted(unstable, "unstable interval", "unstable intervals"),
-                counted(
-                    inner_steps as usize,
-                    "inner step in each outer one",
-                    "inner steps in each outer one"
-                )
-            ));
+    let mut panel = Panel::new(
+        Axis::linear(&format!("outer step ({time})"), lo, hi),
+        Axis::linear(&format!("growth rate (1/{time})"), 0.0, top),
+    )
+    .titled(&format!(
+        "{}, {}",
+        counted(unstable, "unstable interval", "unstable intervals"),
+        counted(inner_steps as usize, "inner step in each outer one", "inner steps in each outer one")
+    ));
     for (verdict, colour, name) in
         [(Holds::Unstable, HYPERBOLIC, "proven unstable"), (Holds::NotTold, GREY, "nothing proven")]
     {
