@@ -24,7 +24,12 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
             let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
             Error::input(&names(&flag), value, "takes no value: write the flag alone")
         }),
-        ErrorKind::UnknownArgument => invalid().map(|flag| Error::input("flag", flag, suggestion(error))),
+        ErrorKind::UnknownArgument => invalid().map(|given| {
+            if given.starts_with('-') {
+                return Error::input("flag", &given, suggestion(error));
+            }
+            Error::input("argument", &given, "is of no use here; see --help for the flags that there are")
+        }),
         _ => None,
     };
     known.unwrap_or_else(|| plain(error))
