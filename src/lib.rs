@@ -70,7 +70,7 @@
 //! |---|---|---|
 //! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
-//! | 0 | `parallel` | work on all threads, or without them |
+//! | 0 | [`parallel`] | work on all threads, or without them; work that can be stopped |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
 //! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
@@ -113,7 +113,7 @@ pub mod format;
 pub mod map;
 pub mod number;
 mod orbit;
-mod parallel;
+pub mod parallel;
 pub mod propagator;
 #[cfg(feature = "serde")]
 pub mod recheck;

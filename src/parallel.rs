@@ -1,9 +1,51 @@
-//! Work spread over threads; without the feature `parallel` one piece after the other. Same results, same order.
+//! Work spread over threads; without the feature `parallel` one piece after the other. Same results, same order. And work
+//! that its caller may stop.
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::cell::RefCell;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+
+thread_local! {
+    /// What stops the work under way on this thread.
+    static STOP: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
+}
+
+/// Runs `work`, all of which ends with an error of the kind `Stopped` soon after the flag is set, on whatever threads it is:
+/// surveys, closings, comparisons, scans and simulations look at it piece by piece.
+///
+/// ```
+/// use std::sync::{Arc, atomic::AtomicBool};
+/// use kickdrift::{error::Kind, number::rational::ratio, parallel::stoppable, tongue::survey};
+/// let flag = Arc::new(AtomicBool::new(true));
+/// assert_eq!(stoppable(&flag, || survey(300, &ratio(1, 25), 3)).unwrap_err().kind(), Kind::Stopped);
+/// ```
+pub fn stoppable<R>(flag: &Arc<AtomicBool>, work: impl FnOnce() -> R) -> R {
+    under(Some(flag.clone()), work)
+}
+
+/// Runs `work` under a flag or none, whatever this thread was under before.
+fn under<R>(flag: Option<Arc<AtomicBool>>, work: impl FnOnce() -> R) -> R {
+    struct Before(Option<Arc<AtomicBool>>);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            STOP.set(self.0.take());
+        }
+    }
+    let _before = Before(STOP.replace(flag));
+    work()
+}
+
+/// That nobody has stopped the work on this thread.
+///
+/// # Errors
+/// Where somebody has.
+pub(crate) fn go_on() -> Result<()> {
+    let is_set =
+        |flag: &Option<Arc<AtomicBool>>| flag.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
+    if STOP.with_borrow(is_set) { Err(Error::stopped("the work")) } else { Ok(()) }
+}
 
 /// Threads of its own for one long computation.
 pub(crate) struct Pool {
@@ -49,9 +91,9 @@ impl Pool {
     }
 }
 
-/// `work` of each item, in the items' order.
+/// `work` of each item, in the items' order; never stopped.
 pub(crate) fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
-    let found: Result<Vec<R>> = try_map(items, |item| Ok(work(item)));
+    let found: Result<Vec<R>> = under(None, || try_map(items, |item| Ok(work(item))));
     found.expect("none of these fails")
 }
 
@@ -64,10 +106,10 @@ pub(crate) fn try_map<T: Sync, R: Send>(
     work: impl Fn(&T) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
     let places: Vec<Mutex<Option<Result<R>>>> = items.iter().map(|_| Mutex::new(None)).collect();
-    let failed = AtomicUsize::new(usize::MAX);
+    let (failed, flag) = (AtomicUsize::new(usize::MAX), STOP.with_borrow(Clone::clone));
     each(items.len(), &|n| {
         if n < failed.load(Ordering::Relaxed) {
-            let found = work(&items[n]);
+            let found = under(flag.clone(), || go_on().and_then(|()| work(&items[n])));
             if found.is_err() {
                 failed.fetch_min(n, Ordering::Relaxed);
             }

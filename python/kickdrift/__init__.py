@@ -10,6 +10,7 @@ unstable: hyperbolic, Tr Q < -2; exponential growth
   ...
 """
 
+from kickdrift._advise import Advice, advise
 from kickdrift._document import Document, Row, Table
 from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._map import Map, map
@@ -33,6 +34,7 @@ from kickdrift._tables import (
 from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
 
 __all__ = [
+    "Advice",
     "BudgetError",
     "Closings",
     "Comparison",
@@ -54,6 +56,7 @@ __all__ = [
     "Tongues",
     "Verdict",
     "Verdicts",
+    "advise",
     "closings",
     "compare",
     "curves",

@@ -10,6 +10,9 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, overload
 
+import numpy as np
+import numpy.typing as npt
+
 from kickdrift import _native
 from kickdrift._errors import required
 
@@ -22,10 +25,16 @@ Row = Mapping[str, Any]
 _SHOWN = 20
 
 
-def ask(arguments: Sequence[str], form: str = "json") -> str:
-    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg."""
+def ask(
+    arguments: Sequence[str],
+    form: str = "json",
+    held: str | None = None,
+    arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
+) -> str:
+    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg; about a system in
+    memory where its text and arrays are given."""
     target = ["--output", "answer.svg"] if form == "svg" else ["--format", form]
-    return _native.answer([*arguments, *target, "--quiet"]).decode()
+    return _native.answer([*arguments, *target, "--quiet"], held, arrays).decode()
 
 
 def given(**options: str | int | None) -> list[str]:
@@ -132,7 +141,7 @@ class Table(Document, Sequence[Row]):
         >>> bool((frame.lower_lo <= frame.lower_hi).all())
         True
         """
-        return frame(dict(_flat(row)) for row in self.rows)
+        return frame(dict(fields(row)) for row in self.rows)
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({len(self)} {self._rows_are}: {', '.join(self._given())})"
@@ -142,7 +151,7 @@ class Table(Document, Sequence[Row]):
 
     def _repr_html_(self) -> str:
         """A table of the first rows for a notebook."""
-        flat = [dict(_flat(row)) for row in self.rows[:_SHOWN]]
+        flat = [dict(fields(row)) for row in self.rows[:_SHOWN]]
         names = list(dict.fromkeys(name for row in flat for name in row))
         head = "".join(f"<th>{html.escape(name)}</th>" for name in names)
         cells = ("".join(f"<td>{html.escape(_cell(row.get(name)))}</td>" for name in names) for row in flat)
@@ -158,10 +167,11 @@ def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
     return made
 
 
-def _flat(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+def fields(row: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
+    """The fields of a row, those of its parts under joined names."""
     for name, value in row.items():
         if isinstance(value, Mapping):
-            yield from _flat(value, f"{before}{name}_")
+            yield from fields(value, f"{before}{name}_")
         else:
             yield f"{before}{name}", value
 

@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, final
 
@@ -62,7 +62,9 @@ class Map:
 
 def names() -> tuple[list[str], list[str]]: ...
 def number(field: str, value: Any) -> Number: ...
-def decide(lambda1: Any, lambda2: Any, h1: Any, h2: Any, exact: bool, budget: int | None) -> Pair: ...
+def decide(
+    lambda1: Any, lambda2: Any, h1: Any, h2: Any, exact: bool, friction: Any | None, budget: int | None
+) -> Pair: ...
 def verdicts(
     values: Sequence[list[Any]],
     positions: Sequence[npt.NDArray[np.int64]],
@@ -80,7 +82,11 @@ def map(
 def multipliers(
     stiffness: Sequence[Any], steps: Sequence[Any], ranges: Sequence[Sequence[Any]]
 ) -> list[tuple[int, int]]: ...
-def answer(arguments: Sequence[str]) -> bytes: ...
+def answer(
+    arguments: Sequence[str],
+    text: str | None = None,
+    arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
+) -> bytes: ...
 def main(arguments: Sequence[str]) -> int: ...
 def recheck(
     text: str, all: bool, budget: int | None, folder: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -92,6 +93,41 @@ def grid(
     if label is not None and own.figure is not None:
         own.figure.colorbar(image, ax=own, label=label)
     return own
+
+
+#: Safe, caution, unstable: from light to dark, as in the program's figures.
+_SAFE, _CAUTION, _UNSTABLE, _BEYOND = "#cfecdf", "#f3b47a", "#b2182b", "0.85"
+
+
+def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
+    """Bars over the outer step of the first scheme: proven for the band, the same beyond T/3, not advised, unstable."""
+    own = axes(ax)
+    schemes = document["schemes"]
+    rows = [row for row in document["rows"] if row["scheme"] == 1]
+    thirds = {mode["name"]: mode["third"]["lo"] for mode in document["modes"]}
+    alone = len(document["input"]["schemes"][0]) == 1
+    outer = [float(Fraction(scheme["outer"])) for scheme in schemes]
+    known = [row[f"{which}_{end}"] for row in rows for which in _INTERVALS for end in ("lower", "upper")]
+    right = 1.12 * max([end["hi"] for end in known if end is not None] + outer)
+    for place, row in enumerate(rows):
+        edge = (row["first_lower"] or {"lo": 0.0})["lo"] * (1 - float(Fraction(document["input"]["band"])))
+        third = edge if alone else min(edge, thirds[row["mode"]])
+        unstable = {(row[f"{which}_lower"]["lo"], (row[f"{which}_upper"] or {"hi": right})["hi"])
+                    for which in _INTERVALS if row[f"{which}_lower"] and (alone or row[f"{which}_upper"])}  # fmt: skip
+        parts = [(0.0, third, _SAFE), (third, edge, _CAUTION), (edge, right, _BEYOND)]
+        for lo, hi, colour in parts + [(*ends, _UNSTABLE) for ends in sorted(unstable)]:
+            own.barh(place, hi - lo, left=lo, color=colour, height=0.68)
+    for step in outer:
+        own.axvline(step, color="0.1", linewidth=0.9)
+    if schemes[0]["safe"] is not None:
+        own.axvline(float(Fraction(schemes[0]["safe"])), color="#1b7837", linestyle="--", linewidth=0.9)
+    own.set_yticks(range(len(rows)), [row["mode"] for row in rows])
+    own.set_xlim(0, right)
+    own.set_xlabel("outer step (fs)")
+    return own
+
+
+_INTERVALS = ("first", "inside", "below", "above")
 
 
 def multipliers(values: npt.NDArray[np.complex128], ax: Axes | None) -> Axes:

@@ -139,10 +139,13 @@ class System:
         own.mkdir(parents=True, exist_ok=True)
         if self.arrays:
             np.savez(own / _ARRAYS, allow_pickle=False, **self.arrays)
-        document = {"schema": _SCHEMA} | {key: value for key, value in self.document.items() if key != "schema"}
         path = own / _FILE
-        path.write_text(json.dumps(_exact(document), indent=2) + "\n")
+        path.write_text(self._text())
         return path
+
+    def _text(self) -> str:
+        document = {"schema": _SCHEMA} | {key: value for key, value in self.document.items() if key != "schema"}
+        return json.dumps(_exact(document), indent=2) + "\n"
 
     @contextmanager
     def _file(self) -> Iterator[str]:
@@ -153,11 +156,19 @@ class System:
             yield str(self.save(folder))
 
     def _ask(self, command: str, options: Sequence[str], form: str = "json") -> str:
-        with self._file() as path:
-            return ask([command, path, *options], form)
+        if self._path is not None:
+            return ask([command, str(self._path), *options], form)
+        arrays = {name: np.asarray(own, dtype=np.float64) for name, own in self.arrays.items()}
+        return ask([command, _FILE, *options], form, self._text(), arrays)
 
     def decide(
-        self, *, exact: bool = False, accuracy: float | None = None, keep_rigid: bool = False, budget: int | None = None
+        self,
+        *,
+        exact: bool = False,
+        accuracy: float | None = None,
+        keep_rigid: bool = False,
+        friction: Exact | None = None,
+        budget: int | None = None,
     ) -> SystemVerdict:
         """Decide whether the system is stable, and find what grows.
 
@@ -169,6 +180,9 @@ class System:
             How well measured Hessians are known, in place of the system's own number.
         keep_rigid : bool
             Leave the rigid motions of measured Hessians in.
+        friction : Exact, optional
+            A rate G, 1/time, rational: v times exp(-G t) in the middle of every drift (BAOAB). The verdict stays that
+            without friction; ``SystemVerdict.friction`` tells what friction does.
         budget : int, optional
             The most products of machine words.
 
@@ -177,7 +191,11 @@ class System:
         KickdriftError, BudgetError
             A system that makes no sense; more work than the budget allows.
         """
-        options = given(accuracy=None if accuracy is None else str(accuracy), budget=budget)
+        options = given(
+            accuracy=None if accuracy is None else str(accuracy),
+            friction=None if friction is None else text("friction", friction),
+            budget=budget,
+        )
         options += [flag for flag, asked in (("--exact", exact), ("--keep-rigid", keep_rigid)) if asked]
         return SystemVerdict(self._ask("system", options), self, tuple(options))
 
@@ -272,6 +290,13 @@ class SystemVerdict(Document):
     def measured(self) -> Mapping[str, Any] | None:
         """Of measured Hessians: ``accuracy``, ``holds`` within it, ``margin``, ``first_unstable`` outer step."""
         found = self.data.get("measured")
+        return None if found is None else MappingProxyType(found)
+
+    @property
+    def friction(self) -> Mapping[str, Any] | None:
+        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
+        smallest rate that masks the growth."""
+        found = self.data.get("friction")
         return None if found is None else MappingProxyType(found)
 
     @cached_property

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -120,6 +122,21 @@ class Verdict:
         found = self.document.data["resonance"]
         return None if not found or found["a"] is None else (found["a"], found["b"])
 
+    @property
+    def friction(self) -> Mapping[str, Any] | None:
+        """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
+        smallest rate that masks the growth.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> found = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.98", friction="1/10").friction
+        >>> found["damping"], 0.1 < found["masking"]["lo"] <= found["masking"]["hi"]
+        ('growing', True)
+        """
+        found = self.document.data.get("friction")
+        return None if found is None else MappingProxyType(found)
+
     def to_json(self) -> str:
         """The document of ``kickdrift verdict``, byte for byte."""
         return self.document.to_json()
@@ -163,7 +180,14 @@ def _ends(enclosure: Any) -> tuple[float, float]:
 
 
 def decide(
-    *, lambda1: Exact, lambda2: Exact, h1: Exact, h2: Exact, exact: bool = False, budget: int | None = None
+    *,
+    lambda1: Exact,
+    lambda2: Exact,
+    h1: Exact,
+    h2: Exact,
+    exact: bool = False,
+    friction: Exact | None = None,
+    budget: int | None = None,
 ) -> Verdict:
     """Decide whether a pair of steps is stable: proven, never guessed.
 
@@ -175,6 +199,9 @@ def decide(
         The fast and the slow step, time; h2/h1 must be rational.
     exact : bool
         Decide in exact arithmetic alone, and show the exact trace where it is rational.
+    friction : Exact, optional
+        A rate G, 1/time, rational: v times exp(-G t) in the middle of every drift (BAOAB). The verdict stays that
+        without friction; ``Verdict.friction`` tells what friction does.
     budget : int, optional
         The most kicks that one tier may compose; 10^8 unless given.
 
@@ -195,7 +222,7 @@ def decide(
                    = 2 exactly
       decided by   exact
     """
-    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, budget))
+    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, friction, budget))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

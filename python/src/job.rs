@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use kickdrift::error::Result;
+use kickdrift::parallel::stoppable;
 use pyo3::prelude::*;
 
 use crate::error::{lost, raised};
@@ -16,8 +17,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// As much stack as a process's first thread has.
 const STACK: usize = 8 << 20;
 
-/// Runs `work` on a thread of its own without the interpreter. Where a signal raises an exception meanwhile, the flag
-/// that `work` is given is set and the exception is returned at once: work that does not look at the flag ends unseen.
+/// Runs `work` on a thread of its own without the interpreter. Where a signal raises an exception meanwhile, the exception
+/// is returned at once, and the flag is set that the library looks at piece by piece: the work ends soon after, unseen.
 pub fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> Result<T> + Send + 'static,
@@ -27,7 +28,7 @@ pub fn run<T: Send + 'static>(
     let (receiver, flag) = (Mutex::new(receiver), stopped.clone());
     let thread = std::thread::Builder::new().stack_size(STACK);
     // Nobody receives what comes after a signal.
-    thread.spawn(move || drop(sender.send(work(&flag))))?;
+    thread.spawn(move || drop(sender.send(stoppable(&flag, || work(&flag)))))?;
     loop {
         let received = py.detach(|| receiver.lock().map(|receiver| receiver.recv_timeout(PATIENCE)).ok());
         match received.ok_or_else(lost)? {

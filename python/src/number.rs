@@ -122,6 +122,12 @@ pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
     Err(unknown(field, value))
 }
 
+/// The same where it has to be rational.
+pub fn rational(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Rational> {
+    let exact = quantity(field, value)?;
+    exact.as_rational().ok_or_else(|| refused(value.py(), field, exact.to_string(), "must be rational"))
+}
+
 /// Text; powers as Python writes them, too.
 fn read(field: &str, text: &str) -> PyResult<Laurent> {
     parse(field, &text.replace("**", "^")).map_err(|error| raised(&error))

@@ -6,12 +6,13 @@ use kickdrift::number::{Laurent, Rational};
 use kickdrift::propagator::Oscillator;
 use kickdrift::report::document::Document;
 use kickdrift::report::verdict::Answer as Report;
+use kickdrift::system::friction::damped_pair;
 use kickdrift::verdict::{Answer, Decision, Growth, Limits, Tier, decide_from};
 use pyo3::prelude::*;
 
 use crate::error::raised;
 use crate::job;
-use crate::number::{Number, quantity};
+use crate::number::{Number, quantity, rational};
 
 enum Found {
     Rational(Answer<Rational>),
@@ -40,10 +41,12 @@ pub struct Pair {
     oscillator: Oscillator,
     found: Found,
     exact: bool,
+    friction: Option<Rational>,
 }
 
 /// Decides one pair of steps.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn decide(
     py: Python<'_>,
     lambda1: &Bound<'_, PyAny>,
@@ -51,8 +54,10 @@ pub fn decide(
     h1: &Bound<'_, PyAny>,
     h2: &Bound<'_, PyAny>,
     exact: bool,
+    friction: Option<&Bound<'_, PyAny>>,
     budget: Option<u64>,
 ) -> PyResult<Pair> {
+    let friction = friction.map(|rate| rational("friction", rate)).transpose()?;
     let quantities = (quantity("lambda1", lambda1)?, quantity("lambda2", lambda2)?);
     let steps = (quantity("h1", h1)?, quantity("h2", h2)?);
     let oscillator =
@@ -65,7 +70,7 @@ pub fn decide(
             Some(rational) => Found::Rational(decide_from(first, &rational, &limits)?),
             None => Found::Pi(decide_from(first, &clocks, &limits)?),
         };
-        Ok(Pair { oscillator, found, exact })
+        Ok(Pair { oscillator, found, exact, friction })
     })
 }
 
@@ -121,8 +126,9 @@ impl Pair {
     fn document(&self) -> Result<Document> {
         let (decision, growth) = (self.found.decision(), self.found.growth()?.clone());
         let exact_trace = Report::exact_trace(&self.oscillator.clocks(), self.exact);
+        let friction = self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate)).transpose()?;
         let oscillator = self.oscillator.clone();
-        Ok(Report { oscillator, decision, growth, exact_trace, friction: None }.document())
+        Ok(Report { oscillator, decision, growth, exact_trace, friction }.document())
     }
 }
 

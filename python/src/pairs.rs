@@ -27,6 +27,9 @@ pub fn names() -> (Vec<String>, Vec<&'static str>) {
     (Verdict::ALL.map(name).to_vec(), Tier::ALL.map(Tier::name).to_vec())
 }
 
+/// Values that are read between two looks at signals, some milliseconds.
+const BETWEEN_SIGNALS: usize = 4096;
+
 /// Pairs that are held in memory together.
 const TOGETHER: usize = 1 << 18;
 
@@ -43,7 +46,14 @@ pub fn verdicts<'py>(
 ) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<u8>>)> {
     let mut quantities: [Vec<Laurent>; 4] = Default::default();
     for ((own, list), field) in quantities.iter_mut().zip(&values).zip(FIELDS) {
-        *own = list.iter().map(|value| quantity(field, &value)).collect::<PyResult<_>>()?;
+        let read = |(n, value): (usize, Bound<'_, PyAny>)| {
+            // Reading holds the interpreter: it hears signals here.
+            if n.is_multiple_of(BETWEEN_SIGNALS) {
+                py.check_signals()?;
+            }
+            quantity(field, &value)
+        };
+        *own = list.iter().enumerate().map(read).collect::<PyResult<_>>()?;
     }
     let mut picked: [Vec<usize>; 4] = Default::default();
     for (own, array) in picked.iter_mut().zip(&positions) {

@@ -1,13 +1,18 @@
 //! The program itself: run as such, or for the bytes that it would write.
 
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use kickdrift::cli;
 use kickdrift::recheck::{Claim, Options};
+use kickdrift::scene::{Array, Arrays};
+use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
+use crate::error::raised;
 use crate::job;
 use crate::pair::limits;
 
@@ -17,11 +22,25 @@ pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| cli::program(arguments))
 }
 
-/// What the program would write for the arguments.
+/// What the program would write for the arguments; about a system in memory, the text of its file and its arrays by name, where
+/// one is given.
 #[pyfunction]
-pub fn answer<'py>(py: Python<'py>, arguments: Vec<OsString>) -> PyResult<Bound<'py, PyBytes>> {
+#[pyo3(signature = (arguments, text = None, arrays = None))]
+pub fn answer<'py>(
+    py: Python<'py>,
+    arguments: Vec<OsString>,
+    text: Option<String>,
+    arrays: Option<BTreeMap<String, PyReadonlyArrayDyn<'py, f64>>>,
+) -> PyResult<Bound<'py, PyBytes>> {
     let name = OsString::from("kickdrift");
-    let bytes = job::run(py, move |_| cli::answer(std::iter::once(name).chain(arguments)))?;
+    let array = |(name, own): (String, PyReadonlyArrayDyn<'py, f64>)| {
+        let values = own.as_array().iter().copied().collect();
+        let array = Array::new(own.shape().to_vec(), values).map_err(|error| raised(&error.at(&name)))?;
+        Ok((name, array))
+    };
+    let arrays = arrays.unwrap_or_default().into_iter().map(array).collect::<PyResult<BTreeMap<_, _>>>()?;
+    let held = text.map(|text| cli::Held { text, arrays: Arrays::Held(Arc::new(arrays)) });
+    let bytes = job::run(py, move |_| cli::answer_about(std::iter::once(name).chain(arguments), held))?;
     Ok(PyBytes::new(py, &bytes))
 }
 

@@ -4,6 +4,7 @@ use super::force::{Bond, Force};
 use super::simulation::{Ends, Simulation};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
+use crate::parallel::go_on;
 
 /// One line of a series.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,8 +55,8 @@ fn sample<F: Force<f64>>(simulation: &Simulation<f64, F>, centre: &[f64]) -> Sam
     }
 }
 
-/// The state now and after each of `samples` runs of `ticks`, amplitudes measured from `centre`. Where a run overflows
-/// the series ends.
+/// The state now and after each of `samples` runs of `ticks`, amplitudes measured from `centre`. Where a run overflows, or is
+/// stopped, the series ends.
 pub fn series<F: Force<f64>>(
     simulation: &mut Simulation<f64, F>,
     centre: &[f64],
@@ -63,7 +64,7 @@ pub fn series<F: Force<f64>>(
     (ticks, ends): (u64, Ends),
 ) -> Vec<Sample> {
     let mut series = vec![sample(simulation, centre)];
-    for _ in 0..samples {
+    for _ in (0..samples).take_while(|_| go_on().is_ok()) {
         simulation.run(ticks, ends);
         let next = sample(simulation, centre);
         if !(next.energy.is_finite() && next.amplitude.is_finite()) {
@@ -93,7 +94,7 @@ fn rescale<F: Force<f64>>(simulation: &mut Simulation<f64, F>, centre: &[f64], s
 
 /// The measured growth rate of small deviations z from `centre`, an equilibrium, per unit time: ln |z|/|z_0| over the
 /// second half of `periods` synchronization periods, z scaled back to near `size` after each by a power of two. Near 0
-/// where it is stable, to about 1/(periods T).
+/// where it is stable, to about 1/(periods T). Of no meaning where it is stopped.
 ///
 /// For a linear system about 0 scaling is exact and any size will do. Else the motion is that of the Hessians up to
 /// terms of the order z²: `size` makes them small, and has to stay well above the roundoff of x.
@@ -106,7 +107,7 @@ pub fn growth_rate<F: Force<f64>>(
     let ticks = simulation.clocks().period();
     let mut log = -rescale(simulation, centre, size);
     let mut middle = 0.0;
-    for period in 0..periods {
+    for period in (0..periods).take_while(|_| go_on().is_ok()) {
         if period == periods / 2 {
             middle = log + deviation(simulation, centre).ln();
         }

@@ -13,7 +13,7 @@ use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::document::Document;
 use crate::report::file::write_output;
-use crate::scene::{GridRange, StepRange};
+use crate::scene::{Arrays, GridRange, StepRange};
 use crate::verdict::Limits;
 
 /// Flags of every command.
@@ -35,6 +35,16 @@ pub struct Common {
     /// The most kicks that one tier may compose for one pair [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = whole::<u64>)]
     pub budget: Option<u64>,
+    /// What a host holds in place of the file of a system.
+    #[arg(skip)]
+    pub held: Option<Held>,
+}
+
+/// A system in memory: the text of its file, and the arrays that it refers to.
+#[derive(Clone, Debug)]
+pub struct Held {
+    pub text: String,
+    pub arrays: Arrays,
 }
 
 /// A parser of values from one that names the field: here the flag names it.

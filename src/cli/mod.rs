@@ -37,6 +37,7 @@ use crate::format::Format;
 use crate::report::file::abandon;
 use crate::report::file::captured;
 use args::Common;
+pub use args::Held;
 
 /// Exact, certified linear stability of multiple-time-step integrators.
 ///
@@ -131,7 +132,17 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// # Errors
 /// What the program prints as its one line.
 pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
-    let cli = Cli::try_parse_from(arguments).map_err(|error| usage::explained(&error, &Cli::command()))?;
+    answer_about(arguments, None)
+}
+
+/// The same about a system in memory: the file that the arguments name is not read, and only its name is echoed.
+///
+/// # Errors
+/// As [`answer`].
+pub fn answer_about(arguments: impl IntoIterator<Item = OsString>, held: Option<Held>) -> Result<Vec<u8>> {
+    let mut cli =
+        Cli::try_parse_from(arguments).map_err(|error| usage::explained(&error, &Cli::command()))?;
+    cli.common.held = held;
     captured(|| run(&cli).map(drop))
 }
 

@@ -35,7 +35,7 @@ impl Args {
         self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let request = RunRequest { periods: self.periods, displacement: self.displace.clone(), ends };
-        let scene = read(&self.file)?;
+        let scene = read(&self.file, common)?;
         let run = scene.run(&request, &limits(common))?;
         if let Some(path) = &self.figure {
             draw("figure", path, &report::figure(&run, scene.title()))?;

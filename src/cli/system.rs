@@ -16,7 +16,7 @@ use crate::report::document::Document;
 use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
-use crate::scene::{Axis, Scan, SystemScene};
+use crate::scene::{Arrays, Axis, Scan, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Limits, Route};
 
@@ -59,8 +59,8 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         // Refused before the work, not after it.
         drawing(common)?;
-        let text = text(&self.file)?;
-        let mut scene = SystemScene::read_in(folder(&self.file), &text)?;
+        let (text, arrays) = source(&self.file, common)?;
+        let mut scene = SystemScene::read_in(arrays.clone(), &text)?;
         if let Some(accuracy) = self.accuracy {
             scene = scene.at_accuracy(accuracy)?;
         }
@@ -79,7 +79,7 @@ impl Args {
             }
             [] => self.verdict(&scene, common),
             [x, y] => {
-                let axes = Scan::read_in(folder(&self.file), &text, Axis::parse(x)?, Axis::parse(y)?)?;
+                let axes = Scan::read_in(arrays, &text, Axis::parse(x)?, Axis::parse(y)?)?;
                 self.map(&scene, &axes, common)
             }
             other => {
@@ -197,14 +197,18 @@ fn text(path: &Path) -> Result<String> {
     })
 }
 
-/// Where the files are that a system refers to.
-fn folder(path: &Path) -> &Path {
-    path.parent().unwrap_or(Path::new(""))
+/// The text of a system file and where the arrays are that it refers to; or what the host holds in its place.
+fn source(path: &Path, common: &Common) -> Result<(String, Arrays)> {
+    match &common.held {
+        Some(held) => Ok((held.text.clone(), held.arrays.clone())),
+        None => Ok((text(path)?, Arrays::from(path.parent().unwrap_or(Path::new(""))))),
+    }
 }
 
 /// A system file, read.
-pub fn read(path: &Path) -> Result<SystemScene> {
-    SystemScene::read_in(folder(path), &text(path)?)
+pub fn read(path: &Path, common: &Common) -> Result<SystemScene> {
+    let (text, arrays) = source(path, common)?;
+    SystemScene::read_in(arrays, &text)
 }
 
 /// Products of doubles a second, roughly; and from how many on a verdict is announced.

@@ -12,8 +12,7 @@ use crate::report::certificate;
 use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::verdict::Answer;
-use crate::system::ManyClocks;
-use crate::system::friction::{Friction, damped_oscillator};
+use crate::system::friction::damped_pair;
 use crate::verdict::{Decidable, Tier, Verdict, decide_from};
 
 /// Flags of `verdict`.
@@ -68,7 +67,7 @@ impl Args {
         let document = (!silent).then(|| -> Result<Document> {
             let (decision, growth) = (answer.decision(), answer.growth()?.clone());
             let exact_trace = Answer::exact_trace(&oscillator.clocks(), self.exact);
-            let friction = self.friction(oscillator)?;
+            let friction = self.friction.as_ref().map(|rate| damped_pair(oscillator, rate)).transpose()?;
             Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction }.document())
         });
         let document = document.transpose()?;
@@ -77,17 +76,6 @@ impl Args {
         }
         document.map_or(Ok(()), |document| common.write(&document, Format::Text))?;
         Ok(answer.verdict.is_stable())
-    }
-}
-
-impl Args {
-    fn friction(&self, oscillator: &Oscillator) -> Result<Option<Friction>> {
-        let Some(rate) = &self.friction else { return Ok(None) };
-        let two = oscillator.clocks();
-        let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
-        let strengths = vec![two.fast().clone(), two.slow().clone()];
-        let clocks = ManyClocks::new(&steps, &[Rational::default(), Rational::default()], strengths)?;
-        damped_oscillator(&clocks, oscillator.h1(), rate).map(Some)
     }
 }
 

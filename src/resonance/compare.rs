@@ -20,7 +20,7 @@ use super::angle::Nearest;
 use super::tan;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
-use crate::parallel::try_map;
+use crate::parallel::{go_on, try_map};
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide_from};
 
@@ -179,6 +179,7 @@ impl Comparisons {
         tolerance: &Rational,
         limits: &Limits,
     ) -> Result<()> {
+        go_on()?;
         let comparison = compare(clocks, tolerance, limits)?;
         self.tally.add(&comparison);
         if !comparison.tan_agrees() || comparison.outcome.is_some_and(Outcome::is_offence) {

@@ -15,6 +15,7 @@ use super::select::{Selection, runs};
 use super::string::Entry;
 use crate::error::{Error, Result};
 use crate::number::{Ball, Ratio, Rational};
+use crate::parallel::go_on;
 
 /// All tongues of one p/q and ρ ≥ 0, computed as they are asked for.
 #[derive(Clone, Debug)]
@@ -100,7 +101,7 @@ impl Tongues {
             lists[entry as usize].get(index - first).copied()
         };
         let pair = |m: u64| Entry::of_tongue(m % 2 == 1).map(|entry| edge(entry, m.div_ceil(2) as usize));
-        (from..=upto).map(|m| Gap::new(&self.edges, &self.open, m, pair(m))).collect()
+        (from..=upto).map(|m| go_on().and_then(|()| Gap::new(&self.edges, &self.open, m, pair(m)))).collect()
     }
 
     /// All tongues, the infinite one last: the quickest way to have them all.

@@ -2,10 +2,12 @@
 //!
 //! A `.npy` file is the magic bytes, a header that is a Python dictionary, and the elements in C order (or Fortran's).
 
+use std::collections::BTreeMap;
 use std::fs::File;
 #[cfg(feature = "npz")]
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use nalgebra::DMatrix;
 use serde::Deserialize;
@@ -26,17 +28,36 @@ pub(super) enum Reference {
 }
 
 /// The elements as doubles, in C order.
-pub(super) struct Array {
+#[derive(Clone, Debug)]
+pub struct Array {
     shape: Vec<usize>,
     values: Vec<f64>,
 }
 
+/// Where the arrays are that a system refers to: in files, paths taken from a folder, or in memory by the names that they have in
+/// their archive.
+#[derive(Clone, Debug)]
+pub enum Arrays {
+    In(PathBuf),
+    Held(Arc<BTreeMap<String, Array>>),
+}
+
+impl<P: AsRef<Path> + ?Sized> From<&P> for Arrays {
+    fn from(folder: &P) -> Self {
+        Arrays::In(folder.as_ref().into())
+    }
+}
+
 impl Reference {
-    /// Reads the array, paths taken from `folder`.
+    /// Reads the array.
     ///
     /// # Errors
-    /// An I/O error; bad input by `field` where the file is no such array.
-    pub fn read(&self, field: &str, folder: &Path) -> Result<Array> {
+    /// An I/O error; bad input by `field` where the file is no such array, and where none of this name is held.
+    pub fn read(&self, field: &str, arrays: &Arrays) -> Result<Array> {
+        let folder = match arrays {
+            Arrays::In(folder) => folder,
+            Arrays::Held(held) => return self.held(field, held),
+        };
         let io = |path: &Path, cause: std::io::Error| Error::io(path.display(), &cause).caused_by(cause);
         let (path, bytes) = match self {
             Reference::Mm { mm } => {
@@ -57,6 +78,15 @@ impl Reference {
             }
         };
         parse(&bytes).map_err(|why| Error::input(field, path, why))
+    }
+
+    fn held(&self, field: &str, held: &BTreeMap<String, Array>) -> Result<Array> {
+        let (Reference::Npz { array: name, .. } | Reference::Npy { npy: name } | Reference::Mm { mm: name }) =
+            self;
+        held.get(name).cloned().ok_or_else(|| {
+            let names: Vec<&str> = held.keys().map(String::as_str).collect();
+            Error::input(field, name, format!("is no array given: there are {}", names.join(", ")))
+        })
     }
 }
 
@@ -141,6 +171,23 @@ fn c_order(values: &[f64], shape: &[usize]) -> Vec<f64> {
 }
 
 impl Array {
+    /// An array of a shape, its elements in C order; the same bounds hold as for one in a file.
+    ///
+    /// # Errors
+    /// Another number of elements than the shape says, or too many.
+    pub fn new(shape: Vec<usize>, values: Vec<f64>) -> Result<Array> {
+        let count = shape.iter().try_fold(1usize, |n, &k| n.checked_mul(k));
+        if values.len() > MOST_ELEMENTS || count != Some(values.len()) {
+            let remedy = format!("give as many elements as the shape says, {MOST_ELEMENTS} at most");
+            return Err(Error::input(
+                "array",
+                format!("{} elements of shape {shape:?}", values.len()),
+                remedy,
+            ));
+        }
+        Ok(Array { shape, values })
+    }
+
     /// As a matrix.
     ///
     /// # Errors

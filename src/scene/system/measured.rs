@@ -14,7 +14,6 @@
 //! }
 //! ```
 
-use std::path::Path;
 use std::sync::OnceLock;
 
 use nalgebra::DMatrix;
@@ -22,7 +21,7 @@ use num_traits::One;
 use serde::Deserialize;
 use serde_json::Value;
 
-use super::array::Reference;
+use super::array::{Arrays, Reference};
 use super::document::{LARGEST, Number, no_system};
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -83,12 +82,12 @@ pub(super) fn is_by_reference(source: &Value) -> bool {
 }
 
 impl Measured {
-    /// From a file of such stiffnesses, paths taken from `folder`.
-    pub fn read(source: &Value, folder: &Path) -> Result<Measured> {
+    /// From a file of such stiffnesses.
+    pub fn read(source: &Value, arrays: &Arrays) -> Result<Measured> {
         let document = Document::deserialize(source).map_err(no_system)?;
         let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
         for (k, own) in document.potentials.iter().enumerate() {
-            let (step, stiffness) = own.read(k, folder)?;
+            let (step, stiffness) = own.read(k, arrays)?;
             match potentials.iter_mut().find(|(other, k)| *other == step && k.shape() == stiffness.shape()) {
                 Some((_, sum)) => *sum += stiffness,
                 None => potentials.push((step, stiffness)),
@@ -117,12 +116,12 @@ impl Measured {
             Some(number) => to_f64(&number.read("accuracy")?),
             None => USUAL_ACCURACY,
         };
-        let masses = document.masses.as_ref().map(|at| at.read("masses", folder)).transpose()?;
+        let masses = document.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
         let masses = masses.map(|own| spread(own.into_values(), n)).transpose()?;
         if masses.is_none() && !document.mass_weighted {
             return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
         }
-        let positions = document.positions.as_ref().map(|at| at.read("positions", folder)).transpose()?;
+        let positions = document.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
         let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
         let read = Measured {
             potentials,
@@ -252,13 +251,13 @@ impl Measured {
 }
 
 impl PotentialDocument {
-    fn read(&self, k: usize, folder: &Path) -> Result<(Rational, DMatrix<f64>)> {
+    fn read(&self, k: usize, arrays: &Arrays) -> Result<(Rational, DMatrix<f64>)> {
         let field = |name: &str| format!("potentials[{k}].{name}");
         let step = self.step.read(&field("step"))?;
         if step <= Rational::default() {
             return Err(Error::input(&field("step"), step, "a step must be positive"));
         }
-        let mut stiffness = self.stiffness.read(&field("stiffness"), folder)?.matrix(&field("stiffness"))?;
+        let mut stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
         if let Some(scale) = &self.scale {
             stiffness *= to_f64(&scale.read(&field("scale"))?);
         }

@@ -55,7 +55,6 @@ mod oscillator;
 mod run;
 mod scan;
 
-use std::path::Path;
 use std::sync::OnceLock;
 
 use serde::Deserialize;
@@ -71,6 +70,7 @@ use crate::system::{
     Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
     verdict_cost,
 };
+pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
 use measured::Measured;
@@ -122,21 +122,21 @@ impl SystemScene {
     /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
     /// [`System::new`] refuses; each by the entry's name.
     pub fn read(text: &str) -> Result<SystemScene> {
-        SystemScene::read_in(Path::new(""), text)
+        SystemScene::read_in("", text)
     }
 
-    /// The same with the folder that the files it refers to are in.
+    /// The same with the folder that the files it refers to are in, or with these arrays in memory.
     ///
     /// # Errors
     /// As [`SystemScene::read`]; an I/O error of these files.
-    pub fn read_in(folder: &Path, text: &str) -> Result<SystemScene> {
+    pub fn read_in(arrays: impl Into<Arrays>, text: &str) -> Result<SystemScene> {
         if text.len() > LONGEST {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
         let source: Value = serde_json::from_str(text).map_err(no_system)?;
         if measured::is_by_reference(&source) {
-            return SystemScene::from_json_in(folder, source);
+            return SystemScene::from_json_in(arrays, source);
         }
         let document = match Document::deserialize(&source) {
             Ok(document) => document,
@@ -151,14 +151,14 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::read`].
     pub fn from_json(source: Value) -> Result<SystemScene> {
-        SystemScene::from_json_in(Path::new(""), source)
+        SystemScene::from_json_in("", source)
     }
 
-    /// The same with the folder that the files it refers to are in.
+    /// The same with the folder that the files it refers to are in, or with these arrays in memory.
     ///
     /// # Errors
     /// As [`SystemScene::read_in`].
-    pub fn from_json_in(folder: &Path, source: Value) -> Result<SystemScene> {
+    pub fn from_json_in(arrays: impl Into<Arrays>, source: Value) -> Result<SystemScene> {
         if !measured::is_by_reference(&source) {
             return SystemScene::new(Document::deserialize(&source).map_err(no_system)?, source);
         }
@@ -167,7 +167,7 @@ impl SystemScene {
         if schema != SCHEMA {
             return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
-        let measured = Measured::read(&source, folder)?;
+        let measured = Measured::read(&source, &arrays.into())?;
         let labels = source.get("labels").map(Vec::<String>::deserialize).transpose().map_err(no_system)?;
         let labels = labels.map(|own| spread(&own, measured.size())).transpose()?;
         Ok(SystemScene {

@@ -7,6 +7,7 @@ use crate::avi::{Ends, Force, Run, Simulation, growth_rate, irreversibility, ser
 use crate::error::{Error, Kind, Result};
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
+use crate::parallel::go_on;
 use crate::system::{Limits, Route};
 
 /// The starting displacement of each degree of freedom; one number alone moves the first.
@@ -130,6 +131,7 @@ impl RunRequest {
         let form = if displacement.is_some() { Ends::Symmetric } else { self.ends };
         let measured = growth_rate(&mut make()?, centre, DEVIATION, (self.periods, form));
         let irreversibility = irreversibility(&mut make()?, period);
+        go_on()?;
         Ok(Run { series, measured, predicted, irreversibility, linear, displacement })
     }
 }

@@ -3,11 +3,10 @@
 //! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`, `potentials.bond.scale` (a
 //! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`).
 
-use std::path::{Path, PathBuf};
-
 use serde_json::Value;
 
 use super::SystemScene;
+use super::array::Arrays;
 use super::document::no_system;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -65,7 +64,7 @@ impl Axis {
 #[derive(Clone, Debug)]
 pub struct Scan {
     template: Value,
-    folder: PathBuf,
+    arrays: Arrays,
     pub x: Axis,
     pub y: Axis,
 }
@@ -76,16 +75,17 @@ impl Scan {
     /// # Errors
     /// As [`SystemScene::read`] at the first point; a path that leads nowhere; too many points.
     pub fn read(text: &str, x: Axis, y: Axis) -> Result<Scan> {
-        Scan::read_in(Path::new(""), text, x, y)
+        Scan::read_in("", text, x, y)
     }
 
-    /// From the text of a system file, and the folder that the files it refers to are in.
+    /// From the text of a system file, and the folder that the files it refers to are in, or these arrays in memory.
     ///
     /// # Errors
     /// As [`SystemScene::read_in`] at the first point; a path that leads nowhere; too many points.
-    pub fn read_in(folder: &Path, text: &str, x: Axis, y: Axis) -> Result<Scan> {
+    pub fn read_in(arrays: impl Into<Arrays>, text: &str, x: Axis, y: Axis) -> Result<Scan> {
+        let arrays = arrays.into();
         // The file itself has to be sound, whatever its numbers are replaced by.
-        SystemScene::read_in(folder, text)?;
+        SystemScene::read_in(arrays.clone(), text)?;
         let template: Value = serde_json::from_str(text).map_err(no_system)?;
         let points = x.values().len().saturating_mul(y.values().len());
         if points > MOST_POINTS {
@@ -104,7 +104,7 @@ impl Scan {
                 "is varied along both axes: name two numbers of the file",
             ));
         }
-        let scan = Scan { template, folder: folder.into(), x, y };
+        let scan = Scan { template, arrays, x, y };
         scan.at(&scan.x.lo, &scan.y.lo)?;
         Ok(scan)
     }
@@ -118,7 +118,7 @@ impl Scan {
         for (axis, value) in [(&self.x, x), (&self.y, y)] {
             *place(&mut file, &axis.path)? = Value::String(value.to_string());
         }
-        SystemScene::from_json_in(&self.folder, file)
+        SystemScene::from_json_in(self.arrays.clone(), file)
     }
 }
 

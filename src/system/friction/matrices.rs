@@ -6,6 +6,7 @@ use super::scalar::damped;
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Rational, Real, U};
+use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
 use crate::system::compose::connected;
 use crate::system::float::scaled_program;
@@ -98,6 +99,18 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
         masking: masks.into_iter().fold(Mask::NotNeeded, Mask::and),
     })
+}
+
+/// The same for a pair of steps.
+///
+/// # Errors
+/// As [`damped`].
+pub fn damped_pair(oscillator: &Oscillator, rate: &Rational) -> Result<Friction> {
+    let two = oscillator.clocks();
+    let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
+    let strengths = vec![two.fast().clone(), two.slow().clone()];
+    let clocks = ManyClocks::new(&steps, &[Rational::default(), Rational::default()], strengths)?;
+    damped_oscillator(&clocks, oscillator.h1(), rate)
 }
 
 /// The same for K clocks on one oscillator, whose stiffnesses and steps may involve π; `unit` is h_1, the unit of time of the

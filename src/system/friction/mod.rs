@@ -37,5 +37,5 @@ mod scalar;
 
 pub use damping::Damping;
 pub use masking::{Masking, masking};
-pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_system};
+pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_pair, damped_system};
 pub use scalar::{Damped, damped, damped_exactly};

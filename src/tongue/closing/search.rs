@@ -23,7 +23,7 @@ use num_traits::Signed;
 use super::certify::{Closing, Order, certify, orders};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
-use crate::parallel::try_map;
+use crate::parallel::{go_on, try_map};
 use crate::tongue::edge::Enclosure;
 use crate::tongue::gap::count_closings;
 use crate::tongue::string::Entry;
@@ -72,6 +72,7 @@ pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let mut found = Vec::new();
     let mut before: Option<(Rational, Vec<Order>)> = None;
     for rho in rhos {
+        go_on()?;
         let orders = orders(ratio, &rho, search.m)?;
         for (k, order) in orders.iter().enumerate() {
             if order.closed {

@@ -1,0 +1,228 @@
+"""Advice: which steps are safe for these periods, for how long, and why."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from os import PathLike, fspath
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from kickdrift import _plot
+from kickdrift._document import Document, Row, ask, fields, frame, given
+from kickdrift._errors import KickdriftError
+from kickdrift._native import Number
+from kickdrift._numbers import Exact, text
+
+if TYPE_CHECKING:
+    import pandas
+    from matplotlib.axes import Axes
+
+Time: TypeAlias = Exact
+"""A length of time: a text with its unit as ``"0.5fs"`` or ``"0.01ps"``, or an exact number of fs."""
+
+Engine: TypeAlias = str | PathLike[str] | Sequence[str | PathLike[str]]
+"""An input of a simulation engine: a path, or its text (of several lines); of OpenMM a system and an integrator."""
+
+_COLOURS = {"safe": "#1b7837", "caution": "#b35806", "near": "#b35806", "island": "#b35806", "unstable": "#b2182b"}
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Advice(Document):
+    """Which steps are safe: each scheme of steps with each fast mode, what to do, and why.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> advice = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=[("0.5fs", "4fs"), ("0.5fs", "5fs")])
+    >>> advice.status, advice.safe, [scheme["status"] for scheme in advice.schemes]
+    ('caution', Number('3'), ['caution', 'island'])
+    """
+
+    _text: str
+    _svg: str
+
+    @property
+    def status(self) -> str:
+        """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
+        interval is within the band), ``island`` (stable above an unstable interval) or ``unstable``."""
+        return str(self.schemes[0]["status"])
+
+    @property
+    def safe(self) -> Number | None:
+        """The longest outer step of the first scheme, fs, that is proven stable for the whole band and below T/3."""
+        return _number(self.schemes[0]["safe"])
+
+    @property
+    def largest(self) -> Number | None:
+        """The longest one that is proven stable for the whole band."""
+        return _number(self.schemes[0]["largest"])
+
+    @cached_property
+    def schemes(self) -> tuple[Row, ...]:
+        """One row a scheme: ``outer``, ``status``, ``band_edge``, ``largest``, ``safe``; steps in fs."""
+        return self._table("schemes")
+
+    @cached_property
+    def rows(self) -> tuple[Row, ...]:
+        """One row a scheme and fast mode: verdict, growth, and the unstable intervals of the outer step, fs."""
+        return self._table("rows")
+
+    @cached_property
+    def modes(self) -> tuple[Row, ...]:
+        """One row a mode: its clock, period and the limits that follow, fs."""
+        return self._table("modes")
+
+    @property
+    def engine(self) -> Mapping[str, Any] | None:
+        """What was read of an engine's input: ``name``, ``forces``, ``used``, ``remarks``, and its lines ``rewritten``
+        with the step that is advised."""
+        found = self.data.get("engine")
+        return None if found is None else MappingProxyType(found)
+
+    def _table(self, name: str) -> tuple[Row, ...]:
+        return tuple(MappingProxyType(row) for row in self.data[name])
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The rows as a data frame; the ends of enclosures stand beside each other, as ``first_lower_lo``."""
+        return frame(dict(fields(row)) for row in self.rows)
+
+    def to_svg(self) -> str:
+        """The program's figure: the outer step across, each mode a row."""
+        return self._svg
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what is proven stable and unstable over the outer step of the first scheme, a row a mode.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"]).plot().get_xlabel()
+        'outer step (fs)'
+        """
+        return _plot.advice(self.data, ax)
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        each = (f"{float(Number(scheme['outer'])):g} fs {scheme['status']}" for scheme in self.schemes)
+        return f"Advice({', '.join(each)})"
+
+    def _repr_html_(self) -> str:
+        style = f"border-left: 4px solid {_COLOURS[self.status]}; padding-left: 1em"
+        return f"<pre style='{style}'>{escape(self._text.split(chr(10) * 2)[0])}</pre>{self._svg}"
+
+
+def _number(value: str | None) -> Number | None:
+    return None if value is None else Number(value)
+
+
+def advise(
+    periods: Mapping[str, Time] | Sequence[Time] = (),
+    *,
+    steps: str | Sequence[Any] = (),
+    bonds: Mapping[str, str] | None = None,
+    on: Mapping[str, int] | None = None,
+    engine: Engine | None = None,
+    band: Exact = "5%",
+    length: Time | None = None,
+    hmr: Exact | None = None,
+) -> Advice:
+    """Say which steps are safe for these periods, for how long, and why.
+
+    Parameters
+    ----------
+    periods : mapping of str to Time, or a sequence of Time
+        The periods of the forces, fs, or wavenumbers as ``"3700/cm"``; the last ones are on the slower clocks.
+    steps : sequence of Time, or a sequence of such
+        A scheme, from the innermost to the outermost step, fs; or several schemes.
+    bonds : mapping of str to str, optional
+        ``"k=1106kcal/mol/A^2,15.999,1.008"``: the force constant (k of E = k x²/2, K of E = K x²), two masses in amu,
+        and behind them the heavy atom's hydrogens if not 1.
+    on : mapping of str to int, optional
+        The clocks of modes, 1 the fastest.
+    engine : path or text, or a sequence of such, optional
+        An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, for its steps.
+    band : Exact or percentage
+        How far every period may be off, relatively.
+    length : Time, optional
+        The length of the run, as ``"10ns"``.
+    hmr : Exact, optional
+        Hydrogens of this mass in amu, taken from their heavy atoms.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input, with its field, value and remedy; a ratio of steps that makes too long a period.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> advice = kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"])
+    >>> print(str(advice).splitlines()[0])
+    4 fs    stable; next unstable interval 4.6768-4.9679 fs, margin 0.677 fs; caution: not below T/3 = 3.33 fs
+    >>> gromacs = "dt = 0.0005 ; ps\\nmts = yes\\nmts-level2-factor = 8\\n"
+    >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
+    ['mts-level2-factor = 6']
+    """
+    named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in periods)
+    arguments = ["advise", *given(band=_part(band), length=_time("length", length), hmr=_mass(hmr))]
+    for name, value in named:
+        own = _time("periods", value)
+        arguments.append(f"--period={own}" if name is None else f"--period={_name('periods', name)}={own}")
+    arguments += [f"--bond={_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
+    arguments += [f"--on={_name('on', name)}={clock}" for name, clock in (on or {}).items()]
+    arguments += [f"--steps={scheme}" for scheme in _schemes(steps)]
+    with _files(engine) as paths:
+        arguments += [f"--engine={path}" for path in paths]
+        return Advice(*(ask(arguments, form) for form in ("json", "text", "svg")))
+
+
+def _time(field: str, value: Time | None) -> str | None:
+    if value is None or isinstance(value, str):
+        return value
+    return f"{text(field, value)}fs"
+
+
+def _part(value: Exact) -> str:
+    return value if isinstance(value, str) else text("band", value)
+
+
+def _mass(value: Exact | None) -> str | None:
+    return value if value is None or isinstance(value, str) else text("hmr", value)
+
+
+def _name(field: str, name: str) -> str:
+    if not name or set(name) & set("=:,"):
+        raise KickdriftError(field, name, "give a name without the signs = : ,")
+    return name
+
+
+def _schemes(steps: str | Sequence[Any]) -> list[str]:
+    """Schemes as the program reads them; one scheme may stand alone."""
+    if isinstance(steps, str):
+        return [steps]
+    several = len(steps) > 0 and isinstance(steps[0], list | tuple)
+    schemes = steps if several else [steps] if len(steps) else []
+    return [",".join(str(_time("steps", step)) for step in scheme) for scheme in schemes]
+
+
+@contextmanager
+def _files(engine: Engine | None) -> Iterator[list[str]]:
+    """The paths of an engine's files; texts are put into files for as long."""
+    given = [] if engine is None else [engine] if isinstance(engine, str | PathLike) else list(engine)
+    with tempfile.TemporaryDirectory(prefix="kickdrift-") as folder:
+        paths = []
+        for place, own in enumerate(given):
+            path = fspath(own)
+            if "\n" in path:
+                path = str(Path(folder) / f"engine{place}")
+                Path(path).write_text(fspath(own))
+            paths.append(path)
+        yield paths

@@ -1,0 +1,106 @@
+"""Advice: the program's document, drawn and shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import kickdrift as kd
+
+TWO = {"OH": "10fs", "slow": "40fs"}
+STEPS = [("0.5fs", "4fs"), ("0.5fs", 5)]
+FLAGS = ["--period=OH=10fs", "--period=slow=40fs", "--steps=0.5fs,4fs", "--steps=0.5fs,5fs"]
+GROMACS = "dt = 0.0005 ; ps\nmts = yes\nmts-level2-factor = 8\n"
+
+
+def test_advice_is_that_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+    advice = kd.advise(TWO, steps=STEPS, length="10ns")
+    flags = [*FLAGS, "--band=5%", "--length=10ns"]
+    assert advice.to_json() == program("advise", *flags, "--format", "json")
+    assert str(advice) == program("advise", *flags, "--format", "text")
+    program("advise", *flags, "--output", str(tmp_path / "advice.svg"))
+    assert advice.to_svg() == (tmp_path / "advice.svg").read_text()
+    assert advice == kd.advise(TWO, steps=STEPS, length=10**7) and advice.engine is None
+    assert kd.recheck(advice).holds
+
+
+def test_each_kind_of_mode_and_of_input_is_taken(program: Callable[..., str], tmp_path: Path) -> None:
+    advice = kd.advise(
+        ["3700/cm", Fraction(100)],
+        bonds={"CH": "K=340kcal/mol/A^2,12.011,1.008,3"},
+        on={"CH": 1},
+        hmr="3.024",
+        band="1/25",
+        steps="1fs,4fs",
+    )
+    flags = ["--bond=CH:K=340kcal/mol/A^2,12.011,1.008,3", "--period=3700/cm", "--period=100fs", "--on=CH=1"]
+    flags += ["--hmr=3.024", "--band=1/25", "--steps=1fs,4fs", "--format", "json"]
+    assert advice.to_json() == program("advise", *flags)
+    path = tmp_path / "water.mdp"
+    path.write_text(GROMACS)
+    read = kd.advise(TWO, engine=path)
+    assert read.to_json() == kd.advise(TWO, engine=GROMACS).to_json()
+    assert read.to_json() == program("advise", *FLAGS[:2], f"--engine={path}", "--format", "json")
+    assert read.engine is not None and read.engine["rewritten"] == ["mts-level2-factor = 6"]
+
+
+def test_advice_is_shown_in_all_forms() -> None:
+    advice = kd.advise(TWO, steps=STEPS)
+    assert repr(advice) == "Advice(4 fs caution, 5 fs island)" and (advice.safe, advice.largest) == (3, 4)
+    shown = advice._repr_html_()
+    assert "4.6768-4.9679 fs" in shown and "<svg" in shown and "Each fast mode" not in shown
+    frame = advice.to_pandas()
+    assert list(frame.kind) == ["elliptic", "elliptic"]
+    axes = advice.plot()
+    # The proven part, that beyond T/3, the rest, and the one unstable interval about the scheme; both outer steps, 3 fs.
+    assert len(axes.patches) == 4 and len(axes.lines) == 3
+    assert len(kd.advise(["10fs"], steps=["3fs"]).plot().patches) > 0
+    assert [mode["name"] for mode in advice.modes] == ["OH", "slow"]
+    assert kd.advise(TWO, steps=["0.5fs", "4.8fs"]).status == "unstable"
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        ({"periods": {}}, "period"),
+        ({"periods": ["10"]}, "period"),
+        ({"periods": {"a=b": "10fs"}}, "periods"),
+        ({"steps": ()}, "steps"),
+        ({"steps": ["x"]}, "steps"),
+        ({"on": {"none": 1}}, "on"),
+        ({"band": 2}, "band"),
+        ({"engine": "/nowhere.mdp"}, "/nowhere.mdp"),
+    ],
+)
+def test_bad_questions_are_refused_by_name(change: dict[str, Any], field: str) -> None:
+    question: dict[str, Any] = {"periods": TWO, "steps": ["0.5fs", "4fs"]} | change
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(**question)
+    assert caught.value.field == field and "--" not in str(caught.value)
+
+
+@pytest.mark.parametrize("friction", ["1/10", "2"])
+def test_friction_is_told_as_the_program_tells_it(program: Callable[..., str], friction: str) -> None:
+    pair = {"lambda1": "pi^2", "lambda2": "pi^2/25", "h1": "1/100", "h2": "0.98"}
+    verdict = kd.decide(**pair, friction=friction)
+    flags = [f"--{name}={value}" for name, value in pair.items()]
+    assert verdict.to_json() == program("verdict", *flags, f"--friction={friction}", "--format", "json")
+    assert verdict.friction is not None and verdict.friction["rate"] == friction and not verdict.stable
+    assert kd.decide(**pair).friction is None
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.decide(**pair, friction="pi")
+    assert caught.value.field == "friction"
+
+
+def test_friction_of_a_system(program: Callable[..., str], tmp_path: Path) -> None:
+    system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, "10"]]},
+                                                      {"step": "1", "springs": [[0, None, "2/5"]]}]})  # fmt: skip
+    verdict = system.decide(friction="1/3")
+    path = system.save(tmp_path)
+    assert verdict.to_json() == program("system", str(path), "--friction=1/3", "--format", "json")
+    assert verdict.friction is not None and verdict.friction["damping"] in ("damped", "growing")
+    assert system.decide().friction is None
