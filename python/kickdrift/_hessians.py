@@ -116,11 +116,21 @@ def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float
         stiffness, _ = hessian(force, own, masses, difference)
         own = own + (soft_solve(stiffness, pulled) / root).reshape(own.shape)
 
-    smallest = descend(pull, move, steps)
-    scale = norm(stiffness) * 1e-3 * float(np.sqrt(masses.max()))
-    if not smallest < 1e-6 * scale:
-        raise KickdriftError("positions", f"force {smallest:.1e}", "are not near a minimum: minimize them first")
+    arrived(descend(pull, move, steps), stiffness, masses)
     return own
+
+
+def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
+    """That so small a mass-weighted pull is rounding: less than a displacement of 1e-9 would bring about.
+
+    Raises
+    ------
+    KickdriftError
+        Where it is not: Newton's method did not arrive.
+    """
+    scale = norm(stiffness) * float(np.sqrt(masses.max()))
+    if not pull < 1e-9 * scale:
+        raise KickdriftError("positions", f"force {pull:.1e}", "are not near a minimum: minimize them first")
 
 
 #: Directions softer than this part of the stiffest are rigid motions: they are left where they are.
@@ -128,10 +138,16 @@ _SOFT = 1e-7
 
 
 def soft_solve(matrix: Doubles, right: Doubles) -> Doubles:
-    values, vectors = np.linalg.eigh(matrix)
-    firm = np.abs(values) > _SOFT * np.abs(values).max()
-    solved: Doubles = vectors[:, firm] @ ((vectors[:, firm].T @ right) / values[firm])
+    """The solution with the soft directions left out."""
+    firm = _firm(matrix)
+    solved: Doubles = firm @ np.linalg.solve(firm.T @ matrix @ firm, firm.T @ right)
     return solved
+
+
+def _firm(matrix: Doubles) -> Doubles:
+    """The eigenvectors of a symmetric matrix but for the soft ones, which are rigid motions."""
+    values, vectors = np.linalg.eigh(matrix)
+    return np.asarray(vectors[:, np.abs(values) > _SOFT * np.abs(values).max()])
 
 
 @dataclass(frozen=True)
@@ -280,6 +296,49 @@ def _damped(size_at: Callable[[float], float], size: float) -> float | None:
     return next((part for part in (0.5**k for k in range(8)) if size_at(part) < 0.9 * size), None)
 
 
+#: Newton's method has arrived where its next step is this part of the extent of the atoms.
+_ARRIVED = 1e-9
+
+#: Where no such part of the way from the minimum to the orbit can be made, the orbit is taken to end.
+_SMALLEST_PART = 1 / 100
+
+
+def _held(force: Force, held: Doubles) -> Force:
+    """A force less a constant one."""
+    return lambda positions: force(positions) - held
+
+
+def _newton(
+    forces: Sequence[Force],
+    steps: Sequence[Fraction],
+    start: Doubles,
+    masses: Doubles,
+    difference: float,
+    firm: Doubles,
+) -> tuple[Doubles, Doubles, float]:
+    """Damped Newton's method for rest after half a period: positions, the propagator from there, and the step that
+    would be next over the extent of the atoms.
+
+    It moves along the columns of ``firm``, and along them it seeks rest: of rigid motions there is none to begin with,
+    and what has no momentum gets none.
+    """
+    root, extent = np.sqrt(np.repeat(masses, 3)), float(np.ptp(start, axis=0).max()) or 1.0
+
+    def size_at(part: float) -> float:
+        return float(np.abs(firm.T @ _swing(forces, steps, start + part * move, masses)).max())
+
+    while True:
+        half, speed = compose(forces, steps, start, masses, difference)
+        speed = firm.T @ speed
+        move = firm @ np.linalg.lstsq(firm.T @ half[start.size :, : start.size] @ firm, -speed, rcond=None)[0]
+        move = (move / root).reshape(start.shape)
+        residual = float(np.abs(move).max()) / extent
+        part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
+        if part is None:
+            return start, half, residual
+        start = start + part * move
+
+
 def monodromy(
     forces: Mapping[str, Force],
     steps: Sequence[Fraction],
@@ -291,7 +350,9 @@ def monodromy(
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
     The orbit starts at rest in the middle of a kick of every clock; so it is symmetric in time, and it is closed where
-    it is at rest again after half a period: n equations for n positions.
+    it is at rest again after half a period: n equations for n positions. Where Newton's method does not find it from
+    the minimum, it is followed from there: each group's force less (1 - t) times its value at the minimum, which in the
+    total cancel, has the minimum as its orbit at t = 0 and is the force itself at t = 1.
 
     Raises
     ------
@@ -305,22 +366,19 @@ def monodromy(
         return Monodromy(about, at, 0.0, period, half, 0.0)
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
-    root, start = np.sqrt(np.repeat(masses, 3)), at.copy()
-    extent = float(np.ptp(at, axis=0).max()) or 1.0
-
-    def size_at(part: float) -> float:
-        return float(np.abs(_swing(own, steps, start + part * move, masses)).max())
-
-    while True:
-        half, speed = compose(own, steps, start, masses, difference)
-        move = np.linalg.lstsq(half[len(speed) :, : len(speed)], -speed, rcond=_SOFT)[0]
-        move = (move / root).reshape(start.shape)
-        residual = float(np.abs(move).max()) / extent
-        part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
-        if part is None:
-            break
-        start = start + part * move
-    if residual > 1e-9:
-        raise KickdriftError("about", "orbit", f"Newton's method finds none (residual {residual:.1e}): try minimum")
+    balances = [force(at) for force in own]
+    firm = _firm(hessian(lambda x: np.sum([force(x) for force in own], axis=0), at, masses, difference)[0])
+    done, part, start = 0.0, 1.0, at
+    while done < 1.0:
+        share = min(done + part, 1.0)
+        held = [_held(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
+        there, half, residual = _newton(held, steps, start, masses, difference, firm)
+        if residual <= _ARRIVED:
+            done, part, start = share, 2 * part, there
+        elif part < _SMALLEST_PART:
+            remedy = "it ends there, as near a resonance of the kicks: choose another step, or about='minimum'"
+            raise KickdriftError("about", f"orbit, followed to {done:.0%} of the groups' own forces", remedy)
+        else:
+            part /= 2
     away = float(np.linalg.norm(start - at, axis=1).max())
     return Monodromy(about, start, away, period, half, residual)

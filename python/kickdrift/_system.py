@@ -92,6 +92,8 @@ class System:
         positions: npt.ArrayLike | None = None,
         accuracy: float = 1e-6,
         title: str = "",
+        time_unit: str = "",
+        labels: Sequence[str] = (),
         notes: Sequence[str] = (),
     ) -> System:
         """Make a system of measured Hessians.
@@ -106,6 +108,10 @@ class System:
             By which rigid motions are projected out; else the null space of the total is.
         accuracy : float
             How well the Hessians are known, relative to their norms; verdicts tell whether they stand within it.
+        time_unit : str, optional
+            What the steps are in, as ``"ps"``; answers name it.
+        labels : sequence of str, optional
+            One for each degree of freedom, or for each particle of three.
 
         Raises
         ------
@@ -126,7 +132,8 @@ class System:
         for number, (name, (step, hessian)) in enumerate(potentials.items()):
             arrays[f"hessian{number}"] = np.asarray(hessian, dtype=np.float64)
             entries.append({"name": name, "step": text("step", step), "stiffness": _at(f"hessian{number}")})
-        document: dict[str, Any] = {"title": title} if title else {}
+        named = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        document: dict[str, Any] = {key: value for key, value in named.items() if value}
         document |= {"masses": _at("masses"), "accuracy": float(accuracy), "potentials": entries}
         if positions is not None:
             arrays["positions"] = np.asarray(positions, dtype=np.float64)

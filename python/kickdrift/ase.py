@@ -79,7 +79,15 @@ def system(
     free = None if atoms.pbc.any() else where
     accuracy = min(max(accuracy, 1e-12), 0.09)
     title = f"{len(atoms)} atoms, fs and Å"
-    return System.from_hessians(masses, potentials, positions=free, accuracy=accuracy, title=title)
+    return System.from_hessians(
+        masses,
+        potentials,
+        positions=free,
+        accuracy=accuracy,
+        title=title,
+        time_unit="fs",
+        labels=[f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
+    )
 
 
 def oscillations(

@@ -24,6 +24,7 @@ from kickdrift._hessians import (
     Force,
     Monodromy,
     Progress,
+    arrived,
     descend,
     hessian,
     minimum,
@@ -155,6 +156,8 @@ def system(
         positions=where if free else None,
         accuracy=min(max(accuracy, 1e-12), 0.09),
         title=f"{engine.count} particles, ps and nm",
+        time_unit="ps",
+        labels=[f"atom {n}" for n in range(engine.count)] if free else (),
         notes=notes,
     )
 
@@ -335,15 +338,22 @@ def _minimized(
 def _constrained_minimum(
     engine: _Engine, near: Doubles, constraints: Sequence[_Constraint], difference: float
 ) -> Doubles:
-    """Newton's method along the constraints, each step put back on them."""
+    """Newton's method along the constraints, each step put back on them.
+
+    Raises
+    ------
+    KickdriftError
+        Where it does not arrive.
+    """
     force, where, masses = engine.force(-1), near, engine.masses
+    matrix = np.zeros((near.size, near.size))
     root, frame = np.sqrt(np.repeat(masses, 3)), _frame(where, masses, constraints, None)
 
     def pull() -> Doubles:
         return frame.T @ (force(where).ravel() / root)
 
     def move(pulled: Doubles) -> None:
-        nonlocal where, frame
+        nonlocal where, frame, matrix
         matrix, _ = hessian(force, where, masses, difference)
         matrix = frame.T @ (matrix + _curvature(force(where), where, masses, constraints, None)) @ frame
         step = frame @ soft_solve(matrix, pulled)
@@ -352,7 +362,7 @@ def _constrained_minimum(
         where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
         frame = _frame(where, masses, constraints, None)
 
-    descend(pull, move)
+    arrived(descend(pull, move), matrix, masses)
     return where
 
 

@@ -56,7 +56,7 @@ def test_advice_is_shown_in_all_forms() -> None:
     frame = advice.to_pandas()
     assert list(frame.kind) == ["elliptic", "elliptic"]
     axes = advice.plot()
-    # The proven part, that beyond T/3, the rest, and the one unstable interval about the scheme; both outer steps, 3 fs.
+    # The proven part, that beyond T/3, the rest, the one unstable interval about the scheme; both outer steps, 3 fs.
     assert len(axes.patches) == 4 and len(axes.lines) == 3
     assert len(kd.advise(["10fs"], steps=["3fs"]).plot().patches) > 0
     assert [mode["name"] for mode in advice.modes] == ["OH", "slow"]

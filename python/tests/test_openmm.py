@@ -81,7 +81,7 @@ def run(
 
 
 # fs; THEORY 14: unstable from 4.45 fs on, with islands of stability.
-OUTER = ["2", "3", "4", "4.40", "4.45", "4.50", "4.55", "4.60", "5", "5.5", "7", "8", "8.5"]
+OUTER = ["2", "3", "4", "4.40", "4.45", "4.50", "4.55", "4.60", "5", "5.5", "7", "8", "8.5", "8.7"]
 
 
 @pytest.mark.parametrize("outer", OUTER)
@@ -113,6 +113,18 @@ def test_four_waters_grow_as_their_own_orbit_predicts(outer: str) -> None:
     rate = np.polyfit(np.arange(len(sizes)), sizes, 1)[0] / float(step)
     # Two in a hundred are asked for; a part in 10^4 is what is found.
     assert rate == pytest.approx(found.growth_rate, rel=2e-3)
+
+
+@pytest.mark.parametrize("outer", ["9.3", "10"])
+def test_where_the_orbit_ends_it_is_said(outer: str) -> None:
+    """From 8.8 fs on the kicks meet the stretches' periods: followed from the minimum, the orbit turns back before
+    all of the groups' own forces act."""
+    system, positions = waters()
+    steps, _ = levels(Fraction(outer) / 1000)
+    with pytest.raises(kd.KickdriftError, match="it ends there") as caught:
+        ko.oscillations(system, positions, steps=steps, minimize=False)
+    assert caught.value.field == "about" and "minimum" in caught.value.remedy
+    assert ko.oscillations(system, positions, steps=steps, about="minimum", minimize=False).growth_rate > 0
 
 
 def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
@@ -235,6 +247,10 @@ def test_massless_particles_and_unknown_states_are_refused() -> None:
     with pytest.raises(kd.KickdriftError, match="has no mass"):
         ko.system(system, np.vstack([positions, [0, 0, 0]]), steps={0: "1/2000", 1: "1/2000"})
     rigid, where = waters(rigid=True)
+    engine = ko._engine(rigid)
+    far = where * 1.02
+    with pytest.raises(kd.KickdriftError, match="not near a minimum"):
+        ko._constrained_minimum(engine, far, ko._constraints(rigid), 1e-3)
     with pytest.raises(kd.KickdriftError, match="constrained"):
         ko.oscillations(rigid, where, steps={0: "1/500", 1: "1/500"})
 
