@@ -8,10 +8,13 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pytest
+import zarr
 from distributed import Client, LocalCluster
 
 import kickdrift as kd
@@ -123,6 +126,68 @@ def test_a_killed_job_goes_on_where_it_stopped(tmp_path: Path) -> None:
     written = [path for path, when in before.items() if path.stat().st_mtime_ns != when]
     # The one under way when it was killed, at most.
     assert len(written) <= 1
+    assert fingerprint(store) == fingerprint(tmp_path / "whole.zarr")
+
+
+SCHEDULED = """
+import sys
+import kickdrift.dask as kdask
+from distributed import Client
+kdask.PAIRS = 700
+kdask.map(sys.argv[1], client=Client(scheduler_file=sys.argv[2], timeout=60), lambda1="pi^2", lambda2="pi^2/25",
+          step="1/100", h1=("1/100", "2/pi"), h2=("1/100", "7/2"), growth=True)
+"""
+
+
+@contextmanager
+def scheduled(folder: Path, name: str) -> Iterator[tuple[subprocess.Popen[bytes], Path]]:
+    """A scheduler and two workers, each a process of its own, as a cluster has them: the scheduler, and its file."""
+    file = folder / name
+    dask = [sys.executable, "-m", "dask"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
+    scheduler = subprocess.Popen(
+        [*dask, "scheduler", "--port=0", "--no-dashboard", f"--scheduler-file={file}"], **quiet
+    )
+    worker = [*dask, "worker", f"--scheduler-file={file}", "--nthreads=1", "--no-nanny", "--no-dashboard"]
+    worker += ["--death-timeout=60"]
+    workers = [subprocess.Popen(worker, **quiet) for _ in range(2)]
+    try:
+        yield scheduler, file
+    finally:
+        for process in [scheduler, *workers]:
+            process.kill()
+            process.wait()
+
+
+def written(store: Path) -> dict[Path, int]:
+    """The chunks of verdicts that there are, and when each was written."""
+    return {path: path.stat().st_mtime_ns for path in (store / "verdict" / "c").rglob("*") if path.is_file()}
+
+
+@pytest.mark.usefixtures("small_tasks")
+def test_a_job_whose_scheduler_was_killed_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    kdask.map(tmp_path / "whole.zarr", **GRID, growth=True)
+    script, store = tmp_path / "job.py", tmp_path / "killed.zarr"
+    script.write_text(SCHEDULED)
+    with scheduled(tmp_path, "first.json") as (scheduler, file):
+        job = subprocess.Popen([sys.executable, script, store, file], stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + 120
+        while len(written(store)) < 5:
+            assert job.poll() is None and time.monotonic() < deadline, "the job does not begin"
+            time.sleep(0.01)
+        scheduler.kill()
+        # What is under way is lost; the job has nobody to ask, and is killed too where it waits.
+        time.sleep(1.0)
+        job.kill()
+        job.wait()
+    before = written(store)
+    done = set(np.flatnonzero(zarr.open_group(store, mode="r")["done"][:]))
+    assert 5 <= len(before) < 32 and len(before) - 2 <= len(done) <= len(before)
+    with scheduled(tmp_path, "second.json") as (_, file):
+        subprocess.run([sys.executable, script, store, file], check=True)
+    again = [path for path, when in before.items() if path.stat().st_mtime_ns != when]
+    # Those under way when it was killed, at most one a worker.
+    assert len(again) == len(before) - len(done) <= 2
     assert fingerprint(store) == fingerprint(tmp_path / "whole.zarr")
 
 
