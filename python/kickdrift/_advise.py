@@ -29,28 +29,23 @@ Time: TypeAlias = Exact
 Engine: TypeAlias = str | PathLike[str] | Sequence[str | PathLike[str]]
 """An input of a simulation engine: a path, or its text (of several lines); of OpenMM a system and an integrator."""
 
-_COLOURS = {"safe": "#1b7837", "caution": "#b35806", "near": "#b35806", "island": "#b35806", "unstable": "#b2182b"}
+_COLOURS = {"safe": "#1b7837", "caution": "#b35806", "near": "#b35806", "island": "#b35806"}
+_COLOURS |= {"not told": "#b2182b", "unstable": "#b2182b"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Advice(Document):
-    """Which steps are safe: each scheme of steps with each fast mode, what to do, and why.
-
-    Examples
-    --------
-    >>> import kickdrift as kd
-    >>> advice = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=[("0.5fs", "4fs"), ("0.5fs", "5fs")])
-    >>> advice.status, advice.safe, [scheme["status"] for scheme in advice.schemes]
-    ('caution', Number('3'), ['caution', 'island'])
-    """
+class Advised(Document):
+    """What all advice has: schemes of steps, each with a status, and what to do."""
 
     _text: str
-    _svg: str
+
+    _schemes_are = "schemes"
 
     @property
     def status(self) -> str:
         """The first scheme: ``safe``, ``caution`` (proven stable, beyond a published limit), ``near`` (an unstable
-        interval is within the band), ``island`` (stable above an unstable interval) or ``unstable``."""
+        interval is within the band), ``island`` (stable above an unstable interval), ``unstable``, or of Hessians ``not
+        told`` within their accuracy."""
         return str(self.schemes[0]["status"])
 
     @property
@@ -65,18 +60,14 @@ class Advice(Document):
 
     @cached_property
     def schemes(self) -> tuple[Row, ...]:
-        """One row a scheme: ``outer``, ``status``, ``band_edge``, ``largest``, ``safe``; steps in fs."""
-        return self._table("schemes")
+        """One row a scheme: ``outer``, ``status``, ``band_edge``, ``largest``, ``safe`` and so on; steps in fs."""
+        return self._table(self._schemes_are)
 
     @cached_property
     def rows(self) -> tuple[Row, ...]:
-        """One row a scheme and fast mode: verdict, growth, and the unstable intervals of the outer step, fs."""
+        """One row a scheme and fast mode (of Hessians one a scheme): growth, and the unstable intervals of the outer
+        step, fs."""
         return self._table("rows")
-
-    @cached_property
-    def modes(self) -> tuple[Row, ...]:
-        """One row a mode: its clock, period and the limits that follow, fs."""
-        return self._table("modes")
 
     @property
     def engine(self) -> Mapping[str, Any] | None:
@@ -91,6 +82,38 @@ class Advice(Document):
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a data frame; the ends of enclosures stand beside each other, as ``first_lower_lo``."""
         return frame(dict(fields(row)) for row in self.rows)
+
+    def __str__(self) -> str:
+        return self._text
+
+    def __repr__(self) -> str:
+        each = (f"{float(Number(scheme['outer'])):g} fs {scheme['status']}" for scheme in self.schemes)
+        return f"{type(self).__name__}({', '.join(each)})"
+
+    def _repr_html_(self) -> str:
+        style = f"border-left: 4px solid {_COLOURS[self.status]}; padding-left: 1em"
+        lines, *_ = self._text.split("\n\n")
+        return f"<pre style='{style}'>{escape(lines)}</pre>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Advice(Advised):
+    """Which steps are safe for some periods: each scheme of steps with each fast mode, what to do, and why.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> advice = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=[("0.5fs", "4fs"), ("0.5fs", "5fs")])
+    >>> advice.status, advice.safe, [scheme["status"] for scheme in advice.schemes]
+    ('caution', Number('3'), ['caution', 'island'])
+    """
+
+    _svg: str
+
+    @cached_property
+    def modes(self) -> tuple[Row, ...]:
+        """One row a mode: its clock, period and the limits that follow, fs."""
+        return self._table("modes")
 
     def to_svg(self) -> str:
         """The program's figure: the outer step across, each mode a row."""
@@ -107,16 +130,25 @@ class Advice(Document):
         """
         return _plot.advice(self.data, ax)
 
-    def __str__(self) -> str:
-        return self._text
-
-    def __repr__(self) -> str:
-        each = (f"{float(Number(scheme['outer'])):g} fs {scheme['status']}" for scheme in self.schemes)
-        return f"Advice({', '.join(each)})"
-
     def _repr_html_(self) -> str:
-        style = f"border-left: 4px solid {_COLOURS[self.status]}; padding-left: 1em"
-        return f"<pre style='{style}'>{escape(self._text.split(chr(10) * 2)[0])}</pre>{self._svg}"
+        return f"{super()._repr_html_()}{self._svg}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SystemAdvice(Advised):
+    """Which steps are safe for a molecule by its Hessians, as :meth:`System.advise` finds."""
+
+    _schemes_are = "rows"
+
+    @cached_property
+    def groups(self) -> tuple[Row, ...]:
+        """The modes of the fast stiffness alone, the fastest first: ``count``, ``shortest``, ``longest`` period, fs,
+        and the ``atoms`` that the fastest moves."""
+        return self._table("groups")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme."""
+        return _plot.system_advice(self.data, ax)
 
 
 def _number(value: str | None) -> Number | None:
@@ -172,26 +204,32 @@ def advise(
     ['mts-level2-factor = 6']
     """
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in periods)
-    arguments = ["advise", *given(band=_part(band), length=_time("length", length), hmr=_mass(hmr))]
+    arguments = ["advise", *common(band, length), *given(hmr=_mass(hmr))]
     for name, value in named:
         own = _time("periods", value)
         arguments.append(f"--period={own}" if name is None else f"--period={_name('periods', name)}={own}")
     arguments += [f"--bond={_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
     arguments += [f"--on={_name('on', name)}={clock}" for name, clock in (on or {}).items()]
-    arguments += [f"--steps={scheme}" for scheme in _schemes(steps)]
+    with asked(steps, engine) as more:
+        return Advice(*(ask([*arguments, *more], form) for form in ("json", "text", "svg")))
+
+
+def common(band: Exact, length: Time | None) -> list[str]:
+    """What all advice is asked with."""
+    return given(band=band if isinstance(band, str) else text("band", band), length=_time("length", length))
+
+
+@contextmanager
+def asked(steps: str | Sequence[Any], engine: Engine | None) -> Iterator[list[str]]:
+    """The schemes and the engine's files as flags, for as long as the files are there."""
     with _files(engine) as paths:
-        arguments += [f"--engine={path}" for path in paths]
-        return Advice(*(ask(arguments, form) for form in ("json", "text", "svg")))
+        yield [f"--steps={scheme}" for scheme in _schemes(steps)] + [f"--engine={path}" for path in paths]
 
 
 def _time(field: str, value: Time | None) -> str | None:
     if value is None or isinstance(value, str):
         return value
     return f"{text(field, value)}fs"
-
-
-def _part(value: Exact) -> str:
-    return value if isinstance(value, str) else text("band", value)
 
 
 def _mass(value: Exact | None) -> str | None:

@@ -196,6 +196,21 @@ def test_a_system_made_in_python_is_that_of_its_file(program: Callable[..., str]
     assert system.decide(accuracy=1e-3, keep_rigid=True, budget=10**9).stable in (True, False)
 
 
+def test_arrays_are_taken_from_memory(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    stiff, soft = np.diag([400.0, 300.0]), np.array([[1.0, -1.0], [-1.0, 1.0]], order="F")
+    system = kd.System.from_hessians([1.0, 2.0], {"stiff": ("1/40", stiff), "soft": ("1/10", soft)})
+    written = kd.System.read(system.save(tmp_path)).decide()
+    monkeypatch.setattr(kd.System, "save", None)
+    assert system.decide().to_json() == written.to_json() and written.stable
+    assert "<svg" in system.decide().to_svg() and kd.simulate(system, periods=3, displace="1/100").data is not None
+    document = dict(system.document)
+    with pytest.raises(kd.KickdriftError, match="is no array given: there are masses") as caught:
+        kd.System(document, {"masses": np.ones(2)}).decide()
+    assert (caught.value.field, caught.value.value) == ("potentials[0].stiffness", "hessian0")
+    with pytest.raises(kd.KickdriftError, match="array of two axes"):
+        kd.System(document, {**system.arrays, "hessian1": np.ones(4)}).decide()
+
+
 def test_floats_in_a_system_are_these_doubles() -> None:
     one = kd.System({"masses": [1.5], "potentials": [{"step": 0.1, "springs": [[0, None, np.float64(0.3)]]}]})
     steps = one.decide().data["input"]["system"]["potentials"][0]

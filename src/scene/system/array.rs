@@ -232,6 +232,9 @@ mod tests {
         assert_eq!((columns[(0, 2)], columns[(1, 0)]), (5.0, 2.0));
         assert!(parse(&file(&header("False"), &data[..5])).is_err());
         assert!(parse(b"not an array").is_err());
+        let held = |shape: &[usize]| Array::new(shape.to_vec(), data.to_vec());
+        assert_eq!(held(&[2, 3]).unwrap().matrix("k").unwrap(), rows);
+        assert!(held(&[2, 2]).is_err() && held(&[usize::MAX, 2]).is_err());
         assert!(parse(&file("{'descr': '<c16', 'fortran_order': False, 'shape': (1,), }", &data)).is_err());
     }
 }
