@@ -18,7 +18,7 @@ from kickdrift._native import Number
 from kickdrift._numbers import Exact, Labels, Range, number
 from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
-from kickdrift._system import Run, System, SystemVerdict, simulate
+from kickdrift._system import Intervals, Run, System, SystemVerdict, simulate
 from kickdrift._tables import (
     Closings,
     Comparison,
@@ -41,6 +41,7 @@ __all__ = [
     "Curves",
     "Document",
     "Exact",
+    "Intervals",
     "KickdriftError",
     "Labels",
     "Map",

@@ -120,11 +120,14 @@ class Table(Document, Sequence[Row]):
 
     def to_csv(self) -> str:
         """The rows as CSV, all columns; computed again in that form."""
-        return ask(self._arguments, "csv")
+        return self._again("csv")
 
     def to_latex(self) -> str:
         """The rows as a LaTeX table; computed again in that form."""
-        return ask(self._arguments, "latex")
+        return self._again("latex")
+
+    def _again(self, form: str) -> str:
+        return ask(self._arguments, form)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a data frame; the parts of a field stand beside each other, as ``lower_lo`` and ``lower_hi``.

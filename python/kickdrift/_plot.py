@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift._errors import required
+from kickdrift._native import Number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -41,6 +42,72 @@ def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
         own.set_xlim(0, 4.2)
     own.set_yticks(range(len(rows)), [f"{row['p']}/{row['q']}, m = {row['m']}" for row in rows])
     own.set_xlabel(r"$s = h_1^2 \lambda_1$")
+    return own
+
+
+def closings(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+    """A point a closing, with its ratio and label."""
+    own = axes(ax)
+    for row in rows:
+        at = tuple((row[name]["lo"] + row[name]["hi"]) / 2 for name in ("rho", "s"))
+        own.plot(*at, "o", markersize=4, color="#1b7837")
+        words = f"{row['p']}/{row['q']}, m = {row['m']}"
+        own.annotate(words, at, xytext=(4, 3), textcoords="offset points", fontsize=7)
+    own.set_xscale("log")
+    own.set_xlabel(r"$\rho = \lambda_2/\lambda_1$")
+    own.set_ylabel(r"$s = h_1^2 \lambda_1$")
+    return own
+
+
+def comparison(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+    """A point a disagreement, a colour each kind of it."""
+    own = axes(ax)
+    on_grid = any("h1" in row for row in rows)
+    points: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        at = (row["h1"], row["h2"]) if on_grid else (row["s"], f"{row['p']}/{row['q']}")
+        points.setdefault(row["offence"] or "tan criterion", []).append((rounded(at[0]), rounded(at[1])))
+    for offence, where in sorted(points.items()):
+        own.plot(*zip(*where, strict=True), ".", markersize=4, label=offence)
+    if points:
+        own.legend()
+    own.set_xlabel("$h_1$" if on_grid else r"$s = h_1^2 \lambda_1$")
+    own.set_ylabel("$h_2$" if on_grid else "$h_2/h_1$")
+    return own
+
+
+def rounded(exact: str) -> float:
+    """An exact number of a document as a double."""
+    return float(Number(exact))
+
+
+def intervals(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
+    """Stretches of the outer step: stable, unstable, not told."""
+    own = axes(ax)
+    colours = {"stable": _SAFE, "unstable": _UNSTABLE}
+    for verdict in dict.fromkeys(row["verdict"] for row in rows):
+        parts = [(row["lo"], row["hi"] - row["lo"]) for row in rows if row["verdict"] == verdict]
+        own.broken_barh(parts, (0, 1), color=colours.get(verdict, _BEYOND), label=verdict)
+    own.set_yticks([])
+    own.set_xlabel("outer step")
+    own.legend()
+    return own
+
+
+def run(document: Mapping[str, Any], ax: Axes | None) -> Axes:
+    """The amplitude over time, and the growth that was predicted."""
+    own, series = axes(ax), document["series"]
+    time = np.array([sample["time"] for sample in series])
+    amplitude = np.array([sample["amplitude"] for sample in series])
+    own.plot(time, amplitude, color="0.1", linewidth=0.8, label="amplitude")
+    rate = document["growth_rate_predicted"]
+    if rate:
+        predicted = amplitude[-1] * np.exp(rate * (time - time[-1]))
+        own.plot(time, predicted, "--", color="#b2182b", linewidth=0.8, label="predicted growth")
+        own.set_yscale("log")
+        own.legend()
+    own.set_xlabel("time")
+    own.set_ylabel("amplitude")
     return own
 
 

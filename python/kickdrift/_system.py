@@ -18,12 +18,13 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked, common
-from kickdrift._document import Document, Table, ask, given
+from kickdrift._document import Document, Table, ask, frame, given
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Range, range_text, text
 
 if TYPE_CHECKING:
+    import pandas
     from matplotlib.axes import Axes
 
 _SCHEMA = "kickdrift/system/1"
@@ -207,7 +208,7 @@ class System:
         options += [flag for flag, asked in (("--exact", exact), ("--keep-rigid", keep_rigid)) if asked]
         return SystemVerdict(self._ask("system", options), self, tuple(options))
 
-    def intervals(self, outer: Range, *, width: float = 1e-4, accuracy: float | None = None) -> Table:
+    def intervals(self, outer: Range, *, width: float = 1e-4, accuracy: float | None = None) -> Intervals:
         """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
 
         Parameters
@@ -224,7 +225,7 @@ class System:
             width=str(width),
             accuracy=None if accuracy is None else str(accuracy),
         )
-        return Table(self._ask("system", options), ("system", *options), "stretches")
+        return Intervals(self._ask("system", options), tuple(options), "stretches", self)
 
     def advise(
         self,
@@ -284,6 +285,34 @@ def _exact(value: Any) -> Any:
     if value is None or isinstance(value, bool | str):
         return value
     return value if isinstance(value, int) else text("number", value)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Intervals(Table):
+    """Stretches of the outer step, ``lo`` to ``hi``: ``stable``, ``unstable``, or ``the data do not tell``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import kickdrift as kd
+    >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+    >>> found = system.intervals(("1/20", "1/5"))
+    >>> [row["verdict"] for row in found], found.plot().get_xlabel()
+    (['stable', 'the data do not tell', 'unstable', 'the data do not tell', 'stable'], 'outer step')
+    """
+
+    system: System
+
+    def _again(self, form: str) -> str:
+        return self.system._ask("system", self._arguments, form)
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the stretches over the outer step."""
+        return _plot.intervals(self.rows, ax)
+
+    def to_svg(self) -> str:
+        """The program's figure: the stretches, and growth where it is unstable."""
+        return self._again("svg")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -383,9 +412,18 @@ class Run(Document):
     --------
     >>> import kickdrift as kd
     >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
-    >>> kd.simulate(system, periods=10)
-    Run(10 periods)
+    >>> run = kd.simulate(system, periods=10)
+    >>> run, len(run.to_pandas()), run.plot().get_xlabel()
+    (Run(10 periods), 11, 'time')
     """
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row a period: time, energy, momentum, amplitude."""
+        return frame(self.data["series"])
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the amplitude over time, beside the growth predicted where there is some."""
+        return _plot.run(self.data, ax)
 
     def __repr__(self) -> str:
         return f"Run({self.data['input']['periods']} periods)"

@@ -137,6 +137,17 @@ class Closings(Table):
     (4, '11/4', '114/55')
     """
 
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the closings in the (rho, s) plane.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> len(kd.closings(max_sum=8).plot().texts)
+        4
+        """
+        return _plot.closings(self.rows, ax)
+
 
 def closings(
     ratio: Exact | None = None,
@@ -306,6 +317,17 @@ class Comparison(Table):
     >>> kd.compare(max_sum=6, rho="1/25", samples=9).data["pairs"]
     99
     """
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw the disagreements: a grid's in the (h1, h2) plane, those of ratios in (s, h2/h1).
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.compare(max_sum=9, rho="1/25", samples=19).plot().get_ylabel()
+        '$h_2/h_1$'
+        """
+        return _plot.comparison(self.rows, ax)
 
 
 def compare(
