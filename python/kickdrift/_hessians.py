@@ -5,6 +5,7 @@ Coordinates are mass-weighted throughout, x = M^½ (r - r0): a kick of strength 
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -26,6 +27,18 @@ Force: TypeAlias = Callable[[Doubles], Doubles]
 
 Progress: TypeAlias = Callable[[int, int], None]
 """Called with the columns done and the columns in all."""
+
+
+def bar(done: int, total: int) -> None:
+    """A bar on standard error."""
+    drawn = "#" * (30 * done // total)
+    end = "\n" if done == total else ""
+    print(f"\r[{drawn:30}] {done} of {total} columns", end=end, file=sys.stderr, flush=True)
+
+
+def shown(progress: Progress | bool | None) -> Progress | None:
+    """Who is called: a bar, the function given, or nobody."""
+    return bar if progress is True else progress or None
 
 
 def hessian(

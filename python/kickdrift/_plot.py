@@ -48,12 +48,17 @@ def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
 def closings(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """A point a closing, with its ratio and label."""
     own = axes(ax)
+    from matplotlib.ticker import LogLocator, NullFormatter
+
     for row in rows:
         at = tuple((row[name]["lo"] + row[name]["hi"]) / 2 for name in ("rho", "s"))
         own.plot(*at, "o", markersize=4, color="#1b7837")
         words = f"{row['p']}/{row['q']}, m = {row['m']}"
         own.annotate(words, at, xytext=(4, 3), textcoords="offset points", fontsize=7)
     own.set_xscale("log")
+    own.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    own.xaxis.set_major_formatter("{x:g}")
+    own.xaxis.set_minor_formatter(NullFormatter())
     own.set_xlabel(r"$\rho = \lambda_2/\lambda_1$")
     own.set_ylabel(r"$s = h_1^2 \lambda_1$")
     return own

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
-from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm
+from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm, shown
 from kickdrift._numbers import Exact, number
 from kickdrift._system import System
 
@@ -31,7 +31,7 @@ def system(
     *,
     minimize: bool = True,
     difference: float = DIFFERENCE,
-    progress: Progress | None = None,
+    progress: Progress | bool = False,
 ) -> System:
     """Make a system of ASE's: the Hessian of each calculator at the minimum of all, with its measured error.
 
@@ -45,8 +45,8 @@ def system(
         Go to the minimum beside the positions first, by Newton's method.
     difference : float
         The difference of positions, Å.
-    progress : callable, optional
-        Called with the columns done and the columns in all, for each group.
+    progress : bool or callable
+        A bar on standard error; or what is called with the columns done and the columns in all, for each group.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def system(
     potentials: dict[str, tuple[Exact, Doubles]] = {}
     accuracy, root = 0.0, np.sqrt(np.repeat(masses, 3))
     for (name, force), step in zip(forces.items(), steps, strict=True):
-        matrix, error = hessian(force, where, masses, difference, None, progress)
+        matrix, error = hessian(force, where, masses, difference, None, shown(progress))
         accuracy = max(accuracy, error / max(norm(matrix), 1e-300))
         potentials[name] = (step, matrix * np.outer(root, root))
     # A periodic cell has no rotations: there the null space of the total tells what is rigid.

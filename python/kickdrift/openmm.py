@@ -30,6 +30,7 @@ from kickdrift._hessians import (
     minimum,
     monodromy,
     norm,
+    shown,
     soft_solve,
 )
 from kickdrift._numbers import Exact, number
@@ -73,7 +74,7 @@ def system(
     atoms: Sequence[int] | None = None,
     minimize: bool = True,
     difference: float = DIFFERENCE,
-    progress: Progress | None = None,
+    progress: Progress | bool = False,
 ) -> System:
     """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
 
@@ -92,8 +93,8 @@ def system(
         Go to the minimum beside the positions, in a copy.
     difference : float
         The difference of positions, nm.
-    progress : callable, optional
-        Called with the columns done and the columns in all, for each group.
+    progress : bool or callable
+        A bar on standard error; or what is called with the columns done and the columns in all, for each group.
 
     Returns
     -------
@@ -137,7 +138,7 @@ def system(
     accuracy = 0.0
     for step, groups in _levels(clocks).items():
         force = engine.force(sum(1 << group for group in groups))
-        matrix, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        matrix, error = hessian(force, where, engine.masses, difference, chosen, shown(progress))
         if constraints:
             matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
         matrix = frame.T @ matrix @ frame

@@ -145,6 +145,9 @@ def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     assert same.growth_rate == pytest.approx(verdict.growth_rate, rel=1e-6)
     calm = ko.system(system, positions, steps={0: Fraction(1, 2000), 1: 4 * unit.femtoseconds}).decide()
     assert calm.stable and calm.proven and calm.measured is not None and calm.measured["holds"] == "stable"
+    advice = ko.system(system, positions, steps={0: Fraction(1, 2000), 1: 4 * unit.femtoseconds}).advise()
+    # 4 fs is stable and beyond T/3 of the stretches, 8.9 fs.
+    assert advice.status == "caution" and advice.safe == Fraction(5, 2) and "atom" in advice.groups[0]["atoms"]
 
 
 def bonds(seed: int) -> tuple[mm.System, np.ndarray]:
@@ -292,7 +295,7 @@ def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
         assert np.abs(angles - expected).min() < 1e-5
 
 
-def test_some_atoms_of_many() -> None:
+def test_some_atoms_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     system, positions = waters()
     seen: list[tuple[int, int]] = []
     found = ko.system(
@@ -305,3 +308,5 @@ def test_some_atoms_of_many() -> None:
     )
     assert seen[-1] == (9, 9) and "only 3 of 12 atoms move" in found.notes
     assert found.decide().data["degrees_of_freedom"] == 9
+    ko.system(*bonds(1), steps={0: "1/2000", 1: "1/500"}, atoms=[0], progress=True)
+    assert capsys.readouterr().err.count("3 of 3 columns\n") == 2
