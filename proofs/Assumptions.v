@@ -53,6 +53,8 @@ Check Main.four_forms. Print Assumptions Main.four_forms.
 Check Main.tan_criterion. Print Assumptions Main.tan_criterion.
 Check Main.tan_criterion_q1. Print Assumptions Main.tan_criterion_q1.
 Check Main.tan_criterion_q2. Print Assumptions Main.tan_criterion_q2.
+Check Main.no_closing_q1. Print Assumptions Main.no_closing_q1.
+Check Main.no_closing_q2. Print Assumptions Main.no_closing_q2.
 Check Main.perturbed_orbit. Print Assumptions Main.perturbed_orbit.
 Check Main.sign_certificate. Print Assumptions Main.sign_certificate.
 Check Main.sign_certificate_rounded. Print Assumptions Main.sign_certificate_rounded.

@@ -6,7 +6,7 @@
 
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
-  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Proposition Plane Perturbation
+  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Closings Proposition Plane Perturbation
   Cone Certificate.
 Open Scope R_scope.
 
@@ -264,6 +264,18 @@ Theorem tan_criterion_q2 : forall p h1 L1 h2 L2 th,
      (tr Q < -2 <-> (1 - alpha * t) * (1 - alpha * c2 * t) < 0)) /\
   (cos phi = 0 -> (2 < tr Q <-> 1 < alpha * alpha * c2) /\ ~ tr Q < -2).
 Proof. exact TanCriterion.tan_criterion_q2. Qed.
+
+(** No tongue closes where the slow clock kicks once or twice a period, nor, by [swap_clocks], where the fast one does. *)
+Theorem no_closing_q1 : forall p h1 L1 h2 L2,
+  (1 <= p)%nat -> h1 <> 0 -> h2 * L2 <> 0 ->
+  full_period p 1 h1 L1 h2 L2 <> one /\ full_period p 1 h1 L1 h2 L2 <> opp one.
+Proof. exact Closings.no_closing_q1. Qed.
+
+Theorem no_closing_q2 : forall p h1 L1 h2 L2,
+  Nat.Odd p -> h1 <> 0 -> L1 <> 0 -> h2 * L2 <> 0 ->
+  let H := half_period p 2 h1 L1 h2 L2 in
+  ~ (mB H = 0 /\ mC H = 0) /\ ~ (mA H = 0 /\ mD H = 0).
+Proof. exact Closings.no_closing_q2. Qed.
 
 (** ** 6. Rounding and cones *)
 

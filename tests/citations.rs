@@ -46,6 +46,23 @@ fn every_cited_theorem_exists() {
 }
 
 #[test]
+fn every_theorem_that_the_manuscript_names_exists() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| fs::read_to_string(root.join(file)).unwrap();
+    let statements = read("proofs/Main.v") + &read("proofs/MatrixSigns.v");
+    let text = read("paper/paper.tex") + &read("paper/supplement.tex");
+    let named: BTreeSet<String> = text
+        .split("\\coq{")
+        .skip(1)
+        .map(|rest| rest.split('}').next().unwrap().replace("\\_", "_"))
+        .collect();
+    assert!(named.len() > 15, "{named:?}");
+    for name in named {
+        assert!(statements.contains(&format!("Theorem {name} ")), "the manuscript names `{name}`");
+    }
+}
+
+#[test]
 fn citations_are_read_across_lines() {
     let text = "/// bounded (theorem `a_b` in proofs/), and\n/// (theorems `c`,\n/// `d` in proofs/).";
     assert_eq!(cited(text), ["a_b", "c", "d"]);

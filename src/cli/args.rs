@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
-use crate::report::document::Document;
+use crate::report::document::{Document, Layout};
 use crate::report::file::write_output;
 use crate::scene::{Arrays, GridRange, StepRange};
 use crate::verdict::Limits;
@@ -139,6 +139,29 @@ impl Common {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
         pool.map_err(|cause| Error::input("threads", threads, cause))
+    }
+}
+
+/// How tables are laid out for people and papers.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Columns {
+    /// Only these columns of csv, text and latex, by the names that csv has [default: all; in latex those that fit].
+    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    columns: Option<Vec<String>>,
+    /// Significant digits of text and latex [default: all; in latex 10, or as many as fit].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
+    digits: Option<u32>,
+}
+
+impl Columns {
+    /// As the document takes it.
+    pub fn layout(&self) -> Layout {
+        Layout { columns: self.columns.clone(), digits: self.digits }
+    }
+
+    /// The document, laid out.
+    pub fn of(&self, document: Document) -> Result<Document> {
+        document.laid_out(&self.layout())
     }
 }
 

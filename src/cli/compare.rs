@@ -1,6 +1,6 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
-use super::args::{self, Common, of, whole};
+use super::args::{self, Columns, Common, of, whole};
 use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -31,6 +31,8 @@ pub struct Args {
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = of(parse_rational))]
     tolerance: Rational,
+    #[command(flatten)]
+    columns: Columns,
 }
 
 impl Args {
@@ -49,6 +51,6 @@ impl Args {
                 return Err(Error::input("flags", "incomplete or mixed", remedy));
             }
         };
-        common.write(&request.perform(common, true)?, Format::Text)
+        common.write(&self.columns.of(request.perform(common, true)?)?, Format::Text)
     }
 }

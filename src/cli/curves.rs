@@ -1,6 +1,6 @@
 //! `kickdrift curves`: the (a, b) families as tables.
 
-use super::args::{Common, of, whole};
+use super::args::{Columns, Common, of, whole};
 use super::request::Request;
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -30,12 +30,14 @@ pub struct Args {
     /// Points a curve, evenly spaced in theta.
     #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
+    #[command(flatten)]
+    columns: Columns,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::DOCUMENT)?;
-        let Args { lambda1, h1_range: h1, h2_range: h2, a, b, samples } = self;
+        let Args { lambda1, h1_range: h1, h2_range: h2, a, b, samples, columns } = self;
         for (field, (lo, hi)) in [("h1-range", h1), ("h2-range", h2)] {
             if hi.sign() != Sign::Positive {
                 return Err(Error::input(
@@ -49,6 +51,6 @@ impl Args {
         let given = vec![("h1_range", shown_range(h1)), ("h2_range", shown_range(h2))];
         let ranges = [h1.clone(), h2.clone()];
         let request = Request::Curves { lambda1: lambda1.clone(), ranges, families, given };
-        common.write(&request.perform(common, true)?, format)
+        common.write(&columns.of(request.perform(common, true)?)?, format)
     }
 }

@@ -8,6 +8,7 @@ mod closings;
 mod compare;
 mod curves;
 mod generate;
+mod help;
 mod map;
 mod merge;
 mod plane;
@@ -29,7 +30,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::error::Result;
 use crate::format::Format;
@@ -96,6 +97,15 @@ impl Command {
     }
 }
 
+/// All commands, with their examples.
+fn whole() -> Program {
+    help::explained(Cli::command())
+}
+
+fn parsed(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Cli> {
+    Cli::from_arg_matches(&whole().try_get_matches_from(arguments)?)
+}
+
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
     ExitCode::from(program(std::env::args_os()))
@@ -105,14 +115,14 @@ pub fn main() -> ExitCode {
 pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     // Without it the next run in the same folder tidies up.
     let _ = tidy_up_when_stopped();
-    let cli = match Cli::try_parse_from(arguments) {
+    let cli = match parsed(arguments) {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
             // A closed pipe is the reader's choice.
             let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
             return 0;
         }
-        Err(error) => return failure(&usage::explained(&error, &Cli::command()).to_string()),
+        Err(error) => return failure(&usage::explained(&error, &whole()).to_string()),
     };
     match run(&cli) {
         Ok(code) => code,
@@ -140,8 +150,7 @@ pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> 
 /// # Errors
 /// As [`answer`].
 pub fn answer_about(arguments: impl IntoIterator<Item = OsString>, held: Option<Held>) -> Result<Vec<u8>> {
-    let mut cli =
-        Cli::try_parse_from(arguments).map_err(|error| usage::explained(&error, &Cli::command()))?;
+    let mut cli = parsed(arguments).map_err(|error| usage::explained(&error, &whole()))?;
     cli.common.held = held;
     captured(|| run(&cli).map(drop))
 }
@@ -187,7 +196,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::System(args) => args.run(common)?,
         Command::Advise(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
-        Command::Generate(args) => args.run(Cli::command(), common)?,
+        Command::Generate(args) => args.run(whole(), common)?,
     }
     Ok(0)
 }

@@ -9,9 +9,9 @@ use crate::report::document::Document;
 /// The flags that say which.
 #[derive(Debug, clap::Args)]
 pub struct Flags {
-    /// h2/h1 = p/q.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = of(parse_ratio))]
-    ratio: Option<Ratio>,
+    /// h2/h1 = p/q; several, as 5/3,7/2, for a diagram.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = of(parse_ratio))]
+    ratio: Vec<Ratio>,
     /// All coprime p + q up to this number.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
     max_sum: Option<u64>,
@@ -23,18 +23,31 @@ impl Flags {
         self.max_sum.is_some()
     }
 
+    /// The ratios that were named, one or more.
+    ///
+    /// # Errors
+    /// None, or a sum in their place.
+    pub fn several(&self) -> Result<&[Ratio]> {
+        match (&self.ratio[..], self.max_sum) {
+            (named @ [_, ..], None) => Ok(named),
+            _ => Err(Error::missing(
+                "ratio",
+                "a diagram is of ratios by name: give --ratio P/Q or --ratio P/Q,P/Q",
+            )),
+        }
+    }
+
     /// The ratios.
     ///
     /// # Errors
     /// Neither flag or both.
     pub fn ratios(&self) -> Result<Ratios> {
-        match (self.ratio, self.max_sum) {
-            (Some(ratio), None) => Ok(Ratios::One(ratio)),
-            (None, Some(max_sum)) => Ok(Ratios::UpTo(max_sum)),
-            (Some(_), Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
-            (None, None) => {
-                Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N"))
-            }
+        match (&self.ratio[..], self.max_sum) {
+            (&[ratio], None) => Ok(Ratios::One(ratio)),
+            ([_, second, ..], None) => Err(Error::input("ratio", second, "is one too many: give one")),
+            ([], Some(max_sum)) => Ok(Ratios::UpTo(max_sum)),
+            (_, Some(_)) => Err(Error::input("ratio", "given with --max-sum", "give one of them")),
+            ([], None) => Err(Error::missing("ratio", "give --ratio P/Q, or --max-sum N for all p + q <= N")),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::args::{Common, whole};
+use super::args::{Columns, Common, whole};
 use super::system::{draw, limits, read};
 use crate::avi::Ends;
 use crate::error::Result;
@@ -28,6 +28,8 @@ pub struct Args {
     /// Also draw energy, momentum and amplitude: FILE.svg, FILE.pdf or FILE.png.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
+    #[command(flatten)]
+    columns: Columns,
 }
 
 impl Args {
@@ -47,6 +49,6 @@ impl Args {
             .input("periods", request.periods)
             .input("displace", &request.displacement)
             .input("form", if self.staggered { "staggered" } else { "symmetric" });
-        common.write(&document, Format::Text)
+        common.write(&self.columns.of(document)?, Format::Text)
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 
-use super::args::{Common, of};
+use super::args::{Columns, Common, of};
 use super::plane::DPI;
 use super::progress::progress;
 use crate::error::{Error, Kind, Result};
@@ -53,6 +53,8 @@ pub struct Args {
     /// Leave the rigid motions of measured stiffnesses in.
     #[arg(long)]
     keep_rigid: bool,
+    #[command(flatten)]
+    columns: Columns,
 }
 
 impl Args {
@@ -114,7 +116,7 @@ impl Args {
         }
         let document =
             report::intervals(&stretches, inner_steps).input("intervals", range).input("width", width);
-        common.write(&self.echo(document, scene), Format::Text)
+        common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
     }
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
@@ -132,7 +134,8 @@ impl Args {
                 };
                 let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
                 let beside = Beside { unit: scene.time_unit(), friction, orbit, is_orbit_missing, labels };
-                common.write(&self.echo(report::document(&analysis, &beside), scene), Format::Text)
+                let document = self.echo(report::document(&analysis, &beside), scene);
+                common.write(&self.columns.of(document)?, Format::Text)
             }
         }
     }
@@ -150,7 +153,7 @@ impl Args {
         }
         let document =
             self.echo(map.document(), scene).input("scan_x", &self.scan[0]).input("scan_y", &self.scan[1]);
-        common.write(&document, common.format_of_table(&Format::DOCUMENT)?)
+        common.write(&self.columns.of(document)?, common.format_of_table(&Format::DOCUMENT)?)
     }
 
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Common, Stiffness, of};
+use super::args::{Columns, Common, Stiffness, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_rational};
@@ -38,6 +38,8 @@ pub struct Args {
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
     #[arg(long)]
     exit_code: bool,
+    #[command(flatten)]
+    columns: Columns,
 }
 
 impl Args {
@@ -74,7 +76,7 @@ impl Args {
         if let Some(path) = &self.certificate {
             certify(oscillator, answer.verdict, path, common.budget)?;
         }
-        document.map_or(Ok(()), |document| common.write(&document, Format::Text))?;
+        document.map_or(Ok(()), |document| common.write(&self.columns.of(document)?, Format::Text))?;
         Ok(answer.verdict.is_stable())
     }
 }

@@ -12,6 +12,9 @@ use crate::tongue::{Closing, Enclosure, Found};
 /// Significant digits unless others are asked for: the boxes are known to 2^-100.
 pub const DIGITS: u32 = 25;
 
+const CAPTION: &str =
+    "Closed tongues, where $Q = \\pm I$, in $s = h_1^2 \\Lambda_1$ and $\\rho = \\Lambda_2/\\Lambda_1$";
+
 /// The document `kickdrift/closings/1`. The caller adds the input; `what` says in words what was searched.
 ///
 /// With `all_columns` the table is made for programs, else for people and paper.
@@ -24,7 +27,11 @@ pub fn document(found: &[Found], digits: u32, what: &str, all_columns: bool) -> 
     Document::new("closings")
         .entry("closings", record(digits, false).all(closings()))
         .entry("ratios", complete)
-        .long_rows(record(digits, !all_columns).table("closings", "Closed tongues: Q = I or -I", closings()))
+        .long_rows(
+            record(digits, !all_columns)
+                .table("closings", "Closed tongues: Q = I or -I", closings())
+                .captioned(CAPTION),
+        )
         .summary(&lines(found, what))
 }
 

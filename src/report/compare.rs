@@ -8,6 +8,8 @@ use super::table::{Cell, Column};
 use crate::number::Rational;
 use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally};
 
+const CAPTION: &str = "Pairs at which the prediction $q h_2 \\approx m T_{1/2}$ is wrong";
+
 /// The document `kickdrift/compare/1`; `places` are the names of an offender's two quantities. The caller
 /// adds the rest of the input.
 pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> Document {
@@ -24,7 +26,11 @@ pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> D
                 "false_alarms": tally.false_alarms, "beyond_verlet": tally.beyond_verlet,
             }),
         )
-        .rows(record(places).table("offenders", "Pairs at which a prediction is wrong", offenders))
+        .rows(
+            record(places)
+                .table("offenders", "Pairs at which a prediction is wrong", offenders)
+                .captioned(CAPTION),
+        )
         .summary(&lines(tally, tolerance))
 }
 
@@ -53,8 +59,8 @@ fn record(places: [&str; 2]) -> Record<'static, Offender> {
         .field(Column::math("p", "p"), |of| of.ratio.p().into())
         .field(Column::math("q", "q"), |of| of.ratio.q().into())
         .field(Column::new("offence").left(), |of| offence(&of.comparison).into())
-        .field(Column::new("kind").left(), |of| of.comparison.trace.verdict.kind().name().into())
-        .field(Column::new("tan").in_words("tan criterion").left(), |of| {
+        .field(Column::new("kind").left().aside(), |of| of.comparison.trace.verdict.kind().name().into())
+        .field(Column::new("tan").in_words("tan criterion").left().aside(), |of| {
             of.comparison.tan.kind().name().into()
         })
         .field(Column::new("m").titled("nearest m", "nearest $m$"), move |of| nearest(of).map(|n| n.m).into())

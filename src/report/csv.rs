@@ -84,7 +84,7 @@ fn put_cell(line: &mut String, enclosed: bool, cell: &Cell) {
             put(line, &format!("{lo:?}"));
             return put(line, &format!("{hi:?}"));
         }
-        Cell::Exact(text) | Cell::Text(text) => text.into(),
+        Cell::Exact(text) | Cell::Decimal(text) | Cell::Text(text) => text.into(),
         Cell::Float(value) => format!("{value:?}").into(),
         Cell::Integer(value) => value.to_string().into(),
         Cell::Flag(value) => value.to_string().into(),

@@ -45,5 +45,7 @@ fn table(points: &[Point]) -> Table {
     let curve = Record::new()
         .field(Column::math("a", "a"), |(curve, ..): &Point| curve.a.into())
         .field(Column::math("b", "b"), |(curve, ..)| curve.b.into());
-    place(curve).table("curves", "Points of the resonance curves (a, b)", points)
+    place(curve)
+        .table("curves", "Points of the resonance curves (a, b)", points)
+        .captioned("Points of the resonance curves $1/T_{1/2} = a/h_1 + b/h_2$, $\\theta = \\pi h_1/T_{1/2}$")
 }

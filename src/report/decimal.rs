@@ -60,19 +60,39 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
         return Shown::Ends(lo, hi);
     }
     let [lo, hi] = [lo, hi].map(|end| rational::from_f64_exact(end).expect("the ends are finite"));
-    let mut places = MOST_DIGITS - 1 - exponent_of_double(small);
-    loop {
-        if let Some(shown) = at_places(&lo, &hi, places) {
-            return shown;
-        }
-        places -= 1;
+    first_that_fits(&lo, &hi, MOST_DIGITS)
+}
+
+/// The same with so many significant digits at most, of doubles.
+pub fn shortened(lo: f64, hi: f64, digits: u32) -> Shown {
+    match (enclosure(lo, hi), [lo, hi].map(rational::from_f64_exact)) {
+        (Shown::Concise { .. }, [Some(lo), Some(hi)]) if !lo.is_zero() => concise(&lo, &hi, digits),
+        (vague, _) => vague,
     }
 }
 
-/// The decimal exponent of a positive double: value = d.ddd x 10^exponent.
-fn exponent_of_double(value: f64) -> i64 {
-    let text = format!("{value:e}");
-    text.split_once('e').and_then(|(_, power)| power.parse().ok()).expect("a finite double has an exponent")
+/// "Between `lo` and `hi`" in so many significant digits, fewer where they are not certain: what is written contains [lo, hi].
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::report::decimal::concise;
+/// assert_eq!(concise(&ratio(1, 3), &ratio(1, 3), 5).to_string(), "0.33333(1)");
+/// assert_eq!(concise(&ratio(11, 4), &ratio(11, 4), 5).to_string(), "2.75");
+/// ```
+///
+/// # Panics
+/// Where an end is 0, their signs differ, or they differ by more than their size: no digit is certain then.
+pub fn concise(lo: &Rational, hi: &Rational, digits: u32) -> Shown {
+    assert!(lo.is_positive() == hi.is_positive() && lo <= hi && !lo.is_zero(), "[{lo}, {hi}]");
+    let small = lo.abs().min(hi.abs());
+    assert!(hi - lo <= small, "no digit of [{lo}, {hi}] is certain");
+    first_that_fits(lo, hi, i64::from(digits.max(1)))
+}
+
+/// The most digits, `digits` at most, whose uncertainty is a single digit.
+fn first_that_fits(lo: &Rational, hi: &Rational, digits: i64) -> Shown {
+    let most = digits - 1 - exponent(&lo.abs().min(hi.abs()));
+    (0..).find_map(|fewer| at_places(lo, hi, most - fewer)).expect("with few digits any error is one unit")
 }
 
 /// The midpoint rounded to `places`, if its distance to both ends fits the uncertainty allowed.

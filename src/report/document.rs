@@ -6,8 +6,9 @@
 
 use serde_json::{Map, Value, json};
 
+use super::latex::{self, Equation};
 use super::table::Table;
-use super::{csv, latex, text};
+use super::{csv, text};
 use crate::error::{Error, Result};
 use crate::format::Format;
 
@@ -21,8 +22,21 @@ pub struct Document {
     table: Option<Table>,
     /// Further tables, for LaTeX and text.
     more: Vec<Table>,
+    /// In place of the tables in LaTeX.
+    equations: Vec<Equation>,
+    /// Significant digits of tables that people read, where a number is asked for.
+    digits: Option<u32>,
     summary: String,
     summary_only: bool,
+}
+
+/// What a person asks of the tables of a document.
+#[derive(Clone, Debug, Default)]
+pub struct Layout {
+    /// The keys of the columns of the first one; all that fit its form where none are given.
+    pub columns: Option<Vec<String>>,
+    /// Significant digits in text and LaTeX.
+    pub digits: Option<u32>,
 }
 
 /// Rows beyond this number are left out of the text form, which says so.
@@ -37,6 +51,8 @@ impl Document {
             body: Map::new(),
             table: None,
             more: Vec::new(),
+            equations: Vec::new(),
+            digits: None,
             summary: String::new(),
             summary_only: false,
         }
@@ -93,6 +109,28 @@ impl Document {
         self
     }
 
+    /// Equations, which LaTeX shows in place of the rows.
+    #[must_use]
+    pub fn equations(mut self, equations: Vec<Equation>) -> Self {
+        self.equations = equations;
+        self
+    }
+
+    /// The same document, its tables laid out as asked for; JSON stays as it is.
+    ///
+    /// # Errors
+    /// A column that the table does not have, no digits at all.
+    pub fn laid_out(mut self, layout: &Layout) -> Result<Self> {
+        if layout.digits == Some(0) {
+            return Err(Error::input("digits", 0, "choose 1 or more"));
+        }
+        self.digits = layout.digits;
+        if let (Some(keys), Some(table)) = (&layout.columns, &self.table) {
+            self.table = Some(table.choose(keys)?);
+        }
+        Ok(self)
+    }
+
     /// The summary for people: whole lines, the last one without a newline.
     #[must_use]
     pub fn summary(mut self, lines: &[String]) -> Self {
@@ -132,9 +170,12 @@ impl Document {
         match format {
             Format::Json => Ok(self.json()),
             Format::Csv => Ok(csv::document(table("csv")?)),
+            Format::Latex if !self.equations.is_empty() => latex::equations(&self.equations, &self.input),
             Format::Latex => {
-                let all = std::iter::once(table("latex")?).chain(&self.more).map(latex::document);
-                Ok(all.collect::<Vec<_>>().join("\n"))
+                let all = std::iter::once(table("latex")?).chain(&self.more);
+                let all: Result<Vec<String>> =
+                    all.map(|table| latex::document(table, &self.input, self.digits)).collect();
+                Ok(all?.join("\n"))
             }
             Format::Text => Ok(self.text(to_see)),
             Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
@@ -181,7 +222,11 @@ impl Document {
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: {to_see}\n");
             } else if rows > 0 {
-                out += &format!("\n{}\n", text::document(table).trim_end());
+                out += &format!(
+                    "\n{}\n",
+                    text::document(&self.digits.map_or_else(|| table.clone(), |n| table.shortened(n)))
+                        .trim_end()
+                );
             }
         }
         out

@@ -1,8 +1,10 @@
 //! The half period of one ratio as polynomials in s = h1² L1 and rho = L2/L1.
 
+use num_traits::{One, Signed, Zero};
 use serde_json::{Map, Value};
 
 use super::document::Document;
+use super::latex::Equation;
 use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::number::{Polynomial, Ratio, Rational};
@@ -34,7 +36,37 @@ pub fn document(ratio: Ratio) -> Document {
         .entry("q", ratio.q())
         .entry("polynomials", Value::Object(values))
         .rows(table(&polynomials))
+        .equations(polynomials.iter().map(|(name, f)| equation(name, f)).collect())
         .summary_alone(&lines)
+}
+
+/// One polynomial in LaTeX, term by term.
+fn equation(name: &str, f: &Bivariate) -> Equation {
+    let power = |letter: &str, n: usize| match n {
+        0 => String::new(),
+        1 => format!(" {letter}"),
+        n => format!(" {letter}^{{{n}}}"),
+    };
+    let in_s = f.coefficients().iter().enumerate();
+    let all = in_s.flat_map(|(i, g)| g.coefficients().iter().enumerate().map(move |(j, c)| (i, j, c)));
+    let terms: Vec<(usize, usize, &Rational)> = all.filter(|(.., c)| !c.is_zero()).collect();
+    let term = |(n, (i, j, c)): (usize, &(usize, usize, &Rational))| {
+        let sign = match (n, c.is_negative()) {
+            (0, false) => "",
+            (_, false) => " +",
+            (_, true) => " -",
+        };
+        let letters = format!("{}{}", power("\\rho", *j), power("s", *i));
+        let size = c.abs();
+        let number = match (size.is_one() && !letters.is_empty(), size.is_integer()) {
+            (true, _) => String::new(),
+            (false, true) => format!(" {size}"),
+            (false, false) => format!(" \\tfrac{{{}}}{{{}}}", size.numer(), size.denom()),
+        };
+        format!("{sign}{number}{letters}")
+    };
+    let left = if name == "trace" { "\\operatorname{Tr} Q" } else { name };
+    Equation { name: left.into(), key: name.into(), terms: terms.iter().enumerate().map(term).collect() }
 }
 
 /// The terms other than zero: entry, powers of s and rho, coefficient.

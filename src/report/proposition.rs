@@ -7,6 +7,9 @@ use crate::resonance::proposition::{Check, Witness};
 
 const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
 
+/// The same in LaTeX.
+const CAPTION_LATEX: &str = "Resonant points $h_2/h_1 = p/q$, $p\\theta = m\\pi$, and a curve $(a, b)$ with $m = ap + bq$ through each";
+
 /// The document `kickdrift/proposition/1`: counts, failures, and a witness for every resonant point.
 pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
     let Check { forward, backward, failures } = check;
@@ -23,7 +26,7 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
         .entry("resonant_points", *forward)
         .entry("curves", *backward)
         .entry("failures", record().all(failures))
-        .rows(record().table("witnesses", CAPTION, witnesses))
+        .rows(record().table("witnesses", CAPTION, witnesses).captioned(CAPTION_LATEX))
         .summary(&lines)
 }
 

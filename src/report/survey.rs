@@ -11,6 +11,10 @@ use crate::tongue::{Spread, Survey, Thin};
 /// Digits that people need of a quotient of widths.
 const DIGITS: usize = 4;
 
+/// The captions in LaTeX.
+const WIDTHS: &str = "Widths of all tongues over the first-order law $2 s \\rho |S|$, by the $a$ of the dominant family $(a, b)$";
+const THINNEST: &str = "The thinnest tongues that begin below $s = h_1^2 \\Lambda_1 = 4$";
+
 /// The document `kickdrift/survey/1`.
 pub fn document(survey: &Survey) -> Document {
     let closed: Vec<Value> =
@@ -35,8 +39,10 @@ pub fn document(survey: &Survey) -> Document {
         )
         .entry("width_ratios", spreads(None).all(&survey.width_ratios))
         .entry("thinnest", thin().all(&survey.thinnest))
-        .long_rows(spreads(Some(DIGITS)).table("width_ratios", &widths, &survey.width_ratios))
-        .and_rows(thin().table("thinnest", &thinnest, &survey.thinnest))
+        .long_rows(
+            spreads(Some(DIGITS)).table("width_ratios", &widths, &survey.width_ratios).captioned(WIDTHS),
+        )
+        .and_rows(thin().table("thinnest", &thinnest, &survey.thinnest).captioned(THINNEST))
         .summary(&lines(survey))
 }
 
@@ -87,9 +93,13 @@ fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
         .field(Column::new("abs_a").titled("|a|", "$|a|$"), |of: &Spread| of.abs_a.into())
         .field(titled("count", "tongues"), |of| of.count.into())
         .field(Column::new("least"), move |of| float(of.least))
-        .field(titled("lower_quartile", "lower quartile"), move |of| float(of.lower_quartile))
+        .field(Column::new("lower_quartile").titled("lower quartile", "$25\\,\\%$"), move |of| {
+            float(of.lower_quartile)
+        })
         .field(Column::new("median"), move |of| float(of.median))
-        .field(titled("upper_quartile", "upper quartile"), move |of| float(of.upper_quartile))
+        .field(Column::new("upper_quartile").titled("upper quartile", "$75\\,\\%$"), move |of| {
+            float(of.upper_quartile)
+        })
         .field(Column::new("largest"), move |of| float(of.largest))
 }
 

@@ -5,6 +5,9 @@
 
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 
+use super::decimal;
+use crate::error::{Error, Result};
+
 /// One value of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
@@ -19,6 +22,8 @@ pub enum Cell {
         /// The upper end.
         hi: f64,
     },
+    /// A number in decimal digits that says how far they hold, see [`decimal`](super::decimal).
+    Decimal(String),
     /// A count, a label, an index.
     Integer(i64),
     /// Words.
@@ -103,6 +108,8 @@ pub struct Column {
     pub align: Align,
     /// Whether the cells are enclosures: these take two columns of CSV.
     pub enclosed: bool,
+    /// Whether a table on paper does without it unless it is asked for.
+    pub aside: bool,
 }
 
 impl Column {
@@ -115,6 +122,7 @@ impl Column {
             unit: None,
             align: Align::Right,
             enclosed: false,
+            aside: false,
         }
     }
 
@@ -152,6 +160,13 @@ impl Column {
         self
     }
 
+    /// The same column, left out on paper unless it is asked for.
+    #[must_use]
+    pub fn aside(mut self) -> Self {
+        self.aside = true;
+        self
+    }
+
     /// The same column for enclosures.
     #[must_use]
     pub fn enclosure(mut self) -> Self {
@@ -173,6 +188,7 @@ impl Column {
 pub struct Table {
     name: String,
     caption: String,
+    typeset: Option<String>,
     columns: Vec<Column>,
     rows: Vec<Vec<Cell>>,
 }
@@ -180,7 +196,48 @@ pub struct Table {
 impl Table {
     /// A table without rows.
     pub fn new(name: &str, caption: &str, columns: Vec<Column>) -> Self {
-        Table { name: name.into(), caption: caption.into(), columns, rows: Vec::new() }
+        Table { name: name.into(), caption: caption.into(), typeset: None, columns, rows: Vec::new() }
+    }
+
+    /// The same table with a caption for LaTeX, typeset as it stands.
+    #[must_use]
+    pub fn captioned(mut self, latex: &str) -> Self {
+        self.typeset = Some(latex.into());
+        self
+    }
+
+    /// The columns with these keys alone, in this order.
+    ///
+    /// # Errors
+    /// A key that no column has.
+    pub fn choose(&self, keys: &[String]) -> Result<Table> {
+        let place = |key: &String| {
+            self.columns.iter().position(|column| column.key == *key).ok_or_else(|| {
+                let known: Vec<&str> = self.columns.iter().map(|column| column.key.as_str()).collect();
+                Error::input("columns", key, format!("choose among {}", known.join(", ")))
+            })
+        };
+        let places: Vec<usize> = keys.iter().map(place).collect::<Result<_>>()?;
+        let columns = places.iter().map(|&i| Column { aside: false, ..self.columns[i].clone() }).collect();
+        let rows = self.rows.iter().map(|row| places.iter().map(|&i| row[i].clone()).collect()).collect();
+        Ok(Table { columns, rows, ..self.clone() })
+    }
+
+    /// The table with so many significant digits at most.
+    #[must_use]
+    pub fn shortened(&self, digits: u32) -> Table {
+        let shorten = |cell: &Cell| match *cell {
+            Cell::Float(x) if x.is_finite() => Cell::Float(decimal::rounded(x, digits as usize)),
+            Cell::Enclosure { lo, hi } if lo.is_finite() && hi.is_finite() => {
+                match decimal::shortened(lo, hi, digits) {
+                    decimal::Shown::Ends(..) => cell.clone(),
+                    concise => Cell::Decimal(concise.to_string()),
+                }
+            }
+            _ => cell.clone(),
+        };
+        let rows = self.rows.iter().map(|row| row.iter().map(shorten).collect()).collect();
+        Table { rows, ..self.clone() }
     }
 
     /// Adds a row.
@@ -201,6 +258,11 @@ impl Table {
     /// One sentence on what the rows are.
     pub fn caption(&self) -> &str {
         &self.caption
+    }
+
+    /// The same for LaTeX, where it differs.
+    pub fn typeset(&self) -> Option<&str> {
+        self.typeset.as_deref()
     }
 
     /// The columns, in order.
@@ -231,7 +293,7 @@ pub(super) fn check(columns: &[Column], row: &[Cell]) {
 /// As a sequence of maps from column keys to cells, in the order of the columns. Exact numbers are strings,
 /// enclosures `{"lo": , "hi": }`, missing values null, and so is a float that is not finite: JSON has none.
 impl Serialize for Table {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         let mut rows = serializer.serialize_seq(Some(self.rows.len()))?;
         for row in &self.rows {
             rows.serialize_element(&Row { columns: &self.columns, cells: row })?;
@@ -246,15 +308,15 @@ struct Row<'a> {
 }
 
 impl Serialize for Row<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         serializer.collect_map(self.columns.iter().map(|column| &column.key).zip(self.cells))
     }
 }
 
 impl Serialize for Cell {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         match self {
-            Cell::Exact(text) | Cell::Text(text) => serializer.serialize_str(text),
+            Cell::Exact(text) | Cell::Decimal(text) | Cell::Text(text) => serializer.serialize_str(text),
             Cell::Float(value) => serializer.serialize_f64(*value),
             Cell::Enclosure { lo, hi } => {
                 let mut ends = serializer.serialize_map(Some(2))?;

@@ -36,7 +36,7 @@ pub fn document(table: &Table) -> String {
 /// One cell as a person reads it.
 pub fn shown(cell: &Cell) -> String {
     match cell {
-        Cell::Exact(text) | Cell::Text(text) => text.clone(),
+        Cell::Exact(text) | Cell::Decimal(text) | Cell::Text(text) => text.clone(),
         Cell::Float(value) => format!("{value:?}"),
         Cell::Enclosure { lo, hi } => decimal::enclosure(*lo, *hi).to_string(),
         Cell::Integer(value) => value.to_string(),

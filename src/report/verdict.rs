@@ -24,6 +24,10 @@ pub struct Answer {
     pub friction: Option<crate::system::friction::Friction>,
 }
 
+const CAPTION: &str = "Stability of one pair of steps";
+const CAPTION_LATEX: &str =
+    "Stability of one pair of steps, $Q$ the propagator over the synchronization period $T = q h_2 = p h_1$";
+
 /// A rational trace is shown unasked where the period has at most so many kicks.
 const SHORT_PERIOD: u64 = 40;
 
@@ -73,7 +77,7 @@ impl Answer {
             document = document.input("friction", &own.rate).entry("friction", super::friction::value(own));
         }
         document
-            .long_rows(record.table("verdict", "Stability of one pair of steps", [self]))
+            .long_rows(record.table("verdict", CAPTION, [self]).captioned(CAPTION_LATEX))
             .summary_alone(&self.lines())
     }
 }
@@ -82,21 +86,23 @@ impl Answer {
 fn record() -> Record<'static, Answer> {
     type Of<'a> = &'a Answer;
     Record::new()
-        .input(Column::math("h1", "h_1"), |of: Of| Cell::exact(of.oscillator.h1()))
-        .input(Column::math("h2", "h_2"), |of| Cell::exact(of.oscillator.h2()))
+        .input(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
+        .input(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
         .field(Column::math("p", "p"), |of| of.oscillator.clocks().p().into())
         .field(Column::math("q", "q"), |of| of.oscillator.clocks().q().into())
         .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())
-        .field(Column::new("stable"), |of| of.decision.verdict.is_stable().into())
-        .field(Column::new("side"), |of| i64::from(of.decision.verdict.side()).into())
+        .field(Column::new("stable").aside(), |of| of.decision.verdict.is_stable().into())
+        .field(Column::new("side").aside(), |of| i64::from(of.decision.verdict.side()).into())
         .field(Column::math("trace", "\\operatorname{Tr} Q").enclosure(), |of| {
             of.growth.trace.to_f64_enclosure().into()
         })
-        .field(Column::new("growth_rate").in_words("growth rate").enclosure(), |of| of.growth_rate().into())
+        .field(Column::new("growth_rate").titled("growth rate", "$\\ln\\mu/T$").enclosure(), |of| {
+            of.growth_rate().into()
+        })
         .at("resonance.m", Column::math("m", "m"), |of| of.resonance().map(|(m, ..)| m).into())
         .at("resonance.a", Column::math("a", "a"), |of| of.resonance().map(|(_, a, _)| a).into())
         .at("resonance.b", Column::math("b", "b"), |of| of.resonance().map(|(.., b)| b).into())
-        .field(Column::new("decided_by").in_words("decided by").left(), |of| {
+        .field(Column::new("decided_by").in_words("decided by").left().aside(), |of| {
             of.decision.decided_by.name().into()
         })
 }

@@ -148,16 +148,22 @@ fn csv_is_a_header_and_one_line_a_row() {
 
 #[test]
 fn latex_is_a_booktabs_table() {
-    for line in
-        [UNSTABLE, "curves --a 0..0 --b 1..1 --samples 4", "polynomial --ratio 3/2", "proposition --max 3"]
-    {
+    for line in [
+        UNSTABLE,
+        "curves --a 0..0 --b 1..1 --samples 4",
+        "compare --max-sum 4 --rho 1/25",
+        "proposition --max 3",
+    ] {
         let table = stdout(&words(line, &["--format", "latex"]));
         for part in
-            ["\\begin{table}", "\\begin{tabular}", "\\toprule", "\\midrule", "\\bottomrule", "\\end{table}"]
+            ["\\begin{table", "\\begin{tabular}", "\\toprule", "\\midrule", "\\bottomrule", "\\end{table"]
         {
             assert!(table.contains(part), "{line}: no {part} in {table}");
         }
     }
+    let equations = stdout(&words("polynomial --ratio 3/2", &["--format", "latex"]));
+    let trace = "\\operatorname{Tr} Q &= 2 - 9 s - 9 \\rho s + 6 s^{2}";
+    assert!(equations.contains("\\begin{align}") && equations.contains(trace), "{equations}");
 }
 
 #[test]

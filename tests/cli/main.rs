@@ -4,6 +4,7 @@ mod advise;
 mod answers;
 mod files;
 mod golden;
+mod help;
 mod refusals;
 mod scenes;
 mod support;

@@ -1,6 +1,7 @@
 //! `kickdrift tongues`: every unstable interval of one ratio or of all, with certified edges.
 
 mod atlas;
+mod diagram;
 mod output;
 mod question;
 mod strength;
@@ -49,10 +50,10 @@ pub struct Args {
     /// Only tongues whose dominant family has its b in this range.
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
     b: Option<(i64, i64)>,
-    /// Give the edges to so many significant digits, as decimals.
+    /// Give the edges to so many significant digits, more or fewer than doubles have.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: Option<u32>,
-    /// What to compute beside the edges [default: all; with --max-sum all but growth, the dearest].
+    /// What to compute beside the edges [default: all; with --max-sum all but growth, the dearest; in LaTeX edges].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<Columns>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
@@ -93,6 +94,8 @@ enum Drawn {
     Atlas,
     /// Measured widths over the first-order law |S_a| at one angle, against a.
     Strength,
+    /// The tongues of one or several ratios: s across, rho from 0 to the one given, closings and resonances marked.
+    Diagram,
 }
 
 /// Digits beyond this are a slip of the keyboard.
@@ -109,12 +112,15 @@ impl Args {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
                 strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
             }
+            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
+                diagram::run(self.which.several()?, &self.stiffness()?.rho, common, format)
+            }
             (Format::Svg | Format::Pdf | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
                 let question = self.question(colour.needs())?;
                 Atlas::new(&question, colour, None)?.write(common, format)
             }
-            _ => output::write(&self.question(self.wanted())?, common, format),
+            _ => output::write(&self.question(self.wanted(format))?, common, format),
         }
     }
 
@@ -122,6 +128,7 @@ impl Args {
     fn check(&self, format: Format) -> Result<()> {
         let figure = format.is_figure();
         let strength = figure && self.figure == Some(Drawn::Strength);
+        let bare = strength || figure && self.figure == Some(Drawn::Diagram);
         let wrong = [
             (
                 "figure",
@@ -130,7 +137,7 @@ impl Args {
             ),
             (
                 "colour",
-                self.colour.is_some() && (!figure || strength),
+                self.colour.is_some() && (!figure || bare),
                 "is for an atlas: write one with --output FILE.svg, FILE.pdf or FILE.png",
             ),
             (
@@ -144,7 +151,7 @@ impl Args {
         ];
         match wrong.iter().find(|(_, wrong, _)| *wrong) {
             Some((flag, _, remedy)) => Err(Error::input(&format!("--{flag}"), "given", remedy)),
-            None if self.survey || strength => self.check_bare(),
+            None if self.survey || bare => self.check_bare(),
             None => Ok(()),
         }
     }
@@ -194,8 +201,9 @@ impl Args {
         Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
-    fn wanted(&self) -> Wanted {
+    fn wanted(&self, format: Format) -> Wanted {
         match &self.columns {
+            None if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
             None => Wanted { growth: !self.which.many(), ..Wanted::all() },
             Some(list) => {
                 let has = |column| list.contains(&column);

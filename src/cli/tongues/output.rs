@@ -9,10 +9,10 @@ use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::csv;
-use crate::report::document::Document;
+use crate::report::document::{Document, Layout};
 use crate::report::file::write_with;
 use crate::report::stream::JsonRows;
-use crate::report::tongues::{CAPTION, Tally, record};
+use crate::report::tongues::{CAPTION, CAPTION_LATEX, Tally, record};
 use crate::tongue::Tongue;
 
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
@@ -108,7 +108,8 @@ fn latex(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<T
 /// The summary, and the rows up to a number.
 fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
     let record = record(&question.asked.request, true);
-    let (mut tally, mut table) = (Tally::default(), record.table("tongues", CAPTION, []));
+    let (mut tally, mut table) =
+        (Tally::default(), record.table("tongues", CAPTION, []).captioned(CAPTION_LATEX));
     question.each(common, |part| {
         for tongue in part {
             tally.add(tongue);
@@ -122,5 +123,7 @@ fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, 
     if tally.count <= most {
         document = document.long_rows(table);
     }
-    Ok((tally, document))
+    // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
+    let digits = question.asked.request.digits;
+    Ok((tally, document.laid_out(&Layout { columns: None, digits })?))
 }

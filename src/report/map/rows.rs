@@ -89,8 +89,8 @@ fn record(products: Products) -> Record<'static, Written> {
         .field(Column::math("p", "p"), |of| of.pair.ratio.p().into())
         .field(Column::math("q", "q"), |of| of.pair.ratio.q().into())
         .field(Column::new("kind").left(), |of| of.pair.decision.verdict.kind().name().into())
-        .field(Column::new("side"), |of| i64::from(of.pair.decision.verdict.side()).into())
-        .field(Column::new("decided_by").in_words("decided by").left(), |of| {
+        .field(Column::new("side").aside(), |of| i64::from(of.pair.decision.verdict.side()).into())
+        .field(Column::new("decided_by").in_words("decided by").left().aside(), |of| {
             of.pair.decision.decided_by.name().into()
         });
     if products.label {
@@ -129,7 +129,8 @@ impl<'a> Rows<'a> {
 
     /// The rows as a table in memory.
     pub fn table<'b>(mut self, pairs: impl IntoIterator<Item = &'b Marked>) -> Table {
-        let mut table = Table::new("pairs", "Pairs that are unstable or on an edge", self.columns());
+        let mut table = Table::new("pairs", "Pairs that are unstable or on an edge", self.columns())
+            .captioned("Pairs of steps that are unstable or on an edge");
         pairs.into_iter().for_each(|pair| table.push(self.cells(pair)));
         table
     }

@@ -27,11 +27,15 @@ pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
 
+const CAPTION: &str =
+    "Multipliers $\\lambda$ over one synchronization period, $\\lambda + 1/\\lambda = 2 + 4\\mu$";
+
 /// The document `kickdrift/system-verdict/1`; the caller adds the input.
 pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let parts = || (1..).zip(&analysis.parts);
     let all: Vec<Own> = parts().flat_map(|(n, part)| multipliers(n, part)).collect();
-    let table = record().table("multipliers", "Multipliers over one synchronization period", &all);
+    let table =
+        record().table("multipliers", "Multipliers over one synchronization period", &all).captioned(CAPTION);
     let document = Document::new("system-verdict")
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
@@ -198,9 +202,9 @@ type Own<'a> = (u64, &'a Part, &'a Multiplier);
 fn record<'a>() -> Record<'a, Own<'a>> {
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
     Record::new()
-        .column(Column::new("part"), |&(n, ..): &Own| n.into())
+        .column(Column::new("part").aside(), |&(n, ..): &Own| n.into())
         .column(Column::new("kind").left(), |(_, part, _)| part.kind.name().into())
-        .column(titled("decided_by", "decided by").left(), |(_, part, _)| part.evidence.name().into())
+        .column(titled("decided_by", "decided by").left().aside(), |(_, part, _)| part.evidence.name().into())
         .at("mu.re", Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"), |(.., m)| {
             m.mu.re.into()
         })

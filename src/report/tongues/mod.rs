@@ -3,10 +3,13 @@
 //! | file | what is in it |
 //! |---|---|
 //! | `rows` | what is written of one: every column, or those that fit paper |
+//! | `diagram` | those of a few ratios over s and ρ |
 //! | `tally` | what stands out among many |
 
+#[cfg(feature = "figure")]
+pub mod diagram;
 mod rows;
 mod tally;
 
-pub use rows::{CAPTION, record};
+pub use rows::{CAPTION, CAPTION_LATEX, record};
 pub use tally::Tally;

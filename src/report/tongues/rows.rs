@@ -1,6 +1,6 @@
 //! What is written of a tongue.
 
-use crate::report::decimal::{outward, rounded};
+use crate::report::decimal::{concise, outward, rounded};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
 use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge};
@@ -8,6 +8,9 @@ use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge};
 /// The caption of a table of tongues.
 pub const CAPTION: &str =
     "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step";
+
+/// The same in LaTeX.
+pub const CAPTION_LATEX: &str = "Unstable intervals (tongues) $s_- < s < s_+$ of $s = h_1^2 \\Lambda_1$";
 
 /// Digits that people need of a number that is rounded anyway.
 const DIGITS: usize = 4;
@@ -57,13 +60,16 @@ impl Edge {
         let path = |key: &str| format!("{end}.{key}");
         let column = |key: &str| Column::new(&format!("{end}_{key}"));
         let title = Column::new(end).titled(&format!("{end} edge"), &format!("$s_{sign}$")).enclosure();
-        let mut record = record.field(title, move |of| self.s(of).map(ends).into());
+        let mut record = record.field(title, move |of| {
+            let told = short.then(|| told(self.s(of), request)).flatten();
+            told.unwrap_or_else(|| self.s(of).map(ends).into())
+        });
         if request.digits.is_some() {
             record = record
                 .json(path("decimal.lo"), move |of| decimal(self.s(of), request, 0))
                 .json(path("decimal.hi"), move |of| decimal(self.s(of), request, 1));
         }
-        record = record.at(path("entry"), column("entry").titled("of", "of").left(), move |of| {
+        record = record.at(path("entry"), column("entry").titled("of", "of").left().aside(), move |of| {
             find(of).map(|edge| edge.entry.name()).into()
         });
         if request.wanted.exact {
@@ -77,7 +83,7 @@ impl Edge {
                 record.at(path("exact"), title, exact).at(path("on"), column("on").left(), on)
             };
         }
-        if request.digits.is_some() {
+        if request.digits.is_some() && !short {
             for (n, side) in ["lo", "hi"].into_iter().enumerate() {
                 let title = column(&format!("decimal_{side}")).titled(&format!("{end} {side}"), side);
                 record = record.column(title, move |of| decimal(self.s(of), request, n));
@@ -87,7 +93,12 @@ impl Edge {
             for (n, h) in ["h1", "h2"].into_iter().enumerate() {
                 let formula = format!("$h_{}^{sign}$", n + 1);
                 let title = column(h).titled(&format!("{h} {end}"), &formula).enclosure();
-                record = record.at(path(h), title, move |of| self.step(of, n).map(ends).into());
+                // h2 is p/q of h1.
+                let title = if n == 1 { title.aside() } else { title };
+                record = record.at(path(h), title, move |of| {
+                    let told = short.then(|| told(self.step(of, n), request)).flatten();
+                    told.unwrap_or_else(|| self.step(of, n).map(ends).into())
+                });
                 if request.digits.is_some() {
                     record = record
                         .json(path(&format!("{h}.decimal.lo")), move |of| {
@@ -105,6 +116,12 @@ impl Edge {
 
 fn ends(quantity: &Quantity) -> (f64, f64) {
     (quantity.lo, quantity.hi)
+}
+
+/// A place to the digits that are asked for, its error in the last of them.
+fn told(quantity: Option<&Quantity>, request: &Request) -> Option<Cell> {
+    let (x, digits) = quantity.and_then(|quantity| quantity.precise.as_ref()).zip(request.digits)?;
+    Some(Cell::Decimal(concise(&x.lo, &x.hi, digits).to_string()))
 }
 
 /// The lower (0) or the upper (1) end in writing, to the digits that are asked for.

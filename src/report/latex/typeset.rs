@@ -1,26 +1,7 @@
-//! Tables for papers: a LaTeX `table` with a `booktabs` body, numbers in math mode.
+//! Cells and words as LaTeX.
 
-use super::decimal::{self, Shown};
-use super::table::{Align, Cell, Column, Table};
-
-/// The whole table as a float with caption and the label `tab:NAME`; needs `\usepackage{booktabs}`.
-pub fn document(table: &Table) -> String {
-    let sides: String = table.columns().iter().map(side).collect();
-    let heads: Vec<String> = table.columns().iter().map(head).collect();
-    let mut out = format!(
-        "\\begin{{table}}\n  \\centering\n  \\caption{{{}}}\n  \\label{{tab:{}}}\n  \\begin{{tabular}}{{{sides}}}\n",
-        escaped(table.caption()),
-        table.name()
-    );
-    out.push_str("    \\toprule\n");
-    put_line(&mut out, &heads);
-    out.push_str("    \\midrule\n");
-    for row in table.rows() {
-        put_line(&mut out, &row.iter().map(shown).collect::<Vec<_>>());
-    }
-    out.push_str("    \\bottomrule\n  \\end{tabular}\n\\end{table}\n");
-    out
-}
+use crate::report::decimal::{self, Shown};
+use crate::report::table::Cell;
 
 /// One cell, ready to stand between two `&`.
 pub fn shown(cell: &Cell) -> String {
@@ -28,6 +9,7 @@ pub fn shown(cell: &Cell) -> String {
         Cell::Exact(text) => format!("${}$", exact(text)),
         Cell::Float(value) => format!("${}$", float(*value)),
         Cell::Enclosure { lo, hi } => format!("${}$", enclosure(*lo, *hi)),
+        Cell::Decimal(text) => format!("${}$", power_of_ten(text.clone())),
         Cell::Integer(value) => format!("${value}$"),
         Cell::Text(text) => escaped(text),
         Cell::Flag(true) => "yes".into(),
@@ -120,25 +102,4 @@ pub fn escaped(text: &str) -> String {
         }
     }
     out
-}
-
-fn side(column: &Column) -> char {
-    match column.align {
-        Align::Left => 'l',
-        Align::Right => 'r',
-    }
-}
-
-fn head(column: &Column) -> String {
-    let title = column.latex.clone().unwrap_or_else(|| escaped(&column.title));
-    match &column.unit {
-        Some(unit) => format!("{title} ({})", escaped(unit)),
-        None => title,
-    }
-}
-
-fn put_line(out: &mut String, fields: &[String]) {
-    out.push_str("    ");
-    out.push_str(&fields.join(" & "));
-    out.push_str(" \\\\\n");
 }

@@ -1,0 +1,102 @@
+#!/usr/bin/env python3
+"""Asks kickdrift what documents.txt says and writes what the manuscript needs into build/.
+
+Each document is written once; numbers.tex makes every entry of numbers.txt a macro, provenance.tex is the table of all of
+them with the commands that they come from.
+"""
+
+import json
+import shlex
+import subprocess
+import sys
+import textwrap
+import time
+from fractions import Fraction
+from pathlib import Path
+
+HERE = Path(__file__).parent
+BUILD = HERE / "build"
+
+
+def lines(name):
+    """The fields of each line that is neither empty nor a comment."""
+    for line in (HERE / name).read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            yield [field.strip() for field in line.split("|", 3)]
+
+
+def ask(program, name, arguments):
+    """Writes one document; the seconds that it took."""
+    suffix = Path(name).suffix
+    file = BUILD / (name if suffix else f"{name}.json")
+    form = {"": ["--format", "json"], ".tex": ["--format", "latex"], ".txt": ["--format", "text"]}.get(suffix, [])
+    start = time.monotonic()
+    command = [program, *shlex.split(arguments), *form, "--quiet", "--output", str(file)]
+    subprocess.run(command, check=True, cwd=HERE)
+    seconds = time.monotonic() - start
+    if suffix == ".txt":
+        # The tables behind the summary are left out; what a terminal folds, paper has to fold, too.
+        summary = file.read_text().split("\n\n")[0].splitlines()
+        folded = (textwrap.wrap(line, 92, subsequent_indent=" " * 13) for line in summary)
+        file.write_text("\n".join(line for lines in folded for line in lines) + "\n")
+    return seconds
+
+
+def find(document, path):
+    """The value at a dotted path."""
+    for key in path.split("."):
+        document = document[int(key)] if isinstance(document, list) else document[key]
+    return document
+
+
+def value(document, path):
+    """The same, where the path may be a sum or a quotient of two."""
+    for sign, together in (("/", Fraction), ("+", lambda a, b: a + b)):
+        if sign in path:
+            return together(*(find(document, part) for part in path.split(sign)))
+    return find(document, path)
+
+
+def shown(found, form):
+    """A value in LaTeX, between dollars."""
+    kind, *digits = form.split()
+    if kind == "count":
+        found = len(found)
+    if kind in ("integer", "count"):
+        return f"{found:,}".replace(",", "\\,")
+    if kind == "percent":
+        return f"{100 * float(found):.{digits[0]}f}\\,\\%"
+    if isinstance(found, dict):
+        # The ends agree in the digits shown, or the middle would claim more than is proven.
+        lo, hi = (f"{found[end]:.{int(digits[0]) - 1}e}" for end in ("lo", "hi"))
+        if abs(float(lo) - float(hi)) > 10.0 ** (1 - int(digits[0])) * abs(float(hi)) * 1.01:
+            raise ValueError(f"{found} is not known to {digits[0]} digits")
+        found = 0.5 * (found["lo"] + found["hi"])
+    text = f"{found:.{digits[0]}g}"
+    mantissa, _, power = text.partition("e")
+    return f"{mantissa} \\times 10^{{{int(power)}}}" if power else mantissa
+
+
+def main(program):
+    BUILD.mkdir(exist_ok=True)
+    commands, seconds = dict(lines("documents.txt")), {}
+    for name, arguments in commands.items():
+        seconds[name] = ask(program, name, arguments)
+        print(f"{seconds[name]:7.2f} s  {name}", flush=True)
+    macros, rows = [], []
+    for macro, name, path, form in lines("numbers.txt"):
+        text = shown(value(json.loads((BUILD / f"{name}.json").read_text()), path), form)
+        macros.append(f"\\newcommand{{\\{macro}}}{{\\ensuremath{{{text}}}}}")
+        rows.append(f"\\texttt{{{macro}}} & ${text}$ & \\texttt{{{path.replace('_', chr(92) + '_')}}} & \\texttt{{{name}}} \\\\")
+    pairs = json.loads((BUILD / "map1000.json").read_text())["pairs"]
+    rate = f"{pairs / seconds['map1000'] / 1e6:.1f}"
+    macros.append(f"\\newcommand{{\\PairsASecond}}{{\\ensuremath{{{rate}}}}}")
+    (BUILD / "numbers.tex").write_text("\n".join(macros) + "\n")
+    (BUILD / "provenance.tex").write_text("\n".join(rows) + "\n")
+    escape = str.maketrans({"^": r"\^{}", "_": r"\_", "&": r"\&", "%": r"\%", "#": r"\#"})
+    told = (rf"\item[\texttt{{{name}}}] \texttt{{kickdrift {arguments.translate(escape)}}}" for name, arguments in commands.items())
+    (BUILD / "commands.tex").write_text("\n".join(told).replace("--", "-{}-") + "\n")
+
+
+if __name__ == "__main__":
+    main(str(Path(sys.argv[1]).resolve()))

@@ -1,0 +1,98 @@
+//! What stands below the flags of each command: examples that run as they stand, and exit codes; and what is required.
+
+use clap::Command;
+
+const EXIT_CODES: &str = "Exit codes:
+  0  done
+  2  error: one line on standard error tells the field, its value and a remedy; nothing is half-written";
+
+/// What a command requires, where the flags that are required depend on each other.
+const USAGES: [(&str, &str); 6] = [
+    ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
+    (
+        "compare",
+        "(--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI> | --max-sum <N> --rho <R>)",
+    ),
+    ("tongues", "(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)"),
+    ("closings", "(--ratio <P/Q> | --max-sum <N>)"),
+    ("advise", "(--period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]..."),
+    ("proposition", "[--max <N>]"),
+];
+
+const EXAMPLES: [(&str, &[&str]); 15] = [
+    (
+        "verdict",
+        &[
+            "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+            "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3 --exit-code --quiet",
+            "verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499 --format latex --digits 6",
+        ],
+    ),
+    ("curves", &["curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv"]),
+    (
+        "compare",
+        &[
+            "compare --max-sum 9 --rho 1/25",
+            "compare --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+        ],
+    ),
+    ("proposition", &["proposition --max 12"]),
+    ("polynomial", &["polynomial --ratio 5/3", "polynomial --ratio 5/3 --format latex"]),
+    (
+        "map",
+        &[
+            "map --lambda1 pi^2 --lambda2 1/3 --step 1/20 --h1-range 1/20..2/pi --h2-range 1/20..7/2",
+            "map --lambda1 1 --lambda2 1/9 --step 1/9 --h1-range 1..2 --h2-range 1..9 --output map.pdf",
+        ],
+    ),
+    ("merge", &[]),
+    (
+        "tongues",
+        &[
+            "tongues --ratio 7/3 --rho 1/25 --m 3..5 --digits 30",
+            "tongues --ratio 5/3,7/2 --rho 5/2 --figure diagram --output tongues.svg",
+            "tongues --survey --max-sum 12 --rho 1/25 --format latex",
+        ],
+    ),
+    ("closings", &["closings --max-sum 8", "closings --ratio 5/3 --format latex --digits 8"]),
+    (
+        "system",
+        &["system data/scenes/three-clocks.json", "system data/scenes/bar-resonant.json --output modes.pdf"],
+    ),
+    ("advise", &["advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs"]),
+    ("simulate", &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"]),
+    ("run", &["run data/scenes/small.json --output small"]),
+    ("verify", &["verify data/published/map-100.json"]),
+    ("generate", &["generate man --output man", "generate completions --output completions"]),
+];
+
+/// The program with all of this.
+pub fn explained(program: Command) -> Command {
+    let program = EXAMPLES.into_iter().fold(program, |program, (name, examples)| {
+        let text = below(name, examples);
+        program.mut_subcommand(name, |command| command.after_help(text))
+    });
+    USAGES.into_iter().fold(program, |program, (name, required)| {
+        let usage = format!("kickdrift {name} [OPTIONS] {required}");
+        program.mut_subcommand(name, |command| command.override_usage(usage))
+    })
+}
+
+fn below(name: &str, examples: &[&str]) -> String {
+    let lines = examples.iter().map(|example| format!("\n  kickdrift {example}"));
+    let examples: String = std::iter::once("Examples:".to_string()).chain(lines).collect();
+    let examples = match name {
+        "merge" => format!("{examples}\n  kickdrift merge part-1 part-2 --output map.png"),
+        _ => examples,
+    };
+    let codes = match name {
+        "verdict" => {
+            EXIT_CODES.replace("done\n", "done; with --exit-code: stable\n  1  with --exit-code: unstable\n")
+        }
+        "verify" => EXIT_CODES
+            .replace("done\n", "every claim that is rechecked holds\n")
+            .replace("error:", "error, or a claim that does not hold:"),
+        _ => EXIT_CODES.into(),
+    };
+    format!("{examples}\n\n{codes}")
+}
