@@ -103,6 +103,122 @@ fn constrained_hydrogens_leave_room_for_an_outer_step_of_4_fs() {
 }
 
 #[test]
+fn a_period_alone_is_limited_by_half_of_it_less_the_coarseness_of_the_inner_step() {
+    // T = 19.45 fs: T/2 = 9.725 fs for ever finer inner steps; p inner steps of T/pi sin(pi/2p) at the ratio p.
+    let edge = |steps: &str| {
+        let advice = ask(&["19.45fs"], &[steps]);
+        let lower = advice.schemes[0].rows[0].first.as_ref().unwrap().lower;
+        six(lower)
+    };
+    assert_eq!([edge("2,4"), edge("1/2,4"), edge("1/1000,4")], ["8.75561", "9.66259", "9.72500"]);
+}
+
+#[test]
+fn on_three_clocks_every_unstable_interval_is_listed() {
+    let advice = ask(&["10fs", "40fs", "100fs"], &["1/2,2,4"]);
+    let row = &advice.schemes[0].rows[0];
+    assert!(row.intervals.len() > 1, "{:?}", row.intervals);
+    assert_eq!(row.first.as_ref(), row.intervals.first());
+    let labels: Vec<u64> = row.intervals.iter().map(|own| own.label).collect();
+    assert!(labels.windows(2).all(|pair| pair[0] < pair[1]));
+    // Between two neighbours it is stable, within each it is not: by the ladder, at the same ratios.
+    let kind = |outer: f64| {
+        let outer = from_f64_exact(outer).unwrap();
+        let steps = [8, 2, 1].map(|n| &outer / Rational::from_integer(n.into())).to_vec();
+        let modes = ["10fs", "40fs", "100fs"].map(|text| Mode::from_period(text).unwrap()).to_vec();
+        let question = Question::new(modes, vec![Scheme::new(steps).unwrap()], ratio(1, 20)).unwrap();
+        question.answer().unwrap().schemes[0].rows[0].found.kind
+    };
+    for (n, own) in row.intervals.iter().enumerate() {
+        let upper = own.upper.unwrap();
+        assert!(own.lower.1 - own.lower.0 < 1e-12 && upper.1 - upper.0 < 1e-12);
+        assert_eq!(kind((own.lower.1 + upper.0) / 2.0), Kind::Hyperbolic, "{own:?}");
+        let next = row.intervals.get(n + 1).map_or(upper.1 * 1.001, |next| next.lower.0);
+        assert_eq!(kind((upper.1 + next) / 2.0), Kind::Elliptic, "{own:?}");
+    }
+}
+
+#[test]
+fn three_clocks_with_one_all_but_silent_have_the_intervals_of_two() {
+    let (two, three) = (ask(&TWO, &["1/2,4"]), ask(&["10fs", "1000000000fs", "40fs"], &["1/2,1,4"]));
+    let [two, three] = [&two, &three].map(|advice| &advice.schemes[0].rows[0].intervals);
+    assert!(!two.is_empty() && two.len() <= three.len());
+    for (a, b) in two.iter().zip(three) {
+        let off = [a.lower.0 - b.lower.0, a.upper.unwrap().0 - b.upper.unwrap().0];
+        assert!(a.label == b.label && off.iter().all(|off| off.abs() < 1e-10), "{a:?} {b:?}");
+        let [x, y] = [a, b].map(|own| own.worst.unwrap().steps);
+        assert!((x / y - 1.0).abs() < 1e-4, "{x} {y}");
+    }
+}
+
+#[test]
+fn friction_masks_a_resonance_from_where_it_is_told() {
+    let modes = TWO.map(|text| Mode::from_period(text).unwrap()).to_vec();
+    let ask = |rate: Rational| {
+        let question = Question::new(modes.clone(), vec![scheme("0.48,4.8")], ratio(1, 20)).unwrap();
+        question.with_friction(rate).unwrap().answer().unwrap().schemes.remove(0).rows.remove(0)
+    };
+    let (lo, hi) = ask(ratio(1, 1000)).masking.unwrap();
+    // Between 38 and 39/ps (THEORY).
+    assert!(0.038 < lo && hi < 0.039 && hi - lo < 1e-12, "{lo} {hi}");
+    let at = |x: f64| ask(from_f64_exact(x).unwrap()).is_damped;
+    assert_eq!([at(0.999 * lo), at(1.001 * hi)], [Some(false), Some(true)]);
+}
+
+#[cfg(feature = "npz")]
+mod molecules {
+    use super::*;
+    use kickdrift::advise::Findings;
+    use kickdrift::scene::SystemScene;
+
+    fn findings(name: &str, schemes: &[&str]) -> Findings {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+        let text = std::fs::read_to_string(folder.join(name)).unwrap();
+        let (molecule, _) = SystemScene::read_in(&folder, &text).unwrap().molecule().unwrap();
+        let schemes: Vec<Scheme> = schemes.iter().map(|steps| scheme(steps)).collect();
+        molecule.advise(&schemes, &ratio(1, 20), Some(&ratio(10_000_000, 1))).unwrap()
+    }
+
+    #[test]
+    fn alanine_dipeptide_has_a_thin_window_that_a_grid_of_half_a_femtosecond_misses() {
+        let findings = findings("alanine-dipeptide.json", &["1/2,5", "0.5025,5.025"]);
+        let [five, inside] = &findings.schemes[..] else { unreachable!() };
+        let (lo, hi) = five.first.unwrap();
+        // Of the extended minimum, phi = -147.5, psi = 159.8 degrees: by a scan in NumPy 5.0222 to 5.0318 fs, at worst 807.7 steps.
+        assert!(5.0221 < lo && hi < 5.0224, "{lo} {hi}");
+        let upper = five.first_upper.unwrap();
+        assert!(5.0300 < upper && upper < 5.0320, "{upper}");
+        let worst = five.worst.unwrap();
+        assert!(
+            (worst.steps / 807.7 - 1.0).abs() < 0.02 && (worst.time / 4060.0 - 1.0).abs() < 0.02,
+            "{worst:?}"
+        );
+        assert_eq!(
+            (five.status, inside.status, inside.within_run),
+            (Status::Near, Status::Unstable, Some(true))
+        );
+        assert!((1000.0 * inside.rate - 0.4898).abs() < 0.001, "{}", inside.rate);
+        assert_eq!(findings.groups[0].atoms.split(',').next(), Some("H NME"));
+    }
+
+    #[test]
+    fn four_waters_are_advised_below_their_own_first_interval() {
+        let findings = findings("water4.json", &["1/2,4", "1/2,4.5", "1/2,3"]);
+        let [four, beyond, three] = &findings.schemes[..] else { unreachable!() };
+        assert_eq!(
+            [four.status, beyond.status, three.status],
+            [Status::Caution, Status::Unstable, Status::Safe]
+        );
+        let (edge, (lo, hi)) = (four.band_edge.unwrap(), four.first.unwrap());
+        // The band costs what it must: 5 % of the edge.
+        assert!(edge < lo && edge > 0.94 * lo && hi - lo < 1e-3, "{edge} {lo}");
+        assert_eq!((&four.largest, &four.safe), (&Some(ratio(4, 1)), &Some(ratio(5, 2))));
+        assert!(four.margin.unwrap() > 0.05 && beyond.rate > 0.0 && beyond.atoms.is_some());
+        assert_eq!(findings.removed.as_ref().map(|own| own.count), Some(6));
+    }
+}
+
+#[test]
 fn three_clocks_that_are_no_multiples_are_still_decided() {
     let advice = ask(&["10fs", "40fs", "100fs"], &["0.7,1,3"]);
     let row = &advice.schemes[0].rows[0];

@@ -2,6 +2,7 @@
 
 use num_traits::{One, ToPrimitive, Zero};
 
+use super::edges::Edges;
 use super::interval::{Intervals, Unstable};
 use super::levels::{Found, Levels, Scheme};
 use super::mode::Mode;
@@ -24,13 +25,15 @@ pub enum Status {
     Near,
     /// Stable for the periods given, but above an unstable interval.
     Island,
+    /// Measured stiffnesses do not tell.
+    NotTold,
     /// Unstable.
     Unstable,
 }
 
 impl Status {
-    pub const ALL: [Status; 5] =
-        [Status::Safe, Status::Caution, Status::Near, Status::Island, Status::Unstable];
+    pub const ALL: [Status; 6] =
+        [Status::Safe, Status::Caution, Status::Near, Status::Island, Status::Unstable, Status::NotTold];
 
     /// The name in documents.
     pub fn name(self) -> &'static str {
@@ -40,6 +43,7 @@ impl Status {
             Status::Near => "near",
             Status::Island => "island",
             Status::Unstable => "unstable",
+            Status::NotTold => "not told",
         }
     }
 }
@@ -58,7 +62,19 @@ pub struct Row {
     pub below: Option<Unstable>,
     pub above: Option<Unstable>,
     pub inside: Option<Unstable>,
+    /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most [`MOST_INTERVALS`].
+    pub intervals: Vec<Unstable>,
+    /// Where it grows: the friction per fs above which that is masked (BAOAB), enclosed.
+    pub masking: Option<(f64, f64)>,
+    /// Whether the friction given keeps it bounded.
+    pub is_damped: Option<bool>,
 }
+
+/// The most intervals that are listed of a row.
+pub const MOST_INTERVALS: usize = 32;
+
+/// Intervals are listed that begin below so many times the scheme's outer step, or the end of the first interval.
+const REACH: f64 = 1.1;
 
 /// Two modes that a coupling can make resonate.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,6 +116,10 @@ pub struct Advice {
     pub schemes: Vec<Answer>,
     /// Whether a clock is without a mode.
     pub silent: bool,
+    /// Modes that constraints hold: they are on no clock.
+    pub held: Vec<Mode>,
+    /// Per fs.
+    pub friction: Option<Rational>,
 }
 
 impl Question {
@@ -113,7 +133,8 @@ impl Question {
         let stiffness = |&i: &usize| &self.modes[i].stiffness;
         let fastest = faster.into_iter().max_by(|i, j| stiffness(i).cmp(stiffness(j))).expect("a mode");
         let silent = self.stiffest().iter().any(Option::is_none);
-        Ok(Advice { fastest, silent, schemes, modes: self.modes, band: self.band, length: self.length })
+        let Question { modes, band, length, held, friction, .. } = self;
+        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction })
     }
 
     fn of_scheme(&self, scheme: &Scheme) -> Result<Answer> {
@@ -172,18 +193,23 @@ impl Question {
         let levels = Levels { scheme, stiffness: self.with(mode) };
         let found = levels.decide(&Limits::default())?;
         let tenfold_steps = (found.rate.0 > 0.0).then(|| tenfold(found.rate, scheme.outer()));
-        let mut row = Row { mode, found, tenfold_steps, first: None, below: None, above: None, inside: None };
+        let mut row = Row {
+            mode,
+            tenfold_steps,
+            masking: tenfold_steps.and_then(|_| levels.masking()),
+            is_damped: self.friction.as_ref().and_then(|rate| levels.is_damped_by(rate)),
+            found,
+            first: None,
+            below: None,
+            above: None,
+            inside: None,
+            intervals: Vec::new(),
+        };
         let outer = to_f64(scheme.outer());
         let (fast, slow) =
             (&levels.stiffness[0], levels.stiffness.get(1).cloned().unwrap_or_else(Laurent::zero));
         if scheme.steps().len() > 2 || fast.is_zero() {
-            let (lo, hi) = levels.first_region_ends()?;
-            row.first = Some(Unstable {
-                label: 1,
-                lower: scaled((lo, hi), scheme.outer()),
-                upper: None,
-                worst: None,
-            });
+            self.many_clocks(&mut row, &levels)?;
             return Ok(row);
         }
         let ratio = Ratio::try_from(&(scheme.outer() / scheme.inner()))?;
@@ -194,7 +220,33 @@ impl Question {
         } else if let Some(label) = row.found.label {
             row.inside = intervals.get(label)?;
         }
+        let reach = REACH
+            * row.first.as_ref().and_then(|first| first.upper).map_or(outer, |upper| upper.1.max(outer));
+        row.intervals = intervals.up_to(reach, MOST_INTERVALS)?;
         Ok(row)
+    }
+
+    /// The intervals of three clocks and more, and of a fast clock without a mode.
+    fn many_clocks(&self, row: &mut Row, levels: &Levels) -> Result<()> {
+        let (lo, hi) = levels.first_region_ends()?;
+        let outer = to_f64(levels.scheme.outer());
+        row.first = Some(Unstable {
+            label: 1,
+            lower: scaled((lo, hi), levels.scheme.outer()),
+            upper: None,
+            worst: None,
+        });
+        let Some(edges) = Edges::new(levels) else { return Ok(()) };
+        row.intervals = edges.all(REACH * hi.max(1.0) * REACH, MOST_INTERVALS);
+        let upper = |own: &Unstable| own.upper.map_or(f64::INFINITY, |upper| upper.1);
+        row.first = row.intervals.iter().find(|own| own.label == 1).cloned().or(row.first.take());
+        if is_stable(row.found.kind) {
+            row.below = row.intervals.iter().rev().find(|own| upper(own) <= outer).cloned();
+            row.above = row.intervals.iter().find(|own| own.lower.0 >= outer).cloned();
+        } else {
+            row.inside = row.intervals.iter().find(|own| Some(own.label) == row.found.label).cloned();
+        }
+        Ok(())
     }
 
     /// The largest multiple of the step before the outermost one at which the corner of the band is in the first region.
@@ -302,7 +354,7 @@ impl Row {
 }
 
 /// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
-fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
+pub(super) fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
     if scheme.steps().len() == 1 {
         return Some(largest.min(limit).clone());
     }

@@ -96,6 +96,19 @@ impl<'a> Intervals<'a> {
         Ok(self.get(1)?.unwrap_or(Unstable { label: 1, lower, upper: None, worst: None }))
     }
 
+    /// The open ones that begin below a step, from the first on: at most so many.
+    pub fn up_to(&self, step: f64, count: usize) -> Result<Vec<Unstable>> {
+        let mut found = Vec::new();
+        for label in 1..=self.last() {
+            let [low, high] = self.gaps(label)?;
+            if found.len() == count || self.step(high.lower.lo, low.lower.hi).0 > step {
+                break;
+            }
+            found.extend(self.get(label)?);
+        }
+        Ok(found)
+    }
+
     /// The nearest open tongues about a stable outer step: the one below it, the one above it.
     pub fn about(&self, outer: f64) -> Result<[Option<Unstable>; 2]> {
         // Lower edges rise with the label: the first label whose tongue begins above the step.

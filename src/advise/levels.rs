@@ -20,6 +20,7 @@ use crate::error::{Error, Result};
 use crate::number::rational::from_f64_exact;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
 use crate::schedule::{KickDrift, Kicks, Schedule};
+use crate::system::friction::{Damping, damped, masking};
 use crate::system::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
 use crate::verdict::Kind;
 
@@ -114,8 +115,7 @@ impl Levels<'_> {
     /// # Errors
     /// A budget error where what would tell exceeds the limits.
     pub fn decide(&self, limits: &Limits) -> Result<Found> {
-        // A clock that kicks with strength 0 is silent, and a system has none such; two clocks keep it, for their ratio's sake.
-        let heard: Vec<usize> = (0..self.stiffness.len()).filter(|&k| !self.stiffness[k].is_zero()).collect();
+        let heard = self.heard();
         let Some(&first) = heard.first() else {
             return Err(Error::missing("period", "give the period of at least one force"));
         };
@@ -134,6 +134,26 @@ impl Levels<'_> {
             _ => (0.0, 0.0),
         };
         Ok(Found { kind: analysis.kind, trace: clocked.trace.to_f64_enclosure(), label: clocked.label, rate })
+    }
+
+    /// Clocks that kick with strength 0 are silent, and a system has none such.
+    fn heard(&self) -> Vec<usize> {
+        (0..self.stiffness.len()).filter(|&k| !self.stiffness[k].is_zero()).collect()
+    }
+
+    /// The friction per fs above which a resonance is masked, enclosed; `None` where nothing grows or the period is too long to tell.
+    pub fn masking(&self) -> Option<(f64, f64)> {
+        let heard = self.heard();
+        let found = masking(&self.clocks(&heard).ok()?).ok()??;
+        let first = Ball::from_rational(&self.scheme.steps[*heard.first()?], BITS);
+        Some(found.rate.div(&first, BITS)?.to_f64_enclosure())
+    }
+
+    /// Whether this friction per fs keeps all bounded; `None` where that is not told.
+    pub fn is_damped_by(&self, rate: &Rational) -> Option<bool> {
+        let heard = self.heard();
+        let rate = rate * &self.scheme.steps[*heard.first()?];
+        Some(damped(&self.clocks(&heard).ok()?, &rate).ok()?.damping == Damping::Damped)
     }
 
     fn clocks(&self, heard: &[usize]) -> Result<ManyClocks<Laurent>> {

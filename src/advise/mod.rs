@@ -16,7 +16,9 @@
 //! | [`mod@unit`] | fs, 1/cm, amu, kcal/mol/A²: exactly |
 //! | `mode` | periods, wavenumbers, bonds → stiffnesses |
 //! | `levels` | one mass, K clocks: verdict, first stable region |
-//! | `interval` | unstable intervals of the outer step |
+//! | `interval`, `edges` | unstable intervals of the outer step, on two clocks and on more |
+//! | `constraint` | bonds that do not vibrate |
+//! | `molecule` | Hessians of two levels in place of periods |
 //! | `question`, `answer` | what is asked, what is answered |
 //! | `caution` | what is published |
 //! | [`engine`] | the input of simulation engines |
@@ -38,16 +40,21 @@
 
 mod answer;
 mod caution;
+mod constraint;
+mod edges;
 pub mod engine;
 mod interval;
 mod levels;
 mod mode;
+mod molecule;
 mod question;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
 pub use caution::{Caution, PUBLISHED};
+pub use constraint::Constraints;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
 pub use mode::{Mode, Origin};
+pub use molecule::{Finding, Findings, Group, Molecule};
 pub use question::Question;

@@ -49,6 +49,8 @@ pub struct Mode {
     pub stiffness: Laurent,
     /// 0 is the fastest clock; `None` where that follows from its place in the list.
     pub clock: Option<usize>,
+    /// Of a bond: whether one of its atoms is a hydrogen.
+    pub is_bond_with_hydrogen: Option<bool>,
     /// The period in fs with the masses as given, where heavy hydrogens have changed it; rounded.
     pub before: Option<f64>,
 }
@@ -58,7 +60,14 @@ const BITS: u32 = 96;
 
 impl Mode {
     fn new(name: &str, origin: Origin, stiffness: Laurent) -> Mode {
-        Mode { name: name.trim().into(), origin, stiffness, clock: None, before: None }
+        Mode {
+            name: name.trim().into(),
+            origin,
+            stiffness,
+            clock: None,
+            is_bond_with_hydrogen: None,
+            before: None,
+        }
     }
 
     /// `NAME=10fs`, `10fs`, `NAME=3700/cm`: a period or a wavenumber.
@@ -114,6 +123,7 @@ impl Mode {
         }
         let over = |[m1, m2]: [&Rational; 2]| &k * &Laurent::from_rational(m1.recip() + m2.recip());
         let mut mode = Mode::new(name, origin, over([&m1, &m2]));
+        mode.is_bond_with_hydrogen = Some(is_hydrogen(&m1) || is_hydrogen(&m2));
         if let Some(hydrogen) = hydrogen {
             let before = mode.middle();
             let [m1, m2] = heavier(name, [m1, m2], hydrogen, count)?;

@@ -19,6 +19,10 @@ pub struct Question {
     pub(super) band: Rational,
     /// The length of the run in fs.
     pub(super) length: Option<Rational>,
+    /// Modes that constraints hold.
+    pub(super) held: Vec<Mode>,
+    /// Of the thermostat, per fs.
+    pub(super) friction: Option<Rational>,
 }
 
 /// Schemes and modes beyond these numbers are a slip of the keyboard.
@@ -70,7 +74,7 @@ impl Question {
                 ));
             }
         }
-        Ok(Question { modes, schemes, band, length: None })
+        Ok(Question { modes, schemes, band, length: None, held: Vec::new(), friction: None })
     }
 
     /// The same about a run of this length in fs.
@@ -78,6 +82,25 @@ impl Question {
     pub fn of_length(mut self, length: Rational) -> Question {
         self.length = Some(length);
         self
+    }
+
+    /// The same with modes that constraints hold, to be told.
+    #[must_use]
+    pub fn holding(mut self, held: Vec<Mode>) -> Question {
+        self.held = held;
+        self
+    }
+
+    /// The same with a friction per fs, O in the middle of every drift (BAOAB).
+    ///
+    /// # Errors
+    /// A friction that is not positive.
+    pub fn with_friction(mut self, rate: Rational) -> Result<Question> {
+        if rate <= Rational::zero() {
+            return Err(Error::input("friction", rate, "a friction must be positive"));
+        }
+        self.friction = Some(rate);
+        Ok(self)
     }
 
     /// The number of clocks.

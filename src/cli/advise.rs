@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::args::Common;
-use super::system::draw;
+use super::system::{self, draw};
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension};
-use crate::advise::{Mode, Question, Scheme};
+use crate::advise::{Constraints, Mode, Question, Scheme};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Rational;
@@ -28,6 +28,9 @@ const EXAMPLES: &str = "Examples:
 #[derive(Debug, clap::Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Args {
+    /// Hessians in place of periods: a system file of two steps, as data/scenes/flexible-water.json, whose steps are the first scheme
+    #[arg(value_name = "FILE", conflicts_with_all = ["period", "bond", "on", "hmr"])]
+    file: Option<PathBuf>,
     /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
     #[arg(long, value_name = "[NAME=]T")]
     period: Vec<String>,
@@ -49,6 +52,12 @@ pub struct Args {
     /// The length of the run, as 10ns.
     #[arg(long, value_name = "TIME")]
     length: Option<String>,
+    /// The friction of the thermostat, as 1/ps: does it mask what grows?
+    #[arg(long, value_name = "RATE", conflicts_with = "file")]
+    friction: Option<String>,
+    /// Bonds that do not vibrate: h-bonds, all-bonds, or names of modes, as OH,NH [default: as the engine's text says]
+    #[arg(long, value_name = "WHICH", conflicts_with = "file")]
+    constraints: Option<String>,
     /// Hydrogens of this mass in amu, taken from their heavy atoms.
     #[arg(long, value_name = "MASS")]
     hmr: Option<String>,
@@ -58,6 +67,9 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
         let reading = self.reading()?;
+        if let Some(path) = &self.file {
+            return self.molecule(path, reading.as_ref(), common);
+        }
         let advice = self.question(reading.as_ref())?.answer()?;
         match common.output.as_deref().filter(|_| format.is_figure()) {
             Some(path) => draw("output", path, &report::figure(&advice, "Which outer steps are safe")),
@@ -67,6 +79,29 @@ impl Args {
                 write_output(common.output.as_deref(), text.as_bytes())
             }
         }
+    }
+
+    fn molecule(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<()> {
+        let scene = system::read(path)?;
+        let (molecule, own) = scene.molecule()?;
+        let own = reading.map_or(own, |reading| reading.scheme.clone());
+        let schemes: Vec<Scheme> = [own].into_iter().chain(self.given(reading)?).collect();
+        let (band, length) = (part("band", &self.band)?, self.run_length()?);
+        let findings = molecule.advise(&schemes, &band, length.as_ref())?;
+        let document = report::of_molecule(&findings, reading);
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let document = document.input("file", name).input_json("system", scene.source().clone());
+        common.write(&document, Format::Text)
+    }
+
+    fn run_length(&self) -> Result<Option<Rational>> {
+        self.length.as_deref().map(|length| unit::rational("length", length, Dimension::Time)).transpose()
+    }
+
+    /// The schemes of the command line; beside an engine's a step alone is the outer one that its text lacks.
+    fn given(&self, reading: Option<&Reading>) -> Result<Vec<Scheme>> {
+        let given = self.steps.iter().map(|steps| scheme(steps)).collect::<Result<Vec<_>>>()?;
+        Ok(given.into_iter().filter(|scheme| reading.is_none() || scheme.steps().len() > 1).collect())
     }
 
     /// What the engine's files say.
@@ -95,16 +130,23 @@ impl Args {
         for entry in &self.on {
             place(&mut modes, entry)?;
         }
-        // The engine's own scheme first; a step alone is then the outer one that the engine's text lacks.
+        // The engine's own scheme first.
         let own = reading.map(|reading| reading.scheme.clone());
-        let given = self.steps.iter().map(|steps| scheme(steps)).collect::<Result<Vec<_>>>()?;
-        let others = given.into_iter().filter(|scheme| own.is_none() || scheme.steps().len() > 1);
-        let schemes = own.iter().cloned().chain(others).collect();
-        let question = Question::new(modes, schemes, part("band", &self.band)?)?;
-        Ok(match &self.length {
-            Some(length) => question.of_length(unit::rational("length", length, Dimension::Time)?),
-            None => question,
-        })
+        let schemes = own.into_iter().chain(self.given(reading)?).collect();
+        let asked = self.constraints.as_deref().map(Constraints::parse);
+        let constraints = asked.or_else(|| reading.and_then(|reading| reading.constraints.clone()));
+        let (modes, held) = match constraints {
+            Some(constraints) => constraints.split(modes)?,
+            None => (modes, Vec::new()),
+        };
+        let mut question = Question::new(modes, schemes, part("band", &self.band)?)?.holding(held);
+        if let Some(length) = self.run_length()? {
+            question = question.of_length(length);
+        }
+        match &self.friction {
+            Some(rate) => question.with_friction(unit::rational("friction", rate, Dimension::Rate)?),
+            None => Ok(question),
+        }
     }
 }
 

@@ -74,6 +74,8 @@ claims! {
     "proposition" Proposition proposition::Claim;
     #[cfg(feature = "advise")]
     "advise" Advise advise::Claim;
+    #[cfg(feature = "advise")]
+    "advise-system" AdviseSystem advise::Molecule;
     #[cfg(feature = "system")] "system-verdict" System system::Verdict;
     #[cfg(feature = "system")] "system-map" SystemMap system::Points;
     #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Intervals;

@@ -15,6 +15,7 @@
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | system-verdict, system-map, system-intervals, simulate | signs, discs, simulation | computed again; exact arithmetic; the dense full period |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
+//! | advise-system | definite forms, counts | computed again |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
 //!
 //! ```

@@ -202,6 +202,7 @@ impl Document {
     fn command(&self) -> &'static str {
         match self.name {
             "system-verdict" | "system-map" | "system-intervals" => "system",
+            "advise-system" => "advise",
             "survey" => "tongues",
             name => name,
         }

@@ -71,6 +71,12 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise --period OH=10fs --steps 1fs,2fs --on NH=1", "there is no mode of this name"),
         ("advise --period OH=10fs --steps 1fs,2fs --band 100%", "band"),
         ("advise --period OH=10fs --steps 1fs,2fs --hmr 3.024", "a period has no masses"),
+        ("advise --period OH=10fs --steps 1fs,2fs --constraints OH", "give the fastest period that is left"),
+        ("advise --period OH=10fs --steps 1fs,2fs --constraints NH", "there is no mode of this name"),
+        ("advise --period OH=10fs --steps 1fs,2fs --friction 1", "friction = 1: has no unit: write 1/ps"),
+        ("advise data/scenes/ring24.json", "stiffness = given in place"),
+        ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
+        ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
         ("advise --engine nowhere.mdp --period 10fs", "nowhere.mdp"),
     ];
     for (line, expected) in cases {
@@ -82,6 +88,41 @@ fn what_is_missing_is_named_with_a_remedy() {
             ended.stderr
         );
     }
+}
+
+#[test]
+fn a_friction_that_masks_is_told_and_is_no_advice() {
+    let line = "advise --period OH=10fs --period 40fs --steps 0.48fs,4.8fs --friction";
+    let first =
+        |rate: &str| stdout(&words(&format!("{line} {rate}"), &[])).lines().next().unwrap().to_string();
+    assert!(
+        first("1/ps").contains("only a friction above 38.")
+            && first("1/ps").contains("the one given does not"),
+        "{}",
+        first("1/ps")
+    );
+    assert!(
+        first("40/ps").contains("masked by the friction given") && first("40/ps").ends_with("do not use")
+    );
+}
+
+#[test]
+fn constrained_bonds_are_on_no_clock() {
+    let line = "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=19.45fs --period 60fs --steps 2fs,4fs";
+    let free = stdout(&words(line, &[]));
+    let text = stdout(&words(&format!("{line} --constraints h-bonds"), &[]));
+    assert!(!free.starts_with("4 fs    safe") && text.starts_with("4 fs    safe"), "{text}");
+    assert!(text.contains("  assumed    OH (T = 9.97"), "{text}");
+    // GROMACS says it in its own file.
+    let desk = Desk::new();
+    desk.write("md.mdp", "dt = 0.002\nmts = yes\nmts-level2-factor = 2\nconstraints = h-bonds\n");
+    let line = line.replace("--steps 2fs,4fs", "--engine md.mdp");
+    let ended = desk.run(&words(&line, &[]));
+    assert!(
+        ended.stdout.starts_with("4 fs    safe") && ended.stdout.contains("  assumed    OH"),
+        "{}",
+        ended.stdout
+    );
 }
 
 #[test]

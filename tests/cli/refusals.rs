@@ -94,7 +94,7 @@ fn flags_that_are_missing_unknown_or_given_twice() {
     refused(&desk, &["polynomial"], &["ratio missing", "--ratio <P/Q>"]);
     refused(&desk, &["run"], &["SCENE.json"]);
     refused(&desk, &["curves", "--sample", "3"], &["--sample", "did you mean --samples?"]);
-    refused(&desk, &["advise", "water.json"], &["argument = water.json", "--help"]);
+    refused(&desk, &["advise", "water.json"], &["water.json", "cannot read the system"]);
     refused(
         &desk,
         &[&verdict("10", "1", "1", "1")[..], &["--period", "3"]].concat(),

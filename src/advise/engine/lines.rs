@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::reading::{
     Engine, FS, MOST_COUNT, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times,
 };
+use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
@@ -224,12 +225,17 @@ pub(super) fn gromacs(text: &str) -> Result<Reading> {
             used.push(format!("{key} = {word}"));
         }
     }
+    let constraints = match value("constraints")?.map(|(word, _)| word.to_ascii_lowercase()).as_deref() {
+        Some("h-bonds") => Some(Constraints::HBonds),
+        Some("all-bonds" | "h-angles" | "all-angles") => Some(Constraints::AllBonds),
+        _ => None,
+    };
     let mts = value("mts")?.is_some_and(|(word, _)| {
         word.eq_ignore_ascii_case("yes") || word.eq_ignore_ascii_case("on") || word == "true"
     });
     if !mts {
         let mut reading = Reading::new(Engine::Gromacs, text, scheme(vec![inner])?);
-        (reading.forces, reading.used) = (vec!["all forces".into()], used);
+        (reading.forces, reading.used, reading.constraints) = (vec!["all forces".into()], used, constraints);
         reading.places = dt.map(|(_, range)| (range, Place::Outer(PS))).into_iter().collect();
         return Ok(reading);
     }
@@ -254,7 +260,7 @@ pub(super) fn gromacs(text: &str) -> Result<Reading> {
     }
     reading.forces = vec!["bonds and all other forces".into(), slow];
     reading.forces.truncate(reading.scheme.steps().len());
-    reading.used = used;
+    (reading.used, reading.constraints) = (used, constraints);
     Ok(reading)
 }
 
@@ -299,6 +305,10 @@ pub(super) fn namd(text: &str) -> Result<Reading> {
     } else {
         reading.places = step.map(|(_, range)| (range, Place::Outer(FS))).into_iter().collect();
     }
+    if let Some((word, _)) = value("rigidBonds")? {
+        used.push(format!("rigidBonds {word}"));
+        reading.constraints = word.eq_ignore_ascii_case("all").then_some(Constraints::HBonds);
+    }
     reading.used = used;
     Ok(reading)
 }
@@ -332,6 +342,10 @@ pub(super) fn tinker(text: &str, outer: Option<&Rational>) -> Result<Reading> {
     let n = n.ok_or_else(|| Error::input("outer step", outer, "is more than a million inner steps"))?;
     let step = outer / times(&Rational::from_integer(1.into()), n);
     let mut reading = Reading::new(Engine::Tinker, text, scheme(vec![step, outer.clone()])?);
+    let place = inner.map_or((text.len()..text.len(), Place::Inner("RESPA-INNER")), |(_, range)| {
+        (range, Place::Inner(""))
+    });
+    reading.places = vec![place];
     reading.forces = vec!["valence terms".into(), "nonbonded terms".into()];
     reading.forces.truncate(reading.scheme.steps().len());
     reading.used = used;

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::advise::constraint::Constraints;
 use crate::advise::levels::Scheme;
 use crate::advise::unit::decimal;
 use crate::error::{Error, Result};
@@ -46,7 +47,7 @@ impl Engine {
 }
 
 /// What a number in the text is, as a function of the steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Place {
     /// The outermost step in units of so many fs.
     Outer(Unit),
@@ -58,6 +59,39 @@ pub(super) enum Place {
     OuterOverInner,
     /// A whole line to add at the end, with the last ratio behind it.
     Append(&'static str),
+    /// The innermost step in fs, of an engine that takes the next shorter one which divides the outermost: behind a key to add, if any.
+    Inner(&'static str),
+    /// What is done in one step of the level below the outermost, written out as often as that is made.
+    Loop(Loop),
+}
+
+/// One turn of a loop that is written out.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Loop {
+    /// In it every dt/n is a part of the outermost step.
+    pub turn: String,
+    /// White space between two turns.
+    pub gap: String,
+    /// How many there are.
+    pub turns: u64,
+}
+
+impl Loop {
+    /// So many turns in place of those.
+    fn written(&self, turns: u64) -> String {
+        let mut one = String::new();
+        let mut rest = self.turn.as_str();
+        while let Some(at) = rest.find("dt/") {
+            let (before, behind) = rest.split_at(at + 3);
+            let digits = behind.len() - behind.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+            let n = behind[..digits].parse::<u64>().unwrap_or(0);
+            one += before;
+            one += &(n / self.turns * turns).to_string();
+            rest = &behind[digits..];
+        }
+        one += rest;
+        vec![one; turns as usize].join(&self.gap)
+    }
 }
 
 /// A unit of time, in fs.
@@ -84,6 +118,8 @@ pub struct Reading {
     pub used: Vec<String>,
     /// What its writer should know: what the engine would refuse, what was not read.
     pub remarks: Vec<String>,
+    /// The bonds that it constrains, where its text tells.
+    pub constraints: Option<Constraints>,
     text: String,
     pub(super) places: Vec<(Range<usize>, Place)>,
 }
@@ -94,6 +130,9 @@ pub(super) const LONGEST: usize = 10_000_000;
 /// Levels and counts beyond these are slips of the keyboard.
 pub(super) const MOST_LEVELS: usize = 16;
 pub(super) const MOST_COUNT: u64 = 1_000_000;
+
+/// Turns of a loop that are written out.
+const MOST_TURNS: u64 = 1000;
 
 /// Why engines refuse a scheme, where steps are not multiples of each other.
 pub fn not_nested(scheme: &Scheme) -> Option<String> {
@@ -109,6 +148,7 @@ impl Reading {
             forces: vec![],
             used: vec![],
             remarks: vec![],
+            constraints: None,
             text: text.into(),
             places: vec![],
         }
@@ -148,6 +188,18 @@ impl Reading {
             let number = match place {
                 Place::Outer(unit) => decimal(&(outer / unit.size())),
                 Place::PerOuter(k) => whole(step(k))?,
+                Place::Loop(own) => {
+                    let turns = whole(before)?.parse::<u64>().ok().filter(|n| *n <= MOST_TURNS);
+                    let remedy = "that is too many turns to write out: choose a shorter one";
+                    own.written(turns.ok_or_else(|| Error::input("outer step", &shown, remedy))?)
+                }
+                // Rounded up to 10^-6 fs, the step still gives as many inner ones.
+                Place::Inner(key) => {
+                    let millionths = (self.scheme.inner() * Rational::from_integer(1_000_000.into())).ceil();
+                    let own = decimal(&(millionths / Rational::from_integer(1_000_000.into())));
+                    let gap = if self.text.ends_with('\n') || self.text.is_empty() { "" } else { "\n" };
+                    if key.is_empty() { own } else { format!("{gap}{key} {own}\n") }
+                }
                 Place::LastRatio => whole(before)?,
                 Place::OuterOverInner => whole(self.scheme.inner())?,
                 Place::Append(key) => {

@@ -1,10 +1,11 @@
 //! XML: i-PI's input, OpenMM's serialized integrators and systems.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use roxmltree::{Document, Node};
 
-use super::reading::{Engine, FS, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times};
+use super::reading::{Engine, FS, Loop, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 
@@ -86,7 +87,7 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
         .strip_prefix('[')
         .and_then(|list| list.strip_suffix(']'))
         .ok_or_else(|| Error::input("nmts", list, "write [1,2]"))?;
-    let (mut steps, mut step, mut at, mut last) = (Vec::new(), outer, from + 1, 0..0);
+    let (mut steps, mut step, mut at, mut second) = (Vec::new(), outer, from + 1, 0..0);
     for (level, part) in inside.split(',').enumerate() {
         let own = part.trim();
         let n = count("nmts", own)?;
@@ -94,7 +95,9 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
             return Err(Error::input("nmts", list, "there are at most 16 levels"));
         }
         let place = at + (part.len() - part.trim_start().len());
-        last = place..place + own.len();
+        if level == 1 {
+            second = place..place + own.len();
+        }
         at += part.len() + 1;
         step /= times(&Rational::from_integer(1.into()), n);
         steps.push(step.clone());
@@ -107,16 +110,39 @@ pub(super) fn ipi(text: &str) -> Result<Reading> {
         reading.remarks.push("levels of equal steps are told as one".into());
         reading.forces = vec!["forces of all its levels".into(); reading.scheme.steps().len()];
     }
-    if levels == 2
-        && reading.scheme.steps().len() == 2
-        && inside.split(',').next().map(str::trim) == Some("1")
-    {
-        reading.places =
-            vec![(start..start + value.len(), Place::Outer(unit)), (last, Place::OuterOverInner)];
-    } else if levels == 1 && inside.trim() == "1" {
+    // An outermost level of several iterations, or levels of equal steps: then these two numbers do not tell the steps.
+    if inside.split(',').next().map(str::trim) == Some("1") && reading.scheme.steps().len() == levels {
         reading.places = vec![(start..start + value.len(), Place::Outer(unit))];
+        if levels > 1 {
+            reading.places.push((second, Place::LastRatio));
+        }
     }
     Ok(reading)
+}
+
+const EXPRESSION: &str = "computationExpression";
+
+/// The loop over the level below the outermost: what stands between the kicks of the outermost level, if that is one turn so many times.
+fn turns(root: Node, text: &str, turns: u64) -> Option<(Range<usize>, Loop)> {
+    let all: Vec<Node> = root.descendants().filter(|node| node.attribute(EXPRESSION).is_some()).collect();
+    let is_outermost =
+        |node: &&Node| node.attribute(EXPRESSION).is_some_and(|own| own.starts_with("v+0.5*(dt/1)*f"));
+    let leading = all.iter().position(|node| is_outermost(&node))?;
+    let first = leading + all[leading..].iter().take_while(is_outermost).count();
+    let last = first + all[first..].iter().position(|node| is_outermost(&node))?;
+    let each = (last - first) / usize::try_from(turns).ok()?;
+    let expressions: Vec<_> = all[first..last].iter().map(|node| node.attribute(EXPRESSION)).collect();
+    let own = expressions.get(..each).filter(|own| !own.is_empty())?;
+    if each * turns as usize != last - first || !expressions.chunks(each).all(|turn| turn == own) {
+        return None;
+    }
+    let (begin, end) = (all[first].range().start, all[last - 1].range().end);
+    let turn = text.get(begin..all[first + each - 1].range().end)?.to_string();
+    let gap = match all[..last].get(first + each) {
+        Some(next) => text.get(begin + turn.len()..next.range().start)?.to_string(),
+        None => String::new(),
+    };
+    Some((begin..end, Loop { turn, gap, turns }))
 }
 
 /// A serialized integrator: for a custom one the evaluations of each group stand in its computations, `v+0.5*(dt/8)*f1/m`.
@@ -134,7 +160,7 @@ pub(super) fn openmm(text: &str) -> Result<Option<Reading>> {
     let outer = number("stepSize", size.value())? * PS.size();
     let kind = node.attribute("type").unwrap_or("Integrator");
     let mut counts: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
-    for computation in node.descendants().filter_map(|node| node.attribute("expression")) {
+    for computation in node.descendants().filter_map(|node| node.attribute(EXPRESSION)) {
         let expression: String = computation.chars().filter(|c| !c.is_whitespace()).collect();
         let Some((n, group)) = expression.strip_prefix("v+0.5*(dt/").and_then(|rest| rest.split_once(")*f"))
         else {
@@ -143,7 +169,7 @@ pub(super) fn openmm(text: &str) -> Result<Option<Reading>> {
         let group =
             group.strip_suffix("/m").and_then(|group| group.parse::<u64>().ok()).filter(|group| *group < 32);
         let Some(group) = group else { continue };
-        let groups = counts.entry(count("expression", n)?).or_default();
+        let groups = counts.entry(count(EXPRESSION, n)?).or_default();
         if !groups.contains(&group) {
             groups.push(group);
         }
@@ -165,9 +191,16 @@ pub(super) fn openmm(text: &str) -> Result<Option<Reading>> {
         groups.iter().map(|group| format!("group {group}")).collect::<Vec<_>>().join(", ")
     };
     reading.forces = counts.values().rev().map(words).collect();
-    reading
-        .remarks
-        .push("a serialized MTSIntegrator holds its loops written out: make it anew with other steps".into());
+    // The loops stand written out: another ratio is another number of turns. Langevin's a and b belong to the innermost step, which stays.
+    let counts: Vec<u64> = counts.into_keys().collect();
+    reading.places = match counts[..] {
+        [1] => vec![(size.range_value(), Place::Outer(PS))],
+        [1, next, ..] => match turns(node, text, next) {
+            Some((range, own)) => vec![(size.range_value(), Place::Outer(PS)), (range, Place::Loop(own))],
+            None => vec![],
+        },
+        _ => vec![],
+    };
     Ok(Some(reading))
 }
 

@@ -23,7 +23,7 @@ use crate::report::system::{self as report, SystemMap};
 use crate::scene::{Axis, Displacement, RunRequest, Scan, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Analysis, Limits, Route};
-use again::same_values;
+pub use again::same_values;
 use kind::{exact_kind, same_kind};
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.

@@ -1,6 +1,7 @@
 //! Advice drawn: the outer step across, each mode and pair of modes a row.
 
-use crate::advise::{Advice, Answer, Row};
+use crate::advise::unit::decimal;
+use crate::advise::{Advice, Answer, Pair, Row};
 use crate::number::rational::to_f64;
 use crate::report::figure::palette::{COEXISTENCE, Colour, GREY, HYPERBOLIC, INK, PARABOLIC};
 use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke, Tick};
@@ -42,74 +43,73 @@ impl Band {
     }
 }
 
-/// What is known of the first scheme, drawn at its ratio; the other schemes' outer steps as lines.
+/// A row of the figure: a fast mode, or a pair of them, at one scheme's ratio.
+enum Subject<'a> {
+    Mode(&'a Row),
+    Pair(&'a Pair),
+}
+
+/// One scheme for each ratio, with the rows that belong to it.
+fn by_ratio(advice: &Advice) -> Vec<(&Answer, Vec<&Answer>)> {
+    let mut found: Vec<(&Answer, Vec<&Answer>)> = Vec::new();
+    for answer in &advice.schemes {
+        match found.iter_mut().find(|(first, _)| ratio(first) == ratio(answer)) {
+            Some((_, all)) => all.push(answer),
+            None => found.push((answer, vec![answer])),
+        }
+    }
+    found
+}
+
+/// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through their rows.
 pub fn figure(advice: &Advice, title: &str) -> Figure {
-    let answer = &advice.schemes[0];
-    let rows = answer.rows.len() + answer.pairs.len();
-    let ends =
-        answer.rows.iter().filter_map(|row| row.first.as_ref()).filter_map(|of| of.upper.or(Some(of.lower)));
-    let outers: Vec<f64> = advice.schemes.iter().map(|answer| to_f64(answer.scheme.outer())).collect();
-    let right = ends.map(|(_, hi)| hi).chain(outers.iter().copied()).fold(0.0, f64::max) * 1.12;
-    let place = |i: usize| (rows - 1 - i) as f64;
-    let [mut safe, mut caution, mut unstable, mut beyond] = [const { Vec::<Band>::new() }; 4];
-    for (i, row) in answer.rows.iter().enumerate() {
-        stretches(
-            advice,
-            answer,
-            row,
-            place(i),
-            right,
-            [&mut safe, &mut caution, &mut unstable, &mut beyond],
-        );
+    let groups = by_ratio(advice);
+    let count = |answer: &Answer| answer.rows.len() + answer.pairs.len();
+    let rows: usize = groups.iter().map(|(answer, _)| count(answer)).sum();
+    let outers = advice.schemes.iter().map(|answer| to_f64(answer.scheme.outer()));
+    let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
+    let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).chain(outers).fold(0.0, f64::max) * 1.12;
+    let (mut layers, mut ticks, mut notes) = (Layers::default(), Vec::new(), Vec::new());
+    let mut at = rows as f64;
+    for (answer, all) in &groups {
+        let top = at - 0.5;
+        let modes = answer.rows.iter().map(Subject::Mode);
+        for subject in modes.chain(answer.pairs.iter().map(Subject::Pair)) {
+            at -= 1.0;
+            layers.add(advice, answer, &subject, at, right);
+            let name = match subject {
+                Subject::Mode(row) => advice.modes[row.mode].name.clone(),
+                Subject::Pair(pair) => pair.modes.map(|i| advice.modes[i].name.as_str()).join(" + "),
+            };
+            let label = if groups.len() > 1 { format!("{name}, {}", ratio(answer)) } else { name };
+            ticks.push(Tick { at, label: Some(label) });
+        }
+        for (i, own) in all.iter().enumerate() {
+            let outer = to_f64(own.scheme.outer());
+            layers.chosen.push(vec![[outer, at - 0.5], [outer, top]]);
+            let (anchor, shift) =
+                if outer > 0.7 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
+            let text = format!("{} fs: {}", decimal(own.scheme.outer()), own.status.name());
+            // Above its first row, in lines of their own.
+            notes.push(
+                Note::new([outer, top - 0.06 - 0.2 * (i % 2) as f64], &text)
+                    .anchored(anchor, [shift, 0.0])
+                    .in_colour(INK),
+            );
+        }
+        if let Some(safe) = answer.safe.as_ref().map(to_f64) {
+            layers.recommended.push(vec![[safe, at - 0.5], [safe, top]]);
+        }
     }
-    let pitch = right / 90.0;
-    let areas = |bands: &[Band], colour| Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
-    let hatch = |bands: &[Band], pitch, falls| {
-        bands.iter().flat_map(|band| band.hatch(pitch, falls)).collect::<Vec<_>>()
+    let only = if groups.len() == 1 {
+        format!(", {} inner steps in each", ratio(groups[0].0))
+    } else {
+        String::new()
     };
-    let names = answer.rows.iter().map(|row| advice.modes[row.mode].name.clone());
-    let pairs = answer.pairs.iter().map(|pair| pair.modes.map(|i| advice.modes[i].name.as_str()).join(" + "));
-    let ticks =
-        names.chain(pairs).enumerate().map(|(i, name)| Tick { at: place(i), label: Some(name) }).collect();
-    // Above the rows there is room for two lines of labels.
-    let top = rows as f64 + 0.6;
-    let x = Axis::linear(&format!("outer step (fs), {}", ratio(answer)), 0.0, right);
-    let mut panel = Panel::new(x, Axis::linear("", -0.7, top).ticks(ticks))
-        .with(areas(&safe, SAFE).labelled("proven stable, all periods in the band"))
-        .with(areas(&caution, CAUTION).labelled("the same, beyond T/3 (published drift)"))
-        .with(Layer::lines(hatch(&caution, pitch, false), Stroke::THIN))
-        .with(
-            Layer::lines(hatch(&beyond, 1.5 * pitch, true), Stroke::THIN.in_colour(GREY))
-                .labelled("not to be recommended"),
-        )
-        .with(areas(&unstable, UNSTABLE).labelled("unstable, proven"));
-    let near: Vec<[f64; 2]> = answer
-        .pairs
-        .iter()
-        .enumerate()
-        .map(|(i, pair)| [pair.near, place(answer.rows.len() + i)])
-        .filter(|at| at[0] < right)
-        .collect();
-    if !near.is_empty() {
-        panel = panel.with(
-            Layer::dots(near, Shape::Diamond, 4.0, PARABOLIC)
-                .labelled("two modes may resonate (first order)"),
-        );
-    }
-    for (i, (outer, answer)) in outers.iter().zip(&advice.schemes).enumerate() {
-        let line = vec![vec![[*outer, -0.7], [*outer, top]]];
-        let label =
-            format!("{} fs: {}", crate::advise::unit::decimal(answer.scheme.outer()), answer.status.name());
-        let (anchor, shift) = if *outer > 0.8 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
-        let height = rows as f64 + if i % 2 == 0 { 0.25 } else { -0.15 };
-        let note = Note::new([*outer, height], &label).anchored(anchor, [shift, 0.0]).in_colour(INK);
-        panel = panel.with(Layer::lines(line, Stroke::LINE)).note(note);
-    }
-    if let Some(safe) = answer.safe.as_ref().map(to_f64) {
-        let line = vec![vec![[safe, -0.7], [safe, top]]];
-        panel = panel.with(Layer::lines(line, Stroke::DASHED.in_colour(COEXISTENCE)).labelled("recommended"));
-    }
-    Figure::new(150.0, 54.0 + 9.0 * rows as f64).named(title).with(panel.legend(Place::Above))
+    let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
+    let panel = Panel::new(x, Axis::linear("", -0.6, rows as f64 - 0.4).ticks(ticks));
+    let panel = notes.into_iter().fold(layers.on(panel, right / 90.0), Panel::note);
+    Figure::new(150.0, 54.0 + 11.0 * rows as f64).named(title).with(panel.legend(Place::Above))
 }
 
 fn ratio(answer: &Answer) -> String {
@@ -117,32 +117,78 @@ fn ratio(answer: &Answer) -> String {
     if steps.len() == 1 {
         return "one clock".into();
     }
-    let ratios: Vec<String> =
-        steps.windows(2).map(|pair| crate::advise::unit::decimal(&(&pair[1] / &pair[0]))).collect();
-    format!("{} inner steps in each", ratios.join(" x "))
+    let ratios: Vec<String> = steps.windows(2).map(|pair| decimal(&(&pair[1] / &pair[0]))).collect();
+    ratios.join(" x ")
 }
 
-/// Safe up to T/3, caution up to the band's edge, unstable in the first interval and in the ones about the scheme, the rest not advised.
-fn stretches(advice: &Advice, answer: &Answer, row: &Row, at: f64, right: f64, into: [&mut Vec<Band>; 4]) {
-    let [safe, caution, unstable, beyond] = into;
-    let edge = row.first.as_ref().map_or(0.0, |first| first.lower.0);
-    let band = edge * (1.0 - to_f64(&advice.band));
-    let third = advice.modes[row.mode].part(3).0;
-    let push = |list: &mut Vec<Band>, lo: f64, hi: f64| {
-        if lo < hi.min(right) {
-            list.push(Band { at: [lo, hi.min(right)], row: at });
+/// What is drawn, kind by kind.
+#[derive(Default)]
+struct Layers {
+    safe: Vec<Band>,
+    caution: Vec<Band>,
+    unstable: Vec<Band>,
+    beyond: Vec<Band>,
+    near: Vec<[f64; 2]>,
+    chosen: Vec<Vec<[f64; 2]>>,
+    recommended: Vec<Vec<[f64; 2]>>,
+}
+
+impl Layers {
+    /// Safe up to T/3, caution up to the band's edge, then what is not advised, the unstable intervals over it. A pair is proven
+    /// stable as far as all couplings are.
+    fn add(&mut self, advice: &Advice, answer: &Answer, subject: &Subject, row: f64, right: f64) {
+        let alone = answer.scheme.steps().len() == 1;
+        let (band, fastest) = match subject {
+            Subject::Mode(own) => {
+                let edge = own.first.as_ref().map_or(0.0, |first| first.lower.0);
+                (edge * (1.0 - to_f64(&advice.band)), own.mode)
+            }
+            Subject::Pair(pair) => {
+                self.near.extend(Some([pair.near, row]).filter(|at| at[0] < right));
+                (answer.band_edge.0, advice.fastest)
+            }
+        };
+        let third = if alone { band } else { advice.modes[fastest].part(3).0 };
+        let push = |list: &mut Vec<Band>, lo: f64, hi: f64| {
+            if lo < hi.min(right) {
+                list.push(Band { at: [lo, hi.min(right)], row });
+            }
+        };
+        push(&mut self.safe, 0.0, third.min(band));
+        push(&mut self.caution, third, band);
+        push(&mut self.beyond, band, right);
+        let Subject::Mode(own) = subject else { return };
+        let first = own.first.iter().filter(|of| alone || of.upper.is_some());
+        for interval in first.chain(&own.inside).chain(&own.intervals) {
+            push(&mut self.unstable, interval.lower.0, interval.upper.map_or(right, |upper| upper.1));
         }
-    };
-    let alone = answer.scheme.steps().len() == 1;
-    push(safe, 0.0, if alone { band } else { third.min(band) });
-    push(caution, if alone { band } else { third }, band);
-    push(beyond, band, right);
-    let known = [&row.first, &row.inside, &row.below, &row.above];
-    let mut seen: Vec<f64> = Vec::new();
-    for interval in known.into_iter().flatten().filter(|of| of.upper.is_some() || alone) {
-        if !seen.contains(&interval.lower.0) {
-            seen.push(interval.lower.0);
-            push(unstable, interval.lower.0, interval.upper.map_or(right, |upper| upper.1));
-        }
+    }
+
+    fn on(self, panel: Panel, pitch: f64) -> Panel {
+        let areas =
+            |bands: &[Band], colour| Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
+        let hatch = |bands: &[Band], pitch, falls| {
+            bands.iter().flat_map(|band| band.hatch(pitch, falls)).collect::<Vec<_>>()
+        };
+        let panel = panel
+            .with(areas(&self.safe, SAFE).labelled("proven stable, all periods in the band"))
+            .with(areas(&self.caution, CAUTION).labelled("the same, beyond T/3 (published drift)"))
+            .with(Layer::lines(hatch(&self.caution, pitch, false), Stroke::THIN))
+            .with(
+                Layer::lines(hatch(&self.beyond, 1.5 * pitch, true), Stroke::THIN.in_colour(GREY))
+                    .labelled("not to be recommended"),
+            )
+            .with(areas(&self.unstable, UNSTABLE).labelled("unstable, proven"))
+            .with(Layer::lines(self.chosen, Stroke::LINE));
+        let panel = match self.near.is_empty() {
+            true => panel,
+            false => panel.with(
+                Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC)
+                    .labelled("two modes may resonate (first order)"),
+            ),
+        };
+        panel.with(
+            Layer::lines(self.recommended, Stroke::DASHED.in_colour(COEXISTENCE)).labelled("recommended"),
+        )
     }
 }

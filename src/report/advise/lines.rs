@@ -1,9 +1,9 @@
 //! What a person can act on: a line for each scheme, then what to do, then why.
 
-use super::words::{nearest, told};
+use super::words::{choice, down, fs, nearest, percent, time, told};
 use crate::advise::engine::{Reading, not_nested};
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Row, Status, Unstable};
+use crate::advise::{Advice, Answer, Pair, Row, Scheme, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
@@ -12,8 +12,9 @@ use crate::report::decimal::few;
 pub(super) const UNKNOWN: [&str; 3] = [
     "whether a faster mode exists than those given: coupled modes are faster than two-body formulas say",
     "how far anharmonic motion, another temperature or other surroundings move the periods beyond the band",
-    "how much the nonlinear resonances near T/3 and T/4 heat this system",
+    NONLINEAR,
 ];
+pub(super) const NONLINEAR: &str = "how much the nonlinear resonances near T/3 and T/4 heat this system";
 
 /// Both ends, each to five digits.
 fn interval(of: &Unstable) -> String {
@@ -23,45 +24,35 @@ fn interval(of: &Unstable) -> String {
     }
 }
 
-/// A length of time in the unit that suits it.
-fn time(x: &Rational) -> String {
-    let over = |n: u64| x / Rational::from_integer(n.into());
-    let one = Rational::from_integer(1.into());
-    let units = [(1_000_000_000_000_000, "s"), (1_000_000, "ns"), (1000, "ps")];
-    let found = units.into_iter().find(|(n, _)| over(*n) >= one);
-    found.map_or_else(|| fs(x), |(n, unit)| format!("{} {unit}", decimal(&over(n))))
-}
-
-fn percent(x: &Rational) -> String {
-    format!("{} %", decimal(&(x * Rational::from_integer(100.into()))))
-}
-
-fn fs(x: &Rational) -> String {
-    format!("{} fs", decimal(x))
-}
-
 /// All lines.
 pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     let mut lines: Vec<String> = advice.schemes.iter().map(|answer| line(advice, answer)).collect();
     lines.push(action(advice, &advice.schemes[0]));
     if let Some(reading) = reading {
-        lines.extend(engine(&advice.schemes[0], reading));
+        lines.extend(read_from(of_answer(&advice.schemes[0]), reading));
     }
     lines.extend(reasons(advice));
     lines
 }
 
 /// The outer step that is advised, where it is another one than that of the scheme.
-pub(super) fn advised(answer: &Answer) -> Option<&Rational> {
-    let outer = answer.safe.as_ref().or(answer.largest.as_ref())?;
-    (outer != answer.scheme.outer() && answer.needs.is_none()).then_some(outer)
+pub(super) fn advised<'a>(
+    scheme: &Scheme,
+    safe: &'a Option<Rational>,
+    largest: &'a Option<Rational>,
+) -> Option<&'a Rational> {
+    safe.as_ref().or(largest.as_ref()).filter(|outer| *outer != scheme.outer())
+}
+
+pub(super) fn of_answer(answer: &Answer) -> Option<&Rational> {
+    advised(&answer.scheme, &answer.safe, &answer.largest).filter(|_| answer.needs.is_none())
 }
 
 /// The engine's own lines with the step that is advised, and what was read.
-fn engine(answer: &Answer, reading: &Reading) -> Vec<String> {
+pub(super) fn read_from(advised: Option<&Rational>, reading: &Reading) -> Vec<String> {
     let name = reading.engine.name();
     let mut lines = Vec::new();
-    if let Some(changed) = advised(answer).and_then(|outer| reading.changed_lines(outer).ok()) {
+    if let Some(changed) = advised.and_then(|outer| reading.changed_lines(outer).ok()) {
         lines.extend(changed.iter().map(|line| format!("  write      {line}")));
     }
     let steps: Vec<String> = reading.scheme.steps().iter().map(fs).collect();
@@ -106,7 +97,7 @@ fn line(advice: &Advice, answer: &Answer) -> String {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&advice.band))
         }
         Status::Island => island(answer, outer),
-        Status::Unstable => unstable(answer, worst),
+        Status::Unstable | Status::NotTold => unstable(answer, worst),
     };
     let within = match (answer.within_run, &advice.length) {
         (Some(true), Some(length)) => format!("; within the run of {}", time(length)),
@@ -152,9 +143,17 @@ fn unstable(answer: &Answer, worst: Option<&Row>) -> String {
     let rate = (1000.0 * row.found.rate.0, 1000.0 * row.found.rate.1);
     let inside =
         row.inside.as_ref().map_or_else(String::new, |inside| format!(", within {}", interval(inside)));
-    let friction = nearest((2.0 * rate.0, 2.0 * rate.1), 2);
+    let mask = row.masking.map(|(lo, hi)| nearest((1000.0 * lo, 1000.0 * hi), 3));
+    let friction = match (row.is_damped, mask) {
+        (Some(true), _) => " (masked by the friction given, which hides it and does not cure it)".into(),
+        (given, Some(mask)) => {
+            let own = if given.is_some() { ", the one given does not" } else { "" };
+            format!(" (only a friction above {mask}/ps masks it{own})")
+        }
+        (_, None) => String::new(),
+    };
     format!(
-        "unstable{inside}: tenfold in {} outer steps = {} fs, {}/ps (a friction of some {friction}/ps would mask it): do not use",
+        "unstable{inside}: tenfold in {} outer steps = {} fs, {}/ps{friction}: do not use",
         nearest((lo, hi), 3),
         nearest((lo * outer, hi * outer), 3),
         nearest(rate, 4)
@@ -185,45 +184,19 @@ fn action(advice: &Advice, answer: &Answer) -> String {
             "advice: {why}, so the clocks meet late and thin resonances begin early: choose steps that are multiples of each other"
         );
     }
-    let step = scheme.last_but_one();
-    let times = |outer: &Rational| format!("{} of {}", decimal(&(outer / step)), fs(step));
-    let third = nearest(fastest.part(3), 3);
-    match (&answer.safe, &answer.largest) {
-        (Some(safe), Some(largest)) if safe == largest => {
-            format!(
-                "advice: outer step {} ({}), the longest that is proven stable for all periods within {band}",
-                fs(safe),
-                times(safe)
-            )
-        }
-        (Some(safe), Some(largest)) => format!(
-            "advice: outer step {} ({}): below T/3 = {third} fs and proven stable for all periods within {band}; {} ({}) is proven too, but drift is \
-             published beyond T/3",
-            fs(safe),
-            times(safe),
-            fs(largest),
-            times(largest)
-        ),
-        (None, Some(largest)) => format!(
-            "advice: up to {} ({}) is proven stable for all periods within {band}; T/3 = {third} fs is below the step of {}: shorten that one first",
-            fs(largest),
-            times(largest),
-            fs(step)
-        ),
-        _ => format!(
-            "advice: no outer step is proven stable with {} inside: {} needs inner steps below T/pi = {} fs, better T/10 = {} fs",
-            fs(step),
-            told(fastest),
-            nearest(fastest.verlet(), 3),
-            nearest(fastest.part(10), 3)
-        ),
-    }
+    choice(scheme, [&answer.safe, &answer.largest], &band, (&told(fastest), fastest.period()))
 }
 
-/// Three digits, rounded down.
-fn down(x: f64) -> String {
-    let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
-    few((x * size).floor() / size, 3)
+/// The published limits of a mode, T/n by `part`.
+pub(super) fn published(told: &str, part: impl Fn(f64) -> String) -> String {
+    format!(
+        "  published  {told}: outer steps near T/3 = {} fs and T/4 = {} fs meet nonlinear resonances (Ma, Izaguirre, Skeel 2003); grompp warns \
+         above an inner step of T/5 = {} fs, notes above T/10 = {} fs",
+        part(3.0),
+        part(4.0),
+        part(5.0),
+        part(10.0)
+    )
 }
 
 /// What is proven, published, unknown.
@@ -245,17 +218,33 @@ fn reasons(advice: &Advice) -> Vec<String> {
                 ", and for any number of coupled modes that are no stiffer: sums of two modes included"
             }
         ),
-        format!(
-            "  published  {}: outer steps near T/3 = {} fs and T/4 = {} fs meet nonlinear resonances (Ma, Izaguirre, Skeel 2003); grompp warns \
-             above an inner step of T/5 = {} fs, notes above T/10 = {} fs",
-            told(fastest),
-            nearest(fastest.part(3), 4),
-            nearest(fastest.part(4), 4),
-            nearest(fastest.part(5), 4),
-            nearest(fastest.part(10), 4)
-        ),
+        published(&told(fastest), |n| nearest(fastest.part(n as u64), 4)),
         format!("  unknown    {}", UNKNOWN[0]),
     ];
+    if !answer.pairs.is_empty() {
+        let near = |pair: &Pair| {
+            let [a, b] = pair.modes.map(|i| advice.modes[i].name.as_str());
+            format!("{a} + {b} near {} fs", nearest((pair.near, pair.near), 3))
+        };
+        let shown: Vec<String> = answer.pairs.iter().take(4).map(near).collect();
+        let more = if answer.pairs.len() > 4 { ", ..." } else { "" };
+        lines.push(format!(
+            "  sums       two coupled modes may resonate with each other, to first order: {}{more}",
+            shown.join(", ")
+        ));
+    }
+    if !advice.held.is_empty() {
+        let held: Vec<String> = advice.held.iter().map(told).collect();
+        lines.push(format!(
+            "  assumed    {}: constrained, so on no clock; solved to the end at every inner step; the periods given are those of the constrained \
+             molecule, in which coupled angles are faster than alone",
+            held.join(", ")
+        ));
+    }
+    if let Some(friction) = &advice.friction {
+        let rate = decimal(&(friction * Rational::from_integer(1000.into())));
+        lines.push(format!("  friction   {rate}/ps in the middle of every drift (BAOAB): it can hide a linear resonance, no advice rests on it"));
+    }
     if let Some(why) = not_nested(&answer.scheme) {
         lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));
     }

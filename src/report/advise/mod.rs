@@ -3,6 +3,7 @@
 #[cfg(feature = "figure")]
 mod chart;
 mod lines;
+mod molecule;
 mod words;
 
 use serde_json::{Value, json};
@@ -11,11 +12,13 @@ use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
+use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Mode, PUBLISHED, Pair, Row, Unstable};
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
 pub use chart::figure;
+pub use molecule::document as of_molecule;
 pub use words::nearest;
 
 /// The document `kickdrift/advise/1`, its input included; the rows with all columns, or with those that fit paper;
@@ -27,21 +30,22 @@ pub fn document(advice: &Advice, reading: Option<&Reading>, all_columns: bool) -
         .entry("modes", modes.to_json_rows())
         .entry("schemes", schemes.to_json_rows())
         .entry("rows", row_table(advice, true).to_json_rows())
+        .entry("intervals", interval_table(advice).to_json_rows())
         .entry("pairs", pairs.to_json_rows())
         .entry("published", published(advice))
         .entry("unknown", lines::UNKNOWN.to_vec());
     let document = document.long_rows(rows).and_rows(mode_table(advice, false));
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let document = match reading {
-        Some(reading) => document.entry("engine", engine(advice, reading)),
+        Some(reading) => document.entry("engine", engine(lines::of_answer(&advice.schemes[0]), reading)),
         None => document,
     };
     document.summary(&lines::of(advice, reading))
 }
 
 /// What was read of an engine's text, and its lines rewritten with the outer step that is advised.
-fn engine(advice: &Advice, reading: &Reading) -> Value {
-    let rewritten = lines::advised(&advice.schemes[0]).and_then(|outer| reading.changed_lines(outer).ok());
+fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
+    let rewritten = advised.and_then(|outer| reading.changed_lines(outer).ok());
     json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
 }
 
@@ -53,10 +57,18 @@ fn echo(document: Document, advice: &Advice) -> Document {
         .input("band", &advice.band)
         .input_json("modes", advice.modes.iter().map(mode).collect())
         .input_json("schemes", advice.schemes.iter().map(steps).collect());
-    match &advice.length {
+    let document = match &advice.length {
         Some(length) => document.input("length", length),
         None => document,
+    };
+    let document = match &advice.friction {
+        Some(friction) => document.input("friction", friction),
+        None => document,
+    };
+    if advice.held.is_empty() {
+        return document;
     }
+    document.input_json("constrained", advice.held.iter().map(mode).collect())
 }
 
 /// The published statements with their limits in fs, for the fastest mode.
@@ -149,8 +161,12 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     let named: Vec<Named> = named.map(|of| Named { mode: &advice.modes[of.row.mode].name, ..of }).collect();
     let mut record = Record::new()
         .field(Column::new("scheme"), |of: &Named| (of.scheme as u64).into())
-        .field(Column::new("outer").in_words("outer step").in_unit("fs"), |of: &Named| {
-            Cell::Exact(crate::advise::unit::decimal(of.answer.scheme.outer()))
+        .field(Column::new("outer").in_words("outer step").in_unit("fs"), move |of: &Named| {
+            if all {
+                Cell::exact(of.answer.scheme.outer())
+            } else {
+                Cell::Exact(decimal(of.answer.scheme.outer()))
+            }
         })
         .field(Column::new("mode").left(), |of: &Named| of.mode.into())
         .field(Column::new("kind").left(), |of: &Named| of.row.found.kind.name().into())
@@ -162,6 +178,15 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         .field(column("tenfold_steps", "tenfold in steps", all), move |of: &Named| {
             quantity(of.row.tenfold_steps, all)
         });
+    if all || advice.schemes.iter().any(|answer| answer.rows.iter().any(|row| row.masking.is_some())) {
+        record = record.field(
+            column("masked_above", "masked above a friction", all).in_unit("1/ps"),
+            move |of: &Named| quantity(of.row.masking.map(per_ps), all),
+        );
+    }
+    if all || advice.friction.is_some() {
+        record = record.field(Column::new("damped"), |of: &Named| of.row.is_damped.into());
+    }
     let places: [(&str, &str, Which); 4] = [
         ("first", "first unstable", |row| row.first.as_ref()),
         ("inside", "inside", |row| row.inside.as_ref()),
@@ -188,6 +213,21 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         "Each fast mode at each scheme of steps, the stiffest modes on the other clocks",
         &named,
     )
+}
+
+fn interval_table(advice: &Advice) -> Table {
+    let answers = advice.schemes.iter().enumerate();
+    let rows = answers.flat_map(|(n, answer)| answer.rows.iter().map(move |row| (n as u64 + 1, row)));
+    let all: Vec<(u64, usize, &Unstable)> =
+        rows.flat_map(|(n, row)| row.intervals.iter().map(move |own| (n, row.mode, own))).collect();
+    let record = Record::new()
+        .field(Column::new("scheme"), |of: &(u64, usize, &Unstable)| of.0.into())
+        .field(Column::new("mode").left(), |of| advice.modes[of.1].name.as_str().into())
+        .field(Column::new("m"), |of| of.2.label.into())
+        .field(column("lower", "from", true), |of| quantity(Some(of.2.lower), true))
+        .field(column("upper", "to", true), |of| quantity(of.2.upper, true))
+        .field(Column::new("tenfold_steps"), |of| of.2.worst.map(|worst| worst.steps).into());
+    record.table("intervals", "Unstable intervals of the outer step", &all)
 }
 
 /// A rate per fs as one per ps, rounded outward.

@@ -1,6 +1,8 @@
 //! Numbers and names for people.
 
-use crate::advise::{Mode, Origin};
+use crate::advise::unit::decimal;
+use crate::advise::{Mode, Origin, Scheme};
+use crate::number::Rational;
 use crate::report::decimal::few;
 
 /// A number known to an enclosure, rounded to at most so many significant digits, fewer where the enclosure is wider: every digit is that of
@@ -24,5 +26,66 @@ pub(super) fn told(mode: &Mode) -> String {
     match mode.origin {
         Origin::Period => format!("{} (T = {period} fs)", mode.name),
         origin => format!("{} (T = {period} fs from the {})", mode.name, origin.name()),
+    }
+}
+
+/// A length of time in the unit that suits it.
+pub(super) fn time(x: &Rational) -> String {
+    let over = |n: u64| x / Rational::from_integer(n.into());
+    let one = Rational::from_integer(1.into());
+    let units = [(1_000_000_000_000_000, "s"), (1_000_000, "ns"), (1000, "ps")];
+    let found = units.into_iter().find(|(n, _)| over(*n) >= one);
+    found.map_or_else(|| fs(x), |(n, unit)| format!("{} {unit}", decimal(&over(n))))
+}
+
+pub(super) fn percent(x: &Rational) -> String {
+    format!("{} %", decimal(&(x * Rational::from_integer(100.into()))))
+}
+
+pub(super) fn fs(x: &Rational) -> String {
+    format!("{} fs", decimal(x))
+}
+
+/// Three digits, rounded down.
+pub(super) fn down(x: f64) -> String {
+    let size = 10f64.powi(2 - x.abs().log10().floor() as i32);
+    few((x * size).floor() / size, 3)
+}
+
+/// Which outer step to take: `safe` is below T/3 too, `largest` is proven for the whole band; of the fastest mode its words and its period.
+pub(super) fn choice(
+    scheme: &Scheme,
+    [safe, largest]: [&Option<Rational>; 2],
+    band: &str,
+    (fastest, (lo, hi)): (&str, (f64, f64)),
+) -> String {
+    let step = scheme.last_but_one();
+    let times = |outer: &Rational| format!("{} ({} of {})", fs(outer), decimal(&(outer / step)), fs(step));
+    let part = |n: f64| nearest((lo / n, hi / n), 3);
+    let third = part(3.0);
+    match (safe, largest) {
+        (Some(safe), Some(largest)) if safe == largest => {
+            format!(
+                "advice: outer step {}, the longest that is proven stable for all periods within {band}",
+                times(safe)
+            )
+        }
+        (Some(safe), Some(largest)) => format!(
+            "advice: outer step {}: below T/3 = {third} fs and proven stable for all periods within {band}; {} is proven too, but drift is \
+             published beyond T/3",
+            times(safe),
+            times(largest)
+        ),
+        (None, Some(largest)) => format!(
+            "advice: up to {} is proven stable for all periods within {band}; T/3 = {third} fs is below the step of {}: shorten that one first",
+            times(largest),
+            fs(step)
+        ),
+        _ => format!(
+            "advice: no outer step is proven stable with {} inside: {fastest} needs inner steps below T/pi = {} fs, better T/10 = {} fs",
+            fs(step),
+            part(std::f64::consts::PI),
+            part(10.0)
+        ),
     }
 }

@@ -75,6 +75,16 @@ pub(super) struct Measured {
     kernel: OnceLock<Kernel>,
 }
 
+/// Two levels of measured stiffnesses.
+#[derive(Clone, Debug)]
+pub struct TwoLevels<'a> {
+    pub kernel: &'a Kernel,
+    pub inner: Rational,
+    pub outer: Rational,
+    /// Every stiffness is known to this times its norm.
+    pub accuracy: f64,
+}
+
 /// Whether some stiffness of the file stands by reference.
 pub(super) fn is_by_reference(source: &Value) -> bool {
     let potentials = source.get("potentials").and_then(Value::as_array);
@@ -186,6 +196,16 @@ impl Measured {
         let (inner_steps, kernel) =
             (self.outer().map_or(1, |(outer, _)| outer.inner_steps()), self.kernel()?);
         steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
+    }
+
+    /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
+    pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let remedy = "give two potentials, the step of one a multiple of the other's";
+        let other = || Error::input("potentials", format!("{} steps", self.potentials.len()), remedy);
+        let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(other()) };
+        self.outer().ok_or_else(other)?;
+        let [inner, outer] = [inner, outer].map(Clone::clone);
+        Ok(TwoLevels { kernel: self.kernel()?, inner, outer, accuracy: self.accuracy })
     }
 
     /// The eigenbasis, computed when it is first asked for.

@@ -41,6 +41,7 @@
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
 //! | `mesh` | finite elements |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
+//! | `molecule` | two measured levels, to be advised on |
 //! | `run` | Algorithm 1 run on it |
 //! | `scan` | one file, many systems: any number of it over a range |
 
@@ -51,6 +52,8 @@ mod linear;
 mod market;
 mod measured;
 mod mesh;
+#[cfg(feature = "advise")]
+mod molecule;
 mod oscillator;
 mod run;
 mod scan;
@@ -74,6 +77,7 @@ pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
 use measured::Measured;
+pub use measured::TwoLevels;
 use oscillator::Oscillator;
 pub use run::{Displacement, RunRequest};
 pub use scan::{Axis, Scan};
@@ -352,6 +356,16 @@ impl SystemScene {
     pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
         let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
         self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
+    }
+
+    /// Both levels of a system of two measured ones.
+    ///
+    /// # Errors
+    /// Where the stiffnesses do not stand by reference, and where the steps are others than an inner and an outer one.
+    pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
+        let exact = || Error::input("stiffness", "given in place", remedy);
+        self.measured.as_ref().ok_or_else(exact)?.two_levels()
     }
 
     /// The largest growth rate at each of the outer steps, per unit time, rounded, at the file's number of inner steps; `None` where

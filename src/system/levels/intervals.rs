@@ -79,6 +79,27 @@ impl Kernel {
         Ok(stretches)
     }
 
+    /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to have a real multiplier off the
+    /// circle, for all stiffnesses within `epsilon`: told to `width`, relative; at most 1.5 `at`.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub fn unstable_up_to(&self, inner_steps: u64, at: f64, width: f64, epsilon: f64) -> Result<f64> {
+        let (mut at, last, mut carried) = (at, 1.5 * at, width);
+        while at < last {
+            let middle = at / (1.0 - 0.999_999 * carried).sqrt();
+            if self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, 1.001 * (epsilon + carried)) {
+                at = middle * (1.0 + 0.999_999 * carried).sqrt();
+                carried = (4.0 * carried).min(WIDEST);
+            } else if carried <= width {
+                break;
+            } else {
+                carried = (carried / 4.0).max(width);
+            }
+        }
+        Ok(at.min(last))
+    }
+
     /// What is proven of all stiffnesses within `epsilon` of their norms.
     pub fn verdict_within(&self, outer: &Outer, epsilon: f64) -> Holds {
         if self.is_in_first_region(outer, epsilon) {

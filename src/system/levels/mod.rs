@@ -35,12 +35,14 @@
 //! | `rigid` | rigid motions projected out |
 //! | `kernel` | the eigenbasis, its backward error, norms |
 //! | `region` | the first stable region: verdict, margin, first unstable step |
+//! | `band` | the first region of a whole band of stiffnesses |
 //! | `counts` | verdicts by counts of negative eigenvalues, wherever the step lies |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
 mod answer;
+mod band;
 mod beyond;
 mod counts;
 mod half;

@@ -1,0 +1,293 @@
+//! Hessians of a molecule on two clocks: its own modes, the first unstable interval, a band of periods.
+//!
+//! Where periods are given one by one the stiffest stands for all; Hessians tell what their coupling makes of them. The first stable
+//! region, its margin and its band are proven (proofs/REGION.md); growth rates are rounded.
+
+use num_traits::{One, ToPrimitive, Zero};
+
+use super::answer::{Status, longest_below};
+use super::interval::Worst;
+use super::levels::Scheme;
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::levels::{Kernel, Outer};
+use crate::system::{Analysis, Holds, Removed};
+
+/// Measured stiffnesses of two levels, and what their coordinates are called.
+#[derive(Clone, Debug)]
+pub struct Molecule {
+    kernel: Kernel,
+    /// fs in the unit of time of the matrices.
+    unit: Rational,
+    /// One for each particle of three coordinates, or for each coordinate; empty where there are none.
+    names: Vec<String>,
+    /// How well the matrices are known, relative to their norms.
+    accuracy: f64,
+}
+
+/// Fast modes of nearly one period.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    pub count: usize,
+    /// The shortest and the longest period in fs, rounded.
+    pub period: (f64, f64),
+    /// Who moves in the fastest of them.
+    pub atoms: String,
+}
+
+/// What is told of a molecule at one scheme of steps; lengths in fs.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    pub scheme: Scheme,
+    pub status: Status,
+    /// What is proven of all matrices within their accuracy.
+    pub holds: Holds,
+    /// The largest relative change of the stiffnesses under which the verdict is proven to stand.
+    pub margin: Option<f64>,
+    /// \[lo, hi\]: every outer step up to lo is proven stable at this ratio, hi is proven unstable.
+    pub first: Option<(f64, f64)>,
+    /// Every outer step from the first unstable one up to this is proven unstable: where the interval ends, as far as doubles tell.
+    pub first_upper: Option<f64>,
+    /// The fastest growth in it, rounded.
+    pub worst: Option<Worst>,
+    /// Growth per fs, rounded; 0 where nothing grows.
+    pub rate: f64,
+    /// Who moves in what grows fastest.
+    pub atoms: Option<String>,
+    /// Every outer step up to this, at this ratio, is proven stable for all periods in the band.
+    pub band_edge: Option<f64>,
+    /// The longest multiple of the inner step that is proven so, all shorter ones too.
+    pub largest: Option<Rational>,
+    /// The same, and below T/3 of the fastest mode.
+    pub safe: Option<Rational>,
+    pub within_run: Option<bool>,
+}
+
+/// All that is told of a molecule.
+#[derive(Clone, Debug)]
+pub struct Findings {
+    pub groups: Vec<Group>,
+    /// The shortest period of the slow stiffness alone, in fs, rounded.
+    pub slow: f64,
+    pub removed: Option<Removed>,
+    pub accuracy: f64,
+    pub band: Rational,
+    pub length: Option<Rational>,
+    pub schemes: Vec<Finding>,
+}
+
+/// Fast modes are told as one where each period is within this of the next.
+const NEIGHBOUR: f64 = 1.03;
+
+/// Groups are told up to this many.
+const MOST_GROUPS: usize = 12;
+
+/// Frequencies below this part of the highest one are no modes of the fast stiffness: rigid to it, or slow.
+const NO_MODE: f64 = 1e-2;
+
+/// The relative width to which the end of an interval is told.
+const WIDTH: f64 = 1e-4;
+
+/// Growth is looked for at so many places in an interval, but one.
+const PLACES: u32 = 12;
+
+impl Molecule {
+    /// From a kernel whose unit of time is so many fs.
+    pub fn new(kernel: Kernel, unit: Rational, names: Vec<String>, accuracy: f64) -> Molecule {
+        Molecule { kernel, unit, names, accuracy }
+    }
+
+    /// The findings at each scheme, all periods within `band` of theirs.
+    ///
+    /// # Errors
+    /// No scheme; one of other than two steps, or whose outer step is no multiple of the inner one; a band outside [0, 1).
+    pub fn advise(&self, schemes: &[Scheme], band: &Rational, length: Option<&Rational>) -> Result<Findings> {
+        if *band < Rational::zero() || *band >= Rational::one() {
+            return Err(Error::input("band", band, "write a part of the period from 0 to below 1, as 5%"));
+        }
+        if schemes.is_empty() {
+            return Err(Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs"));
+        }
+        let groups = self.groups();
+        let Some(fastest) = groups.first().map(|group| group.period.0) else {
+            return Err(Error::input(
+                "fast stiffness",
+                "0",
+                "give the bonds to the potential of the shorter step",
+            ));
+        };
+        let find = |scheme: &Scheme| self.find(scheme, fastest, band, length);
+        let frequency = self.kernel.highest_slow_frequency();
+        Ok(Findings {
+            slow: self.period(frequency * frequency),
+            removed: self.kernel.removed.clone(),
+            accuracy: self.accuracy,
+            band: band.clone(),
+            length: length.cloned(),
+            schemes: schemes.iter().map(find).collect::<Result<_>>()?,
+            groups,
+        })
+    }
+
+    fn period(&self, square: f64) -> f64 {
+        2.0 * std::f64::consts::PI / square.sqrt() * to_f64(&self.unit)
+    }
+
+    fn groups(&self) -> Vec<Group> {
+        let squares = self.kernel.fast_squares();
+        let least = NO_MODE * NO_MODE * squares.last().copied().unwrap_or(0.0).max(0.0);
+        let mut groups: Vec<Group> = Vec::new();
+        for (k, &square) in squares.iter().enumerate().rev().take_while(|(_, square)| **square > least) {
+            let period = self.period(square);
+            match groups.last_mut() {
+                Some(last) if period < NEIGHBOUR * last.period.1 => {
+                    (last.count, last.period.1) = (last.count + 1, period);
+                }
+                _ => groups.push(Group {
+                    count: 1,
+                    period: (period, period),
+                    atoms: self.atoms(&self.kernel.fast_mode(k)),
+                }),
+            }
+        }
+        groups.truncate(MOST_GROUPS);
+        groups
+    }
+
+    /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the first ones not nine.
+    fn atoms(&self, shape: &[f64]) -> String {
+        let each = if shape.len() % 3 == 0 && self.names.len() != shape.len() { 3 } else { 1 };
+        let share = |own: &[f64]| own.iter().map(|x| x * x).sum::<f64>();
+        let mut shares: Vec<(usize, f64)> = shape.chunks(each).map(share).enumerate().collect();
+        let whole: f64 = shares.iter().map(|(_, own)| own).sum();
+        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let (mut told, mut names) = (0.0, Vec::new());
+        for (i, own) in shares.into_iter().take(3) {
+            if told > 0.9 * whole || own < 0.1 * whole {
+                break;
+            }
+            told += own;
+            names.push(self.names.get(i).cloned().unwrap_or_else(|| format!("atom {}", i + 1)));
+        }
+        names.join(", ")
+    }
+
+    fn outer(&self, inner: &Rational, outer: &Rational) -> Result<Outer> {
+        let steps = [inner, outer].map(|step| step / &self.unit);
+        Outer::of_steps(&steps[0], &steps[1]).ok_or_else(|| {
+            let remedy = "Hessians are answered for an outer step that is a multiple of the inner one";
+            Error::input("steps", format!("{inner} fs, {outer} fs"), remedy)
+        })
+    }
+
+    fn find(
+        &self,
+        scheme: &Scheme,
+        fastest: f64,
+        band: &Rational,
+        length: Option<&Rational>,
+    ) -> Result<Finding> {
+        let [inner, last] = scheme.steps() else {
+            let remedy = "Hessians are answered for two steps, as 0.5fs,4fs";
+            return Err(Error::input("steps", format!("{} of them", scheme.steps().len()), remedy));
+        };
+        let (outer, part, unit) = (self.outer(inner, last)?, to_f64(band), to_f64(&self.unit));
+        let analysis = self.kernel.decide(&outer, &(last / &self.unit), self.accuracy);
+        let measured = analysis.measured.as_ref().expect("Hessians are measured");
+        let third = from_f64_exact(fastest / 3.0).unwrap_or_else(Rational::zero);
+        let is_in_band = self.kernel.covers_band(&outer, part, self.accuracy);
+        let status = match measured.holds {
+            Holds::Unstable => Status::Unstable,
+            Holds::NotTold => Status::NotTold,
+            Holds::Stable if is_in_band && *last < third => Status::Safe,
+            Holds::Stable if is_in_band => Status::Caution,
+            Holds::Stable if self.kernel.is_in_first_region(&outer, self.accuracy) => Status::Near,
+            Holds::Stable => Status::Island,
+        };
+        let rate = growth(&analysis) / unit;
+        let time = std::f64::consts::LN_10 / rate;
+        let (first_upper, worst) = match measured.first_unstable {
+            Some((_, hi)) => {
+                let (upper, worst) = self.first_interval(outer.inner_steps(), hi)?;
+                (Some(upper), worst)
+            }
+            None => (None, None),
+        };
+        let largest = self.largest(inner, part)?;
+        Ok(Finding {
+            scheme: scheme.clone(),
+            status,
+            holds: measured.holds,
+            margin: measured.margin,
+            first: measured.first_unstable.map(|(lo, hi)| (lo * unit, hi * unit)),
+            first_upper,
+            worst,
+            rate,
+            atoms: fastest_shape(&analysis).map(|shape| self.atoms(&shape)),
+            band_edge: self
+                .kernel
+                .band_edge(outer.inner_steps(), part, self.accuracy)
+                .map(|edge| edge * unit),
+            safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
+            largest,
+            within_run: length.filter(|_| rate > 0.0).map(|length| time <= to_f64(length)),
+        })
+    }
+
+    /// Where the unstable interval that begins at the step `lo`, which is proven unstable, ends at the earliest, and the fastest growth at
+    /// some places inside.
+    fn first_interval(&self, inner_steps: u64, lo: f64) -> Result<(f64, Option<Worst>)> {
+        let hi = self.kernel.unstable_up_to(inner_steps, lo, WIDTH, self.accuracy)?;
+        let unit = to_f64(&self.unit);
+        let rate = |k: u32| {
+            let outer = Outer::new(lo + (hi - lo) * f64::from(k) / f64::from(PLACES), inner_steps).ok()?;
+            Some((outer.step(), self.kernel.growth_rate(&outer)?))
+        };
+        let places = (1..PLACES).filter_map(rate);
+        let worst = places.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|worst| worst.1 > 0.0);
+        let worst = worst.map(|(step, rate)| {
+            let time = std::f64::consts::LN_10 / rate;
+            Worst { rate: rate / unit, steps: time / step, time: time * unit }
+        });
+        Ok((hi * unit, worst))
+    }
+
+    /// The longest multiple of the inner step for the band, all shorter ones holding too.
+    fn largest(&self, inner: &Rational, band: f64) -> Result<Option<Rational>> {
+        let holds = |count: u64| -> Result<bool> {
+            let outer = self.outer(inner, &(inner * Rational::from_integer(count.into())))?;
+            Ok(self.kernel.covers_band(&outer, band, self.accuracy))
+        };
+        let mut found = 0;
+        while found < MOST_INNER_STEPS && holds(found + 1)? {
+            found += 1;
+        }
+        Ok((found > 0).then(|| inner * Rational::from_integer(found.into())))
+    }
+}
+
+/// Beyond this many the inner step is so short that nobody means it.
+const MOST_INNER_STEPS: u64 = 1000;
+
+/// The largest growth rate, per unit of time.
+fn growth(analysis: &Analysis) -> f64 {
+    instabilities(analysis).map(|own| own.growth_rate).fold(0.0, f64::max)
+}
+
+fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::Instability> {
+    analysis.parts.iter().flat_map(|part| &part.instabilities)
+}
+
+fn fastest_shape(analysis: &Analysis) -> Option<Vec<f64>> {
+    let fastest = instabilities(analysis).max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate))?;
+    Some(fastest.shape.iter().zip(&fastest.quadrature).map(|(re, im)| re.hypot(*im)).collect())
+}
+
+impl Finding {
+    /// Outer steps until an amplitude is tenfold, rounded; `None` where nothing grows.
+    pub fn tenfold_steps(&self) -> Option<f64> {
+        let outer = self.scheme.outer().to_f64()?;
+        (self.rate > 0.0).then(|| std::f64::consts::LN_10 / (self.rate * outer))
+    }
+}

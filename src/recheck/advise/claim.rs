@@ -1,0 +1,321 @@
+//! The rows of the document `kickdrift/advise/1`, and what concerns it as a whole.
+
+use num_traits::{One, Zero};
+use serde_json::Value;
+
+use super::mass::{BITS, Mass, crosses, exact};
+use crate::error::Result;
+use crate::number::{Ball, Laurent, Rational, Real, Sign};
+use crate::recheck::context::{Checked, Context, Outcome, Place, holds, same};
+use crate::recheck::written::{Ends, Written, nullable};
+use crate::verdict::Kind;
+
+const ROUTE: &str =
+    "the full period, kick by kick, in balls of 512 bits; the first region by the pivots of its action";
+
+rows! {
+    /// `kickdrift/advise/1`.
+    pub struct Claim {
+        pub input: Input,
+        pub modes: Vec<ModeRow>,
+        pub schemes: Vec<SchemeRow>,
+        pub rows: Vec<Row>,
+        pub intervals: Vec<Interval>,
+        pub pairs: Vec<Pair>,
+        pub published: Vec<Value>,
+        pub engine: Option<Value>,
+        pub unknown: Vec<String>,
+    }
+
+    pub struct Input {
+        pub band: Written<Rational>,
+        pub modes: Vec<Mode>,
+        pub schemes: Vec<Vec<Written<Rational>>>,
+        pub length: Option<Written<Rational>>,
+        pub friction: Option<Written<Rational>>,
+        pub constrained: Option<Vec<Value>>,
+    }
+
+    pub struct Mode {
+        pub name: String,
+        pub from: String,
+        pub clock: u64,
+        pub stiffness: Written<Laurent>,
+    }
+
+    pub struct ModeRow {
+        pub name: String,
+        pub from: String,
+        pub clock: u64,
+        pub stiffness: Written<Laurent>,
+        pub period: Ends,
+        pub verlet: Ends,
+        pub half: Ends,
+        pub third: Ends,
+        pub quarter: Ends,
+        pub fifth: Ends,
+        pub tenth: Ends,
+        #[serde(deserialize_with = "nullable")]
+        pub before: Option<f64>,
+    }
+
+    pub struct SchemeRow {
+        pub outer: Written<Rational>,
+        pub status: String,
+        pub band_edge: Ends,
+        #[serde(deserialize_with = "nullable")]
+        pub largest: Option<Written<Rational>>,
+        #[serde(deserialize_with = "nullable")]
+        pub safe: Option<Written<Rational>>,
+        #[serde(deserialize_with = "nullable")]
+        pub needs: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        pub within_run: Option<bool>,
+    }
+
+    pub struct Row {
+        pub scheme: u64,
+        pub outer: Written<Rational>,
+        pub mode: String,
+        pub kind: Written<Kind>,
+        pub trace: Ends,
+        pub growth_rate: Ends,
+        #[serde(deserialize_with = "nullable")]
+        pub tenfold_steps: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub masked_above: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub damped: Option<bool>,
+        #[serde(deserialize_with = "nullable")]
+        pub first_lower: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub first_upper: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub first_tenfold_steps: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        pub inside_lower: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub inside_upper: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub inside_tenfold_steps: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        pub below_lower: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub below_upper: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub below_tenfold_steps: Option<f64>,
+        #[serde(deserialize_with = "nullable")]
+        pub above_lower: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub above_upper: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub above_tenfold_steps: Option<f64>,
+    }
+
+    pub struct Interval {
+        pub scheme: u64,
+        pub mode: String,
+        pub m: u64,
+        pub lower: Ends,
+        #[serde(deserialize_with = "nullable")]
+        pub upper: Option<Ends>,
+        #[serde(deserialize_with = "nullable")]
+        pub tenfold_steps: Option<f64>,
+    }
+
+    pub struct Pair {
+        pub scheme: u64,
+        pub first: String,
+        pub second: String,
+        pub near: f64,
+    }
+}
+
+impl Place for Row {
+    fn place(&self) -> String {
+        format!("scheme {}, mode {}", self.scheme, self.mode)
+    }
+}
+
+impl Claim {
+    pub fn check(&self, context: &Context) -> Result<Outcome> {
+        let mut outcome =
+            context.outcome(ROUTE, ("the schemes", self.whole()), &self.rows, |row| self.row(row))?;
+        outcome.not_rechecked.extend([
+            "that no other unstable interval lies nearer to a scheme than those of below and above",
+            "tenfold_steps of intervals: held against 64 places inside, to a hundredth",
+            "statement and source of published, unknown: words",
+            "before: the masses are not part of the document; held to be shorter",
+        ]);
+        if self.engine.is_some() {
+            outcome.not_rechecked.push("engine: its text is not part of the document");
+        }
+        Ok(outcome)
+    }
+
+    /// The stiffest mode on each clock, or this one on its own.
+    pub fn mass(&self, scheme: usize, mode: Option<&Mode>) -> Checked<Mass> {
+        let steps: Vec<Rational> = match self.input.schemes.get(scheme) {
+            Some(steps) => steps.iter().map(|step| step.0.clone()).collect(),
+            None => {
+                return holds(false, || format!("there is no scheme {}", scheme + 1))
+                    .map(|()| unreachable!());
+            }
+        };
+        let of = |clock: usize| {
+            let own = mode.filter(|mode| mode.clock == clock as u64 + 1);
+            let on = self.input.modes.iter().filter(move |mode| mode.clock == clock as u64 + 1);
+            let stiffest = own.or_else(|| on.max_by(|a, b| a.stiffness.cmp(&b.stiffness)));
+            stiffest.map_or_else(Ball::zero, |mode| mode.stiffness.enclosure(BITS))
+        };
+        let stiffness = (0..steps.len()).map(of).collect();
+        Ok(Mass { steps, stiffness })
+    }
+
+    /// The stiffest modes with the shortest periods of the band.
+    pub fn corner(&self, scheme: usize) -> Checked<Mass> {
+        let mut mass = self.mass(scheme, None)?;
+        let shorter = Ball::from_rational(&(Rational::one() - &self.input.band.0), BITS);
+        let square = shorter.square(BITS);
+        for stiffness in &mut mass.stiffness {
+            *stiffness = stiffness.div(&square, BITS).unwrap_or_else(|| stiffness.clone());
+        }
+        Ok(mass)
+    }
+
+    fn whole(&self) -> Checked {
+        let Input { band, modes, schemes, length, .. } = &self.input;
+        holds(band.0 >= Rational::zero() && band.0 < Rational::one(), || {
+            format!("the band {} is none", band.0)
+        })?;
+        holds(!self.unknown.is_empty(), || "something is always unknown".into())?;
+        same("the number of modes", self.modes.len(), modes.len())?;
+        same("the number of schemes", self.schemes.len(), schemes.len())?;
+        for (row, mode) in self.modes.iter().zip(modes) {
+            let told = (&row.name, &row.from, row.clock, &row.stiffness.0);
+            holds(told == (&mode.name, &mode.from, mode.clock, &mode.stiffness.0), || {
+                format!("mode {} is not the input's", row.name)
+            })?;
+            row.holds()?;
+        }
+        for (n, scheme) in self.schemes.iter().enumerate() {
+            self.scheme(n, scheme)?;
+            let grows = self.of(n).any(|row| row.tenfold_steps.is_some());
+            holds(scheme.within_run.is_some() == (grows && length.is_some()), || {
+                "within_run is told of what grows in a run".into()
+            })?;
+        }
+        self.pairs.iter().try_for_each(|pair| self.pair(pair))?;
+        self.intervals.iter().try_for_each(|interval| self.interval(interval))?;
+        self.published()
+    }
+
+    pub fn of(&self, scheme: usize) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(move |row| row.scheme == scheme as u64 + 1)
+    }
+
+    fn named(&self, name: &str) -> Checked<&ModeRow> {
+        let found = self.modes.iter().find(|mode| mode.name == name);
+        holds(found.is_some(), || format!("there is no mode {name}"))?;
+        Ok(found.expect("just seen"))
+    }
+
+    /// The shortest period on any clock but the outermost.
+    pub fn fastest(&self) -> Checked<&ModeRow> {
+        let last = self.input.schemes.first().map_or(0, Vec::len) as u64;
+        let inner = self.modes.iter().filter(|mode| last == 1 || mode.clock < last);
+        let by = |a: &&ModeRow, b: &&ModeRow| a.stiffness.cmp(&b.stiffness);
+        let found = inner.max_by(by).or_else(|| self.modes.iter().max_by(by));
+        holds(found.is_some(), || "there is no mode".into())?;
+        Ok(found.expect("just seen"))
+    }
+
+    /// An interval that is listed: both ends are such, and what lies between is unstable.
+    fn interval(&self, own: &Interval) -> Checked {
+        let mode = self.input.modes.iter().find(|mode| mode.name == own.mode);
+        let mass = self.mass((own.scheme as usize).wrapping_sub(1), mode)?;
+        let outer = mass.steps.last().cloned().unwrap_or_default();
+        let at = |step: f64| mass.scaled(&(exact(step) / &outer));
+        let Some(upper) = own.upper else { return Ok(()) };
+        holds(mode.is_some() && own.lower.hi <= upper.lo, || {
+            format!("interval {} of {} is none", own.m, own.mode)
+        })?;
+        crosses(&at, own.lower, "lower")?;
+        crosses(&at, upper, "upper")?;
+        let inside = at(own.lower.hi / 2.0 + upper.lo / 2.0).excess()?;
+        holds(inside != Some(Sign::Negative), || {
+            format!("interval {} of {} is stable inside", own.m, own.mode)
+        })
+    }
+
+    fn pair(&self, pair: &Pair) -> Checked {
+        let steps = self.input.schemes.get((pair.scheme as usize).wrapping_sub(1));
+        let Some((inner, outer)) = steps.and_then(|steps| steps.first().zip(steps.last())) else {
+            return holds(false, || format!("there is no scheme {}", pair.scheme));
+        };
+        let parts = crate::number::rational::to_f64(&(&outer.0 / &inner.0));
+        let turns = |mode: &ModeRow| {
+            // s = 2 − 2 cos θ, so the angle by its cosine and not by the sine of its half.
+            let s = (2.0 * std::f64::consts::PI * pair.near / (parts * mode.period.lo)).powi(2);
+            parts * (1.0 - s / 2.0).max(-1.0).acos()
+        };
+        let sum = turns(self.named(&pair.first)?) + turns(self.named(&pair.second)?);
+        // near has four digits.
+        holds((sum / (2.0 * std::f64::consts::PI) - 1.0).abs() < 2e-3, || {
+            format!("{} and {} do not meet there", pair.first, pair.second)
+        })
+    }
+
+    fn published(&self) -> Checked {
+        let fastest = self.fastest()?;
+        for row in &self.published {
+            let limit = |end: &str| row["limit"][end].as_f64();
+            let known = match row["parts"].as_u64() {
+                Some(3) => Some(fastest.third),
+                Some(4) => Some(fastest.quarter),
+                Some(5) => Some(fastest.fifth),
+                Some(10) => Some(fastest.tenth),
+                _ => None,
+            };
+            let right =
+                known.is_some_and(|ends| (limit("lo"), limit("hi")) == (Some(ends.lo), Some(ends.hi)));
+            holds(right && row["mode"] == fastest.name.as_str(), || {
+                "a published limit is not that part of the fastest period".into()
+            })?;
+        }
+        Ok(())
+    }
+}
+
+impl ModeRow {
+    /// Each x with n x = T: (n x)² stiffness = 4 π².
+    fn holds(&self) -> Checked {
+        let stiffness = self.stiffness.enclosure(BITS);
+        let turn = Ball::pi(BITS).scale2(1);
+        let parts = [
+            (1, self.period),
+            (2, self.half),
+            (3, self.third),
+            (4, self.quarter),
+            (5, self.fifth),
+            (10, self.tenth),
+        ];
+        let whole = |n: u64, ends: Ends, square: Ball, name: &str| {
+            let of = |x: f64| {
+                Ball::from_rational(&(exact(x) * Rational::from_integer(n.into())), BITS)
+                    .square(BITS)
+                    .mul(&stiffness, BITS)
+            };
+            let right = ends.lo > 0.0
+                && of(ends.lo).lower() <= square.upper()
+                && square.lower() <= of(ends.hi).upper();
+            holds(right, || format!("{name} of {} is not the period over {n}", self.name))
+        };
+        for (n, ends) in parts {
+            whole(n, ends, turn.square(BITS), "a part")?;
+        }
+        let shorter = self.before.is_none_or(|before| before > 0.0 && before < self.period.hi);
+        holds(shorter, || format!("heavy hydrogens do not shorten the period of {}", self.name))?;
+        whole(1, self.verlet, Ball::from_integer(&4.into()), "verlet")
+    }
+}

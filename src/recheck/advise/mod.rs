@@ -1,0 +1,20 @@
+//! Advice: the full period kick by kick in balls of many bits, and the first region by the pivots of its action.
+//!
+//! The action of a path over the half period, J = Σ |x_j − x_(j−1)|²/τ_j − Σ k_j x_j², is a tridiagonal form; it is positive iff all pivots of
+//! its elimination are (Sylvester). That is another route than the strings of the tongues and than the orbits of many clocks.
+//!
+//! | file | what |
+//! |---|---|
+//! | `claim` | the rows of the document, and what concerns it as a whole |
+//! | `mass` | one mass on its clocks: trace, friction, first region |
+//! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
+//! | `molecule` | advice on Hessians, computed again |
+
+mod claim;
+mod mass;
+mod molecule;
+mod row;
+mod scheme;
+
+pub use claim::Claim;
+pub use molecule::Claim as Molecule;

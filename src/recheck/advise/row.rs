@@ -1,0 +1,106 @@
+//! What is told of a mode at a scheme.
+
+use super::claim::{Claim, Row};
+use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
+use crate::number::{Ball, Rational, Sign};
+use crate::recheck::context::{Checked, holds, same};
+use crate::recheck::written::Ends;
+use crate::verdict::Kind;
+
+impl Claim {
+    /// Every field of a row.
+    pub fn row(&self, row: &Row) -> Checked {
+        let scheme = (row.scheme as usize).wrapping_sub(1);
+        let mode = self.input.modes.iter().find(|mode| mode.name == row.mode);
+        holds(mode.is_some(), || format!("there is no mode {}", row.mode))?;
+        let mass = self.mass(scheme, mode)?;
+        let outer = mass.steps.last().cloned().unwrap_or_default();
+        same("outer", row.outer.0.to_string(), outer.to_string())?;
+        // A clock without stiffness is silent: the period is that of the others.
+        let heard: Vec<usize> =
+            (0..mass.steps.len()).filter(|&k| mass.stiffness[k].sign() != Some(Sign::Zero)).collect();
+        let own = Mass {
+            steps: heard.iter().map(|&k| mass.steps[k].clone()).collect(),
+            stiffness: heard.iter().map(|&k| mass.stiffness[k].clone()).collect(),
+        };
+        let (trace, period) = own.trace()?;
+        holds(row.trace.holds(&trace), || format!("the trace is {}", trace.mid_f64()))?;
+        let sign = own.excess()?;
+        let edge = matches!(*row.kind, Kind::Parabolic | Kind::Coexistence);
+        let right = match sign {
+            Some(Sign::Positive) => *row.kind == Kind::Hyperbolic,
+            Some(Sign::Negative) => *row.kind == Kind::Elliptic,
+            _ => edge,
+        };
+        holds(right, || format!("is not {}", row.kind.name()))?;
+        if *row.kind == Kind::Hyperbolic {
+            row.growth(&trace, &period, &outer)?;
+        } else {
+            let none = row.tenfold_steps.is_none() && (row.growth_rate.lo, row.growth_rate.hi) == (0.0, 0.0);
+            holds(none, || "grows though it is not hyperbolic".into())?;
+        }
+        self.friction(row, &mass)?;
+        let at = |step: f64| mass.scaled(&(exact(step) / &outer));
+        let Some(first) = row.first_lower else { return holds(false, || "first_lower is missing".into()) };
+        let inside = at(first.lo).in_first_region()?;
+        holds(inside != Some(false), || format!("the first region ends before {}", first.lo))?;
+        holds(at(first.hi).in_first_region()? != Some(true), || {
+            format!("the first region reaches beyond {}", first.hi)
+        })?;
+        let intervals = [
+            (row.first_lower, row.first_upper, row.first_tenfold_steps),
+            (row.inside_lower, row.inside_upper, row.inside_tenfold_steps),
+            (row.below_lower, row.below_upper, row.below_tenfold_steps),
+            (row.above_lower, row.above_upper, row.above_tenfold_steps),
+        ];
+        for (lower, upper, worst) in intervals {
+            // An interval without an upper end is one point or has no end: the pivots tell where the first one begins.
+            let Some((lower, upper)) = lower.zip(upper) else { continue };
+            crosses(&at, lower, "lower")?;
+            crosses(&at, upper, "upper")?;
+            if let Some(worst) = worst {
+                fastest_growth(&at, (lower.hi, upper.lo), worst)?;
+            }
+        }
+        let order = |a: Option<Ends>, b: &Rational| a.is_none_or(|a| exact(a.lo) <= *b);
+        holds(order(row.below_upper, &outer) && row.above_lower.is_none_or(|a| exact(a.hi) >= outer), || {
+            "below and above lie on the wrong sides".into()
+        })
+    }
+
+    /// Damped just above the friction that masks, not just below it.
+    fn friction(&self, row: &Row, own: &Mass) -> Checked {
+        let per_fs = |per_ps: f64, by: Rational| exact(per_ps) * by / Rational::from_integer(1000.into());
+        let beside = |n: i64| Rational::new((1_000_000 + n).into(), 1_000_000.into());
+        if let Some(masked) = row.masked_above {
+            let grows = *row.kind == Kind::Hyperbolic && masked.lo > 0.0;
+            let right = grows
+                && own.is_damped(&per_fs(masked.hi, beside(1)))? != Some(false)
+                && own.is_damped(&per_fs(masked.lo, beside(-1)))? != Some(true);
+            holds(right, || "masked_above is not the friction that masks it".into())?;
+        }
+        match (row.damped, &self.input.friction) {
+            (Some(told), Some(friction)) => {
+                let truth = own.is_damped(friction)?;
+                holds(truth.is_none_or(|truth| truth == told), || format!("damped is not {told}"))
+            }
+            (told, given) => holds(told.is_none() || given.is_some(), || "damped without a friction".into()),
+        }
+    }
+}
+
+impl Row {
+    /// acosh(|Tr|/2) by logarithms.
+    fn growth(&self, trace: &Ball, period: &Rational, outer: &Rational) -> Checked {
+        let half = trace.abs().scale2(-1);
+        let root = half.square(BITS).sub(&Ball::one(), BITS).sqrt_clipped(BITS).unwrap_or_else(Ball::zero);
+        let ln = half.add(&root, BITS).ln(BITS).unwrap_or_else(Ball::zero);
+        let rate = ln.div(&Ball::from_rational(period, BITS), BITS).unwrap_or_else(Ball::zero);
+        let per_ps = rate.mul(&Ball::from_integer(&1000.into()), BITS);
+        holds(self.growth_rate.holds(&per_ps), || format!("the growth rate is {}", per_ps.mid_f64()))?;
+        let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
+        let steps = ten.div(&rate.mul(&Ball::from_rational(outer, BITS), BITS), BITS);
+        let right = self.tenfold_steps.zip(steps).is_some_and(|(told, steps)| told.holds(&steps));
+        holds(right, || "tenfold_steps is not that of the growth rate".into())
+    }
+}

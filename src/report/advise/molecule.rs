@@ -1,0 +1,226 @@
+//! What is told of a molecule's Hessians: lines to act on, then tables.
+
+use serde_json::{Value, json};
+
+use super::lines::{self, advised, read_from};
+use super::words::{choice, down, fs, nearest, percent, time};
+use super::{column, quantity};
+use crate::advise::engine::Reading;
+use crate::advise::unit::decimal;
+use crate::advise::{Finding, Findings, Group, PUBLISHED, Scheme, Status};
+use crate::number::Rational;
+use crate::number::rational::to_f64;
+use crate::report::document::Document;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column, Table};
+use crate::system::Holds;
+
+/// The document `kickdrift/advise-system/1`, but for the input.
+pub fn document(findings: &Findings, reading: Option<&Reading>) -> Document {
+    let removed = findings.removed.as_ref().map(|own| json!({"count": own.count, "found_by": own.found_by}));
+    let document = Document::new("advise-system")
+        .input("band", &findings.band)
+        .input_json("schemes", findings.schemes.iter().map(|own| steps(&own.scheme)).collect());
+    let document = match &findings.length {
+        Some(length) => document.input("length", length),
+        None => document,
+    };
+    let document = document
+        .entry("rigid_motions", removed)
+        .entry("accuracy", findings.accuracy)
+        .entry("slow_period", findings.slow)
+        .entry("groups", groups(findings, true).to_json_rows())
+        .entry("rows", rows(findings, true).to_json_rows())
+        .entry("published", published(findings))
+        .entry("unknown", UNKNOWN.to_vec());
+    let best = &findings.schemes[0];
+    let document = match reading {
+        Some(reading) => document.entry("engine", super::engine(advised_step(best), reading)),
+        None => document,
+    };
+    document
+        .long_rows(rows(findings, false))
+        .and_rows(groups(findings, false))
+        .summary(&summary(findings, reading))
+}
+
+fn steps(scheme: &Scheme) -> Value {
+    scheme.steps().iter().map(ToString::to_string).collect()
+}
+
+/// What Hessians at one place do not tell.
+const UNKNOWN: [&str; 2] = [
+    "how far the Hessians change along a run, beyond the band: they are those of one place",
+    lines::NONLINEAR,
+];
+
+fn advised_step(finding: &Finding) -> Option<&Rational> {
+    advised(&finding.scheme, &finding.safe, &finding.largest)
+}
+
+fn summary(findings: &Findings, reading: Option<&Reading>) -> Vec<String> {
+    let mut lines: Vec<String> = findings.schemes.iter().map(|own| line(findings, own)).collect();
+    let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
+    let period = fastest.period.0;
+    let told = format!("{} (T = {} fs)", fastest.atoms, rounded(period, 4));
+    let band = percent(&findings.band);
+    lines.push(choice(&best.scheme, [&best.safe, &best.largest], &band, (&told, (period, period))));
+    if let Some(reading) = reading {
+        lines.extend(read_from(advised_step(best), reading));
+    }
+    let ratio = decimal(&(best.scheme.outer() / best.scheme.inner()));
+    if let Some(edge) = best.band_edge {
+        lines.push(format!(
+            "  proven     every outer step below {} fs at the ratio {ratio} is stable for these Hessians within {:.0e} of their norms, fast periods within \
+             {band} each for itself and slow ones together, as long as the molecule is at a minimum",
+            down(edge),
+            findings.accuracy
+        ));
+    }
+    lines.push(lines::published(&told, |n| rounded(period / n, 4)));
+    lines.push(format!("  unknown    {}", UNKNOWN[0]));
+    if let Some(removed) = &findings.removed {
+        lines.push(format!("  rigid      {} motions projected out, by {}", removed.count, removed.found_by));
+    }
+    lines
+}
+
+fn rounded(x: f64, digits: usize) -> String {
+    nearest((x, x), digits)
+}
+
+fn interval(own: &Finding) -> Option<String> {
+    let (lo, hi) = own.first?;
+    let lower = nearest((lo, hi), 5);
+    Some(
+        own.first_upper.map_or_else(
+            || format!("{lower} fs and on"),
+            |upper| format!("{lower}-{} fs", rounded(upper, 5)),
+        ),
+    )
+}
+
+fn line(findings: &Findings, own: &Finding) -> String {
+    let outer = to_f64(own.scheme.outer());
+    let third = findings.groups[0].period.0 / 3.0;
+    let worst = own.worst.map_or_else(String::new, |worst| {
+        format!(
+            " (worst: tenfold in {} outer steps = {} ps)",
+            rounded(worst.steps, 3),
+            rounded(worst.time / 1000.0, 3)
+        )
+    });
+    let next = || {
+        let margin = own.first.map_or_else(String::new, |(lo, hi)| {
+            format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
+        });
+        interval(own)
+            .map_or_else(String::new, |next| format!("; next unstable interval {next}{worst}{margin}"))
+    };
+    let what = match own.status {
+        Status::Safe => format!("safe{}", next()),
+        Status::Caution => format!("stable{}; caution: not below T/3 = {} fs", next(), rounded(third, 3)),
+        Status::Near => {
+            format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
+        }
+        Status::Island => {
+            format!("stable, but above the unstable {}{worst}: do not use", interval(own).unwrap_or_default())
+        }
+        Status::NotTold => {
+            format!(
+                "not told: within {:.0e} of their norms the Hessians are stable and unstable{}: do not use",
+                findings.accuracy,
+                grows(own)
+            )
+        }
+        Status::Unstable => format!("unstable{}: do not use", grows(own)),
+    };
+    let within = match (own.within_run, &findings.length) {
+        (Some(true), Some(length)) => format!("; within the run of {}", time(length)),
+        (Some(false), Some(length)) => format!("; not within the run of {}", time(length)),
+        _ => String::new(),
+    };
+    format!("{:7} {what}{within}", fs(own.scheme.outer()))
+}
+
+/// ": tenfold in ...".
+fn grows(own: &Finding) -> String {
+    let Some(steps) = own.tenfold_steps() else { return String::new() };
+    let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
+    format!(
+        ": tenfold in {} outer steps = {} ps, {}/ps{atoms} (a friction of some {}/ps would mask it, to first order)",
+        rounded(steps, 3),
+        rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
+        rounded(1000.0 * own.rate, 3),
+        rounded(2000.0 * own.rate, 2)
+    )
+}
+
+fn published(findings: &Findings) -> Value {
+    let fastest = &findings.groups[0];
+    let one = |of: &crate::advise::Caution| {
+        json!({"mode": fastest.atoms, "parts": of.parts, "step": if of.inner { "inner" } else { "outer" },
+            "limit": fastest.period.0 / of.parts as f64, "statement": of.statement, "source": of.source})
+    };
+    PUBLISHED.iter().map(one).collect()
+}
+
+/// A rounded double for programs, five digits for people.
+fn number(x: Option<f64>, all: bool) -> Cell {
+    match x {
+        Some(x) if !all => Cell::Exact(rounded(x, 5)),
+        other => other.into(),
+    }
+}
+
+fn groups(findings: &Findings, all: bool) -> Table {
+    let record = Record::new()
+        .field(Column::new("count"), |own: &Group| (own.count as u64).into())
+        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), move |own| {
+            number(Some(own.period.0), all)
+        })
+        .field(Column::new("longest").in_words("longest").in_unit("fs"), move |own| {
+            number(Some(own.period.1), all)
+        })
+        .field(Column::new("half").in_words("T/2"), move |own| number(Some(own.period.0 / 2.0), all))
+        .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into());
+    record.table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
+}
+
+fn rows(findings: &Findings, all: bool) -> Table {
+    let exact = |x: &Option<Rational>| x.as_ref().map_or(Cell::Missing, Cell::exact);
+    let holds = |holds: Holds| Cell::from(holds.name());
+    let mut record = Record::new()
+        .field(Column::new("outer").in_words("outer step").in_unit("fs"), |own: &Finding| {
+            Cell::exact(own.scheme.outer())
+        })
+        .field(Column::new("status").left(), |own| own.status.name().into());
+    if all {
+        record = record.field(Column::new("holds").left(), move |own| holds(own.holds));
+    }
+    let record = record
+        .field(Column::new("margin"), move |own| number(own.margin, all))
+        .field(column("first", "first unstable from", all).in_unit("fs"), move |own| quantity(own.first, all))
+        .field(Column::new("first_upper").in_words("to").in_unit("fs"), move |own| {
+            number(own.first_upper, all)
+        })
+        .field(Column::new("first_tenfold_steps").in_words("worst: tenfold in steps"), move |own| {
+            number(own.worst.map(|worst| worst.steps), all)
+        })
+        .field(Column::new("growth_rate").in_words("growth").in_unit("1/ps"), move |own| {
+            number(Some(1000.0 * own.rate), all)
+        })
+        .field(Column::new("tenfold_steps").in_words("tenfold in steps"), move |own| {
+            number(own.tenfold_steps(), all)
+        })
+        .field(Column::new("atoms").in_words("growing").left(), |own| {
+            own.atoms.as_deref().map_or(Cell::Missing, Cell::from)
+        })
+        .field(Column::new("band_edge").in_words("stable below").in_unit("fs"), move |own| {
+            number(own.band_edge, all)
+        })
+        .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
+        .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
+        .field(Column::new("within_run"), |own| own.within_run.into());
+    record.table("rows", "The molecule at each scheme of steps", &findings.schemes)
+}
