@@ -2,9 +2,10 @@
 
 #![cfg(feature = "advise")]
 
-use kickdrift::advise::{Advice, Mode, Question, Scheme, Status, Unstable};
+use kickdrift::advise::{Advice, Levels, Mode, Question, Scheme, Status, Unstable};
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Rational, parse::parse_rational};
+use kickdrift::system::Limits;
 use kickdrift::verdict::Kind;
 
 fn scheme(steps: &str) -> Scheme {
@@ -110,31 +111,33 @@ fn a_period_alone_is_limited_by_half_of_it_less_the_coarseness_of_the_inner_step
         let lower = advice.schemes[0].rows[0].first.as_ref().unwrap().lower;
         six(lower)
     };
-    assert_eq!([edge("2,4"), edge("1/2,4"), edge("1/1000,4")], ["8.75561", "9.66259", "9.72500"]);
+    assert_eq!([edge("2,4"), edge("1/2,4"), edge("1/10,4")], ["8.75558", "9.66263", "9.72250"]);
 }
 
 #[test]
 fn on_three_clocks_every_unstable_interval_is_listed() {
-    let advice = ask(&["10fs", "40fs", "100fs"], &["1/2,2,4"]);
+    let base = [ratio(7, 10), ratio(1, 1), ratio(3, 1)];
+    let periods = ["10fs", "40fs", "100fs"];
+    let advice = ask(&periods, &["0.7,1,3"]);
     let row = &advice.schemes[0].rows[0];
     assert!(row.intervals.len() > 1, "{:?}", row.intervals);
     assert_eq!(row.first.as_ref(), row.intervals.first());
-    let labels: Vec<u64> = row.intervals.iter().map(|own| own.label).collect();
-    assert!(labels.windows(2).all(|pair| pair[0] < pair[1]));
     // Between two neighbours it is stable, within each it is not: by the ladder, at the same ratios.
+    let stiffness = periods.map(|text| Mode::from_period(text).unwrap().stiffness).to_vec();
     let kind = |outer: f64| {
-        let outer = from_f64_exact(outer).unwrap();
-        let steps = [8, 2, 1].map(|n| &outer / Rational::from_integer(n.into())).to_vec();
-        let modes = ["10fs", "40fs", "100fs"].map(|text| Mode::from_period(text).unwrap()).to_vec();
-        let question = Question::new(modes, vec![Scheme::new(steps).unwrap()], ratio(1, 20)).unwrap();
-        question.answer().unwrap().schemes[0].rows[0].found.kind
+        let factor = from_f64_exact(outer).unwrap() / &base[2];
+        let scheme = Scheme::new(base.iter().map(|step| step * &factor).collect()).unwrap();
+        let levels = Levels { scheme: &scheme, stiffness: stiffness.clone() };
+        levels.decide(&Limits::default()).unwrap().kind
     };
     for (n, own) in row.intervals.iter().enumerate() {
         let upper = own.upper.unwrap();
         assert!(own.lower.1 - own.lower.0 < 1e-12 && upper.1 - upper.0 < 1e-12);
         assert_eq!(kind((own.lower.1 + upper.0) / 2.0), Kind::Hyperbolic, "{own:?}");
-        let next = row.intervals.get(n + 1).map_or(upper.1 * 1.001, |next| next.lower.0);
-        assert_eq!(kind((upper.1 + next) / 2.0), Kind::Elliptic, "{own:?}");
+        if let Some(next) = row.intervals.get(n + 1) {
+            assert!(own.label < next.label && upper.1 < next.lower.0);
+            assert_eq!(kind((upper.1 + next.lower.0) / 2.0), Kind::Elliptic, "{own:?}");
+        }
     }
 }
 
@@ -203,7 +206,7 @@ mod molecules {
 
     #[test]
     fn four_waters_are_advised_below_their_own_first_interval() {
-        let findings = findings("water4.json", &["1/2,4", "1/2,4.5", "1/2,3"]);
+        let findings = findings("water4.json", &["1/2,4", "1/2,4.5", "1/2,2.5"]);
         let [four, beyond, three] = &findings.schemes[..] else { unreachable!() };
         assert_eq!(
             [four.status, beyond.status, three.status],

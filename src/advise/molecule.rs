@@ -86,8 +86,8 @@ const MOST_GROUPS: usize = 12;
 /// Frequencies below this part of the highest one are no modes of the fast stiffness: rigid to it, or slow.
 const NO_MODE: f64 = 1e-2;
 
-/// The relative width to which the end of an interval is told.
-const WIDTH: f64 = 1e-4;
+/// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
+const LEAST: f64 = 1e-9;
 
 /// Growth is looked for at so many places in an interval, but one.
 const PLACES: u32 = 12;
@@ -157,7 +157,7 @@ impl Molecule {
 
     /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the first ones not nine.
     fn atoms(&self, shape: &[f64]) -> String {
-        let each = if shape.len() % 3 == 0 && self.names.len() != shape.len() { 3 } else { 1 };
+        let each = if shape.len().is_multiple_of(3) && self.names.len() != shape.len() { 3 } else { 1 };
         let share = |own: &[f64]| own.iter().map(|x| x * x).sum::<f64>();
         let mut shares: Vec<(usize, f64)> = shape.chunks(each).map(share).enumerate().collect();
         let whole: f64 = shares.iter().map(|(_, own)| own).sum();
@@ -238,7 +238,7 @@ impl Molecule {
     /// Where the unstable interval that begins at the step `lo`, which is proven unstable, ends at the earliest, and the fastest growth at
     /// some places inside.
     fn first_interval(&self, inner_steps: u64, lo: f64) -> Result<(f64, Option<Worst>)> {
-        let hi = self.kernel.unstable_up_to(inner_steps, lo, WIDTH, self.accuracy)?;
+        let hi = self.kernel.unstable_up_to(inner_steps, lo, LEAST)?;
         let unit = to_f64(&self.unit);
         let rate = |k: u32| {
             let outer = Outer::new(lo + (hi - lo) * f64::from(k) / f64::from(PLACES), inner_steps).ok()?;

@@ -82,7 +82,7 @@ impl Args {
     }
 
     fn molecule(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<()> {
-        let scene = system::read(path)?;
+        let scene = system::read(path, common)?;
         let (molecule, own) = scene.molecule()?;
         let own = reading.map_or(own, |reading| reading.scheme.clone());
         let schemes: Vec<Scheme> = [own].into_iter().chain(self.given(reading)?).collect();

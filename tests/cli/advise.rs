@@ -80,6 +80,8 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise --engine nowhere.mdp --period 10fs", "nowhere.mdp"),
     ];
     for (line, expected) in cases {
+        let line = line.replace("data/scenes", concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let line = line.as_str();
         let ended = run(&words(line, &[]));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line}");
         assert!(

@@ -57,7 +57,20 @@ fn every_change_is_found_and_its_row_named() {
     let desk = Desk::new();
     let moved = |value: &Value, by: f64| json!(value.as_f64().unwrap() * (1.0 + by));
     type Change = fn(&mut Value, &dyn Fn(&Value, f64) -> Value);
-    let changes: [(&str, &str, Change); 50] = [
+    let changes: [(&str, &str, Change); 57] = [
+        (DOCUMENTS[22], "row 1", |d, by| d["rows"][0]["trace"] = by_both(&d["rows"][0]["trace"], by, 1e-9)),
+        (DOCUMENTS[22], "row 2", |d, by| {
+            d["rows"][1]["masked_above"] = by_both(&d["rows"][1]["masked_above"], by, 1e-2);
+        }),
+        (DOCUMENTS[22], "row 2", |d, by| {
+            d["rows"][1]["inside_upper"] = by_both(&d["rows"][1]["inside_upper"], by, 1e-6);
+        }),
+        (DOCUMENTS[22], "row 0", |d, _| d["schemes"][0]["largest"] = json!("9/2")),
+        (DOCUMENTS[22], "row 0", |d, _| d["schemes"][2]["status"] = json!("caution")),
+        (DOCUMENTS[22], "row 0", |d, by| {
+            d["intervals"][0]["lower"] = by_both(&d["intervals"][0]["lower"], by, 1e-6)
+        }),
+        (DOCUMENTS[22], "row 0", |d, by| d["modes"][0]["third"] = by_both(&d["modes"][0]["third"], by, 1e-9)),
         (DOCUMENTS[0], "row 4", |d, _| d["tongues"][3]["m"] = json!(5)),
         (DOCUMENTS[0], "row 4", |d, by| {
             let lo = by(&d["tongues"][3]["lower"]["lo"], 1e-15);

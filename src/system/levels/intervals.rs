@@ -80,21 +80,23 @@ impl Kernel {
     }
 
     /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to have a real multiplier off the
-    /// circle, for all stiffnesses within `epsilon`: told to `width`, relative; at most 1.5 `at`.
+    /// circle: up to where the step by which a verdict is carried on falls to `least`, relative, or 1.5 `at`.
     ///
     /// # Errors
     /// As [`Outer::new`].
-    pub fn unstable_up_to(&self, inner_steps: u64, at: f64, width: f64, epsilon: f64) -> Result<f64> {
-        let (mut at, last, mut carried) = (at, 1.5 * at, width);
+    pub fn unstable_up_to(&self, inner_steps: u64, at: f64, least: f64) -> Result<f64> {
+        let (mut at, last, mut epsilon) = (at, 1.5 * at, least);
         while at < last {
-            let middle = at / (1.0 - 0.999_999 * carried).sqrt();
-            if self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, 1.001 * (epsilon + carried)) {
-                at = middle * (1.0 + 0.999_999 * carried).sqrt();
-                carried = (4.0 * carried).min(WIDEST);
-            } else if carried <= width {
+            // A little inwards, for the roundings of the roots.
+            let inner = 0.999_999 * epsilon;
+            let middle = at / (1.0 - inner).sqrt();
+            if self.has_real_unstable_mode(&Outer::new(middle, inner_steps)?, epsilon) {
+                at = middle * (1.0 + inner).sqrt();
+                epsilon = (4.0 * epsilon).min(WIDEST);
+            } else if epsilon <= least {
                 break;
             } else {
-                carried = (carried / 4.0).max(width);
+                epsilon = (epsilon / 4.0).max(least);
             }
         }
         Ok(at.min(last))
