@@ -216,7 +216,7 @@ mod molecules {
         // The band costs what it must: 5 % of the edge.
         assert!(edge < lo && edge > 0.94 * lo && hi - lo < 1e-3, "{edge} {lo}");
         assert_eq!((&four.largest, &four.safe), (&Some(ratio(4, 1)), &Some(ratio(5, 2))));
-        assert!(four.margin.unwrap() > 0.05 && beyond.rate > 0.0 && beyond.atoms.is_some());
+        assert!(four.margin.unwrap() > 1e-3 && beyond.rate > 0.0 && beyond.atoms.is_some());
         assert_eq!(findings.removed.as_ref().map(|own| own.count), Some(6));
     }
 }
