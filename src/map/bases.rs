@@ -131,7 +131,7 @@ mod tests {
             let q = q >> (n % 50);
             prop_assume!(q > 0);
             // Next to multiples, where rounding could matter.
-            let p = (n * q).saturating_sub(off) % (1 << 50);
+            let p = ((u128::from(n) * u128::from(q)).saturating_sub(off.into()) % (1 << 50)) as u64;
             prop_assert_eq!(quotient(p, q), p / q);
             prop_assert_eq!(quotient(q, p.max(1)), q / p.max(1));
         }

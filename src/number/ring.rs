@@ -6,9 +6,10 @@
 use std::fmt::Debug;
 use std::ops::{AddAssign, MulAssign, Neg, SubAssign};
 
-use num_traits::{One, Signed, Zero};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use super::{Ball, Rational, Sign, rational};
+use super::{Ball, Rational, Sign, Twofold, rational};
 
 /// A commutative ring that contains the rationals (for `f64`: their nearest doubles).
 ///
@@ -52,6 +53,12 @@ pub trait Real: ExactSign {
     /// A ball that contains the number, with about `bits` correct bits (relative to its size,
     /// the exact zero being the ball 0).
     fn enclosure(&self, bits: u32) -> Ball;
+
+    /// hi + lo within 2^-99 of the number, relatively, |lo| ≤ ulp(hi)/2, where a few operations on doubles tell; `None`
+    /// says nothing about the number.
+    fn two_doubles(&self) -> Option<(f64, f64)> {
+        None
+    }
 }
 
 impl Ring for f64 {
@@ -103,5 +110,11 @@ impl ExactSign for Rational {
 impl Real for Rational {
     fn enclosure(&self, bits: u32) -> Ball {
         Ball::from_rational(self, bits + 2)
+    }
+
+    fn two_doubles(&self) -> Option<(f64, f64)> {
+        let magnitude = |n: &BigInt| n.magnitude().to_u64();
+        let Twofold { hi, lo } = Twofold::quotient(magnitude(self.numer())?, magnitude(self.denom())?)?;
+        Some(if self.is_negative() { (-hi, -lo) } else { (hi, lo) })
     }
 }

@@ -20,6 +20,9 @@ pub(crate) struct Twofold {
 }
 
 impl Twofold {
+    /// π to within 2^-108 relative.
+    pub const PI: Twofold = Twofold { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
+
     /// a + b, exactly.
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Twofold {
@@ -156,6 +159,7 @@ impl Twofold {
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
+    use crate::number::{Laurent, Real};
     use proptest::prelude::*;
 
     fn ball(x: Twofold) -> Ball {
@@ -183,6 +187,23 @@ mod tests {
             prop_assert!(within(x.times(y), &in_x.mul(&in_y, 300), 101));
             prop_assert!(within(x.plus(y), &in_x.add(&in_y, 300), 104));
         }
+
+        #[test]
+        fn numbers_in_two_doubles_are_as_near_as_they_say(a in -1i64 << 53..1 << 53, b in 1i64..1 << 53, k in -3i32..4) {
+            let x = Laurent::monomial(ratio(a, b), k);
+            let (reduced, small) = (ratio(a, b), k.abs() <= 2 && a != 0);
+            prop_assert!(reduced.denom().bits() <= 53);
+            prop_assert_eq!(x.two_doubles().is_some(), small);
+            if let Some((hi, lo)) = x.two_doubles() {
+                let two = Twofold { hi, lo };
+                prop_assert!(hi + lo == hi && within(two, &x.enclosure(300), 99));
+            }
+        }
+    }
+
+    #[test]
+    fn pi_is_as_near_as_it_says() {
+        assert!(within(Twofold::PI, &Ball::pi(300), 108));
     }
 
     #[test]
