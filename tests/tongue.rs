@@ -437,6 +437,13 @@ fn found(p: u64, q: u64) -> Vec<Closing> {
     found.closings
 }
 
+/// Far beyond the Verlet limit, where the two entries' zeros are nearly parallel.
+#[test]
+fn closings_of_high_tongues_end() {
+    let high = closings(Ratio::new(11, 7).unwrap(), &Search { m: Some(16), ..Search::default() }).unwrap();
+    assert!(high.complete && high.closings.len() == 1 && !high.closings[0].below_verlet);
+}
+
 #[test]
 fn known_closings_come_out() {
     let closing = &found(5, 3)[0];

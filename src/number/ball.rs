@@ -257,7 +257,7 @@ impl Ball {
     pub fn union(&self, other: &Ball, bits: u32) -> Ball {
         // A point of either is at most |difference of the midpoints| / 2 + its radius from their middle.
         let (a, b) = (self.midpoint(), other.midpoint());
-        let half_gap = a.sub(&b, 64).magnitude().scale2(-1);
+        let half_gap = a.sub(&b, bits).magnitude().scale2(-1);
         let (r, s) = (self.radius(), other.radius());
         let larger = if self.rad_at_least(other) { r } else { s };
         a.add(&b, bits).scale2(-1).widened(half_gap.plus(larger), bits)

@@ -45,6 +45,7 @@ pub use cyclotomic::{Cyclotomic, CyclotomicField};
 pub(crate) use enclosed::Enclosed;
 pub use laurent::Laurent;
 pub use polynomial::Polynomial;
+pub(crate) use prime_field::Lift;
 pub use prime_field::{PrimeField, prime_fields};
 pub use quantity::Quantity;
 pub use ratio::Ratio;

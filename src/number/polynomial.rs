@@ -14,10 +14,15 @@
 
 mod display;
 mod divide;
+mod integer;
 mod sturm;
 
 pub use display::Text;
 pub use divide::{ExactDivision, resultant};
+#[cfg(feature = "system")]
+pub(crate) use integer::in_unit_interval;
+pub(crate) use integer::{residues, roots_within, squarefree};
+pub(crate) use sturm::RootInterval;
 pub use sturm::Sturm;
 
 use num_traits::{One, Zero};

@@ -5,6 +5,7 @@
 //! together from its residues modulo many primes.
 
 use num_bigint::{BigInt, Sign};
+use num_traits::{One, Zero};
 
 use super::Rational;
 
@@ -130,26 +131,84 @@ impl PrimeField {
         self.power(x, self.p - 2)
     }
 
+    /// The resultant of two polynomials, lowest coefficient first, whose last coefficients are not 0.
+    pub fn resultant(&self, mut a: Vec<u64>, mut b: Vec<u64>) -> u64 {
+        let mut result = self.of(1);
+        while b.len() > 1 {
+            let (m, n, leading) = (a.len() - 1, b.len() - 1, b[b.len() - 1]);
+            self.reduce(&mut a, &b);
+            let Some(d) = a.len().checked_sub(1) else { return 0 };
+            // res(a, b) = (−1)^(mn) l^(m − d) res(b, a mod b).
+            result = self.mul(result, self.power(leading, (m - d) as u64));
+            result = if m * n % 2 == 1 { self.sub(0, result) } else { result };
+            std::mem::swap(&mut a, &mut b);
+        }
+        self.mul(result, self.power(b[0], a.len() as u64 - 1))
+    }
+
+    /// a ← a mod b.
+    fn reduce(&self, a: &mut Vec<u64>, b: &[u64]) {
+        let inverse = self.invert(b[b.len() - 1]);
+        while a.len() >= b.len() {
+            let factor = self.mul(a.pop().expect("not empty"), inverse);
+            let k = a.len() + 1 - b.len();
+            for (own, &c) in a[k..].iter_mut().zip(b) {
+                *own = self.sub(*own, self.mul(factor, c));
+            }
+        }
+        while a.last() == Some(&0) {
+            a.pop();
+        }
+    }
+
     /// The monic greatest common divisor of two polynomials, lowest coefficient first, b possibly empty.
     pub fn gcd(&self, mut a: Vec<u64>, mut b: Vec<u64>) -> Vec<u64> {
         while b.last() == Some(&0) {
             b.pop();
         }
-        while let Some(&leading) = b.last() {
-            let inverse = self.invert(leading);
-            while a.len() >= b.len() {
-                let factor = self.mul(a.pop().expect("not empty"), inverse);
-                let k = a.len() + 1 - b.len();
-                for (own, &c) in a[k..].iter_mut().zip(&b) {
-                    *own = self.sub(*own, self.mul(factor, c));
-                }
-            }
-            while a.last() == Some(&0) {
-                a.pop();
-            }
+        while !b.is_empty() {
+            self.reduce(&mut a, &b);
             std::mem::swap(&mut a, &mut b);
         }
         let inverse = a.last().map_or(0, |&leading| self.invert(leading));
         a.iter().map(|&c| self.mul(c, inverse)).collect()
+    }
+}
+
+/// Integers known modulo a growing product of primes.
+pub(crate) struct Lift {
+    values: Vec<BigInt>,
+    product: BigInt,
+}
+
+impl Lift {
+    pub fn new(n: usize) -> Self {
+        Lift { values: vec![BigInt::zero(); n], product: BigInt::one() }
+    }
+
+    /// The product of the primes so far.
+    pub fn product(&self) -> &BigInt {
+        &self.product
+    }
+
+    /// Joins the residues modulo one more prime; whether any integer nearest 0 changed.
+    pub fn join(&mut self, field: &PrimeField, residues: &[u64]) -> bool {
+        let inverse = field.invert(field.of_big(&self.product));
+        let next = &self.product * field.prime();
+        let mut changed = false;
+        for (value, &residue) in self.values.iter_mut().zip(residues) {
+            let step = field.value(field.mul(field.sub(residue, field.of_big(value)), inverse));
+            // The representative nearest 0 of value + product · step, |value| ≤ product/2.
+            let step =
+                if step > field.prime() / 2 { BigInt::from(step) - field.prime() } else { step.into() };
+            changed |= !step.is_zero();
+            *value += &self.product * step;
+        }
+        self.product = next;
+        changed
+    }
+
+    pub fn into_values(self) -> Vec<BigInt> {
+        self.values
     }
 }

@@ -23,6 +23,7 @@ use super::modular;
 use super::roots::{self, RootCount};
 use super::signs::{self, Inertias};
 use crate::error::Result;
+use crate::number::polynomial::squarefree;
 use crate::number::{PrimeField, Rational};
 use crate::verdict::Kind;
 
@@ -130,7 +131,7 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     let polynomial = roots::characteristic(&product);
     let (at_zero, rest) = roots::divided_out(polynomial, &BigInt::zero());
     let (at_minus_one, rest) = roots::divided_out(rest, &-d);
-    let simple = roots::squarefree(&rest);
+    let simple = squarefree(&rest);
     let RootCount { inside, above, below, complex } = roots::count(&simple, d);
     let mu = MuCount { inside, at_zero, at_minus_one, above, below, complex };
     let semisimple = || {

@@ -1,8 +1,7 @@
-//! Linear algebra over prime fields, from which exact integers are put together.
+//! Linear algebra over prime fields.
 
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
-use num_traits::{One, Zero};
 
 use crate::number::PrimeField;
 
@@ -72,44 +71,6 @@ fn reduce_to_hessenberg(field: &PrimeField, m: &mut DMatrix<u64>) {
                 m[(j, k)] = field.add(m[(j, k)], field.mul(factor, m[(j, i)]));
             }
         }
-    }
-}
-
-/// Integers known modulo a growing product of primes.
-pub(super) struct Lift {
-    values: Vec<BigInt>,
-    product: BigInt,
-}
-
-impl Lift {
-    pub fn new(n: usize) -> Self {
-        Lift { values: vec![BigInt::zero(); n], product: BigInt::one() }
-    }
-
-    /// The product of the primes so far.
-    pub fn product(&self) -> &BigInt {
-        &self.product
-    }
-
-    /// Joins the residues modulo one more prime; whether any integer nearest 0 changed.
-    pub fn join(&mut self, field: &PrimeField, residues: &[u64]) -> bool {
-        let inverse = field.invert(field.of_big(&self.product));
-        let next = &self.product * field.prime();
-        let mut changed = false;
-        for (value, &residue) in self.values.iter_mut().zip(residues) {
-            let step = field.value(field.mul(field.sub(residue, field.of_big(value)), inverse));
-            // The representative nearest 0 of value + product · step, |value| ≤ product/2.
-            let step =
-                if step > field.prime() / 2 { BigInt::from(step) - field.prime() } else { step.into() };
-            changed |= !step.is_zero();
-            *value += &self.product * step;
-        }
-        self.product = next;
-        changed
-    }
-
-    pub fn into_values(self) -> Vec<BigInt> {
-        self.values
     }
 }
 

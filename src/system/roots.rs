@@ -1,7 +1,5 @@
-//! Integer polynomials exactly: characteristic polynomials, squarefree parts, and how many real roots lie where.
+//! Integer polynomials exactly: characteristic polynomials, and how many real roots lie where.
 //!
-//! Real roots are counted by Descartes' rule and bisection (Vincent, Collins, Akritas): additions only, where
-//! the remainders of a Sturm chain of a polynomial with coefficients of 10^5 bits would grow past 10^6.
 //! Polynomials are vectors of integers, lowest coefficient first.
 
 use nalgebra::DMatrix;
@@ -9,8 +7,9 @@ use num_bigint::BigInt;
 use num_integer::{Integer, binomial};
 use num_traits::{One, Signed, Zero};
 
-use super::modular::{self, Lift};
-use crate::number::{PrimeField, prime_fields};
+use super::modular;
+use crate::number::polynomial::in_unit_interval;
+use crate::number::{Lift, PrimeField, prime_fields};
 
 /// det(z − m), monic: from its residues modulo primes, as many as the bound on its coefficients asks for.
 pub(super) fn characteristic(m: &DMatrix<BigInt>) -> Vec<BigInt> {
@@ -63,53 +62,6 @@ pub(super) fn divided_out(mut f: Vec<BigInt>, root: &BigInt) -> (usize, Vec<BigI
     (times, f)
 }
 
-/// The monic polynomial with the roots of the monic f, each simple.
-pub(super) fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
-    let derivative: Vec<BigInt> = f.iter().enumerate().skip(1).map(|(k, c)| c * k).collect();
-    let residues = |field: &PrimeField, f: &[BigInt]| f.iter().map(|c| field.of_big(c)).collect::<Vec<_>>();
-    // A divisor modulo p has at least the degree of the true one; the latter is monic with integer coefficients
-    // (Gauss), so it is what the residues of least degree lift to.
-    let mut lift: Option<Lift> = None;
-    let mut degree = usize::MAX;
-    for field in prime_fields() {
-        let gcd = field.gcd(residues(&field, f), residues(&field, &derivative));
-        if gcd.len() == 1 {
-            return f.to_vec();
-        }
-        if gcd.len() > degree {
-            continue;
-        }
-        if gcd.len() < degree {
-            degree = gcd.len();
-            lift = None;
-        }
-        let known = lift.get_or_insert_with(|| Lift::new(degree));
-        if known.join(&field, &gcd) {
-            continue;
-        }
-        let divisor = lift.take().expect("just lifted").into_values();
-        let divides_derivative = quotient(&derivative, &divisor).is_some();
-        if let Some(squarefree) = quotient(f, &divisor).filter(|_| divides_derivative) {
-            return squarefree;
-        }
-    }
-    unreachable!("there are primes enough")
-}
-
-/// f / divisor for a monic divisor; `None` where it leaves a remainder.
-fn quotient(f: &[BigInt], divisor: &[BigInt]) -> Option<Vec<BigInt>> {
-    let mut rest = f.to_vec();
-    let mut quotient = vec![BigInt::zero(); (f.len() + 1).saturating_sub(divisor.len())];
-    for k in (0..quotient.len()).rev() {
-        let factor = rest[k + divisor.len() - 1].clone();
-        for (own, c) in rest[k..].iter_mut().zip(divisor) {
-            *own -= &factor * c;
-        }
-        quotient[k] = factor;
-    }
-    rest.iter().all(Zero::is_zero).then_some(quotient)
-}
-
 /// How many distinct roots of f lie where, f squarefree with neither 0 nor −d among its roots, d > 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct RootCount {
@@ -135,52 +87,12 @@ pub(super) fn count(f: &[BigInt], d: &BigInt) -> RootCount {
     let mirrored: Vec<_> =
         scaled.iter().enumerate().map(|(k, c)| if k.is_odd() { -c } else { c.clone() }).collect();
     let reversed = |f: &[BigInt]| f.iter().rev().cloned().collect::<Vec<_>>();
-    let inside = in_unit_interval(scaled.clone());
-    let below = in_unit_interval(reversed(&scaled));
+    let inside = in_unit_interval(scaled.clone()).len();
+    let below = in_unit_interval(reversed(&scaled)).len();
     let at_one = usize::from(mirrored.iter().sum::<BigInt>().is_zero());
-    let above = in_unit_interval(mirrored.clone()) + in_unit_interval(reversed(&mirrored)) + at_one;
+    let above =
+        in_unit_interval(mirrored.clone()).len() + in_unit_interval(reversed(&mirrored)).len() + at_one;
     RootCount { inside, above, below, complex: f.len() - 1 - inside - above - below }
-}
-
-/// The number of real roots of a squarefree f in the open interval (0, 1).
-fn in_unit_interval(f: Vec<BigInt>) -> usize {
-    let (mut count, mut open) = (0, vec![f]);
-    while let Some(f) = open.pop() {
-        match variations_in_unit_interval(&f) {
-            0 => {}
-            1 => count += 1,
-            _ => {
-                let n = f.len() - 1;
-                // 2^n f(z/2), and the same about 1/2.
-                let left: Vec<_> = f.iter().enumerate().map(|(k, c)| c << (n - k)).collect();
-                let mut right = left.clone();
-                shift_by_one(&mut right);
-                count += usize::from(right[0].is_zero());
-                open.push(left);
-                open.push(right);
-            }
-        }
-    }
-    count
-}
-
-/// Descartes' bound on the roots in (0, 1): sign changes of (1 + z)^n f(1/(1 + z)).
-fn variations_in_unit_interval(f: &[BigInt]) -> usize {
-    let mut g: Vec<_> = f.iter().rev().cloned().collect();
-    shift_by_one(&mut g);
-    let signs: Vec<bool> = g.iter().filter(|c| !c.is_zero()).map(Signed::is_negative).collect();
-    signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
-}
-
-/// f(z + 1).
-fn shift_by_one(f: &mut [BigInt]) {
-    let n = f.len();
-    for k in 0..n.saturating_sub(1) {
-        for j in (k..n - 1).rev() {
-            let next = f[j + 1].clone();
-            f[j] += next;
-        }
-    }
 }
 
 /// The rank over ℚ of an integer matrix given by its residues, whose entries do not exceed `bound`.
@@ -205,6 +117,7 @@ pub(super) fn rank(rows: usize, bound: &BigInt, residues: impl Fn(&PrimeField) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::polynomial::squarefree;
     use crate::number::{Polynomial, Rational};
     use proptest::prelude::*;
 

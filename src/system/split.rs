@@ -15,6 +15,7 @@ use super::compose::inverse_mass;
 use super::model::System;
 use super::roots;
 use super::sparse::null_space;
+use crate::number::polynomial::squarefree;
 use crate::number::rational::to_f64;
 use crate::number::{Polynomial, Rational, U};
 
@@ -157,7 +158,7 @@ fn restrict<'a>(
 fn rational_eigenvalues(m: &DMatrix<Rational>) -> Vec<Rational> {
     let e = m.iter().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
     let integer = m.map(|x| (x * Rational::from_integer(e.clone())).to_integer());
-    let polynomial = roots::squarefree(&roots::characteristic(&integer));
+    let polynomial = squarefree(&roots::characteristic(&integer));
     let polynomial = Polynomial::new(polynomial.into_iter().map(Rational::from_integer).collect());
     let sturm = crate::number::polynomial::Sturm::new(&polynomial);
     let half = Rational::new(1.into(), 2.into());

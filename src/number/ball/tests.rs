@@ -201,6 +201,13 @@ fn exact_results_stay_exact() {
 }
 
 #[test]
+fn the_union_of_close_balls_is_as_narrow_as_their_distance() {
+    let (a, gap) = (Ball::from_rational(&ratio(1, 3), 300), Ball::one().scale2(-200));
+    let union = a.union(&a.add(&gap, 300), 300);
+    assert!(union.relative_accuracy_bits() > 195);
+}
+
+#[test]
 fn domains_end_where_they_should() {
     let (one, tiny) = (Ball::one(), Ball::one().scale2(-5000));
     assert!(one.div(&Ball::zero(), 64).is_none());

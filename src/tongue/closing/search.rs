@@ -5,7 +5,7 @@
 //! **Uniqueness**: Krawczyk's operator on F(s, ρ) = (X, Y), X and Y the two entries, maps a box strictly into
 //! itself; so the box holds exactly one common zero, and a simple one (Krawczyk 1969, Moore 1977). **Completeness**: for
 //! ρ > 0 all zeros s of an entry are real, so the common zeros in a range of ρ are exactly the real zeros there of the
-//! resultant of X and Y in s, a polynomial in ρ; Sturm's theorem counts them. That is done for p + q up to
+//! resultant of X and Y in s, a polynomial in ρ; Descartes' rule isolates them. That is done for p + q up to
 //! [`COMPLETE_UP_TO`]; beyond it the search finds every crossing that its samples of ρ bracket, and says so.
 //!
 //! ```
@@ -24,12 +24,11 @@ use super::certify::{Closing, Order, certify, orders};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
 use crate::parallel::{go_on, try_map};
-use crate::tongue::edge::Enclosure;
-use crate::tongue::gap::count_closings;
+use crate::tongue::gap::crossings;
 use crate::tongue::string::Entry;
 
-/// Up to this p + q the search is checked against the resultant.
-pub const COMPLETE_UP_TO: u64 = 13;
+/// Up to this p + q the resultant brackets all closings.
+pub const COMPLETE_UP_TO: u64 = 24;
 
 /// What to search.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +37,7 @@ pub struct Search {
     pub m: Option<u64>,
     /// The closed range of ρ, positive.
     pub rho: (Rational, Rational),
-    /// How many ρ are sampled, evenly in ln ρ.
+    /// How many ρ are sampled, evenly in ln ρ, where p + q is beyond [`COMPLETE_UP_TO`].
     pub samples: usize,
 }
 
@@ -69,11 +68,43 @@ pub struct Found {
 /// A range that is not positive or empty, fewer than 2 samples, and the errors of [`Tongues::new`](crate::tongue::Tongues::new).
 pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
     let rhos = samples(search)?;
+    let short = ratio.kicks() <= COMPLETE_UP_TO;
+    let (brackets, complete) =
+        if short { by_elimination(ratio, search)? } else { (by_samples(ratio, rhos, search.m)?, false) };
+    let certified = |(m, lo, hi): &Bracket| certify(ratio, *m, lo, hi);
+    Ok(Found { ratio, closings: try_map(&brackets, certified)?, complete })
+}
+
+/// Tongue m closes once, or an odd number of times, for ρ in a closed range.
+type Bracket = (u64, Rational, Rational);
+
+/// Of each zero of the resultants the tongues that close there: whether one and only one does tells whether that is all.
+fn by_elimination(ratio: Ratio, search: &Search) -> Result<(Vec<Bracket>, bool)> {
+    let (mut found, mut complete) = (Vec::new(), true);
+    for odd in [true, false].into_iter().filter(|&odd| search.m.is_none_or(|m| (m % 2 == 1) == odd)) {
+        let zeros = crossings(ratio, Entry::of_tongue(odd), &search.rho.0, &search.rho.1);
+        for (lo, hi) in zeros.unwrap_or_default() {
+            go_on()?;
+            let (below, above) = (orders(ratio, &lo, None)?, orders(ratio, &hi, None)?);
+            let crossed = |(a, b): &(&Order, &Order)| if lo == hi { a.closed } else { a.lower != b.lower };
+            let own = below.iter().zip(&above).filter(|(a, _)| (a.m % 2 == 1) == odd);
+            let closing: Vec<u64> = own.filter(crossed).map(|(a, _)| a.m).collect();
+            complete &= closing.len() == 1;
+            let asked = closing.into_iter().filter(|&m| search.m.is_none_or(|asked| m == asked));
+            found.extend(asked.map(|m| (m, lo.clone(), hi.clone())));
+        }
+    }
+    found.sort();
+    Ok((found, complete))
+}
+
+/// What the samples of ρ bracket.
+fn by_samples(ratio: Ratio, rhos: Vec<Rational>, m: Option<u64>) -> Result<Vec<Bracket>> {
     let mut found = Vec::new();
     let mut before: Option<(Rational, Vec<Order>)> = None;
     for rho in rhos {
         go_on()?;
-        let orders = orders(ratio, &rho, search.m)?;
+        let orders = orders(ratio, &rho, m)?;
         for (k, order) in orders.iter().enumerate() {
             if order.closed {
                 found.push((order.m, rho.clone(), rho.clone()));
@@ -87,10 +118,7 @@ pub fn closings(ratio: Ratio, search: &Search) -> Result<Found> {
         before = Some((rho, orders));
     }
     found.sort();
-    let closings: Vec<Closing> =
-        found.into_iter().map(|(m, lo, hi)| certify(ratio, m, &lo, &hi)).collect::<Result<_>>()?;
-    let complete = ratio.kicks() <= COMPLETE_UP_TO && is_complete(ratio, search, &closings)?;
-    Ok(Found { ratio, closings, complete })
+    Ok(found)
 }
 
 /// The same for the tongues of a list of closed ranges of labels alone: a search for one costs two edges a sample.
@@ -129,20 +157,22 @@ fn samples(search: &Search) -> Result<Vec<Rational>> {
     Ok(rhos)
 }
 
-/// Whether the resultants have no more zeros in the range of ρ than closings were found.
-fn is_complete(ratio: Ratio, search: &Search, closings: &[Closing]) -> Result<bool> {
-    let (lo, hi) = &search.rho;
-    let one_parity = |odd: bool| {
-        let mut rhos: Vec<&Enclosure> =
-            closings.iter().filter(|c| (c.m % 2 == 1) == odd).map(|closing| &closing.rho).collect();
-        rhos.sort_by(|a, b| a.lo.cmp(&b.lo));
-        let apart = rhos.windows(2).all(|pair| pair[0].hi < pair[1].lo);
-        let Some(count) = count_closings(ratio, Entry::of_tongue(odd), lo, hi) else { return true };
-        apart && count == rhos.len()
-    };
-    Ok(match search.m {
-        // One tongue found everything that its parity has, or cannot know.
-        Some(m) => one_parity(m % 2 == 1),
-        None => one_parity(true) && one_parity(false),
-    })
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_and_elimination_find_the_same() {
+        let mut all = 0;
+        for (p, q) in [(5, 3), (3, 5), (7, 2), (7, 4), (5, 8), (6, 7)] {
+            let (ratio, search) = (Ratio::new(p, q).unwrap(), Search::default());
+            let (brackets, complete) = by_elimination(ratio, &search).unwrap();
+            let sampled = by_samples(ratio, samples(&search).unwrap(), None).unwrap();
+            let labels = |found: &[Bracket]| found.iter().map(|(m, ..)| *m).collect::<Vec<_>>();
+            assert!(complete, "{ratio}");
+            all += brackets.len();
+            assert_eq!(labels(&brackets), labels(&sampled), "{ratio}");
+        }
+        assert!(all > 4, "{all}");
+    }
 }

@@ -12,6 +12,7 @@ mod modular;
 mod order;
 mod tunnel;
 
+pub(crate) use elimination::crossings;
 pub use elimination::{count_closings, entries};
 pub(crate) use modular::Openness;
 pub use order::Gap;
