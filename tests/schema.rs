@@ -59,7 +59,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 45] = [
+const LINES: [&str; 47] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -90,6 +90,8 @@ const LINES: [&str; 45] = [
     "system data/scenes/bar-resonant.json",
     "system data/scenes/water4.json --accuracy 1e-7",
     "system data/scenes/water4.json --intervals outer=0.0043..0.0045 --width 1e-3",
+    "system data/scenes/diatomic-tether.json --intervals masses.0=1/2..1 --width 1e-2",
+    "system data/scenes/water4.json --accuracy 1e-5 --scan potentials.1.scale=9/10..1:1/10",
     "system data/scenes/fpu-quartic.json --exact",
     "system data/scenes/fpu-quartic.json --scan potentials.soft.step=1/2..3/5:1/40 --scan potentials.soft.scale=1/2..1:1/2",
     "tongues --ratio 7/3 --rho 1/25",

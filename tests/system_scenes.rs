@@ -1,10 +1,10 @@
 //! System files: the ones that ship, and what is wrong with others.
 
 use kickdrift::avi::{self, Ends};
-use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Ball, Laurent, Real};
-use kickdrift::scene::{Axis, Scan, SystemScene};
-use kickdrift::system::{Evidence, Limits, ManyClocks, Route, decide_system};
+use kickdrift::scene::{Axis, Scan, Span, SystemScene};
+use kickdrift::system::{Evidence, Holds, Limits, ManyClocks, Route, decide_system};
 use kickdrift::verdict::{Kind, Tier};
 
 fn shipped(name: &str) -> SystemScene {
@@ -120,17 +120,21 @@ fn scans_vary_any_number_of_the_file() {
     let text =
         std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json"))
             .unwrap();
-    let axis = |text: &str| Axis::parse(text).unwrap();
-    let scan =
-        Scan::read(&text, axis("potentials.tether.step=1/10..1:3/10"), axis("potentials.0.scale=1/2..1:1/2"))
-            .unwrap();
+    let axis = |text: &str| text.parse::<Axis>().unwrap();
+    let scene = SystemScene::read(&text).unwrap();
+    let scan = Scan::new(
+        scene.clone(),
+        axis("potentials.tether.step=1/10..1:3/10"),
+        Some(axis("potentials.0.scale=1/2..1:1/2")),
+    )
+    .unwrap();
     assert_eq!(scan.x.values(), [ratio(1, 10), ratio(4, 10), ratio(7, 10), ratio(1, 1)]);
     let system = scan.at(&ratio(7, 10), &ratio(1, 2)).unwrap();
     let clocks = system.system().clocks();
     assert_eq!((&clocks[1].step, clocks[0].stiffness.get(0, 0)), (&ratio(7, 10), ratio(25, 1)));
     // Points in parallel are those one by one.
     let decide = |x: &_, y: &_| scan.at(x, y)?.decide(Route::Cheapest, &Limits::default());
-    let (xs, ys) = (scan.x.values(), scan.y.values());
+    let (xs, ys) = (scan.x.values(), scan.ys());
     let points = kickdrift::system::scan::scan(&xs, &ys, decide, |_| {}).unwrap();
     assert_eq!(points.len(), 8);
     for point in points {
@@ -139,7 +143,7 @@ fn scans_vary_any_number_of_the_file() {
         assert_eq!((point.kind, point.growth_rate), (alone.kind, alone.growth_rate()));
     }
     let refused = |text: &str, start: &str| {
-        let error = Axis::parse(text).unwrap_err().to_string();
+        let error = text.parse::<Axis>().unwrap_err().to_string();
         assert!(error.starts_with(start), "{error}");
     };
     refused("potentials.1.step", "scan = potentials.1.step: write PATH=LO..HI:BY");
@@ -151,7 +155,11 @@ fn scans_vary_any_number_of_the_file() {
         ("potentials.0.colour", "system = this file: unknown field `colour`"),
         ("masses", "scan = masses: such a number is not in the file"),
     ] {
-        let wrong = Scan::read(&text, axis(&format!("{path}=1..2:1")), axis("potentials.0.scale=1..2:1"));
+        let wrong = Scan::new(
+            scene.clone(),
+            axis(&format!("{path}=1..2:1")),
+            Some(axis("potentials.0.scale=1..2:1")),
+        );
         let error = wrong.map(|_| ()).unwrap_err().to_string();
         assert!(error.starts_with(message), "{error}");
     }
@@ -385,4 +393,67 @@ fn long_periods_are_refused_with_their_cost_and_allowed_by_a_budget() {
     let (code, text) =
         on_a_file(&scene("fpu.json", "2500", "2500"), "simulate", "--periods 1000000 --budget 100000");
     assert!(code == Some(2) && text.contains("1000000 periods of"), "{text}");
+}
+
+#[test]
+fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_verdict() {
+    let shipped = shipped("diatomic-tether");
+    for (text, path) in [
+        ("outer=3/10..173/500", "outer"),
+        ("potentials.0.scale=1..133/100", "potentials.0.scale"),
+        ("potentials.bond.springs.0.2=60..133/2", "potentials.bond.springs.0.2"),
+        ("masses.0=67/100..1", "masses.0"),
+    ] {
+        let found = shipped.intervals(&text.parse().unwrap(), 1e-3, &Limits::default()).unwrap();
+        let all = &found.stretches;
+        assert!(all.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict));
+        let told = |own: &&kickdrift::system::levels::Stretch| own.verdict != Holds::NotTold;
+        let (range, sure) = (all[all.len() - 1].hi - all[0].lo, all.iter().filter(told));
+        let sure: f64 = sure.map(|own| own.hi - own.lo).sum();
+        // Cells that sharpen an edge end a ten-thousandth of the width from it.
+        assert!(sure > (1.0 - 1e-4) * range, "{text}: {sure} of {range}, {all:?}");
+        assert!(all.len() == 3 && all.iter().any(|own| own.verdict == Holds::Unstable), "{text}: {all:?}");
+        if let Some((lo, hi)) = found.first_unstable() {
+            assert!(hi - lo < 1e-6 * hi, "{text}: {lo} to {hi}");
+        }
+        for own in all.iter().filter(told) {
+            for part in [0.01, 0.5, 0.99] {
+                let value = from_f64_exact(own.lo + part * (own.hi - own.lo)).unwrap();
+                let mut file = shipped.source().clone();
+                if path == "outer" {
+                    file["potentials"][0]["step"] = (&value / ratio(3, 1)).to_string().into();
+                    file["potentials"][1]["step"] = value.to_string().into();
+                } else {
+                    let pointer = format!("/{}", path.replace("bond", "0").replace('.', "/"));
+                    match file.pointer_mut(&pointer) {
+                        Some(place) => *place = value.to_string().into(),
+                        None => file["potentials"][0]["scale"] = value.to_string().into(),
+                    }
+                }
+                let scene = SystemScene::from_json(file).unwrap();
+                let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+                assert_eq!(analysis.is_stable(), own.verdict == Holds::Stable, "{text} at {value}");
+            }
+        }
+    }
+    let steps = shipped
+        .intervals(&"potentials.tether.step=1/10..3".parse().unwrap(), 1e-4, &Limits::default())
+        .unwrap();
+    assert_eq!(steps.first_unstable(), Some((2.0, 2.0)));
+    for (text, message) in [
+        ("outer", "intervals = outer: write PATH=LO..HI"),
+        ("masses.0=2..2", "intervals = masses.0=2..2: the range is empty"),
+    ] {
+        let error = text.parse::<Span>().unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
+    for (text, message) in [
+        ("potentials.0.phase=1..2", "intervals = potentials.0.phase: name outer"),
+        ("outer=0..1", "intervals = outer=0..1: steps are positive"),
+        ("potentials.9.scale=1..2", "intervals = potentials.9.scale: 9 is not in the file"),
+    ] {
+        let asked = shipped.intervals(&text.parse().unwrap(), 1e-2, &Limits::default());
+        let error = asked.unwrap_err().to_string();
+        assert!(error.starts_with(message), "{error}");
+    }
 }

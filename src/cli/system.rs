@@ -4,19 +4,18 @@ use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
 
-use super::args::{Columns, Common, of};
+use super::args::{Columns, Common, from_str, of};
 use super::plane::DPI;
 use super::progress::progress;
 use crate::error::{Error, Kind, Result};
 use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
-use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
-use crate::scene::{Arrays, Axis, Scan, SystemScene};
+use crate::scene::{Arrays, Axis, Scan, Span, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Limits, Route};
 
@@ -29,9 +28,9 @@ pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// A map over two numbers of the file, as potentials.1.step=1/10..2:1/20 and potentials.NAME.scale=1..2:1/10; give it twice
-    #[arg(long, value_name = "PATH=LO..HI:BY", allow_hyphen_values = true)]
-    scan: Vec<String>,
+    /// The verdicts over a number of the file, as potentials.1.step=1/10..2:1/20; give it twice for a map
+    #[arg(long, value_name = "PATH=LO..HI:BY", allow_hyphen_values = true, value_parser = from_str::<Axis>)]
+    scan: Vec<Axis>,
     /// What the colours of a map stand for [default: growth].
     #[arg(long, value_name = "WHAT")]
     colour: Option<Colouring>,
@@ -41,9 +40,10 @@ pub struct Args {
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
     #[arg(long, value_name = "X")]
     accuracy: Option<f64>,
-    /// All unstable intervals of the outer step, the number of inner steps as in the file: outer=LO..HI.
-    #[arg(long, value_name = "outer=LO..HI", conflicts_with_all = ["scan", "exact"])]
-    intervals: Option<String>,
+    /// All unstable intervals of a number of the file: of outer, all steps in their ratio; of a step, among the multiples of the
+    /// inner one; of a scale, a stiffness, a spring, a mass.
+    #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["scan", "exact"], value_parser = from_str::<Span>)]
+    intervals: Option<Span>,
     /// The relative width above which no interval is missed [default: 1e-4].
     #[arg(long, value_name = "W", requires = "intervals")]
     width: Option<f64>,
@@ -62,7 +62,7 @@ impl Args {
         // Refused before the work, not after it.
         drawing(common)?;
         let (text, arrays) = source(&self.file, common)?;
-        let mut scene = SystemScene::read_in(arrays.clone(), &text)?;
+        let mut scene = SystemScene::read_in(arrays, &text)?;
         if let Some(accuracy) = self.accuracy {
             scene = scene.at_accuracy(accuracy)?;
         }
@@ -72,16 +72,16 @@ impl Args {
         if let Some(rate) = &self.friction {
             scene = scene.with_friction(rate.clone())?;
         }
-        if let Some(range) = &self.intervals {
-            return self.intervals(&scene, range, common);
+        if let Some(span) = &self.intervals {
+            return self.intervals(&scene, span, common);
         }
         match self.scan.as_slice() {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
             }
             [] => self.verdict(&scene, common),
-            [x, y] => {
-                let axes = Scan::read_in(arrays, &text, Axis::parse(x)?, Axis::parse(y)?)?;
+            [x] | [x, _] => {
+                let axes = Scan::new(scene.clone(), x.clone(), self.scan.get(1).cloned())?;
                 self.map(&scene, &axes, common)
             }
             other => {
@@ -94,28 +94,15 @@ impl Args {
         if self.exact { Route::Exact } else { Route::Cheapest }
     }
 
-    fn intervals(&self, scene: &SystemScene, range: &str, common: &Common) -> Result<()> {
-        let form = || Error::input("intervals", range, "write outer=LO..HI, as outer=0.004..0.005");
-        let (lo, hi) =
-            range.strip_prefix("outer=").and_then(|range| range.split_once("..")).ok_or_else(form)?;
-        let read = |text: &str| Ok(to_f64(&parse_rational("intervals", text)?));
-        let width = self.width.unwrap_or(1e-4);
-        let (inner_steps, stretches) = scene.stretches((read(lo)?, read(hi)?), width)?;
+    fn intervals(&self, scene: &SystemScene, span: &Span, common: &Common) -> Result<()> {
+        let (width, limits) = (self.width.unwrap_or(1e-4), limits(common));
+        let found = scene.intervals(span, width, &limits)?;
         if let Some(path) = drawing(common)? {
-            let rates = scene.growth_rates(&report::sampled(&stretches))?;
-            return draw(
-                "output",
-                path,
-                &report::intervals_figure(
-                    &stretches,
-                    &rates,
-                    inner_steps,
-                    (scene.title(), scene.time_unit().unwrap_or("time")),
-                ),
-            );
+            let rates = scene.growth_rates(span, &report::sampled(&found.stretches), &limits)?;
+            let names = (scene.title(), scene.time_unit().unwrap_or("time"));
+            return draw("output", path, &report::intervals_figure(&found, &rates, names));
         }
-        let document =
-            report::intervals(&stretches, inner_steps).input("intervals", range).input("width", width);
+        let document = report::intervals(&found).input("intervals", span).input("width", width);
         common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
     }
 
@@ -141,18 +128,21 @@ impl Args {
     }
 
     fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {
-        let (xs, ys, limits) = (axes.x.values(), axes.y.values(), limits(common));
+        let (xs, ys, limits) = (axes.x.values(), axes.ys(), limits(common));
         let bar = progress(common.quiet, (xs.len() * ys.len()) as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.decide(self.route(), &limits);
         let points = scan(&xs, &ys, decide, |done| bar.inc(done as u64));
         bar.finish_and_clear();
-        let names = [axes.x.path.clone(), axes.y.path.clone()];
-        let map = SystemMap { names, xs, ys, points: points? };
+        let time_unit = scene.time_unit().map(String::from);
+        let map = SystemMap { names: axes.names(), xs, ys, points: points?, time_unit };
         if let Some(path) = drawing(common)? {
             return draw("output", path, &map.figure(self.colour.unwrap_or_default(), scene.title()));
         }
-        let document =
-            self.echo(map.document(), scene).input("scan_x", &self.scan[0]).input("scan_y", &self.scan[1]);
+        let document = self.echo(map.document(), scene).input("scan_x", &axes.x);
+        let document = match &axes.y {
+            Some(y) => document.input("scan_y", y),
+            None => document,
+        };
         common.write(&self.columns.of(document)?, common.format_of_table(&Format::DOCUMENT)?)
     }
 

@@ -34,7 +34,7 @@ use crate::resonance::Families;
 pub use document::{Document, Quantity};
 pub use grid::{GridRange, shown_range};
 #[cfg(feature = "system")]
-pub use system::{Array, Arrays, Axis, Displacement, RunRequest, Scan, SystemScene, TwoLevels};
+pub use system::{Array, Arrays, Axis, Displacement, RunRequest, Scan, Span, SystemScene, TwoLevels};
 pub use want::{Product, Want};
 
 /// What is to be computed: what the file gives, read once, and checked as far as it can be without computing.

@@ -81,7 +81,7 @@ pub fn decide_along(
         let own = kicks[k].iter().find(|(other, _)| *other == clock);
         &own.expect("a Hessian for each clock of each event").1
     };
-    let drifts = Drifts { inverse_mass: &inverse_mass, decay: &Rational::default() };
+    let drifts = Drifts { inverse_mass: &inverse_mass, decay: &Rational::default(), off: 0.0 };
     let blocks = follow(&drifts, schedule.half_period(), find).blocks(scales);
     let spectrum = Spectrum::new(&blocks);
     let signed = Forms::new(&blocks)

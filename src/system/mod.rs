@@ -17,7 +17,7 @@
 //! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
 //! | `scalar`, `enclose`, `single` | K clocks on one oscillator: exact, in balls, decided |
 //! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
-//! | `large` | thousands of degrees of freedom: two signs, and the mode that grows fastest |
+//! | `large`, `action`, `envelope` | thousands of degrees of freedom: signs of the sparse action, and the mode that grows fastest |
 //! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
 //! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
 //! | `decide`, `piece` | the verdict, part by part |
@@ -25,7 +25,7 @@
 //! | `period` | whole periods in doubles, with friction or a stiffness of its own for each kick |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `along` | about a periodic orbit: a Hessian for each kick |
-//! | `scan` | maps |
+//! | `scan`, `vary` | maps; all systems between two |
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
 //! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
@@ -41,6 +41,7 @@
 //! assert!(analysis.is_stable());
 //! ```
 
+mod action;
 mod along;
 mod analysis;
 mod bauer_fike;
@@ -49,6 +50,7 @@ mod clusters;
 mod compose;
 mod decide;
 mod enclose;
+mod envelope;
 mod exact;
 mod explain;
 mod float;
@@ -75,6 +77,7 @@ mod single;
 mod sparse;
 mod spectrum;
 mod split;
+pub mod vary;
 
 pub use along::{OwnOrbit, decide_along};
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};

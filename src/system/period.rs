@@ -22,11 +22,13 @@ pub(super) struct Stiff {
     pub off: f64,
 }
 
-/// What happens between the events: drifts with M⁻¹ in ticks, v → c v with c = exp(−decay) a tick.
+/// What happens between the events: drifts with M⁻¹ in ticks, which is known but for `off` (2-norm), v → c v with c = exp(−decay) a
+/// tick.
 #[derive(Clone, Debug)]
 pub(super) struct Drifts<'a> {
     pub inverse_mass: &'a [Row<f64>],
     pub decay: &'a Rational,
+    pub off: f64,
 }
 
 /// The rows of positions and momenta, 2n columns each, and the bound on the error of all (Frobenius).
@@ -72,7 +74,7 @@ pub(super) fn follow<'a>(
     for (k, event) in events.enumerate() {
         if event.drift > 0 {
             let c = *known.entry(event.drift).or_insert_with(|| decayed(drifts.decay, event.drift));
-            let error = state.drift(drifts.inverse_mass, event.drift as f64, c);
+            let error = state.drift(drifts, event.drift as f64, c);
             account.volume *= c;
             account.add(error, &state);
         }
@@ -114,11 +116,12 @@ impl Propagated {
     }
 
     /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error.
-    fn drift(&mut self, inverse_mass: &[Row<f64>], ticks: f64, c: f64) -> f64 {
+    fn drift(&mut self, drifts: &Drifts, ticks: f64, c: f64) -> f64 {
         let columns = 2 * self.n;
         let mean = ticks * (1.0 + c) / 2.0;
         let mut squares = 0.0;
-        for (i, masses) in inverse_mass.iter().enumerate() {
+        let moved = mean * drifts.off * norm2(&self.p).sqrt();
+        for (i, masses) in drifts.inverse_mass.iter().enumerate() {
             let target = &mut self.x[i * columns..(i + 1) * columns];
             let mut size = norm2(target).sqrt();
             for (j, a) in masses {
@@ -133,7 +136,7 @@ impl Propagated {
             squares += 4.0 * norm2(&self.p);
             self.p.iter_mut().for_each(|p| *p *= c);
         }
-        1.01 * U * squares.sqrt()
+        1.01 * (U * squares.sqrt() + moved)
     }
 
     /// p ← p − w F x; more than the error.

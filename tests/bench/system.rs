@@ -114,10 +114,11 @@ fn dense() {
         }
     }
     let text = dense_file(12, 7, 4, "1");
-    let axis = |text: &str| Axis::parse(text).expect("an axis");
+    let axis = |text: &str| text.parse::<Axis>().expect("an axis");
     let (x, y) = ("potentials.slow.step=4/20..52/20:4/20", "potentials.slow.scale=1/10..14/10:1/10");
-    let axes = Scan::read(&text, axis(x), axis(y)).expect("a map");
-    let (xs, ys, limits) = (axes.x.values(), axes.y.values(), Limits::default());
+    let scene = SystemScene::read(&text).expect("a system");
+    let axes = Scan::new(scene, axis(x), Some(axis(y))).expect("a map");
+    let (xs, ys, limits) = (axes.x.values(), axes.ys(), Limits::default());
     let decide = |x: &_, y: &_| axes.at(x, y)?.decide(Route::Cheapest, &limits);
     let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, |_| ()).expect("a map"));
     println!("map of {} points, n = 12: {:.0} ms", points.len(), 1e3 * own);

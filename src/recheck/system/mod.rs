@@ -189,19 +189,19 @@ fn within<T>(found: Result<T>) -> Result<Option<T>> {
 impl Points {
     pub fn check(&self, context: &Context) -> Result<Outcome> {
         let (input, limits) = (self.input()?, limits(context));
-        let axis = |text: &Option<String>, field| Axis::parse(text.as_ref().ok_or_else(|| missing(field))?);
-        let (x, y) = (axis(&input.scan_x, "input.scan_x")?, axis(&input.scan_y, "input.scan_y")?);
-        input.scene(context)?;
-        let scan_of = Scan::read_in(&context.options.folder, &input.system.to_string(), x, y)?;
-        let (xs, ys) = (scan_of.x.values(), scan_of.y.values());
+        let x: Axis = input.scan_x.as_ref().ok_or_else(|| missing("input.scan_x"))?.parse()?;
+        let y = input.scan_y.as_ref().map(|own| own.parse()).transpose()?;
+        let scene = input.scene(context)?;
+        let time_unit = scene.time_unit().map(String::from);
+        let scan_of = Scan::new(scene, x, y)?;
+        let (xs, ys) = (scan_of.x.values(), scan_of.ys());
         let decide = |x: &_, y: &_| -> Result<Analysis> { scan_of.at(x, y)?.decide(input.route(), &limits) };
         let (of, mut done) = ((xs.len() * ys.len()) as u64, 0);
         let points = scan(&xs, &ys, decide, |more| {
             done += more as u64;
             context.see.inspect(|see| see(done, of));
         })?;
-        let names = [scan_of.x.path.clone(), scan_of.y.path.clone()];
-        let map = SystemMap { names, xs, ys, points };
+        let map = SystemMap { names: scan_of.names(), xs, ys, points, time_unit };
         let route = "computed again; the kind of a random sample of points in exact arithmetic";
         let mut outcome = self.outcome(context, route, &map.document().value(), Ok(()))?;
         let drawn = sample(&input.system.to_string(), of, if context.options.all { of } else { POINTS });
@@ -211,7 +211,8 @@ impl Points {
             let (x, y) = &point.at;
             let Some(truth) = within(exact_kind(&scan_of.at(x, y)?, &limits))? else { continue };
             decided += 1;
-            let place = || format!("{} = {x}, {} = {y}", map.names[0], map.names[1]);
+            let values = || map.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
+            let place = || values().collect::<Vec<_>>().join(", ");
             outcome.failures.extend(context.failure(n + 1, place, same_kind(point.kind, truth))?);
         }
         (outcome.rows, outcome.sample) = (of, Some((decided, of)));
@@ -222,15 +223,12 @@ impl Points {
 impl Intervals {
     pub fn check(&self, context: &Context) -> Result<Outcome> {
         let input = self.input()?;
-        let (range, width) =
+        let (span, width) =
             input.intervals.as_deref().zip(input.width.as_ref()).ok_or_else(|| missing("input"))?;
-        let ends = range.strip_prefix("outer=").ok_or_else(|| missing("input.intervals"))?;
-        let (lo, hi) = crate::number::parse::parse_range("input.intervals", ends)?;
-        let ends = (lo.to_f64(), hi.to_f64());
-        let (inner_steps, stretches) =
-            input.scene(context)?.stretches(ends, crate::number::rational::to_f64(width))?;
-        let again = report::intervals(&stretches, inner_steps).value();
-        self.outcome(context, "computed again, by the same route: stiffnesses were measured", &again, Ok(()))
+        let (span, width) = (span.parse()?, crate::number::rational::to_f64(width));
+        let found = input.scene(context)?.intervals(&span, width, &limits(context))?;
+        let again = report::intervals(&found).value();
+        self.outcome(context, "computed again, by the same route", &again, Ok(()))
     }
 }
 

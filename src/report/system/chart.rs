@@ -1,10 +1,10 @@
-//! A system's verdict over two of its numbers, drawn.
+//! A system's verdict over one or two of its numbers, drawn.
 
 use super::SystemMap;
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::figure::palette::{COEXISTENCE, Colour, Gradient, HYPERBOLIC, INK, PARABOLIC};
-use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape};
+use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::system::scan::Point;
 use crate::verdict::Kind;
 
@@ -26,6 +26,9 @@ const EDGE_SIZE: f64 = 2.4;
 impl SystemMap {
     /// The unstable points in colour, the edges marked.
     pub fn figure(&self, colouring: Colouring, title: &str) -> Figure {
+        if self.names.len() == 1 {
+            return self.profile(title);
+        }
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
         let [x, y] = [(&self.names[0], &self.xs), (&self.names[1], &self.ys)].map(|(name, values)| {
             let (first, step) = pitch(values);
@@ -45,13 +48,34 @@ impl SystemMap {
             .with(panel)
     }
 
+    /// Of one number: growth over it.
+    fn profile(&self, title: &str) -> Figure {
+        let (first, step) = pitch(&self.xs);
+        let last = first + step * self.xs.len().saturating_sub(1) as f64;
+        let line: Vec<[f64; 2]> =
+            self.points.iter().map(|point| [to_f64(&point.at.0), point.growth_rate]).collect();
+        let fastest = line.iter().fold(0.0, |a: f64, own| a.max(own[1]));
+        let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
+        let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
+        let panel = Panel::new(
+            Axis::linear(&self.names[0], first, last.max(first + step)),
+            Axis::linear(&self.growth(), 0.0, top),
+        )
+        .titled(&format!("{unstable} of {} points unstable", self.points.len()))
+        .with(Layer::lines(vec![line.clone()], Stroke::LINE.in_colour(INK)))
+        .with(Layer::dots(line, Shape::Disc, 2.0, HYPERBOLIC));
+        Figure::double_column(80.0).named(title).with(panel)
+    }
+
+    /// The axis of growth rates.
+    fn growth(&self) -> String {
+        format!("growth rate (1/{})", self.time_unit.as_deref().unwrap_or("time"))
+    }
+
     fn by_growth(&self, panel: Panel) -> Panel {
         let rates = self.points.iter().map(|point| point.growth_rate);
         let (low, fastest) = ColourBar::range_of(rates.filter(|&rate| rate > 0.0));
-        let bar = ColourBar {
-            axis: Axis::log("growth rate (1/time)", low, fastest),
-            gradient: Gradient::on_white(),
-        };
+        let bar = ColourBar { axis: Axis::log(&self.growth(), low, fastest), gradient: Gradient::on_white() };
         let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), ColourBar::SHADES);
         let cells = self.cells(bar.gradient.steps(ColourBar::SHADES.into()), Kind::Hyperbolic, shade);
         panel.with(Layer::cells(cells)).bar(bar)

@@ -1,6 +1,7 @@
-//! Stretches of outer steps: rows, and the unstable ones in words.
+//! Stretches of one number of a system: rows, and the unstable ones in words.
 
-use crate::report::document::Document;
+use crate::report::decimal;
+use crate::report::document::{Document, enclosure};
 #[cfg(feature = "figure")]
 use crate::report::figure::palette::{GREY, HYPERBOLIC, INK};
 #[cfg(feature = "figure")]
@@ -10,6 +11,7 @@ use crate::report::table::Column;
 use crate::report::text::counted;
 use crate::system::Holds;
 use crate::system::levels::Stretch;
+use crate::system::vary::Intervals;
 
 /// Growth rates drawn over the whole range, and at least of a stretch.
 const SAMPLES: f64 = 400.0;
@@ -29,14 +31,10 @@ fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
     (0..count as u32).map(move |k| lo + width * (f64::from(k) + 0.5) / count)
 }
 
-/// Outer step across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
+/// The number across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
 #[cfg(feature = "figure")]
-pub fn figure(
-    stretches: &[Stretch],
-    rates: &[Option<f64>],
-    inner_steps: u64,
-    (title, time): (&str, &str),
-) -> Figure {
+pub fn figure(own: &Intervals, rates: &[Option<f64>], (title, time): (&str, &str)) -> Figure {
+    let stretches = own.stretches.as_slice();
     let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
     let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
     let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
@@ -55,16 +53,16 @@ pub fn figure(
             ),
         }
     }
-    let unstable = shade(Holds::Unstable).len();
+    let unstable = counted(shade(Holds::Unstable).len(), "unstable interval", "unstable intervals");
+    let inner =
+        |steps| counted(steps as usize, "inner step in each outer one", "inner steps in each outer one");
     let mut panel = Panel::new(
-        Axis::linear(&format!("outer step ({time})"), lo, hi),
+        Axis::linear(&across(own, time), lo, hi),
         Axis::linear(&format!("growth rate (1/{time})"), 0.0, top),
     )
-    .titled(&format!(
-        "{}, {}",
-        counted(unstable, "unstable interval", "unstable intervals"),
-        counted(inner_steps as usize, "inner step in each outer one", "inner steps in each outer one")
-    ));
+    .titled(
+        &[Some(unstable), own.inner_steps.map(inner)].into_iter().flatten().collect::<Vec<_>>().join(", "),
+    );
     for (verdict, colour, name) in
         [(Holds::Unstable, HYPERBOLIC, "proven unstable"), (Holds::NotTold, GREY, "nothing proven")]
     {
@@ -77,26 +75,40 @@ pub fn figure(
     Figure::double_column(80.0).named(title).with(panel.with(line).legend(Place::Above))
 }
 
+/// What stands across: the outer step, or the number's path.
+#[cfg(feature = "figure")]
+fn across(own: &Intervals, time: &str) -> String {
+    let name = if own.number == "outer" { "outer step" } else { &own.number };
+    if own.is_step { format!("{name} ({time})") } else { name.into() }
+}
+
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.
-pub fn document(stretches: &[Stretch], inner_steps: u64) -> Document {
+pub fn document(own: &Intervals) -> Document {
     let record = Record::new()
         .field(Column::new("lo"), |of: &Stretch| of.lo.into())
         .field(Column::new("hi"), |of| of.hi.into())
         .field(Column::new("verdict").left(), |of| of.verdict.name().into());
-    let number = |verdict: Holds| stretches.iter().filter(|own| own.verdict == verdict).count();
+    let number = |verdict: Holds| own.stretches.iter().filter(|own| own.verdict == verdict).count();
     let (unstable, undecided) = (number(Holds::Unstable), number(Holds::NotTold));
-    let lines = [
+    let name = if own.number == "outer" { "the outer step" } else { &own.number };
+    let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
+    let mut lines = vec![
         format!(
-            "{} of the outer step, with {} in each",
+            "{} of {name}{}",
             counted(unstable, "unstable interval", "unstable intervals"),
-            counted(inner_steps as usize, "inner step", "inner steps")
+            own.inner_steps.map(inner).unwrap_or_default()
         ),
         format!("  {} where nothing is proven", counted(undecided, "stretch", "stretches")),
     ];
+    let first = own.first_unstable();
+    if let Some((lo, hi)) = first {
+        lines.push(format!("  the first begins at {}", decimal::enclosure(lo, hi)));
+    }
     Document::new("system-intervals")
-        .entry("inner_steps", inner_steps)
+        .entry("inner_steps", own.inner_steps)
         .entry("unstable", unstable)
         .entry("untold", undecided)
-        .rows(record.table("stretches", "Verdicts on outer steps", stretches))
+        .entry("first_unstable", first.map(enclosure))
+        .rows(record.table("stretches", "Verdicts on stretches of the number", &own.stretches))
         .summary(&lines)
 }

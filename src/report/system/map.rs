@@ -1,4 +1,4 @@
-//! A system's verdict over two of its numbers: counts and rows.
+//! A system's verdict over one or two of its numbers: counts and rows.
 
 use serde_json::json;
 
@@ -13,11 +13,13 @@ use crate::verdict::Kind;
 /// The points of a scan, row by row of y.
 #[derive(Clone, Debug)]
 pub struct SystemMap {
-    /// What is varied along x and y.
-    pub names: [String; 2],
+    /// What is varied along x and, if anything is, along y.
+    pub names: Vec<String>,
     pub xs: Vec<Rational>,
     pub ys: Vec<Rational>,
     pub points: Vec<Point>,
+    /// The name of the unit of time, where the file gives one.
+    pub time_unit: Option<String>,
 }
 
 /// Digits of a growth rate: eigenvalues in doubles agree in them on every machine.
@@ -42,12 +44,18 @@ impl SystemMap {
             ),
         ];
         if let Some(Point { at: (x, y), growth_rate, .. }) = fastest {
-            let [a, b] = &self.names;
-            lines.push(format!("  fastest growth {growth_rate:.5e} per unit time at {a} = {x}, {b} = {y}"));
+            let places = self.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
+            let places = places.collect::<Vec<_>>().join(", ");
+            let per = self.time_unit.as_deref().unwrap_or("unit time");
+            lines.push(format!("  fastest growth {growth_rate:.5e} per {per} at {places}"));
         }
         let fastest = fastest.map(|point| {
             let (x, y) = (point.at.0.to_string(), point.at.1.to_string());
-            json!({"x": x, "y": y, "growth_rate": rounded(point.growth_rate, DIGITS)})
+            let growth_rate = rounded(point.growth_rate, DIGITS);
+            match self.names.len() {
+                1 => json!({"x": x, "growth_rate": growth_rate}),
+                _ => json!({"x": x, "y": y, "growth_rate": growth_rate}),
+            }
         });
         Document::new("system-map")
             .entry("points", self.points.len())
@@ -62,15 +70,19 @@ impl SystemMap {
     }
 
     fn table(&self) -> Table {
-        let [x, y] = &self.names;
-        Record::new()
-            .field(Column::new("x").in_words(x), |of: &Point| Cell::exact(&of.at.0))
-            .field(Column::new("y").in_words(y), |of| Cell::exact(&of.at.1))
+        let x = Column::new("x").in_words(&self.names[0]);
+        let record = Record::new().field(x, |of: &Point| Cell::exact(&of.at.0));
+        let record = match self.names.get(1) {
+            Some(name) => record.field(Column::new("y").in_words(name), |of| Cell::exact(&of.at.1)),
+            None => record,
+        };
+        let caption = ["Verdicts over a number of the system", "Verdicts over two numbers of the system"];
+        record
             .field(Column::new("kind").left(), |of| of.kind.name().into())
             .field(Column::new("proven"), |of| of.is_proof.into())
             .field(Column::new("growth_rate").titled("growth rate", "growth rate"), |of| {
                 rounded(of.growth_rate, DIGITS).into()
             })
-            .table("verdicts", "Verdicts over two numbers of the system", &self.points)
+            .table("verdicts", caption[self.names.len() - 1], &self.points)
     }
 }

@@ -14,7 +14,7 @@
 //! }
 //! ```
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::DMatrix;
 use num_traits::One;
@@ -27,7 +27,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::levels::{Hessians, Kernel, Outer, Stretch, rigid_motions};
-use crate::system::{Analysis, Limits, Potential, Route, Symmetric, System, decide_by};
+use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System, decide_by};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
@@ -54,8 +54,7 @@ struct Document {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PotentialDocument {
-    #[serde(rename = "name")]
-    _name: Option<String>,
+    name: Option<String>,
     step: Number,
     scale: Option<Number>,
     stiffness: Reference,
@@ -72,7 +71,24 @@ pub(super) struct Measured {
     is_weighted: bool,
     accuracy: f64,
     keeps_rigid: bool,
-    kernel: OnceLock<Kernel>,
+    scales: Vec<Scale>,
+    kernel: Arc<OnceLock<Kernel>>,
+}
+
+/// The scale of a potential as it stands in the file.
+#[derive(Clone, Debug)]
+struct Scale {
+    index: usize,
+    name: Option<String>,
+    step: Rational,
+    scale: f64,
+}
+
+impl Scale {
+    fn is_at(&self, path: &str) -> bool {
+        let key = path.strip_prefix("potentials.").and_then(|rest| rest.strip_suffix(".scale"));
+        key.is_some_and(|key| key.parse() == Ok(self.index) || self.name.as_deref() == Some(key))
+    }
 }
 
 /// Two levels of measured stiffnesses.
@@ -96,8 +112,10 @@ impl Measured {
     pub fn read(source: &Value, arrays: &Arrays) -> Result<Measured> {
         let document = Document::deserialize(source).map_err(no_system)?;
         let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
+        let mut scales = Vec::new();
         for (k, own) in document.potentials.iter().enumerate() {
-            let (step, stiffness) = own.read(k, arrays)?;
+            let (step, scale, stiffness) = own.read(k, arrays)?;
+            scales.push(Scale { index: k, name: own.name.clone(), step: step.clone(), scale });
             match potentials.iter_mut().find(|(other, k)| *other == step && k.shape() == stiffness.shape()) {
                 Some((_, sum)) => *sum += stiffness,
                 None => potentials.push((step, stiffness)),
@@ -140,7 +158,8 @@ impl Measured {
             is_weighted: document.mass_weighted,
             accuracy: 0.0,
             keeps_rigid: false,
-            kernel: OnceLock::new(),
+            scales,
+            kernel: Arc::default(),
         };
         read.at_accuracy(accuracy)
     }
@@ -150,14 +169,58 @@ impl Measured {
         if !(accuracy > 0.0 && accuracy < 0.1) {
             return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
         }
-        (self.accuracy, self.kernel) = (accuracy, OnceLock::new());
+        (self.accuracy, self.kernel) = (accuracy, Arc::default());
         Ok(self)
     }
 
     /// The same with its rigid motions left in.
     pub fn keeping_rigid(mut self) -> Measured {
-        (self.keeps_rigid, self.kernel) = (true, OnceLock::new());
+        (self.keeps_rigid, self.kernel) = (true, Arc::default());
         self
+    }
+
+    /// Takes over what was asked of another of the same file, and its eigenbasis where the stiffnesses are the same.
+    pub fn follow(&mut self, other: &Measured) {
+        (self.accuracy, self.keeps_rigid) = (other.accuracy, other.keeps_rigid);
+        let stiffnesses = |own: &Measured| own.potentials.iter().map(|(_, k)| k).cloned().collect::<Vec<_>>();
+        if stiffnesses(self) == stiffnesses(other) {
+            self.kernel = Arc::clone(&other.kernel);
+        }
+    }
+
+    /// The steps, increasing.
+    pub fn steps(&self) -> Vec<Rational> {
+        self.potentials.iter().map(|(step, _)| step.clone()).collect()
+    }
+
+    /// Whether the kernel of two levels decides it.
+    pub fn is_of_two_levels(&self) -> bool {
+        self.outer().is_some()
+    }
+
+    /// What is proven of it; `None` where the kernel does not decide it.
+    pub fn holds(&self) -> Result<Option<Holds>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        Ok(Some(self.kernel()?.verdict_within(&outer, 0.0)))
+    }
+
+    /// Which of the two levels the scale at a path is of, 0 the fast one, and its present value.
+    pub fn scaled_at(&self, path: &str) -> Result<(usize, f64)> {
+        let entry = self.scales.iter().find(|own| own.is_at(path));
+        let entry = entry.ok_or_else(|| Error::input("intervals", path, "name the scale of a potential"))?;
+        let level = self.potentials.iter().position(|(step, _)| *step == entry.step).expect("its own step");
+        if self.scales.iter().filter(|own| own.step == entry.step).count() > 1 || entry.scale == 0.0 {
+            let remedy = "give the potential a step of its own and a scale that is not 0";
+            return Err(Error::input("intervals", path, remedy));
+        }
+        Ok((level, entry.scale))
+    }
+
+    /// What is proven of all systems in which one level is lo to hi times as stiff.
+    pub fn verdict_between_scales(&self, level: usize, (lo, hi): (f64, f64)) -> Result<Holds> {
+        let Some((outer, _)) = self.outer() else { return Ok(Holds::NotTold) };
+        let kernel = self.kernel()?.scaled(level, (lo, hi));
+        Ok(kernel.map_or(Holds::NotTold, |own| own.verdict_within(&outer, 0.0)))
     }
 
     /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
@@ -271,17 +334,16 @@ impl Measured {
 }
 
 impl PotentialDocument {
-    fn read(&self, k: usize, arrays: &Arrays) -> Result<(Rational, DMatrix<f64>)> {
+    fn read(&self, k: usize, arrays: &Arrays) -> Result<(Rational, f64, DMatrix<f64>)> {
         let field = |name: &str| format!("potentials[{k}].{name}");
         let step = self.step.read(&field("step"))?;
         if step <= Rational::default() {
             return Err(Error::input(&field("step"), step, "a step must be positive"));
         }
-        let mut stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
-        if let Some(scale) = &self.scale {
-            stiffness *= to_f64(&scale.read(&field("scale"))?);
-        }
-        Ok((step, stiffness))
+        let stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
+        let scale = self.scale.as_ref().map(|own| own.read(&field("scale"))).transpose()?;
+        let scale = scale.map_or(1.0, |own| to_f64(&own));
+        Ok((step, scale, stiffness * scale))
     }
 }
 

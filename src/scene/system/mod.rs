@@ -43,11 +43,12 @@
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `molecule` | two measured levels, to be advised on |
 //! | `run` | Algorithm 1 run on it |
-//! | `scan` | one file, many systems: any number of it over a range |
+//! | `scan`, `intervals` | one file, many systems: any number of it over a range; its unstable intervals |
 
 mod array;
 mod bonds;
 mod document;
+mod intervals;
 mod linear;
 mod market;
 mod measured;
@@ -68,7 +69,6 @@ use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
-use crate::system::levels::Stretch;
 use crate::system::{
     Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
     verdict_cost,
@@ -76,6 +76,7 @@ use crate::system::{
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
+pub use intervals::Span;
 use measured::Measured;
 pub use measured::TwoLevels;
 use oscillator::Oscillator;
@@ -107,6 +108,8 @@ fn spread(labels: &[String], n: usize) -> Result<Vec<String>> {
 #[derive(Clone, Debug)]
 pub struct SystemScene {
     source: Value,
+    /// Where the arrays are that it refers to.
+    arrays: Arrays,
     title: String,
     /// Built when it is first asked for where stiffnesses are measured.
     system: OnceLock<System>,
@@ -171,18 +174,16 @@ impl SystemScene {
         if schema != SCHEMA {
             return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
-        let measured = Measured::read(&source, &arrays.into())?;
+        let arrays = arrays.into();
+        let measured = Measured::read(&source, &arrays)?;
         let labels = source.get("labels").map(Vec::<String>::deserialize).transpose().map_err(no_system)?;
         let labels = labels.map(|own| spread(&own, measured.size())).transpose()?;
         Ok(SystemScene {
-            source,
-            title,
+            arrays,
             system: OnceLock::new(),
-            nonlinear: None,
-            oscillator: None,
             measured: Some(measured),
             labels,
-            friction: None,
+            ..SystemScene::empty(source, title)
         })
     }
 
@@ -233,11 +234,15 @@ impl SystemScene {
     }
 
     fn linear(source: Value, title: String, system: System) -> SystemScene {
-        let system = OnceLock::from(system);
+        SystemScene { system: OnceLock::from(system), ..SystemScene::empty(source, title) }
+    }
+
+    fn empty(source: Value, title: String) -> SystemScene {
         SystemScene {
             source,
+            arrays: "".into(),
             title,
-            system,
+            system: OnceLock::new(),
             nonlinear: None,
             oscillator: None,
             measured: None,
@@ -346,18 +351,6 @@ impl SystemScene {
         }
     }
 
-    /// The number of inner steps in an outer one, and the verdicts on all outer steps of a range, at that number: stretches
-    /// that cover it, no interval wider than `width` (relative) missed.
-    ///
-    /// # Errors
-    /// Where the stiffnesses are not two measured levels; as [`Kernel::stretches`].
-    ///
-    /// [`Kernel::stretches`]: crate::system::levels::Kernel::stretches
-    pub fn stretches(&self, range: (f64, f64), width: f64) -> Result<(u64, Vec<Stretch>)> {
-        let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
-        self.measured.as_ref().ok_or_else(exact)?.stretches(range, width)
-    }
-
     /// Both levels of a system of two measured ones.
     ///
     /// # Errors
@@ -366,16 +359,6 @@ impl SystemScene {
         let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
         let exact = || Error::input("stiffness", "given in place", remedy);
         self.measured.as_ref().ok_or_else(exact)?.two_levels()
-    }
-
-    /// The largest growth rate at each of the outer steps, per unit time, rounded, at the file's number of inner steps; `None` where
-    /// it is not told.
-    ///
-    /// # Errors
-    /// As [`SystemScene::stretches`].
-    pub fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
-        let exact = || Error::input("intervals", "asked", "are for stiffnesses by reference");
-        self.measured.as_ref().ok_or_else(exact)?.growth_rates(steps)
     }
 
     /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.

@@ -3,56 +3,66 @@
 //! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`, `potentials.bond.scale` (a
 //! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`).
 
+use std::fmt::{Display, Formatter};
+use std::str::FromStr;
+
 use serde_json::Value;
 
 use super::SystemScene;
-use super::array::Arrays;
-use super::document::no_system;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 
 /// The most values of an axis, and the most points of a map.
-const MOST_POINTS: usize = 100_000;
+pub(super) const MOST_POINTS: usize = 100_000;
 
 /// The values that one number of the file takes: lo, lo + by, ... up to hi, exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
+    text: String,
     pub path: String,
     pub lo: Rational,
     pub hi: Rational,
     pub by: Rational,
 }
 
-impl Axis {
+impl FromStr for Axis {
+    type Err = Error;
+
     /// From `PATH=LO..HI:BY`.
     ///
     /// # Errors
     /// A text of another form, an empty range, a step that is not positive, too many values.
-    pub fn parse(text: &str) -> Result<Axis> {
+    fn from_str(text: &str) -> Result<Axis> {
         let form = || Error::input("scan", text, "write PATH=LO..HI:BY, as potentials.1.step=1/10..2:1/20");
         let (path, range) = text.split_once('=').ok_or_else(form)?;
         let (ends, by) = range.rsplit_once(':').ok_or_else(form)?;
         let (lo, hi) = ends.split_once("..").ok_or_else(form)?;
         let read = |text: &str| parse_rational("scan", text);
-        let axis = Axis { path: path.trim().into(), lo: read(lo)?, hi: read(hi)?, by: read(by)? };
+        let (path, text) = (path.trim().into(), text.to_string());
+        let axis = Axis { path, lo: read(lo)?, hi: read(hi)?, by: read(by)?, text };
         if axis.by <= Rational::default() {
-            return Err(Error::input("scan", text, "the spacing after the colon must be positive"));
+            return Err(Error::input("scan", &axis, "the spacing after the colon must be positive"));
         }
         if axis.lo > axis.hi {
-            return Err(Error::input("scan", text, "the range is empty: write the smaller number first"));
+            return Err(Error::input("scan", &axis, "the range is empty: write the smaller number first"));
         }
         let last = ((&axis.hi - &axis.lo) / &axis.by).floor().to_integer();
         if last >= MOST_POINTS.into() {
-            return Err(Error::input(
-                "scan",
-                text,
-                format!("at most {MOST_POINTS} values: choose a larger spacing"),
-            ));
+            let remedy = format!("at most {MOST_POINTS} values: choose a larger spacing");
+            return Err(Error::input("scan", &axis, remedy));
         }
         Ok(axis)
     }
+}
 
+impl Display for Axis {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl Axis {
     /// All values, increasing.
     pub fn values(&self) -> Vec<Rational> {
         let next = |x: &Rational| Some(x + &self.by).filter(|x| *x <= self.hi);
@@ -60,74 +70,81 @@ impl Axis {
     }
 }
 
-/// A system file with two of its numbers open.
+/// A system with one or two of its numbers open.
 #[derive(Clone, Debug)]
 pub struct Scan {
-    template: Value,
-    arrays: Arrays,
+    scene: SystemScene,
     pub x: Axis,
-    pub y: Axis,
+    /// `None`: along x alone.
+    pub y: Option<Axis>,
 }
 
 impl Scan {
-    /// From the text of a system file.
+    /// Of a system, whatever these numbers are in it; its accuracy, and whether it keeps rigid motions, stay as they are.
     ///
     /// # Errors
     /// As [`SystemScene::read`] at the first point; a path that leads nowhere; too many points.
-    pub fn read(text: &str, x: Axis, y: Axis) -> Result<Scan> {
-        Scan::read_in("", text, x, y)
-    }
-
-    /// From the text of a system file, and the folder that the files it refers to are in, or these arrays in memory.
-    ///
-    /// # Errors
-    /// As [`SystemScene::read_in`] at the first point; a path that leads nowhere; too many points.
-    pub fn read_in(arrays: impl Into<Arrays>, text: &str, x: Axis, y: Axis) -> Result<Scan> {
-        let arrays = arrays.into();
-        // The file itself has to be sound, whatever its numbers are replaced by.
-        SystemScene::read_in(arrays.clone(), text)?;
-        let template: Value = serde_json::from_str(text).map_err(no_system)?;
-        let points = x.values().len().saturating_mul(y.values().len());
+    pub fn new(scene: SystemScene, x: Axis, y: Option<Axis>) -> Result<Scan> {
+        let points = x.values().len().saturating_mul(y.as_ref().map_or(1, |y| y.values().len()));
         if points > MOST_POINTS {
-            return Err(Error::input(
-                "scan",
-                format!("{points} points"),
-                format!("at most {MOST_POINTS}: choose larger spacings"),
-            ));
+            let remedy = format!("at most {MOST_POINTS}: choose larger spacings");
+            return Err(Error::input("scan", format!("{points} points"), remedy));
         }
-        let mut file = template.clone();
-        let [first, second] = [&x, &y].map(|axis| place(&mut file, &axis.path).map(std::ptr::from_mut));
-        if first? == second? {
-            return Err(Error::input(
-                "scan",
-                &y.path,
-                "is varied along both axes: name two numbers of the file",
-            ));
+        let mut file = scene.source().clone();
+        let mut find = |axis: &Axis| place(&mut file, &axis.path, "scan").map(std::ptr::from_mut);
+        if let (first, Some(y)) = (find(&x)?, &y)
+            && first == find(y)?
+        {
+            let remedy = "is varied along both axes: name two numbers of the file";
+            return Err(Error::input("scan", &y.path, remedy));
         }
-        let scan = Scan { template, arrays, x, y };
-        scan.at(&scan.x.lo, &scan.y.lo)?;
+        let scan = Scan { scene, x, y };
+        scan.at(&scan.x.lo, &scan.ys()[0])?;
         Ok(scan)
     }
 
-    /// The system at one point.
+    /// The values along y; 0 alone where there is no such axis.
+    pub fn ys(&self) -> Vec<Rational> {
+        self.y.as_ref().map_or_else(|| vec![Rational::default()], Axis::values)
+    }
+
+    /// The paths of the numbers that are open.
+    pub fn names(&self) -> Vec<String> {
+        [Some(&self.x), self.y.as_ref()].into_iter().flatten().map(|axis| axis.path.clone()).collect()
+    }
+
+    /// The system at one point; y is not looked at where there is no such axis.
     ///
     /// # Errors
     /// As [`SystemScene::read`].
     pub fn at(&self, x: &Rational, y: &Rational) -> Result<SystemScene> {
-        let mut file = self.template.clone();
-        for (axis, value) in [(&self.x, x), (&self.y, y)] {
-            *place(&mut file, &axis.path)? = Value::String(value.to_string());
+        let second = self.y.as_ref().map(|axis| (axis.path.as_str(), y));
+        let numbers: Vec<_> = [Some((self.x.path.as_str(), x)), second].into_iter().flatten().collect();
+        self.scene.with("scan", &numbers)
+    }
+}
+
+impl SystemScene {
+    /// The same file with other numbers at some of its paths; `field` is what errors name.
+    pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
+        let mut file = self.source.clone();
+        for (path, value) in numbers {
+            *place(&mut file, path, field)? = Value::String(value.to_string());
         }
-        SystemScene::from_json_in(self.arrays.clone(), file)
+        let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
+        if let (Some(own), Some(old)) = (&mut scene.measured, &self.measured) {
+            own.follow(old);
+        }
+        Ok(scene)
     }
 }
 
 /// The place that a path names.
-fn place<'a>(file: &'a mut Value, path: &str) -> Result<&'a mut Value> {
+pub(super) fn place<'a>(file: &'a mut Value, path: &str, field: &str) -> Result<&'a mut Value> {
     let nowhere = |key: &str| {
         let remedy =
             format!("{key} is not in the file: name a number of it, as potentials.1.step or build.steps.0");
-        Error::input("scan", path, remedy)
+        Error::input(field, path, remedy)
     };
     let keys: Vec<&str> = path.split('.').collect();
     let mut at = file;

@@ -188,7 +188,7 @@ fn at(part: &System, rate: &Rational) -> Result<At> {
     // Entries within one rounding of the true ones are in the bound of [`follow`].
     let kicks: Vec<_> =
         program.kicks.iter().map(|kick| Stiff { rows: kick.rows.clone(), off: 0.0 }).collect();
-    let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()) };
+    let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()), off: 0.0 };
     let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
     Ok(match q.error.and_then(|error| spectral_radius(&q.matrix(), error)) {
         Some((lo, hi)) => {

@@ -1,0 +1,259 @@
+//! All unstable intervals of one number of a file, none missed.
+//!
+//! * `outer`: the outer step, all steps in their ratios as in the file;
+//! * the path of a step: its multiples of the shortest of the others (the inner steps are what they are), each decided;
+//! * the path of a scale, a stiffness, a spring, a mass: the number itself.
+
+use std::fmt::{Display, Formatter};
+use std::str::FromStr;
+
+use super::SystemScene;
+use super::scan::MOST_POINTS;
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::parse::parse_rational_range;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::levels::Stretch;
+use crate::system::vary::{Intervals, cover, merged, verdict_between};
+use crate::system::{Holds, Limits, Potential, Route, System};
+
+/// One number of a file and its range.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Span {
+    text: String,
+    path: String,
+    lo: Rational,
+    hi: Rational,
+}
+
+impl FromStr for Span {
+    type Err = Error;
+
+    /// From `PATH=LO..HI`.
+    ///
+    /// # Errors
+    /// A text of another form, an empty range.
+    fn from_str(text: &str) -> Result<Span> {
+        let form =
+            || Error::input("intervals", text, "write PATH=LO..HI, as outer=0.004..0.005 or masses.0=1..2");
+        let (path, range) = text.split_once('=').ok_or_else(form)?;
+        let (lo, hi) = parse_rational_range("intervals", range)?;
+        if lo == hi {
+            return Err(Error::input(
+                "intervals",
+                text,
+                "the range is empty: write the smaller number first",
+            ));
+        }
+        Ok(Span { text: text.into(), path: path.trim().into(), lo, hi })
+    }
+}
+
+impl Display for Span {
+    fn fmt(&self, f: &mut Formatter) -> std::fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// What a number is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    Outer,
+    Step,
+    /// Stiffnesses or masses depend on it linearly.
+    Linear,
+}
+
+/// Names after which numbers enter stiffnesses or masses linearly.
+const LINEAR: [&str; 11] = [
+    "scale",
+    "springs",
+    "stiffness",
+    "masses",
+    "mass_matrix",
+    "k",
+    "stiff",
+    "soft",
+    "young",
+    "density",
+    "thickness",
+];
+
+impl Span {
+    fn role(&self) -> Result<Role> {
+        let name = self.path.split('.').rfind(|key| key.parse::<usize>().is_err()).unwrap_or_default();
+        match name {
+            "outer" => Ok(Role::Outer),
+            "step" | "steps" => Ok(Role::Step),
+            _ if LINEAR.contains(&name) => Ok(Role::Linear),
+            _ => {
+                let remedy = "name outer, or the path of a step, a scale, a stiffness, a spring or a mass";
+                Err(Error::input("intervals", &self.path, remedy))
+            }
+        }
+    }
+
+    fn ends(&self) -> (f64, f64) {
+        (to_f64(&self.lo), to_f64(&self.hi))
+    }
+}
+
+impl SystemScene {
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end (of the outer step of
+    /// two measured levels: of itself) missed.
+    ///
+    /// # Errors
+    /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
+    /// [`cover`] and [`verdict_between`].
+    pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
+        let refused = |what: &str, remedy: &str| Err(Error::input("intervals", what, remedy));
+        if self.friction.is_some() {
+            return refused("with friction", "take the friction out of the file");
+        }
+        if !self.is_linear() || self.oscillator.is_some() {
+            return refused("of this file", "are for linear systems of rational numbers");
+        }
+        limits.allow(self.cost(), || format!("a verdict on {} degrees of freedom", self.size()))?;
+        let role = span.role()?;
+        let levels = self.measured.as_ref().filter(|own| own.is_of_two_levels());
+        let is_scale = span.path.ends_with(".scale");
+        let (inner_steps, stretches) = match (role, levels) {
+            (Role::Outer, Some(own)) => {
+                let (inner_steps, stretches) = own.stretches(span.ends(), width)?;
+                (Some(inner_steps), stretches)
+            }
+            (Role::Outer, None) => (None, self.at_fixed_ratio(span, width)?),
+            (Role::Step, _) => (None, self.multiples(span, limits)?),
+            (Role::Linear, Some(own)) if is_scale => {
+                let (level, factor) = own.scaled_at(&span.path)?;
+                let cell = |lo: f64, hi: f64| own.verdict_between_scales(level, (lo / factor, hi / factor));
+                (None, cover(span.ends(), width, cell)?)
+            }
+            (Role::Linear, _) => {
+                let at = |x: f64| self.with("intervals", &[(&span.path, &exact(x))]);
+                at(span.ends().0)?;
+                let cell = |lo: f64, hi: f64| {
+                    let middle = self.with("intervals", &[(&span.path, &mean(lo, hi))])?;
+                    verdict_between([at(lo)?.system(), middle.system(), at(hi)?.system()])
+                };
+                (None, cover(span.ends(), width, cell)?)
+            }
+        };
+        Ok(Intervals {
+            number: span.path.clone(),
+            is_step: role != Role::Linear,
+            is_discrete: role == Role::Step,
+            inner_steps,
+            stretches,
+        })
+    }
+
+    /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not told.
+    ///
+    /// # Errors
+    /// As [`SystemScene::intervals`] and [`SystemScene::decide`].
+    pub fn growth_rates(&self, span: &Span, values: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
+        let role = span.role()?;
+        if let (Role::Outer, Some(own)) = (role, self.measured.as_ref().filter(|own| own.is_of_two_levels()))
+        {
+            return own.growth_rates(values);
+        }
+        let rate = |&value: &f64| {
+            let scene = match role {
+                Role::Outer => {
+                    let factor = exact(value) / self.outer_step();
+                    SystemScene::linear(self.source.clone(), String::new(), self.slowed(&factor)?)
+                }
+                _ => self.with("intervals", &[(&span.path, &exact(value))])?,
+            };
+            Ok(Some(scene.decide(Route::Cheapest, limits)?.growth_rate()))
+        };
+        crate::parallel::try_map(values, rate)
+    }
+
+    fn outer_step(&self) -> Rational {
+        let steps = self.system().potentials().iter().map(|own| own.step.clone());
+        steps.max().unwrap_or_default()
+    }
+
+    /// All steps times a factor.
+    fn slowed(&self, factor: &Rational) -> Result<System> {
+        let slowed = |own: &Potential| Potential { step: &own.step * factor, ..own.clone() };
+        System::new(self.system().mass().clone(), self.system().potentials().iter().map(slowed).collect())
+    }
+
+    /// All steps times t/outer: in the old steps all stiffnesses times its square.
+    fn at_fixed_ratio(&self, span: &Span, width: f64) -> Result<Vec<Stretch>> {
+        if span.lo <= Rational::default() {
+            return Err(Error::input("intervals", span, "steps are positive"));
+        }
+        let own = self.outer_step();
+        let stiffened = |factor: &Rational| {
+            let stiffer =
+                |own: &Potential| Potential { stiffness: own.stiffness.scaled(factor), ..own.clone() };
+            System::new(
+                self.system().mass().clone(),
+                self.system().potentials().iter().map(stiffer).collect(),
+            )
+        };
+        cover(span.ends(), width, |lo, hi| {
+            let [lo, hi] = [lo, hi].map(|step| {
+                let ratio = exact(step) / &own;
+                &ratio * &ratio
+            });
+            let middle = (&lo + &hi) / Rational::from_integer(2.into());
+            verdict_between([&stiffened(&lo)?, &stiffened(&middle)?, &stiffened(&hi)?])
+        })
+    }
+
+    /// The multiples of the shortest of the other steps, each alone: stretches from one multiple to another.
+    fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
+        // A step that no other has: with it in place, the shortest of the rest.
+        let far = self.outer_step() * Rational::from_integer(2.into());
+        let steps = self.with("intervals", &[(&span.path, &far)])?.steps();
+        let inner = steps.into_iter().filter(|step| *step != far).min();
+        let inner =
+            inner.ok_or_else(|| Error::input("intervals", &span.path, "is the only step: name outer"))?;
+        let (first, last) = ((&span.lo / &inner).ceil(), (&span.hi / &inner).floor());
+        let count = (&last - &first).to_integer();
+        if first > last || count >= MOST_POINTS.into() || first <= Rational::default() {
+            let remedy = format!("choose a range that holds 1 to {MOST_POINTS} multiples of {inner}");
+            return Err(Error::input("intervals", span, remedy));
+        }
+        let next = |k: &Rational| Some(k + Rational::from_integer(1.into())).filter(|k| *k <= last);
+        let values: Vec<_> = std::iter::successors(Some(first), next).map(|k| k * &inner).collect();
+        let stretch = |step: &Rational| {
+            let verdict = self.with("intervals", &[(&span.path, step)])?.holds(limits)?;
+            Ok(Stretch { lo: to_f64(step), hi: to_f64(step), verdict })
+        };
+        Ok(merged(crate::parallel::try_map(&values, stretch)?.into_iter()))
+    }
+
+    fn steps(&self) -> Vec<Rational> {
+        match &self.measured {
+            Some(own) => own.steps(),
+            None => self.system().potentials().iter().map(|own| own.step.clone()).collect(),
+        }
+    }
+
+    /// What is proven of the system.
+    fn holds(&self, limits: &Limits) -> Result<Holds> {
+        if let Some(holds) = self.measured.as_ref().and_then(|own| own.holds().transpose()) {
+            return holds;
+        }
+        let analysis = self.decide(Route::Cheapest, limits)?;
+        Ok(match (analysis.is_proof(), analysis.is_stable()) {
+            (false, _) => Holds::NotTold,
+            (true, true) => Holds::Stable,
+            (true, false) => Holds::Unstable,
+        })
+    }
+}
+
+fn exact(x: f64) -> Rational {
+    from_f64_exact(x).expect("a finite end of a cell")
+}
+
+fn mean(lo: f64, hi: f64) -> Rational {
+    (exact(lo) + exact(hi)) / Rational::from_integer(2.into())
+}
