@@ -85,6 +85,7 @@
 //! | 8 | [`scene`] | input documents → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
 //! | 9 | [`recheck`] | every document's claims found again by another route |
+//! | 9 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
 //! | 10 | [`cli`] | arguments → a scene → the library → a report |
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
@@ -102,6 +103,8 @@
 //! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
 //! | `figure` | `report::figure` and the drawings of results |
 //! | `cli` | the program (default) |
+//! | `page` | `explore` without a network: what the page asks |
+//! | `explore` | the page served on this machine (axum, tokio) |
 
 #[cfg(feature = "advise")]
 pub mod advise;
@@ -109,6 +112,8 @@ pub mod avi;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod error;
+#[cfg(feature = "page")]
+pub mod explore;
 pub mod format;
 pub mod map;
 pub mod number;

@@ -7,6 +7,7 @@ mod args;
 mod closings;
 mod compare;
 mod curves;
+mod explore;
 mod generate;
 mod help;
 mod map;
@@ -78,6 +79,8 @@ enum Command {
     Advise(advise::Args),
     /// Runs Algorithm 1 on a system and shows energy and growth against the prediction.
     Simulate(simulate::Args),
+    /// A page on this machine to move in the plane of steps: maps, tongues and verdicts, at any depth.
+    Explore(explore::Args),
     /// Reads a scene file and computes the products that it wants.
     Run(run::Args),
     /// Rechecks every row of a JSON document that kickdrift wrote, by another route.
@@ -196,6 +199,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::System(args) => args.run(common)?,
         Command::Advise(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
+        Command::Explore(args) => args.run(common)?,
         Command::Generate(args) => args.run(whole(), common)?,
     }
     Ok(0)

@@ -28,6 +28,12 @@ impl Grid {
         let sum: f64 = (0..SAMPLE).map(|n| kicks(scattered(n, pairs))).sum();
         sum / SAMPLE as f64 * pairs as f64
     }
+
+    /// No pair composes more kicks than this.
+    pub fn longest(&self) -> u64 {
+        let (a, b) = self.step_ratio();
+        (self.columns().1 * b).min(self.rows().1 * a) / 2 + 1
+    }
 }
 
 /// A number below `pairs`, one for each n (SplitMix64).
@@ -42,10 +48,8 @@ fn scattered(n: u64, pairs: u64) -> u64 {
 /// A budget error that states the cost where this part of the map exceeds the limit.
 pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
     let (pairs, most) = (shard.pairs(grid), limits.kicks.saturating_mul(TIMES_A_PAIR) as f64);
-    // No pair composes more kicks than this: most maps need no estimate.
-    let (a, b) = grid.step_ratio();
-    let longest = (grid.columns().1 * b).min(grid.rows().1 * a) / 2 + 1;
-    if pairs as f64 * longest as f64 <= most {
+    // Most maps need no estimate.
+    if pairs as f64 * grid.longest() as f64 <= most {
         return Ok(());
     }
     let kicks = grid.kicks() * (pairs as f64 / grid.pairs() as f64);

@@ -150,12 +150,21 @@ impl Scene {
         self.lambda1.as_ref().ok_or_else(|| missing("lambda1", "\"pi^2/25\""))
     }
 
+    /// λ1 and λ2.
+    ///
+    /// # Errors
+    /// Where the scene lacks one of them.
+    pub fn stiffnesses(&self) -> Result<(Laurent, Laurent)> {
+        Ok((self.lambda1()?.clone(), self.lambda2()?.clone()))
+    }
+
     /// The grid of step pairs on the scene's oscillator.
     ///
     /// # Errors
     /// Where the scene lacks it or a stiffness, or holds no pair.
     pub fn grid(&self) -> Result<Grid> {
-        self.range()?.of(self.lambda1()?.clone(), self.lambda2()?.clone())
+        let (lambda1, lambda2) = self.stiffnesses()?;
+        self.range()?.of(lambda1, lambda2)
     }
 
     /// The spacings and ranges of the steps.

@@ -8,7 +8,7 @@ use std::path::Path;
 use sources::Sources;
 
 /// The floor of each module; `error` lies below them all.
-const FLOORS: [(&str, u32); 18] = [
+const FLOORS: [(&str, u32); 19] = [
     ("format", 0),
     ("vector", 0),
     ("number", 0),
@@ -26,6 +26,7 @@ const FLOORS: [(&str, u32); 18] = [
     ("scene", 8),
     ("report", 8),
     ("recheck", 9),
+    ("explore", 9),
     ("cli", 10),
 ];
 

@@ -1,0 +1,139 @@
+//! `kickdrift explore`: a page on this machine to move in the plane of steps.
+
+use std::path::PathBuf;
+
+use super::args::{Common, of};
+use crate::error::Result;
+use crate::number::Laurent;
+use crate::number::parse::parse;
+
+const EXAMPLES: &str = "Examples:
+  The plane of the paper's Figure 1; the address of the page is printed, and opened in the browser:
+    kickdrift explore
+  Other stiffnesses; what a scene file shows; a system of many clocks:
+    kickdrift explore --lambda1 10 --lambda2 2/5
+    kickdrift explore data/scenes/figure1.json
+    kickdrift explore data/scenes/diatomic-tether.json
+  Bonds of 10 fs beside the rest of 40 fs; on another machine, its port forwarded (ssh -L 8765:127.0.0.1:8765):
+    kickdrift explore --period 10 --period 40 --units fs
+    kickdrift explore --no-open --port 8765";
+
+/// Flags of `explore`.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Args {
+    /// A scene or a system, a JSON file as data/scenes/figure1.json [default: Figure 1 of the paper].
+    #[arg(value_name = "SCENE.json", conflicts_with_all = ["lambda1", "lambda2", "period"])]
+    scene: Option<PathBuf>,
+    /// The stiffness of the fast force, as 10 or pi^2.
+    #[arg(long, value_name = "X", requires = "lambda2", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda1: Option<Laurent>,
+    /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
+    #[arg(long, value_name = "Y", requires = "lambda1", allow_hyphen_values = true, value_parser = of(parse))]
+    lambda2: Option<Laurent>,
+    /// A period in place of a stiffness, (2 pi/T)^2: twice, the fast force first.
+    #[arg(long, value_name = "T", conflicts_with_all = ["lambda1", "lambda2"], value_parser = of(parse))]
+    period: Vec<Laurent>,
+    /// The unit of time, for the page's words.
+    #[arg(long, value_name = "UNIT")]
+    units: Option<String>,
+    /// The port to listen at [default: a free one].
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    port: u16,
+    /// Print the address and do not open the browser.
+    #[arg(long)]
+    no_open: bool,
+}
+
+impl Args {
+    /// Serves the page until the process is interrupted.
+    #[cfg(feature = "explore")]
+    pub fn run(&self, common: &Common) -> Result<()> {
+        let server = crate::explore::serve::Server::bind(self.session()?, self.port, common.threads())?;
+        let address = server.address();
+        crate::report::file::write_output(None, format!("{address}\n").as_bytes())?;
+        if !self.no_open && !open(&address) && !common.quiet {
+            eprintln!("kickdrift: no browser could be started: open the address above");
+        }
+        match server.run()? {}
+    }
+
+    /// Says how to get a program that can.
+    #[cfg(not(feature = "explore"))]
+    pub fn run(&self, _common: &Common) -> Result<()> {
+        let remedy = "this program was built without it; run cargo install --path . --features explore";
+        Err(crate::error::Error::missing("feature explore", remedy))
+    }
+}
+
+#[cfg(feature = "explore")]
+mod ways {
+    use std::process::{Command, Stdio};
+
+    use super::Args;
+    use crate::error::{Error, Result};
+    use crate::explore::Session;
+    use crate::number::{ExactSign, Laurent, Rational, Sign};
+    use crate::scene::{Scene, SystemScene};
+
+    impl Args {
+        /// What the page starts on.
+        pub(super) fn session(&self) -> Result<Session> {
+            let session = match (&self.scene, &self.lambda1, &self.lambda2, self.period.as_slice()) {
+                (Some(path), ..) => of_file(path)?,
+                (None, Some(lambda1), Some(lambda2), _) => Session::new(lambda1.clone(), lambda2.clone())?,
+                (None, _, _, [fast, slow]) => Session::new(stiffness(fast)?, stiffness(slow)?)?,
+                (None, _, _, []) => Session::figure1(),
+                (None, _, _, other) => {
+                    let given = format!("given {} times", other.len());
+                    return Err(Error::input("period", given, "give it twice, the fast force's first"));
+                }
+            };
+            Ok(match &self.units {
+                Some(unit) => session.in_unit(unit),
+                None => session,
+            })
+        }
+    }
+
+    /// (2π/T)².
+    fn stiffness(period: &Laurent) -> Result<Laurent> {
+        let four_pi_squared = Laurent::monomial(Rational::from_integer(4.into()), 2);
+        let squared = (period.sign() == Sign::Positive)
+            .then(|| four_pi_squared.checked_div(&(period * period)))
+            .flatten();
+        squared.ok_or_else(|| {
+            Error::input("period", period, "must be positive, a number or one times a power of pi")
+        })
+    }
+
+    /// A scene, or a system, whose schema says that it is one.
+    fn of_file(path: &std::path::Path) -> Result<Session> {
+        let text = std::fs::read_to_string(path).map_err(|cause| {
+            let text =
+                format!("cannot read it ({cause}): name a scene or a system, as data/scenes/figure1.json");
+            Error::io(path.display(), text).caused_by(cause)
+        })?;
+        let value: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+        if value["schema"].as_str().is_some_and(|schema| schema.starts_with("kickdrift/system/")) {
+            let folder = path.parent().unwrap_or(std::path::Path::new(""));
+            return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
+        }
+        Session::of_scene(&Scene::read(&text)?)
+    }
+
+    /// Whether a browser was started on the address.
+    pub(super) fn open(address: &str) -> bool {
+        let (program, first): (&str, &[&str]) = match std::env::consts::OS {
+            "macos" => ("open", &[]),
+            "windows" => ("rundll32", &["url.dll,FileProtocolHandler"]),
+            _ => ("xdg-open", &[]),
+        };
+        let mut command = Command::new(program);
+        command.args(first).arg(address).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+        command.spawn().is_ok()
+    }
+}
+
+#[cfg(feature = "explore")]
+use ways::open;

@@ -1,0 +1,148 @@
+//! What a page starts on.
+
+use num_traits::Pow;
+
+use crate::error::Result;
+use crate::number::parse::parse;
+use crate::number::{ExactSign, Laurent, Rational, Sign, rational};
+use crate::propagator::Oscillator;
+use crate::scene::{Scene, StepRange, SystemScene};
+
+/// What a page starts on; every question may name other stiffnesses and another window.
+#[derive(Debug)]
+pub struct Session {
+    stiffnesses: Option<(Laurent, Laurent)>,
+    window: [StepRange; 2],
+    /// The spacing of the map, about a thousandth of the window where none was given.
+    step: Rational,
+    /// The unit of time, where there is one.
+    unit: Option<String>,
+    title: String,
+    system: Option<SystemScene>,
+}
+
+/// Points of a map across the window, about.
+const ACROSS: f64 = 1000.0;
+
+impl Session {
+    /// Two stiffnesses, the window reaching to where either clock alone is unstable.
+    ///
+    /// # Errors
+    /// λ1 ≤ 0.
+    pub fn new(lambda1: Laurent, lambda2: Laurent) -> Result<Session> {
+        // It is checked where it is used by others.
+        Oscillator::new(
+            lambda1.clone(),
+            lambda2.clone(),
+            Laurent::from_integer(1),
+            Laurent::from_integer(1),
+        )?;
+        let window = natural(&lambda1, &lambda2);
+        Ok(Session {
+            step: spacing(&window),
+            window,
+            stiffnesses: Some((lambda1, lambda2)),
+            unit: None,
+            title: String::new(),
+            system: None,
+        })
+    }
+
+    /// The paper's Figure 1: λ1 = π², λ2 = π²/25.
+    pub fn figure1() -> Session {
+        let x = |text| parse("figure 1", text).expect("a number");
+        let session = Session::new(x("pi^2"), x("pi^2/25")).expect("positive");
+        session.within([(x("0"), x("2/pi")), (x("0"), x("7/2"))])
+    }
+
+    /// What a scene shows.
+    ///
+    /// # Errors
+    /// A stiffness that is not there.
+    pub fn of_scene(scene: &Scene) -> Result<Session> {
+        let (lambda1, lambda2) = scene.stiffnesses()?;
+        let mut session = Session::new(lambda1, lambda2)?;
+        session.title = scene.title.clone();
+        if let Some(grid) = &scene.grid {
+            session = session.within(grid.ranges().clone());
+            session.step = grid.steps()[0].as_rational().unwrap_or(session.step);
+        }
+        Ok(match &scene.window {
+            Some(window) => session.within(window.clone()),
+            None => session,
+        })
+    }
+
+    /// A system; its two springs' plane where it is two clocks on one oscillator.
+    pub fn of_system(system: SystemScene) -> Session {
+        let two = system.many_clocks().filter(|clocks| clocks.strengths().len() == 2);
+        let stiffnesses = two.map(|clocks| (clocks.strengths()[0].clone(), clocks.strengths()[1].clone()));
+        let known = stiffnesses.and_then(|(lambda1, lambda2)| Session::new(lambda1, lambda2).ok());
+        let mut session = known.unwrap_or_else(|| Session { stiffnesses: None, ..Session::figure1() });
+        session.title = system.title().into();
+        session.unit = system.time_unit().map(Into::into);
+        session.system = Some(system);
+        session
+    }
+
+    /// The same with another window.
+    #[must_use]
+    pub fn within(self, window: [StepRange; 2]) -> Session {
+        Session { step: spacing(&window), window, ..self }
+    }
+
+    /// The same with a unit of time.
+    #[must_use]
+    pub fn in_unit(self, unit: &str) -> Session {
+        Session { unit: Some(unit.into()), ..self }
+    }
+
+    pub(super) fn stiffnesses(&self) -> Option<&(Laurent, Laurent)> {
+        self.stiffnesses.as_ref()
+    }
+
+    pub(super) fn window(&self) -> &[StepRange; 2] {
+        &self.window
+    }
+
+    pub(super) fn step(&self) -> &Rational {
+        &self.step
+    }
+
+    pub(super) fn unit(&self) -> Option<&str> {
+        self.unit.as_deref()
+    }
+
+    pub(super) fn title(&self) -> &str {
+        &self.title
+    }
+
+    pub(super) fn system(&self) -> Option<&SystemScene> {
+        self.system.as_ref()
+    }
+}
+
+/// 0 to the Verlet limit 2/√λ of either clock; where the slow one has none, as far as Figure 1 goes: to 3.5 half periods of the fast one.
+fn natural(lambda1: &Laurent, lambda2: &Laurent) -> [StepRange; 2] {
+    let limit = |lambda: &Laurent| 2.0 / lambda.to_f64().sqrt();
+    let own = if lambda2.sign() == Sign::Positive { 1.1 * limit(lambda2) } else { f64::INFINITY };
+    let most = 3.5 * std::f64::consts::FRAC_PI_2 * limit(lambda1);
+    let to = |x: f64| (Laurent::from_integer(0), Laurent::from_rational(short(x, 2)));
+    [to(limit(lambda1)), to(own.min(most.max(limit(lambda1))))]
+}
+
+/// A thousandth of the window's smaller side, to one digit.
+fn spacing([h1, h2]: &[StepRange; 2]) -> Rational {
+    let width = |(lo, hi): &StepRange| hi.to_f64() - lo.to_f64();
+    short(width(h1).min(width(h2)) / ACROSS, 1)
+}
+
+/// x > 0 to so many significant digits, rounded up in the last one.
+pub(super) fn short(x: f64, digits: i32) -> Rational {
+    let exponent = (x.log10().floor() as i32).saturating_sub(digits - 1);
+    let ten = Rational::from_integer(10.into());
+    let power = |n: i32| Pow::pow(&ten, n.unsigned_abs());
+    let unit = if exponent < 0 { power(exponent).recip() } else { power(exponent) };
+    let digits = rational::from_f64_exact(x).map_or_else(|| ten.clone(), |x| (x / &unit).ceil());
+    digits * unit
+}

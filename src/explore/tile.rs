@@ -1,0 +1,214 @@
+//! Tiles: the certified verdicts of a map, by the kernel that makes maps.
+//!
+//! Level l and place (x, y) mean the `size`² pairs h1 = (x size + i + 1) d1, h2 = (y size + j + 1) d2 with d1 = unit/(size 2^l): some of the
+//! pairs that a map of the whole plane with these spacings has. What a tile costs doubles with each level, since p and q grow; it is known
+//! before the work begins, by the map's own law.
+
+use std::sync::atomic::AtomicBool;
+
+use num_bigint::{BigInt, BigUint};
+use num_traits::ToPrimitive;
+
+use super::query::{Query, count, positive, whole};
+use super::reply::Reply;
+use super::session::Session;
+use crate::error::{Error, Result};
+use crate::map::{Band, Enclosure, Grid, Map, Products, Resources};
+use crate::number::{Laurent, Rational};
+use crate::verdict::{Kind, Limits, Verdict};
+
+/// Kicks that the verdicts of a tile may compose: about two seconds of a core.
+pub(super) const MOST_KICKS: u64 = 4_000_000_000;
+
+/// Multiples of a spacing that a grid can have.
+pub(super) const LARGEST: u64 = 1 << 26;
+
+/// The fewest and the most points across.
+pub(super) const SIZES: (u64, u64) = (16, 512);
+
+/// The deepest level.
+const DEEPEST: u64 = 4096;
+
+/// What the values are.
+#[derive(Clone, Copy, PartialEq)]
+enum What {
+    /// A byte: 0 elliptic, 1 hyperbolic, 2 parabolic, 3 coexistence; 4 more where Tr Q < 0.
+    Verdict,
+    /// f32: the growth rate per unit time, 0 where nothing grows exponentially.
+    Growth,
+    /// Two i16: a and b of the dominant family; a = −32768 where there is none.
+    Family,
+}
+
+impl What {
+    fn read(field: &str, text: &str) -> Result<What> {
+        match text {
+            "verdict" => Ok(What::Verdict),
+            "growth" => Ok(What::Growth),
+            "family" => Ok(What::Family),
+            _ => Err(Error::input(field, text, "choose verdict, growth or family")),
+        }
+    }
+
+    fn products(self) -> Products {
+        Products { label: self == What::Family, growth: self == What::Growth }
+    }
+
+    /// Bytes of a value.
+    fn width(self) -> usize {
+        [1, 4, 4][self as usize]
+    }
+}
+
+/// 16 bytes, `KDT1`, the size and what as u32, the largest growth as f32; then the values, row by row from the lowest h2. All little endian.
+pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+    let place = Place::read(query)?;
+    let what = query.read("what", What::read)?.unwrap_or(What::Verdict);
+    let (lambda1, lambda2) = query.stiffnesses(session)?;
+    let Some([columns, rows]) = place.multiples() else {
+        return Ok(refused(place.cost()));
+    };
+    let steps = place.steps().map(Laurent::from_rational);
+    let range = |(first, last): (u64, u64), step: &Laurent| {
+        let times = |n: u64| step * &Laurent::from_rational(Rational::from_integer(n.into()));
+        (times(first), times(last))
+    };
+    let ranges = (range(columns, &steps[0]), range(rows, &steps[1]));
+    let grid = Grid::new(lambda1, lambda2, steps, ranges.0, ranges.1)?;
+    // Most tiles need no estimate.
+    if grid.pairs() as f64 * grid.longest() as f64 > MOST_KICKS as f64 {
+        let kicks = grid.kicks();
+        if kicks > MOST_KICKS as f64 {
+            return Ok(refused(kicks));
+        }
+    }
+    let mut tile = Tile::new(what, place.size as usize);
+    let resources = Resources { threads: 1, limits: Limits::default(), stopped: Some(stop) };
+    Map::of(&grid).with(what.products()).within(resources).for_each_band(|_, band| {
+        tile.add(&grid, &band);
+        Ok(())
+    })?;
+    Ok(Reply::new("application/octet-stream", tile.bytes()))
+}
+
+fn refused(kicks: f64) -> Reply {
+    let message = format!("the verdicts of this tile would compose about {kicks:.1e} kicks");
+    Reply::too_costly(Some(kicks), MOST_KICKS, &message)
+}
+
+/// Which points.
+struct Place {
+    units: [Rational; 2],
+    level: u64,
+    at: [BigUint; 2],
+    size: u64,
+}
+
+impl Place {
+    fn read(query: &Query) -> Result<Place> {
+        let unit = query.need("unit", positive)?;
+        Ok(Place {
+            units: [unit.clone(), query.read("unit2", positive)?.unwrap_or(unit)],
+            level: query.need("level", count(0, DEEPEST))?,
+            at: [query.need("x", whole)?, query.need("y", whole)?],
+            size: query.read("size", count(SIZES.0, SIZES.1))?.unwrap_or(256),
+        })
+    }
+
+    /// d1 and d2.
+    fn steps(&self) -> [Rational; 2] {
+        let parts = BigInt::from(self.size) << self.level;
+        self.units.each_ref().map(|unit| unit / &parts)
+    }
+
+    /// The first and the last multiples of the spacings, where a grid can have them.
+    fn multiples(&self) -> Option<[(u64, u64); 2]> {
+        let [x, y] = self.at.each_ref().map(|at| {
+            let first = at.to_u64()?.checked_mul(self.size)?;
+            (first + self.size < LARGEST).then_some((first + 1, first + self.size))
+        });
+        Some([x?, y?])
+    }
+
+    /// Σ (min(p, q)/2 + 1) where the multiples i, j are so large that they have a common factor as numbers drawn at random have:
+    /// the mean of 1/gcd is ζ(3)/ζ(2) = 0.7308.
+    fn cost(&self) -> f64 {
+        let [d1, d2] = self.units.each_ref().map(|unit| unit.to_f64().unwrap_or(f64::INFINITY));
+        let [x, y] =
+            self.at.each_ref().map(|at| (at.to_f64().unwrap_or(f64::INFINITY) + 0.5) * self.size as f64);
+        let least = x.min(y * d2 / d1);
+        (self.size * self.size) as f64 * (0.7308 * least / 2.0 + 1.0)
+    }
+}
+
+/// Values as they come in.
+struct Tile {
+    what: What,
+    size: usize,
+    values: Vec<u8>,
+    largest: f32,
+}
+
+impl Tile {
+    fn new(what: What, size: usize) -> Tile {
+        let mut tile = Tile { what, size, values: vec![0; size * size * what.width()], largest: 0.0 };
+        if what == What::Family {
+            tile.values.chunks_mut(4).for_each(|pair| pair[..2].copy_from_slice(&i16::MIN.to_le_bytes()));
+        }
+        tile
+    }
+
+    /// Bands come column by column; a tile is written row by row.
+    fn add(&mut self, grid: &Grid, band: &Band) {
+        let first = (band.first - grid.columns().0) as usize;
+        let at = |n: usize| (n % band.rows) * self.size + first + n / band.rows;
+        if self.what == What::Verdict {
+            for (n, &verdict) in band.verdicts.iter().enumerate() {
+                self.values[at(n)] = code(Verdict::ALL[usize::from(verdict)]);
+            }
+            return;
+        }
+        let step = grid.steps().0.to_f64();
+        for growing in &band.growing {
+            let n = growing.position as usize;
+            let (i, j) = band.multipliers(grid, n);
+            let ratio = grid.ratio(i, j);
+            let value = match self.what {
+                What::Family => {
+                    let (a, b) = growing.family(ratio).unwrap_or((i64::from(i16::MIN), 0));
+                    let [a, b] = [a, b].map(|x| x.clamp(-32768, 32767) as i16);
+                    (u32::from(b as u16) << 16 | u32::from(a as u16)).to_le_bytes()
+                }
+                _ => {
+                    // T = p h1.
+                    let rate =
+                        growing.rate(ratio.p() as f64 * (i as f64 * step)).map_or(0.0, Enclosure::middle);
+                    self.largest = self.largest.max(rate as f32);
+                    (rate as f32).to_le_bytes()
+                }
+            };
+            let place = 4 * at(n);
+            self.values[place..place + 4].copy_from_slice(&value);
+        }
+    }
+
+    fn bytes(self) -> Vec<u8> {
+        let mut bytes = b"KDT1".to_vec();
+        bytes.extend((self.size as u32).to_le_bytes());
+        bytes.extend((self.what as u32).to_le_bytes());
+        bytes.extend(self.largest.to_le_bytes());
+        bytes.extend(self.values);
+        bytes
+    }
+}
+
+/// 0 elliptic, 1 hyperbolic, 2 parabolic, 3 coexistence; 4 more where Tr Q ≤ −2.
+pub(super) fn code(verdict: Verdict) -> u8 {
+    let kind = match verdict.kind() {
+        Kind::Elliptic => 0,
+        Kind::Hyperbolic => 1,
+        Kind::Parabolic => 2,
+        Kind::Coexistence => 3,
+    };
+    if verdict.side() < 0 { kind + 4 } else { kind }
+}
