@@ -1,0 +1,141 @@
+// Below the map: growth along a cut, the tongues of one ratio over rho, a system's growth over its outer step.
+
+import { latest } from "./ask.js";
+import { css, family } from "./colours.js";
+import { h, iconButton, step } from "./dom.js";
+import { parse } from "./exact.js";
+import { plot } from "./plot.js";
+import { enclosure, exactly, mathematics, number } from "./writing.js";
+
+const minus = (source) => String(source).replace(/-/g, "−");
+const label = ({ m, a, b }) => minus(`m = ${m} (${a}, ${b})`);
+
+/** Ends of a growth axis, from zero; one that is flat gets a height all the same. */
+const upward = (rates) => {
+  const most = Math.max(0, ...rates.filter((rate) => rate !== null));
+  return { lo: 0, hi: most > 0 ? 1.08 * most : 1 };
+};
+
+const table = (caption, head, rows) =>
+  h("details", {}, h("summary", {}, caption), h("div.scroll", { tabindex: 0, role: "region", "aria-label": caption }, h("table", {}, h("thead", {}, h("tr", {}, ...head.map((cell) => h("th", { scope: "col" }, ...[cell].flat())))), h("tbody", {}, ...rows.map((row) => h("tr", {}, ...row.map((cell) => h("td", {}, cell))))))));
+
+export class Drawer {
+  /** `shared()`: {lambda1, lambda2, rho, values, palette, unit, pin}; `act`: {close(kind), probe(t), rho(text), ratio(text)}. */
+  constructor(host, questions, shared, act) {
+    Object.assign(this, { host, questions, shared, act, shown: null, data: null });
+    this.title = h("h2", {});
+    this.field = h("div.plot", {});
+    this.below = h("div.below", {});
+    this.extra = h("div.row", {});
+    this.host.append(h("div.head", {}, this.title, this.extra, iconButton("close", "Close the plot", () => act.close(this.shown?.kind))), this.field, this.below);
+    this.load = latest(async (kind, path, params, signal) => {
+      const data = await questions.json(path, params, signal);
+      this.data = { kind, ...data };
+      this.paint();
+    }, 30);
+    new ResizeObserver(() => this.paint()).observe(this.field);
+  }
+
+  /** `what`: null, {kind: "cut", ...cut}, {kind: "strip", ratio} or {kind: "system"}. */
+  show(what) {
+    const { lambda1, lambda2 } = this.shared();
+    const key = what && JSON.stringify([what, lambda1, lambda2]);
+    this.host.hidden = !what;
+    if (!what || this.key === key) return;
+    Object.assign(this, { key, shown: what });
+    this.#head(what);
+    this.field.classList.add("busy");
+    this.#ask(what, { lambda1, lambda2 }).catch((error) => {
+      this.data = null;
+      this.field.classList.remove("busy");
+      this.field.replaceChildren(h("p.quiet", { role: "status" }, error.message));
+      this.below.replaceChildren();
+    });
+  }
+
+  #ask(what, springs) {
+    if (what.kind === "cut") {
+      const { along, value, lo, hi } = what;
+      return this.load("cut", "cut", { ...springs, kind: along, value, lo, hi, samples: 401 });
+    }
+    if (what.kind === "strip") return this.load("strip", "strip", { ratio: what.ratio, rho: "1/1000..10", samples: 81 });
+    return this.load("system", "system", what.outer ? { outer: what.outer, samples: 401 } : { samples: 401 });
+  }
+
+  #head(what) {
+    this.extra.replaceChildren();
+    if (what.kind === "cut") {
+      const fixed = parse(what.value);
+      const name = { h1: step(1), h2: step(2), ratio: [step(2), "/", step(1)] }[what.along];
+      this.title.replaceChildren("Growth along ", ...[name].flat(), " = ", what.along === "ratio" ? what.value : exactly(fixed, 20));
+    } else if (what.kind === "strip") {
+      const input = h("input", { id: "strip-ratio", value: what.ratio, size: 6, "aria-label": "Ratio p/q of the strip", onchange: () => this.act.ratio(input.value) });
+      this.title.replaceChildren("Tongues of ", step(2), "/", step(1), " = ", what.ratio);
+      this.extra.append(h("label.entry", {}, h("i", {}, "p/q"), input));
+    } else this.title.replaceChildren("Growth against the outer step");
+  }
+
+  paint() {
+    if (!this.data || !this.shown || this.host.hidden || this.data.kind !== this.shown.kind) return;
+    this.field.classList.remove("busy");
+    this[`_${this.data.kind}`](this.data);
+  }
+
+  _cut({ x, rate, kind, axis, intervals }) {
+    const { palette, unit } = this.shared();
+    const [lo, hi] = [x[0], x.at(-1)];
+    const layers = [{ kind: "line", x, y: rate, colour: css(palette.kinds[1]), below: true }];
+    if (intervals?.length) {
+      layers.unshift({ kind: "spans", colour: css(palette.accent), spans: intervals.map((t) => ({ lo: t.lower.lo, hi: t.upper ? t.upper.hi : null, label: label(t) })) });
+    }
+    const edges = [2, 3].map((value) => ({ value, at: x.filter((_, k) => (kind?.[k] & 3) === value) }));
+    for (const { value, at } of edges) if (at.length) layers.push({ kind: "points", x: at, y: at.map(() => 0), colour: css(palette.kinds[value]) });
+    const index = axis === "h1" ? 1 : 2;
+    plot(this.field, {
+      x: { lo, hi, title: `*h*_${index} (${unit})` },
+      y: { ...upward(rate), title: `growth rate (1/${unit})` },
+      layers, label: `Growth rate along the cut, ${intervals?.length ?? 0} tongues`,
+      probe: (at) => this.act.probe(at === null ? null : (at - lo) / (hi - lo)),
+    });
+    if (this.shown.along !== "ratio") {
+      const lost = rate.filter((r) => r === null).length;
+      this.below.replaceChildren(h("p.quiet", {}, `${x.length - lost} exact verdicts, evenly spaced; between them other ratios, and other tongues, lie.`, lost ? ` ${lost} would cost too much and are left out.` : ""));
+      return;
+    }
+    const cells = intervals.map((t) => [String(t.m), minus(`(${t.a}, ${t.b})`), enclosure(t.lower), t.upper ? enclosure(t.upper) : "∞"]);
+    this.below.replaceChildren(table(`${intervals.length} unstable intervals, certified edges`, [h("i", {}, "m"), "family", ["from ", step(index)], "to"], cells));
+  }
+
+  _strip({ rho, tongues, closings }) {
+    const { palette, values } = this.shared();
+    const most = Math.max(4.4, ...closings.map(({ s }) => Math.min(1.1 * s, 12)));
+    const bands = tongues.map((t) => ({ kind: "band", x: rho, lower: t.lower, upper: t.upper, colour: css(family(palette, t.a)), label: label(t) }));
+    const layers = [...bands, { kind: "upright", at: values.rho, colour: css(palette.ink) }];
+    if (closings.length) {
+      layers.push({ kind: "points", x: closings.map((c) => c.rho), y: closings.map((c) => c.s), colour: css(palette.ink), label: (k) => `m = ${closings[k].m} closes at s = ${number(closings[k].s, 6)}, ρ = ${number(closings[k].rho, 6)}` });
+    }
+    plot(this.field, {
+      x: { lo: rho[0], hi: rho.at(-1), log: true, title: "*ρ* = *λ*_2/*λ*_1" },
+      y: { lo: 0, hi: most, title: "*s* = *h*_1 ²*λ*_1".replace("_1 ²", "_1²") },
+      layers, label: `Tongues over rho: ${tongues.length}; closings: ${closings.length}`,
+      pick: (at) => this.act.rho(String(Number(at.toPrecision(3)))),
+    });
+    const cells = closings.map((c) => [String(c.m), c.exact?.[0] ? mathematics(c.exact[0]) : number(c.s, 12), c.exact?.[1] ? mathematics(c.exact[1]) : number(c.rho, 12)]);
+    const said = h("p.quiet", {}, "A dashed line marks the map's ", h("i", {}, "ρ"), "; a click takes another. ", closings.length ? "Circles: the tongue closes, the resonance does not destabilize." : "No tongue closes here.");
+    this.below.replaceChildren(said, ...(closings.length ? [table(`${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
+  }
+
+  _system({ outer, rate, modes, unit }) {
+    const { palette } = this.shared();
+    plot(this.field, {
+      x: { lo: outer[0], hi: outer.at(-1), title: `outer step (${unit ?? "time"})` },
+      y: { ...upward(rate), title: `growth rate (1/${unit ?? "time"})` },
+      layers: [{ kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }],
+      label: "Growth rate against the outer step",
+      probe: () => {},
+    });
+    const keys = modes?.length ? Object.keys(modes[0]) : [];
+    const cells = (modes ?? []).map((mode) => keys.map((key) => (typeof mode[key] === "number" ? number(mode[key], 6) : typeof mode[key] === "object" && mode[key] && "lo" in mode[key] ? enclosure(mode[key]) : String(mode[key] ?? "–"))));
+    this.below.replaceChildren(...(keys.length ? [table(`${modes.length} modes`, keys.map((key) => key.replace(/_/g, " ")), cells)] : []));
+  }
+}

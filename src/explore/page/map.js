@@ -1,0 +1,203 @@
+// The map: a canvas that draws tiles, lines, marks and axes of one view.
+
+import { drawAxes, SERIF } from "./axes.js";
+import { css } from "./colours.js";
+import { parse } from "./exact.js";
+import { layerKey, Tiles } from "./tiles.js";
+import { drawLabels, Vectors } from "./vectors.js";
+import { View } from "./view.js";
+
+export class StabilityMap {
+  /** `settings()`: {layer, palette, tongues, maxSum, curves, labels, unit, pin, cut}; `report(status)` after each picture. */
+  constructor(canvas, questions, step, settings, report) {
+    Object.assign(this, { canvas, settings, report, frames: 0, cursor: null, stale: null, drawn: null });
+    this.context = canvas.getContext("2d", { alpha: false });
+    this.view = new View(step);
+    this.tiles = new Tiles(questions, () => this.redraw());
+    this.vectors = new Vectors(questions, () => this.redraw());
+    this.tiles.failed = (error) => this.report({ failed: error.message });
+    this.box = [0, 0, 1, 1];
+  }
+
+  /** Draws before the next frame is shown. */
+  redraw() {
+    if (this.due) return;
+    this.due = requestAnimationFrame(() => {
+      this.due = null;
+      this.paint();
+    });
+  }
+
+  /** The plot's box within an element of this size. */
+  resize(width, height) {
+    const [left, bottom, top, right] = this.narrow ? [56, 48, 10, 12] : [74, 58, 12, 16];
+    const ratio = window.devicePixelRatio || 1;
+    const [w, h] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
+    this.ratio = ratio;
+    this.box = [left, top, Math.max(20, Math.round(width) - left - right), Math.max(20, Math.round(height) - top - bottom)];
+    this.view.resize(this.box[2], this.box[3]);
+    this.redraw();
+  }
+
+  get narrow() {
+    return this.canvas.clientWidth < 520;
+  }
+
+  paint() {
+    const { context, view, box, ratio } = this;
+    const [left, top, width, height] = box;
+    const now = this.settings();
+    const { palette } = now;
+    this.frames += 1;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.fillStyle = css(palette.outside);
+    context.fillStyle = palette.page ?? css(palette.paper);
+    context.fillRect(0, 0, this.canvas.width, this.canvas.height);
+    context.save();
+    context.beginPath();
+    context.rect(left, top, width, height);
+    context.clip();
+    context.fillStyle = css(palette.paper);
+    context.fillRect(left, top, width, height);
+    context.translate(left, top);
+    const status = this.#cells(now);
+    this.#lines(now, status);
+    this.#outside(palette);
+    this.#marks(now);
+    context.restore();
+    status.offsets = drawAxes(context, view, palette, box, now.unit, this.narrow);
+    this.report({ ...status, level: view.level, sum: this.vectors.tongues?.data.max_sum, refused: this.vectors.refused });
+  }
+
+  /** Draws what is here of the tiles, and asks for what is not. */
+  #cells(now) {
+    const { view, tiles } = this;
+    const { level } = view;
+    const shown = view.tiles(level);
+    const costs = shown.map((place) => tiles.cost(now.layer, place));
+    const here = shown.map((place) => tiles.get(now.layer, place));
+    const lacking = here.filter((tile) => !tile).length;
+    const costly = costs.find(Boolean) ?? null;
+    const key = layerKey(now.layer);
+    if (lacking && this.stale && this.stale.key !== key) this.#under(this.stale.layer, now.palette, false);
+    else if (!lacking) this.stale = { key, layer: now.layer };
+    // Where cells would cost too much, coarser ones would be taken for them: they stay, but pale.
+    if (lacking) this.#under(now.layer, now.palette, costly !== null);
+    here.forEach((tile) => tile && this.#tile(tile, now.layer, now.palette));
+    const ring = lacking === 0 && !this.moving ? view.tiles(level, 1) : [];
+    tiles.want(now.layer, lacking ? shown : ring);
+    return { costly, lacking, waiting: lacking > costs.filter(Boolean).length };
+  }
+
+  /** Tiles of neighbouring levels, while those of this one are on their way. */
+  #under(layer, palette, pale) {
+    const { context, view, tiles } = this;
+    context.globalAlpha = pale ? 0.3 : 1;
+    for (const tile of tiles.around(layer, view, view.level, pale ? 4 : 6)) this.#tile(tile, layer, palette);
+    if (layerKey(layer) !== layerKey(this.settings().layer)) {
+      for (const place of view.tiles(view.level)) {
+        const tile = tiles.get(layer, place);
+        if (tile) this.#tile(tile, layer, palette);
+      }
+    }
+    context.globalAlpha = 1;
+  }
+
+  #tile(tile, layer, palette) {
+    const { context, ratio, box } = this;
+    const picture = this.tiles.picture(tile, layer, palette);
+    // Edges on whole pixels of the screen: neighbours meet without a seam.
+    const [l, t, r, b] = this.view.tileBox(tile.place).map((px, k) => {
+      const origin = box[k % 2];
+      return Math.round((px + origin) * ratio) / ratio - origin;
+    });
+    const scale = ((r - l) * ratio) / picture.width;
+    const whole = Math.abs(scale - Math.round(scale)) < 1e-3;
+    context.imageSmoothingEnabled = !whole && scale < 3;
+    context.imageSmoothingQuality = scale < 1 ? "medium" : "low";
+    context.drawImage(picture, l, t, r - l, b - t);
+  }
+
+  #lines(now, status) {
+    const { context, view, vectors } = this;
+    const byCost = status.costly !== null && now.tongues !== "off";
+    const shown = byCost || now.tongues === "on";
+    const tongues = shown ? { maxSum: byCost ? null : now.maxSum } : null;
+    if (!this.moving || !vectors.tongues) vectors.update(view, now.layer, { tongues, curves: now.curves });
+    const labels = [];
+    if (now.curves) labels.push(...vectors.drawCurves(context, view, now.palette));
+    if (shown) {
+      const style = { over: !byCost && now.layer.what !== "family", byFamily: now.layer.what === "family" };
+      labels.unshift(...vectors.drawTongues(context, view, now.palette, style));
+    }
+    if (now.labels) drawLabels(context, labels, now.palette, `14px ${SERIF}`);
+    status.vectors = shown;
+  }
+
+  /** Steps are positive: what lies below zero is no part of the map. */
+  #outside(palette) {
+    const { context, view } = this;
+    const [x, y] = [view.pixel(0, 0n, 0), view.pixel(1, 0n, 0)];
+    context.fillStyle = css(palette.outside);
+    if (x > 0) context.fillRect(0, 0, x, view.height);
+    if (y < view.height) context.fillRect(0, y, view.width, view.height - y);
+  }
+
+  /** The cut, the pinned pair, the cell below the pointer. */
+  #marks(now) {
+    const { context, view } = this;
+    const { accent, ink, paper } = now.palette;
+    const line = this.draft ?? (now.cut && this.cutLine(now.cut));
+    if (line) {
+      for (const [colour, wide] of [[css(paper, 0.8), 5], [css(accent), 2]]) {
+        context.strokeStyle = colour;
+        context.lineWidth = wide;
+        context.beginPath();
+        context.moveTo(line[0], line[1]);
+        context.lineTo(line[2], line[3]);
+        context.stroke();
+      }
+      if (this.probe !== undefined && this.probe !== null) {
+        this.#dot(line[0] + this.probe * (line[2] - line[0]), line[1] + this.probe * (line[3] - line[1]), accent, paper, 4.5);
+      }
+    }
+    if (now.pin) {
+      const [x, y] = now.pin.map((value, axis) => view.place(axis, value));
+      this.#dot(x, y, accent, paper, 5.5);
+    }
+    if (this.cursor) {
+      const [x, y] = this.cursor;
+      context.lineWidth = 1;
+      context.strokeStyle = css(ink, 0.55);
+      context.beginPath();
+      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+        context.moveTo(x + 5 * dx, y + 5 * dy);
+        context.lineTo(x + 13 * dx, y + 13 * dy);
+      }
+      context.stroke();
+    }
+  }
+
+  #dot(x, y, fill, edge, radius) {
+    const { context } = this;
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fillStyle = css(fill);
+    context.fill();
+    context.lineWidth = 2;
+    context.strokeStyle = css(edge);
+    context.stroke();
+  }
+
+  /** A cut as pixels from its `lo` to its `hi`. */
+  cutLine({ kind, value, lo, hi }) {
+    const [fixed, from, to] = [value, lo, hi].map(parse);
+    if (!fixed || !from || !to) return null;
+    const at = (axis, x) => this.view.place(axis, x);
+    if (kind === "h1") return [at(0, fixed), at(1, from), at(0, fixed), at(1, to)];
+    if (kind === "h2") return [at(0, from), at(1, fixed), at(0, to), at(1, fixed)];
+    const times = (x) => [x[0] * fixed[0], x[1] * fixed[1]];
+    return [at(0, from), at(1, times(from)), at(0, to), at(1, times(to))];
+  }
+}

@@ -1,0 +1,153 @@
+// Tiles: asked for, kept, cancelled, painted.
+
+import { painter } from "./colours.js";
+import { multiply, powerOfTwo, text } from "./exact.js";
+import { COARSEST, SIZE } from "./view.js";
+
+/** Tiles kept: at 256 x 256 cells some 300 MB with their pictures at worst. */
+const KEPT = 500;
+/** Questions under way at once: what a browser opens to one host. */
+const AT_ONCE = 6;
+const HEADER = 16;
+const ARRAYS = { verdict: [Uint8Array, 1], growth: [Float32Array, 1], family: [Int16Array, 2] };
+
+/** What a picture is of: tiles of different layers never mix. */
+export const layerKey = (l) => [l.lambda1, l.lambda2, l.step, l.stretch, l.what].join("|");
+const placeKey = (t) => `${t.level}/${t.x}/${t.y}`;
+const parent = (t, by = 1n) => ({ level: t.level - Number(by), x: t.x >> by, y: t.y >> by });
+
+export class Tiles {
+  /** `changed` is called when there is more to draw. */
+  constructor(questions, changed) {
+    Object.assign(this, { questions, changed, layers: new Map(), wanted: [], under: new Map(), clock: 0 });
+  }
+
+  /** The store of one layer. */
+  #layer(layer) {
+    const key = layerKey(layer);
+    if (!this.layers.has(key)) this.layers.set(key, { tiles: new Map(), costly: new Map(), refused: [Infinity, -Infinity] });
+    return this.layers.get(key);
+  }
+
+  get(layer, place) {
+    const tile = this.#layer(layer).tiles.get(placeKey(place));
+    if (tile) tile.used = ++this.clock;
+    return tile;
+  }
+
+  /** What a tile would cost where the server refused it or one that it lies in; else null. */
+  cost(layer, place) {
+    const { costly, refused } = this.#layer(layer);
+    if (costly.size === 0 || place.level < refused[0]) return null;
+    let at = place.level > refused[1] ? parent(place, BigInt(place.level - refused[1])) : place;
+    for (; at.level >= refused[0]; at = parent(at)) {
+      const found = costly.get(placeKey(at));
+      if (found) return found;
+    }
+    return null;
+  }
+
+  /** From now on these and no others are wanted; what is under way for others is cancelled. */
+  want(layer, places) {
+    const key = layerKey(layer);
+    const store = this.#layer(layer);
+    const open = places.filter((p) => !store.tiles.has(placeKey(p)) && !this.cost(layer, p));
+    const ids = new Set(open.map((p) => `${key}/${placeKey(p)}`));
+    for (const [id, controller] of this.under) if (!ids.has(id)) controller.abort();
+    this.wanted = open.map((place) => ({ place, layer, id: `${key}/${placeKey(place)}` }));
+    this.#next();
+  }
+
+  get pending() {
+    return this.under.size + this.wanted.length;
+  }
+
+  #next() {
+    while (this.under.size < AT_ONCE && this.wanted.length) {
+      const { id, layer, place } = this.wanted.shift();
+      if (!this.under.has(id)) this.#load(id, layer, place);
+    }
+  }
+
+  async #load(id, layer, place) {
+    const controller = new AbortController();
+    this.under.set(id, controller);
+    try {
+      this.#keep(layer, place, await this.#asked(layer, place, controller.signal));
+    } catch (error) {
+      if (error.tooCostly) {
+        const store = this.#layer(layer);
+        store.costly.set(placeKey(place), error.tooCostly);
+        store.refused = [Math.min(store.refused[0], place.level), Math.max(store.refused[1], place.level)];
+      } else if (!controller.signal.aborted) this.failed?.(error);
+    }
+    this.under.delete(id);
+    this.#next();
+    this.changed();
+  }
+
+  async #asked(layer, place, signal) {
+    const { lambda1, lambda2, what, exactStep, stretch } = layer;
+    const unit = multiply(exactStep, powerOfTwo(8 - COARSEST));
+    const params = {
+      lambda1, lambda2, what, size: SIZE,
+      unit: text(unit), unit2: text(multiply(unit, powerOfTwo(stretch))),
+      level: place.level - COARSEST, x: place.x, y: place.y,
+    };
+    return (await this.questions.bytes("tile", params, signal)).bytes;
+  }
+
+  #keep(layer, place, bytes) {
+    const head = new DataView(bytes);
+    const [Kind, each] = ARRAYS[layer.what];
+    if (String.fromCharCode(...new Uint8Array(bytes, 0, 4)) !== "KDT1" || head.getUint32(4, true) !== SIZE) {
+      throw new Error("a tile of a kind that this page does not know");
+    }
+    const values = new Kind(bytes, HEADER, SIZE * SIZE * each);
+    const { tiles } = this.#layer(layer);
+    tiles.set(placeKey(place), { place, values, each, picture: null, colours: null, used: ++this.clock });
+    this.#forget();
+  }
+
+  /** Drops the tiles that were not looked at for longest. */
+  #forget() {
+    const all = [...this.layers.values()].flatMap(({ tiles }) => [...tiles].map(([key, tile]) => [tile.used, tiles, key]));
+    if (all.length <= KEPT) return;
+    all.sort((a, b) => a[0] - b[0]).slice(0, all.length - KEPT + KEPT / 10).forEach(([, tiles, key]) => tiles.delete(key));
+  }
+
+  /** The value of a cell of a level, or undefined where its tile is not here. */
+  value(layer, level, [i, j]) {
+    const [a, b] = [i - 1n, j - 1n];
+    const tile = this.#layer(layer).tiles.get(placeKey({ level, x: a >> 8n, y: b >> 8n }));
+    if (!tile) return undefined;
+    const at = (Number(b & 255n) * SIZE + Number(a & 255n)) * tile.each;
+    return tile.each === 1 ? tile.values[at] : [tile.values[at], tile.values[at + 1]];
+  }
+
+  /** A tile as a picture, its lowest row at the bottom; painted once for each palette. */
+  picture(tile, layer, colours) {
+    if (tile.picture && tile.colours === colours) return tile.picture;
+    const paint = painter(layer.what, colours, layer.frequency);
+    const image = new ImageData(SIZE, SIZE);
+    const words = new Uint32Array(image.data.buffer);
+    for (let j = 0, at = 0; j < SIZE; j++) {
+      const row = (SIZE - 1 - j) * SIZE;
+      for (let i = 0; i < SIZE; i++, at += tile.each) words[row + i] = paint(tile.values[at]);
+    }
+    tile.picture ??= Object.assign(document.createElement("canvas"), { width: SIZE, height: SIZE });
+    tile.picture.getContext("2d").putImageData(image, 0, 0);
+    tile.colours = colours;
+    return tile.picture;
+  }
+
+  /** Tiles here that the screen shows, of the levels around `level`, coarse ones first. */
+  around(layer, view, level, coarser = 6, finer = 2) {
+    const here = [...this.#layer(layer).tiles.values()].filter(({ place }) => {
+      if (place.level < level - coarser || place.level > level + finer || place.level === level) return false;
+      const [l, t, r, b] = view.tileBox(place);
+      return r > 0 && l < view.width && b > 0 && t < view.height;
+    });
+    return here.sort((a, b) => a.place.level - b.place.level);
+  }
+}
