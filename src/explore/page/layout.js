@@ -40,7 +40,7 @@ export function layout(element, state, act) {
     pinned: (shown) => (cardPanel.hidden = !shown),
     note: { say: (said) => words.textContent !== said && (words.textContent = said) },
     offsets: (bases) => {
-      const said = (bases ?? []).map((base, axis) => base && `Numbers along h${"₁₂"[axis]} count from ${base}.`).filter(Boolean).join(" ");
+      const said = (bases ?? []).map((base, axis) => base && `Along h${"₁₂"[axis]} the numbers count from ${base}.`).filter(Boolean).join(" ");
       if (offsets.textContent !== said) offsets.textContent = said;
     },
     subject: (title, lambda1, lambda2, rho, unit) => {

@@ -173,7 +173,7 @@ class Explorer {
     if (!status.costly && status.vectors && status.sum) parts.push(`Lines: tongues with p + q ≤ ${status.sum}.`);
     if (status.refused && status.vectors) parts.push(status.refused);
     this.page.note.say(parts.join(" "), status.waiting);
-    this.page.where.textContent = `zoom ${status.level}`;
+    this.page.where.textContent = `zoom ${status.level}`.replace("-", "−");
     this.page.offsets(status.offsets);
     this.page.root.dataset.busy = String(Boolean(status.waiting));
     return undefined;
