@@ -14,6 +14,9 @@ import { legend } from "./panels.js";
 import { cutOf, cutThrough, pick, typed } from "./picking.js";
 import { exactly, mathematics, number, spacing } from "./writing.js";
 
+/** Bits that a centre is known to beyond the zoom at which it was chosen: levels that one may go down and still find it. */
+const DEEPER = 256;
+
 /** Kinds as a tile of each layer tells them; undefined where it does not. */
 const KIND = ["elliptic", "hyperbolic", "parabolic", "coexistence"];
 const kindOf = (what, value) => {
@@ -159,7 +162,6 @@ class Explorer {
 
   /** The grid in words, or what is shown instead of it. */
   #told(status) {
-    if (status.failed) return this.page.note.say(status.failed);
     const { view } = this.map;
     const [d1, d2] = [0, 1].map((axis) => spacing(view.unit(axis), status.level));
     this.status = status;
@@ -172,11 +174,11 @@ class Explorer {
     }
     if (!status.costly && status.vectors && status.sum) parts.push(`Lines: tongues with p + q ≤ ${status.sum}.`);
     if (status.refused && status.vectors) parts.push(status.refused);
-    this.page.note.say(parts.join(" "), status.waiting);
+    if (status.fault) parts.push(status.fault);
+    this.page.note.say(parts.join(" "));
     this.page.where.textContent = `zoom ${status.level}`.replace("-", "−");
     this.page.offsets(status.offsets);
     this.page.root.dataset.busy = String(Boolean(status.waiting));
-    return undefined;
   }
 
   // --- one pair -------------------------------------------------------------------------------------------------
@@ -295,7 +297,7 @@ class Explorer {
       certificate: () => said(save("certificate", "verdict.v")),
       document: () => said(save("document", "verdict.json")),
       centre: () => {
-        this.map.view.centreOn(pin.pair, 1200);
+        this.map.view.centreOn(pin.pair, DEEPER);
         this.#change();
         this.page.canvas.focus();
       },
@@ -348,7 +350,7 @@ class Explorer {
       go: (first, second) => {
         const pair = typed(first, second);
         if (!pair) return false;
-        this.map.view.centreOn(pair, 1200);
+        this.map.view.centreOn(pair, DEEPER);
         this.#pin(pair);
         this.#change();
         return true;

@@ -15,7 +15,7 @@ export class StabilityMap {
     this.view = new View(step);
     this.tiles = new Tiles(questions, () => this.redraw());
     this.vectors = new Vectors(questions, () => this.redraw());
-    this.tiles.failed = (error) => this.report({ failed: error.message });
+    this.tiles.failed = (error) => (this.fault = error.message);
     this.box = [0, 0, 1, 1];
   }
 
@@ -85,9 +85,9 @@ export class StabilityMap {
     // Where cells would cost too much, coarser ones would be taken for them: they stay, but pale.
     if (lacking) this.#under(now.layer, now.palette, costly !== null);
     here.forEach((tile) => tile && this.#tile(tile, now.layer, now.palette));
-    const ring = lacking === 0 && !this.moving ? view.tiles(level, 1) : [];
+    const ring = lacking === 0 && !this.moving && tiles.quick ? view.tiles(level, 1) : [];
     tiles.want(now.layer, lacking ? shown : ring);
-    return { costly, lacking, waiting: lacking > costs.filter(Boolean).length };
+    return { costly, lacking, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
   }
 
   /** Tiles of neighbouring levels, while those of this one are on their way. */

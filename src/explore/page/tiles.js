@@ -8,6 +8,8 @@ import { COARSEST, SIZE } from "./view.js";
 const KEPT = 500;
 /** Questions under way at once: what a browser opens to one host. */
 const AT_ONCE = 6;
+/** Milliseconds before a failed question is asked again. */
+const RETRY = 4000;
 const HEADER = 16;
 const ARRAYS = { verdict: [Uint8Array, 1], growth: [Float32Array, 1], family: [Int16Array, 2] };
 
@@ -19,13 +21,13 @@ const parent = (t, by = 1n) => ({ level: t.level - Number(by), x: t.x >> by, y: 
 export class Tiles {
   /** `changed` is called when there is more to draw. */
   constructor(questions, changed) {
-    Object.assign(this, { questions, changed, layers: new Map(), wanted: [], under: new Map(), clock: 0 });
+    Object.assign(this, { questions, changed, layers: new Map(), wanted: [], under: new Map(), clock: 0, pace: 100 });
   }
 
   /** The store of one layer. */
   #layer(layer) {
     const key = layerKey(layer);
-    if (!this.layers.has(key)) this.layers.set(key, { tiles: new Map(), costly: new Map(), refused: [Infinity, -Infinity] });
+    if (!this.layers.has(key)) this.layers.set(key, { tiles: new Map(), costly: new Map(), lost: new Map(), refused: [Infinity, -Infinity] });
     return this.layers.get(key);
   }
 
@@ -51,15 +53,17 @@ export class Tiles {
   want(layer, places) {
     const key = layerKey(layer);
     const store = this.#layer(layer);
-    const open = places.filter((p) => !store.tiles.has(placeKey(p)) && !this.cost(layer, p));
+    const lost = (p) => store.lost.get(placeKey(p)) > performance.now();
+    const open = places.filter((p) => !store.tiles.has(placeKey(p)) && !this.cost(layer, p) && !lost(p));
     const ids = new Set(open.map((p) => `${key}/${placeKey(p)}`));
     for (const [id, controller] of this.under) if (!ids.has(id)) controller.abort();
     this.wanted = open.map((place) => ({ place, layer, id: `${key}/${placeKey(place)}` }));
     this.#next();
   }
 
-  get pending() {
-    return this.under.size + this.wanted.length;
+  /** Tiles come so quickly that some may be asked for before they are needed. */
+  get quick() {
+    return this.pace < 60;
   }
 
   #next() {
@@ -72,18 +76,27 @@ export class Tiles {
   async #load(id, layer, place) {
     const controller = new AbortController();
     this.under.set(id, controller);
+    const begun = performance.now();
     try {
       this.#keep(layer, place, await this.#asked(layer, place, controller.signal));
+      this.pace += (performance.now() - begun - this.pace) / 4;
     } catch (error) {
       if (error.tooCostly) {
         const store = this.#layer(layer);
         store.costly.set(placeKey(place), error.tooCostly);
         store.refused = [Math.min(store.refused[0], place.level), Math.max(store.refused[1], place.level)];
-      } else if (!controller.signal.aborted) this.failed?.(error);
+      } else if (!controller.signal.aborted) this.#lose(layer, place, error);
     }
     this.under.delete(id);
     this.#next();
     this.changed();
+  }
+
+  /** A question that went wrong is asked again only after a while. */
+  #lose(layer, place, error) {
+    this.#layer(layer).lost.set(placeKey(place), performance.now() + RETRY);
+    this.failed?.(error);
+    setTimeout(this.changed, RETRY + 50);
   }
 
   async #asked(layer, place, signal) {

@@ -135,7 +135,7 @@ export class Vectors {
       context.stroke();
       if (length > 24) ends(context, segment.ends, [x0, y0], [x1, y1]);
       const [left, right, top, bottom] = [Math.max(0, Math.min(x0, x1)), Math.min(view.width, Math.max(x0, x1)), Math.max(0, Math.min(y0, y1)), Math.min(view.height, Math.max(y0, y1))];
-      if (length > 30) labels.push({ words: `${segment.ratio ?? `${segment.p}/${segment.q}`}, m = ${segment.m}`, spots: [[(left + right) / 2 + 6, (top + bottom) / 2 + 4]], weight: length });
+      if (length > 30) labels.push({ words: `${segment.ratio ?? `${segment.p}/${segment.q}`}, m = ${segment.m}`, spots: [[(left + right) / 2 + 8, (top + bottom) / 2 + 17]], weight: length });
     }
     context.lineCap = "butt";
     return labels.sort((a, b) => b.weight - a.weight);

@@ -35,9 +35,12 @@ export class View {
     return axis ? multiply(this.step, powerOfTwo(this.stretch)) : this.step;
   }
 
-  /** The side of a pixel in bits of the coordinates, a double of moderate size. */
-  get #pixel() {
-    return 2 ** (this.bits - this.zoom);
+  /** So many pixels in units of the coordinates' last bit, to the precision of a double. */
+  #span(pixels) {
+    const power = this.bits - this.zoom;
+    // No double holds 2^1024: what is beyond 60 bits is shifted.
+    const shift = Math.max(0, Math.floor(power) - 60);
+    return big(pixels * 2 ** (power - shift)) << BigInt(shift);
   }
 
   #ensure(bits) {
@@ -62,8 +65,8 @@ export class View {
   /** Moves the picture by pixels, to the right and down. */
   pan(dx, dy) {
     this.#trim();
-    this.centre[0] -= big(dx * this.#pixel);
-    this.centre[1] += big(dy * this.#pixel);
+    this.centre[0] -= this.#span(dx);
+    this.centre[1] += this.#span(dy);
     this.#stay();
   }
 
@@ -71,11 +74,10 @@ export class View {
   zoomTo(zoom, x = this.width / 2, y = this.height / 2) {
     const next = Math.max(COARSEST, zoom);
     this.#ensure(Math.ceil(Math.max(next, this.zoom)) + SPARE);
-    const before = this.#pixel;
+    const away = [x - this.width / 2, this.height / 2 - y];
+    const before = away.map((px) => this.#span(px));
     this.zoom = next;
-    const by = before - this.#pixel;
-    this.centre[0] += big((x - this.width / 2) * by);
-    this.centre[1] -= big((y - this.height / 2) * by);
+    this.centre = this.centre.map((c, axis) => c + before[axis] - this.#span(away[axis]));
     this.#stay();
   }
 
@@ -150,9 +152,8 @@ export class View {
 
   /** The number of the cell of a level below a pixel of an axis: the coordinate is cell / 2^level units. */
   cell(px, axis, level = this.level) {
-    const off = (axis ? this.height / 2 - px : px - this.width / 2) * this.#pixel;
+    const at = this.centre[axis] + this.#span(axis ? this.height / 2 - px : px - this.width / 2);
     const bits = this.bits - level;
-    const at = this.centre[axis] + big(off);
     return bits > 0 ? (at + (1n << BigInt(bits - 1))) >> BigInt(bits) : at << BigInt(-bits);
   }
 
