@@ -133,7 +133,7 @@ test("a shared address brings back the same picture", async () => {
   await page.mouse.wheel(0, -700);
   await settled(page);
   await page.mouse.click(...(await spot(page, 30, 30)));
-  await page.click("text=Growth");
+  await page.click('label[title="Growth"]');
   await page.mouse.move(3, 3);
   await settled(page);
   await card(page);
@@ -171,7 +171,7 @@ test("undo and redo go back and forth", async () => {
 
 test("lines of tongues lie on unstable cells", async () => {
   // Cells of 1/8000 along h1, and d2 = d1: multiples of both steps lie on every simple ray.
-  await opened({ hash: "#d=1/1000&v=480,1100,0,3,0&t=on&n=12&b=0" });
+  await opened({ hash: "#d=1/1000&v=490,1145,0,3,0&t=on&n=40&b=0" });
   await page.waitForFunction(() => window.kickdrift.map.vectors.tongues);
   const cells = await page.evaluate(() => {
     const { map } = window.kickdrift;

@@ -30,7 +30,7 @@ export class Drawer {
     this.host.append(h("div.head", {}, this.title, this.extra, iconButton("close", "Close the plot", () => act.close(this.shown?.kind))), this.field, this.below);
     this.load = latest(async (kind, path, params, signal) => {
       const data = await questions.json(path, params, signal);
-      this.data = { kind, ...data };
+      this.data = { of: kind, reply: data };
       this.paint();
     }, 30);
     new ResizeObserver(() => this.paint()).observe(this.field);
@@ -76,9 +76,9 @@ export class Drawer {
   }
 
   paint() {
-    if (!this.data || !this.shown || this.host.hidden || this.data.kind !== this.shown.kind) return;
+    if (!this.data || !this.shown || this.host.hidden || this.data.of !== this.shown.kind) return;
     this.field.classList.remove("busy");
-    this[`_${this.data.kind}`](this.data);
+    this[`_${this.data.of}`](this.data.reply);
   }
 
   _cut({ x, rate, kind, axis, intervals }) {
