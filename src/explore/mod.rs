@@ -10,7 +10,9 @@
 //! | `query` | an address's parameters as typed quantities |
 //! | `reply` | bytes and their type; errors as JSON |
 //! | `assets` | the page itself |
-//! | `start`, `tile`, `point` | one file a question |
+//! | `frame` | a window: places in it as fractions, at any depth |
+//! | `rays`, `ray` | the ratios that a window shows; the tongues of one about a point |
+//! | `start`, `tile`, `tongues`, `curves`, `point`, `cut`, `strip`, `outer`, `shown` | one file a question, or a few that are alike |
 //! | `serve` | the same over HTTP, for this machine alone (feature `explore`) |
 //!
 //! ```
@@ -24,16 +26,25 @@
 //! ```
 
 mod assets;
+mod curves;
+mod cut;
+mod frame;
 #[cfg(feature = "explore")]
 mod listen;
+mod outer;
 mod point;
 mod query;
+mod ray;
+mod rays;
 mod reply;
 #[cfg(feature = "explore")]
 pub mod serve;
 mod session;
+mod shown;
 mod start;
+mod strip;
 mod tile;
+mod tongues;
 
 use std::sync::atomic::AtomicBool;
 
@@ -49,23 +60,39 @@ struct Question {
     name: &'static str,
     at_once: bool,
     limit: u64,
-    answer: fn(&Session, &Query, &AtomicBool) -> Result<Reply>,
+    answer: Answer,
 }
 
-const QUESTIONS: [Question; 3] = [
-    Question { name: "start", at_once: true, limit: 0, answer: start::answer },
-    Question { name: "tile", at_once: false, limit: tile::MOST_KICKS, answer: tile::answer },
-    Question { name: "point", at_once: true, limit: point::MOST_KICKS, answer: point::answer },
+const QUESTIONS: [Question; 12] = [
+    question("start", true, 0, start::answer),
+    question("tile", false, tile::MOST_KICKS, tile::answer),
+    question("tongues", false, tongues::MOST_KICKS, tongues::answer),
+    question("curves", true, 0, curves::answer),
+    question("point", true, point::MOST_KICKS, point::answer),
+    question("document", true, point::MOST_KICKS, point::document),
+    question("certificate", true, point::MOST_CERTIFIED, point::certificate),
+    question("cut", false, cut::MOST_KICKS, cut::answer),
+    question("strip", false, strip::MOST_KICKS, strip::answer),
+    question("system", false, outer::MOST_PRODUCTS, outer::answer),
+    question("scene", true, 0, shown::scene),
+    question("picture", false, shown::MOST_KICKS, shown::picture),
 ];
 
-fn question(name: &str) -> Option<&'static Question> {
+/// Who answers a question.
+type Answer = fn(&Session, &Query, &AtomicBool) -> Result<Reply>;
+
+const fn question(name: &'static str, at_once: bool, limit: u64, answer: Answer) -> Question {
+    Question { name, at_once, limit, answer }
+}
+
+fn named(name: &str) -> Option<&'static Question> {
     QUESTIONS.iter().find(|question| question.name == name)
 }
 
 /// The answer to the question at `path` with the parameters of `query` (`key=value&...`, percent-encoded), an error's too; `None`
 /// where there is no such question. Work ends soon after `stop` is set.
 pub fn ask(session: &Session, path: &str, query: &str, stop: &AtomicBool) -> Option<Reply> {
-    let question = question(path)?;
+    let question = named(path)?;
     let answer = Query::parse(query).and_then(|query| (question.answer)(session, &query, stop));
     Some(answer.unwrap_or_else(|error| Reply::refusal(&error, question.limit)))
 }

@@ -23,7 +23,7 @@ use tokio::sync::Semaphore;
 use super::listen::Bounded;
 use super::reply::Reply;
 use super::session::Session;
-use super::{ask, asset, question};
+use super::{ask, asset, named};
 use crate::error::{Error, Result};
 
 /// The longest path and query, in bytes.
@@ -147,7 +147,7 @@ impl Shared {
         if !self.is_own_token(token) {
             return Err((StatusCode::FORBIDDEN, "open the address that the program printed"));
         }
-        match (asset(path), question(path)) {
+        match (asset(path), named(path)) {
             (Some(reply), _) => Ok(reply),
             (None, Some(question)) => self.work(question.at_once, path, query).await,
             (None, None) => Err((StatusCode::NOT_FOUND, "there is nothing here")),

@@ -75,9 +75,8 @@ impl Session {
 
     /// A system; its two springs' plane where it is two clocks on one oscillator.
     pub fn of_system(system: SystemScene) -> Session {
-        let two = system.many_clocks().filter(|clocks| clocks.strengths().len() == 2);
-        let stiffnesses = two.map(|clocks| (clocks.strengths()[0].clone(), clocks.strengths()[1].clone()));
-        let known = stiffnesses.and_then(|(lambda1, lambda2)| Session::new(lambda1, lambda2).ok());
+        let two = system.two_clocks();
+        let known = two.and_then(|two| Session::new(two.lambda1().clone(), two.lambda2().clone()).ok());
         let mut session = known.unwrap_or_else(|| Session { stiffnesses: None, ..Session::figure1() });
         session.title = system.title().into();
         session.unit = system.time_unit().map(Into::into);

@@ -38,6 +38,7 @@ impl Work<'_> {
             rest.retain(|&n| !seen[n as usize]);
         }
         for n in rest.into_iter().map(|n| n as usize) {
+            self.go_on()?;
             let (i, j) = self.multipliers(n);
             let grown = growth(&self.grid().clocks(i, j)?, verdict(n), self.limits())?;
             let ln = grown.ln_multiplier.filter(|_| products.growth).map(|ln| Enclosure::of(&ln));

@@ -11,7 +11,7 @@ use super::store::Store;
 use super::work::Work;
 use crate::error::{Error, Result};
 use crate::parallel::{map, try_map};
-use crate::verdict::{Limits, Verdict};
+use crate::verdict::Verdict;
 
 /// A grid whose pairs are to be decided, and what else is asked of them.
 ///
@@ -79,7 +79,7 @@ impl<'a> Map<'a> {
         let (pool, bases) = (resources.pool()?, Bases::new(grid));
         let compute = |columns| {
             resources.go_on()?;
-            let work = Work::new(grid, &bases, &resources.limits, columns);
+            let work = Work::new(grid, &bases, resources, columns);
             let mut band = work.run()?;
             if products.growing() {
                 work.grow(&mut band, *products)?;
@@ -167,9 +167,9 @@ pub fn merge(
 /// to see what certification costs.
 #[doc(hidden)]
 pub fn uncertified_unstable(grid: &Grid, threads: usize) -> Result<u64> {
-    let pool = Resources { threads, ..Resources::default() }.pool()?;
-    let (bases, limits) = (Bases::new(grid), Limits::default());
+    let (bases, resources) = (Bases::new(grid), Resources { threads, ..Resources::default() });
+    let pool = resources.pool()?;
     let all: Vec<(u64, usize)> = bands(grid).collect();
-    let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &limits, columns).uncertified_unstable();
+    let count = |&columns: &(u64, usize)| Work::new(grid, &bases, &resources, columns).uncertified_unstable();
     pool.install(|| map(&all, count)).into_iter().sum()
 }

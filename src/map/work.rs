@@ -6,6 +6,7 @@ use super::band::{Band, Counters};
 use super::bases::{Bases, quotient};
 use super::gcd;
 use super::grid::Grid;
+use super::resources::Resources;
 use crate::error::{Error, Result};
 use crate::orbit::filter::{self, Group};
 use crate::orbit::floquet::{Base, Pair};
@@ -19,7 +20,7 @@ pub(super) const LANES: usize = 16;
 pub(super) struct Work<'a> {
     grid: &'a Grid,
     bases: &'a Bases<'a>,
-    limits: &'a Limits,
+    resources: &'a Resources<'a>,
     first: u64,
     /// The columns' bases, as they are asked for.
     firsts: Vec<OnceCell<Option<Base>>>,
@@ -33,7 +34,7 @@ impl<'a> Work<'a> {
     pub fn new(
         grid: &'a Grid,
         bases: &'a Bases<'a>,
-        limits: &'a Limits,
+        resources: &'a Resources<'a>,
         (first, columns): (u64, usize),
     ) -> Self {
         let (rows, first_row) = (grid.shape().1, grid.rows().0);
@@ -47,7 +48,7 @@ impl<'a> Work<'a> {
         }
         let firsts = (0..columns).map(|_| OnceCell::new()).collect();
         let seconds = bases.rows_within(first, first + columns as u64 - 1);
-        let mut work = Work { grid, bases, limits, first, firsts, seconds, gcds, order: Vec::new() };
+        let mut work = Work { grid, bases, resources, first, firsts, seconds, gcds, order: Vec::new() };
         work.order = work.sorted();
         work
     }
@@ -94,7 +95,8 @@ impl<'a> Work<'a> {
         band.counters.escalated = rest.len() as u64;
         for n in rest {
             let (i, j) = self.multipliers(n);
-            let decision = decide(&self.grid.clocks(i, j)?, self.limits)?;
+            self.go_on()?;
+            let decision = decide(&self.grid.clocks(i, j)?, self.limits())?;
             (band.verdicts[n], band.tiers[n]) = (decision.verdict.index(), decision.decided_by as u8);
         }
         Ok(band)
@@ -115,6 +117,7 @@ impl<'a> Work<'a> {
         let mut kicks = 0;
         let (mut pairs, mut positions) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
         for group in order.chunks(LANES) {
+            self.go_on()?;
             pairs.clear();
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
@@ -146,11 +149,17 @@ impl<'a> Work<'a> {
     }
 
     fn allow(&self, kicks: u64) -> Result<()> {
-        if kicks <= self.limits.kicks {
+        if kicks <= self.limits().kicks {
             return Ok(());
         }
-        let cost = format!("a pair of the map composes {kicks} kicks, the budget is {}", self.limits.kicks);
+        let cost = format!("a pair of the map composes {kicks} kicks, the budget is {}", self.limits().kicks);
         Err(Error::budget(cost, kicks).or("choose steps with a simpler ratio"))
+    }
+
+    /// # Errors
+    /// Where the work was stopped.
+    pub(super) fn go_on(&self) -> Result<()> {
+        self.resources.go_on()
     }
 
     pub(super) fn grid(&self) -> &Grid {
@@ -158,7 +167,7 @@ impl<'a> Work<'a> {
     }
 
     pub(super) fn limits(&self) -> &Limits {
-        self.limits
+        &self.resources.limits
     }
 
     pub(super) fn order(&self) -> &[u32] {

@@ -47,7 +47,7 @@ impl Answer {
     }
 
     /// ln μ / T as an enclosure, 0 where nothing grows exponentially.
-    fn growth_rate(&self) -> (f64, f64) {
+    pub fn growth_rate(&self) -> (f64, f64) {
         const BITS: u32 = 96;
         let period = self.oscillator.period().enclosure(BITS);
         let rate = |ln: &Ball| ln.div(&period, BITS).expect("T > 0").to_f64_enclosure();

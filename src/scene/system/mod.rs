@@ -68,6 +68,7 @@ use crate::avi::{self, Bond, Clocks, Simulation, State};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
+use crate::propagator;
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
 use crate::system::{
     Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
@@ -364,6 +365,31 @@ impl SystemScene {
     /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.
     pub fn many_clocks(&self) -> Option<&ManyClocks<Laurent>> {
         self.oscillator.as_ref().map(|own| &own.clocks)
+    }
+
+    /// The same as two clocks on one oscillator, where it is that, without phases.
+    pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
+        if let Some(own) = &self.oscillator {
+            let (two, h1) = (own.clocks.as_two_clocks()?, &own.unit);
+            let h2 = h1 * &Laurent::from_rational(two.ratio().into());
+            let lambda = |strength: &Laurent, step: &Laurent| strength.checked_div(&(h1 * step));
+            return propagator::Oscillator::new(
+                lambda(two.fast(), h1)?,
+                lambda(two.slow(), &h2)?,
+                h1.clone(),
+                h2,
+            )
+            .ok();
+        }
+        let system = self.measured.is_none().then(|| self.system()).filter(|system| system.size() == 1)?;
+        let [fast, slow] = system.clocks() else { return None };
+        let phased = [fast, slow].iter().any(|clock| clock.phase != Rational::default());
+        let lambda =
+            |clock: &Potential| Laurent::from_rational(clock.stiffness.get(0, 0) / system.mass().get(0, 0));
+        let step = |clock: &Potential| Laurent::from_rational(clock.step.clone());
+        (!phased)
+            .then(|| propagator::Oscillator::new(lambda(fast), lambda(slow), step(fast), step(slow)).ok())
+            .flatten()
     }
 
     /// The equilibrium, where there are bonds.

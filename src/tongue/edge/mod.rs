@@ -29,9 +29,10 @@ mod locate;
 mod mode;
 mod precise;
 
+pub(crate) use crate::number::rational::simplest;
 pub(crate) use count::counts;
 pub(crate) use edges::Edges;
 pub use edges::Effort;
+pub(crate) use enclosure::negative_log2;
 pub use enclosure::{Edge, Enclosure};
-pub(crate) use enclosure::{negative_log2, simplest};
 pub(crate) use fine_count::TWO_DOUBLES;

@@ -1,0 +1,110 @@
+//! What is shown, to keep: the scene file that makes it again, and its picture as for a paper.
+
+use std::sync::atomic::AtomicBool;
+
+use serde_json::json;
+
+use super::query::{Query, positive};
+use super::reply::Reply;
+use super::session::Session;
+use crate::error::{Error, Result};
+use crate::format::Format;
+use crate::map::{Grid, Map, Resources};
+use crate::number::Laurent;
+use crate::report::map::Counts;
+use crate::report::plane::{Chart, Colouring, window};
+use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
+use crate::verdict::Limits;
+
+/// Pairs and kicks of a picture.
+const MOST_PAIRS: u64 = 4_000_000;
+pub(super) const MOST_KICKS: u64 = 20_000_000_000;
+
+/// Pixels an inch: print quality.
+const DPI: f64 = 300.0;
+
+/// The spacings, and the ranges of what is shown.
+fn range(session: &Session, query: &Query) -> Result<GridRange> {
+    let ranges = query.window(session)?;
+    let step = query.read("step", positive)?.unwrap_or_else(|| session.step().clone());
+    let step2 = query.read("step2", positive)?.unwrap_or_else(|| step.clone());
+    Ok(GridRange::new([step, step2].map(Laurent::from_rational), ranges))
+}
+
+/// A scene file: `kickdrift run` makes the map and its picture from it.
+pub(super) fn scene(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+    let (lambda1, lambda2) = query.stiffnesses(session)?;
+    let range = range(session, query)?;
+    let ([step1, step2], [h1, h2]) = (range.steps(), range.ranges());
+    let scene = json!({
+        "schema": "kickdrift/scene/1",
+        "title": if session.title().is_empty() { "Explored" } else { session.title() },
+        "lambda1": lambda1.to_string(), "lambda2": lambda2.to_string(),
+        "grid": {
+            "step1": step1.to_string(), "step2": step2.to_string(), "h1": shown_range(h1), "h2": shown_range(h2),
+        },
+        "want": ["map.json", "overlay.svg"],
+    });
+    let text = format!("{scene:#}\n");
+    // What is kept can be read again.
+    Scene::read(&text)?.grid()?;
+    Ok(Reply::file("scene.json", "application/json", text.into_bytes()))
+}
+
+/// The picture that `kickdrift map` draws of the same pairs: `format` svg, png or pdf, `what` as for tiles, `curves` 1 to draw them.
+pub(super) fn picture(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+    let format = query.read("format", figure)?.unwrap_or(Format::Svg);
+    let colouring = query.read("what", colouring)?.unwrap_or_default();
+    let (lambda1, lambda2) = query.stiffnesses(session)?;
+    let grid = range(session, query)?.of(lambda1, lambda2)?;
+    if grid.pairs() > MOST_PAIRS || grid.kicks() > MOST_KICKS as f64 {
+        let (pairs, kicks) = (grid.pairs(), grid.kicks());
+        let message =
+            format!("this picture of {pairs} pairs composes about {kicks:.1e} kicks: choose a larger step");
+        return Ok(Reply::too_costly(Some(kicks), MOST_KICKS, &message));
+    }
+    let curves = match query.text("curves") {
+        Some("1") => FAMILIES.curves_within(grid.lambdas().0, &window(&grid))?,
+        _ => Vec::new(),
+    };
+    let bytes = drawn(&grid, colouring, stop, |chart, counts| {
+        chart.figure(&grid, counts, &curves).file(format, DPI)
+    })?;
+    let (name, media) = match format {
+        Format::Png => ("map.png", "image/png"),
+        Format::Pdf => ("map.pdf", "application/pdf"),
+        _ => ("map.svg", "image/svg+xml"),
+    };
+    Ok(Reply::file(name, media, bytes))
+}
+
+fn drawn<T>(
+    grid: &Grid,
+    colouring: Colouring,
+    stop: &AtomicBool,
+    draw: impl FnOnce(&Chart, &Counts) -> Result<T>,
+) -> Result<T> {
+    let (mut chart, mut counts) = (Chart::new(grid, colouring), Counts::default());
+    let resources = Resources { threads: 1, limits: Limits::default(), stopped: Some(stop) };
+    Map::of(grid).with(colouring.needs()).within(resources).for_each_band(|_, band| {
+        chart.add(grid, &band);
+        counts.add(&band);
+        Ok(())
+    })?;
+    draw(&chart, &counts)
+}
+
+fn figure(field: &str, text: &str) -> Result<Format> {
+    let format = Format::of_extension(text).filter(|format| format.is_figure());
+    format.ok_or_else(|| Error::input(field, text, "choose svg, png or pdf"))
+}
+
+fn colouring(field: &str, text: &str) -> Result<Colouring> {
+    match text {
+        "verdict" => Ok(Colouring::Verdict),
+        "growth" => Ok(Colouring::Growth),
+        "family" => Ok(Colouring::Family),
+        "tenfold" => Ok(Colouring::Tenfold),
+        _ => Err(Error::input(field, text, "choose verdict, growth, family or tenfold")),
+    }
+}
