@@ -1,7 +1,7 @@
 // `kickdrift explore` in a real browser.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, afterEach, before, test } from "node:test";
@@ -62,6 +62,34 @@ test("a click pins the exact pair with the program's verdict", async () => {
   }
 });
 
+test("the card's files are the program's", async () => {
+  await opened({ hash: "#p=49/100,343/300" });
+  await card(page);
+  const file = async (label) => {
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click(`.card >> text=${label}`)]);
+    return readFileSync(await download.path(), "utf8");
+  };
+  const program = kickdrift("verdict", ...SPRINGS, "--h1", "49/100", "--h2", "343/300", "--format", "json");
+  assert.deepEqual(JSON.parse(await file("JSON")), JSON.parse(program));
+  assert.match(await file("Certificate"), /Theorem|Lemma/);
+});
+
+test("two fingers zoom about the point between them", async () => {
+  await opened();
+  const [x, y] = await spot(page);
+  const session = await page.context().newCDPSession(page);
+  const fingers = (apart) => [{ x: x - apart, y, id: 0 }, { x: x + apart, y, id: 1 }];
+  const zoom = () => page.evaluate(() => window.kickdrift.map.view.zoom);
+  const before = await zoom();
+  await session.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: fingers(40) });
+  for (const apart of [60, 80, 120, 160]) await session.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: fingers(apart) });
+  await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+  await settled(page);
+  // Four times as far apart are two levels; the first move only begins the gesture.
+  const levels = (await zoom()) - before;
+  assert.ok(levels > 1.3 && levels <= 2.001, `${levels} levels`);
+});
+
 test("two hundred levels down a click on a tongue is still exact", async () => {
   await opened();
   await page.fill("#go-h1", "49/100");
@@ -97,7 +125,8 @@ test("cells are those of the program's own picture", async () => {
   const map = (name) => kickdrift("map", ...SPRINGS, "--step1", "1/1000", "--step2", "1/125", "--h1-range", range(first[0], 1000), "--h2-range", range(first[1], 125), "--quiet", "--output", join(folder, name));
   map("map.png");
   map("map.svg");
-  const svg = readFileSync(join(folder, "map.svg"), "utf8");
+  const [svg, png] = [readFileSync(join(folder, "map.svg"), "utf8"), readFileSync(join(folder, "map.png"))];
+  rmSync(folder, { recursive: true });
   const side = Number(/viewBox="0 0 ([\d.]+)/.exec(svg)[1]);
   const [left, top, width, height] = /<clipPath id="box1"><rect x="([\d.]+)" y="([\d.]+)" width="([\d.]+)" height="([\d.]+)"/.exec(svg).slice(1).map(Number);
   const paper = await page.evaluate(async ([data, side, box, count]) => {
@@ -113,7 +142,7 @@ test("cells are those of the program's own picture", async () => {
       found.push([...context.getImageData(Math.floor(at[0]), Math.floor(at[1]), 1, 1).data.slice(0, 3)]);
     }
     return found;
-  }, [readFileSync(join(folder, "map.png")).toString("base64"), side, [left, top, width, height], count]);
+  }, [png.toString("base64"), side, [left, top, width, height], count]);
   const places = await page.evaluate(([first, count]) => {
     const { view } = window.kickdrift.map;
     const found = [];

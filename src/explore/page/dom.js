@@ -18,6 +18,14 @@ export function h(name, properties = {}, ...children) {
   return element;
 }
 
+let mounts = 0;
+
+/** From now on names belong to another page in the same document. */
+export const begin = () => (mounts += 1);
+
+/** A name for an element that no other page in this document has; the first page's is plain. */
+export const unique = (name) => (mounts > 1 ? `${name}-${mounts}` : name);
+
 /** h₁ as the figures write it. */
 export const step = (index) => h("span.step", {}, h("i", {}, "h"), h("sub", {}, String(index)));
 
@@ -44,8 +52,9 @@ export const iconButton = (name, label, act, more = {}) =>
 
 /** Radio buttons side by side; `choices`: [[value, label, icon?]]. */
 export function segmented(legend, name, choices, chosen, act) {
+  const group = unique(name);
   const made = choices.map(([value, label, drawing]) => {
-    const input = h("input", { type: "radio", name, value, checked: value === chosen, onchange: () => act(value) });
+    const input = h("input", { type: "radio", name: group, value, checked: value === chosen, onchange: () => act(value) });
     const face = drawing ? icon(drawing) : label;
     return h("label", { title: label }, input, h("span", {}, face, drawing ? h("span.unseen", {}, label) : null));
   });

@@ -16,6 +16,13 @@ const upward = (rates) => {
   return { lo: 0, hi: most > 0 ? 1.08 * most : 1 };
 };
 
+/** Growth is zero at the edges of an interval: they belong to the curve between its samples. */
+function withEdges(x, rate, intervals) {
+  const edges = intervals.flatMap((t) => [t.lower.lo, t.upper?.hi]).filter((at) => at > x[0] && at < x.at(-1));
+  const points = [...x.map((at, k) => [at, rate[k]]), ...edges.map((at) => [at, 0])].sort((a, b) => a[0] - b[0]);
+  return { x: points.map(([at]) => at), y: points.map(([, y]) => y) };
+}
+
 const table = (caption, head, rows) =>
   h("details", {}, h("summary", {}, caption), h("div.scroll", { tabindex: 0, role: "region", "aria-label": caption }, h("table", {}, h("thead", {}, h("tr", {}, ...head.map((cell) => h("th", { scope: "col" }, ...[cell].flat())))), h("tbody", {}, ...rows.map((row) => h("tr", {}, ...row.map((cell) => h("td", {}, cell))))))));
 
@@ -69,7 +76,7 @@ export class Drawer {
       const name = { h1: step(1), h2: step(2), ratio: [step(2), "/", step(1)] }[what.along];
       this.title.replaceChildren("Growth along ", ...[name].flat(), " = ", what.along === "ratio" ? what.value : exactly(fixed, 20));
     } else if (what.kind === "strip") {
-      const input = h("input", { id: "strip-ratio", value: what.ratio, size: 6, "aria-label": "Ratio p/q of the strip", onchange: () => this.act.ratio(input.value) });
+      const input = h("input", { value: what.ratio, size: 6, "aria-label": "Ratio p/q of the strip", onchange: () => this.act.ratio(input.value) });
       this.title.replaceChildren("Tongues of ", step(2), "/", step(1), " = ", what.ratio);
       this.extra.append(h("label.entry", {}, h("i", {}, "p/q"), input));
     } else this.title.replaceChildren("Growth against the outer step");
@@ -84,7 +91,7 @@ export class Drawer {
   _cut({ x, rate, kind, axis, intervals }) {
     const { palette, unit } = this.shared();
     const [lo, hi] = [x[0], x.at(-1)];
-    const layers = [{ kind: "line", x, y: rate, colour: css(palette.kinds[1]), below: true }];
+    const layers = [{ kind: "line", ...withEdges(x, rate, intervals ?? []), colour: css(palette.kinds[1]), below: true }];
     if (intervals?.length) {
       layers.unshift({ kind: "spans", colour: css(palette.accent), spans: intervals.map((t) => ({ lo: t.lower.lo, hi: t.upper ? t.upper.hi : null, label: label(t) })) });
     }
@@ -116,13 +123,13 @@ export class Drawer {
     }
     plot(this.field, {
       x: { lo: rho[0], hi: rho.at(-1), log: true, title: "*ρ* = *λ*_2/*λ*_1" },
-      y: { lo: 0, hi: most, title: "*s* = *h*_1 ²*λ*_1".replace("_1 ²", "_1²") },
+      y: { lo: 0, hi: most, title: "*s* = *h*_1^2 *λ*_1" },
       layers, label: `Tongues over rho: ${tongues.length}; closings: ${closings.length}`,
       pick: (at) => this.act.rho(String(Number(at.toPrecision(3)))),
     });
     const cells = closings.map((c) => [String(c.m), c.exact?.[0] ? mathematics(c.exact[0]) : number(c.s, 12), c.exact?.[1] ? mathematics(c.exact[1]) : number(c.rho, 12)]);
     const said = h("p.quiet", {}, "A dashed line marks the map's ", h("i", {}, "ρ"), "; a click takes another. ", closings.length ? "Circles: the tongue closes, the resonance does not destabilize." : "No tongue closes here.");
-    this.below.replaceChildren(said, ...(closings.length ? [table(`${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
+    this.below.replaceChildren(said, ...(closings.length ? [table(closings.length === 1 ? "1 closing" : `${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
   }
 
   _system({ outer, rate, modes, unit }) {

@@ -4,7 +4,7 @@ const CLICK = 4;
 const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class Input {
-  /** `act`: {moved, settled, hover, leave, click, home, draw, drawn, escape}; `tool()`: "move" or a kind of cut. */
+  /** `act`: {moved, settled, hover, leave, click, unclick, home, draw, drawn, escape}; `tool()`: "move" or a kind of cut. */
   constructor(map, act, tool) {
     Object.assign(this, { map, act, tool, pointers: new Map(), glide: null });
     const { canvas } = map;
@@ -15,7 +15,10 @@ export class Input {
     on("pointercancel", this.up);
     on("pointerleave", () => act.leave());
     on("wheel", this.wheel, { passive: false });
-    on("dblclick", (event) => this.zoomBy(event.shiftKey ? -1 : 1, ...this.at(event)));
+    on("dblclick", (event) => {
+      act.unclick();
+      this.zoomBy(event.shiftKey ? -1 : 1, ...this.at(event));
+    });
     on("keydown", this.key);
     on("blur", () => act.leave());
   }

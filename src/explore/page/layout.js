@@ -1,12 +1,13 @@
 // The page's frame: what stands where.
 
-import { h, iconButton, segmented } from "./dom.js";
+import { begin, h, iconButton, segmented } from "./dom.js";
 import { colours, going, over, saving, springs } from "./panels.js";
 
 const TOOLS = [["move", "Move the map", "move"], ["h1", "Cut at fixed h1", "upright"], ["h2", "Cut at fixed h2", "level"], ["ratio", "Cut along a ratio h2/h1", "ratio"]];
 
 /** Builds the page into `element`; returns its parts. */
 export function layout(element, state, act) {
+  begin();
   const canvas = h("canvas", { tabindex: 0, role: "application", "aria-roledescription": "map", "aria-label": "Map of the step pairs h1, h2. Arrows move, plus and minus zoom, 0 shows all, Enter pins the pair at the centre.", "data-tool": "move" });
   const frame = h("div.frame", {}, canvas);
   const words = h("p.words", {}), offsets = h("p.offsets.number", {}), where = h("span.where.number", {});

@@ -237,7 +237,10 @@ class Explorer {
     const withTongues = () => Boolean(this.status?.vectors);
     return {
       moved: redraw,
-      settled: () => this.#change(),
+      settled: () => {
+        redraw();
+        this.past.record(() => this.saved());
+      },
       hover: (at) => {
         const picked = pick(this.map, at, 7, withTongues());
         this.map.cursor = picked && at;
@@ -256,7 +259,15 @@ class Explorer {
       click: (at, reach) => {
         const picked = pick(this.map, at, reach, withTongues());
         if (!picked) return;
+        const now = performance.now();
+        if (!(now - this.clicked < 500)) this.unclicked = this.state.pin;
+        this.clicked = now;
         this.#pin(picked.pair);
+        this.#change();
+      },
+      // A double click zooms: what it pinned on the way is taken back.
+      unclick: () => {
+        this.#pin(this.unclicked?.pair ?? null);
         this.#change();
       },
       home: () => this.home(),

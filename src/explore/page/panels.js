@@ -1,7 +1,7 @@
 // The panels beside the map: colours and legend, lines over the map, the springs, going to a pair, saving.
 
 import { css, DECADES } from "./colours.js";
-import { checkbox, h, segmented, step } from "./dom.js";
+import { checkbox, h, segmented, step, unique } from "./dom.js";
 import { raised } from "./writing.js";
 
 const section = (title, ...children) => h("section.panel", {}, h("h2", {}, title), ...children);
@@ -27,7 +27,7 @@ export function legend(host, { what, palette, frequency, unit }) {
     const [lo, hi] = DECADES.map((d) => d + Math.log10(frequency));
     const ticks = [];
     for (let k = Math.ceil(lo); k <= hi; k++) {
-      const tick = h("span.tick", {}, `10${raised(k)}`);
+      const tick = h("span", {}, `10${raised(k)}`);
       tick.style.left = `${(100 * (k - lo)) / (hi - lo)}%`;
       ticks.push(tick);
     }
@@ -52,20 +52,20 @@ export function colours(state, act) {
 }
 
 export function over(state, act) {
-  const tongues = h("select", { id: "tongues", "aria-label": "Tongues as lines", onchange: () => act.tongues(tongues.value) },
+  const tongues = h("select", { id: unique("tongues"), "aria-label": "Tongues as lines", onchange: () => act.tongues(tongues.value) },
     ...[["auto", "where cells end"], ["on", "always"], ["off", "never"]].map(([value, label]) => h("option", { value }, label)));
   tongues.value = state.tongues;
-  const sum = h("input", { type: "number", min: 2, max: 400, id: "max-sum", value: String(state.maxSum), onchange: () => act.maxSum(Number(sum.value)) });
+  const sum = h("input", { type: "number", min: 2, max: 400, id: unique("max-sum"), value: String(state.maxSum), onchange: () => act.maxSum(Number(sum.value)) });
   const curves = checkbox("", state.curves, act.curves);
   curves.lastChild.append("Curves ", h("i", {}, "(a, b)"), " of the Proposition");
   const labels = checkbox("Labels", state.labels, act.labels);
-  const stretch = h("select", { id: "stretch", onchange: () => act.stretch(Number(stretch.value)) },
+  const stretch = h("select", { id: unique("stretch"), onchange: () => act.stretch(Number(stretch.value)) },
     ...Array.from({ length: 15 }, (_, k) => k - 5).map((e) => h("option", { value: e }, e >= 0 ? `1 : ${2 ** e}` : `${2 ** -e} : 1`)));
   const element = section("Over the map",
-    h("div.entry", {}, h("label", { for: "tongues" }, "Tongues as lines"), tongues),
-    h("div.entry", {}, h("label", { for: "max-sum" }, "ratios up to ", h("i", {}, "p"), " + ", h("i", {}, "q"), " ="), sum),
+    h("div.entry", {}, h("label", { for: tongues.id }, "Tongues as lines"), tongues),
+    h("div.entry", {}, h("label", { for: sum.id }, "ratios up to ", h("i", {}, "p"), " + ", h("i", {}, "q"), " ="), sum),
     curves, labels,
-    h("div.entry", {}, h("label", { for: "stretch" }, "Scale of ", step(1), " : ", step(2)), stretch));
+    h("div.entry", {}, h("label", { for: stretch.id }, "Scale of ", step(1), " : ", step(2)), stretch));
   const set = (now, view) => {
     tongues.value = now.tongues;
     sum.value = String(now.maxSum);
@@ -79,8 +79,9 @@ export function over(state, act) {
 const greek = (name, index) => [h("i", {}, name), index ? h("sub", {}, index) : ""];
 
 export function springs(act) {
-  const field = (id, label, apply) => {
-    const input = h("input", { id, spellcheck: "false", autocomplete: "off", autocapitalize: "off", onchange: () => apply(input.value) });
+  const field = (name, label, apply) => {
+    const id = unique(name);
+    const input = h("input", { id, "data-field": name, spellcheck: "false", autocomplete: "off", autocapitalize: "off", onchange: () => apply(input.value) });
     return { input, element: h("div.entry", {}, h("label", { for: id }, ...label), input) };
   };
   const lambda1 = field("lambda1", ["fast ", ...greek("λ", "1")], (value) => act.springs({ lambda1: value }));
@@ -97,13 +98,13 @@ export function springs(act) {
   };
   const refuse = (error) => {
     said.textContent = error?.message ?? "";
-    for (const input of [lambda1.input, lambda2.input, rho.input]) input.setAttribute("aria-invalid", String(error?.field === input.id || (error?.field === "lambda2" && error.asked === "rho" && input.id === "rho")));
+    for (const input of [lambda1.input, lambda2.input, rho.input]) input.setAttribute("aria-invalid", String(error && [error.field, error.asked].includes(input.dataset.field)));
   };
   return { element, set, refuse };
 }
 
 export function going(act) {
-  const field = (index) => h("input", { id: `go-h${index}`, spellcheck: "false", autocomplete: "off", placeholder: index === 1 ? "12/25" : "1.12" });
+  const field = (index) => h("input", { id: unique(`go-h${index}`), spellcheck: "false", autocomplete: "off", placeholder: index === 1 ? "12/25" : "1.12" });
   const [first, second] = [field(1), field(2)];
   const said = h("p.error", { role: "alert" });
   const go = (event) => {
@@ -111,7 +112,7 @@ export function going(act) {
     said.textContent = act.go(first.value, second.value) ? "" : "Two positive rationals, please: 12/25, 0.48 or 1e-3.";
   };
   const form = h("form", { onsubmit: go },
-    h("div.entry", {}, h("label", { for: "go-h1" }, step(1)), first), h("div.entry", {}, h("label", { for: "go-h2" }, step(2)), second),
+    h("div.entry", {}, h("label", { for: first.id }, step(1)), first), h("div.entry", {}, h("label", { for: second.id }, step(2)), second),
     h("div.row", {}, h("button", { type: "submit" }, "Go to this pair")));
   return { element: section("Go to", form, said) };
 }

@@ -34,9 +34,9 @@ function scale(axis, from, to) {
 
 /** Italic letters with indices in an SVG text, from `*h*_1 (time)`. */
 export function words(source) {
-  return source.split(/(\*[^*]+\*|_[0-9])/).filter(Boolean).map((part) => {
+  return source.split(/(\*[^*]+\*|[_^][0-9])/).filter(Boolean).map((part) => {
     if (part.startsWith("*")) return h("tspan", { "font-style": "italic" }, part.slice(1, -1));
-    if (part.startsWith("_")) return h("tspan", { "font-size": "0.72em", "baseline-shift": "sub" }, part.slice(1));
+    if (/^[_^]/.test(part)) return h("tspan", { "font-size": "0.72em", "baseline-shift": part[0] === "_" ? "-0.22em" : "0.5em" }, part.slice(1));
     return h("tspan", {}, part);
   });
 }

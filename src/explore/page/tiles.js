@@ -124,6 +124,7 @@ export class Tiles {
 
   /** Drops the tiles that were not looked at for longest. */
   #forget() {
+    for (const [key, layer] of this.layers) if (layer.tiles.size + layer.costly.size + layer.lost.size === 0) this.layers.delete(key);
     const all = [...this.layers.values()].flatMap(({ tiles }) => [...tiles].map(([key, tile]) => [tile.used, tiles, key]));
     if (all.length <= KEPT) return;
     all.sort((a, b) => a[0] - b[0]).slice(0, all.length - KEPT + KEPT / 10).forEach(([, tiles, key]) => tiles.delete(key));

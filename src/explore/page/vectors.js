@@ -163,12 +163,13 @@ function spots(line, x, y, width, height, view) {
 }
 
 /** Writes labels where they cover no other. */
-export function drawLabels(context, labels, colours, font) {
+export function drawLabels(context, labels, colours, font, most) {
   const taken = [];
   context.font = font;
   context.textBaseline = "alphabetic";
   context.lineJoin = "round";
   for (const { words, spots: places } of labels.slice(0, 400)) {
+    if (taken.length >= most) break;
     const width = context.measureText(words).width;
     const free = places.find(([x, y]) => !taken.some((t) => x < t.x + t.width + 6 && x + width + 6 > t.x && Math.abs(y - t.y) < 17));
     if (!free) continue;
