@@ -14,7 +14,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::{Instant, Sleep, sleep};
 
 /// Connections that are open at once; hyper buffers some 400 kB of a request's head at worst. Further ones wait in the system's queue.
-const OPEN: usize = 128;
+const OPEN: usize = 256;
 
 /// A connection on which nothing moves for so long is closed: no question takes as long.
 const SILENT: Duration = Duration::from_secs(60);

@@ -18,6 +18,8 @@ use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderName};
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, Method, Response, StatusCode};
+use tokio::net::{TcpListener, TcpSocket};
+use tokio::runtime::{self, Runtime};
 use tokio::sync::Semaphore;
 
 use super::listen::Bounded;
@@ -30,7 +32,10 @@ use crate::error::{Error, Result};
 const LONGEST_ADDRESS: usize = 8192;
 
 /// Questions that wait for their turn.
-const WAITING: usize = 256;
+const WAITING: usize = 64;
+
+/// Connections that the system holds before they are accepted.
+const BACKLOG: u32 = 1024;
 
 /// Questions that are answered at once, side by side.
 const AT_ONCE: usize = 2;
@@ -52,7 +57,8 @@ const HEADERS: [(HeaderName, &str); 7] = [
 /// A page bound to an address, not yet served.
 #[derive(Debug)]
 pub struct Server {
-    listener: std::net::TcpListener,
+    runtime: Runtime,
+    listener: TcpListener,
     shared: Shared,
 }
 
@@ -78,8 +84,16 @@ impl Server {
             let text = format!("cannot listen ({cause}): choose another port");
             Error::io(format!("127.0.0.1:{port}"), text).caused_by(cause)
         };
-        let listener = std::net::TcpListener::bind((Ipv4Addr::LOCALHOST, port)).map_err(failed)?;
-        listener.set_nonblocking(true).map_err(failed)?;
+        let runtime = runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
+        let listener = {
+            let _entered = runtime.enter();
+            let socket = TcpSocket::new_v4().map_err(failed)?;
+            // A port whose last connections linger may be used again; elsewhere the option means something else.
+            #[cfg(unix)]
+            socket.set_reuseaddr(true).map_err(failed)?;
+            socket.bind((Ipv4Addr::LOCALHOST, port).into()).map_err(failed)?;
+            socket.listen(BACKLOG).map_err(failed)?
+        };
         let port = listener.local_addr().map_err(failed)?.port();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores } else { threads };
@@ -90,7 +104,7 @@ impl Server {
             queue: Semaphore::new(WAITING),
             lanes: [threads, AT_ONCE].map(|places| Arc::new(Semaphore::new(places))),
         };
-        Ok(Server { listener, shared })
+        Ok(Server { runtime, listener, shared })
     }
 
     /// The page's address.
@@ -101,14 +115,12 @@ impl Server {
     /// Serves until the process ends.
     ///
     /// # Errors
-    /// Where the system gives no threads.
+    /// Where the system takes the port away.
     pub fn run(self) -> Result<Infallible> {
-        let failed = |cause: std::io::Error| Error::io("explore", &cause).caused_by(cause);
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
-        runtime.block_on(async {
-            let listener = tokio::net::TcpListener::from_std(self.listener).map_err(failed)?;
+        let failed = |cause: std::io::Error| Error::io("the port", &cause).caused_by(cause);
+        self.runtime.block_on(async {
             let router = Router::new().fallback(handle).with_state(Arc::new(self.shared));
-            axum::serve(Bounded::new(listener), router).await.map_err(failed)?;
+            axum::serve(Bounded::new(self.listener), router).await.map_err(failed)?;
             unreachable!("axum serves for ever")
         })
     }
