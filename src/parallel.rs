@@ -65,9 +65,10 @@ impl Pool {
         Ok(Pool { threads: pool.map_err(refused)? })
     }
 
-    /// Runs `work`, whose parallel iterators then use these threads.
+    /// Runs `work`, whose parallel iterators then use these threads; what stops this thread's work stops it.
     pub(crate) fn install<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        self.threads.install(work)
+        let flag = STOP.with_borrow(Clone::clone);
+        self.threads.install(|| under(flag, work))
     }
 
     /// The number of threads.

@@ -1,7 +1,5 @@
 //! The curves (a, b), 1/T½ = a/h1 + b/h2, in the window, as fractions of it.
 
-use std::sync::atomic::AtomicBool;
-
 use serde_json::{Value, json};
 
 use super::frame::Frame;
@@ -24,7 +22,7 @@ const FEW: i64 = 8;
 const DEEP: u32 = 9;
 
 /// `{"curves": [{"a", "b", "lines": [[u, v, u, v, ...], ...]}]}`.
-pub(super) fn answer(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let ((lambda1, _), window) = (query.stiffnesses(session)?, query.window(session)?);
     let range = |key, default| Ok(query.read(key, parse_integer_range)?.unwrap_or(default));
     let families = Families { a: range("a", FAMILIES.a)?, b: range("b", FAMILIES.b)?, samples: SAMPLES };

@@ -1,7 +1,5 @@
 //! Growth along a line of the plane: one step fixed, or the ratio.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use serde_json::{Value, json};
 
 use super::point::LIMITS;
@@ -51,7 +49,7 @@ impl Line {
 }
 
 /// `x`, `kind`, `rate` at the middles of equal parts of lo..hi; for a fixed ratio `intervals`, all of its tongues there.
-pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let ((lambda1, lambda2), line) = (query.stiffnesses(session)?, Line::read(query)?);
     let (lo, hi) = (query.need("lo", parse_rational)?, query.need("hi", parse_rational)?);
     if lo < Rational::default() || hi <= lo {
@@ -71,9 +69,7 @@ pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Res
         let message = format!("{samples} verdicts along this line would compose about {kicks:.1e} kicks");
         return Ok(Reply::too_costly(Some(kicks), MOST_KICKS, &message));
     }
-    let found = try_map(&pairs, |pair| {
-        if stop.load(Ordering::Relaxed) { Err(Error::stopped("the cut")) } else { sample(pair) }
-    })?;
+    let found = try_map(&pairs, sample)?;
     let intervals = match &line {
         Line::Ratio(_) => intervals(&pairs[0], lambda1, lambda2, (lo, hi))?,
         _ => Value::Null,

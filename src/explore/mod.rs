@@ -16,10 +16,10 @@
 //! | `serve` | the same over HTTP, for this machine alone (feature `explore`) |
 //!
 //! ```
-//! use std::sync::atomic::AtomicBool;
+//! use std::sync::Arc;
 //! use kickdrift::explore::{Session, ask};
 //! let session = Session::figure1();
-//! let reply = ask(&session, "point", "h1=1/100&h2=49/50", &AtomicBool::new(false)).unwrap();
+//! let reply = ask(&session, "point", "h1=1/100&h2=49/50", &Arc::default()).unwrap();
 //! assert_eq!(reply.status, 200);
 //! let answer: serde_json::Value = serde_json::from_slice(&reply.bytes).unwrap();
 //! assert_eq!((&answer["kind"], &answer["p"]), (&"hyperbolic".into(), &98.into()));
@@ -46,9 +46,11 @@ mod strip;
 mod tile;
 mod tongues;
 
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::Result;
+use crate::parallel::stoppable;
 pub use assets::asset;
 use query::Query;
 pub use reply::Reply;
@@ -79,7 +81,7 @@ const QUESTIONS: [Question; 12] = [
 ];
 
 /// Who answers a question.
-type Answer = fn(&Session, &Query, &AtomicBool) -> Result<Reply>;
+type Answer = fn(&Session, &Query) -> Result<Reply>;
 
 const fn question(name: &'static str, at_once: bool, limit: u64, answer: Answer) -> Question {
     Question { name, at_once, limit, answer }
@@ -91,8 +93,8 @@ fn named(name: &str) -> Option<&'static Question> {
 
 /// The answer to the question at `path` with the parameters of `query` (`key=value&...`, percent-encoded), an error's too; `None`
 /// where there is no such question. Work ends soon after `stop` is set.
-pub fn ask(session: &Session, path: &str, query: &str, stop: &AtomicBool) -> Option<Reply> {
+pub fn ask(session: &Session, path: &str, query: &str, stop: &Arc<AtomicBool>) -> Option<Reply> {
     let question = named(path)?;
-    let answer = Query::parse(query).and_then(|query| (question.answer)(session, &query, stop));
-    Some(answer.unwrap_or_else(|error| Reply::refusal(&error, question.limit)))
+    let answer = || (question.answer)(session, &Query::parse(query)?);
+    Some(stoppable(stop, answer).unwrap_or_else(|error| Reply::refusal(&error, question.limit)))
 }

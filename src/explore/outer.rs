@@ -1,7 +1,5 @@
 //! A system of many clocks: growth against the outer step, all steps in the proportions of the file, and the modes that grow.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use serde_json::{Value, json};
 
 use super::query::{Query, count};
@@ -23,7 +21,7 @@ const WIDTH: f64 = 1e-3;
 
 /// `outer`, `rate` (null where it is not told) and `kind` at evenly spaced outer steps, `own` the file's outer step, `verdict` the document
 /// of the file's own steps, `unit` of time; of measured stiffnesses `stretches` {`lo`, `hi`, `verdict`} that cover the range.
-pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let none =
         || Error::missing("system", "start the page on a system file, as data/scenes/diatomic-tether.json");
     let scene = session.system().ok_or_else(none)?;
@@ -48,7 +46,7 @@ pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Res
             json!({"rate": scene.growth_rates(&doubles)?, "kind": null, "stretches": all.collect::<Vec<_>>()})
         }
         // Stiffnesses that are exact, or not of two levels.
-        Err(_) => sampled(scene.system(), &own, &steps, stop)?,
+        Err(_) => sampled(scene.system(), &own, &steps)?,
     };
     let analysis = scene.decide(Route::Cheapest, &Limits::default())?;
     let beside = Beside { unit: scene.time_unit(), labels: scene.labels(), ..Beside::default() };
@@ -61,16 +59,13 @@ pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Res
 }
 
 /// Every sample a verdict of its own.
-fn sampled(system: &System, own: &Rational, steps: &[Rational], stop: &AtomicBool) -> Result<Value> {
+fn sampled(system: &System, own: &Rational, steps: &[Rational]) -> Result<Value> {
     let cost = verdict_cost(system).saturating_mul(steps.len() as u64);
     if cost > MOST_PRODUCTS {
         return Err(Error::budget(format!("{} verdicts on this system", steps.len()), cost)
             .or("ask for fewer samples"));
     }
     let found = try_map(steps, |step| {
-        if stop.load(Ordering::Relaxed) {
-            return Err(Error::stopped("the scan"));
-        }
         let factor = step / own;
         let longer = |of: &Potential| Potential { step: &of.step * &factor, ..of.clone() };
         let scaled = System::new(system.mass().clone(), system.potentials().iter().map(longer).collect())?;

@@ -1,7 +1,5 @@
 //! One pair of steps: all that there is to say.
 
-use std::sync::atomic::AtomicBool;
-
 use serde_json::{Value, json};
 
 use super::query::{Query, positive};
@@ -27,7 +25,7 @@ pub(super) const LIMITS: Limits = Limits { kicks: MOST_KICKS };
 pub(super) const MOST_CERTIFIED: u64 = 5000;
 
 /// The verdict's document and, beside it, `tenfold`, `tongue`, `nearest` and the `command` that gives the same verdict.
-pub(super) fn answer(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let oscillator = oscillator(session, query)?;
     let answer = decided(&oscillator)?;
     let mut body = answer.document().value();
@@ -40,14 +38,14 @@ pub(super) fn answer(session: &Session, query: &Query, _stop: &AtomicBool) -> Re
 }
 
 /// The verdict's document, a file to keep.
-pub(super) fn document(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn document(session: &Session, query: &Query) -> Result<Reply> {
     let answer = decided(&oscillator(session, query)?)?;
     let text = answer.document().render(Format::Json)?;
     Ok(Reply::file("verdict.json", "application/json", text.into_bytes()))
 }
 
 /// The verdict as a Coq proof, a file to keep.
-pub(super) fn certificate(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn certificate(session: &Session, query: &Query) -> Result<Reply> {
     let oscillator = oscillator(session, query)?;
     let kicks = oscillator.ratio().kicks();
     if kicks > MOST_CERTIFIED {

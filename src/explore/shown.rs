@@ -1,7 +1,5 @@
 //! What is shown, to keep: the scene file that makes it again, and its picture as for a paper.
 
-use std::sync::atomic::AtomicBool;
-
 use serde_json::json;
 
 use super::query::{Query, positive};
@@ -14,7 +12,6 @@ use crate::number::Laurent;
 use crate::report::map::Counts;
 use crate::report::plane::{Chart, Colouring, window};
 use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
-use crate::verdict::Limits;
 
 /// Pairs and kicks of a picture.
 const MOST_PAIRS: u64 = 4_000_000;
@@ -32,7 +29,7 @@ fn range(session: &Session, query: &Query) -> Result<GridRange> {
 }
 
 /// A scene file: `kickdrift run` makes the map and its picture from it.
-pub(super) fn scene(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn scene(session: &Session, query: &Query) -> Result<Reply> {
     let (lambda1, lambda2) = query.stiffnesses(session)?;
     let range = range(session, query)?;
     let ([step1, step2], [h1, h2]) = (range.steps(), range.ranges());
@@ -52,7 +49,7 @@ pub(super) fn scene(session: &Session, query: &Query, _stop: &AtomicBool) -> Res
 }
 
 /// The picture that `kickdrift map` draws of the same pairs: `format` svg, png or pdf, `what` as for tiles, `curves` 1 to draw them.
-pub(super) fn picture(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let format = query.read("format", figure)?.unwrap_or(Format::Svg);
     let colouring = query.read("what", colouring)?.unwrap_or_default();
     let (lambda1, lambda2) = query.stiffnesses(session)?;
@@ -67,9 +64,8 @@ pub(super) fn picture(session: &Session, query: &Query, stop: &AtomicBool) -> Re
         Some("1") => FAMILIES.curves_within(grid.lambdas().0, &window(&grid))?,
         _ => Vec::new(),
     };
-    let bytes = drawn(&grid, colouring, stop, |chart, counts| {
-        chart.figure(&grid, counts, &curves).file(format, DPI)
-    })?;
+    let bytes =
+        drawn(&grid, colouring, |chart, counts| chart.figure(&grid, counts, &curves).file(format, DPI))?;
     let (name, media) = match format {
         Format::Png => ("map.png", "image/png"),
         Format::Pdf => ("map.pdf", "application/pdf"),
@@ -78,14 +74,9 @@ pub(super) fn picture(session: &Session, query: &Query, stop: &AtomicBool) -> Re
     Ok(Reply::file(name, media, bytes))
 }
 
-fn drawn<T>(
-    grid: &Grid,
-    colouring: Colouring,
-    stop: &AtomicBool,
-    draw: impl FnOnce(&Chart, &Counts) -> Result<T>,
-) -> Result<T> {
+fn drawn<T>(grid: &Grid, colouring: Colouring, draw: impl FnOnce(&Chart, &Counts) -> Result<T>) -> Result<T> {
     let (mut chart, mut counts) = (Chart::new(grid, colouring), Counts::default());
-    let resources = Resources { threads: 1, limits: Limits::default(), stopped: Some(stop) };
+    let resources = Resources { threads: 1, ..Resources::default() };
     Map::of(grid).with(colouring.needs()).within(resources).for_each_band(|_, band| {
         chart.add(grid, &band);
         counts.add(&band);

@@ -1,7 +1,5 @@
 //! What the page starts on, and what it may ask.
 
-use std::sync::atomic::AtomicBool;
-
 use serde_json::{Value, json};
 
 use super::query::Query;
@@ -13,7 +11,7 @@ use crate::number::Laurent;
 use crate::scene::shown_range;
 
 /// The session, or the plane of other stiffnesses: exact texts, and doubles to draw by.
-pub(super) fn answer(session: &Session, query: &Query, _stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let other = ["lambda1", "lambda2", "rho"].iter().any(|key| query.text(key).is_some());
     let own = match other {
         true => {

@@ -1,7 +1,5 @@
 //! All tongues of one ratio as ρ changes, and where they close.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use serde_json::{Value, json};
 
 use super::query::{Query, count};
@@ -20,7 +18,7 @@ const SEARCHED: u64 = 40;
 
 /// `rho`; `tongues` {`m`, `a`, `b`, `lower`, `upper`} with edges in s = h1² L1 at each rho; `closings` {`m`, `s`, `rho`}, null beyond
 /// p + q = 40. All edges are certified to the doubles shown.
-pub(super) fn answer(_session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(_session: &Session, query: &Query) -> Result<Reply> {
     let ratio = query.need("ratio", parse_ratio)?;
     let (lo, hi) = query.need("rho", parse_rational_range)?;
     if lo <= Rational::default() || hi == lo {
@@ -37,12 +35,7 @@ pub(super) fn answer(_session: &Session, query: &Query, stop: &AtomicBool) -> Re
     let samples = query.read("samples", count(2, 400))?.unwrap_or(120);
     let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
     let rhos = (0..samples).map(|k| &lo + &part * Rational::from_integer(k.into())).collect::<Vec<_>>();
-    let at = |rho: &Rational| {
-        if stop.load(Ordering::Relaxed) {
-            return Err(Error::stopped("the strip"));
-        }
-        Tongues::new(ratio, rho)?.all()
-    };
+    let at = |rho: &Rational| Tongues::new(ratio, rho)?.all();
     let gaps: Vec<Vec<Gap>> = try_map(&rhos, at)?;
     let closings = match ratio.kicks() <= SEARCHED {
         true => Some(closed(ratio, (lo, hi), samples as usize)?),

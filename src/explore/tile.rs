@@ -4,8 +4,6 @@
 //! pairs that a map of the whole plane with these spacings has. What a tile costs doubles with each level, since p and q grow; it is known
 //! before the work begins, by the map's own law.
 
-use std::sync::atomic::AtomicBool;
-
 use num_bigint::{BigInt, BigUint};
 use num_traits::ToPrimitive;
 
@@ -15,7 +13,7 @@ use super::session::Session;
 use crate::error::{Error, Result};
 use crate::map::{Band, Enclosure, Grid, Map, Products, Resources};
 use crate::number::{Laurent, Rational};
-use crate::verdict::{Kind, Limits, Verdict};
+use crate::verdict::{Kind, Verdict};
 
 /// Kicks that the verdicts of a tile may compose: about two seconds of a core.
 pub(super) const MOST_KICKS: u64 = 4_000_000_000;
@@ -61,7 +59,7 @@ impl What {
 }
 
 /// 16 bytes, `KDT1`, the size and what as u32, the largest growth as f32; then the values, row by row from the lowest h2. All little endian.
-pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let place = Place::read(query)?;
     let what = query.read("what", What::read)?.unwrap_or(What::Verdict);
     let (lambda1, lambda2) = query.stiffnesses(session)?;
@@ -83,7 +81,7 @@ pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Res
         }
     }
     let mut tile = Tile::new(what, place.size as usize);
-    let resources = Resources { threads: 1, limits: Limits::default(), stopped: Some(stop) };
+    let resources = Resources { threads: 1, ..Resources::default() };
     Map::of(&grid).with(what.products()).within(resources).for_each_band(|_, band| {
         tile.add(&grid, &band);
         Ok(())

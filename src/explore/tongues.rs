@@ -1,7 +1,5 @@
 //! Certified tongues as vectors: what they cost does not depend on how deep the window lies.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use serde_json::{Value, json};
 
 use super::frame::Frame;
@@ -9,7 +7,7 @@ use super::query::{Query, count, positive};
 use super::rays::ratios;
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
 use crate::scene::StepRange;
 use crate::tongue::{Quantity, Question, Request, Selection, Stiffness, Tongue, TongueEdge, Window};
@@ -32,7 +30,7 @@ const DEEP: u32 = 9;
 
 /// Every tongue of every ratio up to `max_sum`, or as far as the limit allows, that lies in the window, narrower ones than `min_width`
 /// (in h1) left out; the rest of the story is in `segment`.
-pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Result<Reply> {
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let (stiffness, window) = (query.stiffness(session)?, query.window(session)?);
     let asked = query.read("max_sum", count(2, 100_000))?;
     let least = query.read("min_width", positive)?.map_or(0.0, |width| rational::to_f64(&width));
@@ -48,7 +46,7 @@ pub(super) fn answer(session: &Session, query: &Query, stop: &AtomicBool) -> Res
                 segments.extend(segment(tongue, &frame));
             }
         }
-        if stop.load(Ordering::Relaxed) { Err(Error::stopped("tongues")) } else { Ok(()) }
+        Ok(())
     })?;
     let complete = asked.is_none_or(|asked| asked <= max_sum);
     let body = json!({

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, Result};
-use crate::parallel::Pool;
+use crate::parallel::{Pool, go_on};
 use crate::verdict::Limits;
 
 /// What a map or a list of pairs may take.
@@ -27,7 +27,7 @@ impl Resources<'_> {
     pub(super) fn go_on(&self) -> Result<()> {
         match self.stopped {
             Some(stopped) if stopped.load(Ordering::Relaxed) => Err(Error::stopped("the map")),
-            _ => Ok(()),
+            _ => go_on(),
         }
     }
 }

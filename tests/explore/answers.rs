@@ -1,6 +1,7 @@
 //! What the page is told is what the program and the library say.
 
 use std::process::Command;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use kickdrift::explore::{Reply, Session, ask};
@@ -16,7 +17,7 @@ use serde_json::Value;
 const STIFFNESS: [&str; 4] = ["--lambda1", "pi^2", "--lambda2", "pi^2/25"];
 
 fn reply(path: &str, query: &str) -> Reply {
-    ask(&Session::figure1(), path, query, &AtomicBool::new(false)).expect("a question that there is")
+    ask(&Session::figure1(), path, query, &Arc::default()).expect("a question that there is")
 }
 
 fn told(path: &str, query: &str) -> Value {
@@ -343,7 +344,7 @@ fn what_is_shown_can_be_kept() {
 fn a_system_grows_where_its_own_verdict_says() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/fpu.json");
     let scene = kickdrift::scene::SystemScene::read(&std::fs::read_to_string(file).unwrap()).unwrap();
-    let stop = AtomicBool::new(false);
+    let stop = Arc::default();
     let session = Session::of_system(scene);
     let reply = ask(&session, "system", "outer=3/100..9/100&samples=3", &stop).unwrap();
     let told: Value = serde_json::from_slice(&reply.bytes).unwrap();
@@ -357,7 +358,7 @@ fn a_system_grows_where_its_own_verdict_says() {
 
 #[test]
 fn stopped_work_is_not_begun() {
-    let stopped = AtomicBool::new(true);
+    let stopped = Arc::new(AtomicBool::new(true));
     for (path, query) in [
         ("tile", "unit=1/4&level=0&x=0&y=0"),
         ("picture", "step=1/50"),
