@@ -93,6 +93,7 @@ export function card(host, pin, told, unit, act) {
       h("button", { type: "button", onclick: () => act.cut("h1") }, "along ", step(2)),
       h("button", { type: "button", onclick: () => act.cut("h2") }, "along ", step(1)),
       h("button", { type: "button", onclick: act.strip }, "Tongues over ", h("i", {}, "ρ"))),
+    h("p.error", { role: "alert" }, pin.said ?? ""),
   );
 }
 

@@ -3,7 +3,7 @@
 import { latest } from "./ask.js";
 import { css, family } from "./colours.js";
 import { h, iconButton, step } from "./dom.js";
-import { parse } from "./exact.js";
+import { parse, toNumber } from "./exact.js";
 import { plot } from "./plot.js";
 import { enclosure, exactly, mathematics, number } from "./writing.js";
 
@@ -15,6 +15,24 @@ const upward = (rates) => {
   const most = Math.max(0, ...rates.filter((rate) => rate !== null));
   return { lo: 0, hi: most > 0 ? 1.08 * most : 1 };
 };
+
+/** Samples are evenly spaced in rho: a decade at a time they are so in its logarithm, nearly. */
+const DECADES = ["1/1000..1/300", "1/300..1/100", "1/100..3/100", "3/100..1/10", "1/10..3/10", "3/10..1", "1..3", "3..10"];
+
+/** Strips side by side as one; what two share at their common end is taken once. */
+function joined(strips) {
+  const [first, ...rest] = strips;
+  const all = { rho: [...first.rho], tongues: first.tongues.map((t) => ({ ...t, lower: [...t.lower], upper: [...t.upper] })), closings: first.closings && [...first.closings] };
+  for (const { rho, tongues, closings } of rest) {
+    all.rho.push(...rho.slice(1));
+    tongues.forEach((t, k) => {
+      all.tongues[k].lower.push(...t.lower.slice(1));
+      all.tongues[k].upper.push(...t.upper.slice(1));
+    });
+    all.closings?.push(...(closings ?? []));
+  }
+  return all;
+}
 
 /** Growth is zero at the edges of an interval: they belong to the curve between its samples. */
 function withEdges(x, rate, intervals) {
@@ -35,9 +53,9 @@ export class Drawer {
     this.below = h("div.below", {});
     this.extra = h("div.row", {});
     this.host.append(h("div.head", {}, this.title, this.extra, iconButton("close", "Close the plot", () => act.close(this.shown?.kind))), this.field, this.below);
-    this.load = latest(async (kind, path, params, signal) => {
-      const data = await questions.json(path, params, signal);
-      this.data = { of: kind, reply: data };
+    this.load = latest(async (kind, asked, signal) => {
+      const replies = await Promise.all(asked.map(([path, params]) => questions.json(path, params, signal)));
+      this.data = { of: kind, reply: kind === "strip" ? joined(replies) : replies[0] };
       this.paint();
     }, 30);
     new ResizeObserver(() => this.paint()).observe(this.field);
@@ -63,10 +81,10 @@ export class Drawer {
   #ask(what, springs) {
     if (what.kind === "cut") {
       const { along, value, lo, hi } = what;
-      return this.load("cut", "cut", { ...springs, kind: along, value, lo, hi, samples: 401 });
+      return this.load("cut", [["cut", { ...springs, kind: along, value, lo, hi, samples: 401 }]]);
     }
-    if (what.kind === "strip") return this.load("strip", "strip", { ratio: what.ratio, rho: "1/1000..10", samples: 81 });
-    return this.load("system", "system", what.outer ? { outer: what.outer, samples: 401 } : { samples: 401 });
+    if (what.kind === "strip") return this.load("strip", DECADES.map((rho) => ["strip", { ratio: what.ratio, rho, samples: 31 }]));
+    return this.load("system", [["system", what.outer ? { outer: what.outer, samples: 201 } : { samples: 201 }]]);
   }
 
   #head(what) {
@@ -79,7 +97,11 @@ export class Drawer {
       const input = h("input", { value: what.ratio, size: 6, "aria-label": "Ratio p/q of the strip", onchange: () => this.act.ratio(input.value) });
       this.title.replaceChildren("Tongues of ", step(2), "/", step(1), " = ", what.ratio);
       this.extra.append(h("label.entry", {}, h("i", {}, "p/q"), input));
-    } else this.title.replaceChildren("Growth against the outer step");
+    } else {
+      const input = h("input", { value: what.outer ?? "", placeholder: "1/10..1/2", size: 10, "aria-label": "Range of the outer step, lo..hi", onchange: () => this.act.outer(input.value.trim() || null) });
+      this.title.replaceChildren("Growth against the outer step");
+      this.extra.append(h("label.entry.wide", {}, "from .. to", input));
+    }
   }
 
   paint() {
@@ -88,9 +110,10 @@ export class Drawer {
     this[`_${this.data.of}`](this.data.reply);
   }
 
-  _cut({ x, rate, kind, axis, intervals }) {
+  _cut({ x, rate, kind, axis, intervals: tongues }) {
+    const intervals = tongues?.map((t) => ({ ...t, lower: t.lower[axis], upper: t.upper && t.upper[axis] }));
     const { palette, unit } = this.shared();
-    const [lo, hi] = [x[0], x.at(-1)];
+    const [lo, hi] = [this.shown.lo, this.shown.hi].map((end) => toNumber(parse(end)));
     const layers = [{ kind: "line", ...withEdges(x, rate, intervals ?? []), colour: css(palette.kinds[1]), below: true }];
     if (intervals?.length) {
       layers.unshift({ kind: "spans", colour: css(palette.accent), spans: intervals.map((t) => ({ lo: t.lower.lo, hi: t.upper ? t.upper.hi : null, label: label(t) })) });
@@ -113,8 +136,9 @@ export class Drawer {
     this.below.replaceChildren(table(`${intervals.length} unstable intervals, certified edges`, [h("i", {}, "m"), "family", ["from ", step(index)], "to"], cells));
   }
 
-  _strip({ rho, tongues, closings }) {
+  _strip({ rho, tongues, closings: told }) {
     const { palette, values } = this.shared();
+    const closings = told ?? [];
     const most = Math.max(4.4, ...closings.map(({ s }) => Math.min(1.1 * s, 12)));
     const bands = tongues.map((t) => ({ kind: "band", x: rho, lower: t.lower, upper: t.upper, colour: css(family(palette, t.a)), label: label(t) }));
     const layers = [...bands, { kind: "upright", at: values.rho, colour: css(palette.ink) }];
@@ -127,22 +151,37 @@ export class Drawer {
       layers, label: `Tongues over rho: ${tongues.length}; closings: ${closings.length}`,
       pick: (at) => this.act.rho(String(Number(at.toPrecision(3)))),
     });
-    const cells = closings.map((c) => [String(c.m), c.exact?.[0] ? mathematics(c.exact[0]) : number(c.s, 12), c.exact?.[1] ? mathematics(c.exact[1]) : number(c.rho, 12)]);
-    const said = h("p.quiet", {}, "A dashed line marks the map's ", h("i", {}, "ρ"), "; a click takes another. ", closings.length ? "Circles: the tongue closes, the resonance does not destabilize." : "No tongue closes here.");
+    const cells = closings.map((c) => [String(c.m), c.exact?.[0] ? mathematics(c.exact[0]) : String(Number(c.s.toPrecision(12))), c.exact?.[1] ? mathematics(c.exact[1]) : String(Number(c.rho.toPrecision(12)))]);
+    const said = h("p.quiet", {}, "A dashed line marks the map's ", h("i", {}, "ρ"), "; a click takes another. ", closings.length ? "Circles: the tongue closes, the resonance does not destabilize." : told ? "No tongue closes here." : "Closings are not looked for at so large p + q.");
     this.below.replaceChildren(said, ...(closings.length ? [table(closings.length === 1 ? "1 closing" : `${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
   }
 
-  _system({ outer, rate, modes, unit }) {
+  _system({ outer, rate, kind, stretches, own, verdict, unit: named }) {
     const { palette } = this.shared();
+    const unit = named ?? "time";
+    const spans = (stretches ?? []).filter((s) => s.verdict !== "stable" && s.verdict !== "elliptic").map(({ lo, hi, verdict: said }) => ({ lo, hi, label: said }));
+    const layers = [{ kind: "spans", colour: css(palette.accent), spans }, { kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }, { kind: "upright", at: own, colour: css(palette.ink) }];
+    for (const [name, value] of [["parabolic", 2], ["coexistence", 3]]) {
+      const at = outer.filter((_, k) => kind?.[k] === name);
+      layers.push({ kind: "points", x: at, y: at.map(() => 0), colour: css(palette.kinds[value]) });
+    }
     plot(this.field, {
-      x: { lo: outer[0], hi: outer.at(-1), title: `outer step (${unit ?? "time"})` },
-      y: { ...upward(rate), title: `growth rate (1/${unit ?? "time"})` },
-      layers: [{ kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }],
-      label: "Growth rate against the outer step",
-      probe: () => {},
+      x: { lo: outer[0], hi: outer.at(-1), title: `outer step (${unit})` },
+      y: { ...upward(rate), title: `growth rate (1/${unit})` },
+      layers, label: "Growth rate against the outer step",
     });
-    const keys = modes?.length ? Object.keys(modes[0]) : [];
-    const cells = (modes ?? []).map((mode) => keys.map((key) => (typeof mode[key] === "number" ? number(mode[key], 6) : typeof mode[key] === "object" && mode[key] && "lo" in mode[key] ? enclosure(mode[key]) : String(mode[key] ?? "–"))));
-    this.below.replaceChildren(...(keys.length ? [table(`${modes.length} modes`, keys.map((key) => key.replace(/_/g, " ")), cells)] : []));
+    this.below.replaceChildren(...told(verdict, own, unit));
   }
+}
+
+/** The file's own steps: stable, or which modes grow. */
+function told(verdict, own, unit) {
+  const modes = (verdict?.parts ?? []).flatMap(({ instabilities }) => instabilities ?? []);
+  const said = h("p.quiet", {}, `The dashed line is the file's own outer step, ${own} ${unit}: ${verdict?.stable ? "stable" : "unstable"}${verdict?.kind ? `, ${verdict.kind}` : ""}.`);
+  if (!modes.length) return [said];
+  const rows = modes.map(({ growth_rate: rate, origin, resonance, shape }) => [
+    number(rate, 6), origin ?? "–", resonance ? minus(`m = ${resonance.m}, (${resonance.family})`.replace(",", ", ")) : "–",
+    resonance?.frequencies?.map((w) => number(w, 5)).join(", ") ?? "–", shape?.slice(0, 6).map((x) => number(x, 3)).join(", ") ?? "–",
+  ]);
+  return [said, table(modes.length === 1 ? "1 mode grows" : `${modes.length} modes grow`, ["growth rate", "origin", "resonance", "frequencies", "shape"], rows)];
 }

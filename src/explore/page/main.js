@@ -25,6 +25,13 @@ const kindOf = (what, value) => {
   return (what === "growth" ? value > 0 : value[0] !== -32768) ? "hyperbolic" : undefined;
 };
 
+/** Why there is no verdict. */
+const costs = (error) => {
+  if (!error.tooCostly) return error.message;
+  const { cost, unit } = error.tooCostly;
+  return cost === null ? "This verdict would cost too much." : `This verdict would cost ${number(Number(cost), 2)} ${unit ?? "kicks"}.`;
+};
+
 /**
  * Puts the page into an element. `ask(path, params, signal)` reaches the server and resolves to {status, type, bytes};
  * `own`: the page is ours, with its address and history. Returns the explorer, with `ready` (a promise) and `remove()`.
@@ -52,6 +59,11 @@ class Explorer {
     this.state.step = (saved.step && parse(saved.step) ? saved.step : this.begun.step) ?? "1/1000";
     const step = parse(this.state.step);
     this.map = new StabilityMap(this.page.canvas, this.questions, step, () => this.settings(), (status) => this.#told(status));
+    // A system of other than two springs has no plane of step pairs.
+    const alone = Boolean(this.begun.system && !this.begun.lambda1);
+    this.map.idle = alone;
+    this.page.root.dataset.alone = String(alone);
+    this.state.system = alone;
     this.drawer = new Drawer(this.page.drawer, this.questions, () => this.settings(), this.#drawerActs());
     this.input = new Input(this.map, this.#inputActs(), () => this.tool);
     this.#questionsOfPoints();
@@ -62,7 +74,6 @@ class Explorer {
     new ResizeObserver(() => this.#measure()).observe(this.page.frame);
     this.map.home = () => this.map.view.fit(this.begun.window ?? [0, 1, 0, 1]);
     if (!this.map.view.restore(saved.view)) this.map.home();
-    if (this.begun.system && !this.begun.lambda1) this.state.system = true;
     this.#take(saved);
     this.past.record(() => this.saved(), true);
     this.#refresh();
@@ -108,7 +119,7 @@ class Explorer {
     state.what = KINDS_OF_COLOUR.includes(saved.what) ? saved.what : "verdict";
     state.tongues = ["on", "off"].includes(saved.tongues) ? saved.tongues : "auto";
     state.maxSum = Math.min(400, Math.max(2, Number(saved.maxSum) || 40));
-    Object.assign(state, { curves: saved.curves === "1", labels: saved.labels !== "0", system: saved.system === "1" || state.system });
+    Object.assign(state, { curves: saved.curves === "1", labels: saved.labels !== "0", system: saved.system === "1" || this.map.idle });
     const pair = saved.pin ? typed(...saved.pin.split(",")) : null;
     this.#pin(pair);
     const [kind, value, lo, hi] = (saved.cut ?? "").split(",");
@@ -141,8 +152,8 @@ class Explorer {
     page.springs.set(state);
     const [a, b] = [state.lambda1, state.lambda2].map((x) => mathematics(x ?? ""));
     page.subject(this.begun.title, a, b, mathematics(state.rho), this.begun.unit);
-    page.systemButton.hidden = !this.begun.system;
-    this.drawer.show(state.cut ? { ...state.cut, kind: "cut", along: state.cut.kind } : state.strip ? { kind: "strip", ratio: state.strip } : state.system ? { kind: "system" } : null);
+    page.systemButton.hidden = !this.begun.system || this.map.idle;
+    this.drawer.show(state.cut ? { ...state.cut, kind: "cut", along: state.cut.kind } : state.strip ? { kind: "strip", ratio: state.strip } : state.system ? { kind: "system", outer: state.outer } : null);
     page.tools.choose(this.tool);
     page.canvas.dataset.tool = this.tool;
     this.map.redraw();
@@ -169,7 +180,7 @@ class Explorer {
     if (!status.costly) parts.push(`Every cell is one exact verdict: multiples of d₁ = ${d1} and d₂ = ${d2}.`);
     else {
       const { cost, limit, unit } = status.costly;
-      parts.push(`A tile of d₁ = ${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`);
+      parts.push(cost === null ? `Cells of d₁ = ${d1} would cost too much.` : `A tile of d₁ = ${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`);
       parts.push(status.vectors ? `Shown instead: certified tongues, ratios with p + q ≤ ${status.sum ?? "…"}.` : "Tongues as lines are switched off.");
     }
     if (!status.costly && status.vectors && status.sum) parts.push(`Lines: tongues with p + q ≤ ${status.sum}.`);
@@ -188,23 +199,30 @@ class Explorer {
   }
 
   #questionsOfPoints() {
-    const point = (pair, signal) => this.questions.json("point", { ...this.#where(), h1: text(pair[0]), h2: text(pair[1]) }, signal);
+    const point = async (picked, signal) => {
+      const [h1, h2] = picked.pair.map(text);
+      // Where cells cost too much no pair of theirs can be decided: the simplest ratio within half a cell stands for it.
+      return this.questions.json("point", { ...this.#where(), h1, h2, ...(picked.within ? { within: picked.within } : {}) }, signal);
+    };
     this.askHover = latest(async (picked, signal) => {
-      const told = await point(picked.pair, signal).catch((error) => {
+      const told = await point(picked, signal).catch((error) => {
         if (signal.aborted) throw error;
-        return { said: error.message };
+        return { said: costs(error) };
       });
       const { unit } = this.settings();
       readout(this.page.readout, picked.pair, told.kind, told.said ? null : told, unit, told.said);
       this.#speak(picked.pair, told);
     }, 70);
     this.askPin = latest(async (pin, signal) => {
-      const told = await point(pin.pair, signal).catch((error) => {
+      const told = await point(pin, signal).catch((error) => {
         if (signal.aborted) throw error;
-        return { error: error.tooCostly ? `This verdict would cost ${number(Number(error.tooCostly.cost), 2)} ${error.tooCostly.unit ?? "kicks"}.` : error.message };
+        return { error: costs(error) };
       });
+      if (told.input) Object.assign(pin, pinned([told.input.h1, told.input.h2].map(parse)), { within: null });
       pin.told = told;
       this.#card();
+      this.map.redraw();
+      this.past.record(() => this.saved());
     });
   }
 
@@ -216,10 +234,10 @@ class Explorer {
     }, 500);
   }
 
-  #pin(pair) {
+  #pin(pair, within = null) {
     const same = pair && this.state.pin && pinned(pair).text.join() === this.state.pin.text.join() && this.state.pin.springs === `${this.state.lambda1}|${this.state.lambda2}`;
     if (same) return;
-    this.state.pin = pair ? { ...pinned(pair), springs: `${this.state.lambda1}|${this.state.lambda2}`, told: null } : null;
+    this.state.pin = pair ? { ...pinned(pair), springs: `${this.state.lambda1}|${this.state.lambda2}`, within, told: null } : null;
     if (this.state.pin && this.askPin) this.askPin(this.state.pin);
     this.#card();
   }
@@ -234,7 +252,12 @@ class Explorer {
 
   #inputActs() {
     const redraw = () => this.map.redraw();
-    const withTongues = () => Boolean(this.status?.vectors);
+    const pickAt = (at, reach) => {
+      const picked = pick(this.map, at, reach, Boolean(this.status?.vectors));
+      const { view } = this.map;
+      if (picked && !picked.line && this.status?.costly) picked.within = text(multiply(view.unit(1), powerOfTwo(-view.level - 1)));
+      return picked;
+    };
     return {
       moved: redraw,
       settled: () => {
@@ -242,7 +265,7 @@ class Explorer {
         this.past.record(() => this.saved());
       },
       hover: (at) => {
-        const picked = pick(this.map, at, 7, withTongues());
+        const picked = pickAt(at, 7);
         this.map.cursor = picked && at;
         redraw();
         if (!picked) return;
@@ -257,12 +280,12 @@ class Explorer {
         redraw();
       },
       click: (at, reach) => {
-        const picked = pick(this.map, at, reach, withTongues());
+        const picked = pickAt(at, reach);
         if (!picked) return;
         const now = performance.now();
         if (!(now - this.clicked < 500)) this.unclicked = this.state.pin;
         this.clicked = now;
-        this.#pin(picked.pair);
+        this.#pin(picked.pair, picked.within);
         this.#change();
       },
       // A double click zooms: what it pinned on the way is taken back.
@@ -302,7 +325,11 @@ class Explorer {
       const { bytes, type } = await this.questions.bytes(question, { ...this.#where(), h1, h2 });
       download(name, type, bytes);
     };
-    const said = (work) => work.catch((error) => (this.page.live.textContent = error.message, this.page.note.say(error.message)));
+    // Why there is no file, such as no certificate for numbers with pi, stands on the card.
+    const said = async (work) => {
+      pin.said = await work.then(() => null, (error) => error.message);
+      this.#card();
+    };
     return {
       copy: (words) => navigator.clipboard?.writeText(words).then(() => (this.page.live.textContent = "copied")),
       certificate: () => said(save("certificate", "verdict.v")),
@@ -323,6 +350,7 @@ class Explorer {
 
   #drawerActs() {
     return {
+      outer: (outer) => this.#change({ outer }),
       close: (kind) => this.#change(kind === "cut" ? { cut: null } : kind === "strip" ? { strip: null } : { system: false }),
       probe: (t) => {
         this.map.probe = this.state.cut ? t : null;
@@ -386,9 +414,9 @@ class Explorer {
   async #save(question, format) {
     const { view } = this.map;
     const [h1, h2] = view.window().map(({ lo, hi }) => `${text(lo)}..${text(hi)}`);
-    const [step1, step2] = [0, 1].map((axis) => text(multiply(view.unit(axis), powerOfTwo(-view.level))));
+    const [step, step2] = [0, 1].map((axis) => text(multiply(view.unit(axis), powerOfTwo(-view.level))));
     const { state } = this;
-    const params = { ...this.#where(), h1, h2, step1, step2, what: state.what, ...(state.curves ? { curves: 1 } : {}), ...(question === "picture" ? { format } : {}) };
+    const params = { ...this.#where(), h1, h2, step, step2, what: state.what, ...(state.curves ? { curves: 1 } : {}), ...(question === "picture" ? { format } : {}) };
     try {
       const { bytes, type } = await this.questions.bytes(question, params);
       download(question === "picture" ? `kickdrift.${format}` : "scene.json", type, bytes);

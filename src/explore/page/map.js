@@ -21,7 +21,7 @@ export class StabilityMap {
 
   /** Draws before the next frame is shown. */
   redraw() {
-    if (this.due) return;
+    if (this.due || this.idle) return;
     this.due = requestAnimationFrame(() => {
       this.due = null;
       this.paint();

@@ -98,7 +98,7 @@ export function springs(act) {
   };
   const refuse = (error) => {
     said.textContent = error?.message ?? "";
-    for (const input of [lambda1.input, lambda2.input, rho.input]) input.setAttribute("aria-invalid", String(error && [error.field, error.asked].includes(input.dataset.field)));
+    for (const input of [lambda1.input, lambda2.input, rho.input]) input.setAttribute("aria-invalid", String(Boolean(error && [error.field, error.asked].includes(input.dataset.field))));
   };
   return { element, set, refuse };
 }
