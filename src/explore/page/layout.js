@@ -24,7 +24,7 @@ export function layout(element, state, act) {
   const controls = h("div.controls", {}, tools, h("div.zooms", {}, iconButton("plus", "Zoom in", () => act.zoom(1)), iconButton("minus", "Zoom out", () => act.zoom(-1)), iconButton("home", "Show all", act.home)));
   const drawer = h("section.drawer", { hidden: true, "aria-label": "Plot" });
   const note = h("div.note", {}, words, where);
-  const main = h("main", {}, h("div.stage", {}, frame, controls), note, offsets, drawer);
+  const main = h("main", {}, h("div.stage", {}, frame, controls), h("div.said", {}, note, offsets), drawer);
   const side = h("aside", { "aria-label": "Readings and settings" },
     h("section.panel.pointer", {}, h("h2", {}, "Under the pointer"), readout), cardPanel,
     parts.colours.element, parts.over.element, parts.springs.element, parts.going.element, parts.saving.element);

@@ -12,7 +12,7 @@ import { layout } from "./layout.js";
 import { StabilityMap } from "./map.js";
 import { legend } from "./panels.js";
 import { cutOf, cutThrough, pick, typed } from "./picking.js";
-import { exactly, mathematics, number, spacing } from "./writing.js";
+import { exactly, grouped, mathematics, number, spacing } from "./writing.js";
 
 /** Bits that a centre is known to beyond the zoom at which it was chosen: levels that one may go down and still find it. */
 const DEEPER = 256;
@@ -181,7 +181,10 @@ class Explorer {
     else {
       const { cost, limit, unit } = status.costly;
       parts.push(cost === null ? `Cells of d₁ = ${d1} would cost too much.` : `A tile of d₁ = ${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`);
-      parts.push(status.vectors ? `Shown instead: certified tongues, ratios with p + q ≤ ${status.sum ?? "…"}.` : "Tongues as lines are switched off.");
+      if (!status.vectors) parts.push("Tongues as lines are switched off.");
+      else if (status.sum) parts.push(`Shown instead: certified tongues wider than a cell, all ratios with p + q ≤ ${grouped(status.sum)}.`);
+      else parts.push("Asking for certified tongues instead …");
+      if (status.pale !== null) parts.push(`Pale: verdicts on a coarser grid, d₁ = ${spacing(view.unit(0), status.pale)}.`);
     }
     if (!status.costly && status.vectors && status.sum) parts.push(`Lines: tongues with p + q ≤ ${status.sum}.`);
     if (status.refused && status.vectors) parts.push(status.refused);

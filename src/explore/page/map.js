@@ -2,7 +2,7 @@
 
 import { drawAxes, SERIF } from "./axes.js";
 import { css } from "./colours.js";
-import { parse } from "./exact.js";
+import { parse, text } from "./exact.js";
 import { layerKey, Tiles } from "./tiles.js";
 import { drawLabels, Vectors } from "./vectors.js";
 import { View } from "./view.js";
@@ -61,13 +61,15 @@ export class StabilityMap {
     context.fillStyle = css(palette.paper);
     context.fillRect(left, top, width, height);
     context.translate(left, top);
+    this.pale = null;
     const status = this.#cells(now);
+    status.pale = this.pale;
     this.#lines(now, status);
     this.#outside(palette);
     this.#marks(now);
     context.restore();
     status.offsets = drawAxes(context, view, palette, box, now.unit, this.narrow);
-    this.report({ ...status, level: view.level, sum: this.vectors.tongues?.data.max_sum, refused: this.vectors.refused });
+    this.report({ ...status, level: view.level, sum: this.vectors.shownSum(this.view), refused: this.vectors.refused });
   }
 
   /** Draws what is here of the tiles, and asks for what is not. */
@@ -85,16 +87,28 @@ export class StabilityMap {
     // Where cells would cost too much, coarser ones would be taken for them: they stay, but pale.
     if (lacking) this.#under(now.layer, now.palette, costly !== null);
     here.forEach((tile) => tile && this.#tile(tile, now.layer, now.palette));
+    const coarser = costly ? this.#affordable(now.layer) : [];
     const ring = lacking === 0 && !this.moving && tiles.quick ? view.tiles(level, 1) : [];
-    tiles.want(now.layer, lacking ? shown : ring);
+    tiles.want(now.layer, lacking ? [...shown, ...coarser] : ring);
     return { costly, lacking, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
+  }
+
+  /** The tiles of the finest level at most four above that no refusal is known of: pale, they show where one is. */
+  #affordable(layer) {
+    for (let level = this.view.level - 1; level >= this.view.level - 4; level--) {
+      const places = this.view.tiles(level);
+      if (!places.some((place) => this.tiles.cost(layer, place))) return places;
+    }
+    return [];
   }
 
   /** Tiles of neighbouring levels, while those of this one are on their way. */
   #under(layer, palette, pale) {
     const { context, view, tiles } = this;
     context.globalAlpha = pale ? 0.3 : 1;
-    for (const tile of tiles.around(layer, view, view.level, pale ? 4 : 6)) this.#tile(tile, layer, palette);
+    const around = tiles.around(layer, view, view.level, pale ? 4 : 6);
+    for (const tile of around) this.#tile(tile, layer, palette);
+    if (pale) this.pale = around.length ? around.at(-1).place.level : null;
     if (layerKey(layer) !== layerKey(this.settings().layer)) {
       for (const place of view.tiles(view.level)) {
         const tile = tiles.get(layer, place);
@@ -123,7 +137,7 @@ export class StabilityMap {
     const { context, view, vectors } = this;
     const byCost = status.costly !== null && now.tongues !== "off";
     const shown = byCost || now.tongues === "on";
-    const tongues = shown ? { maxSum: byCost ? null : now.maxSum } : null;
+    const tongues = shown ? { maxSum: byCost ? null : now.maxSum, minWidth: byCost ? text(view.coordinate(1n, 0)) : null } : null;
     if (!this.moving || !vectors.tongues) vectors.update(view, now.layer, { tongues, curves: now.curves });
     const labels = [];
     if (now.curves) labels.push(...vectors.drawCurves(context, view, now.palette));

@@ -66,10 +66,15 @@ export class Vectors {
       });
     };
     if (tongues) {
-      const extra = tongues.maxSum ? { max_sum: tongues.maxSum } : {};
-      once("tongues", `${lambda1}|${lambda2}|${tongues.maxSum ?? ""}`, (key) => this.askTongues(key, window, { ...where, ...extra }));
+      const extra = tongues.maxSum ? { max_sum: tongues.maxSum } : { min_width: tongues.minWidth };
+      once("tongues", (this.wanted = `${lambda1}|${lambda2}|${tongues.maxSum ?? ""}`), (key) => this.askTongues(key, window, { ...where, ...extra }));
     }
     if (curves) once("curves", lambda1, (key) => this.askCurves(key, window, { ...where, a: "0..3", b: "-12..12" }));
+  }
+
+  /** Up to which p + q the screen shows every tongue; undefined while it does not yet. */
+  shownSum(view) {
+    return this.tongues?.serves(this.wanted, view) ? this.tongues.data.max_sum : undefined;
   }
 
   /** Tongues on the screen as pixel lines: {segment, x0, y0, x1, y1}. */
