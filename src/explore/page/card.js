@@ -25,7 +25,7 @@ const ratioOf = ({ p, q }) => `${grouped(p).length > 12 ? `${String(p).slice(0, 
 
 /** Under the pointer: exact pair; verdict, growth and tenfold once the server has told. */
 export function readout(host, pair, kind, told, unit, note) {
-  const [h1, h2] = pair.map((x) => exactly(x, 17));
+  const [h1, h2] = pair.map((x) => exactly(x, 30));
   const growth = told?.growth_rate && told.growth_rate.hi > 0;
   const rows = [
     h("div.pair", {}, h("span", {}, step(1), " = ", h("b.number", {}, h1)), h("span", {}, step(2), " = ", h("b.number", {}, h2))),

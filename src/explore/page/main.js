@@ -213,8 +213,10 @@ class Explorer {
         return { said: costs(error) };
       });
       const { unit } = this.settings();
-      readout(this.page.readout, picked.pair, told.kind, told.said ? null : told, unit, told.said);
-      this.#speak(picked.pair, told);
+      // What was decided is said, also where it is another pair of the same cell.
+      const pair = told.input ? [told.input.h1, told.input.h2].map(parse) : picked.pair;
+      readout(this.page.readout, pair, told.kind, told.said ? null : told, unit, told.said);
+      this.#speak(pair, told);
     }, 70);
     this.askPin = latest(async (pin, signal) => {
       const told = await point(pin, signal).catch((error) => {

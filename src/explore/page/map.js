@@ -145,7 +145,7 @@ export class StabilityMap {
       const style = { over: !byCost && now.layer.what !== "family", byFamily: now.layer.what === "family" };
       labels.unshift(...vectors.drawTongues(context, view, now.palette, style));
     }
-    if (now.labels) drawLabels(context, labels, now.palette, `14px ${SERIF}`, (view.width * view.height) / 9000);
+    if (now.labels) drawLabels(context, labels, now.palette, `14px ${SERIF}`, view);
     status.vectors = shown;
   }
 

@@ -127,18 +127,21 @@ export class Vectors {
     const labels = [];
     const plain = over ? colours.accent : colours.kinds[1];
     context.lineCap = "round";
-    for (const { segment, x0, y0, x1, y1 } of this.lines(view)) {
+    const lines = this.lines(view);
+    // Where lines are many, marks at their ends would be all that one sees.
+    const crowded = lines.length > 120;
+    for (const { segment, x0, y0, x1, y1 } of lines) {
       if (Math.max(x0, x1) < -4 || Math.min(x0, x1) > view.width + 4 || Math.max(y0, y1) < -4 || Math.min(y0, y1) > view.height + 4) continue;
       const colour = css(byFamily ? family(colours, segment.a) : plain);
       const length = Math.hypot(x1 - x0, y1 - y0);
       context.strokeStyle = context.fillStyle = colour;
-      context.lineWidth = length > 24 ? 2 : 1.6;
+      context.lineWidth = crowded ? 1.2 : length > 24 ? 2 : 1.6;
       context.beginPath();
       context.moveTo(x0, y0);
       // A tongue shorter than a pixel is a point that can still be seen.
       context.lineTo(length < 1 ? x0 + 1 : x1, y1);
       context.stroke();
-      if (length > 24) ends(context, segment.ends, [x0, y0], [x1, y1]);
+      if (length > 24 && !crowded) ends(context, segment.ends, [x0, y0], [x1, y1]);
       const [left, right, top, bottom] = [Math.max(0, Math.min(x0, x1)), Math.min(view.width, Math.max(x0, x1)), Math.max(0, Math.min(y0, y1)), Math.min(view.height, Math.max(y0, y1))];
       if (length > 30) labels.push({ words: `${segment.ratio ?? `${segment.p}/${segment.q}`}, m = ${segment.m}`, spots: [[(left + right) / 2 + 8, (top + bottom) / 2 + 17]], weight: length });
     }
@@ -168,15 +171,16 @@ function spots(line, x, y, width, height, view) {
 }
 
 /** Writes labels where they cover no other. */
-export function drawLabels(context, labels, colours, font, most) {
+export function drawLabels(context, labels, colours, font, { width: across, height: down }) {
   const taken = [];
   context.font = font;
   context.textBaseline = "alphabetic";
   context.lineJoin = "round";
   for (const { words, spots: places } of labels.slice(0, 400)) {
-    if (taken.length >= most) break;
+    if (taken.length >= (across * down) / 9000) break;
     const width = context.measureText(words).width;
-    const free = places.find(([x, y]) => !taken.some((t) => x < t.x + t.width + 6 && x + width + 6 > t.x && Math.abs(y - t.y) < 17));
+    const inside = ([x, y]) => x > 3 && x + width < across - 3 && y > 14 && y < down - 4;
+    const free = places.filter(inside).find(([x, y]) => !taken.some((t) => x < t.x + t.width + 6 && x + width + 6 > t.x && Math.abs(y - t.y) < 17));
     if (!free) continue;
     const [x, y] = free;
     taken.push({ x, y, width });
