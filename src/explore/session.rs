@@ -52,7 +52,8 @@ impl Session {
     pub fn figure1() -> Session {
         let x = |text| parse("figure 1", text).expect("a number");
         let session = Session::new(x("pi^2"), x("pi^2/25")).expect("positive");
-        session.within([(x("0"), x("2/pi")), (x("0"), x("7/2"))])
+        let session = session.within([(x("0"), x("2/pi")), (x("0"), x("7/2"))]);
+        Session { step: rational::ratio(1, 1000), ..session }
     }
 
     /// What a scene shows.

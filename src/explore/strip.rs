@@ -16,7 +16,7 @@ use crate::tongue::{Edge, Gap, Search, Tongues, closings};
 pub(super) const MOST_KICKS: u64 = 200;
 const SEARCHED: u64 = 40;
 
-/// `rho`; `tongues` {`m`, `a`, `b`, `lower`, `upper`} with edges in s = h1² L1 at each rho; `closings` {`m`, `s`, `rho`}, null beyond
+/// `rho`; `tongues` {`m`, `a`, `b`, `lower`, `upper`} with edges in s = h1² L1 at each rho; `closings` {`m`, `s`, `rho`, `exact`}, null beyond
 /// p + q = 40. All edges are certified to the doubles shown.
 pub(super) fn answer(_session: &Session, query: &Query) -> Result<Reply> {
     let ratio = query.need("ratio", parse_ratio)?;
@@ -62,6 +62,9 @@ fn tongue(ratio: Ratio, n: usize, gaps: &[Vec<Gap>]) -> Value {
 fn closed(ratio: Ratio, rho: (Rational, Rational), samples: usize) -> Result<Value> {
     let found = closings(ratio, &Search { m: None, rho, samples })?;
     let point = |x: &crate::tongue::Enclosure| rational::to_f64(&x.middle());
-    let one = |own: &crate::tongue::Closing| json!({"m": own.m, "s": point(&own.s), "rho": point(&own.rho)});
+    let one = |own: &crate::tongue::Closing| {
+        let exact = own.exact.as_ref().map(|(s, rho)| [s.to_string(), rho.to_string()]);
+        json!({"m": own.m, "s": point(&own.s), "rho": point(&own.rho), "exact": exact})
+    };
     Ok(found.closings.iter().map(one).collect())
 }
