@@ -7,20 +7,8 @@ use crate::error::Result;
 use crate::number::Laurent;
 use crate::number::parse::parse;
 
-const EXAMPLES: &str = "Examples:
-  The plane of the paper's Figure 1; the address of the page is printed, and opened in the browser:
-    kickdrift explore
-  Other stiffnesses; what a scene file shows; a system of many clocks:
-    kickdrift explore --lambda1 10 --lambda2 2/5
-    kickdrift explore data/scenes/figure1.json
-    kickdrift explore data/scenes/diatomic-tether.json
-  Bonds of 10 fs beside the rest of 40 fs; on another machine, its port forwarded (ssh -L 8765:127.0.0.1:8765):
-    kickdrift explore --period 10 --period 40 --units fs
-    kickdrift explore --no-open --port 8765";
-
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// A scene or a system, a JSON file as data/scenes/figure1.json [default: Figure 1 of the paper].
     #[arg(value_name = "SCENE.json", conflicts_with_all = ["lambda1", "lambda2", "period"])]

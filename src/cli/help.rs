@@ -19,7 +19,7 @@ const USAGES: [(&str, &str); 6] = [
     ("proposition", "[--max <N>]"),
 ];
 
-const EXAMPLES: [(&str, &[&str]); 15] = [
+const EXAMPLES: [(&str, &[&str]); 16] = [
     (
         "verdict",
         &[
@@ -61,6 +61,15 @@ const EXAMPLES: [(&str, &[&str]); 15] = [
     ),
     ("advise", &["advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs"]),
     ("simulate", &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"]),
+    (
+        "explore",
+        &[
+            "explore",
+            "explore --lambda1 10 --lambda2 2/5",
+            "explore data/scenes/figure1.json",
+            "explore --period 10 --period 40 --units fs --no-open --port 8765",
+        ],
+    ),
     ("run", &["run data/scenes/small.json --output small"]),
     ("verify", &["verify data/published/map-100.json"]),
     ("generate", &["generate man --output man", "generate completions --output completions"]),
