@@ -5,22 +5,22 @@ use serde_json::{Value, json};
 use super::query::{Query, count};
 use super::reply::Reply;
 use super::session::Session;
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::number::parse::parse_rational_range;
 use crate::number::{Rational, rational};
-use crate::parallel::try_map;
 use crate::report::system::{Beside, document};
-use crate::scene::SystemScene;
-use crate::system::{Limits, Potential, Route, System, decide_by, verdict_cost};
+use crate::scene::Span;
+use crate::system::{Limits, Route};
 
 /// Products that all samples together may cost, some 10 s of a core.
 pub(super) const MOST_PRODUCTS: u64 = 20_000_000_000;
 
-/// The relative width of intervals that none is missed of, of measured stiffnesses.
+/// The relative width of intervals that none is missed of.
 const WIDTH: f64 = 1e-3;
 
-/// `outer`, `rate` (null where it is not told) and `kind` at evenly spaced outer steps, `own` the file's outer step, `verdict` the document
-/// of the file's own steps, `unit` of time; of measured stiffnesses `stretches` {`lo`, `hi`, `verdict`} that cover the range.
+/// `outer` and `rate` (null where it is not told) at evenly spaced outer steps, `stretches` {`lo`, `hi`, `verdict`} that cover the range
+/// (null of systems that have none proven), `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time,
+/// `title`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let none =
         || Error::missing("system", "start the page on a system file, as data/scenes/diatomic-tether.json");
@@ -35,43 +35,30 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
         return Err(Error::input("outer", format!("{lo}..{hi}"), "write a range of positive steps"));
     }
     let samples = query.read("samples", count(2, 1000))?.unwrap_or(200);
-    let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
-    let steps = (0..samples).map(|k| &lo + &part * Rational::from_integer(k.into())).collect::<Vec<_>>();
-    let doubles: Vec<f64> = steps.iter().map(rational::to_f64).collect();
-    let mut body = match scene.stretches((doubles[0], doubles[doubles.len() - 1]), WIDTH) {
-        Ok((_, stretches)) => {
-            let all = stretches
-                .iter()
-                .map(|own| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()}));
-            json!({"rate": scene.growth_rates(&doubles)?, "kind": null, "stretches": all.collect::<Vec<_>>()})
-        }
-        // Stiffnesses that are exact, or not of two levels.
-        Err(_) => sampled(scene.system(), &own, &steps)?,
-    };
-    let analysis = scene.decide(Route::Cheapest, &Limits::default())?;
-    let beside = Beside { unit: scene.time_unit(), labels: scene.labels(), ..Beside::default() };
-    body["verdict"] = document(&analysis, &beside).value();
-    body["outer"] = doubles.into();
-    body["own"] = rational::to_f64(&own).into();
-    body["unit"] = scene.time_unit().into();
-    body["title"] = SystemScene::title(scene).into();
-    Ok(Reply::json(&body))
-}
-
-/// Every sample a verdict of its own.
-fn sampled(system: &System, own: &Rational, steps: &[Rational]) -> Result<Value> {
-    let cost = verdict_cost(system).saturating_mul(steps.len() as u64);
+    let cost = scene.cost().saturating_mul(samples);
     if cost > MOST_PRODUCTS {
-        return Err(Error::budget(format!("{} verdicts on this system", steps.len()), cost)
-            .or("ask for fewer samples"));
+        return Err(
+            Error::budget(format!("{samples} verdicts on this system"), cost).or("ask for fewer samples")
+        );
     }
-    let found = try_map(steps, |step| {
-        let factor = step / own;
-        let longer = |of: &Potential| Potential { step: &of.step * &factor, ..of.clone() };
-        let scaled = System::new(system.mass().clone(), system.potentials().iter().map(longer).collect())?;
-        let analysis = decide_by(Route::Cheapest, &scaled, &Limits::default())?;
-        Ok((analysis.kind.name(), analysis.growth_rate()))
-    })?;
-    let (kinds, rates): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-    Ok(json!({"rate": rates, "kind": kinds, "stretches": null}))
+    let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
+    let steps = (0..samples).map(|k| rational::to_f64(&(&lo + &part * Rational::from_integer(k.into()))));
+    let (steps, limits) = (steps.collect::<Vec<f64>>(), Limits::default());
+    let span: Span = format!("outer={lo}..{hi}").parse()?;
+    let rates = scene.growth_rates(&span, &steps, &limits)?;
+    let stretches = match scene.intervals(&span, WIDTH, &limits) {
+        Ok(found) => {
+            let one = |own: &crate::system::levels::Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
+            found.stretches.iter().map(one).collect()
+        }
+        Err(error) if error.kind() == Kind::Stopped => return Err(error),
+        // Of systems with nonlinear bonds, irrational numbers or friction.
+        Err(_) => Value::Null,
+    };
+    let analysis = scene.decide(Route::Cheapest, &limits)?;
+    let beside = Beside { unit: scene.time_unit(), labels: scene.labels(), ..Beside::default() };
+    Ok(Reply::json(&json!({
+        "outer": steps, "rate": rates, "stretches": stretches, "own": rational::to_f64(&own),
+        "verdict": document(&analysis, &beside).value(), "unit": scene.time_unit(), "title": scene.title(),
+    })))
 }
