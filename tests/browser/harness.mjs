@@ -61,9 +61,9 @@ export async function settled(page) {
     const { map, status } = window.kickdrift;
     return status && !status.waiting && !map.moving && !map.due;
   };
-  await page.waitForFunction(quiet, null, { timeout: 60_000 });
+  await page.waitForFunction(quiet, null, { timeout: 180_000 });
   await page.waitForTimeout(500);
-  await page.waitForFunction(quiet, null, { timeout: 60_000 });
+  await page.waitForFunction(quiet, null, { timeout: 180_000 });
 }
 
 /** The pixels [r, g, b] of the map's canvas at CSS pixels of the plot. */
@@ -97,7 +97,7 @@ export async function spot(page, dx = 0, dy = 0) {
 
 /** The card once it has its verdict: exact h1, h2 and kind. */
 export async function card(page) {
-  await page.waitForSelector(".card .answer", { timeout: 60_000 });
+  await page.waitForSelector(".card .answer", { timeout: 180_000 });
   return page.evaluate(() => ({
     h1: document.querySelector('.card [data-exact="h1"]').textContent,
     h2: document.querySelector('.card [data-exact="h2"]').textContent,
