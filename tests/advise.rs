@@ -187,11 +187,11 @@ mod molecules {
         let findings = findings("alanine-dipeptide.json", &["1/2,5", "0.5025,5.025"]);
         let [five, inside] = &findings.schemes[..] else { unreachable!() };
         let (lo, hi) = five.first.unwrap();
-        // Of the extended minimum, phi = -147.5, psi = 159.8 degrees: by a scan in NumPy 5.0222 to 5.0318 fs, two overlapping windows,
-        // at worst tenfold in 807.7 steps. Counts prove the first of the two.
+        // Of the extended minimum, phi = -147.5, psi = 159.8 degrees: a scan of the dense period in NumPy finds 5.0222 to 5.0318 fs
+        // unstable, at worst tenfold in 807.7 steps. Counts prove a part of it, from its beginning on.
         assert!(5.0221 < lo && hi < 5.0224, "{lo} {hi}");
         let upper = five.first_upper.unwrap();
-        assert!(5.0226 < upper && upper < 5.0320, "{upper}");
+        assert!(hi <= upper && upper < 5.0320, "{upper}");
         assert_eq!(
             (five.status, inside.status, inside.within_run),
             (Status::Near, Status::Unstable, Some(true))
@@ -212,7 +212,8 @@ mod molecules {
         // The band costs what it must: 5 % of the edge.
         assert!(edge < lo && edge > 0.94 * lo && hi - lo < 1e-3, "{edge} {lo}");
         assert_eq!((&four.largest, &four.safe), (&Some(ratio(4, 1)), &Some(ratio(5, 2))));
-        assert!(four.margin.unwrap() > 1e-3 && beyond.rate > 0.0 && beyond.atoms.is_some());
+        // It stands for all Hessians within their accuracy.
+        assert!(four.margin.unwrap() > findings.accuracy && beyond.rate > 0.0 && beyond.atoms.is_some());
         assert_eq!(findings.removed.as_ref().map(|own| own.count), Some(6));
     }
 }

@@ -6,7 +6,6 @@
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::answer::{Status, longest_below};
-use super::interval::Worst;
 use super::levels::Scheme;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -47,10 +46,8 @@ pub struct Finding {
     pub margin: Option<f64>,
     /// \[lo, hi\]: every outer step up to lo is proven stable at this ratio, hi is proven unstable.
     pub first: Option<(f64, f64)>,
-    /// Every outer step from the first unstable one up to this is proven unstable: where the interval ends, as far as doubles tell.
+    /// Every outer step from the first unstable one up to this is proven unstable; the interval may end later.
     pub first_upper: Option<f64>,
-    /// The fastest growth in it, rounded.
-    pub worst: Option<Worst>,
     /// Growth per fs, rounded; 0 where nothing grows.
     pub rate: f64,
     /// Who moves in what grows fastest.
@@ -88,9 +85,6 @@ const NO_MODE: f64 = 1e-2;
 
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;
-
-/// Growth is looked for at so many places in an interval, but one.
-const PLACES: u32 = 12;
 
 impl Molecule {
     /// From a kernel whose unit of time is so many fs.
@@ -207,13 +201,8 @@ impl Molecule {
         };
         let rate = growth(&analysis) / unit;
         let time = std::f64::consts::LN_10 / rate;
-        let (first_upper, worst) = match measured.first_unstable {
-            Some((_, hi)) => {
-                let (upper, worst) = self.first_interval(outer.inner_steps(), hi)?;
-                (Some(upper), worst)
-            }
-            None => (None, None),
-        };
+        let ends = |hi: f64| self.kernel.unstable_up_to(outer.inner_steps(), hi, LEAST);
+        let first_upper = measured.first_unstable.map(|(_, hi)| ends(hi)).transpose()?;
         let largest = self.largest(inner, part)?;
         Ok(Finding {
             scheme: scheme.clone(),
@@ -221,8 +210,7 @@ impl Molecule {
             holds: measured.holds,
             margin: measured.margin,
             first: measured.first_unstable.map(|(lo, hi)| (lo * unit, hi * unit)),
-            first_upper,
-            worst,
+            first_upper: first_upper.map(|hi| hi * unit),
             rate,
             atoms: fastest_shape(&analysis).map(|shape| self.atoms(&shape)),
             band_edge: self
@@ -233,24 +221,6 @@ impl Molecule {
             largest,
             within_run: length.filter(|_| rate > 0.0).map(|length| time <= to_f64(length)),
         })
-    }
-
-    /// Where the unstable interval that begins at the step `lo`, which is proven unstable, ends at the earliest, and the fastest growth at
-    /// some places inside.
-    fn first_interval(&self, inner_steps: u64, lo: f64) -> Result<(f64, Option<Worst>)> {
-        let hi = self.kernel.unstable_up_to(inner_steps, lo, LEAST)?;
-        let unit = to_f64(&self.unit);
-        let rate = |k: u32| {
-            let outer = Outer::new(lo + (hi - lo) * f64::from(k) / f64::from(PLACES), inner_steps).ok()?;
-            Some((outer.step(), self.kernel.growth_rate(&outer)?))
-        };
-        let places = (1..PLACES).filter_map(rate);
-        let worst = places.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|worst| worst.1 > 0.0);
-        let worst = worst.map(|(step, rate)| {
-            let time = std::f64::consts::LN_10 / rate;
-            Worst { rate: rate / unit, steps: time / step, time: time * unit }
-        });
-        Ok((hi * unit, worst))
     }
 
     /// The longest multiple of the inner step for the band, all shorter ones holding too.

@@ -14,19 +14,10 @@ use crate::number::parse::parse_rational;
 use crate::report::advise as report;
 use crate::report::file::write_output;
 
-const EXAMPLES: &str = "Examples:
-  Flexible water, bonds every 0.5 fs, the rest every 4 fs or every 5 fs:
-    kickdrift advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs
-  A force field's bond (K of E = K x^2, k of E = k x^2/2), heavy hydrogens, a run of 10 ns, drawn:
-    kickdrift advise --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --hmr 3.024 --steps 1fs,6fs --length 10ns --output advice.png
-  Three clocks, a wavenumber, and which force is on which clock (1 is the fastest):
-    kickdrift advise --period OH=3700/cm --period bend=1600/cm --period pme=100fs --on bend=1,pme=3 --steps 0.5fs,1fs,4fs";
-
 /// Flags of `advise`.
 ///
 /// --output FILE.svg, FILE.pdf or FILE.png draws: the outer step across, each mode a row.
 #[derive(Debug, clap::Args)]
-#[command(after_help = EXAMPLES)]
 pub struct Args {
     /// Hessians in place of periods: a system file of two steps, as data/scenes/flexible-water.json, whose steps are the first scheme
     #[arg(value_name = "FILE", conflicts_with_all = ["period", "bond", "on", "hmr"])]

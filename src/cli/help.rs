@@ -15,7 +15,7 @@ const USAGES: [(&str, &str); 6] = [
     ),
     ("tongues", "(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)"),
     ("closings", "(--ratio <P/Q> | --max-sum <N>)"),
-    ("advise", "(--period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]..."),
+    ("advise", "(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]..."),
     ("proposition", "[--max <N>]"),
 ];
 
@@ -59,7 +59,14 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
         "system",
         &["system data/scenes/three-clocks.json", "system data/scenes/bar-resonant.json --output modes.pdf"],
     ),
-    ("advise", &["advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs"]),
+    (
+        "advise",
+        &[
+            "advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs",
+            "advise --bond CH:K=340kcal/mol/A^2,12.011,1.008,3 --period 60fs --hmr 3.024 --steps 1fs,6fs --length 10ns",
+            "advise data/scenes/flexible-water.json --steps 0.5fs,4.5fs",
+        ],
+    ),
     ("simulate", &["simulate data/scenes/fpu.json --periods 30 --figure run.pdf"]),
     (
         "explore",

@@ -17,9 +17,13 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
         ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand)
             .map(|name| Error::input("command", name, format!("choose {}", commands(program)))),
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => bad_value(error),
-        ErrorKind::ArgumentConflict => {
-            invalid().map(|flag| Error::input("flag", names(&flag), "is given twice; give it once"))
-        }
+        ErrorKind::ArgumentConflict => invalid().map(|flag| match shown(error, ContextKind::PriorArg) {
+            Some(other) if other != flag => {
+                let remedy = format!("cannot be used with {}: give one of them", names(&other));
+                Error::input("argument", names(&flag), remedy)
+            }
+            _ => Error::input("flag", names(&flag), "is given twice; give it once"),
+        }),
         ErrorKind::TooManyValues => invalid().map(|flag| {
             let value = shown(error, ContextKind::InvalidValue).unwrap_or_default();
             Error::input(&names(&flag), value, "takes no value: write the flag alone")

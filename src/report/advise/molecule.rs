@@ -92,30 +92,20 @@ fn rounded(x: f64, digits: usize) -> String {
 fn interval(own: &Finding) -> Option<String> {
     let (lo, hi) = own.first?;
     let lower = nearest((lo, hi), 5);
-    Some(
-        own.first_upper.map_or_else(
-            || format!("{lower} fs and on"),
-            |upper| format!("{lower}-{} fs", rounded(upper, 5)),
-        ),
-    )
+    Some(own.first_upper.map_or_else(
+        || format!("{lower} fs and on"),
+        |upper| format!("{lower} to at least {} fs", rounded(upper, 5)),
+    ))
 }
 
 fn line(findings: &Findings, own: &Finding) -> String {
     let outer = to_f64(own.scheme.outer());
     let third = findings.groups[0].period.0 / 3.0;
-    let worst = own.worst.map_or_else(String::new, |worst| {
-        format!(
-            " (worst: tenfold in {} outer steps = {} ps)",
-            rounded(worst.steps, 3),
-            rounded(worst.time / 1000.0, 3)
-        )
-    });
     let next = || {
         let margin = own.first.map_or_else(String::new, |(lo, hi)| {
             format!(", margin {} fs", nearest((lo - outer, hi - outer), 3))
         });
-        interval(own)
-            .map_or_else(String::new, |next| format!("; next unstable interval {next}{worst}{margin}"))
+        interval(own).map_or_else(String::new, |next| format!("; next unstable interval {next}{margin}"))
     };
     let what = match own.status {
         Status::Safe => format!("safe{}", next()),
@@ -124,7 +114,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
             format!("stable{}: less than the band of {}: do not use", next(), percent(&findings.band))
         }
         Status::Island => {
-            format!("stable, but above the unstable {}{worst}: do not use", interval(own).unwrap_or_default())
+            format!("stable, but above the unstable {}: do not use", interval(own).unwrap_or_default())
         }
         Status::NotTold => {
             format!(
@@ -201,11 +191,8 @@ fn rows(findings: &Findings, all: bool) -> Table {
     let record = record
         .field(Column::new("margin"), move |own| number(own.margin, all))
         .field(column("first", "first unstable from", all).in_unit("fs"), move |own| quantity(own.first, all))
-        .field(Column::new("first_upper").in_words("to").in_unit("fs"), move |own| {
+        .field(Column::new("first_upper").in_words("at least to").in_unit("fs"), move |own| {
             number(own.first_upper, all)
-        })
-        .field(Column::new("first_tenfold_steps").in_words("worst: tenfold in steps"), move |own| {
-            number(own.worst.map(|worst| worst.steps), all)
         })
         .field(Column::new("growth_rate").in_words("growth").in_unit("1/ps"), move |own| {
             number(Some(1000.0 * own.rate), all)
