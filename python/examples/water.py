@@ -28,6 +28,12 @@ five = kickdrift.openmm.system(system, modeller.positions, steps={0: "1/2000", 1
 print(five)
 
 # %% [markdown]
+# Which step to take instead, and why:
+
+# %%
+kickdrift.openmm.system(system, modeller.positions, steps={0: "1/2000", 1: "1/250"}).advise()
+
+# %% [markdown]
 # What a run shows is the neighbourhood of the integrator's own periodic orbit. Its growth rates, beside those about the
 # minimum:
 

@@ -10,7 +10,7 @@ unstable: hyperbolic, Tr Q < -2; exponential growth
   ...
 """
 
-from kickdrift._advise import Advice, advise
+from kickdrift._advise import Advice, SystemAdvice, advise
 from kickdrift._document import Document, Row, Table
 from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._map import Map, map
@@ -52,6 +52,7 @@ __all__ = [
     "Row",
     "Run",
     "System",
+    "SystemAdvice",
     "SystemVerdict",
     "Table",
     "Tongues",

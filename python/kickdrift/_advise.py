@@ -134,6 +134,23 @@ class Advice(Advised):
         return f"{super()._repr_html_()}{self._svg}"
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class SystemAdvice(Advised):
+    """Which steps are safe for a molecule by its Hessians, as :meth:`System.advise` finds."""
+
+    _schemes_are = "rows"
+
+    @cached_property
+    def groups(self) -> tuple[Row, ...]:
+        """The modes of the fast stiffness alone, the fastest first: ``count``, ``shortest``, ``longest`` period, fs,
+        and the ``atoms`` that the fastest moves."""
+        return self._table("groups")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme."""
+        return _plot.system_advice(self.data, ax)
+
+
 def _number(value: str | None) -> Number | None:
     return None if value is None else Number(value)
 

@@ -199,6 +199,24 @@ def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     return own
 
 
+def system_advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
+    """Bars over the outer step, a row a scheme: proven, the first unstable interval; the scheme's own step."""
+    own, rows = axes(ax), document["rows"]
+    right = 1.12 * max(max(float(Fraction(row["outer"])), row["first_upper"] or 0.0) for row in rows)
+    for place, row in enumerate(rows):
+        edge = row["band_edge"] or 0.0
+        parts = [(0.0, edge, _SAFE), (edge, right, _BEYOND)]
+        parts += [] if row["first"] is None else [(row["first"]["lo"], row["first_upper"] or right, _UNSTABLE)]
+        for lo, hi, colour in parts:
+            own.barh(place, hi - lo, left=lo, color=colour, height=0.68)
+        step = float(Fraction(row["outer"]))
+        own.plot([step, step], [place - 0.4, place + 0.4], color="0.1", linewidth=1.2)
+    own.set_yticks(range(len(rows)), [f"{float(Fraction(row['outer'])):g} fs, {row['status']}" for row in rows])
+    own.set_xlim(0, right)
+    own.set_xlabel("outer step (fs)")
+    return own
+
+
 _INTERVALS = ("first", "inside", "below", "above")
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _plot
+from kickdrift._advise import Engine, SystemAdvice, Time, asked, common
 from kickdrift._document import Document, Table, ask, frame, given
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
@@ -225,6 +226,45 @@ class System:
             accuracy=None if accuracy is None else str(accuracy),
         )
         return Intervals(self._ask("system", options), tuple(options), "stretches", self)
+
+    def advise(
+        self,
+        steps: str | Sequence[Any] = (),
+        *,
+        engine: Engine | None = None,
+        band: Exact = "5%",
+        length: Time | None = None,
+    ) -> SystemAdvice:
+        """Say which steps are safe for these Hessians, two levels with a unit of time, for how long, and why.
+
+        Parameters
+        ----------
+        steps : sequence of Time, or a sequence of such, optional
+            Schemes beside the system's own steps, which are the first: from the inner to the outer step, fs.
+        engine : path or text, or a sequence of such, optional
+            An input of a simulation engine, whose steps are the first scheme then.
+        band : Exact or percentage
+            How far every period may be off, relatively.
+        length : Time, optional
+            The length of the run, as ``"10ns"``.
+
+        Raises
+        ------
+        KickdriftError
+            Bad input; exact stiffnesses, other than two levels, no ``time_unit``.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import kickdrift as kd
+        >>> fast, slow = np.diag([0.39, 0.41]), np.array([[0.02, 0.01], [0.01, 0.02]])
+        >>> system = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", fast), "slow": (4, slow)}, time_unit="fs")
+        >>> system.advise(steps=[("0.5fs", "6fs")])
+        SystemAdvice(4 fs caution, 6 fs island)
+        """
+        with asked(steps, engine) as more:
+            options = [*common(band, length), *more]
+            return SystemAdvice(*(self._ask("advise", options, form) for form in ("json", "text")))
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())

@@ -7,7 +7,9 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from conftest import REPOSITORY
 
 import kickdrift as kd
 
@@ -104,3 +106,23 @@ def test_friction_of_a_system(program: Callable[..., str], tmp_path: Path) -> No
     assert verdict.to_json() == program("system", str(path), "--friction=1/3", "--format", "json")
     assert verdict.friction is not None and verdict.friction["damping"] in ("damped", "growing")
     assert system.decide().friction is None
+
+
+def test_advice_on_hessians_is_that_of_the_program(program: Callable[..., str], tmp_path: Path) -> None:
+    system = kd.System.read(REPOSITORY / "data" / "scenes" / "flexible-water.json")
+    advice = system.advise(steps=[("0.5fs", "4.5fs")], length="10ns")
+    flags = [str(system._path), "--steps=0.5fs,4.5fs", "--band=5%", "--length=10ns"]
+    assert advice.to_json() == program("advise", *flags, "--format", "json")
+    assert str(advice) == program("advise", *flags, "--format", "text")
+    assert advice.schemes == advice.rows and len(advice.rows) == 2 and repr(advice).startswith("SystemAdvice(4 fs ")
+    assert advice.groups[0]["shortest"] < 10 and advice.safe is not None and advice.safe < 4
+    assert len(advice.to_pandas()) == 2 and "<pre" in advice._repr_html_()
+    axes = advice.plot()
+    assert len(axes.lines) == 2 and len(axes.patches) >= 4
+    fast, slow = np.diag([0.39, 0.41]), np.array([[0.02, 0.01], [0.01, 0.02]])
+    made = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", fast), "slow": (4, slow)}, time_unit="fs")
+    path = made.save(tmp_path)
+    assert made.advise().to_json() == program("advise", str(path), "--band=5%", "--format", "json")
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", fast), "slow": (4, slow)}).advise()
+    assert caught.value.field == "time_unit"

@@ -145,6 +145,9 @@ def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     assert same.growth_rate == pytest.approx(verdict.growth_rate, rel=1e-6)
     calm = ko.system(system, positions, steps={0: Fraction(1, 2000), 1: 4 * unit.femtoseconds}).decide()
     assert calm.stable and calm.proven and calm.measured is not None and calm.measured["holds"] == "stable"
+    advice = ko.system(system, positions, steps={0: Fraction(1, 2000), 1: 4 * unit.femtoseconds}).advise()
+    # 4 fs is stable and beyond T/3 of the stretches, 8.9 fs.
+    assert advice.status == "caution" and advice.safe == Fraction(5, 2) and "atom" in advice.groups[0]["atoms"]
 
 
 def bonds(seed: int) -> tuple[mm.System, np.ndarray]:
