@@ -313,6 +313,18 @@ fn maps_are_the_same_bytes_whatever_the_threads() {
 }
 
 #[test]
+fn a_scan_of_one_number_has_one_axis() {
+    let output =
+        kickdrift("system data/scenes/diatomic-tether.json --scan potentials.tether.step=19/10..21/10:1/10");
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = answer["verdicts"].as_array().unwrap();
+    let told: Vec<_> = rows.iter().map(|row| (row["x"].as_str(), row["kind"].as_str())).collect();
+    let expected = [("19/10", "elliptic"), ("2", "hyperbolic"), ("21/10", "elliptic")];
+    assert_eq!(told, expected.map(|(x, kind)| (Some(x), Some(kind))));
+    assert!(rows.iter().all(|row| row.get("y").is_none()));
+}
+
+#[test]
 fn modes_are_drawn_and_flags_that_do_nothing_refused() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["modes.svg", "modes.png"] {
@@ -325,8 +337,8 @@ fn modes_are_drawn_and_flags_that_do_nothing_refused() {
     for (line, message) in [
         ("system data/scenes/fpu.json --colour growth", "--colour = given: is for maps"),
         (
-            "system data/scenes/fpu.json --scan build.stiff=1..2:1",
-            "--scan = given 1 times: a map has two axes",
+            "system data/scenes/fpu.json --scan build.stiff=1..2:1 --scan build.soft=1..2:1 --scan build.pairs=1..2:1",
+            "--scan = given 3 times: a map has two axes",
         ),
         ("system data/scenes/ring24.json --exact --budget 10", "exact arithmetic on 23 degrees of freedom"),
         ("simulate data/scenes/fpu.json --displace 0", "displace = 0: nothing would move"),
