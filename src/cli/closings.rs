@@ -21,7 +21,7 @@ pub struct Args {
     /// The closed range of rho = lambda2/lambda1, positive.
     #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true, value_parser = of(parse_rational_range))]
     rho_range: (Rational, Rational),
-    /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross where p + q > 24 (elsewhere elimination finds all).
+    /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross, where p + q > 24.
     #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
     /// Significant digits of s and rho.

@@ -11,7 +11,7 @@ const USAGES: [(&str, &str); 6] = [
     ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
     (
         "compare",
-        "(--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI> | --max-sum <N> --rho <R>)",
+        "(--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <A..B> --h2-range <A..B> | --max-sum <N> --rho <R>)",
     ),
     ("tongues", "(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)"),
     ("closings", "(--ratio <P/Q> | --max-sum <N>)"),

@@ -60,6 +60,8 @@ pub use session::Session;
 /// that take long), the kicks that it may cost, and who answers.
 struct Question {
     name: &'static str,
+    /// Of use to the server alone.
+    #[cfg_attr(not(feature = "explore"), allow(dead_code))]
     at_once: bool,
     limit: u64,
     answer: Answer,

@@ -9,7 +9,7 @@ use super::written::{Decimal, Range, Written, exact, nullable, ratios};
 use crate::error::Result;
 use crate::number::{Ratio, Rational, Sign};
 use crate::propagator::TwoClocks;
-use crate::tongue::{COMPLETE_UP_TO, Entry, Tongues, count_closings};
+use crate::tongue::{COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
 use crate::verdict::{Limits, decide, growth};
 use num_traits::Signed;
 
@@ -149,18 +149,21 @@ impl Input {
         holds(ratio.kicks() <= COMPLETE_UP_TO, || {
             format!("{ratio} is too long for elimination: it cannot be complete")
         })?;
+        // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period, so the same labels.
+        let mirrored = (hi.recip(), lo.recip());
+        if let Some(asked) = &self.m {
+            let search = Search { rho: mirrored, ..Search::default() };
+            let truth = closings_of(ratio.inverse(), asked, &search)?;
+            let all = truth.complete && truth.closings.len() == rows.len();
+            return holds(all, || {
+                format!("{ratio} has {} closings of these labels, not {}", truth.closings.len(), rows.len())
+            });
+        }
         for odd in [true, false] {
             let told = rows.iter().filter(|row| (row.m % 2 == 1) == odd).count();
-            let asked = labels.iter().any(|m| (m % 2 == 1) == odd);
-            let whole = self.m.is_none() || told > 0;
-            // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period.
             let truth =
-                count_closings(ratio.inverse(), Entry::of_tongue(odd), &hi.recip(), &lo.recip()).unwrap_or(0);
-            let others = labels.len() as u64 != finite;
-            let right = if others { told <= truth } else { told == truth };
-            holds(right || !(asked && whole || told > 0), || {
-                format!("{ratio} has {truth} closings of this parity, not {told}")
-            })?;
+                count_closings(ratio.inverse(), Entry::of_tongue(odd), &mirrored.0, &mirrored.1).unwrap_or(0);
+            holds(told == truth, || format!("{ratio} has {truth} closings of this parity, not {told}"))?;
         }
         Ok(())
     }

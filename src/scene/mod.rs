@@ -163,8 +163,9 @@ impl Scene {
     /// # Errors
     /// Where the scene lacks it or a stiffness, or holds no pair.
     pub fn grid(&self) -> Result<Grid> {
+        let range = self.range()?;
         let (lambda1, lambda2) = self.stiffnesses()?;
-        self.range()?.of(lambda1, lambda2)
+        range.of(lambda1, lambda2)
     }
 
     /// The spacings and ranges of the steps.
