@@ -46,7 +46,7 @@ pub struct Args {
     /// The friction of the thermostat, as 1/ps: does it mask what grows?
     #[arg(long, value_name = "RATE", conflicts_with = "file")]
     friction: Option<String>,
-    /// Bonds that do not vibrate: h-bonds, all-bonds, or names of modes, as OH,NH [default: as the engine's text says]
+    /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
     #[arg(long, value_name = "WHICH", conflicts_with = "file")]
     constraints: Option<String>,
     /// Hydrogens of this mass in amu, taken from their heavy atoms.

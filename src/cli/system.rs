@@ -40,8 +40,7 @@ pub struct Args {
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
     #[arg(long, value_name = "X")]
     accuracy: Option<f64>,
-    /// All unstable intervals of a number of the file: of outer, all steps in their ratio; of a step, among the multiples of the
-    /// inner one; of a scale, a stiffness, a spring, a mass.
+    /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a spring, a mass
     #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["scan", "exact"], value_parser = from_str::<Span>)]
     intervals: Option<Span>,
     /// The relative width above which no interval is missed [default: 1e-4].
