@@ -62,7 +62,7 @@ pub struct Row {
     pub below: Option<Unstable>,
     pub above: Option<Unstable>,
     pub inside: Option<Unstable>,
-    /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most [`MOST_INTERVALS`].
+    /// Open intervals from the first one on, up to some way beyond the scheme and the first of them; at most 32.
     pub intervals: Vec<Unstable>,
     /// Where it grows: the friction per fs above which that is masked (BAOAB), enclosed.
     pub masking: Option<(f64, f64)>,

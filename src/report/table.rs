@@ -22,7 +22,7 @@ pub enum Cell {
         /// The upper end.
         hi: f64,
     },
-    /// A number in decimal digits that says how far they hold, see [`decimal`](super::decimal).
+    /// A number in decimal digits that says how far they hold, see [`decimal`].
     Decimal(String),
     /// A count, a label, an index.
     Integer(i64),
