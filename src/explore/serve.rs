@@ -11,6 +11,7 @@ use std::convert::Infallible;
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
@@ -21,15 +22,20 @@ use axum::http::{HeaderValue, Method, Response, StatusCode};
 use tokio::net::{TcpListener, TcpSocket};
 use tokio::runtime::{self, Runtime};
 use tokio::sync::Semaphore;
+use tokio::time::timeout;
 
 use super::listen::Bounded;
 use super::reply::Reply;
 use super::session::Session;
-use super::{ask, asset, named};
+use super::{Question, ask, asset, named};
 use crate::error::{Error, Result};
 
 /// The longest path and query, in bytes.
 const LONGEST_ADDRESS: usize = 8192;
+
+/// No question is worked on for longer: what it costs is bounded before, but far beyond the Verlet limit, where doubles overflow, pairs
+/// take the slower tiers.
+const LONGEST: Duration = Duration::from_secs(30);
 
 /// Questions that wait for their turn.
 const WAITING: usize = 64;
@@ -161,7 +167,7 @@ impl Shared {
         }
         match (asset(path), named(path)) {
             (Some(reply), _) => Ok(reply),
-            (None, Some(question)) => self.work(question.at_once, path, query).await,
+            (None, Some(question)) => self.work(question, query).await,
             (None, None) => Err((StatusCode::NOT_FOUND, "there is nothing here")),
         }
     }
@@ -183,20 +189,24 @@ impl Shared {
     }
 
     /// Waits for a place and answers on a thread of its own; dropped with the client, it leaves the queue, or stops the work.
-    async fn work(&self, at_once: bool, path: &str, query: &str) -> std::result::Result<Reply, Refused> {
+    async fn work(&self, question: &'static Question, query: &str) -> std::result::Result<Reply, Refused> {
         let busy = (StatusCode::SERVICE_UNAVAILABLE, "too many questions wait: ask again");
         let waiting = self.queue.try_acquire().map_err(|_| busy)?;
-        let place = self.lanes[usize::from(at_once)].clone().acquire_owned().await.map_err(|_| busy)?;
+        let place =
+            self.lanes[usize::from(question.at_once)].clone().acquire_owned().await.map_err(|_| busy)?;
         drop(waiting);
-        let (session, path, query) = (self.session.clone(), path.to_owned(), query.to_owned());
+        let (session, query) = (self.session.clone(), query.to_owned());
         let stop = Stop::default();
         let stopped = stop.0.clone();
         let done = tokio::task::spawn_blocking(move || {
             let _place = place;
-            ask(&session, &path, &query, &stopped)
+            ask(&session, question.name, &query, &stopped)
         });
         let failed = (StatusCode::INTERNAL_SERVER_ERROR, "this question broke the program: please report it");
-        done.await.ok().flatten().ok_or(failed)
+        match timeout(LONGEST, done).await {
+            Ok(done) => done.ok().flatten().ok_or(failed),
+            Err(_) => Ok(Reply::too_costly(None, question.limit, "this takes longer than half a minute")),
+        }
     }
 }
 
