@@ -302,7 +302,9 @@ for (const scheme of ["light", "dark"]) {
   }
 }
 
-test("screenshots of the main states", async () => {
+// For people to look at: only where a folder is named.
+const unseen = process.env.SCREENSHOTS ? false : "name a folder in SCREENSHOTS";
+test("screenshots of the main states", { skip: unseen }, async () => {
   const states = { home: "", curves: "#c=1", growth: "#w=growth", family: "#w=family&t=on&n=25", strip: "#s=5/3" };
   for (const scheme of ["light", "dark"]) {
     for (const [name, width, height] of [["wide", 1400, 900], ["narrow", 390, 844]]) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The page of `kickdrift explore` in a real browser. Installs what is missing, builds the program unless KICKDRIFT names one,
-# runs the tests, and leaves screenshots of the main states in $SCREENSHOTS (default: a new scratch folder).
+# runs the tests, and leaves screenshots of the main states in the folder $SCREENSHOTS, if that is given.
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -23,7 +23,6 @@ if [ -z "${KICKDRIFT:-}" ]; then
         sed 's/.*"target_directory":"\([^"]*\)".*/\1/')
     export KICKDRIFT=$target/release/kickdrift
 fi
-export SCREENSHOTS=${SCREENSHOTS:-$(mktemp -d)}
 
 # The packages lie beside the copy of the tests in a scratch folder: nothing is written into the repository.
 scratch=$(mktemp -d)
@@ -32,4 +31,3 @@ cp ./*.mjs package.json package-lock.json "$scratch"
 cd "$scratch"
 npm ci --silent --no-audit --no-fund
 node --test --test-concurrency=1 explore.test.mjs
-echo "screenshots: $SCREENSHOTS"
