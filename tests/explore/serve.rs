@@ -160,7 +160,7 @@ fn spoiled(random: &mut Random, sound: &[u8], most: usize) -> Vec<u8> {
 const QUESTIONS: [&str; 6] = [
     "start?lambda1=pi^2&rho=1/25",
     "point?h1=1/10&h2=9/10&lambda1=pi^2&lambda2=pi^2/25",
-    "tile?unit=1/4&level=0&x=1&y=2&size=16&what=growth",
+    "tile?unit=8&level=9&x=1&y=2&size=16&what=growth",
     "scene?h1=1/100..1/2&h2=1/100..1&step=1/100",
     "strip?ratio=5/3&rho=1/10..1&samples=2",
     "certificate?lambda1=1&lambda2=1/4&h1=1&h2=3/2",
