@@ -8,7 +8,7 @@ use crate::orbit::floquet::{Floquet, Pair};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::vector::instructions::Instructions;
-use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
+use crate::verdict::{Decidable, Decision, Tier, Verdict, decide};
 
 /// Pairs that are sorted by their numbers of updates together: enough for each to find company.
 const TOGETHER: usize = 1 << 14;
@@ -33,16 +33,14 @@ pub fn decide_all<S: Decidable + Sync>(
     pairs: &[TwoClocks<S>],
     resources: &Resources,
 ) -> Result<Vec<Decision>> {
-    let some = |pairs: &&[TwoClocks<S>]| {
-        resources.go_on()?;
-        together(pairs, &resources.limits)
-    };
+    let some = |pairs: &&[TwoClocks<S>]| together(pairs, resources);
     let chunks: Vec<_> = pairs.chunks(TOGETHER).collect();
     let done = resources.pool()?.install(|| try_map(&chunks, some))?;
     Ok(done.concat())
 }
 
-fn together<S: Decidable>(clocks: &[TwoClocks<S>], limits: &Limits) -> Result<Vec<Decision>> {
+fn together<S: Decidable>(clocks: &[TwoClocks<S>], resources: &Resources) -> Result<Vec<Decision>> {
+    let limits = &resources.limits;
     let floquets: Vec<Option<Floquet>> = clocks.iter().map(Floquet::new).collect();
     // Longer ones than the limits allow are left to `decide`, which says so.
     let allowed = |floquet: &Floquet| floquet.updates() <= limits.kicks;
@@ -51,12 +49,16 @@ fn together<S: Decidable>(clocks: &[TwoClocks<S>], limits: &Limits) -> Result<Ve
     order.sort_by_key(|&n| floquets[n].as_ref().map(Floquet::updates));
     let (mut found, mut group) = (vec![UNDECIDED; clocks.len()], Group::<LANES>::new(Instructions::best()));
     for positions in order.chunks(LANES) {
+        resources.go_on()?;
         let pairs: Vec<Pair> =
             positions.iter().filter_map(|&n| floquets[n].as_ref().map(Floquet::pair)).collect();
         positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
     }
     let decided = |(verdict, clocks)| match verdict {
-        UNDECIDED => decide(clocks, limits).map(|answer| answer.decision()),
+        UNDECIDED => {
+            resources.go_on()?;
+            decide(clocks, limits).map(|answer| answer.decision())
+        }
         verdict => Ok(Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter }),
     };
     found.into_iter().zip(clocks).map(decided).collect()
