@@ -208,7 +208,7 @@ impl Molecule {
             scheme: scheme.clone(),
             status,
             holds: measured.holds,
-            margin: measured.margin,
+            margin: measured.margin.filter(|_| analysis.is_stable()),
             first: measured.first_unstable.map(|(lo, hi)| (lo * unit, hi * unit)),
             first_upper: first_upper.map(|hi| hi * unit),
             rate,

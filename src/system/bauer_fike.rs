@@ -29,6 +29,27 @@ pub(super) struct Residual {
     pub rows: Vec<f64>,
 }
 
+impl Residual {
+    /// For all S within `off` of the given one, entry by entry, too: they add V⁻¹ (S' − S) V to F.
+    pub fn widened(self, v: &Mat<f64>, off: &Mat<f64>) -> Option<Residual> {
+        let m = v.ncols();
+        let w = v.partial_piv_lu().inverse();
+        let y = Mat::<f64>::identity(m, m) - &w * v;
+        let (nv, nw) = (norm::frobenius(v), norm::frobenius(&w));
+        let y = norm::frobenius(&y) + gamma(m) * (nw * nv + m as f64);
+        if y.is_nan() || y >= 0.5 {
+            return None;
+        }
+        let size = |m: &Mat<f64>| Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)].abs());
+        let moved = size(&w) * (off * size(v));
+        let rest = (y / (1.0 - y) + 2.1 * gamma(m)) * nw * norm::frobenius(off) * nv;
+        let row = |i: usize| (0..m).map(|j| moved[(i, j)] * moved[(i, j)]).sum::<f64>().sqrt();
+        let norm = self.norm + 1.01 * (norm::spectral(&moved) + rest);
+        let rows = self.rows.iter().enumerate().map(|(i, own)| own + 1.01 * (row(i) + rest)).collect();
+        norm.is_finite().then_some(Residual { norm, rows })
+    }
+}
+
 /// Those for the true S, which is within `delta` of the given one, and a normal D of blocks of size 1 and 2.
 ///
 /// With W V = I − Y, F = (I − Y)⁻¹ W (S V − V D), and the rows of (I − Y)⁻¹ W are within ‖Y‖ ‖W‖/(1 − ‖Y‖) of those of W.

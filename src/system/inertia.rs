@@ -1,5 +1,7 @@
 //! Inertias of symmetric matrices in doubles, proven.
 
+use std::cmp::Ordering;
+
 use faer::{Mat, Side};
 
 use super::norm;
@@ -73,6 +75,76 @@ pub(super) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     Inertia { positive, negative, zero: 0, unknown: n - positive - negative }
 }
 
+/// Of every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's order: no fewer negative eigenvalues than
+/// the first number, no more that are negative or 0 than the second.
+///
+/// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is within c − `slack` of that it
+/// lies above, or below, all of them. No eigenvector and no gap between eigenvalues is asked for.
+pub(super) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (usize, usize) {
+    let least = moved(high, slack, 1.0).map(|own| own.negative);
+    let most = moved(low, slack, -1.0).map(|own| own.negative + own.zero);
+    (
+        least.unwrap_or_else(|| proven(high, slack).negative),
+        most.unwrap_or_else(|| low.nrows() - proven(low, slack).positive),
+    )
+}
+
+/// The inertia of some matrix that is no smaller (sign 1), or no greater (−1), than all within `slack` of m; `None` where the factorization is too far from it.
+fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
+    let (n, size) = (m.nrows(), norm::frobenius(m));
+    let mut shift = 2.0 * slack + 8.0 * (n as f64 + 16.0) * U * size + f64::MIN_POSITIVE;
+    // What the check usually asks for; once more with as much as it did ask for.
+    for _ in 0..2 {
+        let at = |i: usize, j: usize| m[(i.max(j), i.min(j))] + if i == j { sign * shift } else { 0.0 };
+        let lblt = Mat::from_fn(n, n, at).lblt(Side::Lower);
+        let (order, l) = (lblt.P().arrays().0, lblt.L().to_owned());
+        let (diagonal, next) = (lblt.B_diag().column_vector(), lblt.B_subdiag().column_vector());
+        let terms = |i: usize, j: usize| {
+            let left = if j > 0 { l[(i, j - 1)] * next[j - 1] } else { 0.0 };
+            let right = if j + 1 < n { l[(i, j + 1)] * next[j] } else { 0.0 };
+            [left, l[(i, j)] * diagonal[j], right]
+        };
+        let product = Mat::from_fn(n, n, |i, j| terms(i, j).iter().sum());
+        let sizes = Mat::from_fn(n, n, |i, j| terms(i, j).iter().map(|x| x.abs()).sum());
+        let whole = &product * l.transpose();
+        let residual = Mat::from_fn(n, n, |i, j| at(order[i], order[j]) - whole[(i, j)]);
+        let products = (n as f64 + 4.0) * norm::frobenius(&product) + 4.0 * norm::frobenius(&sizes);
+        let rounding = 1.1 * U * (norm::frobenius(&l) * products + 2.0 * (size + shift * n as f64));
+        let off = 1.01 * (norm::frobenius(&residual) + rounding + slack);
+        if off <= shift {
+            return of_blocks(&|i| diagonal[i], &|i| next[i], n);
+        }
+        shift = 2.0 * off;
+        if !shift.is_finite() {
+            break;
+        }
+    }
+    None
+}
+
+/// The inertia of a block-diagonal B of 1 x 1 and 2 x 2 blocks, the latter where the entry below the diagonal is not 0; `None` where one of
+/// these is not indefinite for sure.
+fn of_blocks(diagonal: &dyn Fn(usize) -> f64, next: &dyn Fn(usize) -> f64, n: usize) -> Option<Inertia> {
+    let (mut found, mut i) = (Inertia::default(), 0);
+    while i < n {
+        if i + 1 < n && next(i) != 0.0 {
+            let (square, product) = (next(i) * next(i), diagonal(i) * diagonal(i + 1));
+            if !square.is_normal() || square * (1.0 - 4.0 * U) <= product {
+                return None;
+            }
+            (found.positive, found.negative, i) = (found.positive + 1, found.negative + 1, i + 2);
+        } else {
+            match diagonal(i).partial_cmp(&0.0)? {
+                Ordering::Less => found.negative += 1,
+                Ordering::Equal => found.zero += 1,
+                Ordering::Greater => found.positive += 1,
+            }
+            i += 1;
+        }
+    }
+    Some(found)
+}
+
 /// More than ‖E‖₂, Qᵀ m Q = Λ + E for the orthogonal Q nearest to the computed eigenvectors V; `None` where these are not
 /// nearly orthogonal.
 pub(super) fn backward_error(m: &Mat<f64>, v: Mat<f64>, values: &[f64]) -> Option<f64> {
@@ -93,4 +165,37 @@ pub(super) fn orthogonality(v: &Mat<f64>) -> Option<f64> {
     let gram = v.transpose() * v - Mat::<f64>::identity(k, k);
     let defect = norm::frobenius(&gram) + 1.1 * (v.nrows() as f64 + 4.0) * U * norm::frobenius(v).powi(2);
     (defect < 0.1).then_some(defect)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_of_negative_eigenvalues_enclose_those_of_all_matrices_near() {
+        let mut state = 7_u64;
+        let mut number = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        };
+        for n in [1, 2, 5, 20] {
+            let g = Mat::from_fn(n, n, |_, _| number());
+            // Entries of many sizes.
+            let m = Mat::from_fn(n, n, |i, j| (g[(i, j)] + g[(j, i)]) * 0.5f64.powi((i + j) as i32));
+            let values = m.self_adjoint_eigenvalues(Side::Lower).unwrap();
+            let below = |bound: f64| values.iter().filter(|&&x| x < bound).count();
+            assert_eq!(negative_bounds(&m, &m, 0.0), (below(0.0), below(0.0)));
+            // With a slack as wide as the k-th eigenvalue it alone is not told.
+            for &x in values.iter().filter(|x| x.abs() > 1e-3) {
+                let slack = x.abs() * 1.01;
+                let (least, most) = negative_bounds(&m, &m, slack);
+                assert!(least <= below(-slack) && most >= below(slack), "{least} {most} {slack}");
+                assert!(least >= below(-4.0 * slack) && most <= below(4.0 * slack), "{least} {most} {slack}");
+            }
+        }
+        // 0, and a permutation that has no pivot on its diagonal.
+        assert_eq!(negative_bounds(&Mat::zeros(3, 3), &Mat::zeros(3, 3), 0.0), (0, 3));
+        let swap = Mat::from_fn(4, 4, |i, j| f64::from(u8::from(i + j == 3)));
+        assert_eq!(negative_bounds(&swap, &swap, 1e-3), (2, 2));
+    }
 }

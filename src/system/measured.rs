@@ -42,8 +42,8 @@ pub struct Measured {
     pub accuracy: f64,
     /// The verdict on all matrices within it.
     pub holds: Holds,
-    /// The largest ε, rounded down, for which all stiffnesses within ε times their norms are proven stable; `None` outside
-    /// the first stable region.
+    /// The largest ε, rounded down, for which the verdict is proven of all stiffnesses within ε times their norms: stable or unstable;
+    /// `None` where it is not proven by the region, counts, or discs.
     pub margin: Option<f64>,
     /// \[lo, hi\]: every outer step in (0, lo] at this number of inner steps is proven stable, hi is proven unstable.
     pub first_unstable: Option<(f64, f64)>,

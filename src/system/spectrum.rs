@@ -64,6 +64,19 @@ impl Spectrum {
         finite.then_some(Spectrum { mu, radius, rows, vectors, s, s_error })
     }
 
+    /// The same for matrices within another distance of S.
+    pub fn with_error(&self, s_error: f64) -> Option<Spectrum> {
+        let own = residual(&self.s, s_error, &self.mu, &self.vectors)?;
+        Some(Spectrum { radius: Some(own.norm), rows: own.rows, s_error: Some(s_error), ..self.clone() })
+    }
+
+    /// What the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if anything.
+    pub fn certified_around(&self, off: &Mat<f64>) -> Option<Kind> {
+        let residual = Residual { norm: self.radius?, rows: self.rows.clone() };
+        let residual = residual.widened(&real_form(&self.mu, &self.vectors)?.0, off)?;
+        Spectrum { radius: Some(residual.norm), rows: residual.rows, ..self.clone() }.by_discs()
+    }
+
     /// What the discs prove, or the clusters, if anything.
     pub fn certified(&self, blocks: &FloatBlocks) -> Option<Kind> {
         let form = || {
@@ -83,7 +96,8 @@ impl Spectrum {
         clusters::are_stable(&Pencil { s: &self.s, s_error, y: &y, y_error }, &self.mu, &self.vectors)
     }
 
-    fn by_discs(&self) -> Option<Kind> {
+    /// What the discs prove, if anything.
+    pub fn by_discs(&self) -> Option<Kind> {
         let radius = 1.01 * self.radius?;
         let components = components(&self.mu, radius);
         let off = |component: &Vec<usize>| component.iter().all(|&i| from_segment(self.mu[i]) > radius);

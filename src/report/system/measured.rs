@@ -23,7 +23,7 @@ pub(super) fn value(own: &Measured) -> Value {
 }
 
 /// The same for people; `unit` is that of times, after a space.
-pub(super) fn lines(own: &Measured, unit: &str) -> Vec<String> {
+pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if let Some(r) = &own.removed {
         lines.push(format!(
@@ -38,7 +38,8 @@ pub(super) fn lines(own: &Measured, unit: &str) -> Vec<String> {
         Holds::NotTold => format!("  known to {accuracy:.0e} of their norms, the stiffnesses do not tell"),
     });
     if let Some(margin) = own.margin {
-        lines.push(format!("  margin: proven stable for all within {margin:.1e} of their norms"));
+        let stable = if is_stable { "stable" } else { "unstable" };
+        lines.push(format!("  margin: proven {stable} for all within {margin:.1e} of their norms"));
     }
     if let Some((lo, hi)) = own.first_unstable {
         let place = if own.is_above_unstable {

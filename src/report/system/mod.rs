@@ -146,7 +146,8 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
     }
     lines.extend(beside::lines(beside, analysis));
-    lines.extend(analysis.measured.iter().flat_map(|own| measured::lines(own, &suffix)));
+    lines
+        .extend(analysis.measured.iter().flat_map(|own| measured::lines(own, analysis.is_stable(), &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }

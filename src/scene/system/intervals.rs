@@ -99,8 +99,7 @@ impl Span {
 }
 
 impl SystemScene {
-    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end (of the outer step of
-    /// two measured levels: of itself) missed.
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
     ///
     /// # Errors
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
@@ -126,8 +125,7 @@ impl SystemScene {
             (Role::Step, _) => (None, self.multiples(span, limits)?),
             (Role::Linear, Some(own)) if is_scale => {
                 let (level, factor) = own.scaled_at(&span.path)?;
-                let cell = |lo: f64, hi: f64| own.verdict_between_scales(level, (lo / factor, hi / factor));
-                (None, cover(span.ends(), width, cell)?)
+                (None, own.stretches_of_scale(level, span.ends(), factor, width)?)
             }
             (Role::Linear, _) => {
                 let at = |x: f64| self.with("intervals", &[(&span.path, &exact(x))]);

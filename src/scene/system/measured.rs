@@ -26,7 +26,8 @@ use super::document::{LARGEST, Number, no_system};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::levels::{Hessians, Kernel, Outer, Stretch, rigid_motions};
+use crate::system::levels::{Cells, Hessians, Kernel, Outer, Stretch, rigid_motions};
+use crate::system::vary::cover;
 use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System, decide_by};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
@@ -216,11 +217,22 @@ impl Measured {
         Ok((level, entry.scale))
     }
 
-    /// What is proven of all systems in which one level is lo to hi times as stiff.
-    pub fn verdict_between_scales(&self, level: usize, (lo, hi): (f64, f64)) -> Result<Holds> {
-        let Some((outer, _)) = self.outer() else { return Ok(Holds::NotTold) };
-        let kernel = self.kernel()?.scaled(level, (lo, hi));
-        Ok(kernel.map_or(Holds::NotTold, |own| own.verdict_within(&outer, 0.0)))
+    /// The verdicts on a range of factors of one level, all else as it is.
+    pub fn stretches_of_scale(
+        &self,
+        level: usize,
+        (lo, hi): (f64, f64),
+        factor: f64,
+        width: f64,
+    ) -> Result<Vec<Stretch>> {
+        let Some((outer, _)) = self.outer() else {
+            return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
+        };
+        let cells = Cells::new(self.kernel()?)?;
+        cover((lo, hi), width, |lo, hi| {
+            let (a, b) = (lo / factor, hi / factor);
+            Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))
+        })
     }
 
     /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.

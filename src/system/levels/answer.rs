@@ -28,8 +28,11 @@ impl Kernel {
             (Some((None, spectrum)), ..) => (estimate(spectrum), Evidence::Estimate),
             (None, ..) => (Kind::Hyperbolic, Evidence::Estimate),
         };
-        let (multipliers, instabilities) =
-            self.multipliers(outer, kind, beyond.map(|(_, spectrum)| spectrum));
+        let spectrum = beyond.map(|(_, spectrum)| spectrum);
+        let unstable = kind == Kind::Hyperbolic && evidence.is_proof();
+        let margin =
+            if unstable { self.unstable_margin(outer, spectrum.as_ref()) } else { self.margin(outer) };
+        let (multipliers, instabilities) = self.multipliers(outer, kind, spectrum);
         let part = Part {
             dofs: (0..self.modes.nrows()).collect(),
             size: self.size(),
@@ -41,7 +44,7 @@ impl Kernel {
             roots: None,
             oscillator: None,
         };
-        let measured = Some(self.measured(outer, accuracy));
+        let measured = Some(Measured { margin, ..self.measured(outer, accuracy) });
         Analysis { measured, ..Analysis::of_part(part, 2, self.warnings(evidence)) }
     }
 
@@ -71,7 +74,7 @@ impl Kernel {
         Measured {
             accuracy,
             holds: self.verdict_within(outer, accuracy),
-            margin: self.margin(outer),
+            margin: None,
             first_unstable,
             is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step > hi),
             removed: self.removed.clone(),

@@ -11,6 +11,7 @@ use faer::Mat;
 use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
+use super::region::largest;
 use crate::number::U;
 use crate::system::norm;
 use crate::system::spectrum::Spectrum;
@@ -89,6 +90,20 @@ impl Kernel {
             (y, Some(error))
         });
         Some((kind, spectrum))
+    }
+
+    /// The largest ε, within a tenth, for which all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven unstable: by counts where these
+    /// tell, else by the discs about the eigenvalues at this step.
+    pub(super) fn unstable_margin(&self, outer: &Outer, spectrum: Option<&Spectrum>) -> Option<f64> {
+        let by_discs = |epsilon: f64| {
+            let error = self.blocks(outer, epsilon)?.s().1;
+            (spectrum?.with_error(error)?.by_discs() == Some(Kind::Hyperbolic)).then_some(())
+        };
+        if self.has_real_unstable_mode(outer, 0.0) {
+            largest(1.1, |epsilon| self.has_real_unstable_mode(outer, epsilon))
+        } else {
+            largest(1.1, |epsilon| by_discs(epsilon).is_some())
+        }
     }
 
     /// Whether all matrices as in [`Kernel::is_in_first_region`] are proven unstable.

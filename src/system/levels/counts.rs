@@ -10,20 +10,25 @@
 //!
 //! Each count grows with the kicks, so those at F ± e₁ I, S ± e₂ I bound those of all stiffnesses between.
 
+use faer::Mat;
+
 use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
-use super::region::Shifted;
-use crate::system::inertia::proven;
+use crate::system::inertia::negative_bounds;
 
 /// Twists of an index: more of them cost more than discs about the eigenvalues.
 const MOST_TWISTS: usize = 6;
 
-/// What all stiffnesses within ε have in common: neg J_hh and neg J_hf, which fall apart into modes.
-struct Counts<'a> {
-    kernel: &'a Kernel,
-    outer: &'a Outer,
-    shifted: Shifted,
+/// What all kicks between two have in common: neg J_hh and neg J_hf, which fall apart into modes.
+pub(super) struct Counts {
+    /// The modes with the least and the greatest fast kicks,
+    less: Vec<Half>,
+    more: Vec<Half>,
+    /// M with the least and the greatest slow ones,
+    slow: [Mat<f64>; 2],
+    /// and how far (2-norm) these can be off.
+    slack: f64,
     hh: usize,
     hf: usize,
 }
@@ -45,65 +50,72 @@ fn twisted(half: &Half, s: f64) -> Interval {
     }
 }
 
-impl Counts<'_> {
-    /// Eigenvalues of diag(twisted) − M that are negative for all stiffnesses.
-    fn least(&self, s: f64) -> usize {
-        let diagonal: Vec<f64> = self.shifted.less.iter().map(|half| twisted(half, s).hi).collect();
-        proven(&self.kernel.with_slow(self.outer, -1.0, &diagonal), self.shifted.slow_slack).negative
+impl Counts {
+    /// `None` where neg J_hh or neg J_hf is not one for all.
+    pub fn new([less, more]: [Vec<Half>; 2], slow: [Mat<f64>; 2], slack: f64) -> Option<Counts> {
+        let (hh, hf) = held(&less).filter(|counts| held(&more) == Some(*counts))?;
+        Some(Counts { less, more, slow, slack, hh, hf })
     }
 
-    /// Those that are negative or 0 for some.
-    fn most(&self, s: f64) -> usize {
-        let diagonal: Vec<f64> = self.shifted.more.iter().map(|half| twisted(half, s).lo).collect();
-        let form = self.kernel.with_slow(self.outer, -1.0, &diagonal);
-        self.kernel.size() - proven(&form, self.shifted.slow_slack).positive
+    /// Of diag(twisted) − M no fewer eigenvalues than the first are negative for all kicks, no more than the second are negative or 0.
+    fn bounds(&self, s: f64) -> (usize, usize) {
+        let form = |slow: &Mat<f64>, diagonal: &dyn Fn(usize) -> f64| {
+            let m = self.less.len();
+            Mat::from_fn(m, m, |i, j| (if i == j { diagonal(i) } else { 0.0 }) - slow[(i, j)])
+        };
+        let high = form(&self.slow[0], &|i| twisted(&self.less[i], s).hi);
+        let low = form(&self.slow[1], &|i| twisted(&self.more[i], s).lo);
+        negative_bounds(&low, &high, self.slack)
     }
 
-    /// The number of both where it is one.
-    fn exact(&self, s: f64) -> Option<usize> {
-        let least = self.least(s);
-        (self.most(s) == least).then_some(least)
+    /// Whether the counts at the ends prove a real multiplier off the circle.
+    pub fn tell_instability(&self) -> bool {
+        let (hh, hf, m) = (self.hh, self.hf, self.less.len());
+        // J_fh is J_hh and a/b − M, J_ff is J_hf and c/d − M.
+        let differ = |s: f64, more: usize, other: usize| {
+            let (least, most) = self.bounds(s);
+            more + least > other || more + most < other
+        };
+        differ(0.0, hh, hf) || differ(1.0, hf, m + hh)
+    }
+
+    /// Whether Σ |i(s_(k+1)) − i(s_k)| = n over the twists between 1 and 0.
+    pub fn tell_stability(&self, twists: &[f64]) -> bool {
+        let at = [1.0].into_iter().chain(twists.iter().copied()).chain([0.0]);
+        let one = |s: f64| Some(self.bounds(s)).filter(|(least, most)| least == most).map(|(count, _)| count);
+        let counts: Option<Vec<usize>> = at.map(one).collect();
+        let change = |own: Vec<usize>| own.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>();
+        counts.map(change) == Some(self.less.len())
     }
 
     /// Values of s between modes p θ/2 of which turned back and others; cos²(p θ/2) alone places them.
     fn twists(&self) -> Option<Vec<f64>> {
         let mode = |half: &Half| Some((half.a.mid() * half.d.mid(), half.turns_back()?));
-        let mut modes: Vec<(f64, bool)> = self.shifted.less.iter().map(mode).collect::<Option<_>>()?;
+        let mut modes: Vec<(f64, bool)> = self.less.iter().map(mode).collect::<Option<_>>()?;
         modes.sort_by(|x, y| y.0.total_cmp(&x.0));
         let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
         let twists = changes.map(|pair| pair[0].0 / 2.0 + pair[1].0 / 2.0).filter(|s| (0.0..1.0).contains(s));
-        let twists: Vec<f64> = [1.0].into_iter().chain(twists).chain([0.0]).collect();
-        (twists.len() <= MOST_TWISTS + 2).then_some(twists)
+        let twists: Vec<f64> = twists.collect();
+        (twists.len() <= MOST_TWISTS).then_some(twists)
     }
 }
 
 impl Kernel {
-    fn counts<'a>(&'a self, outer: &'a Outer, epsilon: f64) -> Option<Counts<'a>> {
+    fn counts(&self, outer: &Outer, epsilon: f64) -> Option<Counts> {
         let shifted = self.shifted(outer, epsilon);
-        let (hh, hf) = held(&shifted.less).filter(|counts| held(&shifted.more) == Some(*counts))?;
-        Some(Counts { kernel: self, outer, shifted, hh, hf })
+        let slow = &self.slow * faer::Scale(outer.half_kick());
+        Counts::new([shifted.less, shifted.more], [slow.clone(), slow], shifted.slow_slack)
     }
 
     /// Whether all F + E₁, S + E₂, ‖E₁‖₂ ≤ ε ‖F‖₂, ‖E₂‖₂ ≤ ε ‖S‖₂, are proven by counts to have a real multiplier off the circle.
     pub fn has_real_unstable_mode(&self, outer: &Outer, epsilon: f64) -> bool {
-        // J_fh is J_hh and a/b − M, J_ff is J_hf and c/d − M.
-        self.counts(outer, epsilon).is_some_and(|own| {
-            let (hh, hf, m) = (own.hh, own.hf, self.size());
-            hh + own.least(0.0) > hf
-                || hh + own.most(0.0) < hf
-                || hf + own.least(1.0) > m + hh
-                || hf + own.most(1.0) < m + hh
-        })
+        self.counts(outer, epsilon).is_some_and(|own| own.tell_instability())
     }
 
     /// Whether all these are proven stable by the index of the twisted period.
     pub fn is_stable_by_index(&self, outer: &Outer, epsilon: f64) -> bool {
-        let index = |own: Counts| {
-            let counts: Vec<usize> =
-                own.twists()?.into_iter().map(|s| own.exact(s)).collect::<Option<_>>()?;
-            Some(counts.windows(2).map(|pair| pair[0].abs_diff(pair[1])).sum::<usize>())
-        };
-        self.counts(outer, epsilon).and_then(index) == Some(self.size())
+        let own = self.counts(outer, epsilon);
+        own.is_some_and(|own| own.twists().is_some_and(|twists| own.tell_stability(&twists)))
     }
 
     /// Whether all these are proven stable, in the first region or by the index.

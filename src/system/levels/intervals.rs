@@ -1,9 +1,11 @@
 //! Stable and unstable stretches of outer steps at a fixed ratio, without a gap.
 
+use super::cell::Cells;
 use super::kernel::{Kernel, Outer};
 use crate::error::{Error, Result};
 use crate::system::analysis::exponent;
 use crate::system::measured::Holds;
+use crate::system::vary::{cover, merged};
 use crate::verdict::Kind;
 
 /// Outer steps of one verdict.
@@ -28,55 +30,28 @@ impl Kernel {
         Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
     }
 
-    /// The verdicts on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as stretches that cover them. A step H' in
-    /// place of H is the factor (H'/H)² on every stiffness, so a verdict on all stiffnesses within ε holds for H² (1 ± ε). Where
-    /// nothing is proven for ε = `width`, a stretch of that relative width is told of as such: no interval wider than it is
-    /// missed.
+    /// The verdicts on all outer steps of `inner_steps` inner ones from `lo` to `hi`, as stretches that cover them. No interval wider than
+    /// `width` times the larger end is missed.
     ///
-    /// Cost: the first stable region is one bisection; beyond it an eigendecomposition for each stretch, more where intervals
-    /// are thin.
+    /// Cost: the first stable region is one bisection; beyond it two factorizations and, where these tell nothing, the eigenvalues for each
+    /// cell (file `cell`), more cells where intervals are thin.
     ///
     /// # Errors
     /// A range that is empty or not positive, a width outside \[10^-9, 1/10\].
     pub fn stretches(&self, inner_steps: u64, (lo, hi): (f64, f64), width: f64) -> Result<Vec<Stretch>> {
         if !(lo > 0.0 && lo < hi && hi.is_finite()) {
-            return Err(Error::input(
-                "range",
-                format!("{lo}..{hi}"),
-                "write the smaller step first, both positive",
-            ));
+            let remedy = "write the smaller step first, both positive";
+            return Err(Error::input("range", format!("{lo}..{hi}"), remedy));
         }
-        if !(1e-9..=0.1).contains(&width) {
-            return Err(Error::input("width", width, "choose 1e-9 to 0.1"));
-        }
-        let mut stretches: Vec<Stretch> = Vec::new();
-        let mut add = |lo: f64, hi: f64, verdict: Holds| match stretches.last_mut() {
-            Some(last) if last.verdict == verdict => last.hi = hi,
-            _ => stretches.push(Stretch { lo, hi, verdict }),
+        let first = self.first_unstable(inner_steps).map_or(lo, |(end, _)| end.clamp(lo, hi));
+        let known = (first > lo).then_some(Stretch { lo, hi: first, verdict: Holds::Stable });
+        let cells = Cells::new(self)?;
+        let rest = if first < hi {
+            cover((first, hi), width, |lo, hi| cells.verdict(inner_steps, (lo, hi)))?
+        } else {
+            Vec::new()
         };
-        let mut at = lo;
-        if let Some((end, _)) = self.first_unstable(inner_steps).filter(|(end, _)| *end > lo) {
-            at = end.min(hi);
-            add(lo, at, Holds::Stable);
-        }
-        let mut epsilon = width;
-        while at < hi {
-            epsilon = (4.0 * epsilon).min(WIDEST);
-            let (verdict, end) = loop {
-                // A little inwards, for the roundings of the roots.
-                let inner = 0.999_999 * epsilon;
-                let middle = at / (1.0 - inner).sqrt();
-                match self.verdict_within(&Outer::new(middle, inner_steps)?, epsilon) {
-                    Holds::NotTold if epsilon <= width => break (Holds::NotTold, at * (1.0 + width)),
-                    Holds::NotTold => epsilon = (epsilon / 4.0).max(width),
-                    verdict => break (verdict, middle * (1.0 + inner).sqrt()),
-                }
-            };
-            let end = end.min(hi);
-            add(at, end, verdict);
-            at = end;
-        }
-        Ok(stretches)
+        Ok(merged(known.into_iter().chain(rest)))
     }
 
     /// The step up to which every outer one from `at` on, as many inner ones in it, is proven by counts to have a real multiplier off the

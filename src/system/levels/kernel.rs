@@ -137,26 +137,6 @@ impl Kernel {
         })
     }
 
-    /// The same with one level (0: the fast one) lo to hi times as stiff, all of them at once: the middle, its error bound wider;
-    /// `None` where the fast one would have no stiffness. The total is not looked at again.
-    pub fn scaled(&self, level: usize, (lo, hi): (f64, f64)) -> Option<Kernel> {
-        let (middle, largest) = (lo / 2.0 + hi / 2.0, lo.abs().max(hi.abs()));
-        // A little more than half the range: the roundings of the middle and of every product with it.
-        let off = (hi - lo) / 2.0 + 4.0 * U * largest;
-        let mut kernel = self.clone();
-        kernel.norms[level] *= largest;
-        if level == 0 {
-            kernel.values.iter_mut().for_each(|x| *x *= middle);
-            kernel.fast_error = 1.01 * (largest * self.fast_error + off * self.norms[0]);
-        } else {
-            kernel.slow *= faer::Scale(middle);
-            let rounding = 2.0 * U * largest * norm::frobenius(&self.slow);
-            let own = largest * self.slow_error + off * (self.norms[1] + self.slow_error);
-            kernel.slow_error = 1.01 * (own + rounding);
-        }
-        (level == 1 || lo > 0.0).then_some(kernel)
-    }
-
     /// The number of modes.
     pub fn size(&self) -> usize {
         self.values.len()

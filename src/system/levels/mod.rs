@@ -38,12 +38,14 @@
 //! | `band` | the first region of a whole band of stiffnesses |
 //! | `counts` | verdicts by counts of negative eigenvalues, wherever the step lies |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
+//! | `cell` | the verdict on all outer steps, or scales, between two |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
 mod answer;
 mod band;
 mod beyond;
+mod cell;
 mod counts;
 mod half;
 mod interval;
@@ -52,6 +54,7 @@ mod kernel;
 mod region;
 mod rigid;
 
+pub use cell::Cells;
 pub use intervals::Stretch;
 pub use kernel::{Kernel, Outer};
 pub use rigid::{Hessians, rigid_motions};

@@ -16,6 +16,23 @@ pub(super) struct Shifted {
     pub slow_slack: f64,
 }
 
+/// The largest ε up to 1 for which what `holds` tells of 0 holds, rounded down within a factor; `None` where it does not for 0.
+pub(super) fn largest(width: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
+    // By halves of the exponent: below 10^-15 the errors of the eigenbasis are larger than the margin.
+    let (mut lo, mut hi) = (1e-15_f64, 1.0_f64);
+    if !holds(0.0) {
+        return None;
+    }
+    if !holds(lo) {
+        return Some(0.0);
+    }
+    while hi > width * lo {
+        let middle = (lo * hi).sqrt();
+        *(if holds(middle) { &mut lo } else { &mut hi }) = middle;
+    }
+    Some(lo)
+}
+
 impl Kernel {
     pub(super) fn shifted(&self, outer: &Outer, epsilon: f64) -> Shifted {
         let shift = (self.fast_error + epsilon * self.norms[0]).next_up();
@@ -54,19 +71,7 @@ impl Kernel {
         let is_in_region = self.is_in_first_region(outer, 0.0);
         let stable = if is_in_region { Kernel::is_in_first_region } else { Kernel::is_stable_by_index };
         let width = if is_in_region { 1.01 } else { 1.1 };
-        if !stable(self, outer, 0.0) {
-            return None;
-        }
-        // By halves of the exponent: below 10^-15 the errors of the eigenbasis are larger than the margin.
-        let (mut lo, mut hi) = (1e-15_f64, 1.0_f64);
-        if !stable(self, outer, lo) {
-            return Some(0.0);
-        }
-        while hi > width * lo {
-            let middle = (lo * hi).sqrt();
-            *(if stable(self, outer, middle) { &mut lo } else { &mut hi }) = middle;
-        }
-        Some(lo)
+        largest(width, |epsilon| stable(self, outer, epsilon))
     }
 
     /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is proven unstable.

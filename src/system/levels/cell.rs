@@ -1,0 +1,192 @@
+//! Verdicts on all outer steps, or all scales of one level, between two: cells that cover a range.
+//!
+//! In a cell the fast kicks are t F, t_1 ≤ t ≤ t_2, the slow ones m S, m_1 ≤ m ≤ m_2. Each mode of F is bounded by its own kicks at
+//! the two ends, and m S by m_0 S ± (m_2 − m_1)/2 |S|, |S| the matrix with the absolute values of S's eigenvalues: what is soft is moved
+//! by little, whatever the norm of the whole. So the counts at both ends bound those between (`counts`). Discs take over where a pair of
+//! multipliers left the circle together: entry by entry, how far S = bᵀ C can be from that in the middle.
+
+use faer::{Mat, Side};
+
+use super::counts::Counts;
+use super::half::Half;
+use super::interval::Interval;
+use super::kernel::{Kernel, Outer, STEP_ERROR};
+use crate::error::{Error, Result};
+use crate::number::U;
+use crate::system::inertia::{backward_error, orthogonality};
+use crate::system::measured::Holds;
+use crate::system::norm;
+use crate::system::spectrum::Spectrum;
+use crate::verdict::Kind;
+
+/// Twists of an index: modes of both of Krein's signs alternate more often in no molecule seen.
+const MOST_TWISTS: usize = 64;
+
+/// The kernel with |S|.
+pub struct Cells<'a> {
+    kernel: &'a Kernel,
+    /// N with −N ≤ S' ≤ N.
+    size: Mat<f64>,
+}
+
+/// Factors of the fast and of the slow stiffness in the time unit of the inner step.
+struct Cell {
+    inner_steps: u64,
+    fast: Interval,
+    slow: Interval,
+}
+
+impl<'a> Cells<'a> {
+    /// One eigendecomposition of S.
+    ///
+    /// # Errors
+    /// Where its iteration fails: never seen, but not excluded.
+    pub fn new(kernel: &'a Kernel) -> Result<Self> {
+        let failed = || {
+            Error::input("slow", "its eigenvalues", "the iteration does not converge: is the matrix sound?")
+        };
+        let m = kernel.size();
+        let eigen = kernel.slow.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
+        let (v, values) = (eigen.U().to_owned(), (0..m).map(|i| eigen.S()[i]).collect::<Vec<_>>());
+        let defect = orthogonality(&v).ok_or_else(failed)?;
+        let error = backward_error(&kernel.slow, v.clone(), &values).ok_or_else(failed)?;
+        let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
+        let scaled = Mat::from_fn(m, m, |i, j| v[(i, j)] * values[j].abs());
+        let mut size = &scaled * v.transpose();
+        // V |Λ| Vᵀ beside Q |Λ| Qᵀ, Q the orthogonal factor of V; the product's rounding; that of the sums here.
+        let rounding = 1.1 * (m as f64 + 4.0) * U * norm::frobenius(&scaled) * norm::frobenius(&v);
+        let room = 1.01 * (error + 2.1 * defect * largest + rounding) + 4.0 * U * largest;
+        (0..m).for_each(|i| size[(i, i)] += room);
+        Ok(Cells { kernel, size })
+    }
+
+    /// What is proven of all outer steps from lo to hi of `inner_steps` inner ones.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub fn verdict(&self, inner_steps: u64, (lo, hi): (f64, f64)) -> Result<Holds> {
+        Outer::new(lo, inner_steps).and(Outer::new(hi, inner_steps))?;
+        let step = Interval { lo, hi } / Interval::point(inner_steps as f64);
+        let fast = step * step;
+        Ok(self.told(&Cell { inner_steps, fast, slow: fast * Interval::point(inner_steps as f64).half() }))
+    }
+
+    /// What is proven at an outer step of all systems in which one level (0: the fast one) is lo to hi times as stiff.
+    pub fn verdict_scaled(&self, outer: &Outer, level: usize, (lo, hi): (f64, f64)) -> Holds {
+        if level == 0 && lo <= 0.0 {
+            return Holds::NotTold;
+        }
+        let room = Interval { lo: 1.0 - STEP_ERROR, hi: 1.0 + STEP_ERROR };
+        let (scale, square) =
+            (Interval { lo: lo.next_down(), hi: hi.next_up() }, Interval::point(outer.inner_square) * room);
+        let slow = square * Interval::point(outer.inner_steps as f64).half();
+        self.told(&match level {
+            0 => Cell { inner_steps: outer.inner_steps, fast: square * scale, slow },
+            _ => Cell { inner_steps: outer.inner_steps, fast: square, slow: slow * scale },
+        })
+    }
+
+    fn told(&self, cell: &Cell) -> Holds {
+        let counts = self.counts(cell);
+        if counts.as_ref().is_some_and(Counts::tell_instability) {
+            return Holds::Unstable;
+        }
+        let Some((spectrum, off)) = self.spectrum(cell) else { return Holds::NotTold };
+        if let Some(counts) = &counts
+            && let Some(twists) = self.twists(cell, &spectrum)
+            && counts.tell_stability(&twists)
+        {
+            return Holds::Stable;
+        }
+        match spectrum.certified_around(&off) {
+            Some(Kind::Hyperbolic) => Holds::Unstable,
+            Some(Kind::Elliptic) => Holds::Stable,
+            _ => Holds::NotTold,
+        }
+    }
+
+    fn counts(&self, cell: &Cell) -> Option<Counts> {
+        let kernel = self.kernel;
+        let (shift, middle, half) = (kernel.fast_error, cell.slow.mid(), cell.slow.radius());
+        let mode = |s: f64| Half::new(s, cell.inner_steps);
+        let less =
+            kernel.values.iter().map(|x| mode((Interval::point((x - shift).next_down()) * cell.fast).lo));
+        let more =
+            kernel.values.iter().map(|x| mode((Interval::point((x + shift).next_up()) * cell.fast).hi));
+        let m = kernel.size();
+        let slow = |sign: f64| {
+            Mat::from_fn(m, m, |i, j| middle * kernel.slow[(i, j)] + sign * half * self.size[(i, j)])
+        };
+        let slow = [slow(-1.0), slow(1.0)];
+        let largest = cell.slow.lo.abs().max(cell.slow.hi.abs());
+        let rounding = 4.0 * U * largest * (norm::frobenius(&kernel.slow) + norm::frobenius(&self.size));
+        Counts::new([less.collect(), more.collect()], slow, 1.01 * (largest * kernel.slow_error + rounding))
+    }
+
+    /// S = f(F) − g(F) m S, f = (T_p − 1)/2 and g = U_(p−1)/2 at 1 − t F/2, in the middle of the cell, and how far it is elsewhere, entry by
+    /// entry: |f'| ≤ p |U_(p−1)|/4 and |g'| ≤ p (p² − 1)/12 in s = t λ. Errors of Λ move f and g by p²/4 and p (p² − 1)/12 times them
+    /// (`beyond`, with 1.05 for what lies below 0).
+    fn spectrum(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
+        let (kernel, p, m) = (self.kernel, cell.inner_steps as f64, self.kernel.size());
+        let (shift, middle) = (kernel.fast_error, Interval::point(cell.fast.mid()));
+        let (lowest, highest) = (kernel.values.first()?, kernel.values.last()?);
+        let ends = Interval { lo: lowest - shift, hi: highest + shift } * cell.fast;
+        if ends.hi > 4.0 || ends.lo < -0.02 / (p * p) {
+            return None;
+        }
+        let [f_slope, g_slope] = [1.05 * p * p / 4.0, 1.05 * p * (p * p - 1.0) / 12.0];
+        let halves: Vec<Half> = kernel
+            .values
+            .iter()
+            .map(|x| Half::new((Interval::point(*x) * middle).mid(), cell.inner_steps))
+            .collect();
+        let (f, g): (Vec<_>, Vec<_>) = halves.iter().map(|own| (own.b * own.c, own.b * own.d)).unzip();
+        let (mid, radius) = (cell.slow.mid(), cell.slow.radius());
+        let (most, size) = (cell.slow.lo.abs().max(cell.slow.hi.abs()), &kernel.slow);
+        let s = Mat::from_fn(m, m, |i, j| {
+            (if i == j { f[i].mid() } else { 0.0 }) - g[i].mid() * (mid * size[(i, j)])
+        });
+        // In s: from the middle, and of its rounding.
+        let moved = |i: usize| 1.01 * kernel.values[i].abs() * (cell.fast.radius() + 4.0 * U * cell.fast.hi);
+        let off = Mat::from_fn(m, m, |i, j| {
+            let (g_off, value) = (g_slope * moved(i), g[i].mid().abs() + g[i].radius());
+            let steep = (p / 2.0 * (value + g_off)).min(f_slope);
+            let own = if i == j { 1.05 * steep * moved(i) + f[i].radius() } else { 0.0 };
+            let coupled =
+                size[(i, j)].abs() * (value * (radius + 4.0 * U * most) + (g_off + g[i].radius()) * most);
+            1.01 * (own + coupled) + 2.0 * U * s[(i, j)].abs()
+        });
+        let error = 1.01 * cell.fast.hi * shift;
+        let slow = most * (kernel.norms[1] + kernel.slow_error);
+        let error =
+            1.01 * (f_slope * error + g_slope * error * slow + 1.05 * p / 2.0 * most * kernel.slow_error);
+        Some((Spectrum::of(s, Some(error))?, off))
+    }
+
+    /// Values of s = 1 + μ between modes of one of Krein's signs and of the other; `None` where some are off \[−1, 0\]. Whatever they are,
+    /// counts at them prove what they prove.
+    fn twists(&self, cell: &Cell, spectrum: &Spectrum) -> Option<Vec<f64>> {
+        let (kernel, m) = (self.kernel, self.kernel.size());
+        if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {
+            return None;
+        }
+        let half = |x: &f64| Half::new(x * cell.fast.mid(), cell.inner_steps);
+        let halves: Vec<Half> = kernel.values.iter().map(half).collect();
+        let kicked = &kernel.slow * Mat::from_fn(m, m, |i, k| cell.slow.mid() * spectrum.vectors[(i, k)].re);
+        // vᵀ Aᵀ C v, A = a − b M, C = c − d M.
+        let sign = |k: usize| {
+            let term = |i: usize| {
+                let (v, kick) = (spectrum.vectors[(i, k)].re, kicked[(i, k)]);
+                let [a, b, c, d] = [halves[i].a, halves[i].b, halves[i].c, halves[i].d].map(Interval::mid);
+                (a * v - b * kick) * (c * v - d * kick)
+            };
+            (0..m).map(term).sum::<f64>() > 0.0
+        };
+        let mut modes: Vec<(f64, bool)> =
+            spectrum.mu.iter().enumerate().map(|(k, mu)| (1.0 + mu.re, sign(k))).collect();
+        modes.sort_by(|x, y| y.0.total_cmp(&x.0));
+        let changes = modes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+        let twists: Vec<f64> = changes.map(|pair| pair[0].0 / 2.0 + pair[1].0 / 2.0).collect();
+        (twists.len() <= MOST_TWISTS).then_some(twists)
+    }
+}
