@@ -419,7 +419,7 @@ fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_
         let found = shipped.intervals(&text.parse().unwrap(), 1e-3, &Limits::default()).unwrap();
         let all = &found.stretches;
         assert!(all.windows(2).all(|pair| pair[0].hi == pair[1].lo && pair[0].verdict != pair[1].verdict));
-        let told = |own: &&kickdrift::system::levels::Stretch| own.verdict != Holds::NotTold;
+        let told = |own: &&kickdrift::system::stretches::Stretch| own.verdict != Holds::NotTold;
         let (range, sure) = (all[all.len() - 1].hi - all[0].lo, all.iter().filter(told));
         let sure: f64 = sure.map(|own| own.hi - own.lo).sum();
         // Cells that sharpen an edge end a ten-thousandth of the width from it.

@@ -48,7 +48,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let rates = scene.growth_rates(&span, &steps, &limits)?;
     let stretches = match scene.intervals(&span, WIDTH, &limits) {
         Ok(found) => {
-            let one = |own: &crate::system::levels::Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
+            let one = |own: &crate::system::stretches::Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
             found.stretches.iter().map(one).collect()
         }
         Err(error) if error.kind() == Kind::Stopped => return Err(error),

@@ -10,7 +10,7 @@ use crate::report::record::Record;
 use crate::report::table::Column;
 use crate::report::text::counted;
 use crate::system::Holds;
-use crate::system::levels::Stretch;
+use crate::system::stretches::Stretch;
 use crate::system::vary::Intervals;
 
 /// Growth rates drawn over the whole range, and at least of a stretch.

@@ -13,8 +13,9 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::levels::Stretch;
-use crate::system::vary::{Intervals, cover, merged, verdict_between};
+use crate::system::stretches::Stretch;
+use crate::system::stretches::{cover, merged};
+use crate::system::vary::{Intervals, verdict_between};
 use crate::system::{Holds, Limits, Potential, Route, System};
 
 /// One number of a file and its range.

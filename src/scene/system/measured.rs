@@ -26,8 +26,8 @@ use super::document::{LARGEST, Number, no_system};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::levels::{Cells, Hessians, Kernel, Outer, Stretch, rigid_motions};
-use crate::system::vary::cover;
+use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions};
+use crate::system::stretches::{Stretch, cover};
 use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System, decide_by};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.

@@ -5,19 +5,8 @@ use super::kernel::{Kernel, Outer};
 use crate::error::{Error, Result};
 use crate::system::analysis::exponent;
 use crate::system::measured::Holds;
-use crate::system::vary::{cover, merged};
+use crate::system::stretches::{Stretch, cover, merged};
 use crate::verdict::Kind;
-
-/// Outer steps of one verdict.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// From this step,
-    pub lo: f64,
-    /// to this one.
-    pub hi: f64,
-    /// What is proven of every step between, [`Holds::NotTold`] where nothing is.
-    pub verdict: Holds,
-}
 
 /// The largest relative change of the stiffnesses by which one verdict is carried on.
 const WIDEST: f64 = 0.05;

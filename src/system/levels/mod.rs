@@ -55,6 +55,5 @@ mod region;
 mod rigid;
 
 pub use cell::Cells;
-pub use intervals::Stretch;
 pub use kernel::{Kernel, Outer};
 pub use rigid::{Hessians, rigid_motions};
