@@ -72,7 +72,7 @@ fn strange_data_still_makes_a_figure() {
             .with(Layer::cells(cells.clone()).labelled("cells"))
             .with(Layer::picture(picture.clone()).labelled("picture"))
             .note(Note::new([f64::NAN, 1.0], "nowhere"))
-            .bar(ColourBar { axis: Axis::log("bar", 1e-6, 1.0), gradient: Gradient::full() })
+            .bar(ColourBar::new(Axis::log("bar", 1e-6, 1.0), Gradient::full()).over([0.0, 9.0].into_iter()))
             .legend(Place::BottomRight)
             .gridded();
         let figure = Figure::new(60.0, 50.0).with(panel.clone()).with(panel).columns(1);
@@ -90,7 +90,7 @@ fn a_figure_without_panels_is_blank_paper() {
 
 #[test]
 fn a_bar_gives_each_value_the_colour_beside_its_number() {
-    let bar = ColourBar { axis: Axis::log("rate", 1e-4, 1.0), gradient: Gradient::on_white() };
+    let bar = ColourBar::new(Axis::log("rate", 1e-4, 1.0), Gradient::on_white());
     assert_eq!(bar.colour(1e-2), Gradient::on_white().at(0.5));
     assert_eq!([1e-9, 1e-4, 1.1e-2, 1.0, 9.0, 0.0].map(|rate| bar.class(rate, 8)), [0, 0, 4, 7, 7, 0]);
 }
@@ -122,4 +122,143 @@ fn strange_letters_and_pictures_make_a_sound_pdf() {
     for piece in ["/Subtype /Image", "/ca 0.5", "<DBFFDFFF>", "<0416>"] {
         assert!(text.contains(piece), "no {piece} in {text}");
     }
+}
+
+/// Dark cells, each beside neighbours of other colours: four columns, three rows.
+fn patchwork() -> Figure {
+    let mut cells = Cells::new([0.5, 0.5], [1.0, 1.0], Gradient::on_white().steps(24).split_off(12));
+    (0..12).for_each(|n| cells.push(n % 4, n / 4, (7 * n % 12) as u16));
+    let axes = (Axis::linear("", 0.0, 4.0).unnumbered(), Axis::linear("", 0.0, 3.0).unnumbered());
+    Figure::new(31.0, 29.0).with(Panel::new(axes.0, axes.1).with(Layer::cells(cells)))
+}
+
+/// Where cells meet, what is drawn lies between their colours, at resolutions that cut pixels anywhere: no paper shows.
+#[test]
+fn cells_have_no_seams() {
+    let limit = Gradient::on_white().steps(24)[12..].iter().map(|own| own.1).max().unwrap();
+    for dpi in [61.0, 96.0, 131.7, 150.3] {
+        let bytes = patchwork().png(dpi).unwrap();
+        let mut reader = ::png::Decoder::new(std::io::Cursor::new(&bytes[..])).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let (wide, high) =
+            reader.next_frame(&mut pixels).map(|info| (info.width as usize, info.height as usize)).unwrap();
+        // Away from the frame, which is grey where a pixel is cut, all is cells.
+        let inner = |n: &usize| {
+            (wide / 6..wide - wide / 5).contains(&(n % wide))
+                && (high / 6..high - high / 5).contains(&(n / wide))
+        };
+        let lightest = (0..wide * high).filter(inner).map(|n| pixels[3 * n + 1]).max().unwrap();
+        assert!(lightest <= limit, "{dpi} dpi: green {lightest} where no cell has more than {limit}");
+    }
+}
+
+#[test]
+fn the_words_of_an_svg_are_text_unless_shapes_are_asked_for() {
+    let figure = tiny().headed("*h*_1 & more").footed("made of *λ*_2");
+    let svg = figure.svg();
+    for words in [
+        ">Tiny</tspan>",
+        ">line</tspan>",
+        ">h</tspan>",
+        "> &amp; more</tspan>",
+        ">made of </tspan>",
+        ">λ</tspan>",
+    ] {
+        assert!(svg.contains(words), "no {words} in {svg}");
+    }
+    assert!(svg.contains("<title>h1 &amp; more</title>") && svg.contains("data:font/otf;base64,"));
+    assert!(!svg.contains("<use ") && !svg.contains("<path id="));
+    let svg = figure.outlined().svg();
+    assert!(svg.contains("aria-label=\"Tiny\"") && svg.contains("<use "));
+    assert!(!svg.contains("<text") && !svg.contains("font"));
+}
+
+/// The streams of a PDF, inflated where they are packed.
+fn streams(pdf: &[u8]) -> Vec<Vec<u8>> {
+    let find = |from: usize, what: &[u8]| {
+        pdf[from..].windows(what.len()).position(|own| own == what).map(|n| from + n)
+    };
+    let (mut found, mut at) = (Vec::new(), 0);
+    while let Some(begin) = find(at, b"\nstream\n").map(|n| n + 8) {
+        let end = find(begin, b"\nendstream").unwrap();
+        let mut bytes = Vec::new();
+        let packed =
+            std::io::Read::read_to_end(&mut flate2::read::ZlibDecoder::new(&pdf[begin..end]), &mut bytes);
+        found.push(if packed.is_ok() { bytes } else { pdf[begin..end].to_vec() });
+        at = end;
+    }
+    found
+}
+
+/// The words of a PDF as a reader finds them: what the fonts' tables say of the glyphs shown, font by font in the order of
+/// their names, a line for each piece.
+fn extracted(pdf: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(pdf);
+    let named = regex_lite::Regex::new(r"/(f[rist]) (\d+) 0 R").unwrap();
+    let maps: Vec<Vec<u8>> = streams(pdf).into_iter().filter(|own| own.starts_with(b"%!PS-Adobe")).collect();
+    // The tables stand in the order of their fonts.
+    let mut fonts: Vec<(u32, String)> =
+        named.captures_iter(&text).map(|own| (own[2].parse().unwrap(), own[1].to_string())).collect();
+    fonts.sort();
+    let pair = regex_lite::Regex::new(r"<([0-9A-F]{4})> <([0-9A-F]{4})>\n").unwrap();
+    let meaning = |font: &str, glyph: u16| -> char {
+        let place = fonts.iter().position(|(_, name)| name == font).unwrap();
+        let map = String::from_utf8_lossy(&maps[place]).to_string();
+        let map = map.split("beginbfchar").nth(1).unwrap().to_string();
+        let number = |text: &str| u32::from_str_radix(text, 16).unwrap();
+        let own = pair.captures_iter(&map).find(|own| number(&own[1]) == u32::from(glyph)).unwrap();
+        char::from_u32(number(&own[2])).unwrap()
+    };
+    let page = streams(pdf).into_iter().find(|own| own.windows(3).any(|three| three == b"BT\n")).unwrap();
+    let page: String = page.into_iter().map(char::from).collect();
+    let shown = regex_lite::Regex::new(r"(?s)/(f[rist]) [0-9.]+ Tf\n\[(.*?)\] TJ\n").unwrap();
+    // Strings in parentheses; letters that would end them, or are none, behind a backslash.
+    let string = regex_lite::Regex::new(r"(?s)\(((?:\\.|[^\\)])*)\)").unwrap();
+    let letter = regex_lite::Regex::new(r"(?s)\\([0-7]{3})|\\(.)|(.)").unwrap();
+    let byte = |own: regex_lite::Captures| match (own.get(1), own.get(2), own.get(3)) {
+        (Some(octal), ..) => u16::from_str_radix(octal.as_str(), 8).unwrap(),
+        (_, Some(named), _) => match named.as_str() {
+            "n" => 10,
+            "r" => 13,
+            "t" => 9,
+            "b" => 8,
+            "f" => 12,
+            other => other.chars().next().unwrap() as u16,
+        },
+        (.., plain) => plain.unwrap().as_str().chars().next().unwrap() as u16,
+    };
+    let line = |own: regex_lite::Captures| {
+        let text: String = string.captures_iter(&own[2]).map(|part| part[1].to_string()).collect();
+        let bytes: Vec<u16> = letter.captures_iter(&text).map(byte).collect();
+        bytes.chunks(2).map(|pair| meaning(&own[1], pair[0] << 8 | pair[1])).collect()
+    };
+    shown.captures_iter(&page).map(line).collect()
+}
+
+#[test]
+fn the_words_of_a_pdf_can_be_extracted_unless_shapes_are_asked_for() {
+    let found = extracted(&tiny().headed("All *tongues*").pdf());
+    for words in ["All ", "tongues", "Tiny", "line", "h", "1", "0"] {
+        assert!(found.iter().any(|own| own == words), "no {words} in {found:?}");
+    }
+    let text = String::from_utf8_lossy(&tiny().outlined().pdf()).to_string();
+    assert!(!text.contains("/Type0") && !text.contains("ToUnicode"));
+}
+
+#[test]
+fn a_figure_takes_the_width_and_the_unit_asked_for() {
+    let axes = (Axis::linear("*h*_1", 0.0, 1.0).of_time(), Axis::log("growth", 0.1, 1.0).per_time());
+    let figure = Figure::new(160.0, 80.0).with(Panel::new(axes.0, axes.1)).wide(85.0);
+    let svg = figure.svg();
+    assert!(figure.has_time() && !tiny().has_time());
+    // Half as high would be too low for a row: 45 mm at least.
+    assert!(
+        svg.contains("width=\"85mm\" height=\"45mm\"")
+            && svg.contains("> (time)<")
+            && svg.contains(">growth (1/time)<")
+    );
+    let svg = figure.in_units_of("fs").headed("A").svg();
+    assert!(svg.contains("> (fs)<") && svg.contains(">growth (1/fs)<"), "{svg}");
+    assert!(!svg.contains("height=\"45mm\""), "a heading takes no room from the panels");
+    assert!(tiny().wide(80.0).svg().contains("width=\"80mm\" height=\"60mm\""));
 }

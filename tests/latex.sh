@@ -48,7 +48,7 @@ system data/scenes/three-clocks.json
 system data/scenes/bar-resonant.json
 system data/scenes/diatomic-tether.json --columns part,decided_by,mu_re,mu_im,radius,growth_rate
 system data/scenes/diatomic-tether.json --scan potentials.1.step=1/10..1/2:1/10 --scan potentials.1.scale=1..2:1/2
-system data/scenes/water4.json --intervals outer=0.0043..0.0045 --width 1e-3
+system data/scenes/water4.json --intervals outer=0.0043..0.0045 --resolution 1e-3
 simulate data/scenes/fpu.json --periods 30
 simulate data/scenes/fpu.json --periods 60
 advise --period OH=10fs --period slow=40fs --steps 0.5fs,4fs --steps 0.5fs,5fs

@@ -354,7 +354,7 @@ fn a_range_of_scales_is_told_and_the_dense_period_agrees() {
 
 #[test]
 fn four_waters_are_told_stable_or_not_nearly_all_the_way_through_an_island() {
-    let found = water("water4", 8, "0.004", "--intervals outer=0.0046..0.0055 --width 1e-2");
+    let found = water("water4", 8, "0.004", "--intervals outer=0.0046..0.0055 --resolution 1e-2");
     let stretches = found["stretches"].as_array().unwrap_or_else(|| panic!("{found}"));
     let length = |verdict: &str| {
         let own = stretches.iter().filter(|own| own["verdict"] == verdict);

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::args::Common;
-use super::system::{self, draw};
+use super::paper::Paper;
+use super::system;
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension};
 use crate::advise::{Constraints, Mode, Question, Scheme};
@@ -52,18 +53,23 @@ pub struct Args {
     /// Hydrogens of this mass in amu, taken from their heavy atoms.
     #[arg(long, value_name = "MASS")]
     hmr: Option<String>,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
+        self.paper.check(format.is_figure() && self.file.is_none())?;
         let reading = self.reading()?;
         if let Some(path) = &self.file {
             return self.molecule(path, reading.as_ref(), common);
         }
         let advice = self.question(reading.as_ref())?.answer()?;
         match common.output.as_deref().filter(|_| format.is_figure()) {
-            Some(path) => draw("output", path, &report::figure(&advice, "Which outer steps are safe")),
+            Some(path) => {
+                self.paper.draw("output", path, report::figure(&advice, "Which outer steps are safe"))
+            }
             None => {
                 let text =
                     report::document(&advice, reading.as_ref(), format == Format::Csv).render(format)?;

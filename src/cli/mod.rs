@@ -12,6 +12,7 @@ mod generate;
 mod help;
 mod map;
 mod merge;
+mod paper;
 mod plane;
 mod polynomial;
 mod progress;

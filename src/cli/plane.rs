@@ -6,9 +6,6 @@ use crate::report::map::{MapArrays, Marked, Tally, marked};
 use crate::report::plane::Cloud;
 use crate::verdict::Limits;
 
-/// Pixels per inch of PNG figures: print quality.
-pub const DPI: f64 = 300.0;
-
 /// Every pair of a grid decided: the counts, and the pairs that are not plainly stable.
 #[derive(Clone, Debug, Default)]
 pub struct Verdicts {

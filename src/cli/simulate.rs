@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use super::args::{Columns, Common, whole};
-use super::system::{draw, limits, read};
+use super::paper::Paper;
+use super::system::{limits, read};
 use crate::avi::Ends;
 use crate::error::Result;
 use crate::format::Format;
@@ -30,17 +31,21 @@ pub struct Args {
     figure: Option<PathBuf>,
     #[command(flatten)]
     columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        self.paper.check(self.figure.is_some())?;
         self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
         let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
         let request = RunRequest { periods: self.periods, displacement: self.displace.clone(), ends };
         let scene = read(&self.file, common)?;
         let run = scene.run(&request, &limits(common))?;
         if let Some(path) = &self.figure {
-            draw("figure", path, &report::figure(&run, scene.title()))?;
+            let figure = report::figure(&run, scene.title());
+            self.paper.draw("figure", path, figure.in_units_of(scene.time_unit().unwrap_or("time")))?;
         }
         let document = report::document(&run)
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use indicatif::ProgressBar;
 
 use super::args::{Columns, Common, from_str, of};
-use super::plane::DPI;
+use super::paper::Paper;
 use super::progress::progress;
 use crate::error::{Error, Kind, Result};
 use crate::format::Format;
@@ -13,7 +13,6 @@ use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::document::Document;
 use crate::report::figure::Figure;
-use crate::report::file::write_output;
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Arrays, Axis, Scan, Span, SystemScene};
 use crate::system::scan::scan;
@@ -45,7 +44,7 @@ pub struct Args {
     intervals: Option<Span>,
     /// The relative width above which no interval is missed [default: 1e-4].
     #[arg(long, value_name = "W", requires = "intervals")]
-    width: Option<f64>,
+    resolution: Option<f64>,
     /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
@@ -54,12 +53,14 @@ pub struct Args {
     keep_rigid: bool,
     #[command(flatten)]
     columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         // Refused before the work, not after it.
-        drawing(common)?;
+        self.paper.check(drawing(common)?.is_some())?;
         let (text, arrays) = source(&self.file, common)?;
         let mut scene = SystemScene::read_in(arrays, &text)?;
         if let Some(accuracy) = self.accuracy {
@@ -94,12 +95,11 @@ impl Args {
     }
 
     fn intervals(&self, scene: &SystemScene, span: &Span, common: &Common) -> Result<()> {
-        let (width, limits) = (self.width.unwrap_or(1e-4), limits(common));
+        let (width, limits) = (self.resolution.unwrap_or(1e-4), limits(common));
         let found = scene.intervals(span, width, &limits)?;
         if let Some(path) = drawing(common)? {
             let rates = scene.growth_rates(span, &report::sampled(&found.stretches), &limits)?;
-            let names = (scene.title(), scene.time_unit().unwrap_or("time"));
-            return draw("output", path, &report::intervals_figure(&found, &rates, names));
+            return self.draw(scene, path, report::intervals_figure(&found, &rates, scene.title()));
         }
         let document = report::intervals(&found).input("intervals", span).input("width", width);
         common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
@@ -110,7 +110,7 @@ impl Args {
         let analysis = scene.decide(self.route(), &limits(common))?;
         waiting.finish_and_clear();
         match drawing(common)? {
-            Some(path) => draw("output", path, &report::figure(&analysis, scene.title())),
+            Some(path) => self.draw(scene, path, report::figure(&analysis, scene.title())),
             None => {
                 let limits = limits(common);
                 let friction = scene.friction(&limits)?;
@@ -135,7 +135,7 @@ impl Args {
         let time_unit = scene.time_unit().map(String::from);
         let map = SystemMap { names: axes.names(), xs, ys, points: points?, time_unit };
         if let Some(path) = drawing(common)? {
-            return draw("output", path, &map.figure(self.colour.unwrap_or_default(), scene.title()));
+            return self.draw(scene, path, map.figure(self.colour.unwrap_or_default(), scene.title()));
         }
         let document = self.echo(map.document(), scene).input("scan_x", &axes.x);
         let document = match &axes.y {
@@ -143,6 +143,12 @@ impl Args {
             None => document,
         };
         common.write(&self.columns.of(document)?, common.format_of_table(&Format::DOCUMENT)?)
+    }
+
+    /// In the system's unit of time, and with its title below.
+    fn draw(&self, scene: &SystemScene, path: &Path, figure: Figure) -> Result<()> {
+        let figure = figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(scene.title());
+        self.paper.draw("output", path, figure)
     }
 
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {
@@ -171,15 +177,6 @@ pub fn limits(common: &Common) -> Limits {
 fn drawing(common: &Common) -> Result<Option<&Path>> {
     let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
     Ok(common.output.as_deref().filter(|_| format.is_figure()))
-}
-
-/// Writes a figure to FILE.svg, FILE.pdf or FILE.png.
-pub fn draw(field: &str, path: &Path, figure: &Figure) -> Result<()> {
-    let extension = path.extension().and_then(|extension| extension.to_str());
-    let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
-    let remedy = || format!("name a file that ends in {}", Format::extensions(&Format::FIGURE));
-    let format = format.ok_or_else(|| Error::input(field, path.display(), remedy()))?;
-    write_output(Some(path), &figure.file(format, DPI)?)
 }
 
 fn text(path: &Path) -> Result<String> {

@@ -33,10 +33,10 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
     let x = Axis::linear("*a*", first as f64 - 0.6, last as f64 + 0.6);
     let y = Axis::log("width/(2*s*ρ), |*S_a*|", 0.7 * low, 1.4 * high);
     let most = measured.iter().map(|m| m.q).max().unwrap_or(1);
-    let bar = ColourBar { axis: Axis::log("*q*", 1.0, most.max(2) as f64), gradient: Gradient::on_white() };
+    let bar = ColourBar::new(Axis::log("*q*", 1.0, most.max(2) as f64), Gradient::on_white());
     let mut panel = Panel::new(x, y).titled(title).gridded();
     panel = panel.with(Layer::lines(vec![law.clone()], Stroke::THIN));
-    for (class, colour) in (0..SHADES).zip(bar.gradient.steps(SHADES.into())) {
+    for (class, colour) in (0..SHADES).zip(bar.steps(SHADES)) {
         let of_class = measured.iter().filter(|m| bar.class(m.q as f64, SHADES) == class);
         let points: Vec<[f64; 2]> = of_class.map(|m| [m.a as f64, m.strength]).collect();
         if !points.is_empty() {

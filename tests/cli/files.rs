@@ -158,3 +158,31 @@ fn packagers_get_a_page_of_each_command_and_completions_for_each_shell() {
     let shells = desk.files().into_iter().filter(|file| file.starts_with("out/completions/"));
     assert!(shells.map(|file| page(&file)).filter(|script| script.contains("lambda1")).count() == 5);
 }
+
+#[test]
+fn figures_take_the_width_the_title_and_the_unit_asked_for() {
+    let desk = Desk::new();
+    let flags = ["--width", "85mm", "--title", "Run of *h*_1", "--time-unit", "fs", "--output", "m.svg"];
+    let ended = desk.run(&words(MAP, &flags));
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let svg = String::from_utf8(desk.read("m.svg")).unwrap();
+    for piece in
+        ["width=\"85mm\"", ">Run of </tspan>", "> (fs)</tspan>", "by 1/20; </tspan>", "> = π</tspan>"]
+    {
+        assert!(svg.contains(piece), "no {piece} in {svg}");
+    }
+    desk.run(&words(MAP, &["--outlines", "--output", "m.svg"]));
+    assert!(!String::from_utf8(desk.read("m.svg")).unwrap().contains("<text"));
+    let diagram = "tongues --ratio 2/1 --rho 1 --figure diagram --output d.svg";
+    for (line, flags, field) in [
+        (MAP, &["--width", "85"][..], "width = 85"),
+        (MAP, &["--outlines"], "--outlines = given"),
+        (MAP, &["--title", "A", "--output", "m.csv"], "--title = given"),
+        (diagram, &["--time-unit", "fs"], "time-unit = fs"),
+        ("advise --period 10fs --period 40fs --steps 1fs,4fs", &["--width", "9cm"], "--width = given"),
+    ] {
+        let ended = desk.run(&words(line, flags));
+        assert!(ended.code == Some(2) && ended.stderr.contains(field), "{}", ended.stderr);
+    }
+    assert_eq!(desk.files(), ["m.svg"]);
+}

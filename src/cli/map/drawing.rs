@@ -2,6 +2,7 @@
 
 use super::Map;
 use crate::cli::args::of;
+use crate::cli::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
@@ -26,6 +27,8 @@ pub struct Drawing {
     /// The range of b for --curves [default: -12..12].
     #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
     b: Option<(i64, i64)>,
+    #[command(flatten)]
+    pub paper: Paper,
 }
 
 impl Drawing {
@@ -45,6 +48,7 @@ impl Drawing {
             ("--a", self.a.is_some()),
             ("--b", self.b.is_some()),
         ];
+        self.paper.check(format.is_figure())?;
         if !format.is_figure() {
             return match given.iter().find(|(_, given)| *given) {
                 None => Ok(Products::default()),

@@ -8,6 +8,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::args::Common;
+use super::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::file::{Folder, write_output};
@@ -21,6 +22,8 @@ pub struct Args {
     /// The scene, a JSON file as data/scenes/figure1.json.
     #[arg(value_name = "SCENE.json")]
     scene: PathBuf,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 impl Args {
@@ -30,8 +33,9 @@ impl Args {
             return Err(Error::input("format", format.name(), remedy));
         }
         let scene = Scene::read(&self.text()?)?;
+        self.paper.check(scene.want.iter().any(|want| want.product.is_figure()))?;
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
-        let work = Work::new(&scene, common, folder.path());
+        let work = Work::new(&scene, common, &self.paper, folder.path());
         // All products before the first file: an error leaves nothing behind.
         let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut summary = Summary::default();

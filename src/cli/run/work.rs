@@ -8,7 +8,8 @@ use std::rc::Rc;
 use super::tongues;
 use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::map;
-use crate::cli::plane::{DPI, Verdicts};
+use crate::cli::paper::Paper;
+use crate::cli::plane::Verdicts;
 use crate::cli::request::{Question, Request, THINNEST};
 use crate::cli::tongues as answers;
 use crate::error::Result;
@@ -31,6 +32,7 @@ use crate::verdict::Limits;
 pub struct Work<'a> {
     scene: &'a Scene,
     common: &'a Common,
+    paper: &'a Paper,
     limits: Limits,
     threads: usize,
     /// Where the arrays of the map go, if they are wanted.
@@ -46,12 +48,13 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    pub fn new(scene: &'a Scene, common: &'a Common, folder: &Path) -> Self {
+    pub fn new(scene: &'a Scene, common: &'a Common, paper: &'a Paper, folder: &Path) -> Self {
         let (limits, threads) = (common.limits(), common.threads());
         let arrays = scene.want.iter().find(|want| want.format == Format::Npz);
         Work {
             scene,
             common,
+            paper,
             limits,
             threads,
             archive: arrays.map(|want| folder.join(want.file_name())),
@@ -84,7 +87,9 @@ impl<'a> Work<'a> {
             return self.tongues(want.format);
         }
         match want.format {
-            drawn if drawn.is_figure() => self.figure(want.product)?.file(drawn, DPI),
+            drawn if drawn.is_figure() => {
+                self.paper.bytes(self.figure(want.product)?.as_ref().clone(), drawn)
+            }
             Format::Npz => unreachable!("arrays are streamed"),
             of_document => text(of_document),
         }
@@ -139,7 +144,8 @@ impl<'a> Work<'a> {
             }
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw = if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            Ok(draw(&window, &cloud, self.curves()?, &self.scene.title))
+            let foot = map::parameters(self.scene.grid()?.lambdas(), self.scene.range()?);
+            Ok(draw(&window, &cloud, self.curves()?, &self.scene.title).footed(&foot))
         })
     }
 

@@ -4,13 +4,12 @@ use clap::ValueEnum;
 
 use super::Question;
 use crate::cli::args::Common;
-use crate::cli::plane::DPI;
+use crate::cli::paper::Paper;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::report::figure::Figure;
-use crate::report::file::write_output;
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
 use crate::tongue::{Quantity, Tongue, TongueEdge, Wanted};
@@ -74,9 +73,8 @@ impl<'a> Atlas<'a> {
     ///
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
-    pub fn write(&self, common: &Common, format: Format) -> Result<()> {
-        let bytes = self.figure(common)?.file(format, DPI)?;
-        write_output(common.output.as_deref(), &bytes)
+    pub fn write(&self, common: &Common, format: Format, paper: &Paper) -> Result<()> {
+        paper.write(self.figure(common)?, format, common.output.as_deref())
     }
 
     /// The figure.

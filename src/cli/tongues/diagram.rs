@@ -2,14 +2,11 @@
 
 use num_traits::Zero;
 
-use crate::cli::args::Common;
-use crate::cli::plane::DPI;
 use crate::error::{Error, Result};
-use crate::format::Format;
 use crate::number::rational::to_f64;
 use crate::number::{Ratio, Rational};
 use crate::parallel::try_map;
-use crate::report::file::write_output;
+use crate::report::figure::Figure;
 use crate::report::tongues::diagram::{Band, Diagram, LARGEST_S, figure};
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Search, Tongues, closings};
@@ -24,8 +21,8 @@ const LEAST_SHARE: i64 = 1000;
 /// Draws the tongues of each ratio for 0 ≤ ρ ≤ `rho`.
 ///
 /// # Errors
-/// ρ = 0, a ratio with too many tongues to draw, an unwritable place.
-pub fn run(ratios: &[Ratio], rho: &Rational, common: &Common, format: Format) -> Result<()> {
+/// ρ = 0, a ratio with too many tongues to draw.
+pub fn drawn(ratios: &[Ratio], rho: &Rational) -> Result<Figure> {
     if rho.is_zero() {
         return Err(Error::input("rho", 0, "the diagram goes from 0 up to it: choose a positive one"));
     }
@@ -33,7 +30,7 @@ pub fn run(ratios: &[Ratio], rho: &Rational, common: &Common, format: Format) ->
         return Err(Error::input("ratio", ratio, format!("a diagram is readable for p + q <= {MOST_SUM}")));
     }
     let diagrams: Vec<Diagram> = ratios.iter().map(|&ratio| diagram(ratio, rho)).collect::<Result<_>>()?;
-    write_output(common.output.as_deref(), &figure(&diagrams, to_f64(rho)).file(format, DPI)?)
+    Ok(figure(&diagrams, to_f64(rho)))
 }
 
 fn diagram(ratio: Ratio, rho: &Rational) -> Result<Diagram> {

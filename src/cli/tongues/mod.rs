@@ -9,6 +9,7 @@ mod strength;
 use clap::ValueEnum;
 
 use super::args::{Common, from_str, of, whole};
+use super::paper::Paper;
 use super::ratios::{Flags, Ratios};
 use super::request::{Request, THINNEST};
 use crate::error::{Error, Result};
@@ -71,6 +72,8 @@ pub struct Args {
     /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
     #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = of(parse))]
     theta: Option<Laurent>,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 /// What may be computed of a tongue beside p, q, m, (a, b), its edges and its width.
@@ -106,19 +109,20 @@ impl Args {
         let forms = if self.survey { &Format::DOCUMENT[..] } else { &Format::DOCUMENT_OR_FIGURE };
         let format = common.format_of_table(forms)?;
         self.check(format)?;
+        let put = |figure| self.paper.write(figure, format, common.output.as_deref());
         match (format, self.figure) {
             _ if self.survey => common.write(&self.all_tongues()?.perform(common, true)?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
-                strength::run(self.ratios()?, &self.stiffness()?, &theta, common, format)
+                put(strength::drawn(self.ratios()?, &self.stiffness()?, &theta)?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
-                diagram::run(self.which.several()?, &self.stiffness()?.rho, common, format)
+                put(diagram::drawn(self.which.several()?, &self.stiffness()?.rho)?)
             }
             (Format::Svg | Format::Pdf | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
                 let question = self.question(colour.needs())?;
-                Atlas::new(&question, colour, None)?.write(common, format)
+                Atlas::new(&question, colour, None)?.write(common, format, &self.paper)
             }
             _ => output::write(&self.question(self.wanted(format))?, common, format),
         }
@@ -127,6 +131,7 @@ impl Args {
     /// Flags that say nothing together.
     fn check(&self, format: Format) -> Result<()> {
         let figure = format.is_figure();
+        self.paper.check(figure)?;
         let strength = figure && self.figure == Some(Drawn::Strength);
         let bare = strength || figure && self.figure == Some(Drawn::Diagram);
         let wrong = [

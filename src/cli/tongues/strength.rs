@@ -4,13 +4,10 @@ use crate::parallel::try_map;
 use num_traits::{ToPrimitive, Zero};
 
 use super::atlas::share_of_pi;
-use crate::cli::args::Common;
-use crate::cli::plane::DPI;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
-use crate::format::Format;
 use crate::number::{Laurent, Ratio, Rational, rational};
-use crate::report::file::write_output;
+use crate::report::figure::{Figure, typeset};
 use crate::report::strength::{Measured, figure};
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Stiffness, Tongues};
@@ -22,13 +19,7 @@ const HALF_WINDOW: (i64, i64) = (1, 50);
 ///
 /// # Errors
 /// An angle that is no rational multiple of π, one ratio only, ρ = 0, a sum without such a tongue.
-pub fn run(
-    ratios: Ratios,
-    stiffness: &Stiffness,
-    theta: &Laurent,
-    common: &Common,
-    format: Format,
-) -> Result<()> {
+pub fn drawn(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Result<Figure> {
     let Ratios::UpTo(max_sum) = ratios else {
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
     };
@@ -53,13 +44,7 @@ pub fn run(
         stiffness.rho
     )
     .replace("π1/", "π/");
-    let bytes = figure(rational::to_f64(&share), &title, &measured).file(format, DPI)?;
-    write_output(common.output.as_deref(), &bytes)
-}
-
-/// π as a letter.
-fn typeset(theta: &Laurent) -> String {
-    theta.to_string().replace("*pi", "π").replace("pi", "π")
+    Ok(figure(rational::to_f64(&share), &title, &measured))
 }
 
 /// The tongues with m/p near the share, in the order of p + q, p, m.

@@ -20,6 +20,8 @@ pub struct Axis {
     pub(super) scale: Scale,
     pub(super) numbered: bool,
     pub(super) chosen: Option<Vec<Tick>>,
+    /// The power of time that its values have.
+    time: i8,
 }
 
 /// A mark on an axis; a minor one has no label.
@@ -49,7 +51,33 @@ impl Axis {
     }
 
     fn new(label: &str, lo: f64, hi: f64, scale: Scale) -> Self {
-        Axis { label: label.into(), lo, hi, scale, numbered: true, chosen: None }
+        Axis { label: label.into(), lo, hi, scale, numbered: true, chosen: None, time: 0 }
+    }
+
+    /// The same axis in units of time, which its label names.
+    #[must_use]
+    pub fn of_time(self) -> Self {
+        Axis { time: 1, ..self }
+    }
+
+    /// The same axis in inverse units of time, which its label names.
+    #[must_use]
+    pub fn per_time(self) -> Self {
+        Axis { time: -1, ..self }
+    }
+
+    pub(super) fn has_time(&self) -> bool {
+        self.time != 0
+    }
+
+    /// The same axis with the unit in its label.
+    pub(super) fn in_units_of(&self, unit: &str) -> Self {
+        let label = match self.time {
+            0 => self.label.clone(),
+            1 => format!("{} ({unit})", self.label),
+            _ => format!("{} (1/{unit})", self.label),
+        };
+        Axis { label, ..self.clone() }
     }
 
     /// The same axis without numbers and label, for a panel whose neighbour shows them.

@@ -78,6 +78,13 @@ impl Path {
         self.steps.push(Step::Along(self.at.1));
     }
 
+    /// A closed rectangle, given by its sides.
+    pub(super) fn rectangle(&mut self, [left, top, right, bottom]: Rect) {
+        self.horizontal([left, top], right);
+        self.steps.extend([Step::Along(hundredths(bottom)), Step::Across(hundredths(left))]);
+        self.close([left, top]);
+    }
+
     /// Closes the outline; the pen is back where it began.
     pub(super) fn close(&mut self, [x, y]: [f64; 2]) {
         self.at = (hundredths(x), hundredths(y));
@@ -169,6 +176,13 @@ impl Words {
     pub(super) fn offset(&self, placed: &Placed) -> [f64; 2] {
         [1000.0 * (placed.x - self.before), 1000.0 * placed.y]
     }
+
+    /// The label in pieces of one face, size and baseline, each with its letters: a letter is a glyph.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (String, &[Placed])> {
+        let mut letters = self.words.chars();
+        let alike = |a: &Placed, b: &Placed| (a.face, a.scale, a.y) == (b.face, b.scale, b.y);
+        self.glyphs.chunk_by(alike).map(move |run| (letters.by_ref().take(run.len()).collect(), run))
+    }
 }
 
 /// Pixels that fill a rectangle, first row at the top.
@@ -212,13 +226,15 @@ pub(super) struct Canvas {
     pub width: f64,
     pub height: f64,
     pub title: String,
+    /// Whether letters are drawn as shapes, for readers that know no embedded fonts.
+    pub outlined: bool,
     pub elements: Vec<Element>,
 }
 
 impl Canvas {
     /// An empty sheet.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Canvas {
-        Canvas { width, height, title: title.into(), elements: Vec::new() }
+        Canvas { width, height, title: title.into(), outlined: false, elements: Vec::new() }
     }
 
     /// Adds a path; an empty one is left out.

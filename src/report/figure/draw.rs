@@ -5,7 +5,7 @@ use super::canvas::{Anchor, Canvas, Element, Path, Pen, Set};
 use super::clip;
 use super::font::Face;
 use super::key;
-use super::label::Label;
+use super::label::{Label, wrapped};
 use super::layout::Site;
 use super::marks;
 use super::measure::{
@@ -16,6 +16,8 @@ use super::panel::{Note, Panel};
 
 /// Lines of the frame and its ticks.
 const HAIR: f64 = 0.5;
+/// The smallest letters that journals take.
+const LEAST: f64 = 6.0;
 /// Lines of a grid.
 const FAINT: Colour = Colour(0xe4, 0xe5, 0xe8);
 
@@ -38,11 +40,18 @@ pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Sit
     }
     numbers(canvas, &plane, &x_ticks, &y_ticks);
     axis_labels(canvas, &plane, up);
-    let title = Label::in_face(&panel.title, Face::Semibold);
-    canvas.text(title, [frame[0], top + TITLE * CAPITAL], set(TITLE, Anchor::Start));
+    lines(canvas, wrapped(&panel.title, Face::Semibold, across / TITLE), [frame[0], top], TITLE);
     key::legend(canvas, panel, frame);
     if let Some(bar) = &panel.bar {
         key::bar(canvas, bar, frame);
+    }
+}
+
+/// Lines of words that hang from a point.
+pub(super) fn lines(canvas: &mut Canvas, lines: Vec<Label>, [x, y]: [f64; 2], size: f64) {
+    for (n, line) in (0..).zip(lines) {
+        let base = y + size * (CAPITAL + LINE * f64::from(n));
+        canvas.text(line, [x, base], set(size, Anchor::Start));
     }
 }
 
@@ -101,13 +110,20 @@ fn axis_labels(canvas: &mut Canvas, plane: &Plane, up: f64) {
     if plane.x.numbered {
         let base = bottom + TICK + GAP + NUMBER * DIGIT + GAP + WORDS * 0.85;
         let label = Label::new(&plane.x.label);
-        canvas.text(label, [(left + right) / 2.0, base], set(WORDS, Anchor::Middle));
+        let size = fitting(&label, right - left);
+        canvas.text(label, [(left + right) / 2.0, base], set(size, Anchor::Middle));
     }
     if plane.y.numbered {
         let base = left - TICK - GAP - widest_number(plane.y, up) - GAP - WORDS * (LINE - 0.85);
-        let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
-        canvas.text(Label::new(&plane.y.label), [base, (top + bottom) / 2.0], upright);
+        let label = Label::new(&plane.y.label);
+        let upright = Set { turn: 90.0, ..set(fitting(&label, up), Anchor::Middle) };
+        canvas.text(label, [base, (top + bottom) / 2.0], upright);
     }
+}
+
+/// The size of the letters of an axis's label: smaller where it is longer than the axis and a third.
+fn fitting(label: &Label, length: f64) -> f64 {
+    WORDS.min((length / (0.75 * label.width)).max(LEAST))
 }
 
 fn words(canvas: &mut Canvas, plane: &Plane, note: &Note) {

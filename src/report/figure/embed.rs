@@ -1,4 +1,4 @@
-//! The letters of a drawing as fonts in its PDF: of each face the glyphs in use, and what letter each one means.
+//! The letters of a drawing as fonts in its file: of each face the glyphs in use, and what letter each one means.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -12,6 +12,7 @@ use subsetter::GlyphRemapper;
 
 use super::canvas::{Canvas, Element};
 use super::font::Face;
+use super::opentype;
 
 /// Glyphs are numbered by us, in no known order of characters.
 const ORDER: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
@@ -23,6 +24,7 @@ pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
 }
 
 /// The faces in use.
+#[derive(Default)]
 pub(super) struct Fonts(BTreeMap<Face, Font>);
 
 #[derive(Default)]
@@ -54,6 +56,11 @@ impl Fonts {
         let font = &self.0[&face];
         // A glyph that is not there is the empty box.
         (&font.name, font.numbers.get(glyph).unwrap_or(0))
+    }
+
+    /// Each face as a font file of its own, for SVG.
+    pub(super) fn files(&self) -> impl Iterator<Item = (Face, Vec<u8>)> {
+        self.0.iter().map(|(&face, font)| (face, opentype::font(face, &font.numbers, &font.letters)))
     }
 
     /// Puts the fonts into the document; their names on the page, and where they are.

@@ -1,7 +1,7 @@
 //! The text face: Libertinus Serif (SIL Open Font License, see `fonts/`), built in.
 //!
-//! Glyphs are drawn as outlines, so that a figure looks the same in a browser, in a paper and as PNG, with no
-//! font installed; the words themselves stay in the SVG as `aria-label`s. Lengths are in em.
+//! The letters in use go into SVG and PDF with their outlines, so that a figure looks the same in a browser, in a paper and
+//! as PNG, with no font installed. Lengths are in em.
 
 use std::sync::LazyLock;
 
@@ -19,7 +19,7 @@ pub(super) enum Face {
 }
 
 impl Face {
-    const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
+    pub(super) const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
 
     /// The same weight, leaning.
     pub(super) fn italic(self) -> Face {
@@ -82,16 +82,22 @@ impl Face {
 
     /// The outline in units of 1/1000 em, y pointing down.
     pub(super) fn outline(self, glyph: u16) -> Vec<Curve> {
-        let mut pen = Pen { curves: Vec::new(), scale: (1000.0 / self.em()) as f32 };
-        self.font().outline_glyph(GlyphId(glyph), &mut pen);
-        pen.curves
+        curves(self.font(), glyph)
     }
 
-    /// The glyphs numbered by `numbers` as a font program for embedding (CFF).
+    /// The glyphs numbered by `numbers` as a font without a table of letters.
+    pub(super) fn part(self, numbers: &GlyphRemapper) -> Vec<u8> {
+        subsetter::subset(self.file(), 0, numbers).expect("a built-in font is sound")
+    }
+
+    /// The glyphs numbered by `numbers` as a font program for PDF (CFF).
     pub(super) fn outlines(self, numbers: &GlyphRemapper) -> Vec<u8> {
-        let part = subsetter::subset(self.file(), 0, numbers).expect("a built-in font is sound");
-        let face = ttf_parser::RawFace::parse(&part, 0).expect("a part of a sound font is sound");
-        face.table(ttf_parser::Tag::from_bytes(b"CFF ")).expect("the outlines are CFF").to_vec()
+        table(&self.part(numbers), b"CFF ")
+    }
+
+    /// One of the tables of the font file.
+    pub(super) fn table(self, tag: &[u8; 4]) -> Vec<u8> {
+        table(self.file(), tag)
     }
 
     /// How large its glyphs are.
@@ -111,6 +117,19 @@ impl Face {
     fn em(self) -> f64 {
         f64::from(self.font().units_per_em())
     }
+}
+
+/// A table of a font; empty where there is none.
+pub(super) fn table(font: &[u8], tag: &[u8; 4]) -> Vec<u8> {
+    let face = ttf_parser::RawFace::parse(font, 0).expect("a built-in font and its parts are sound");
+    face.table(ttf_parser::Tag::from_bytes(tag)).unwrap_or_default().to_vec()
+}
+
+/// The outline of a font's glyph in units of 1/1000 em, y pointing down.
+pub(super) fn curves(font: &ttf_parser::Face, glyph: u16) -> Vec<Curve> {
+    let mut pen = Pen { curves: Vec::new(), scale: (1000.0 / f64::from(font.units_per_em())) as f32 };
+    font.outline_glyph(GlyphId(glyph), &mut pen);
+    pen.curves
 }
 
 /// The measures of a face in 1/1000 em, y pointing up; the slant in degrees, counterclockwise.

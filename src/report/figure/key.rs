@@ -20,6 +20,8 @@ const INSET: f64 = 5.0;
 /// A colour bar's distance from the frame and its width.
 const BAR_GAP: f64 = 8.0;
 const BAR: f64 = 7.0;
+/// The height of an arrow at its end.
+const ARROW: f64 = 7.0;
 /// Steps of colour in a bar: finer than the eye tells apart.
 const SHADES: usize = 96;
 
@@ -126,36 +128,48 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
 /// What a colour bar takes at the right of a frame of the given height.
 pub(super) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
     let label = if bar.axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
-    BAR_GAP + BAR + TICK + GAP + widest_number(&bar.axis, height) + label
+    let high = height - bar.beyond.iter().filter(|beyond| **beyond).count() as f64 * ARROW;
+    BAR_GAP + BAR + TICK + GAP + widest_number(&bar.axis, high) + label
 }
 
 /// Draws a colour bar at the right of a frame.
 pub(super) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
     let [_, top, right, bottom] = frame;
     let (left, edge) = (right + BAR_GAP, right + BAR_GAP + BAR);
-    let high = bottom - top;
+    let arrow = bar.beyond.map(|beyond| if beyond { ARROW } else { 0.0 });
+    let (foot, head) = (bottom - arrow[0], top + arrow[1]);
+    let high = foot - head;
+    let mut rim = Path::default();
+    rim.move_to([left, head]);
+    let tip = (left + edge) / 2.0;
+    for corner in [[tip, top], [edge, head], [edge, foot], [tip, bottom], [left, foot]] {
+        rim.line_to(corner);
+    }
+    rim.close([left, head]);
+    // The arrows have the last colours.
+    canvas.fill(rim.clone(), bar.gradient.at(0.0), None);
+    if arrow[1] > 0.0 {
+        let mut tips = Path::default();
+        tips.move_to([left, head]);
+        [[tip, top], [edge, head]].into_iter().for_each(|corner| tips.line_to(corner));
+        tips.close([left, head]);
+        canvas.fill(tips, bar.gradient.at(1.0), None);
+    }
     for (i, colour) in bar.gradient.steps(SHADES).into_iter().enumerate() {
         // From each shade's foot up to the top: the next one covers the rest, and no seam shows.
-        let foot = bottom - high * i as f64 / SHADES as f64;
-        let (x, y, width, height) = (left, top, BAR, foot - top);
+        let (x, y, width, height) = (left, head, BAR, high * (1.0 - i as f64 / SHADES as f64));
         let shade = Patch { x, y, width, height, radius: None, colour, opacity: None };
         canvas.elements.push(Element::Patch(shade));
     }
-    let mut lines = Path::default();
-    lines.move_to([left, top]);
-    for corner in [[edge, top], [edge, bottom], [left, bottom]] {
-        lines.line_to(corner);
-    }
-    lines.close([left, top]);
     for tick in ticks(&bar.axis, 1, high) {
-        let y = bottom - high * bar.axis.unit(tick.at);
-        lines.horizontal([edge, y], edge + if tick.label.is_some() { TICK } else { MINOR_TICK });
+        let y = foot - high * bar.axis.unit(tick.at);
+        rim.horizontal([edge, y], edge + if tick.label.is_some() { TICK } else { MINOR_TICK });
         if let Some(label) = &tick.label {
             let at = [edge + TICK + GAP, y + NUMBER * DIGIT / 2.0];
             canvas.text(Label::new(label), at, set(NUMBER, Anchor::Start));
         }
     }
-    canvas.stroke(lines, Pen::new(INK, 0.5));
+    canvas.stroke(rim, Pen::new(INK, 0.5));
     let x = edge + TICK + GAP + widest_number(&bar.axis, high) + GAP + WORDS * 0.75;
     let upright = Set { turn: 90.0, ..set(WORDS, Anchor::Middle) };
     canvas.text(Label::new(&bar.axis.label), [x, (top + bottom) / 2.0], upright);

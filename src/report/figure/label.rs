@@ -85,6 +85,26 @@ impl Label {
     }
 }
 
+/// The words in lines no longer than `room`, in em; a word that is longer has a line of its own.
+pub(super) fn wrapped(markup: &str, face: Face, room: f64) -> Vec<Label> {
+    let mut lines: Vec<(String, Label)> = Vec::new();
+    for word in markup.split(' ') {
+        let longer = lines.last().map(|(line, _)| format!("{line} {word}"));
+        let longer =
+            longer.map(|line| (Label::in_face(&line, face), line)).filter(|(label, _)| label.width <= room);
+        match (longer, lines.last_mut()) {
+            (Some((label, line)), Some(last)) => *last = (line, label),
+            _ => lines.push((word.into(), Label::in_face(word, face))),
+        }
+    }
+    lines.into_iter().map(|(_, label)| label).filter(|label| !label.glyphs.is_empty()).collect()
+}
+
+/// An exact number in the notation of labels: `2/5*pi^2` as 2/5 π².
+pub fn typeset(number: impl std::fmt::Display) -> String {
+    number.to_string().replace("*pi", " π").replace("pi", "π").replace('*', "").replace('-', "−")
+}
+
 /// A label under construction.
 #[derive(Default)]
 struct Line {
@@ -153,6 +173,15 @@ mod tests {
         assert_eq!(x[1], x[3]);
         assert!(x[4] > x[2] && label.width > x[4]);
         assert_eq!(Label::new("h^2_{12}").width, Label::new("h_{12}^2").width);
+    }
+
+    #[test]
+    fn words_are_wrapped_between_them() {
+        let lines = |room| wrapped("one two *three*", Face::Roman, room).into_iter().map(|line| line.words);
+        assert_eq!(lines(99.0).collect::<Vec<_>>(), ["one two three"]);
+        assert_eq!(lines(Label::new("one two").width).collect::<Vec<_>>(), ["one two", "three"]);
+        assert_eq!(lines(0.1).collect::<Vec<_>>(), ["one", "two", "three"]);
+        assert_eq!(wrapped("", Face::Roman, 9.0), []);
     }
 
     #[test]

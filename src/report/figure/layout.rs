@@ -6,12 +6,12 @@
 use super::clip::Rect;
 use super::font::Face;
 use super::key;
-use super::label::Label;
+use super::label::wrapped;
 use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, overhang, widest_number};
 use super::panel::{Panel, Place};
 
 /// The paper's rim.
-const RIM: f64 = 3.0;
+pub(super) const RIM: f64 = 3.0;
 /// Between two panels side by side, and one above the other.
 const BESIDE: f64 = 11.0;
 const BELOW: f64 = 18.0;
@@ -23,6 +23,14 @@ pub(super) struct Site {
     pub frame: Rect,
     /// Where the row begins: all its titles hang from here.
     pub top: f64,
+}
+
+impl Site {
+    /// The same place so much further down.
+    pub(super) fn lowered(self, by: f64) -> Site {
+        let [left, top, right, bottom] = self.frame;
+        Site { frame: [left, top + by, right, bottom + by], top: self.top + by }
+    }
 }
 
 /// The place of each panel on a page of the given size.
@@ -81,15 +89,18 @@ fn starts(
 }
 
 fn above(panel: &Panel, width: f64) -> f64 {
-    let title = if panel.title.is_empty() { 0.0 } else { title_height(panel) };
+    let title = title_height(panel, width);
     let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width) } else { 0.0 };
     // The topmost number of the vertical axis reaches over the frame by half its height.
     (title + legend).max(NUMBER * DIGIT / 2.0)
 }
 
-/// The height that the title takes above the legend or the frame.
-fn title_height(panel: &Panel) -> f64 {
-    if Label::in_face(&panel.title, Face::Semibold).glyphs.is_empty() { 0.0 } else { TITLE * CAPITAL + 6.0 }
+/// The height that the title takes above the legend or the frame, which is so wide.
+fn title_height(panel: &Panel, width: f64) -> f64 {
+    match wrapped(&panel.title, Face::Semibold, width / TITLE).len() {
+        0 => 0.0,
+        lines => TITLE * CAPITAL + TITLE * LINE * (lines - 1) as f64 + 6.0,
+    }
 }
 
 fn below(panel: &Panel) -> f64 {

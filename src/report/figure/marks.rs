@@ -1,13 +1,13 @@
 //! Layers onto the canvas: one path a colour and stroke, nothing outside the frame.
 
+use std::collections::BTreeMap;
+
 use super::canvas::{Canvas, Element, Image, Path, Pen};
-use super::clip;
+use super::clip::{self, Rect};
 use super::layer::{Cells, Layer, Mark, Picture, Run, Shape, Stroke};
 use super::measure::Plane;
 use super::palette::{Colour, WHITE};
 
-/// Cells overlap by this much (points), or hairlines of paper would show between neighbours in every rasterizer.
-const OVERLAP: f64 = 0.06;
 /// A pixel of a picture wider than this (points) is shown as the square it is; finer ones are blended.
 const SQUARE: f64 = 0.5;
 
@@ -87,46 +87,66 @@ fn put_outline(path: &mut Path, outline: &[[f64; 2]]) {
     }
 }
 
-/// Each colour's runs as strokes: one path for those across, one for those up.
+/// Each colour over all cells of it and of later colours, in one outline: then nothing but the colour below can show where two
+/// cells meet, however the page is rasterized. Growth falls from the middle of a tongue to its edges, so that this is no more
+/// than a rectangle a colour and column either.
 fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells) {
-    let mut paths: Vec<[Path; 2]> = cells.colours.iter().map(|_| Default::default()).collect();
-    for run in &cells.runs {
-        let lying = run.across >= run.up;
-        if let Some((from, to)) = run_ends(plane, cells, run, lying) {
-            let [across, up] = &mut paths[usize::from(run.class)];
-            if lying { across.horizontal(from, to[0]) } else { up.vertical(from, to[1]) }
+    let single = |run: &Run| {
+        let (run, wide) = (*run, run.across);
+        (0..wide * run.up).map(move |n| (run.i + n % wide, run.j + n / wide, run.class))
+    };
+    let mut all: Vec<(u32, u32, u16)> = cells.runs.iter().flat_map(single).collect();
+    all.sort_unstable();
+    let mut classes: Vec<u16> = cells.runs.iter().map(|run| run.class).collect();
+    classes.sort_unstable();
+    classes.dedup();
+    for class in classes {
+        let mut path = Path::default();
+        for run in rectangles(all.iter().filter(|cell| cell.2 >= class).map(|&(i, j, _)| (i, j))) {
+            if let Some(place) = rectangle(plane, cells, &run) {
+                path.rectangle(place);
+            }
+        }
+        canvas.fill(path, cells.colours[usize::from(class)], None);
+    }
+}
+
+/// Cells sorted by column and row as rectangles: runs of a column, and equal runs of neighbouring columns joined.
+fn rectangles(cells: impl Iterator<Item = (u32, u32)>) -> Vec<Run> {
+    let (mut runs, mut done) = (Vec::<Run>::new(), Vec::new());
+    for (i, j) in cells {
+        match runs.last_mut() {
+            Some(last) if last.i == i && last.j + last.up >= j => last.up = last.up.max(j - last.j + 1),
+            _ => runs.push(Run { i, j, across: 1, up: 1, class: 0 }),
         }
     }
-    let [wide, high] = cell_size(plane, cells);
-    for (&colour, [across, up]) in cells.colours.iter().zip(paths) {
-        canvas.stroke(across, Pen::new(colour, high));
-        canvas.stroke(up, Pen::new(colour, wide));
+    let mut open: BTreeMap<(u32, u32), Run> = BTreeMap::new();
+    for column in runs.chunk_by(|a, b| a.i == b.i) {
+        let mut still = BTreeMap::new();
+        for run in column {
+            let known = open.remove(&(run.j, run.up)).filter(|known| known.i + known.across == run.i);
+            let joined = known.map_or(*run, |known| Run { across: known.across + 1, ..known });
+            still.insert((run.j, run.up), joined);
+        }
+        done.extend(std::mem::replace(&mut open, still).into_values());
     }
+    done.extend(open.into_values());
+    done
 }
 
-/// The size of one cell as it is drawn.
-fn cell_size(plane: &Plane, cells: &Cells) -> [f64; 2] {
-    let [x, y] = plane.place(cells.origin);
-    let [right, up] = plane.place([cells.origin[0] + cells.step[0], cells.origin[1] + cells.step[1]]);
-    [(right - x).abs(), (up - y).abs()].map(|size| (size + OVERLAP).max(cells.least))
-}
-
-/// The two ends of the stroke that covers a run, lengthened to the least size; none if it lies outside.
-fn run_ends(plane: &Plane, cells: &Cells, run: &Run, lying: bool) -> Option<([f64; 2], [f64; 2])> {
-    let corner = |i: f64, j: f64| {
-        plane.place([cells.origin[0] + cells.step[0] * i, cells.origin[1] + cells.step[1] * j])
+/// The part in the frame of what a run covers, widened to the least size; none if it lies outside.
+fn rectangle(plane: &Plane, cells: &Cells, run: &Run) -> Option<Rect> {
+    let corner = |i: u32, j: u32| {
+        let at = |axis: usize, n: u32| cells.origin[axis] + cells.step[axis] * (f64::from(n) - 0.5);
+        plane.place([at(0, i), at(1, j)])
     };
-    let (i, j) = (f64::from(run.i), f64::from(run.j));
-    let (across, up) = (f64::from(run.across), f64::from(run.up));
-    let axis = usize::from(!lying);
-    let (a, b) = (corner(i - 0.5, j - 0.5), corner(i + across - 0.5, j + up - 0.5));
-    let other = 1 - axis;
-    let middle = (a[other] + b[other]) / 2.0;
-    let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
-    let more = ((cells.least - (high - low)) / 2.0).max(OVERLAP / 2.0);
-    let mut ends = [[middle; 2]; 2];
-    (ends[0][axis], ends[1][axis]) = (low - more, high + more);
-    clip::segment(plane.frame, ends[0], ends[1])
+    let (a, b) = (corner(run.i, run.j), corner(run.i + run.across, run.j + run.up));
+    let [[left, right], [top, bottom]] = [0, 1].map(|axis| {
+        let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
+        let more = ((cells.least - (high - low)) / 2.0).max(0.0);
+        [(low - more).max(plane.frame[axis]), (high + more).min(plane.frame[axis + 2])]
+    });
+    (left < right && top < bottom).then_some([left, top, right, bottom])
 }
 
 fn picture(canvas: &mut Canvas, plane: &Plane, picture: &Picture) {
@@ -135,4 +155,18 @@ fn picture(canvas: &mut Canvas, plane: &Plane, picture: &Picture) {
     let smooth = (right - left) / f64::from(picture.width) <= SQUARE;
     let (place, pixels) = ([left, top, right, bottom], picture.pixels.clone());
     canvas.elements.push(Element::Image(Image { place, width: picture.width, pixels, smooth }));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_joined_to_rectangles() {
+        let cells = [(0, 1), (0, 2), (1, 1), (1, 2), (1, 4), (2, 1), (2, 2), (4, 1), (4, 2)];
+        let mut found: Vec<[u32; 4]> =
+            rectangles(cells.into_iter()).iter().map(|run| [run.i, run.j, run.across, run.up]).collect();
+        found.sort_unstable();
+        assert_eq!(found, [[0, 1, 3, 2], [1, 4, 1, 1], [4, 1, 1, 2]]);
+    }
 }

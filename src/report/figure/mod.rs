@@ -1,8 +1,8 @@
 //! Figures for papers: panels of layers, drawn as SVG, rasterized to PNG.
 //!
-//! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it. Text is
-//! drawn in a built-in face, so the same figure gives the same bytes wherever it is made, and every format draws the
-//! same primitives.
+//! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it. Words are words
+//! in a built-in face that the file carries, so the same figure gives the same bytes wherever it is made, and every format
+//! draws the same primitives.
 //!
 //! ```
 //! use kickdrift::report::figure::{Axis, Figure, Layer, Panel, Stroke};
@@ -33,7 +33,8 @@
 //! | `outline` | its lines and curves, for formats that draw by themselves |
 //! | `svg` | the canvas as SVG |
 //! | `png` | the canvas as pixels |
-//! | `pdf`, `embed` | the canvas as PDF, and the letters in it |
+//! | `pdf` | the canvas as PDF |
+//! | `embed`, `opentype` | the letters in it, and in the SVG |
 
 mod axis;
 mod canvas;
@@ -47,6 +48,7 @@ mod layer;
 mod layout;
 mod marks;
 mod measure;
+mod opentype;
 mod outline;
 pub mod palette;
 mod panel;
@@ -62,6 +64,15 @@ pub use panel::{ColourBar, Note, Panel, Place};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use canvas::Canvas;
+use font::Face;
+pub use label::typeset;
+use label::{Label, wrapped};
+use measure::TITLE;
+
+/// The least height of a row of panels in a figure that is made narrower, in mm.
+const LEAST_ROW: f64 = 45.0;
+/// The size of letters below all panels, in points.
+const FOOT: f64 = 7.0;
 
 /// A sheet of panels.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,13 +81,29 @@ pub struct Figure {
     height_mm: f64,
     columns: usize,
     title: String,
+    heading: String,
+    foot: String,
+    time_unit: String,
+    outlined: bool,
     panels: Vec<Panel>,
 }
 
 impl Figure {
-    /// A figure of the given size on paper, its panels side by side.
+    /// A figure of the given size on paper, its panels side by side; a heading and a foot make it taller.
     pub fn new(width_mm: f64, height_mm: f64) -> Self {
-        Figure { width_mm, height_mm, columns: usize::MAX, title: String::new(), panels: Vec::new() }
+        let [title, heading, foot] = [const { String::new() }; 3];
+        let (columns, outlined, panels) = (usize::MAX, false, Vec::new());
+        Figure {
+            width_mm,
+            height_mm,
+            columns,
+            title,
+            heading,
+            foot,
+            time_unit: "time".into(),
+            outlined,
+            panels,
+        }
     }
 
     /// A figure for one column of a paper: 85 mm wide.
@@ -100,6 +127,49 @@ impl Figure {
     #[must_use]
     pub fn named(mut self, title: &str) -> Self {
         self.title = title.into();
+        self
+    }
+
+    /// The same figure in another width; its height follows, but no row of panels falls below 45 mm that was higher.
+    #[must_use]
+    pub fn wide(mut self, width_mm: f64) -> Self {
+        let rows = self.panels.len().div_ceil(self.columns.max(1)).max(1) as f64;
+        let least = self.height_mm.min(LEAST_ROW * rows);
+        self.height_mm = (self.height_mm * width_mm / self.width_mm).max(least);
+        self.width_mm = width_mm;
+        self
+    }
+
+    /// The same figure with a heading above all panels, in the notation of labels; it becomes the name, too.
+    #[must_use]
+    pub fn headed(mut self, heading: &str) -> Self {
+        self.heading = heading.into();
+        self.named(&Label::new(heading).words)
+    }
+
+    /// The same figure with small words below all panels, in the notation of labels: what it was made from.
+    #[must_use]
+    pub fn footed(mut self, foot: &str) -> Self {
+        self.foot = foot.into();
+        self
+    }
+
+    /// The same figure with this unit at axes of times and rates, in place of "time".
+    #[must_use]
+    pub fn in_units_of(mut self, time: &str) -> Self {
+        self.time_unit = time.into();
+        self
+    }
+
+    /// Whether an axis of it is in units of time.
+    pub fn has_time(&self) -> bool {
+        self.panels.iter().any(Panel::has_time)
+    }
+
+    /// The same figure with letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
+    #[must_use]
+    pub fn outlined(mut self) -> Self {
+        self.outlined = true;
         self
     }
 
@@ -147,11 +217,24 @@ impl Figure {
     fn drawn(&self) -> Canvas {
         let (width, height) = (self.width_mm * canvas::MM, self.height_mm * canvas::MM);
         let columns = self.columns.min(self.panels.len()).max(1);
-        let sites = layout::sites(&self.panels, columns, width, height);
-        let mut canvas = Canvas::new(width, height, &self.title);
-        for (panel, site) in self.panels.iter().zip(sites) {
-            draw::panel(&mut canvas, panel, site);
+        let panels: Vec<Panel> = self.panels.iter().map(|panel| panel.in_units_of(&self.time_unit)).collect();
+        let sites = layout::sites(&panels, columns, width, height);
+        let left = sites.first().map_or(layout::RIM, |site| site.frame[0]);
+        let lines =
+            |markup: &str, face, size: f64| wrapped(markup, face, (width - left - layout::RIM) / size);
+        let head = lines(&self.heading, Face::Semibold, TITLE);
+        let foot = lines(&self.foot, Face::Roman, FOOT);
+        let rows = |lines: &[Label], size: f64| {
+            size * 1.2 * lines.len() as f64 + if lines.is_empty() { 0.0 } else { 4.0 }
+        };
+        let (above, below) = (rows(&head, TITLE), rows(&foot, FOOT));
+        let mut canvas = Canvas::new(width, above + height + below, &self.title);
+        canvas.outlined = self.outlined;
+        draw::lines(&mut canvas, head, [left, layout::RIM], TITLE);
+        for (panel, site) in panels.iter().zip(sites) {
+            draw::panel(&mut canvas, panel, site.lowered(above));
         }
+        draw::lines(&mut canvas, foot, [left, above + height], FOOT);
         canvas
     }
 }

@@ -22,6 +22,15 @@ pub const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
 pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 
+impl Colour {
+    /// Half way to white.
+    #[must_use]
+    pub const fn lighter(self) -> Colour {
+        let Colour(r, g, b) = self;
+        Colour(r / 2 + 128, g / 2 + 128, b / 2 + 128)
+    }
+}
+
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Colour(r, g, b) = self;

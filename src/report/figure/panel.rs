@@ -23,25 +23,48 @@ pub enum Place {
 /// The key to a gradient, at the right of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
-    /// The values that the colours stand for; the gradient runs evenly along it.
-    pub axis: Axis,
-    /// The colours.
-    pub gradient: Gradient,
+    pub(super) axis: Axis,
+    pub(super) gradient: Gradient,
+    /// Whether there are values below and above: an arrow each.
+    pub(super) beyond: [bool; 2],
 }
+
+/// From the strongest to the weakest of what a bar of rates resolves.
+const RESOLVED: f64 = 100.0;
 
 impl ColourBar {
     /// Shades of a gradient: neighbours are barely told apart.
     pub const SHADES: u16 = 40;
 
-    /// The range of a bar of rates of growth: from the largest down to the decade of the smallest but one in
-    /// twenty. Near the edges of tongues growth falls to zero, and a few of these would stretch the bar beyond
-    /// use; they take its last colour. Without a rate at all a range that has none: [`Axis::log`] replaces it.
+    /// The values that the colours stand for; the gradient runs evenly along the axis.
+    pub fn new(axis: Axis, gradient: Gradient) -> Self {
+        ColourBar { axis, gradient, beyond: [false; 2] }
+    }
+
+    /// The same bar with arrows where some of these values lie below or above it: they take its last colours.
+    #[must_use]
+    pub fn over(mut self, values: impl Iterator<Item = f64>) -> Self {
+        for unit in values.map(|value| self.axis.unit(value)) {
+            self.beyond[0] |= unit < -1e-9;
+            self.beyond[1] |= unit > 1.0 + 1e-9;
+        }
+        self
+    }
+
+    /// The range of a bar of rates of growth: up to the largest but one in a hundred, so that a few do not darken all others,
+    /// and down to the smallest but one in twenty or to the hundredth part: near the edges of tongues growth falls to zero.
+    /// Without a rate at all a range that has none: [`Axis::log`] replaces it.
     pub fn range_of(rates: impl Iterator<Item = f64>) -> (f64, f64) {
         let mut rates: Vec<f64> = rates.collect();
         rates.sort_unstable_by(f64::total_cmp);
-        let largest = rates.last().copied().unwrap_or(1.0);
-        let small = rates.get(rates.len() / 20).copied().unwrap_or(largest);
-        (10f64.powi(small.log10().floor() as i32), largest)
+        let at = |part: usize| rates.get(part).copied().unwrap_or(1.0);
+        let high = at(rates.len().saturating_sub(1 + rates.len() / 100));
+        (at(rates.len() / 20).max(high / RESOLVED), high)
+    }
+
+    /// Its colours in `n` steps, for [`class`](Self::class).
+    pub fn steps(&self, n: u16) -> Vec<Colour> {
+        self.gradient.steps(n.into())
     }
 
     /// The colour of a value.
@@ -50,7 +73,7 @@ impl ColourBar {
     }
 
     /// The place of a value among `n` equal parts of the bar, for [`Cells`](super::layer::Cells) of
-    /// [`steps(n)`](Gradient::steps) colours.
+    /// [`steps(n)`](Self::steps) colours.
     pub fn class(&self, value: f64, n: u16) -> u16 {
         // A float becomes an integer by saturation, and what is not a number becomes 0: the lowest part.
         ((self.axis.unit(value) * f64::from(n)) as u16).min(n.saturating_sub(1))
@@ -151,6 +174,16 @@ impl Panel {
         self
     }
 
+    pub(super) fn has_time(&self) -> bool {
+        [&self.x, &self.y].into_iter().chain(self.bar.as_ref().map(|bar| &bar.axis)).any(Axis::has_time)
+    }
+
+    /// The same panel with the unit of time at its axes.
+    pub(super) fn in_units_of(&self, unit: &str) -> Self {
+        let bar = self.bar.clone().map(|bar| ColourBar { axis: bar.axis.in_units_of(unit), ..bar });
+        Panel { x: self.x.in_units_of(unit), y: self.y.in_units_of(unit), bar, ..self.clone() }
+    }
+
     /// The same panel with faint lines at the labelled ticks.
     #[must_use]
     pub fn gridded(mut self) -> Self {
@@ -164,10 +197,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_in_twenty_may_lie_below_the_decades_of_a_bar() {
+    fn a_bar_leaves_out_the_weakest_and_a_few_of_the_strongest() {
         let rates = |weak: usize| (0..20).map(move |n| if n < weak { 2e-9 } else { 0.02 + 0.1 * n as f64 });
-        assert_eq!(ColourBar::range_of(rates(1)), (0.1, 0.02 + 0.1 * 19.0));
-        assert_eq!(ColourBar::range_of(rates(2)).0, 1e-9);
+        assert_eq!(ColourBar::range_of(rates(1)), (0.02 + 0.1, 0.02 + 0.1 * 19.0));
+        assert_eq!(ColourBar::range_of(rates(2)).0, (0.02 + 0.1 * 19.0) / RESOLVED);
+        assert_eq!(ColourBar::range_of((1..=200).map(f64::from)), (11.0, 198.0));
         assert_eq!(ColourBar::range_of(std::iter::empty()), (1.0, 1.0));
+        let bar = ColourBar::new(Axis::log("", 1.0, 2.0), Gradient::full());
+        assert_eq!(bar.clone().over([1.0, 2.0].into_iter()).beyond, [false, false]);
+        assert_eq!(bar.clone().over([0.5, 1.5].into_iter()).beyond, [true, false]);
+        assert_eq!(bar.over([1.0, f64::INFINITY].into_iter()).beyond, [false, true]);
     }
 }

@@ -7,6 +7,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as Area, Ref, Str, Tex
 
 use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
 use super::embed::{Fonts, deflated};
+use super::label::Placed;
 use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
 
@@ -22,8 +23,8 @@ pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
     pdf.catalog(catalog).pages(pages);
     pdf.document_info(info).title(TextStr(&canvas.title));
     pdf.pages(pages).kids([page]).count(1);
-    let fonts = Fonts::new(canvas);
-    let mut drawing = Drawing::new(&fonts, canvas.height);
+    let fonts = if canvas.outlined { Fonts::default() } else { Fonts::new(canvas) };
+    let mut drawing = Drawing::new(&fonts, canvas);
     canvas.elements.iter().for_each(|element| drawing.draw(element));
     let Drawing { content, images, veils, .. } = drawing;
     pdf.stream(stream, &deflated(content.finish().as_slice())).filter(Filter::FlateDecode);
@@ -69,6 +70,7 @@ fn embedded(pdf: &mut Pdf, id: Ref, image: &Image) -> Ref {
 struct Drawing<'a> {
     content: Content,
     fonts: &'a Fonts,
+    outlined: bool,
     images: Vec<&'a Image>,
     /// Opacities in use, in hundredths as in the SVG, with their names.
     veils: BTreeMap<u8, String>,
@@ -76,10 +78,10 @@ struct Drawing<'a> {
 
 impl<'a> Drawing<'a> {
     /// An empty page with y pointing down from its upper edge, as on the canvas.
-    fn new(fonts: &'a Fonts, height: f64) -> Self {
+    fn new(fonts: &'a Fonts, canvas: &Canvas) -> Self {
         let mut content = Content::new();
-        content.transform([1.0, 0.0, 0.0, -1.0, 0.0, height as f32]);
-        Drawing { content, fonts, images: Vec::new(), veils: BTreeMap::new() }
+        content.transform([1.0, 0.0, 0.0, -1.0, 0.0, canvas.height as f32]);
+        Drawing { content, fonts, outlined: canvas.outlined, images: Vec::new(), veils: BTreeMap::new() }
     }
 
     fn draw(&mut self, element: &'a Element) {
@@ -144,35 +146,64 @@ impl<'a> Drawing<'a> {
 
     /// Letters as text, each in its place; the rim around them as outlines, or a search would find them twice.
     fn words(&mut self, words: &Words) {
-        let (set, (sin, cos)) = (words.set, (-words.set.turn).to_radians().sin_cos());
-        let em = set.size / 1000.0;
-        let place = |placed| {
-            let [x, y] = words.offset(placed);
-            [words.at[0] + em * (cos * x - sin * y), words.at[1] + em * (sin * x + cos * y)]
-        };
-        let places: Vec<[f64; 2]> = words.glyphs.iter().map(place).collect();
-        if set.halo {
+        if words.set.halo {
             let rim = Pen { round_joins: true, ..Pen::new(WHITE, HALO) };
-            for (placed, [x, y]) in words.glyphs.iter().zip(&places) {
-                let (a, b) = (em * placed.scale * cos, em * placed.scale * sin);
-                self.content.save_state();
-                self.take(&rim);
-                self.content.transform([a, b, -b, a, *x, *y].map(|x| x as f32));
-                outline::glyph(&placed.face.outline(placed.glyph), &mut self.content);
-                self.content.stroke().restore_state();
-            }
+            self.shapes(words, |drawing| drawing.take(&rim), |content| content.stroke());
         }
-        let [r, g, b] = shares(set.colour);
+        let [r, g, b] = shares(words.set.colour);
+        if self.outlined {
+            let ink = |drawing: &mut Self| {
+                drawing.content.set_fill_rgb(r, g, b);
+            };
+            return self.shapes(words, ink, |content| content.fill_nonzero());
+        }
         self.content.save_state().begin_text().set_fill_rgb(r, g, b);
-        for (placed, [x, y]) in words.glyphs.iter().zip(&places) {
-            let (font, glyph) = self.fonts.find(placed.face, placed.glyph);
-            self.content.set_font(Name(font.as_bytes()), (set.size * placed.scale) as f32);
+        for (_, run) in words.runs() {
+            let (size, [a, b, c, d, x, y]) = (words.set.size * run[0].scale, placed(words, &run[0], 1.0));
             // Letters stand upright although y points down.
-            self.content.set_text_matrix([cos, sin, sin, -cos, *x, *y].map(|x| x as f32));
-            self.content.show(Str(&glyph.to_be_bytes()));
+            self.content.set_text_matrix([a, b, -c, -d, x, y]);
+            let font = self.fonts.find(run[0].face, 0).0;
+            self.content.set_font(Name(font.as_bytes()), size as f32);
+            let mut line = self.content.show_positioned();
+            let mut items = line.items();
+            let mut bytes = Vec::new();
+            for (n, own) in run.iter().enumerate() {
+                bytes.extend(self.fonts.find(own.face, own.glyph).1.to_be_bytes());
+                // Where the next letter is not where this one's advance ends: thousandths, counted leftwards.
+                let back = |next: &Placed| own.face.advance(own.glyph) - (next.x - own.x) / own.scale;
+                let back = run.get(n + 1).map(back).filter(|back| back.abs() > 1e-6);
+                if n + 1 == run.len() || back.is_some() {
+                    items.show(Str(&std::mem::take(&mut bytes)));
+                    back.map(|back| items.adjust((1000.0 * back) as f32));
+                }
+            }
         }
         self.content.end_text().restore_state();
     }
+
+    /// Letters as outlines.
+    fn shapes(
+        &mut self,
+        words: &Words,
+        prepare: impl Fn(&mut Self),
+        paint: impl Fn(&mut Content) -> &mut Content,
+    ) {
+        for own in &words.glyphs {
+            self.content.save_state();
+            prepare(self);
+            self.content.transform(placed(words, own, words.set.size / 1000.0 * own.scale));
+            outline::glyph(&own.face.outline(own.glyph), &mut self.content);
+            paint(&mut self.content).restore_state();
+        }
+    }
+}
+
+/// From a glyph's own plane, whose unit is so many points, to the page.
+fn placed(words: &Words, own: &Placed, unit: f64) -> [f32; 6] {
+    let (sin, cos) = (-words.set.turn).to_radians().sin_cos();
+    let (em, [x, y]) = (words.set.size / 1000.0, words.offset(own));
+    let at = [words.at[0] + em * (cos * x - sin * y), words.at[1] + em * (sin * x + cos * y)];
+    [unit * cos, unit * sin, -unit * sin, unit * cos, at[0], at[1]].map(|x| x as f32)
 }
 
 fn shares(Colour(r, g, b): Colour) -> [f32; 3] {

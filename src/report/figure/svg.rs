@@ -8,6 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::canvas::{Canvas, Element, HALO, Image, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
 use super::clip::Rect;
+use super::embed::Fonts;
 use super::font::{Curve, Face};
 use super::palette::WHITE;
 use super::png;
@@ -16,14 +17,19 @@ use super::png;
 pub(super) fn document(canvas: &Canvas) -> String {
     let (w, h) = (number(canvas.width), number(canvas.height));
     let (w_mm, h_mm) = (number(canvas.width / MM), number(canvas.height / MM));
+    let letters = if canvas.outlined { "" } else { SERIF };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\">\n<title>{}</title>\n<defs>\n",
+         width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\"{letters}>\n<title>{}</title>\n<defs>\n",
         escaped(&canvas.title)
     );
-    for (face, glyph) in canvas.glyphs() {
-        let (name, data) = (glyph_name(face, glyph), outline(face, glyph));
-        out.push_str(&format!("<path id=\"{name}\" d=\"{data}\"/>\n"));
+    if canvas.outlined {
+        for (face, glyph) in canvas.glyphs() {
+            let (name, data) = (glyph_name(face, glyph), outline(face, glyph));
+            out.push_str(&format!("<path id=\"{name}\" d=\"{data}\"/>\n"));
+        }
+    } else {
+        Fonts::new(canvas).files().for_each(|(face, bytes)| out.push_str(&font(face, &bytes)));
     }
     out.push_str(&format!("</defs>\n<rect width=\"{w}\" height=\"{h}\" fill=\"{WHITE}\"/>\n"));
     let mut clips = 0;
@@ -32,6 +38,7 @@ pub(super) fn document(canvas: &Canvas) -> String {
             Element::Path(path, paint) => format!("<path {} d=\"{}\"/>", attributes(paint), data(path)),
             Element::Patch(rect) => filled(rect),
             Element::Image(image) => picture(image),
+            Element::Words(words) if canvas.outlined => shapes(words),
             Element::Words(words) => text(words),
             Element::Open(frame) => {
                 clips += 1;
@@ -156,7 +163,63 @@ fn picture(image: &Image) -> String {
     )
 }
 
+/// The letters' family, and that spaces count: each letter has its place.
+const SERIF: &str = " font-family=\"Libertinus Serif, Linux Libertine O, serif\" xml:space=\"preserve\"";
+
+/// A face as a rule of CSS.
+fn font(face: Face, bytes: &[u8]) -> String {
+    let (style, weight) = look(face);
+    format!(
+        "<style>@font-face{{font-family:\"Libertinus Serif\";font-style:{style};font-weight:{weight};\
+         src:url(data:font/otf;base64,{})}}</style>\n",
+        STANDARD.encode(bytes)
+    )
+}
+
+fn look(face: Face) -> (&'static str, u16) {
+    match face {
+        Face::Roman => ("normal", 400),
+        Face::Italic => ("italic", 400),
+        Face::Semibold => ("normal", 600),
+        Face::SemiboldItalic => ("italic", 600),
+    }
+}
+
+/// Words as words: each letter where the layout has it, whatever font a reader has.
 fn text(words: &Words) -> String {
+    let (set, [x, y]) = (words.set, words.at);
+    let em = set.size / 1000.0;
+    let mut pieces = String::new();
+    for (letters, run) in words.runs() {
+        let places: Vec<String> = run.iter().map(|placed| number(x + em * words.offset(placed)[0])).collect();
+        let base = number(y + em * words.offset(&run[0])[1]);
+        pieces += &format!("<tspan x=\"{}\" y=\"{base}\"", places.join(" "));
+        pieces += match look(run[0].face) {
+            ("normal", 400) => "",
+            ("normal", _) => " font-weight=\"600\"",
+            (_, 400) => " font-style=\"italic\"",
+            _ => " font-style=\"italic\" font-weight=\"600\"",
+        };
+        if run[0].scale != 1.0 {
+            pieces += &format!(" font-size=\"{}\"", number(set.size * run[0].scale));
+        }
+        pieces += &format!(">{}</tspan>", escaped(&letters));
+    }
+    let mut out = format!("<text font-size=\"{}\" fill=\"{}\"", number(set.size), set.colour);
+    if set.halo {
+        let width = number(em * HALO);
+        out += &format!(
+            " stroke=\"{WHITE}\" stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\""
+        );
+    }
+    if set.turn != 0.0 {
+        out += &format!(" transform=\"rotate({} {} {})\"", number(-set.turn), number(x), number(y));
+    }
+    format!("{out}>{pieces}</text>")
+}
+
+/// Words as shapes.
+fn shapes(words: &Words) -> String {
     let mut uses = String::new();
     for placed in &words.glyphs {
         let [x, y] = words.offset(placed).map(number);

@@ -44,11 +44,13 @@ const PALE: Colour = Colour(0xc2, 0xc5, 0xcc);
 impl Atlas<'_> {
     /// Families in colours of their own.
     pub fn by_family(&self) -> Figure {
-        let mut panel = self.panel();
         let mut ranks: Vec<f64> = self.open().map(|segment| rank(segment.a)).collect();
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
+        // Each curve in a pale shade of its family's hue: the pattern of the line tells the family, too.
+        let place = |a| own.iter().position(|&own| own == rank(a));
+        let mut panel = self.panel(|a| place(a).map_or(PALE, |n| palette::family(n).lighter()));
         for (n, &own) in own.iter().enumerate() {
             panel = entry(panel, palette::family(n), &family_name(own));
         }
@@ -67,8 +69,8 @@ impl Atlas<'_> {
     /// The fastest growth on a gradient; in the last tongue of a ratio growth has no bound, and the strongest colour.
     pub fn by_growth(&self) -> Figure {
         let bar = self.bar();
-        let mut panel = self.panel();
-        for (class, colour) in (0..ColourBar::SHADES).zip(bar.gradient.steps(ColourBar::SHADES.into())) {
+        let mut panel = self.panel(|_| PALE);
+        for (class, colour) in (0..ColourBar::SHADES).zip(bar.steps(ColourBar::SHADES)) {
             let rate = |segment: &Segment| segment.rate.unwrap_or(f64::INFINITY);
             let of_class = |segment: &&Segment| bar.class(rate(segment), ColourBar::SHADES) == class;
             let segments: Vec<&Segment> = self.open().filter(of_class).collect();
@@ -77,13 +79,12 @@ impl Atlas<'_> {
         self.finish(panel.bar(bar), 150.0)
     }
 
-    /// From the fastest tongue down four decades, or to the slowest where that is nearer.
     fn bar(&self) -> ColourBar {
-        let rates = || self.open().filter_map(|segment| segment.rate).filter(|rate| *rate > 0.0);
-        let fastest = rates().fold(0.0, f64::max);
-        let slowest = rates().fold(f64::INFINITY, f64::min);
-        let low = slowest.max(1e-4 * fastest);
-        ColourBar { axis: Axis::log("growth rate (1/time)", low, fastest), gradient: Gradient::on_white() }
+        let rates = self.open().filter_map(|segment| segment.rate).filter(|rate| *rate > 0.0);
+        let (low, high) = ColourBar::range_of(rates);
+        let axis = Axis::log("growth rate", low, high).per_time();
+        let all = self.open().map(|segment| segment.rate.unwrap_or(f64::INFINITY));
+        ColourBar::new(axis, Gradient::on_white()).over(all)
     }
 
     fn open(&self) -> impl Iterator<Item = &Segment> {
@@ -91,10 +92,10 @@ impl Atlas<'_> {
     }
 
     /// The curves, in the background.
-    fn panel(&self) -> Panel {
+    fn panel(&self, colour: impl Fn(i64) -> Colour) -> Panel {
         let Window { h1, h2 } = self.window;
-        let panel = Panel::new(axis("*h*_1 (time)", h1), axis("*h*_2 (time)", h2)).titled(&self.title);
-        lines_in(PALE, "curves ", panel, self.curves)
+        let panel = Panel::new(axis("*h*_1", h1).of_time(), axis("*h*_2", h2).of_time()).titled(&self.title);
+        lines_in(colour, "curves ", panel, self.curves)
     }
 
     fn put(&self, mut panel: Panel, segments: &[&Segment], colour: Colour) -> Panel {

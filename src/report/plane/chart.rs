@@ -1,10 +1,10 @@
 //! A map drawn: its unstable pairs in colour, the edges marked, the curves over them on request.
 
-use super::lines::{lines, stroke};
+use super::lines::{lines_in, stroke};
 use super::raster::Raster;
 use crate::map::{Band, Enclosure, Grid, Products};
-use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient, HYPERBOLIC, PARABOLIC};
-use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place};
+use crate::report::figure::palette::{self, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, PARABOLIC};
+use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place, Shape};
 use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;
@@ -75,11 +75,9 @@ pub struct Chart {
 
 /// Families with a colour of their own; the others share a grey.
 pub(super) const FAMILIES: usize = 8;
-/// Exponential growth, where curves are drawn over it.
-const BEHIND_CURVES: Colour = Colour(0x92, 0xb4, 0xdc);
 /// Pairs in points of paper; on an edge they are few and should be found.
 const PAIR: f64 = 0.35;
-const EDGE: f64 = 2.4;
+const EDGE: f64 = 3.4;
 
 impl Chart {
     pub fn new(grid: &Grid, colouring: Colouring) -> Self {
@@ -102,25 +100,28 @@ impl Chart {
     pub fn figure(&self, grid: &Grid, counts: &Counts, curves: &[Curve]) -> Figure {
         let window = window(grid);
         let steps = [grid.steps().0.to_f64(), grid.steps().1.to_f64()];
-        let mut panel = Panel::new(axis("*h*_1 (time)", window.h1), axis("*h*_2 (time)", window.h2))
+        let mut panel = Panel::new(axis("*h*_1", window.h1).of_time(), axis("*h*_2", window.h2).of_time())
             .titled(&format!("{} of {} pairs unstable", grouped(counts.unstable), grouped(counts.pairs)));
+        if !curves.is_empty() {
+            panel = labels(lines_in(|_| GREY, "", panel, curves), curves, &window);
+        }
         panel = match self.colouring {
-            Colouring::Verdict => self.by_verdict(panel, steps, curves.is_empty()),
+            Colouring::Verdict => self.by_verdict(panel, steps),
             Colouring::Growth | Colouring::Tenfold => self.by_growth(panel, steps),
             Colouring::Family => self.by_family(panel, steps),
         };
-        if !curves.is_empty() {
-            panel = labels(lines(panel, curves), curves, &window);
-        }
-        for (edge, colour, name) in [
-            (Edge::Parabolic, PARABOLIC, "linear growth (parabolic)"),
-            (Edge::Coexistence, COEXISTENCE, "closed tongue (coexistence)"),
+        let (origin, pitch) = self.edges.geometry(steps);
+        for (edge, shape, colour, name) in [
+            (Edge::Parabolic, Shape::Triangle, PARABOLIC, "linear growth (parabolic)"),
+            (Edge::Coexistence, Shape::Ring, COEXISTENCE, "closed tongue (coexistence)"),
         ] {
-            let mut cells = cells(&self.edges, steps, vec![colour]).at_least(EDGE);
             let found = self.edges.filled().filter(|(_, _, value)| *value == edge);
-            let count = found.map(|(k, l, _)| cells.push(k, l, 0)).count();
-            if count > 0 {
-                panel = panel.with(Layer::cells(cells).labelled(name));
+            let place = |(k, l, _): (u32, u32, Edge)| {
+                [origin[0] + pitch[0] * f64::from(k), origin[1] + pitch[1] * f64::from(l)]
+            };
+            let found: Vec<[f64; 2]> = found.map(place).collect();
+            if !found.is_empty() {
+                panel = panel.with(Layer::dots(found, shape, EDGE, colour).labelled(name));
             }
         }
         let wide = if self.colouring.by_growth() { 150.0 } else { 135.0 };
@@ -129,16 +130,15 @@ impl Chart {
             .with(panel.legend(Place::Above))
     }
 
-    fn by_verdict(&self, panel: Panel, steps: [f64; 2], alone: bool) -> Panel {
-        let colour = if alone { HYPERBOLIC } else { BEHIND_CURVES };
-        let mut cells = cells(&self.growing, steps, vec![colour]);
+    fn by_verdict(&self, panel: Panel, steps: [f64; 2]) -> Panel {
+        let mut cells = cells(&self.growing, steps, vec![HYPERBOLIC]);
         self.growing.filled().for_each(|(k, l, _)| cells.push(k, l, 0));
         panel.with(Layer::cells(cells).labelled("exponential growth (hyperbolic)"))
     }
 
     fn by_growth(&self, panel: Panel, steps: [f64; 2]) -> Panel {
         let bar = self.bar();
-        let mut cells = cells(&self.growing, steps, bar.gradient.steps(ColourBar::SHADES.into()));
+        let mut cells = cells(&self.growing, steps, bar.steps(ColourBar::SHADES));
         for (k, l, strength) in self.growing.filled() {
             cells.push(k, l, bar.class(self.shown(strength), ColourBar::SHADES));
         }
@@ -152,11 +152,13 @@ impl Chart {
 
     fn bar(&self) -> ColourBar {
         let (low, high) = ColourBar::range_of(self.growing.filled().map(|(_, _, strength)| strength));
+        let shown = self.growing.filled().map(|(_, _, strength)| self.shown(strength));
         if self.colouring == Colouring::Tenfold {
             let axis = Axis::log("slow steps until tenfold", high.recip(), low.recip());
-            return ColourBar { axis, gradient: Gradient::on_white().reversed() };
+            return ColourBar::new(axis, Gradient::on_white().reversed()).over(shown);
         }
-        ColourBar { axis: Axis::log("growth rate (1/time)", low, high), gradient: Gradient::on_white() }
+        let axis = Axis::log("growth rate", low, high).per_time();
+        ColourBar::new(axis, Gradient::on_white()).over(shown)
     }
 
     fn by_family(&self, mut panel: Panel, steps: [f64; 2]) -> Panel {
@@ -215,9 +217,9 @@ pub(super) fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Pan
         let mut points = curve.pieces.iter().flatten();
         if let Some(point) = points.find(|point| roomy(point.h1, point.h2)) {
             let text = format!("({}, {})", curve.a, curve.b).replace('-', "−");
-            // Above the curve; from the middle on, where curves with a = 0 fall steeply, left of it.
-            let side = if share(window.h1, point.h1) < 0.5 { Anchor::Middle } else { Anchor::End };
-            let shift = if side == Anchor::Middle { [0.0, 7.5] } else { [-4.0, -3.0] };
+            // Above the curve, for unstable pairs lie below it; from the middle on, where it falls steeply, right of it.
+            let side = if share(window.h1, point.h1) < 0.5 { Anchor::Middle } else { Anchor::Start };
+            let shift = if side == Anchor::Middle { [0.0, 7.5] } else { [2.0, 5.0] };
             panel = panel.note(Note::new([point.h1, point.h2], &text).anchored(side, shift));
         }
     }

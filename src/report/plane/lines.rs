@@ -6,11 +6,11 @@ use crate::resonance::Curve;
 
 /// One layer for each a, in the paper's line styles, and the legend.
 pub fn lines(panel: Panel, curves: &[Curve]) -> Panel {
-    lines_in(INK, "", panel, curves)
+    lines_in(|_| INK, "", panel, curves)
 }
 
-/// The same in another colour, with something before the names.
-pub fn lines_in(colour: Colour, before: &str, mut panel: Panel, curves: &[Curve]) -> Panel {
+/// The same behind what comes after, each a in a colour of its own, with something before the names.
+pub fn lines_in(colour: impl Fn(i64) -> Colour, before: &str, mut panel: Panel, curves: &[Curve]) -> Panel {
     let mut families: Vec<i64> = curves.iter().map(|curve| curve.a).collect();
     families.sort_unstable();
     families.dedup();
@@ -18,7 +18,7 @@ pub fn lines_in(colour: Colour, before: &str, mut panel: Panel, curves: &[Curve]
         let of_a = curves.iter().filter(|curve| curve.a == a);
         let pieces = of_a.flat_map(|curve| &curve.pieces);
         let lines = pieces.map(|piece| piece.iter().map(|p| [p.h1, p.h2]).collect()).collect();
-        let layer = Layer::lines(lines, stroke(a).in_colour(colour));
+        let layer = Layer::lines(lines, stroke(a).in_colour(colour(a)));
         panel = panel.with(layer.labelled(&format!("{before}*a* = {a}")));
     }
     panel.legend(Place::Above)

@@ -7,9 +7,9 @@ mod raster;
 
 pub use atlas::{Atlas, Segment};
 pub use chart::{Chart, Colouring, window};
-use lines::lines;
+use lines::{lines, lines_in};
 
-use super::figure::palette::Colour;
+use super::figure::palette::{Colour, GREY};
 use super::figure::{Axis, Cells, Figure, Layer, Panel};
 use crate::resonance::{Curve, Window};
 
@@ -22,9 +22,9 @@ pub struct Cloud {
     pub pairs: Vec<(u32, u32)>,
 }
 
-/// The colour of unstable pairs on their own, and under the curves.
+/// The colour of unstable pairs on their own, and over the curves.
 const UNSTABLE: Colour = Colour(20, 20, 20);
-const PALE: Colour = Colour(214, 96, 77);
+const RED: Colour = Colour(178, 40, 30);
 
 /// The paper's Figure 1: the unstable pairs on the left, the curves (a, b) on the right.
 pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &str) -> Figure {
@@ -35,12 +35,15 @@ pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &st
 
 /// The curves over the unstable pairs.
 pub fn overlay(window: &Window, cloud: &Cloud, curves: &[Curve], title: &str) -> Figure {
-    let panel = panel(window).with(cells(cloud, PALE).labelled("unstable pairs"));
-    Figure::new(130.0, 140.0).named(title).with(lines(panel, curves))
+    // The curves first: they are behind the pairs.
+    let panel =
+        lines_in(|_| GREY, "", panel(window), curves).with(cells(cloud, RED).labelled("unstable pairs"));
+    Figure::new(130.0, 140.0).named(title).with(panel)
 }
 
 fn panel(window: &Window) -> Panel {
-    Panel::new(Axis::linear("*h*_1 (time)", 0.0, window.h1.1), Axis::linear("*h*_2 (time)", 0.0, window.h2.1))
+    let axis = |label, (_, end): (f64, f64)| Axis::linear(label, 0.0, end).of_time();
+    Panel::new(axis("*h*_1", window.h1), axis("*h*_2", window.h2))
 }
 
 fn cells(cloud: &Cloud, colour: Colour) -> Layer {

@@ -32,7 +32,7 @@ fn panel(run: &Run, label: &str, value: fn(&Sample) -> f64, colour: usize) -> Pa
         Axis::linear(label, lo - margin, hi + margin)
     };
     let stroke = Stroke::LINE.in_colour(family(colour));
-    Panel::new(Axis::linear("*t* (time)", 0.0, end), axis)
+    Panel::new(Axis::linear("*t*", 0.0, end).of_time(), axis)
         .with(Layer::lines(vec![points], stroke).labelled("Algorithm 1"))
 }
 

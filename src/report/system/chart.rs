@@ -21,7 +21,7 @@ pub enum Colouring {
 
 /// Points in points of paper.
 const LEAST_SIZE: f64 = 0.35;
-const EDGE_SIZE: f64 = 2.4;
+const EDGE_SIZE: f64 = 3.4;
 
 impl SystemMap {
     /// The unstable points in colour, the edges marked.
@@ -59,7 +59,7 @@ impl SystemMap {
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
         let panel = Panel::new(
             Axis::linear(&self.names[0], first, last.max(first + step)),
-            Axis::linear(&self.growth(), 0.0, top),
+            Axis::linear("growth rate", 0.0, top).per_time(),
         )
         .titled(&format!("{unstable} of {} points unstable", self.points.len()))
         .with(Layer::lines(vec![line.clone()], Stroke::LINE.in_colour(INK)))
@@ -67,32 +67,32 @@ impl SystemMap {
         Figure::double_column(80.0).named(title).with(panel)
     }
 
-    /// The axis of growth rates.
-    fn growth(&self) -> String {
-        format!("growth rate (1/{})", self.time_unit.as_deref().unwrap_or("time"))
-    }
-
     fn by_growth(&self, panel: Panel) -> Panel {
         let rates = self.points.iter().map(|point| point.growth_rate);
-        let (low, fastest) = ColourBar::range_of(rates.filter(|&rate| rate > 0.0));
-        let bar = ColourBar { axis: Axis::log(&self.growth(), low, fastest), gradient: Gradient::on_white() };
+        let rates = rates.filter(|&rate| rate > 0.0);
+        let (low, fastest) = ColourBar::range_of(rates.clone());
+        let axis = Axis::log("growth rate", low, fastest).per_time();
+        let bar = ColourBar::new(axis, Gradient::on_white()).over(rates);
         let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), ColourBar::SHADES);
-        let cells = self.cells(bar.gradient.steps(ColourBar::SHADES.into()), Kind::Hyperbolic, shade);
+        let cells = self.cells(bar.steps(ColourBar::SHADES), Kind::Hyperbolic, shade);
         panel.with(Layer::cells(cells)).bar(bar)
     }
 
     fn edges(&self, mut panel: Panel) -> Panel {
-        for (kind, colour, name) in [
-            (Kind::Parabolic, PARABOLIC, "linear growth (parabolic)"),
-            (Kind::Coexistence, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
+        let places = |which: &dyn Fn(&Point) -> bool| -> Vec<[f64; 2]> {
+            let points = self.points.iter().filter(|point| which(point));
+            points.map(|point| [to_f64(&point.at.0), to_f64(&point.at.1)]).collect()
+        };
+        for (kind, shape, colour, name) in [
+            (Kind::Parabolic, Shape::Triangle, PARABOLIC, "linear growth (parabolic)"),
+            (Kind::Coexistence, Shape::Ring, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
         ] {
             if self.count(kind) > 0 {
-                let cells = self.cells(vec![colour], kind, |_| 0).at_least(EDGE_SIZE);
-                panel = panel.with(Layer::cells(cells).labelled(name));
+                let dots = Layer::dots(places(&|point| point.kind == kind), shape, EDGE_SIZE, colour);
+                panel = panel.with(dots.labelled(name));
             }
         }
-        let open = self.points.iter().filter(|point| !point.is_proof);
-        let open: Vec<[f64; 2]> = open.map(|point| [to_f64(&point.at.0), to_f64(&point.at.1)]).collect();
+        let open = places(&|point| !point.is_proof);
         if open.is_empty() {
             return panel;
         }

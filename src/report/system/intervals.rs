@@ -33,7 +33,7 @@ fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
 
 /// The number across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
 #[cfg(feature = "figure")]
-pub fn figure(own: &Intervals, rates: &[Option<f64>], (title, time): (&str, &str)) -> Figure {
+pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str) -> Figure {
     let stretches = own.stretches.as_slice();
     let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
     let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
@@ -56,11 +56,7 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], (title, time): (&str, &str
     let unstable = counted(shade(Holds::Unstable).len(), "unstable interval", "unstable intervals");
     let inner =
         |steps| counted(steps as usize, "inner step in each outer one", "inner steps in each outer one");
-    let mut panel = Panel::new(
-        Axis::linear(&across(own, time), lo, hi),
-        Axis::linear(&format!("growth rate (1/{time})"), 0.0, top),
-    )
-    .titled(
+    let mut panel = Panel::new(across(own, lo, hi), Axis::linear("growth rate", 0.0, top).per_time()).titled(
         &[Some(unstable), own.inner_steps.map(inner)].into_iter().flatten().collect::<Vec<_>>().join(", "),
     );
     for (verdict, colour, name) in
@@ -77,9 +73,10 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], (title, time): (&str, &str
 
 /// What stands across: the outer step, or the number's path.
 #[cfg(feature = "figure")]
-fn across(own: &Intervals, time: &str) -> String {
+fn across(own: &Intervals, lo: f64, hi: f64) -> Axis {
     let name = if own.number == "outer" { "outer step" } else { &own.number };
-    if own.is_step { format!("{name} ({time})") } else { name.into() }
+    let axis = Axis::linear(name, lo, hi);
+    if own.is_step { axis.of_time() } else { axis }
 }
 
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.

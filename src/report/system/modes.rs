@@ -36,11 +36,12 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
     }
     let fastest = analysis.growth_rate();
     let y = if fastest > 0.0 {
-        Axis::linear("growth rate (1/time)", -0.06 * fastest, 1.15 * fastest)
+        Axis::linear("growth rate", -0.06 * fastest, 1.15 * fastest)
     } else {
         let zero = crate::report::figure::Tick { at: 0.0, label: Some("0".into()) };
-        Axis::linear("growth rate (1/time)", -0.5, 0.5).ticks(vec![zero])
+        Axis::linear("growth rate", -0.5, 0.5).ticks(vec![zero])
     };
+    let y = y.per_time();
     let counts =
         format!("Multipliers: {} pairs on the unit circle, {} instabilities", still.len(), moving.len());
     let stems = moving.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
@@ -69,11 +70,7 @@ fn shape(n: usize, unstable: &Instability) -> Panel {
             .with(Layer::lines(vec![vec![[-0.5, 0.0], [last + 0.5, 0.0]]], Stroke::THIN.in_colour(GREY)));
     let beats = unstable.origin == Origin::Collision;
     if beats {
-        let line = Layer::lines(vec![imaginary.clone()], Stroke::DASHED.in_colour(family(1)));
-        panel = panel.with(line.labelled("a quarter of the beat later")).legend(Place::Above);
-        if few {
-            panel = panel.with(Layer::dots(imaginary, Shape::Ring, 3.4, family(1)));
-        }
+        panel = panel.legend(Place::Above);
     }
     let line = Layer::lines(vec![real.clone()], Stroke::LINE.in_colour(family(0)));
     panel = panel.with(if beats { line.labelled("at the start") } else { line });
@@ -81,6 +78,13 @@ fn shape(n: usize, unstable: &Instability) -> Panel {
         let stems = real.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
         panel = panel.with(Layer::lines(stems, Stroke::THIN.in_colour(family(0))));
         panel = panel.with(Layer::dots(real, Shape::Disc, 3.4, family(0)));
+    }
+    if beats {
+        let line = Layer::lines(vec![imaginary.clone()], Stroke::DASHED.in_colour(family(1)));
+        panel = panel.with(line.labelled("a quarter of the beat later"));
+        if few {
+            panel = panel.with(Layer::dots(imaginary, Shape::Ring, 3.4, family(1)));
+        }
     }
     panel
 }

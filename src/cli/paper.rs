@@ -1,0 +1,119 @@
+//! How figures are put on paper: what all commands that draw have in common.
+
+use std::path::Path;
+
+use super::args::of;
+use crate::error::{Error, Result};
+use crate::format::Format;
+use crate::report::figure::Figure;
+use crate::report::file::write_output;
+
+/// Pixels per inch of PNG figures: print quality.
+const DPI: f64 = 300.0;
+
+/// Flags of every command that draws.
+#[derive(Clone, Debug, Default, clap::Args)]
+#[command(next_help_heading = "Options of figures")]
+pub struct Paper {
+    /// The width on paper, as 85mm, 17.4cm, 3.3in or 240pt; the height follows [default: 85 to 175mm].
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = of(millimetres))]
+    width: Option<f64>,
+    /// A heading, as "Run 7 of *h*_1 = 2 fs": italics between stars, an index after _, a power after ^.
+    #[arg(long, value_name = "TEXT")]
+    title: Option<String>,
+    /// The unit of times and rates at the axes, as fs [default: the system's, else the word time].
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<String>,
+    /// Letters of SVG and PDF as shapes, for programs that read no embedded fonts [default: text, searchable]
+    #[arg(long)]
+    outlines: bool,
+}
+
+impl Paper {
+    /// That nothing is asked of a figure where none is drawn.
+    ///
+    /// # Errors
+    /// Where it is.
+    pub fn check(&self, draws: bool) -> Result<()> {
+        let given = [
+            ("--width", self.width.is_some()),
+            ("--title", self.title.is_some()),
+            ("--time-unit", self.time_unit.is_some()),
+            ("--outlines", self.outlines),
+        ];
+        match given.into_iter().find(|(_, given)| *given && !draws) {
+            Some((flag, _)) => Err(Error::input(flag, "given", "is for figures, and this draws none")),
+            None => Ok(()),
+        }
+    }
+
+    /// The figure as the flags want it, as the bytes of a file.
+    ///
+    /// # Errors
+    /// A unit of time for a figure without time, and as [`Figure::file`].
+    pub fn bytes(&self, figure: Figure, format: Format) -> Result<Vec<u8>> {
+        let mut figure = figure;
+        if let Some(unit) = &self.time_unit {
+            if !figure.has_time() {
+                return Err(Error::input(
+                    "time-unit",
+                    unit,
+                    "no axis of this figure is a time: leave it out",
+                ));
+            }
+            figure = figure.in_units_of(unit);
+        }
+        if let Some(width) = self.width {
+            figure = figure.wide(width);
+        }
+        if let Some(title) = &self.title {
+            figure = figure.headed(title);
+        }
+        if self.outlines { figure.outlined() } else { figure }.file(format, DPI)
+    }
+
+    /// The same written to a place, or to standard output.
+    ///
+    /// # Errors
+    /// As [`Paper::bytes`], and an unwritable place.
+    pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>) -> Result<()> {
+        write_output(path, &self.bytes(figure, format)?)
+    }
+
+    /// The same written to FILE.svg, FILE.pdf or FILE.png, which a flag names.
+    ///
+    /// # Errors
+    /// Another name, and as [`Paper::write`].
+    pub fn draw(&self, field: &str, path: &Path, figure: Figure) -> Result<()> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
+        let remedy = || format!("name a file that ends in {}", Format::extensions(&Format::FIGURE));
+        let format = format.ok_or_else(|| Error::input(field, path.display(), remedy()))?;
+        self.write(figure, format, Some(path))
+    }
+}
+
+/// A length on paper in millimetres: no wider than a poster, no narrower than a thumb.
+fn millimetres(field: &str, text: &str) -> Result<f64> {
+    let refused =
+        || Error::input(field, text, "write a length from 20mm to 2000mm, in mm, cm, in or pt, as 85mm");
+    let unit = [("mm", 1.0), ("cm", 10.0), ("in", 25.4), ("pt", 25.4 / 72.0)];
+    let found = unit.into_iter().find_map(|(name, size)| Some((text.trim().strip_suffix(name)?, size)));
+    let (number, size) = found.ok_or_else(refused)?;
+    let length = number.trim().parse::<f64>().map_err(|_| refused())? * size;
+    if (20.0..=2000.0).contains(&length) { Ok(length) } else { Err(refused()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_units() {
+        let read = |text| millimetres("width", text).map_err(|error| error.to_string());
+        assert_eq!(["85mm", "8.5 cm", "1in", "72pt"].map(read), [85.0, 85.0, 25.4, 25.4].map(Ok));
+        for text in ["85", "mm", "19mm", "3m", "1e9cm", "NaNmm", "-85mm"] {
+            assert!(read(text).unwrap_err().contains("write a length"), "{text}");
+        }
+    }
+}
