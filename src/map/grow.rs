@@ -6,13 +6,18 @@ use super::growth::ln_multiplier;
 use super::products::{Growing, Products};
 use super::work::{LANES, Work};
 use crate::error::Result;
+use crate::number::Laurent;
 use crate::orbit::filter::{Ends, Group};
+use crate::orbit::floquet::Floquet;
+use crate::orbit::plain;
+use crate::propagator::TwoClocks;
+use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
 use crate::verdict::{Kind, Tier, Verdict, growth, label};
 
 impl Work<'_> {
-    /// A second run over the pairs in tongues, a third over those of which it gives too little, and more bits for the
-    /// rest.
+    /// A second run over the pairs in tongues, a third over those of which it gives too little, then kick by kick in doubles and
+    /// in two doubles, and more bits for the rest.
     pub(super) fn grow(&self, band: &mut Band, products: Products) -> Result<()> {
         let verdict = |n: usize| Verdict::ALL[usize::from(band.verdicts[n])];
         let hyperbolic = |&n: &u32| verdict(n as usize).kind() == Kind::Hyperbolic;
@@ -40,7 +45,13 @@ impl Work<'_> {
         for n in rest.into_iter().map(|n| n as usize) {
             self.go_on()?;
             let (i, j) = self.multipliers(n);
-            let grown = growth(&self.grid().clocks(i, j)?, verdict(n), self.limits())?;
+            let clocks = self.grid().clocks(i, j)?;
+            let found = |ends: Ends| quick(n, &ends, verdict(n), products);
+            if let Some(found) = kick_by_kick(&clocks, found) {
+                growing.push(found);
+                continue;
+            }
+            let grown = growth(&clocks, verdict(n), self.limits())?;
             let ln = grown.ln_multiplier.filter(|_| products.growth).map(|ln| Enclosure::of(&ln));
             let label = grown.label.filter(|_| products.label);
             growing.push(Growing { position: n as u32, label, ln_multiplier: ln });
@@ -56,6 +67,13 @@ const BLOCKS: [u64; 2] = [4, 1];
 
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;
+
+/// What the runs in doubles, for a pair that has no base, and in two doubles give.
+fn kick_by_kick<T>(clocks: &TwoClocks<Laurent>, mut found: impl FnMut(Ends) -> Option<T>) -> Option<T> {
+    let schedule = Schedule::two_clocks(clocks.ratio()).ok()?;
+    let quick = if Floquet::new(clocks).is_none() { plain::run(clocks, &schedule) } else { None };
+    quick.and_then(&mut found).or_else(|| found(plain::sharp(clocks, &schedule)?))
+}
 
 /// What is asked for, as far as the filter gives it.
 fn quick(n: usize, ends: &Ends, verdict: Verdict, products: Products) -> Option<Growing> {

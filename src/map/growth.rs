@@ -43,7 +43,7 @@ pub(super) fn ln_multiplier(ends: &Ends, side: i8) -> Option<Enclosure> {
 fn components(end: &End) -> [f64; 2] {
     // |t| |(x, v)|/|(x, v)|² in each component; 1 + 8u covers the roundings of this.
     let slack = end.across / (end.x * end.x + end.v * end.v).sqrt() * (1.0 + 8.0 * U);
-    [end.x, end.v].map(|component| slack / component.abs())
+    [end.x, end.v].map(|component| slack / component.abs() + end.rounding)
 }
 
 /// By (1), from ρ computed with three roundings out of components with the relative errors that add up to `error`.

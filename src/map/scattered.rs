@@ -47,12 +47,19 @@ fn together<S: Decidable>(clocks: &[TwoClocks<S>], resources: &Resources) -> Res
     let mut order: Vec<usize> =
         (0..clocks.len()).filter(|&n| floquets[n].as_ref().is_some_and(allowed)).collect();
     order.sort_by_key(|&n| floquets[n].as_ref().map(Floquet::updates));
-    let (mut found, mut group) = (vec![UNDECIDED; clocks.len()], Group::<LANES>::new(Instructions::best()));
-    for positions in order.chunks(LANES) {
-        resources.go_on()?;
-        let pairs: Vec<Pair> =
-            positions.iter().filter_map(|&n| floquets[n].as_ref().map(Floquet::pair)).collect();
-        positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
+    let mut found = vec![UNDECIDED; clocks.len()];
+    let mut decide_in = |mut group: Group<LANES>, order: &[usize]| -> Result<Vec<usize>> {
+        for positions in order.chunks(LANES) {
+            resources.go_on()?;
+            let pairs: Vec<Pair> =
+                positions.iter().filter_map(|&n| floquets[n].as_ref().map(Floquet::pair)).collect();
+            positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
+        }
+        Ok(order.iter().copied().filter(|&n| found[n] == UNDECIDED).collect())
+    };
+    let rest = decide_in(Group::new(Instructions::best()), &order)?;
+    if rest.len() >= LANES {
+        decide_in(Group::watched(Instructions::best(), 1), &rest)?;
     }
     let decided = |(verdict, clocks)| match verdict {
         UNDECIDED => {

@@ -117,10 +117,15 @@ impl Twofold {
     /// a/b to within 2^-104 relative, for whole numbers that doubles hold.
     pub fn quotient(a: u64, b: u64) -> Option<Twofold> {
         const EXACT: u64 = 1 << 53;
-        let (x, y) = (a as f64, b as f64);
-        let hi = x / y;
+        (a.max(b) <= EXACT).then(|| Twofold::of_whole(a as f64, b as f64))
+    }
+
+    /// The same of doubles that are whole.
+    #[inline(always)]
+    pub fn of_whole(a: f64, b: f64) -> Twofold {
+        let hi = a / b;
         // The quotient's remainder is a double.
-        (a.max(b) <= EXACT).then_some(Twofold { hi, lo: (-hi).mul_add(y, x) / y })
+        Twofold { hi, lo: (-hi).mul_add(b, a) / b }
     }
 
     /// x to within 2^-100 relative; `None` where the ball is wider than that, negative, or far from 1.

@@ -12,7 +12,8 @@ use crate::propagator::PartialSigns;
 use crate::vector::each;
 use crate::vector::instructions::{Instructions, Task};
 
-/// Where the even and the odd solution stand at T/2, with proven bounds.
+/// Where the even and the odd solution stand at T/2, with proven bounds: in Floquet coordinates from here, kick by kick from
+/// [`super::plain`].
 #[derive(Clone, Copy, Debug)]
 pub struct Ends {
     pub even: End,
@@ -21,7 +22,7 @@ pub struct Ends {
     pub quarters: i64,
 }
 
-/// One solution at T/2 in Floquet coordinates: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
+/// One solution at T/2 in the coordinates of the run: the exact vector is 2^exponent a ((x, v) + t J(x, v)/|(x, v)|²)
 /// with |t| ≤ across and |a − 1| ≤ stretch/(1 − stretch).
 #[derive(Clone, Copy, Debug)]
 pub struct End {
@@ -29,10 +30,21 @@ pub struct End {
     pub x: f64,
     /// C or D.
     pub v: f64,
+    /// The relative error of x and of v as they stand here, beside that.
+    pub rounding: f64,
     pub exponent: i64,
     pub across: f64,
     pub stretch: f64,
     signs: (Option<Sign>, Option<Sign>),
+}
+
+impl End {
+    /// With the signs that these bounds certify; a thousandth covers the roundings of the comparison.
+    pub(super) fn new([x, v]: [f64; 2], rounding: f64, exponent: i64, across: f64, stretch: f64) -> End {
+        let slack = 1.001 * across / x.hypot(v);
+        let certain = |z: f64| (z.abs() > slack).then(|| Sign::from_ordering(z.total_cmp(&0.0)));
+        End { x, v, rounding, exponent, across, stretch, signs: (certain(x), certain(v)) }
+    }
 }
 
 impl Ends {
@@ -252,6 +264,7 @@ impl<const L: usize> Halves<L> {
             let end = End {
                 x: self.ends[n][0][i],
                 v: self.ends[n][1][i],
+                rounding: 0.0,
                 exponent: orbits.exponent[i] as i64,
                 across: certificate.across * squares,
                 stretch: stretch + 2.0 * U,

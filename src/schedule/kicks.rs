@@ -35,6 +35,8 @@ impl<K> Kicks<K> {
     }
 
     /// Leads the orbit through the events.
+    // With the instructions that the caller is compiled for.
+    #[inline(always)]
     pub fn lead(&self, events: impl IntoIterator<Item = Event>, orbit: &mut impl KickDrift<K>) {
         for event in events {
             if event.drift > 0 {

@@ -16,7 +16,7 @@ use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
-use crate::orbit::{filter, refine};
+use crate::orbit::{filter, plain, refine};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 
@@ -74,7 +74,7 @@ impl Runs {
             return Ok(Growth { trace, ln_multiplier: None, label: None });
         }
         let schedule = Schedule::two_clocks(clocks.ratio())?;
-        let filtered = self.filtered.unwrap_or_else(|| filter::run(&Floquet::new(clocks)?));
+        let filtered = self.filtered.unwrap_or_else(|| first_tier(clocks, &schedule));
         let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
         if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
             return Ok(from_products(products(&ends), verdict, label));
@@ -105,6 +105,14 @@ impl Runs {
             }
             bits *= 2;
         }
+    }
+}
+
+/// The first tier's run: in Floquet coordinates, or kick by kick where there are none.
+fn first_tier<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<filter::Ends> {
+    match Floquet::new(clocks) {
+        Some(floquet) => filter::run(&floquet),
+        None => plain::run(clocks, schedule),
     }
 }
 
@@ -171,7 +179,7 @@ fn products(ends: &filter::Ends) -> Products {
 
 fn component(value: f64, end: &filter::End) -> Ball {
     let exact = |x: f64| Rational::from_float(x).map(|x| Ball::from_rational(&x, 128));
-    let slack = 1.001 * end.across / end.x.hypot(end.v);
+    let slack = 1.001 * (end.across / end.x.hypot(end.v) + end.rounding * value.abs());
     let between = |lo: f64, hi: f64| Some(exact(lo)?.union(&exact(hi)?, 128));
     let range = between((value - slack).next_down(), (value + slack).next_up());
     let length = between(1.0 - 1.4 * end.stretch, 1.0 + 1.4 * end.stretch);

@@ -58,7 +58,7 @@ fn by_filter<S: Decidable>(
 ) -> Result<Option<Verdict>> {
     let Some(floquet) = Floquet::new(clocks) else {
         runs.filtered = Some(None);
-        return without_floquet(clocks, limits);
+        return without_floquet(clocks, limits, runs);
     };
     limits.allow(floquet.updates(), Tier::Filter)?;
     let ends = filter::run(&floquet);
@@ -67,13 +67,19 @@ fn by_filter<S: Decidable>(
 }
 
 /// One clock alone in closed form, or kick by kick.
-fn without_floquet<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Option<Verdict>> {
+fn without_floquet<S: Decidable>(
+    clocks: &TwoClocks<S>,
+    limits: &Limits,
+    runs: &mut Runs,
+) -> Result<Option<Verdict>> {
     if let Some(verdict) = lone::verdict(clocks) {
         return Ok(Some(verdict));
     }
     let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(schedule.strikes() / 2, Tier::Filter)?;
-    Ok(plain::signs(clocks, &schedule).and_then(|signs| signs.verdict()))
+    let ends = plain::run(clocks, &schedule);
+    runs.filtered = Some(ends);
+    Ok(ends.and_then(|ends| ends.signs().verdict()))
 }
 
 fn by_refine<S: Decidable>(
