@@ -15,16 +15,22 @@ use super::ends::Nodes;
 pub use super::ends::{End, Ends};
 use super::leap;
 use crate::number::{Ball, Ratio, Real, Sign};
+use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::{KickDrift, Kicks, Schedule};
 
 /// A state longer than `bits + HEADROOM` bits is scaled down.
 const HEADROOM: u64 = 32;
 
-/// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision.
+/// Runs the half period with `bits` bits; `None` where the bound's conditions fail at that precision, and
+/// where the work was stopped.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> Option<Ends> {
     let steps = Steps::new(clocks, schedule, bits)?;
-    Some(Ends { even: steps.end(schedule, true)?, odd: steps.end(schedule, false)? })
+    let end = |even| {
+        go_on().ok()?;
+        steps.end(schedule, Orbit { hears: true, ..Orbit::of(&steps, even) })
+    };
+    Some(Ends { even: end(true)?, odd: end(false)? })
 }
 
 /// The bound's constants are doubles, which cannot tell a precision beyond this one from it.
@@ -46,7 +52,8 @@ pub fn run_at_any<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32
 
 /// The even or the odd solution alone.
 pub fn run_one<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32, even: bool) -> Option<End> {
-    Steps::new(clocks, schedule, bits)?.end(schedule, even)
+    let steps = Steps::new(clocks, schedule, bits)?;
+    steps.end(schedule, Orbit::of(&steps, even))
 }
 
 /// Runs the half period in balls of `bits` bits: no condition, and enclosures that widen with every step.
@@ -97,11 +104,10 @@ impl Steps {
         })
     }
 
-    /// The even or the odd solution at T/2.
-    fn end(&self, schedule: &Schedule, even: bool) -> Option<End> {
-        let mut orbit = Orbit::new(self, u8::from(even), u8::from(!even));
+    /// The solution at T/2.
+    fn end(&self, schedule: &Schedule, mut orbit: Orbit) -> Option<End> {
         self.kicks.lead(schedule.half_period(), &mut orbit);
-        orbit.finish()
+        if orbit.stopped { None } else { orbit.finish() }
     }
 
     /// 2|r_k|/|û_k| in units of 2^-bits.
@@ -120,14 +126,35 @@ struct Orbit<'a> {
     angle: f64,
     worst: f64,
     nodes: Nodes,
+    /// Whether it hears that the work was stopped, its kick times so far, and whether it was at one of them: then nothing is
+    /// done any more.
+    hears: bool,
+    arrivals: u32,
+    stopped: bool,
 }
 
+/// Kick times between two looks at whether the work goes on: some milliseconds.
+const LOOK: u32 = 1 << 12;
+
 impl<'a> Orbit<'a> {
-    fn new(steps: &'a Steps, x: u8, v: u8) -> Self {
+    /// The even solution at t = 0, or the odd one.
+    fn of(steps: &'a Steps, even: bool) -> Self {
+        let (x, v) = (u8::from(even), u8::from(!even));
         let shift = u64::from(steps.bits) + HEADROOM / 2;
         let start = |n: u8| BigInt::from(n) << shift;
         let (x, v, exponent) = (start(x), start(v), -(shift as i64));
-        Orbit { steps, x, v, exponent, angle: 0.0, worst: 0.0, nodes: Nodes::default() }
+        Orbit {
+            steps,
+            x,
+            v,
+            exponent,
+            angle: 0.0,
+            worst: 0.0,
+            nodes: Nodes::default(),
+            hears: false,
+            arrivals: 0,
+            stopped: false,
+        }
     }
 
     /// |û| in units of 2^bits of its own scale: between 1 and 2^34, to within 2^-50.
@@ -201,16 +228,27 @@ impl<'a> Orbit<'a> {
 
 impl KickDrift<BigInt> for Orbit<'_> {
     fn drift(&mut self, ticks: u64) {
+        if self.stopped {
+            return;
+        }
         let before = self.length();
         self.x += &self.v * ticks / self.steps.ticks;
         self.account(before);
     }
 
     fn arrive(&mut self) {
+        self.arrivals = self.arrivals.wrapping_add(1);
+        self.stopped |= self.hears && self.arrivals.is_multiple_of(LOOK) && go_on().is_err();
+        if self.stopped {
+            return;
+        }
         self.nodes.see(self.certain_sign(&self.x));
     }
 
     fn kick(&mut self, strength: &BigInt) {
+        if self.stopped {
+            return;
+        }
         let before = self.length();
         self.v -= (strength * &self.x) >> self.steps.places;
         self.account(before);

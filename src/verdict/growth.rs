@@ -17,6 +17,7 @@ use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
 use crate::orbit::{filter, plain, refine};
+use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 
@@ -80,7 +81,7 @@ impl Runs {
             return Ok(from_products(products(&ends), verdict, label));
         }
         limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
-        let (products, nodes) = self.refined(clocks, &schedule, verdict);
+        let (products, nodes) = self.refined(clocks, &schedule, verdict)?;
         Ok(from_products(products, verdict, label.or(nodes)))
     }
 
@@ -90,19 +91,20 @@ impl Runs {
         clocks: &TwoClocks<S>,
         schedule: &Schedule,
         verdict: Verdict,
-    ) -> (Products, Option<u64>) {
+    ) -> Result<(Products, Option<u64>)> {
         let mut bits = 128;
         if let Some((ends, known)) = &self.refined {
             if let Some(found) = accurate(ends, *known, verdict) {
-                return found;
+                return Ok(found);
             }
             bits = 2 * known;
         }
         loop {
             let ends = refine::run_at_any(clocks, schedule, bits);
             if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict)) {
-                return found;
+                return Ok(found);
             }
+            go_on()?;
             bits *= 2;
         }
     }

@@ -11,6 +11,7 @@ use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::orbit::floquet::Floquet;
 use crate::orbit::{filter, plain, refine};
+use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 
@@ -20,7 +21,8 @@ const PRECISIONS: [u32; 3] = [128, 256, 512];
 /// Decides the pair, with the cheapest tier that can.
 ///
 /// # Errors
-/// A budget error, before the work begins, where a tier would need more than `limits` allows.
+/// A budget error, before the work begins, where a tier would need more than `limits` allows; `Stopped` where the work
+/// is [stoppable](crate::parallel::stoppable) and was stopped: at once in the refine tier, after their run in the others.
 pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     decide_from(Tier::Filter, clocks, limits)
 }
@@ -96,16 +98,48 @@ fn by_refine<S: Decidable>(
         verdict
     };
     let found = PRECISIONS.into_iter().find_map(&mut verdict);
+    go_on()?;
     if found.is_some() || !S::surely_nonzero(clocks) {
         return Ok(found);
     }
     // No entry is zero: some precision decides all four signs. Where 2^14 bits do not suffice, the periods are short in
     // practice, and exact arithmetic is the shorter way.
-    Ok((10..15).map(|log2| 1 << log2).find_map(verdict))
+    let found = (10..15).map(|log2| 1 << log2).find_map(verdict);
+    go_on().map(|()| found)
 }
 
 fn by_exact<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Verdict> {
     let schedule = Schedule::two_clocks(clocks.ratio())?;
     limits.allow(S::exact_cost(clocks, schedule.strikes() / 2), Tier::Exact)?;
     Ok(S::half_signs(clocks).verdict())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::time::Duration;
+
+    use super::*;
+    use crate::error::Kind;
+    use crate::number::{Ratio, rational::ratio};
+    use crate::parallel::stoppable;
+
+    /// Before it begins and on the way; the kicks that are left would take many times as long.
+    #[test]
+    fn a_long_verdict_hears_that_it_was_stopped() {
+        let clocks =
+            TwoClocks::with_rho(Ratio::new(10_000_001, 10_000_003).unwrap(), ratio(1, 3), ratio(1, 25));
+        let flag = Arc::new(AtomicBool::new(true));
+        let decided = || stoppable(&flag, || decide_from(Tier::Refine, &clocks, &Limits::default()));
+        assert_eq!(decided().unwrap_err().kind(), Kind::Stopped);
+        flag.store(false, Ordering::Relaxed);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                std::thread::sleep(Duration::from_millis(50));
+                flag.store(true, Ordering::Relaxed);
+            });
+            assert_eq!(decided().unwrap_err().kind(), Kind::Stopped);
+        });
+    }
 }
