@@ -10,7 +10,7 @@
 //! where J is positive definite on paths held at x = 0 at either end, the other end free; and where it is so for one of the
 //! ends, and for the other it has a negative eigenvalue, the period is hyperbolic. An entry of J is a few roundings from the data: no
 //! product of kicks, no norm of a propagator enters the proof. Where some mode makes more than half a turn in
-//! a period, J is negative whatever end is held, and nothing is told.
+//! a period, J is negative whatever end is held; then the numbers of negative eigenvalues tell of real multipliers off the circle.
 
 use std::collections::BTreeMap;
 
@@ -22,11 +22,23 @@ use crate::number::rational::to_f64;
 use crate::parallel::map;
 use crate::schedule::Weight;
 
-/// Which end of the paths is held at x = 0.
+/// Which ends of the paths are held at x = 0.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Held {
     Start,
     End,
+    Both,
+    Neither,
+}
+
+impl Held {
+    fn start(self) -> bool {
+        matches!(self, Held::Start | Held::Both)
+    }
+
+    fn end(self) -> bool {
+        matches!(self, Held::End | Held::Both)
+    }
 }
 
 /// Roundings in a term: mass and tick, their quotient, the coefficient of a kick.
@@ -40,8 +52,27 @@ pub(super) fn is_stable(system: &System, frame: &Frame) -> Option<bool> {
         [Some(Sign::Positive), Some(Sign::Negative)] | [Some(Sign::Negative), Some(Sign::Positive)] => {
             Some(false)
         }
+        [Some(Sign::Negative), Some(Sign::Negative)] => {
+            has_real_unstable_mode(system, frame).then_some(false)
+        }
         _ => None,
     }
+}
+
+/// Whether counts of negative eigenvalues prove a real multiplier off the circle: neg J_fh and neg J_hf differ, or n + neg J_hh and
+/// neg J_ff (`proofs/REGION.md`, section 3; the latter where no rigid mode is at μ = 0).
+fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
+    let Some(action) = Action::new(system) else { return false };
+    let terms = 2 + system.clocks().len();
+    let count = |&held: &Held| action.matrix(held)?.negatives(terms, ROUNDINGS);
+    let found = map(&[Held::End, Held::Start, Held::Both, Held::Neither], count);
+    // J_hh and J_hf must be regular: all their eigenvalues told.
+    let [fh, Some((hf, most_hf)), Some((hh, most_hh)), ff] = found[..] else { return false };
+    let differ = |(least, most): (usize, usize), other: usize| least > other || most < other;
+    hf == most_hf
+        && hh == most_hh
+        && (fh.is_some_and(|own| differ(own, hf))
+            || frame.rigid.is_empty() && ff.is_some_and(|own| differ(own, system.size() + hh)))
 }
 
 /// The signs of the action of paths that are held at their start, and at their end.
@@ -139,15 +170,15 @@ impl Action {
     /// J, in ticks, on paths held at one end.
     fn matrix(&self, held: Held) -> Option<Envelope> {
         let end = self.times[0].last();
-        let is_free = |time: &u64| if held == Held::Start { *time > 0 } else { Some(time) != end };
+        let is_free = |time: &u64| !(held.start() && *time == 0 || held.end() && Some(time) == end);
         // The first unknown of each degree of freedom; free nodes are neighbours in time.
         let mut begin = vec![0];
         for own in &self.times {
-            begin.push(begin[begin.len() - 1] + own.len() - 1);
+            begin.push(begin[begin.len() - 1] + own.iter().filter(|time| is_free(time)).count());
         }
         let unknown = |i: usize, time: u64| {
             let k = self.times[i].binary_search(&time).ok().filter(|_| is_free(&time))?;
-            Some(begin[i] + k - usize::from(held == Held::Start))
+            Some(begin[i] + k - usize::from(held.start()))
         };
         let mut terms = Vec::new();
         for (i, own) in self.times.iter().enumerate() {

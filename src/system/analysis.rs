@@ -107,6 +107,8 @@ pub struct Part {
     pub size: usize,
     /// Its synchronization period: that of the clocks that act on it.
     pub period: Laurent,
+    /// Over that period. Coexistence: stable with a multiplier ±1 of its own. Over a multiple of its period, the system's say, a
+    /// multiplier that is a root of 1 may become ±1, too: that is a property of the other parts' clocks, and not counted.
     pub kind: Kind,
     pub evidence: Evidence,
     /// One for each pair of multipliers, by increasing real part of μ.
@@ -140,7 +142,7 @@ pub struct Analysis {
     pub clocks: usize,
     /// T, the synchronization period.
     pub period: Laurent,
-    /// Hyperbolic if any part is, else parabolic, else coexistence, else elliptic.
+    /// Hyperbolic if any part is, else parabolic, else coexistence, else elliptic; each over its own period, by every route.
     pub kind: Kind,
     /// The common null vectors of all potentials: they drift freely and are set apart.
     pub rigid_modes: Vec<Vec<Rational>>,

@@ -13,6 +13,7 @@
 
 use super::analysis::Analysis;
 use super::compose::{self, connected};
+use super::exact::decide_exact;
 use super::frame::Frame;
 use super::large;
 use super::limits::{Limits, Route};
@@ -66,6 +67,21 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
+}
+
+/// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
+///
+/// # Errors
+/// A budget error, before the work on the part that exceeds it.
+pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
+    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
+    let components = connected(system.size(), graphs).into_iter().filter_map(|dofs| system.component(&dofs));
+    let parts = components.flat_map(|own| {
+        let frame = Frame::new(&own);
+        pieces(own, frame)
+    });
+    let kinds = parts.map(|own| Ok(decide_exact(&own.system, limits)?.kind)).collect::<Result<Vec<_>>>()?;
+    Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
 }
 
 /// The products of doubles that a verdict costs, roughly, at the pace of eigenvalue iterations: the half period, and all

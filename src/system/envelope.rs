@@ -49,9 +49,8 @@ impl Envelope {
     /// entries of a row. Not: where a pivot is not positive, the elimination itself gives a z with zᵀ (m − c I) z no greater;
     /// the number zᵀ m z, computed with a bound, proves what it proves whatever z is.
     pub fn sign(&self, terms: usize, roundings: usize) -> Option<Sign> {
-        let largest = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
-        // ‖E‖₂ ≤ ‖E‖_∞ for symmetric E; a sum of k terms makes k − 1 roundings.
-        let slack = 1.01 * (terms + roundings) as f64 * U * largest(&self.sizes);
+        let (largest, slack) =
+            (|x: &[f64]| x.iter().copied().fold(0.0, f64::max), self.slack(terms, roundings));
         let width = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let diagonal: Vec<f64> = self.rows.iter().map(|row| row[row.len() - 1].abs()).collect();
         let norm = diagonal.iter().sum::<f64>().min(self.most_entries() as f64 * largest(&diagonal));
@@ -62,6 +61,72 @@ impl Envelope {
             None => Some(Sign::Positive),
             Some(z) => self.is_negative(&z, slack).then_some(Sign::Negative),
         }
+    }
+
+    /// How far (2-norm) the true matrix can be: ‖E‖₂ ≤ ‖E‖_∞ for symmetric E; a sum of k terms makes k − 1 roundings.
+    fn slack(&self, terms: usize, roundings: usize) -> f64 {
+        1.01 * (terms + roundings) as f64 * U * self.sizes.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Bounds on the number of negative eigenvalues of the true matrix, as in [`Envelope::sign`]: no fewer than the first are negative, no
+    /// more than the second negative or 0; `None` where elimination without exchanges is too far from the matrix.
+    ///
+    /// L D Lᵀ of m ± c I that runs to its end differs from it by at most γ |L| |D| |Lᵀ|, γ for two roundings more than a row has entries
+    /// (Higham, Accuracy and Stability, section 10.1): where that and the errors of m are within c, Sylvester's law tells.
+    pub fn negatives(&self, terms: usize, roundings: usize) -> Option<(usize, usize)> {
+        let slack = self.slack(terms, roundings);
+        Some((self.pivots(slack, 1.0)?, self.pivots(slack, -1.0)?))
+    }
+
+    /// The negative pivots of the matrix moved by c I of this sign, c more than all errors; `None` where no c tried is.
+    fn pivots(&self, slack: f64, sign: f64) -> Option<usize> {
+        let width = self.rows.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        let gamma = 1.01 * (width + 8.0) * U;
+        let mut shift = 2.0 * slack + 64.0 * gamma;
+        for _ in 0..4 {
+            if let Some((negative, size)) = self.eliminated(sign * shift) {
+                let off = 1.01 * (slack + gamma * size + 2.0 * U * shift);
+                if off <= shift {
+                    return Some(negative);
+                }
+                shift = 2.0 * off;
+            } else {
+                shift *= 4.0;
+            }
+        }
+        None
+    }
+
+    /// The negative pivots of L D Lᵀ = m + shift I, and the largest sum of a row of |L| |D| |Lᵀ|; `None` where a pivot vanishes.
+    fn eliminated(&self, shift: f64) -> Option<(usize, f64)> {
+        let n = self.rows.len();
+        let (mut factor, mut d): (Vec<Vec<f64>>, Vec<f64>) = (Vec::with_capacity(n), Vec::with_capacity(n));
+        for (i, own) in self.rows.iter().enumerate() {
+            // u_ij = l_ij d_j.
+            let (mut u, first) = (own.clone(), self.first[i]);
+            for j in first..i {
+                let (other, start) = (&factor[j], self.first[j].max(first));
+                u[j - first] -= dot(&u[start - first..j - first], &other[start - self.first[j]..]);
+            }
+            let pivot = u.pop().expect("a diagonal entry") + shift;
+            let l: Vec<f64> = u.iter().zip(&d[first..]).map(|(u, d)| u / d).collect();
+            let pivot = pivot - dot(&u, &l);
+            if !pivot.is_normal() {
+                return None;
+            }
+            d.push(pivot);
+            factor.push(l);
+        }
+        let mut sums: Vec<f64> = vec![1.0; n];
+        for (i, l) in factor.iter().enumerate() {
+            sums[self.first[i]..i].iter_mut().zip(l).for_each(|(sum, l)| *sum += l.abs());
+        }
+        sums.iter_mut().zip(&d).for_each(|(sum, d)| *sum *= d.abs());
+        let row = |(i, l): (usize, &Vec<f64>)| {
+            sums[i] + l.iter().zip(&sums[self.first[i]..]).map(|(l, sum)| l.abs() * sum).sum::<f64>()
+        };
+        let size = factor.iter().enumerate().map(row).fold(0.0, f64::max);
+        Some((d.iter().filter(|d| **d < 0.0).count(), size))
     }
 
     /// The most entries in a row of the whole matrix.

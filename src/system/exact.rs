@@ -56,7 +56,8 @@ pub struct MuCount {
     pub complex: usize,
 }
 
-/// The exact verdict on a system; its rigid modes are set apart.
+/// The exact verdict on a system as one, over its whole period; its rigid modes are set apart. Parts that its other clocks leave alone have
+/// shorter periods: what is elliptic over one of these may be coexistence over the whole (see [`Part`](super::Part)).
 ///
 /// # Errors
 /// A budget error with the estimated cost, before any work.
@@ -183,7 +184,7 @@ fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64>
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
-    use crate::system::{Potential, Symmetric};
+    use crate::system::{Potential, Symmetric, decide_system, exact_kind};
 
     /// Numbers that repeat, from 0 to n − 1.
     struct Numbers(u64);
@@ -195,10 +196,12 @@ mod tests {
         }
     }
 
-    /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 4, turned by (3, 4, 5).
+    /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 5, turned by (3, 4, 5); of these a third with two modes
+    /// alike (multiple multipliers, of both of Krein's signs where single stiffnesses differ), a third with a rigid mode.
     fn system(numbers: &mut Numbers) -> System {
         let n = 1 + numbers.below(3) as usize;
         let edges = numbers.below(2) == 0;
+        let special = numbers.below(3);
         let turn: Vec<Vec<Rational>> = (0..n)
             .map(|i| {
                 let entry = |j: usize| match (i, j) {
@@ -211,10 +214,16 @@ mod tests {
             })
             .collect();
         let mut potential = |step: i64| {
-            let mut stiffness = Symmetric::zero(n);
+            let (mut stiffness, mut last) = (Symmetric::zero(n), 0);
             for i in 0..n {
                 for j in 0..=i {
-                    let x = if edges && i != j { 0 } else { numbers.below(6) - i64::from(!edges) };
+                    let x = match (edges, i == j) {
+                        (true, false) => 0,
+                        (true, true) if n > 1 && i == 1 && special == 0 => last,
+                        (true, true) if n > 1 && i == 1 && special == 1 => 0,
+                        _ => numbers.below(6) - i64::from(!edges),
+                    };
+                    last = x;
                     stiffness.add(i, j, &if edges { ratio(x, step) } else { ratio(x, 4) });
                 }
             }
@@ -224,18 +233,42 @@ mod tests {
         System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials).unwrap()
     }
 
-    #[test]
-    fn signs_of_forms_agree_with_characteristic_polynomials() {
+    /// By forms where one is definite, by doubles or whatever tells, and by characteristic polynomials: how often which kind came of forms.
+    fn agreed(count: usize) -> std::collections::BTreeMap<&'static str, usize> {
         let (mut numbers, limits) = (Numbers(7), Limits::default());
         let mut decided = std::collections::BTreeMap::new();
-        for _ in 0..3000 {
+        for _ in 0..count {
             let system = system(&mut numbers);
             let frame = Frame::new(&system);
-            let Some(kind) = decide_by_signs(&system, &frame, &limits).unwrap() else { continue };
-            assert_eq!(kind, decide_exact(&system, &limits).unwrap().kind, "{system:?}");
-            *decided.entry(kind.name()).or_insert(0) += 1;
+            let kind = decide_exact(&system, &limits).unwrap().kind;
+            let parts = exact_kind(&system, &limits).unwrap();
+            let analysis = decide_system(&system, &limits).unwrap();
+            assert!(
+                analysis.is_proof() && analysis.kind == parts,
+                "{:?} {parts:?} {system:?}",
+                analysis.kind
+            );
+            if !frame.rigid.is_empty() {
+                *decided.entry("rigid").or_insert(0) += 1;
+            }
+            let Some(own) = decide_by_signs(&system, &frame, &limits).unwrap() else { continue };
+            assert_eq!(own, kind, "{system:?}");
+            *decided.entry(own.name()).or_insert(0) += 1;
         }
+        decided
+    }
+
+    #[test]
+    fn signs_of_forms_agree_with_characteristic_polynomials() {
+        let decided = agreed(600);
         // Coexistence has no definite form.
-        assert!(["elliptic", "parabolic", "hyperbolic"].iter().all(|kind| decided[kind] > 30), "{decided:?}");
+        let seen = ["elliptic", "parabolic", "hyperbolic", "rigid"].iter().all(|kind| decided[kind] > 10);
+        assert!(seen, "{decided:?}");
+    }
+
+    #[test]
+    #[ignore = "half a minute, optimized"]
+    fn signs_of_forms_agree_with_characteristic_polynomials_of_10_000_systems() {
+        println!("10,000 systems of 1 to 3 degrees of freedom, all equal; by forms {:?}", agreed(10_000));
     }
 }

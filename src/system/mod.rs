@@ -83,7 +83,7 @@ pub mod vary;
 pub use along::{OwnOrbit, decide_along};
 pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
 pub use compose::{full_period, half_period};
-pub use decide::{decide_by, decide_system, verdict_cost};
+pub use decide::{decide_by, decide_system, exact_kind, verdict_cost};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
 pub use limits::{Limits, Route};
 pub use measured::{Holds, Measured, Removed};

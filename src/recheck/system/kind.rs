@@ -3,16 +3,16 @@
 use crate::error::{Error, Result};
 use crate::recheck::context::{Checked, same};
 use crate::scene::SystemScene;
-use crate::system::{Limits, decide_exact};
+use crate::system::{self, Limits};
 use crate::verdict::Kind;
 
-/// The kind by characteristic polynomials over ℚ; of an oscillator with π by the four signs over ℚ\[π\].
+/// The kind by characteristic polynomials over ℚ, part by part; of an oscillator with π by the four signs over ℚ\[π\].
 ///
 /// # Errors
 /// A budget error with the cost, before any work.
 pub fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Kind> {
     let Some(clocks) = scene.many_clocks() else {
-        return Ok(decide_exact(scene.system(), limits)?.kind);
+        return system::exact_kind(scene.system(), limits);
     };
     let kicks = clocks.schedule().strikes();
     // Kick by kick over ℚ[π], whose numbers grow by some words with each kick.

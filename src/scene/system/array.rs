@@ -7,7 +7,7 @@ use std::fs::File;
 #[cfg(feature = "npz")]
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::DMatrix;
 use serde::Deserialize;
@@ -19,9 +19,9 @@ use crate::error::{Error, Result};
 const MOST_ELEMENTS: usize = 1 << 24;
 
 /// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}` or `{"mm": "k.mtx"}`; paths are relative to the file that holds them.
-#[derive(Clone, Debug, Deserialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(deny_unknown_fields, untagged)]
-pub(super) enum Reference {
+pub(crate) enum Reference {
     Npy { npy: String },
     Npz { npz: String, array: String },
     Mm { mm: String },
@@ -38,14 +38,21 @@ pub struct Array {
 /// their archive.
 #[derive(Clone, Debug)]
 pub enum Arrays {
-    In(PathBuf),
+    In(Folder),
     Held(Arc<BTreeMap<String, Array>>),
 }
 
 impl<P: AsRef<Path> + ?Sized> From<&P> for Arrays {
     fn from(folder: &P) -> Self {
-        Arrays::In(folder.as_ref().into())
+        Arrays::In(Folder { path: folder.as_ref().into(), read: Arc::default() })
     }
+}
+
+/// A folder, and the arrays that were read from it: of one file, and of all that differ from it in some number, each once.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+    read: Arc<Mutex<BTreeMap<Reference, Array>>>,
 }
 
 impl Reference {
@@ -54,10 +61,21 @@ impl Reference {
     /// # Errors
     /// An I/O error; bad input by `field` where the file is no such array, and where none of this name is held.
     pub fn read(&self, field: &str, arrays: &Arrays) -> Result<Array> {
-        let folder = match arrays {
-            Arrays::In(folder) => folder,
-            Arrays::Held(held) => return self.held(field, held),
-        };
+        match arrays {
+            Arrays::Held(held) => self.held(field, held),
+            Arrays::In(folder) => {
+                let mut read = folder.read.lock().unwrap_or_else(PoisonError::into_inner);
+                if let Some(array) = read.get(self) {
+                    return Ok(array.clone());
+                }
+                let array = self.in_folder(field, &folder.path)?;
+                read.insert(self.clone(), array.clone());
+                Ok(array)
+            }
+        }
+    }
+
+    fn in_folder(&self, field: &str, folder: &Path) -> Result<Array> {
         let io = |path: &Path, cause: std::io::Error| Error::io(path.display(), &cause).caused_by(cause);
         let (path, bytes) = match self {
             Reference::Mm { mm } => {

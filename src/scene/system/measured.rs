@@ -183,8 +183,7 @@ impl Measured {
     /// Takes over what was asked of another of the same file, and its eigenbasis where the stiffnesses are the same.
     pub fn follow(&mut self, other: &Measured) {
         (self.accuracy, self.keeps_rigid) = (other.accuracy, other.keeps_rigid);
-        let stiffnesses = |own: &Measured| own.potentials.iter().map(|(_, k)| k).cloned().collect::<Vec<_>>();
-        if stiffnesses(self) == stiffnesses(other) {
+        if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
             self.kernel = Arc::clone(&other.kernel);
         }
     }
