@@ -1,9 +1,11 @@
 // The program, the browser, and what the tests read from both.
 
+import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { mkdirSync, readFileSync, rmSync, mkdtempSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { after, afterEach, before } from "node:test";
 import { chromium } from "playwright-core";
 
 export const PROGRAM = process.env.KICKDRIFT;
@@ -42,7 +44,7 @@ export async function browser() {
 }
 
 /** A page on the address; `faults` collects what went wrong in it by itself. */
-export async function open(context, address, { hash = "", width = 1280, height = 860, scheme = "light", motion = "reduce" } = {}) {
+export async function open(context, address, { hash = "", width = 1280, height = 860, scheme = "light", motion = "reduce", ready = true } = {}) {
   const page = await context.newPage();
   await page.setViewportSize({ width, height });
   await page.emulateMedia({ colorScheme: scheme, reducedMotion: motion });
@@ -50,9 +52,47 @@ export async function open(context, address, { hash = "", width = 1280, height =
   page.on("pageerror", (error) => page.faults.push(error.stack));
   page.on("console", (message) => /Content Security Policy/i.test(message.text()) && page.faults.push(message.text()));
   await page.goto(address + hash);
+  if (!ready) return page;
   await page.evaluate(() => window.kickdrift.ready);
   await settled(page);
   return page;
+}
+
+export const SPRINGS = ["--lambda1", "pi^2", "--lambda2", "pi^2/25"];
+
+/**
+ * For the tests of a file one program and one browser. `opened(options)`: a page on it, closed after the test; a test whose page threw, or
+ * asked for what its policy forbids, fails. `beside(options)`: another, for the caller to close.
+ */
+export function stage() {
+  let server, chrome, page;
+  before(async () => ([server, chrome] = await Promise.all([serve(), browser()])));
+  after(async () => {
+    await chrome?.close();
+    server?.stop();
+  });
+  afterEach(async () => {
+    const faults = page?.faults ?? [];
+    await page?.close();
+    page = null;
+    assert.deepEqual(faults, []);
+  });
+  const beside = ({ address = server.address, ...options } = {}) => open(chrome.context, address, options);
+  return { address: () => server.address, beside, opened: async (options) => (page = await beside(options)) };
+}
+
+/** Is what the card says what the program says about that very pair? */
+export async function agreesWithTheProgram(page) {
+  const shown = await card(page);
+  const told = JSON.parse(kickdrift("verdict", ...SPRINGS, "--h1", shown.h1, "--h2", shown.h2, "--format", "json"));
+  assert.deepEqual([told.input.h1, told.input.h2, told.kind], [shown.h1, shown.h2, shown.kind]);
+  return { shown, told };
+}
+
+/** The file that a click hands out. */
+export async function file(page, selector) {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(selector)]);
+  return readFileSync(await download.path());
 }
 
 /** Waits until no tile that the screen shows is on its way, and past the delay after which lines are asked for and addresses written. */
@@ -62,7 +102,7 @@ export async function settled(page) {
     return status && !status.waiting && !map.moving && !map.due;
   };
   await page.waitForFunction(quiet, null, { timeout: 180_000 });
-  await page.waitForTimeout(500);
+  await page.waitForTimeout(450);
   await page.waitForFunction(quiet, null, { timeout: 180_000 });
 }
 

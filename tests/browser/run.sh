@@ -24,10 +24,13 @@ if [ -z "${KICKDRIFT:-}" ]; then
     export KICKDRIFT=$target/release/kickdrift
 fi
 
+KICKDRIFT_SYSTEM=$(cd ../../data/scenes && pwd)/two-bars.json
+export KICKDRIFT_SYSTEM
+
 # The packages lie beside the copy of the tests in a scratch folder: nothing is written into the repository.
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cp ./*.mjs package.json package-lock.json "$scratch"
 cd "$scratch"
 npm ci --silent --no-audit --no-fund
-node --test --test-concurrency=1 explore.test.mjs
+node --test --test-concurrency=1

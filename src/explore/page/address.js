@@ -14,14 +14,11 @@ export function read(hash) {
   return Object.fromEntries(Object.entries(KEYS).map(([key, short]) => [key, query.get(short) ?? ""]));
 }
 
-/** Undo and redo over the browser's own history, or over a list where the page is a guest and the address not ours. */
+/** Undo and redo over the browser's own history until `signal`, or over a list where the page is a guest and the address not ours. */
 export class Past {
-  constructor(own, restore) {
+  constructor(own, restore, signal) {
     Object.assign(this, { own, restore, list: [], at: -1, timer: null });
-    if (own) {
-      this.listen = () => restore(read(location.hash));
-      addEventListener("popstate", this.listen);
-    }
+    if (own) addEventListener("popstate", () => restore(read(location.hash)), { signal });
   }
 
   get #place() {

@@ -37,16 +37,16 @@ export function readout(host, pair, kind, told, unit, note) {
 }
 
 const row = (name, ...value) => [h("dt", {}, ...[name].flat()), h("dd", {}, ...value)];
-const interval = (lower, upper) => [h("span.number", {}, enclosure(lower)), " … ", upper ? h("span.number", {}, enclosure(upper)) : "∞"];
+const interval = (lower, upper, unit) => [h("span.end", {}, h("span.number", {}, enclosure(lower)), " to"), h("span.end", {}, h("span.number", {}, upper ? enclosure(upper) : "∞"), unit ? ` ${unit}` : "")];
 
 function tongueRows(tongue, unit) {
   if (!tongue) return [];
-  const edge = (axis) => interval(tongue.lower[axis], tongue.upper?.[axis]);
+  const edge = (axis) => interval(tongue.lower[axis], tongue.upper?.[axis], axis === "s" ? null : unit);
   return [
     row("tongue", h("i", {}, "m"), ` = ${tongue.m}, family (${tongue.a}, ${tongue.b})`.replace(/-/g, "−")),
-    row(["edges in ", step(1)], ...edge("h1"), ` ${unit}`),
-    row(["edges in ", step(2)], ...edge("h2"), ` ${unit}`),
-    tongue.lower.s ? row(["edges in ", h("i", {}, "s")], ...interval(tongue.lower.s, tongue.upper?.s)) : [],
+    row(["edges in ", step(1)], ...edge("h1")),
+    row(["edges in ", step(2)], ...edge("h2")),
+    tongue.lower.s ? row(["edges in ", h("i", {}, "s")], ...edge("s")) : [],
   ].flat();
 }
 

@@ -29,6 +29,13 @@ export const unique = (name) => (mounts > 1 ? `${name}-${mounts}` : name);
 /** h₁ as the figures write it. */
 export const step = (index) => h("span.step", {}, h("i", {}, "h"), h("sub", {}, String(index)));
 
+/** Text with quantities as the figures set them: d₁, h₂ and p + q become italic letters with indices. */
+export const formulas = (said) =>
+  said.split(/([dh][₁₂]|p \+ q)/).map((part) => {
+    if (part === "p + q") return [h("i", {}, "p"), " + ", h("i", {}, "q")];
+    return /^[dh][₁₂]$/.test(part) ? [h("i", {}, part[0]), h("sub", {}, part[1] === "₁" ? "1" : "2")] : part;
+  }).flat();
+
 const ICONS = {
   plus: "M8 3v10M3 8h10",
   minus: "M3 8h10",

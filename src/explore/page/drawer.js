@@ -98,9 +98,10 @@ export class Drawer {
       this.title.replaceChildren("Tongues of ", step(2), "/", step(1), " = ", what.ratio);
       this.extra.append(h("label.entry", {}, h("i", {}, "p/q"), input));
     } else {
-      const input = h("input", { value: what.outer ?? "", placeholder: "1/10..1/2", size: 10, "aria-label": "Range of the outer step, lo..hi", onchange: () => this.act.outer(input.value.trim() || null) });
+      const input = h("input", { value: what.outer ?? "", placeholder: "from..to", size: 10, "aria-label": "Range of the outer step, from..to", onchange: () => this.act.outer(input.value.trim() || null) });
+      this.range = input;
       this.title.replaceChildren("Growth against the outer step");
-      this.extra.append(h("label.entry.wide", {}, "from .. to", input));
+      this.extra.append(h("label.entry.wide", {}, "range", input));
     }
   }
 
@@ -156,21 +157,21 @@ export class Drawer {
     this.below.replaceChildren(said, ...(closings.length ? [table(closings.length === 1 ? "1 closing" : `${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
   }
 
-  _system({ outer, rate, kind, stretches, own, verdict, unit: named }) {
+  _system({ outer, rate, stretches, own, verdict, unit: named }) {
     const { palette } = this.shared();
     const unit = named ?? "time";
-    const spans = (stretches ?? []).filter((s) => s.verdict !== "stable" && s.verdict !== "elliptic").map(({ lo, hi, verdict: said }) => ({ lo, hi, label: said }));
-    const layers = [{ kind: "spans", colour: css(palette.accent), spans }, { kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }, { kind: "upright", at: own, colour: css(palette.ink) }];
-    for (const [name, value] of [["parabolic", 2], ["coexistence", 3]]) {
-      const at = outer.filter((_, k) => kind?.[k] === name);
-      layers.push({ kind: "points", x: at, y: at.map(() => 0), colour: css(palette.kinds[value]) });
-    }
+    this.range.placeholder = `${number(outer[0])}..${number(outer.at(-1))}`;
+    // Proven unstable, and what the bounds do not decide; the rest is proven stable.
+    const spans = (wanted, colour) => ({ kind: "spans", colour: css(colour), spans: (stretches ?? []).filter((own) => own.verdict === wanted).map(({ lo, hi, verdict: label }) => ({ lo, hi, label })) });
+    const shades = [spans("unstable", palette.accent), spans("the data do not tell", palette.faint)];
+    const layers = [...shades, { kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }, { kind: "upright", at: own, colour: css(palette.ink) }];
     plot(this.field, {
       x: { lo: outer[0], hi: outer.at(-1), title: `outer step (${unit})` },
       y: { ...upward(rate), title: `growth rate (1/${unit})` },
       layers, label: "Growth rate against the outer step",
     });
-    this.below.replaceChildren(...told(verdict, own, unit));
+    const says = [`proven unstable on ${shades[0].spans.length}`, `not decided on ${shades[1].spans.length}`];
+    this.below.replaceChildren(...told(verdict, own, unit), ...(stretches ? [h("p.quiet", {}, `Of the intervals of outer steps it is ${says.join(" (red), ")} (grey); on the others it is proven stable.`)] : []));
   }
 }
 

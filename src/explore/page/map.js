@@ -64,12 +64,20 @@ export class StabilityMap {
     this.pale = null;
     const status = this.#cells(now);
     status.pale = this.pale;
+    this.#mark(status);
     this.#lines(now, status);
     this.#outside(palette);
     this.#marks(now);
     context.restore();
     status.offsets = drawAxes(context, view, palette, box, now.unit, this.narrow);
     this.report({ ...status, level: view.level, sum: this.vectors.shownSum(this.view), refused: this.vectors.refused });
+  }
+
+  /** For whoever traces the page: the first picture with a cell, and the first with all. */
+  #mark({ cells, waiting }) {
+    for (const [name, holds] of [["first cells", cells], ["all cells", cells && !waiting]]) {
+      if (holds && performance.getEntriesByName(name).length === 0) performance.mark(name);
+    }
   }
 
   /** Draws what is here of the tiles, and asks for what is not. */
@@ -90,7 +98,8 @@ export class StabilityMap {
     const coarser = costly ? this.#affordable(now.layer) : [];
     const ring = lacking === 0 && !this.moving && tiles.quick ? view.tiles(level, 1) : [];
     tiles.want(now.layer, lacking ? [...shown, ...coarser] : ring);
-    return { costly, lacking, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
+    this.bare = here.map((tile, k) => (tile ? null : view.tileBox(shown[k]))).filter(Boolean);
+    return { costly, cells: lacking < shown.length, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
   }
 
   /** The tiles of the finest level at most four above that no refusal is known of: pale, they show where one is. */
@@ -100,6 +109,11 @@ export class StabilityMap {
       if (!places.some((place) => this.tiles.cost(layer, place))) return places;
     }
     return [];
+  }
+
+  /** Is a pixel in none of the tiles that are here? */
+  #isBare([x, y]) {
+    return this.bare.some(([l, t, r, b]) => x >= l && x < r && y >= t && y < b);
   }
 
   /** Tiles of neighbouring levels, while those of this one are on their way. */
@@ -143,10 +157,22 @@ export class StabilityMap {
     if (now.curves) labels.push(...vectors.drawCurves(context, view, now.palette));
     if (shown) {
       const style = { over: !byCost && now.layer.what !== "family", byFamily: now.layer.what === "family" };
-      labels.unshift(...vectors.drawTongues(context, view, now.palette, style));
+      context.save();
+      if (byCost) this.#clip();
+      const found = vectors.drawTongues(context, view, now.palette, style);
+      context.restore();
+      labels.unshift(...(byCost ? found.filter(({ spots }) => this.#isBare(spots[0])) : found));
     }
     if (now.labels) drawLabels(context, labels, now.palette, `14px ${SERIF}`, view);
     status.vectors = shown;
+  }
+
+  /** Lines that stand for cells are drawn where there are none. */
+  #clip() {
+    const { context } = this;
+    context.beginPath();
+    for (const [l, t, r, b] of this.bare) context.rect(l, t, r - l, b - t);
+    context.clip();
   }
 
   /** Steps are positive: what lies below zero is no part of the map. */

@@ -117,14 +117,15 @@ export function going(act) {
   return { element: section("Go to", form, said) };
 }
 
-export function saving(act) {
+export function saving(act, own) {
   const said = h("p.quiet", { role: "status" });
   const button = (label, title, work) => h("button", { type: "button", title, onclick: async () => (said.textContent = (await work()) ?? "") }, label);
   return {
     element: section("Save and share",
       h("div.row", {},
         button("SVG", "The picture, drawn by the program", () => act.picture("svg")), button("PNG", "The picture as pixels", () => act.picture("png")),
-        button("Scene file", "What is shown, for kickdrift run", act.scene), button("Copy link", "The address of this view", act.link)),
+        button("Scene file", "What is shown, for kickdrift run", act.scene),
+        own ? button("Copy link", "The address of this view", act.link) : null),
       said),
   };
 }

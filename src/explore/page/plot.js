@@ -129,7 +129,7 @@ const DRAW = {
       const [a, b] = [Math.max(box.left, fx(lo)), Math.min(box.right, hi === null ? box.right : fx(hi))];
       if (b < box.left || a > box.right) continue;
       svg.append(h("rect", { x: a, y: box.top, width: Math.max(1, b - a), height: box.bottom - box.top, fill: colour, "fill-opacity": 0.16 }, h("title", {}, label)));
-      if (b - a > 46) svg.append(h("text", { x: (a + b) / 2, y: box.top + 16, "text-anchor": "middle" }, label));
+      if (b - a > 7.5 * label.length) svg.append(h("text", { x: (a + b) / 2, y: box.top + 16, "text-anchor": "middle" }, label));
     }
   },
 };

@@ -175,6 +175,7 @@ export function drawLabels(context, labels, colours, font, { width: across, heig
   const taken = [];
   context.font = font;
   context.textBaseline = "alphabetic";
+  context.textAlign = "left";
   context.lineJoin = "round";
   for (const { words, spots: places } of labels.slice(0, 400)) {
     if (taken.length >= (across * down) / 9000) break;
