@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::error::Result;
 use crate::number::{Laurent, Ratio, Rational, Real};
+use crate::parallel::go_on;
 use crate::report::document::enclosure;
 use crate::tongue::{Edge, Quantity, Request, Tongue, TongueEdge, Tongues};
 
@@ -62,6 +63,7 @@ impl Ray {
     fn begun(&self, s: &Laurent) -> Result<u64> {
         let (mut begun, mut not) = (0, self.tongues.last() + 1);
         while not - begun > 1 {
+            go_on()?;
             let m = begun + (not - begun) / 2;
             match self.compare(&self.tongues.gap(m)?.lower, s)? {
                 Ordering::Greater => not = m,

@@ -78,6 +78,8 @@ struct Shared {
     queue: Semaphore,
     /// Places to work in: for questions that take long, and for those that are answered at once.
     lanes: [Arc<Semaphore>; 2],
+    /// [`LONGEST`].
+    longest: Duration,
 }
 
 impl Server {
@@ -109,6 +111,7 @@ impl Server {
             hosts: ["127.0.0.1", "localhost", "[::1]"].map(|host| format!("{host}:{port}")),
             queue: Semaphore::new(WAITING),
             lanes: [threads, AT_ONCE].map(|places| Arc::new(Semaphore::new(places))),
+            longest: LONGEST,
         };
         Ok(Server { runtime, listener, shared })
     }
@@ -203,7 +206,7 @@ impl Shared {
             ask(&session, question.name, &query, &stopped)
         });
         let failed = (StatusCode::INTERNAL_SERVER_ERROR, "this question broke the program: please report it");
-        match timeout(LONGEST, done).await {
+        match timeout(self.longest, done).await {
             Ok(done) => done.ok().flatten().ok_or(failed),
             Err(_) => Ok(Reply::too_costly(None, question.limit, "this takes longer than half a minute")),
         }
@@ -247,4 +250,27 @@ fn refuse(status: StatusCode, words: &'static str) -> Response<Body> {
     };
     response.headers_mut().insert(name, HeaderValue::from_static(value));
     response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_too_long_is_cut_off_and_ends() {
+        let mut server = Server::bind(Session::figure1(), 0, 1).unwrap();
+        server.shared.longest = Duration::from_millis(200);
+        let (token, host) = (&server.shared.token, &server.shared.hosts[0]);
+        // Millions of pairs: more than a second of any machine.
+        let uri = format!("/{token}/picture?h1=1/2..3/5&h2=1/2..3/5&step=1/19000");
+        let head = Request::get(uri).header(header::HOST, host).body(Body::empty()).unwrap().into_parts().0;
+        server.runtime.block_on(async {
+            let reply = server.shared.answer(&head).await.unwrap();
+            let body: serde_json::Value = serde_json::from_slice(&reply.bytes).unwrap();
+            let message = body["too_costly"]["message"].as_str();
+            assert_eq!((reply.status, message), (422, Some("this takes longer than half a minute")));
+            // The place that it held is free soon.
+            timeout(Duration::from_secs(20), server.shared.lanes[0].acquire()).await.unwrap().unwrap();
+        });
+    }
 }

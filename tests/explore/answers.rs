@@ -2,7 +2,8 @@
 
 use std::process::Command;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use kickdrift::explore::{Reply, Session, ask};
 use kickdrift::map::{Enclosure, Grid, Map, Products};
@@ -364,6 +365,24 @@ fn a_system_grows_where_its_own_verdict_says() {
     assert_ne!(holds["verdict"], opposite, "{holds}");
     let start: Value = serde_json::from_slice(&ask(&session, "start", "", &stop).unwrap().bytes).unwrap();
     assert!(start["lambda1"].is_null() && start["system"].is_object());
+}
+
+/// Some 20 s of an optimized program for the trace of an elliptic pair: two solutions of 10^6 kicks in bits.
+#[test]
+fn a_point_is_stopped_on_its_way() {
+    let (stop, session) = (Arc::<AtomicBool>::default(), Session::figure1());
+    std::thread::scope(|scope| {
+        let asked = scope.spawn(|| ask(&session, "point", "h1=1/999999&h2=1/999983", &stop).unwrap());
+        std::thread::sleep(Duration::from_millis(300));
+        assert!(!asked.is_finished());
+        stop.store(true, Ordering::Relaxed);
+        let told = Instant::now();
+        let body: Value = serde_json::from_slice(&asked.join().unwrap().bytes).unwrap();
+        // The rest of the schedule is passed by, which a program without optimization takes seconds for.
+        let patience = Duration::from_secs(if cfg!(debug_assertions) { 30 } else { 2 });
+        assert!(told.elapsed() < patience, "{:?}", told.elapsed());
+        assert_eq!(body["error"]["remedy"], "stopped before its end", "{body}");
+    });
 }
 
 #[test]
