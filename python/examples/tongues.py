@@ -11,6 +11,12 @@ seven_thirds.plot()
 seven_thirds.to_pandas()[["m", "a", "b", "lower_lo", "upper_hi", "width_lo"]]
 
 # %% [markdown]
+# The plane that they lie in, to move in: drag, zoom, point at a tongue, cut along a ratio.
+
+# %%
+kd.explore(lambda1="pi^2", lambda2="pi^2/25")
+
+# %% [markdown]
 # One edge to fifty digits, and a recheck of the whole list by exact signs at both ends of each edge.
 
 # %%

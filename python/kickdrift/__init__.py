@@ -13,6 +13,7 @@ unstable: hyperbolic, Tr Q < -2; exponential growth
 from kickdrift._advise import Advice, SystemAdvice, advise
 from kickdrift._document import Document, Row, Table
 from kickdrift._errors import BudgetError, KickdriftError
+from kickdrift._explore import explore
 from kickdrift._map import Map, map
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Labels, Range, number
@@ -63,6 +64,7 @@ __all__ = [
     "compare",
     "curves",
     "decide",
+    "explore",
     "main",
     "map",
     "number",

@@ -8,7 +8,9 @@ import numpy.typing as npt
 __all__ = [
     "Map",
     "Number",
+    "Page",
     "Pair",
+    "Stop",
     "answer",
     "decide",
     "main",
@@ -59,6 +61,19 @@ class Pair:
 class Map:
     def render(self, format: str) -> str: ...
     def svg(self, verdict: npt.NDArray[np.uint8], tier: npt.NDArray[np.uint8]) -> str: ...
+
+@final
+class Stop:
+    def __new__(cls) -> Stop: ...
+    def set(self) -> None: ...
+
+@final
+class Page:
+    @staticmethod
+    def of_springs(lambda1: str, lambda2: str, window: Sequence[str] | None, unit: str | None) -> Page: ...
+    @staticmethod
+    def of_system(text: str, arrays: Mapping[str, npt.NDArray[np.float64]], folder: str | None) -> Page: ...
+    def ask(self, path: str, query: str, stop: Stop) -> tuple[int, str, bytes]: ...
 
 def names() -> tuple[list[str], list[str]]: ...
 def number(field: str, value: Any) -> Number: ...

@@ -6,6 +6,7 @@ mod error;
 mod job;
 mod map;
 mod number;
+mod page;
 mod pair;
 mod pairs;
 mod program;
@@ -17,6 +18,8 @@ mod _native {
     use crate::map::{Map, map, multipliers};
     #[pymodule_export]
     use crate::number::{Number, number};
+    #[pymodule_export]
+    use crate::page::{Page, Stop};
     #[pymodule_export]
     use crate::pair::{Pair, decide};
     #[pymodule_export]

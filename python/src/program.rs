@@ -33,15 +33,20 @@ pub fn answer<'py>(
     arrays: Option<BTreeMap<String, PyReadonlyArrayDyn<'py, f64>>>,
 ) -> PyResult<Bound<'py, PyBytes>> {
     let name = OsString::from("kickdrift");
-    let array = |(name, own): (String, PyReadonlyArrayDyn<'py, f64>)| {
+    let arrays = held(arrays.unwrap_or_default())?;
+    let held = text.map(|text| cli::Held { text, arrays });
+    let bytes = job::run(py, move |_| cli::answer_about(std::iter::once(name).chain(arguments), held))?;
+    Ok(PyBytes::new(py, &bytes))
+}
+
+/// Arrays in memory that a system refers to by name.
+pub fn held(arrays: BTreeMap<String, PyReadonlyArrayDyn<'_, f64>>) -> PyResult<Arrays> {
+    let array = |(name, own): (String, PyReadonlyArrayDyn<'_, f64>)| {
         let values = own.as_array().iter().copied().collect();
         let array = Array::new(own.shape().to_vec(), values).map_err(|error| raised(&error.at(&name)))?;
         Ok((name, array))
     };
-    let arrays = arrays.unwrap_or_default().into_iter().map(array).collect::<PyResult<BTreeMap<_, _>>>()?;
-    let held = text.map(|text| cli::Held { text, arrays: Arrays::Held(Arc::new(arrays)) });
-    let bytes = job::run(py, move |_| cli::answer_about(std::iter::once(name).chain(arguments), held))?;
-    Ok(PyBytes::new(py, &bytes))
+    Ok(Arrays::Held(Arc::new(arrays.into_iter().map(array).collect::<PyResult<_>>()?)))
 }
 
 /// How many rows hold, by which route, the sample drawn, what is not rechecked, and the rows that fail with what they
