@@ -9,8 +9,10 @@ use kickdrift::map::Map;
 use kickdrift::number::Ratio;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::propagator::TwoClocks;
+use kickdrift::system::levels::{Hessians, Kernel, Outer};
 use kickdrift::tongue::{Edge, Tongues};
 use kickdrift::verdict::{Limits, decide, exact_trace};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 mod common;
@@ -35,6 +37,35 @@ fn main() {
     for max_sum in [30, 100] {
         edges(folder, max_sum);
     }
+    levels(folder);
+}
+
+/// Two dense levels of 288 degrees of freedom, four inner steps: a verdict from the matrices on, and ten outer steps in one eigenbasis.
+fn levels(folder: &Path) {
+    let n = 288;
+    // Weyl's sequence: numbers in [−1, 1) without a pattern.
+    let mut count = 0.0;
+    let mut definite = |scale: f64| {
+        let g = DMatrix::from_fn(n, n, |_, _| {
+            count += 1.0;
+            2.0 * (count * 0.754_877_666_246_692_7_f64).fract() - 1.0
+        });
+        (&g * g.transpose() / n as f64 + DMatrix::identity(n, n) * 0.1) * scale
+    };
+    let (fast, slow) = (definite(1.0), definite(0.05));
+    for (name, matrix) in [("fast", &fast), ("slow", &slow)] {
+        let rows = matrix.row_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
+        write(folder, name, &rows.collect::<Vec<_>>().join("\n"));
+    }
+    let kernel = || Kernel::new(&Hessians::new(&fast, &slow, 1e-9).expect("two Hessians")).expect("a basis");
+    let verdict =
+        |kernel: &Kernel, step: f64| kernel.verdict_within(&Outer::new(step, 4).expect("a step"), 0.0).name();
+    let one = timed("levels_288", || verdict(&kernel(), 1.0));
+    let ten = timed("levels_288_ten", || {
+        let kernel = kernel();
+        (1..=10).map(|k| verdict(&kernel, 0.3 * f64::from(k))).collect::<Vec<_>>()
+    });
+    write(folder, "levels_288", &[vec![one], ten].concat().join("\n"));
 }
 
 fn write(folder: &Path, name: &str, text: &str) {

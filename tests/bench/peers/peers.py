@@ -293,6 +293,33 @@ def many_digits(folder, times):
     row(f"{len(found)} edges of 13/7, 30 digits", "mpmath `eigsy`, 40 digits", seconds, times["edges_30_digits"], answers)
 
 
+# Two dense levels.
+
+
+def dense_unstable(fast, slow, step, inner=4):
+    n, h = len(fast), step / inner
+    one, none = np.eye(n), np.zeros((n, n))
+    kick = lambda k, time: np.block([[one, none], [-time * k, one]])
+    drift = np.block([[one, h * one], [none, one]])
+    steps = np.linalg.matrix_power(kick(fast, h / 2) @ drift @ kick(fast, h / 2), inner)
+    values = np.linalg.eigvals(kick(slow, step / 2) @ steps @ kick(slow, step / 2))
+    # Multipliers near 1 and -1 are good to the root of rounding.
+    return np.abs(values).max() > 1 + 1e-6
+
+
+def dense_levels(folder, times):
+    fast, slow = np.loadtxt(folder / "fast"), np.loadtxt(folder / "slow")
+    one, *ten = (folder / "levels_288").read_text().split("\n")
+    peer = "NumPy, `eigvals` of the 2n x 2n period"
+    for work, steps, name, mine in [
+        ("verdict on two dense levels, n = 288", [1.0], "levels_288", [one]),
+        ("verdicts at ten outer steps, n = 288", [0.3 * k for k in range(1, 11)], "levels_288_ten", ten),
+    ]:
+        seconds, found = timed(lambda: [dense_unstable(fast, slow, step) for step in steps])
+        equal = sum(["stable", "unstable"][int(theirs)] == ours for theirs, ours in zip(found, mine))
+        row(work, peer, seconds, times[name], f"{equal} of {len(mine)} equal")
+
+
 def processor():
     lines = Path("/proc/cpuinfo").read_text().split("\n") if Path("/proc/cpuinfo").exists() else []
     names = [line.split(":")[1].strip() for line in lines if line.startswith("model name")]
@@ -308,6 +335,7 @@ def main():
         long_period(folder, times)
         edges(folder, times)
         many_digits(folder, times)
+        dense_levels(folder, times)
     print("load after:", os.getloadavg())
     print(f"\n{datetime.date.today()}, {processor()}, {os.cpu_count()} cores, {platform.system()}\n")
     print("| work | peer | its time | ours | ratio | peer's answers |\n|---|---|---|---|---|---|")
