@@ -64,7 +64,7 @@ test("figures, traced by the browser: first picture, frames while dragging", asy
     await page.waitForFunction(() => performance.getEntriesByName("all cells").length > 0);
   });
   const began = opening.findLast(({ name, args }) => name === "navigationStart" && args.data?.documentLoaderURL?.startsWith(address())).ts;
-  const since = (named) => ((opening.find(({ name, ts }) => name === named && ts > began).ts - began) / 1000).toFixed(0);
+  const since = (named) => ((opening.find(({ name, ts }) => name === named && ts > began)?.ts - began) / 1000).toFixed(0);
   t.diagnostic(`after opening: first contentful paint ${since("firstContentfulPaint")} ms, first cells ${since("first cells")} ms, all cells ${since("all cells")} ms`);
   await settled(page);
   const [x, y] = await spot(page);

@@ -13,7 +13,7 @@ const label = ({ m, a, b }) => minus(`m = ${m} (${a}, ${b})`);
 /** Ends of a growth axis, from zero; one that is flat gets a height all the same. */
 const upward = (rates) => {
   const most = Math.max(0, ...rates.filter((rate) => rate !== null));
-  return { lo: 0, hi: most > 0 ? 1.08 * most : 1 };
+  return { lo: 0, hi: most > 0 ? 1.2 * most : 1 };
 };
 
 /** Samples are evenly spaced in rho: a decade at a time they are so in its logarithm, nearly. */

@@ -61,6 +61,8 @@ class Explorer {
     this.resized.observe(this.page.frame);
     if (!this.map.view.restore(texts.view)) this.#fit();
     this.past.record(() => this.saved(), true);
+    // Tiles are asked for now, not with the next frame.
+    if (!alone) this.map.paint();
     // Numbers of the axes in the right face as soon as it is here.
     const faces = ["15px", "italic 15px"].map((face) => document.fonts?.load(`${face} "Libertinus Serif"`));
     Promise.all(faces).then(() => this.map.redraw(), () => {});
