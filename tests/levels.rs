@@ -368,6 +368,16 @@ fn four_waters_are_told_stable_or_not_nearly_all_the_way_through_an_island() {
 }
 
 #[test]
+fn an_indefinite_total_is_told_with_its_mode() {
+    let fast = DMatrix::from_diagonal(&vec![1.0, 0.5, 0.8, 0.9].into());
+    let mut slow = DMatrix::zeros(4, 4);
+    slow[(1, 1)] = -0.6;
+    let analysis = kernel(&fast, &slow).decide(&Outer::new(1.0, 4).unwrap(), &ratio(1, 1), 1e-9);
+    let [first, ..] = analysis.warnings.as_slice() else { panic!("{analysis:?}") };
+    assert!(first.contains("-1.000e-1, of a mode that moves degree of freedom 1 most"), "{first}");
+}
+
+#[test]
 fn what_accuracy_does_not_tell_is_not_told() {
     let (fast, slow) = Numbers(21).levels(4);
     let kernel = kernel(&fast, &slow);

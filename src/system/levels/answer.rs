@@ -51,10 +51,14 @@ impl Kernel {
     fn warnings(&self, evidence: Evidence) -> Vec<String> {
         let mut warnings = Vec::new();
         if !self.is_total_definite {
-            let lowest = self.lowest_total();
+            let (lowest, mode) = self.lowest_total();
+            let moves = match mode {
+                Some(i) => format!(", of a mode that moves degree of freedom {i} most (from 0)"),
+                None => String::new(),
+            };
             warnings.push(format!(
-                "the total stiffness is not proven positive definite: its lowest eigenvalue is {lowest:.3e}, so the system \
-                 itself may be unstable, whatever the steps"
+                "the total stiffness is not proven positive definite: its lowest eigenvalue is {lowest:.3e}{moves}, so the \
+                 system itself may be unstable, whatever the steps"
             ));
         }
         if evidence == Evidence::Estimate {
@@ -63,10 +67,14 @@ impl Kernel {
         warnings
     }
 
-    fn lowest_total(&self) -> f64 {
+    /// The lowest eigenvalue of F + S, and the mass-weighted coordinate that its mode moves most; rounded.
+    fn lowest_total(&self) -> (f64, Option<usize>) {
         let mut total = self.slow.clone();
         (0..self.size()).for_each(|i| total[(i, i)] += self.values[i]);
-        total.self_adjoint_eigenvalues(Side::Lower).map_or(f64::NAN, |values| values[0])
+        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return (f64::NAN, None) };
+        let amplitudes: Vec<_> = (0..self.size()).map(|k| eigen.U()[(k, 0)].into()).collect();
+        let shape = self.shape(&amplitudes).into_iter().map(|x| x.re.abs()).enumerate();
+        (eigen.S()[0], shape.max_by(|x, y| x.1.total_cmp(&y.1)).map(|(i, _)| i))
     }
 
     fn measured(&self, outer: &Outer, accuracy: f64) -> Measured {
