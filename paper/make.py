@@ -16,6 +16,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 BUILD = HERE / "build"
+PUBLISHED = "../data/published/"
 
 
 def lines(name):
@@ -29,6 +30,8 @@ def ask(program, name, arguments):
     """Writes one document; the seconds that it took."""
     suffix = Path(name).suffix
     file = BUILD / (name if suffix else f"{name}.json")
+    if arguments.startswith(PUBLISHED):
+        return published(program, file, *arguments.split())
     form = {"": ["--format", "json"], ".tex": ["--format", "latex"], ".txt": ["--format", "text"]}.get(suffix, [])
     start = time.monotonic()
     command = [program, *shlex.split(arguments), *form, "--quiet", "--output", str(file)]
@@ -40,6 +43,17 @@ def ask(program, name, arguments):
         folded = (textwrap.wrap(line, 92, subsequent_indent=" " * 13) for line in summary)
         file.write_text("\n".join(line for lines in folded for line in lines) + "\n")
     return seconds
+
+
+def published(program, file, source, *arguments):
+    """A document that is too long in the making for here, or what a script writes that asks the program."""
+    start, source = time.monotonic(), HERE / source
+    if source.suffix == ".py":
+        with file.open("w") as out:
+            subprocess.run([sys.executable, source, program, *arguments], check=True, stdout=out)
+    else:
+        file.write_text(source.read_text())
+    return time.monotonic() - start
 
 
 def find(document, path):
@@ -64,6 +78,8 @@ def shown(found, form):
         found = len(found)
     if kind in ("integer", "count"):
         return f"{found:,}".replace(",", "\\,")
+    if kind == "text":
+        return found
     if kind == "percent":
         return f"{100 * float(found):.{digits[0]}f}\\,\\%"
     if isinstance(found, dict):
@@ -94,7 +110,9 @@ def main(program):
     (BUILD / "numbers.tex").write_text("\n".join(macros) + "\n")
     (BUILD / "provenance.tex").write_text("\n".join(rows) + "\n")
     escape = str.maketrans({"^": r"\^{}", "_": r"\_", "&": r"\&", "%": r"\%", "#": r"\#"})
-    told = (rf"\item[\texttt{{{name}}}] \texttt{{kickdrift {arguments.translate(escape)}}}" for name, arguments in commands.items())
+    said = {name: arguments.removeprefix("../") if arguments.startswith(PUBLISHED) else f"kickdrift {arguments}"
+            for name, arguments in commands.items()}
+    told = (rf"\item[\texttt{{{name}}}] \texttt{{{line.translate(escape)}}}" for name, line in said.items())
     (BUILD / "commands.tex").write_text("\n".join(told).replace("--", "-{}-") + "\n")
 
 

@@ -55,6 +55,8 @@ Check Main.tan_criterion_q1. Print Assumptions Main.tan_criterion_q1.
 Check Main.tan_criterion_q2. Print Assumptions Main.tan_criterion_q2.
 Check Main.no_closing_q1. Print Assumptions Main.no_closing_q1.
 Check Main.no_closing_q2. Print Assumptions Main.no_closing_q2.
+Check Main.no_closing_p1. Print Assumptions Main.no_closing_p1.
+Check Main.no_closing_p2. Print Assumptions Main.no_closing_p2.
 Check Main.perturbed_orbit. Print Assumptions Main.perturbed_orbit.
 Check Main.sign_certificate. Print Assumptions Main.sign_certificate.
 Check Main.sign_certificate_rounded. Print Assumptions Main.sign_certificate_rounded.
@@ -66,3 +68,5 @@ Check Main.shrink_bound. Print Assumptions Main.shrink_bound.
 Check Main.cone_chain. Print Assumptions Main.cone_chain.
 Check Main.cone_criterion. Print Assumptions Main.cone_criterion.
 Check Main.certificate. Print Assumptions Main.certificate.
+Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
+Check Main.edge_between. Print Assumptions Main.edge_between.

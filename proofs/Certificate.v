@@ -27,16 +27,21 @@ Definition half_kick (p q n1 n2 j : Z) :=
 
 Definition next_strike (p q t : Z) := Z.min (2 * q * (t / (2 * q) + 1)) (2 * p * (t / (2 * p) + 1)).
 
-(** From just after the kick at tick t to the half kick at tick pq. *)
-Fixpoint run (p q m n1 n2 : Z) (fuel : nat) (t : Z) (M : zmat) : option zmat :=
+(** From just after the kick at tick t to the half kick at tick pq, on states of any kind. *)
+Fixpoint run {state : Type} (p q : Z) (glide half whole : Z -> state -> state) (fuel : nat) (t : Z) (M : state)
+  : option state :=
   match fuel with
   | O => None
   | S fuel' =>
       let j := next_strike p q t in
       if j <? p * q
-      then run p q m n1 n2 fuel' j (zkick m (2 * half_kick p q n1 n2 j) (zdrift (j - t) M))
-      else Some (zkick m (half_kick p q n1 n2 (p * q)) (zdrift (p * q - t) M))
+      then run p q glide half whole fuel' j (whole j (glide (j - t) M))
+      else Some (half (p * q) (glide (p * q - t) M))
   end.
+
+Definition zrun (p q m n1 n2 : Z) (fuel : nat) : option zmat :=
+  run p q zdrift (fun j => zkick m (half_kick p q n1 n2 j)) (fun j => zkick m (2 * half_kick p q n1 n2 j)) fuel 0
+    (zkick m (n1 + n2) (ZMat 1 0 0 1)).
 
 Definition classify (M : zmat) : kind :=
   match Z.sgn (zB M) * Z.sgn (zC M) with
@@ -72,7 +77,7 @@ Definition check (k : kind) (p q : nat) (h1 L1 h2 L2 : Q) : bool :=
   (0 <? Qnum h1) && (0 <? Qnum h2) &&
   Qeq_bool (inject_Z zp * h1) (inject_Z zq * h2) &&
   Qeq_bool (n1 # m) x1 && Qeq_bool (n2 # m) x2 &&
-  match run zp zq (Zpos m) n1 n2 (p + q) 0 (zkick (Zpos m) (n1 + n2) (ZMat 1 0 0 1)) with
+  match zrun zp zq (Zpos m) n1 n2 (p + q) with
   | Some M => same_kind (classify M) k
   | None => false
   end.
@@ -111,14 +116,6 @@ Proof.
     generalize (propagator (schedule f 1 j)) (INR (S g)); intros; apply mat_ext; simpl; field.
 Qed.
 
-Section Run.
-Variables (p q : nat) (m n1 n2 : Z) (k1 k2 : R).
-Hypotheses (p_pos : (1 <= p)%nat) (q_pos : (1 <= q)%nat) (m_pos : 0 < IZR m).
-Hypotheses (k1_eq : k1 / 2 = IZR n1 / IZR m) (k2_eq : k2 / 2 = IZR n2 / IZR m).
-Let zp := Z.of_nat p.
-Let zq := Z.of_nat q.
-Let f := two_clocks p q false false k1 k2.
-
 Lemma strikes_Z c j : (1 <= c)%nat -> strikes c false j = (Z.of_nat j mod (2 * Z.of_nat c) =? 0)%Z.
 Proof.
   intros C; unfold strikes; rewrite Nat.add_0_r.
@@ -126,9 +123,18 @@ Proof.
   rewrite <- Nat2Z.inj_mod; apply Bool.eq_iff_eq_true; rewrite Nat.eqb_eq, Z.eqb_eq; lia.
 Qed.
 
-Lemma half_kick_spec j : f j / 2 = IZR (half_kick zp zq n1 n2 (Z.of_nat j)) / IZR m.
+(** States of any kind, as long as gliding and kicking do what they mean. *)
+Section Run.
+Variables (p q : nat) (k1 k2 : R).
+Hypotheses (p_pos : (1 <= p)%nat) (q_pos : (1 <= q)%nat).
+Let zp := Z.of_nat p.
+Let zq := Z.of_nat q.
+Let f := two_clocks p q false false k1 k2.
+
+Lemma half_kick_spec m n1 n2 j : k1 / 2 = IZR n1 / IZR m -> k2 / 2 = IZR n2 / IZR m ->
+  f j / 2 = IZR (half_kick zp zq n1 n2 (Z.of_nat j)) / IZR m.
 Proof.
-  unfold f, two_clocks, half_kick, zp, zq; rewrite <- !strikes_Z by assumption; rewrite plus_IZR.
+  intros E1 E2; unfold f, two_clocks, half_kick, zp, zq; rewrite <- !strikes_Z by assumption; rewrite plus_IZR.
   destruct (strikes q false j), (strikes p false j); unfold Rdiv in *; lra.
 Qed.
 
@@ -154,13 +160,17 @@ Proof.
   unfold next_strike; apply Z.min_glb_lt; apply S; unfold zp, zq; lia.
 Qed.
 
+Context {state : Type}.
+Variables (glide half whole : Z -> state -> state) (meant : state -> mat -> Prop).
+Hypothesis meant_glide : forall t Z M, (0 <= t)%Z -> meant Z M -> meant (glide t Z) (drift (IZR t) ** M).
+Hypothesis meant_half : forall j Z M, meant Z M -> meant (half (Z.of_nat j) Z) (kick (f j / 2) ** M).
+Hypothesis meant_whole : forall j Z M, meant Z M -> meant (whole (Z.of_nat j) Z) (kick (f j) ** M).
+
 Lemma leap j j' M :
   (j < j')%nat -> (Z.of_nat j' <= next_strike zp zq (Z.of_nat j))%Z ->
-  represents M (kick (f j / 2) ** propagator (schedule f 1 j)) ->
-  represents (zkick m (half_kick zp zq n1 n2 (Z.of_nat j')) (zdrift (Z.of_nat j' - Z.of_nat j) M))
-             (propagator (schedule f 1 j')) /\
-  represents (zkick m (2 * half_kick zp zq n1 n2 (Z.of_nat j')) (zdrift (Z.of_nat j' - Z.of_nat j) M))
-             (kick (f j' / 2) ** propagator (schedule f 1 j')).
+  meant M (kick (f j / 2) ** propagator (schedule f 1 j)) ->
+  meant (half (Z.of_nat j') (glide (Z.of_nat j' - Z.of_nat j)%Z M)) (propagator (schedule f 1 j')) /\
+  meant (whole (Z.of_nat j') (glide (Z.of_nat j' - Z.of_nat j)%Z M)) (kick (f j' / 2) ** propagator (schedule f 1 j')).
 Proof.
   intros J N R.
   assert (E : j' = (j + S (j' - j - 1))%nat) by lia.
@@ -168,21 +178,17 @@ Proof.
     kick (f j' / 2) ** (drift (IZR (Z.of_nat j' - Z.of_nat j)) ** (kick (f j / 2) ** propagator (schedule f 1 j)))).
   { rewrite E, propagator_gap, <- E by (intros i I; apply (silent_between j); lia).
     rewrite !mul_assoc; do 3 f_equal; rewrite INR_IZR_INZ; f_equal; f_equal; lia. }
-  apply (represents_drift (Z.of_nat j' - Z.of_nat j)) in R.
-  pose proof (half_kick_spec j') as K.
+  apply (meant_glide (Z.of_nat j' - Z.of_nat j)) in R; [|lia].
   split.
-  - rewrite P, K; apply represents_kick; assumption.
-  - rewrite P, mul_assoc, kick_add.
-    replace (f j' / 2 + f j' / 2) with (IZR (2 * half_kick zp zq n1 n2 (Z.of_nat j')) / IZR m)
-      by (rewrite K, mult_IZR; field; lra).
-    apply represents_kick; assumption.
+  - rewrite P; now apply meant_half.
+  - rewrite P, mul_assoc, kick_add; replace (f j' / 2 + f j' / 2) with (f j') by field; now apply meant_whole.
 Qed.
 
 Lemma run_sound fuel j M M' :
   (j < p * q)%nat ->
-  represents M (kick (f j / 2) ** propagator (schedule f 1 j)) ->
-  run zp zq m n1 n2 fuel (Z.of_nat j) M = Some M' ->
-  represents M' (propagator (schedule f 1 (p * q))).
+  meant M (kick (f j / 2) ** propagator (schedule f 1 j)) ->
+  run zp zq glide half whole fuel (Z.of_nat j) M = Some M' ->
+  meant M' (propagator (schedule f 1 (p * q))).
 Proof.
   revert j M; induction fuel as [|fuel IH]; intros j M J R; simpl; [discriminate|].
   pose proof (next_strike_after (Z.of_nat j) ltac:(lia)) as A.
@@ -194,6 +200,24 @@ Proof.
   - intros E; injection E; intros <-; apply leap; [lia | fold t; lia | exact R].
 Qed.
 End Run.
+
+Lemma zrun_sound p q m n1 n2 k1 k2 fuel M : (1 <= p)%nat -> (1 <= q)%nat -> 0 < IZR m ->
+  k1 / 2 = IZR n1 / IZR m -> k2 / 2 = IZR n2 / IZR m ->
+  zrun (Z.of_nat p) (Z.of_nat q) m n1 n2 fuel = Some M ->
+  represents M (propagator (schedule (two_clocks p q false false k1 k2) 1 (p * q))).
+Proof.
+  intros P Q m_pos E1 E2; pose proof (fun j => half_kick_spec p q k1 k2 P Q m n1 n2 j E1 E2) as K.
+  refine (run_sound p q k1 k2 P Q _ _ _ represents (fun t Z M _ => represents_drift t Z M) _ _ fuel 0 _ M _ _).
+  - intros j Z N R; rewrite K; now apply represents_kick.
+  - intros j Z N R; replace (two_clocks p q false false k1 k2 j)
+      with (IZR (2 * half_kick (Z.of_nat p) (Z.of_nat q) n1 n2 (Z.of_nat j)) / IZR m)
+      by (pose proof (K j); rewrite mult_IZR; unfold Rdiv in *; lra); now apply represents_kick.
+  - nia.
+  - replace (kick _ ** propagator (schedule _ 1 0)) with (kick (IZR (n1 + n2) / IZR m) ** one).
+    + apply represents_kick; [assumption|]; exists 1; simpl; repeat split; lra.
+    + f_equal; f_equal; unfold two_clocks, strikes; rewrite !Nat.mod_0_l by lia; simpl.
+      rewrite plus_IZR; unfold Rdiv in *; lra.
+Qed.
 
 Lemma classify_sound Z H : represents Z H -> row (classify Z) H.
 Proof.
@@ -219,6 +243,42 @@ Proof. destruct k as [|[]|[]|[]], l as [|[]|[]|[]]; simpl; congruence. Qed.
 
 Lemma Q2R_inject z : Q2R (inject_Z z) = IZR z.
 Proof. unfold Q2R, inject_Z; simpl; field. Qed.
+
+(** The unit of time is the tick: a row of the half period in ticks is the verdict. *)
+Lemma in_ticks p q h1 L1 h2 L2 : (1 <= p)%nat -> (1 <= q)%nat -> 0 < h1 -> INR p * h1 = INR q * h2 ->
+  propagator (schedule (two_clocks p q false false (h1 * L1 * tick q h1) (h2 * L2 * tick p h2)) 1 (p * q)) =
+  rescale (/ tick q h1) (half_period p q h1 L1 h2 L2).
+Proof.
+  intros P Q H T; rewrite <- (tick_slow p q h1) by assumption.
+  assert (Iq : 0 < INR q) by (apply lt_0_INR; lia).
+  assert (dp : 0 < tick q h1) by (unfold tick; apply Rdiv_lt_0_compat; lra).
+  set (d := tick q h1) in *.
+  unfold half_period; rewrite <- scaling by (apply Rinv_neq_0_compat; lra); fold d.
+  rewrite Rinv_r by lra; f_equal; apply schedule_ext; intros j _; unfold two_clocks.
+  destruct (strikes q false j), (strikes p false j); field; lra.
+Qed.
+
+Lemma verdict_in_ticks k p q h1 L1 h2 L2 :
+  (1 <= p /\ 1 <= q /\ Nat.gcd p q = 1)%nat -> 0 < h1 -> 0 < h2 -> INR p * h1 = INR q * h2 ->
+  row k (propagator (schedule (two_clocks p q false false (h1 * L1 * tick q h1) (h2 * L2 * tick p h2)) 1 (p * q))) ->
+  verdict k p q h1 L1 h2 L2.
+Proof.
+  intros (Pp & Pq & G) H1 H2 T R.
+  assert (Iq : 0 < INR q) by (apply lt_0_INR; lia).
+  assert (dp : 0 < tick q h1) by (unfold tick; apply Rdiv_lt_0_compat; lra).
+  rewrite in_ticks in R by assumption; set (d := tick q h1) in *.
+  split; [auto | auto |].
+  set (H := half_period p q h1 L1 h2 L2) in *.
+  apply two_clocks_verdict; [assumption..|]; fold H.
+  destruct k as [|[]|[]|[]]; simpl in R |- *;
+    replace (mB H * / d * (mC H / / d)) with (mB H * mC H) in R by (field; lra); auto.
+  all: assert (X : forall b, b * / d = 0 <-> b = 0) by
+         (intros b; split; [intros Z; apply Rmult_eq_reg_r with (/ d); [lra | apply Rinv_neq_0_compat; lra] | intros ->; ring]);
+       assert (Y : forall b, b / / d = 0 <-> b = 0) by
+         (intros b; split; [intros Z; apply Rmult_eq_reg_r with (/ / d); [unfold Rdiv in Z; lra |
+            apply Rinv_neq_0_compat, Rinv_neq_0_compat; lra] | intros ->; unfold Rdiv; ring]);
+       rewrite X, Y in R; exact R.
+Qed.
 
 Theorem certificate k p q h1 L1 h2 L2 x1 l1 x2 l2 :
   x1 = Q2R h1 -> l1 = Q2R L1 -> x2 = Q2R h2 -> l2 = Q2R L2 ->
@@ -249,36 +309,10 @@ Proof.
     - intros Z; apply (Qeq_eqR _ 0%Q) in Z; rewrite Q2R_mult, Q2R_inject, <- INR_IZR_INZ in Z.
       unfold Q2R in Z; simpl in Z; lra. }
   apply Strength in N1, N2; [|assumption..]; clear Strength.
-  rewrite <- (tick_slow p q (Q2R h1)) in N2 by assumption.
-  set (d := tick q (Q2R h1)) in *.
-  assert (dp : 0 < d) by (unfold d, tick; apply Rdiv_lt_0_compat; lra).
-  destruct (run _ _ _ _ _ _ _ _) as [M|] eqn:E; [|discriminate].
+  destruct (zrun _ _ _ _ _ _) as [M|] eqn:E; [|discriminate].
   apply same_kind_eq in K; subst k.
-  split; [auto | auto |].
-  set (H := half_period p q (Q2R h1) (Q2R L1) (Q2R h2) (Q2R L2)).
-  apply two_clocks_verdict; [assumption..|]; fold H.
-  set (f := two_clocks p q false false (Q2R h1 * Q2R L1 * d) (Q2R h2 * Q2R L2 * d)).
-  assert (U : propagator (schedule f 1 (p * q)) = rescale (/ d) H).
-  { unfold H, half_period; rewrite <- scaling by (apply Rinv_neq_0_compat; lra); fold d.
-    rewrite Rinv_r by lra; f_equal; apply schedule_ext; intros j _; unfold f, two_clocks.
-    destruct (strikes q false j), (strikes p false j); field; lra. }
-  assert (R : represents M (rescale (/ d) H)).
-  { rewrite <- U; refine (run_sound p q (Zpos m) n1 n2 _ _ Pp Pq _ N1 N2 (p + q) 0 _ M _ _ E).
-    - apply IZR_lt; lia.
-    - nia.
-    - change (Z.of_nat 0) with 0%Z.
-      replace (kick _ ** propagator (schedule _ 1 0)) with (kick (IZR (n1 + n2) / IZR (Zpos m)) ** one).
-      + apply represents_kick; [apply IZR_lt; lia|]; exists 1; simpl; repeat split; lra.
-      + f_equal; f_equal; unfold two_clocks, strikes; rewrite !Nat.mod_0_l by lia; simpl.
-        rewrite plus_IZR; unfold Rdiv in *; lra. }
-  apply classify_sound in R; destruct (classify M) as [|[]|[]|[]]; simpl in R |- *;
-    replace (mB H * / d * (mC H / / d)) with (mB H * mC H) in R by (field; lra); auto.
-  all: assert (X : forall b, b * / d = 0 <-> b = 0) by
-         (intros b; split; [intros Z; apply Rmult_eq_reg_r with (/ d); [lra | apply Rinv_neq_0_compat; lra] | intros ->; ring]);
-       assert (Y : forall b, b / / d = 0 <-> b = 0) by
-         (intros b; split; [intros Z; apply Rmult_eq_reg_r with (/ / d); [unfold Rdiv in Z; lra |
-            apply Rinv_neq_0_compat, Rinv_neq_0_compat; lra] | intros ->; unfold Rdiv; ring]);
-       rewrite X, Y in R; exact R.
+  apply verdict_in_ticks; [auto | assumption..|]; apply classify_sound.
+  refine (zrun_sound p q (Zpos m) n1 n2 _ _ _ M Pp Pq _ N1 N2 E); apply IZR_lt; lia.
 Qed.
 
 (** [certify h1 L1 h2 L2]: the rationals h1 ... as elements of Q, denominators positive. *)

@@ -3,8 +3,8 @@
     At a closing B = C = 0 or A = D = 0, so Q = I or Q = -I. Both clocks in action, neither with one slow kick a period nor
     with two is there any, for whatever stiffnesses, negative ones and steps beyond the Verlet limit included.
 
-    - [no_closing_q1]   q = 1, every p;
-    - [no_closing_q2]   q = 2, p odd.                                                                 *)
+    - [no_closing_q1]   q = 1, every p;  [no_closing_p1]   p = 1, every q;
+    - [no_closing_q2]   q = 2, p odd;    [no_closing_p2]   p = 2, q odd.                              *)
 
 From Kickdrift Require Import Vocabulary Algebra TwoClocks Stability Floquet TanCriterion Respa.
 From Coq Require Import Reals Arith Lia Lra Psatz.
@@ -119,4 +119,26 @@ Proof.
     apply Rmult_integral in V; destruct V as [V|V]; [contradiction|]; subst x.
     assert (Y : k * y = 0) by lra.
     apply Rmult_integral in Y; destruct Y as [Y|Y]; [contradiction | subst y; lra].
+Qed.
+
+(** ** p = 1 and p = 2: the clocks exchange their names *)
+
+Theorem no_closing_p1 q h1 L1 h2 L2 :
+  (1 <= q)%nat -> h1 = INR q * h2 -> h2 <> 0 -> h1 * L1 <> 0 ->
+  full_period 1 q h1 L1 h2 L2 <> one /\ full_period 1 q h1 L1 h2 L2 <> opp one.
+Proof.
+  intros Q E H K; rewrite <- (swap_clocks 1 q) by (auto; simpl; lra); now apply no_closing_q1.
+Qed.
+
+Theorem no_closing_p2 q h1 L1 h2 L2 :
+  Nat.Odd q -> 2 * h1 = INR q * h2 -> h2 <> 0 -> L2 <> 0 -> h1 * L1 <> 0 ->
+  let H := half_period 2 q h1 L1 h2 L2 in
+  ~ (mB H = 0 /\ mC H = 0) /\ ~ (mA H = 0 /\ mD H = 0).
+Proof.
+  intros O E H L K.
+  assert (Q : (1 <= q)%nat) by (destruct O; lia).
+  assert (S : half_period 2 q h1 L1 h2 L2 = half_period q 2 h2 L2 h1 L1).
+  { unfold half_period; rewrite (tick_slow 2 q h1 h2), (Nat.mul_comm q 2) by (auto; simpl; lra).
+    f_equal; apply schedule_ext; intros j _; unfold two_clocks; ring. }
+  rewrite S; now apply no_closing_q2.
 Qed.

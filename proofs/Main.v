@@ -7,7 +7,7 @@
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
   Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Closings Proposition Plane Perturbation
-  Cone Certificate.
+  Cone Certificate PiCertificate EdgeCertificate.
 Open Scope R_scope.
 
 (** ** 1. Algebra *)
@@ -265,7 +265,7 @@ Theorem tan_criterion_q2 : forall p h1 L1 h2 L2 th,
   (cos phi = 0 -> (2 < tr Q <-> 1 < alpha * alpha * c2) /\ ~ tr Q < -2).
 Proof. exact TanCriterion.tan_criterion_q2. Qed.
 
-(** No tongue closes where the slow clock kicks once or twice a period, nor, by [swap_clocks], where the fast one does. *)
+(** No tongue closes where one of the clocks kicks once or twice a period. *)
 Theorem no_closing_q1 : forall p h1 L1 h2 L2,
   (1 <= p)%nat -> h1 <> 0 -> h2 * L2 <> 0 ->
   full_period p 1 h1 L1 h2 L2 <> one /\ full_period p 1 h1 L1 h2 L2 <> opp one.
@@ -276,6 +276,17 @@ Theorem no_closing_q2 : forall p h1 L1 h2 L2,
   let H := half_period p 2 h1 L1 h2 L2 in
   ~ (mB H = 0 /\ mC H = 0) /\ ~ (mA H = 0 /\ mD H = 0).
 Proof. exact Closings.no_closing_q2. Qed.
+
+Theorem no_closing_p1 : forall q h1 L1 h2 L2,
+  (1 <= q)%nat -> h1 = INR q * h2 -> h2 <> 0 -> h1 * L1 <> 0 ->
+  full_period 1 q h1 L1 h2 L2 <> one /\ full_period 1 q h1 L1 h2 L2 <> opp one.
+Proof. exact Closings.no_closing_p1. Qed.
+
+Theorem no_closing_p2 : forall q h1 L1 h2 L2,
+  Nat.Odd q -> 2 * h1 = INR q * h2 -> h2 <> 0 -> L2 <> 0 -> h1 * L1 <> 0 ->
+  let H := half_period 2 q h1 L1 h2 L2 in
+  ~ (mB H = 0 /\ mC H = 0) /\ ~ (mA H = 0 /\ mD H = 0).
+Proof. exact Closings.no_closing_p2. Qed.
 
 (** ** 6. Rounding and cones *)
 
@@ -383,3 +394,17 @@ Theorem certificate : forall k p q (h1 L1 h2 L2 : Q) x1 l1 x2 l2,
   check k p q h1 L1 h2 L2 = true ->
   verdict k p q x1 l1 x2 l2.
 Proof. exact Certificate.certificate. Qed.
+
+(** Numbers c pi^e, as pairs (c, e); [bits] are tried one after the other. *)
+Theorem certificate_pi : forall bits k p q (h1 L1 h2 L2 : Q * Z) x1 l1 x2 l2,
+  x1 = times_pi h1 -> l1 = times_pi L1 -> x2 = times_pi h2 -> l2 = times_pi L2 ->
+  search bits (fun b => check_pi b k p q h1 L1 h2 L2) = true ->
+  verdict k p q x1 l1 x2 l2.
+Proof. exact PiCertificate.certificate_pi. Qed.
+
+(** At fixed p/q and rho entry x of the half period has a zero s between a and b. *)
+Theorem edge_between : forall x p q (rho a b : Q) r l u,
+  r = Q2R rho -> l = Q2R a -> u = Q2R b ->
+  check_edge x p q rho a b = true ->
+  edge x p q r l u.
+Proof. exact EdgeCertificate.edge_between. Qed.

@@ -7,30 +7,58 @@ file=$1
 int='[0-9]+'
 frac_R="\\(-?$int / $int\\)"
 frac_Q="\\(-?$int # $int\\)"
+power="($int|\\(-$int\\))"
+pi_R="\\(-?$int / $int \\* powerRZ PI $power\\)"
+pi_Q="\\(-?$int # $int, $power%Z\\)"
 kind='(Elliptic|\((Hyperbolic|Parabolic|Coexistence) (Plus|Minus)\))'
-rat="-?$int(/$int)?"
+rat="-?$int(/$int)?(\\*pi\\^-?$int)?"
+name='[A-Za-z0-9_]+\.v'
 
 line() { # line NUMBER REGEX
   sed -n "$1p" "$file" | grep -qxE -- "$2" || { echo "$file:$1: not a line of the template"; exit 1; }
 }
-line 1 "\\(\\* kickdrift verdict --lambda1 $rat --lambda2 $rat --h1 $rat --h2 $rat --certificate [A-Za-z0-9_]+\\.v \\*\\)"
+lines() { # lines NUMBER
+  [ "$(wc -l < "$file")" -eq "$1" ] || { echo "$file: a certificate of this kind has $1 lines"; exit 1; }
+}
+# The numbers of a line as the program writes them in the comment.
+numbers() { sed -n "$1p" "$file" | grep -oE -- "$frac_R|$pi_R" | tr -d '() ' | sed -E 's|\*powerRZPI|*pi^|; s|/1(\*.*)?$|\1|; s|\*pi\^0$||'; }
+comment() { # comment COMMAND WITH ITS FLAGS
+  case $(sed -n 1p "$file") in
+    "(* kickdrift $1 --certificate "*) ;;
+    *) echo "$file:1: the comment is not of the theorem's input, which is $1"; exit 1 ;;
+  esac
+}
+
 line 2 'From Coq Require Import Reals QArith\.'
-line 3 'From Kickdrift Require Import Vocabulary Certificate\.'
 line 4 ''
-line 5 '\(\*\* kind, p, q with h2/h1 = p/q, then h1, lambda1, h2, lambda2\. \*\)'
-line 6 'Theorem kickdrift_verdict :'
-line 7 "  verdict $kind $int $int $frac_R $frac_R $frac_R $frac_R\\."
-line 8 "Proof\\. certify $frac_Q $frac_Q $frac_Q $frac_Q\\. Qed\\."
-line 9 'Print Assumptions kickdrift_verdict\.'
-# The comment must name the theorem's own input: h1, lambda1, h2, lambda2 of line 7, fractions as the program writes them.
-input=$(sed -n 7p "$file" | grep -oE -- "$frac_R" | tr -d '() ' | sed 's|/1$||')
-set -- $input
-own="--lambda1 $2 --lambda2 $4 --h1 $1 --h2 $3"
-case $(sed -n 1p "$file") in
-  *"verdict $own --certificate"*) ;;
-  *) echo "$file:1: the comment is not of the theorem's input, which is $own"; exit 1 ;;
-esac
-[ "$(wc -l < "$file")" -eq 9 ] || { echo "$file: a certificate has nine lines"; exit 1; }
+if [ "$(sed -n 3p "$file")" = 'From Kickdrift Require Import Vocabulary EdgeCertificate.' ]; then
+  line 1 "\\(\\* kickdrift tongues --ratio $int/$int --rho $rat --m $int --certificate $name \\*\\)"
+  line 5 '\(\*\* entry, p, q, rho, and the ends of an interval of s = h1\^2 lambda1 that holds a zero of the entry\. \*\)'
+  m=$(sed -n 1p "$file" | sed -E 's/.* --m ([0-9]+) .*/\1/')
+  at=6
+  for edge in lower upper; do
+    [ $edge = upper ] && [ "$(wc -l < "$file")" -eq 9 ] && break   # the last tongue has no upper edge
+    line $at "Theorem kickdrift_$edge :"
+    line $((at + 1)) "  edge [ABCD] $int $int $frac_R $frac_R $frac_R\\."
+    line $((at + 2)) "Proof\\. certify_edge $frac_Q $frac_Q $frac_Q\\. Qed\\."
+    line $((at + 3)) "Print Assumptions kickdrift_$edge\\."
+    set -- $(sed -n "$((at + 1))p" "$file") # edge X p q ...
+    comment "tongues --ratio $3/$4 --rho $(numbers $((at + 1)) | head -1) --m $m"
+    at=$((at + 4))
+  done
+  lines $((at - 1))
+else
+  line 1 "\\(\\* kickdrift verdict --lambda1 $rat --lambda2 $rat --h1 $rat --h2 $rat --certificate $name \\*\\)"
+  line 3 'From Kickdrift Require Import Vocabulary (Pi)?Certificate\.'
+  line 5 '\(\*\* kind, p, q with h2/h1 = p/q, then h1, lambda1, h2, lambda2\. \*\)'
+  line 6 'Theorem kickdrift_verdict :'
+  line 7 "  verdict $kind $int $int( $frac_R| $pi_R){4}\\."
+  line 8 "Proof\\. certify(_pi)?( $frac_Q| $pi_Q){4}\\. Qed\\."
+  line 9 'Print Assumptions kickdrift_verdict\.'
+  set -- $(numbers 7)
+  comment "verdict --lambda1 $2 --lambda2 $4 --h1 $1 --h2 $3"
+  lines 9
+fi
 
 [ -e "$here/Certificate.vo" ] || { echo "the theory is not compiled: run 'make theory' in $here first"; exit 1; }
 work=$(mktemp -d) || exit 1
@@ -38,4 +66,4 @@ trap 'rm -rf "$work"' EXIT
 cp "$file" "$work/" || exit 1
 coqc -q -R "$here" Kickdrift "$work/$(basename "$file")" > "$work/out" || { echo "$file: Coq refuses it"; exit 1; }
 "$here/tools/axioms.sh" "$work/out" || exit 1
-echo "proven: $file: $(sed -n 7p "$file" | sed 's/^ *//')"
+echo "proven: $file: $(grep -E '^  (verdict|edge)' "$file" | sed 's/^ *//' | tr '\n' ' ')"

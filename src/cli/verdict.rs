@@ -29,7 +29,7 @@ pub struct Args {
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
     exact: bool,
-    /// Also write a Coq proof of the verdict, for rational input; check it with proofs/tools/certificate.sh.
+    /// Also write a Coq proof of the verdict, for fractions times powers of pi; check it with proofs/tools/certificate.sh.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
     /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
@@ -84,14 +84,19 @@ impl Args {
 /// Checking a certificate costs Coq about (p + q)² steps: some 2 s at 400 kicks, 90 s at 4,000.
 const WORTH_CERTIFYING: u64 = 5000;
 
-fn certify(oscillator: &Oscillator, verdict: Verdict, path: &Path, budget: Option<u64>) -> Result<()> {
-    let kicks = oscillator.ratio().kicks();
-    if kicks > budget.unwrap_or(WORTH_CERTIFYING) {
-        return Err(Error::budget(
-            format!("Coq would need minutes to check a certificate of {kicks} kicks"),
-            kicks,
-        ));
+/// That a certificate of so many kicks is worth its while.
+///
+/// # Errors
+/// More kicks than the budget, or than Coq checks in minutes.
+pub fn within(kicks: u64, budget: Option<u64>) -> Result<()> {
+    if kicks <= budget.unwrap_or(WORTH_CERTIFYING) {
+        return Ok(());
     }
+    Err(Error::budget(format!("Coq would need minutes to check a certificate of {kicks} kicks"), kicks))
+}
+
+fn certify(oscillator: &Oscillator, verdict: Verdict, path: &Path, budget: Option<u64>) -> Result<()> {
+    within(oscillator.ratio().kicks(), budget)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let text = certificate::coq(oscillator, verdict, &name)?;
     write_output(Some(path), text.as_bytes())

@@ -1,4 +1,5 @@
-//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in proofs/.
+//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in proofs/; and a
+//! tongue's edges.
 //!
 //! The file's theorem is `kickdrift_verdict`; what it means is theorem `certificate` in proofs/. The template
 //! is described in proofs/README.md; `proofs/tools/certificate.sh FILE.v` checks a file against it.
@@ -16,38 +17,109 @@
 //! ```
 
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Ratio, Rational, rational};
 use crate::propagator::Oscillator;
+use crate::tongue::Gap;
 use crate::verdict::{Kind, Verdict};
 
 /// The text of the certificate; `file_name` is the name it will have, without folders.
 ///
+/// Input with π is proven by intervals, for verdicts that hold around it: elliptic or hyperbolic.
+///
 /// # Errors
-/// A quantity that is not rational, or a file name that Coq does not take for a module's.
+/// A quantity that is no rational times a power of π, an edge where π is, or a file name that Coq does not take for a
+/// module's.
 pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result<String> {
     check_name(file_name)?;
     let clocks = oscillator.clocks();
-    let (h1, h2) = (rational("h1", oscillator.h1())?, rational("h2", oscillator.h2())?);
-    let lambda1 = rational("lambda1", oscillator.lambda1())?;
-    let lambda2 = rational("lambda2", oscillator.lambda2())?;
-    let numbers = [&h1, &lambda1, &h2, &lambda2];
-    let written =
-        |separator: char| numbers.map(|x| format!("({} {separator} {})", x.numer(), x.denom())).join(" ");
+    let given = [
+        ("h1", oscillator.h1()),
+        ("lambda1", oscillator.lambda1()),
+        ("h2", oscillator.h2()),
+        ("lambda2", oscillator.lambda2()),
+    ];
+    let mut numbers = Vec::with_capacity(4);
+    for (field, x) in given {
+        numbers.push(monomial(field, x)?);
+    }
+    let irrational = numbers.iter().any(|(_, power)| *power != 0);
+    if irrational && matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence) {
+        let remedy =
+            "an edge needs rational numbers: measure time in a unit without pi (h / pi, lambda * pi^2)";
+        return Err(Error::input("certificate", file_name, remedy));
+    }
+    let said =
+        numbers.iter().map(|(c, power)| if *power == 0 { c.to_string() } else { format!("{c}*pi^{power}") });
+    let said: Vec<String> = said.collect();
+    let (words, tactic) =
+        if irrational { ("PiCertificate", "certify_pi") } else { ("Certificate", "certify") };
     Ok(format!(
-        "(* kickdrift verdict --lambda1 {lambda1} --lambda2 {lambda2} --h1 {h1} --h2 {h2} --certificate {file_name} *)\n\
+        "(* kickdrift verdict --lambda1 {} --lambda2 {} --h1 {} --h2 {} --certificate {file_name} *)\n\
          From Coq Require Import Reals QArith.\n\
-         From Kickdrift Require Import Vocabulary Certificate.\n\
+         From Kickdrift Require Import Vocabulary {words}.\n\
          \n\
          (** kind, p, q with h2/h1 = p/q, then h1, lambda1, h2, lambda2. *)\n\
          Theorem kickdrift_verdict :\n  verdict {} {} {} {}.\n\
-         Proof. certify {}. Qed.\n\
+         Proof. {tactic} {}. Qed.\n\
          Print Assumptions kickdrift_verdict.\n",
+        said[1],
+        said[3],
+        said[0],
+        said[2],
         kind(verdict),
         clocks.p(),
         clocks.q(),
-        written('/'),
-        written('#'),
+        written(&numbers, irrational, '/'),
+        written(&numbers, irrational, '#'),
     ))
+}
+
+/// The numbers as reals of Coq (sign /) or as what its computation takes (sign #).
+fn written(numbers: &[(Rational, i32)], irrational: bool, sign: char) -> String {
+    let one = |(c, power): &(Rational, i32)| {
+        let fraction = format!("{} {sign} {}", c.numer(), c.denom());
+        let power = if *power < 0 { format!("({power})") } else { power.to_string() };
+        match (irrational, sign) {
+            (false, _) => format!("({fraction})"),
+            (true, '/') => format!("({fraction} * powerRZ PI {power})"),
+            (true, _) => format!("({fraction}, {power}%Z)"),
+        }
+    };
+    numbers.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+/// A tongue's edges as Coq proofs: each lies between two doubles, of which the entry that vanishes there has opposite signs.
+///
+/// # Errors
+/// A file name that Coq does not take for a module's.
+pub fn coq_of_tongue(ratio: Ratio, rho: &Rational, gap: &Gap, file_name: &str) -> Result<String> {
+    check_name(file_name)?;
+    let mut text = format!(
+        "(* kickdrift tongues --ratio {ratio} --rho {rho} --m {} --certificate {file_name} *)\n\
+         From Coq Require Import Reals QArith.\n\
+         From Kickdrift Require Import Vocabulary EdgeCertificate.\n\
+         \n\
+         (** entry, p, q, rho, and the ends of an interval of s = h1^2 lambda1 that holds a zero of the entry. *)\n",
+        gap.m
+    );
+    let edges = [("lower", Some(&gap.lower)), ("upper", gap.upper.as_ref())];
+    for (name, edge) in edges.into_iter().filter_map(|(name, edge)| Some((name, edge?))) {
+        // One double further out: the edge itself may be a double.
+        let [lo, hi] = [edge.lo.next_down(), edge.hi.next_up()]
+            .map(|end| rational::from_f64_exact(end).expect("an edge is finite"));
+        let numbers = [(rho.clone(), 0), (lo, 0), (hi, 0)];
+        text += &format!(
+            "Theorem kickdrift_{name} :\n  edge {:?} {} {} {}.\n\
+             Proof. certify_edge {}. Qed.\n\
+             Print Assumptions kickdrift_{name}.\n",
+            edge.entry,
+            ratio.p(),
+            ratio.q(),
+            written(&numbers, false, '/'),
+            written(&numbers, false, '#'),
+        );
+    }
+    Ok(text)
 }
 
 fn kind(verdict: Verdict) -> String {
@@ -60,9 +132,13 @@ fn kind(verdict: Verdict) -> String {
     }
 }
 
-fn rational(field: &str, x: &Laurent) -> Result<Rational> {
-    let remedy = "a certificate needs rational numbers: replace pi by a fraction near it";
-    x.as_rational().ok_or_else(|| Error::input(field, x, remedy))
+/// c and k of c π^k.
+fn monomial(field: &str, x: &Laurent) -> Result<(Rational, i32)> {
+    match x.terms() {
+        [(power, c)] => Ok((c.clone(), *power)),
+        [] => Ok((Rational::default(), 0)),
+        _ => Err(Error::input(field, x, "a certificate needs a fraction times a power of pi")),
+    }
 }
 
 fn check_name(name: &str) -> Result<()> {

@@ -2,7 +2,8 @@
 
 use kickdrift::number::parse::parse;
 use kickdrift::propagator::Oscillator;
-use kickdrift::report::certificate::coq;
+use kickdrift::report::certificate::{coq, coq_of_tongue};
+use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Limits, decide};
 use std::path::Path;
 
@@ -19,6 +20,12 @@ fn the_examples_are_what_the_command_writes() {
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
         let value = |flag: &str| words[words.iter().position(|word| *word == flag).unwrap() + 1];
         let x = |flag: &str| parse(flag, value(flag)).unwrap();
+        if words[2] == "tongues" {
+            let (ratio, rho) = (value("--ratio").parse().unwrap(), x("--rho").as_rational().unwrap());
+            let gap = Tongues::new(ratio, &rho).unwrap().gap(value("--m").parse().unwrap()).unwrap();
+            assert_eq!(coq_of_tongue(ratio, &rho, &gap, value("--certificate")).unwrap(), text);
+            continue;
+        }
         let oscillator = Oscillator::new(x("--lambda1"), x("--lambda2"), x("--h1"), x("--h2")).unwrap();
         let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
         assert_eq!(coq(&oscillator, verdict, value("--certificate")).unwrap(), text, "{}", path.display());
@@ -28,13 +35,17 @@ fn the_examples_are_what_the_command_writes() {
 }
 
 #[test]
-fn irrational_input_and_bad_names_are_refused() {
+fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
     let x = |text| parse("x", text).unwrap();
-    let oscillator = Oscillator::new(x("pi^2"), x("1"), x("1/4"), x("1")).unwrap();
-    let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
-    assert!(coq(&oscillator, verdict, "a.v").unwrap_err().to_string().contains("lambda1"));
-    let rational = Oscillator::new(x("2"), x("1"), x("1/4"), x("1")).unwrap();
+    let file = |[lambda1, lambda2, h1, h2]: [&str; 4], name: &str| {
+        let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
+        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        coq(&oscillator, verdict, name)
+    };
+    assert!(file(["1 + pi", "1", "1/4", "1"], "a.v").unwrap_err().to_string().contains("lambda1"));
+    // s = 2, q = 1, p even: an edge exactly, whatever the slow stiffness.
+    assert!(file(["2*pi^2", "pi^2", "1/pi", "2/pi"], "a.v").unwrap_err().to_string().contains("edge"));
     for name in ["a b.v", "a.txt", ".v", "a-b.v"] {
-        assert!(coq(&rational, verdict, name).is_err(), "{name}");
+        assert!(file(["2", "1", "1/4", "1"], name).is_err(), "{name}");
     }
 }

@@ -6,18 +6,23 @@ mod output;
 mod question;
 mod strength;
 
+use std::path::{Path, PathBuf};
+
 use clap::ValueEnum;
 
 use super::args::{Common, from_str, of, whole};
 use super::paper::Paper;
 use super::ratios::{Flags, Ratios};
 use super::request::{Request, THINNEST};
+use super::verdict::within;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
-use crate::tongue::{self, Labels, Range, Selection, Stiffness, Wanted, Window};
+use crate::report::certificate::coq_of_tongue;
+use crate::report::file::write_output;
+use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::put;
 pub use question::{MOST_SUM, Question};
@@ -72,6 +77,9 @@ pub struct Args {
     /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
     #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = of(parse))]
     theta: Option<Laurent>,
+    /// Also write a Coq proof of the edges of the tongue chosen by --ratio, --rho and --m.
+    #[arg(long, value_name = "FILE.v", requires_all = ["ratio", "m"], conflicts_with_all = ["survey", "figure"])]
+    certificate: Option<PathBuf>,
     #[command(flatten)]
     paper: Paper,
 }
@@ -106,6 +114,7 @@ const MOST_DIGITS: u32 = 10_000;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        self.certificate.as_ref().map_or(Ok(()), |path| self.certify(path, common))?;
         let forms = if self.survey { &Format::DOCUMENT[..] } else { &Format::DOCUMENT_OR_FIGURE };
         let format = common.format_of_table(forms)?;
         self.check(format)?;
@@ -126,6 +135,20 @@ impl Args {
             }
             _ => output::write(&self.question(self.wanted(format))?, common, format),
         }
+    }
+
+    /// Writes the proof of one tongue's edges.
+    fn certify(&self, path: &Path, common: &Common) -> Result<()> {
+        common.apart_from_output("certificate", path)?;
+        let rho = self.stiffness()?.rho;
+        let one = |remedy| Error::input("--certificate", path.display(), remedy);
+        let [ratio] = self.ratios()?.list()[..] else { return Err(one("is for one ratio")) };
+        within(ratio.kicks(), common.budget)?;
+        let gaps =
+            Tongues::new(ratio, &rho)?.select(&Selection { m: self.m.clone(), ..Selection::default() })?;
+        let [gap] = &gaps[..] else { return Err(one("is for one tongue: choose it with --m")) };
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        write_output(Some(path), coq_of_tongue(ratio, &rho, gap, &name)?.as_bytes())
     }
 
     /// Flags that say nothing together.
