@@ -36,7 +36,7 @@ fn the_examples_are_what_the_command_writes() {
 
 #[test]
 fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
-    let x = |text| parse("x", text).unwrap();
+    let x = |text: &str| parse("x", text).unwrap();
     let file = |[lambda1, lambda2, h1, h2]: [&str; 4], name: &str| {
         let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
         let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
