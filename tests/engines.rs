@@ -256,6 +256,38 @@ fn unknown_keys_are_passed_over_and_what_was_used_is_listed() {
     );
 }
 
+/// A line that each engine passes over; where it goes.
+const UNKNOWN: [(Engine, &str, &str); 6] = [
+    (Engine::Gromacs, "dt", "nstlog = 7\ndt"),
+    (Engine::Lammps, "timestep", "thermo 7\ntimestep"),
+    (Engine::Namd, "timestep", "outputName run7\ntimestep"),
+    (Engine::Tinker, "integrator", "vdw-cutoff 7\nintegrator"),
+    (Engine::Ipi, "<timestep", "<fixcom>True</fixcom><timestep"),
+    (Engine::OpenMm, "integrator = ", "temperature = 7\nintegrator = "),
+];
+
+#[test]
+fn a_line_that_an_engine_passes_over_changes_nothing() {
+    for (engine, at, with) in UNKNOWN {
+        let mut seen = 0;
+        for (_, text, _) in TEXTS.iter().filter(|(own, ..)| *own == engine) {
+            let more = text.replacen(at, with, 1);
+            if more == *text {
+                continue;
+            }
+            let (plain, own) =
+                (of(text).unwrap(), of(&more).unwrap_or_else(|error| panic!("{more}: {error}")));
+            assert_eq!(
+                (steps(&plain), &plain.used, &plain.remarks),
+                (steps(&own), &own.used, &own.remarks),
+                "{more}"
+            );
+            seen += 1;
+        }
+        assert!(seen > 0, "{at}");
+    }
+}
+
 #[test]
 fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
     let mut state = 0x2545_f491_4f6c_dd1d_u64;
@@ -307,6 +339,7 @@ fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
         match of(&text) {
             Ok(reading) => {
                 good += 1;
+                assert!(!reading.used.is_empty(), "{text:?}");
                 // What is read can be rewritten or says why not.
                 let outer = reading.scheme.last_but_one() * ratio(2, 1);
                 if let Ok(new) = reading.rewritten(&outer) {
@@ -319,6 +352,10 @@ fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
                 let message = error.to_string();
                 assert!(!message.contains('\n') && error.kind() != Kind::Io, "{message}");
                 assert!(!error.field().is_empty() && !error.remedy().is_empty(), "{text:?}: {message}");
+                // What was given, or that nothing was.
+                let told =
+                    error.value().is_some() || message.contains(" missing: ") || error.kind() == Kind::Budget;
+                assert!(told, "{text:?}: {message}");
             }
         }
     }

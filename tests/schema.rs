@@ -106,7 +106,7 @@ const LINES: [&str; 47] = [
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs --band 0",
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --friction 1/ps --steps 0.5fs,6fs",
     "advise data/scenes/water4.json --length 1ns",
-    "advise data/scenes/water4.json --steps 0.5fs,4.5fs",
+    "advise data/scenes/water4.json --steps 0.5fs,4.5fs --friction 1/ps --hmr 1.5",
 ];
 
 #[test]

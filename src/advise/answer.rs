@@ -76,6 +76,10 @@ pub const MOST_INTERVALS: usize = 32;
 /// Intervals are listed that begin below so many times the scheme's outer step, or the end of the first interval.
 const REACH: f64 = 1.1;
 
+pub(crate) fn reach(first_upper: Option<f64>, outer: f64) -> f64 {
+    REACH * first_upper.map_or(outer, |upper| upper.max(outer))
+}
+
 /// Two modes that a coupling can make resonate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pair {
@@ -220,8 +224,7 @@ impl Question {
         } else if let Some(label) = row.found.label {
             row.inside = intervals.get(label)?;
         }
-        let reach = REACH
-            * row.first.as_ref().and_then(|first| first.upper).map_or(outer, |upper| upper.1.max(outer));
+        let reach = reach(row.first.as_ref().and_then(|first| first.upper).map(|upper| upper.1), outer);
         row.intervals = intervals.up_to(reach, MOST_INTERVALS)?;
         Ok(row)
     }

@@ -54,7 +54,8 @@ impl<'a> Intervals<'a> {
         Ok(Intervals { tongues: [Tongues::new(ratio, &lo)?, Tongues::new(ratio, &hi)?], ratio, fast })
     }
 
-    fn last(&self) -> u64 {
+    /// The last label.
+    pub fn last(&self) -> u64 {
         self.tongues[0].last()
     }
 

@@ -10,7 +10,7 @@ use super::levels::Scheme;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::levels::{Kernel, Outer};
+use crate::system::levels::{Growing, Kernel, Outer};
 use crate::system::{Analysis, Holds, Removed};
 
 /// Measured stiffnesses of two levels, and what their coordinates are called.
@@ -48,10 +48,15 @@ pub struct Finding {
     pub first: Option<(f64, f64)>,
     /// Every outer step from the first unstable one up to this is proven unstable; the interval may end later.
     pub first_upper: Option<f64>,
+    /// Growth from there on, sampled, steps in fs and rates per fs; that a step is stable again is proven. None where no first one is.
+    pub growing: Vec<Growing>,
     /// Growth per fs, rounded; 0 where nothing grows.
     pub rate: f64,
     /// Who moves in what grows fastest.
     pub atoms: Option<String>,
+    /// Where a friction was given: whether it keeps all bounded, and, where something grows, the friction per fs above which it would be; in doubles.
+    pub is_damped: Option<bool>,
+    pub masking: Option<f64>,
     /// Every outer step up to this, at this ratio, is proven stable for all periods in the band.
     pub band_edge: Option<f64>,
     /// The longest multiple of the inner step that is proven so, all shorter ones too.
@@ -59,6 +64,14 @@ pub struct Finding {
     /// The same, and below T/3 of the fastest mode.
     pub safe: Option<Rational>,
     pub within_run: Option<bool>,
+}
+
+/// What is told of a molecule at a ratio of steps, in fs.
+#[derive(Clone)]
+struct AtRatio {
+    first_upper: Option<f64>,
+    growing: Vec<Growing>,
+    band_edge: Option<f64>,
 }
 
 /// All that is told of a molecule.
@@ -71,6 +84,8 @@ pub struct Findings {
     pub accuracy: f64,
     pub band: Rational,
     pub length: Option<Rational>,
+    /// Per fs.
+    pub friction: Option<Rational>,
     pub schemes: Vec<Finding>,
 }
 
@@ -86,6 +101,9 @@ const NO_MODE: f64 = 1e-2;
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;
 
+/// Nor are the first samples of its growth closer.
+const LEAST_SAMPLE: f64 = 1e-5;
+
 impl Molecule {
     /// From a kernel whose unit of time is so many fs.
     pub fn new(kernel: Kernel, unit: Rational, names: Vec<String>, accuracy: f64) -> Molecule {
@@ -96,7 +114,13 @@ impl Molecule {
     ///
     /// # Errors
     /// No scheme; one of other than two steps, or whose outer step is no multiple of the inner one; a band outside [0, 1).
-    pub fn advise(&self, schemes: &[Scheme], band: &Rational, length: Option<&Rational>) -> Result<Findings> {
+    pub fn advise(
+        &self,
+        schemes: &[Scheme],
+        band: &Rational,
+        length: Option<&Rational>,
+        friction: Option<&Rational>,
+    ) -> Result<Findings> {
         if *band < Rational::zero() || *band >= Rational::one() {
             return Err(Error::input("band", band, "write a part of the period from 0 to below 1, as 5%"));
         }
@@ -111,7 +135,19 @@ impl Molecule {
                 "give the bonds to the potential of the shorter step",
             ));
         };
-        let find = |scheme: &Scheme| self.find(scheme, fastest, band, length);
+        if let Some(rate) = friction.filter(|rate| **rate <= Rational::zero()) {
+            return Err(Error::input("friction", rate, "a friction must be positive"));
+        }
+        let mut known: Vec<(u64, AtRatio)> = Vec::new();
+        let mut found = Vec::new();
+        for scheme in schemes {
+            let p = self.outer_of(scheme)?.inner_steps();
+            if known.iter().all(|(own, _)| *own != p) {
+                known.push((p, self.at_ratio(p, to_f64(band))?));
+            }
+            let (_, at) = known.iter().find(|(own, _)| *own == p).expect("just put there");
+            found.push(self.find(scheme, fastest, band, (length, friction), at)?);
+        }
         let frequency = self.kernel.highest_slow_frequency();
         Ok(Findings {
             slow: self.period(frequency * frequency),
@@ -119,7 +155,8 @@ impl Molecule {
             accuracy: self.accuracy,
             band: band.clone(),
             length: length.cloned(),
-            schemes: schemes.iter().map(find).collect::<Result<_>>()?,
+            friction: friction.cloned(),
+            schemes: found,
             groups,
         })
     }
@@ -175,18 +212,24 @@ impl Molecule {
         })
     }
 
+    fn outer_of(&self, scheme: &Scheme) -> Result<Outer> {
+        let [inner, last] = scheme.steps() else {
+            let remedy = "Hessians are answered for two steps, as 0.5fs,4fs";
+            return Err(Error::input("steps", format!("{} of them", scheme.steps().len()), remedy));
+        };
+        self.outer(inner, last)
+    }
+
     fn find(
         &self,
         scheme: &Scheme,
         fastest: f64,
         band: &Rational,
-        length: Option<&Rational>,
+        (length, friction): (Option<&Rational>, Option<&Rational>),
+        at: &AtRatio,
     ) -> Result<Finding> {
-        let [inner, last] = scheme.steps() else {
-            let remedy = "Hessians are answered for two steps, as 0.5fs,4fs";
-            return Err(Error::input("steps", format!("{} of them", scheme.steps().len()), remedy));
-        };
-        let (outer, part, unit) = (self.outer(inner, last)?, to_f64(band), to_f64(&self.unit));
+        let (inner, last) = (scheme.inner(), scheme.outer());
+        let (outer, part, unit) = (self.outer_of(scheme)?, to_f64(band), to_f64(&self.unit));
         let analysis = self.kernel.decide(&outer, &(last / &self.unit), self.accuracy);
         let measured = analysis.measured.as_ref().expect("Hessians are measured");
         let third = from_f64_exact(fastest / 3.0).unwrap_or_else(Rational::zero);
@@ -201,8 +244,7 @@ impl Molecule {
         };
         let rate = growth(&analysis) / unit;
         let time = std::f64::consts::LN_10 / rate;
-        let ends = |hi: f64| self.kernel.unstable_up_to(outer.inner_steps(), hi, LEAST);
-        let first_upper = measured.first_unstable.map(|(_, hi)| ends(hi)).transpose()?;
+        let AtRatio { first_upper, growing, band_edge } = at.clone();
         let largest = self.largest(inner, part)?;
         Ok(Finding {
             scheme: scheme.clone(),
@@ -210,17 +252,40 @@ impl Molecule {
             holds: measured.holds,
             margin: measured.margin.filter(|_| analysis.is_stable()),
             first: measured.first_unstable.map(|(lo, hi)| (lo * unit, hi * unit)),
-            first_upper: first_upper.map(|hi| hi * unit),
+            first_upper,
+            growing,
             rate,
+            is_damped: friction.map(|rate| self.kernel.damped_radius(&outer, to_f64(rate) * unit) < 1.0),
+            masking: friction
+                .filter(|_| rate > 0.0)
+                .and_then(|_| self.kernel.masking_friction(&outer))
+                .map(|own| own / unit),
             atoms: fastest_shape(&analysis).map(|shape| self.atoms(&shape)),
-            band_edge: self
-                .kernel
-                .band_edge(outer.inner_steps(), part, self.accuracy)
-                .map(|edge| edge * unit),
+            band_edge,
             safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
             largest,
             within_run: length.filter(|_| rate > 0.0).map(|length| time <= to_f64(length)),
         })
+    }
+
+    /// What belongs to a number of inner steps.
+    fn at_ratio(&self, inner_steps: u64, band: f64) -> Result<AtRatio> {
+        let unit = to_f64(&self.unit);
+        let band_edge = self.kernel.band_edge(inner_steps, band, self.accuracy).map(|edge| edge * unit);
+        let Some((_, begins)) = self.kernel.first_unstable(inner_steps) else {
+            return Ok(AtRatio { first_upper: None, growing: Vec::new(), band_edge });
+        };
+        let upper = self.kernel.unstable_up_to(inner_steps, begins, LEAST)?;
+        let growing = self.kernel.growing(inner_steps, begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
+        let fs = |step: Option<f64>| step.map(|step| step * unit);
+        let in_fs = |own: Growing| Growing {
+            lower: own.lower * unit,
+            upper: fs(own.upper),
+            stable_again: fs(own.stable_again),
+            worst: (own.worst.0 * unit, own.worst.1 / unit),
+        };
+        let growing = growing.into_iter().map(in_fs).collect();
+        Ok(AtRatio { first_upper: Some(upper * unit), growing, band_edge })
     }
 
     /// The longest multiple of the inner step for the band, all shorter ones holding too.

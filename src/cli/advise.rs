@@ -6,7 +6,7 @@ use super::args::Common;
 use super::paper::Paper;
 use super::system;
 use crate::advise::engine::{self, Reading};
-use crate::advise::unit::{self, Dimension};
+use crate::advise::unit::{self, Dimension, decimal};
 use crate::advise::{Constraints, Mode, Question, Scheme};
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -14,14 +14,19 @@ use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::advise as report;
 use crate::report::file::write_output;
+use crate::scene::{SystemScene, of_archive};
+
+/// Fastest periods of molecules, in fs.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
 
 /// Flags of `advise`.
 ///
 /// --output FILE.svg, FILE.pdf or FILE.png draws: the outer step across, each mode a row.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Hessians in place of periods: a system file of two steps, as data/scenes/flexible-water.json, whose steps are the first scheme
-    #[arg(value_name = "FILE", conflicts_with_all = ["period", "bond", "on", "hmr"])]
+    /// Hessians in place of periods: a system file of two steps, as data/scenes/flexible-water.json, whose steps are the first scheme; or
+    /// FILE.npz with fast and slow (mass-weighted, 1/ps^2), masses and positions
+    #[arg(value_name = "FILE", conflicts_with_all = ["period", "bond", "on"])]
     file: Option<PathBuf>,
     /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
     #[arg(long, value_name = "[NAME=]T")]
@@ -45,10 +50,11 @@ pub struct Args {
     #[arg(long, value_name = "TIME")]
     length: Option<String>,
     /// The friction of the thermostat, as 1/ps: does it mask what grows?
-    #[arg(long, value_name = "RATE", conflicts_with = "file")]
+    #[arg(long, value_name = "RATE")]
     friction: Option<String>,
-    /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
-    #[arg(long, value_name = "WHICH", conflicts_with = "file")]
+    /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]; of Hessians h-bonds, with
+    /// the force of each potential in the file
+    #[arg(long, value_name = "WHICH")]
     constraints: Option<String>,
     /// Hydrogens of this mass in amu, taken from their heavy atoms.
     #[arg(long, value_name = "MASS")]
@@ -60,7 +66,7 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
-        self.paper.check(format.is_figure() && self.file.is_none())?;
+        self.paper.check(format.is_figure())?;
         let reading = self.reading()?;
         if let Some(path) = &self.file {
             return self.molecule(path, reading.as_ref(), common);
@@ -79,16 +85,66 @@ impl Args {
     }
 
     fn molecule(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<()> {
-        let scene = system::read(path, common)?;
+        let archive = path.extension().is_some_and(|extension| extension == "npz");
+        let scene = if archive { self.archive(path, reading, common)? } else { system::read(path, common)? };
+        let scene = self.changed(scene, path, common)?;
         let (molecule, own) = scene.molecule()?;
         let own = reading.map_or(own, |reading| reading.scheme.clone());
-        let schemes: Vec<Scheme> = [own].into_iter().chain(self.given(reading)?).collect();
-        let (band, length) = (part("band", &self.band)?, self.run_length()?);
-        let findings = molecule.advise(&schemes, &band, length.as_ref())?;
-        let document = report::of_molecule(&findings, reading);
+        let given = self.given(reading)?.into_iter().filter(|scheme| !archive || *scheme != own);
+        let schemes: Vec<Scheme> = [own.clone()].into_iter().chain(given).collect();
+        let (band, length, friction) = (part("band", &self.band)?, self.run_length()?, self.friction()?);
+        let findings = molecule.advise(&schemes, &band, length.as_ref(), friction.as_ref())?;
+        let fastest = findings.groups[0].period.0;
+        if archive && !PLAUSIBLE.contains(&fastest) {
+            let given = format!("a fastest period of {fastest:.1e} fs");
+            let remedy =
+                "an archive is read as mass-weighted, in 1/ps^2: write a system file that says what it is";
+            return Err(Error::input("fast", given, remedy));
+        }
+        let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
+        if let Some(path) = common.output.as_deref().filter(|_| format.is_figure()) {
+            let figure = report::figure_of_molecule(&findings, "Which outer steps are safe");
+            return self.paper.draw("output", path, figure);
+        }
+        let read =
+            archive.then(|| "fast and slow as mass-weighted, in 1/ps^2, known to 1e-6 of their norms".into());
+        let heavy =
+            self.hmr.as_ref().map(|mass| format!("hydrogens of {mass}, their nearest heavy atoms lighter"));
+        let notes: Vec<String> = read.into_iter().chain(heavy).collect();
+        let document = report::of_molecule(&findings, reading, &notes);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let document = document.input("file", name).input_json("system", scene.source().clone());
         common.write(&document, Format::Text)
+    }
+
+    /// The arrays of an archive, with the steps given.
+    fn archive(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<SystemScene> {
+        let own = reading.map(|reading| reading.scheme.clone());
+        let scheme = own.or(self.given(reading)?.into_iter().next());
+        let needed = || Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs");
+        let scheme = scheme.ok_or_else(needed)?;
+        let [inner, outer] = scheme.steps() else { return Err(needed()) };
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        SystemScene::from_json_in(system::arrays(path, common), of_archive(&name, [inner, outer]))
+    }
+
+    /// With the hydrogens and the constraints of the command line.
+    fn changed(&self, scene: SystemScene, path: &Path, common: &Common) -> Result<SystemScene> {
+        let mut source = scene.source().clone();
+        if let Some(mass) = self.hmr.as_deref().map(heavy_hydrogen).transpose()? {
+            source["hydrogen_mass"] = decimal(&mass).into();
+        }
+        if let Some(which) = &self.constraints {
+            source["constraints"] = which.trim().into();
+        }
+        if source == *scene.source() {
+            return Ok(scene);
+        }
+        SystemScene::from_json_in(system::arrays(path, common), source)
+    }
+
+    fn friction(&self) -> Result<Option<Rational>> {
+        self.friction.as_deref().map(|rate| unit::rational("friction", rate, Dimension::Rate)).transpose()
     }
 
     fn run_length(&self) -> Result<Option<Rational>> {
@@ -140,8 +196,8 @@ impl Args {
         if let Some(length) = self.run_length()? {
             question = question.of_length(length);
         }
-        match &self.friction {
-            Some(rate) => question.with_friction(unit::rational("friction", rate, Dimension::Rate)?),
+        match self.friction()? {
+            Some(rate) => question.with_friction(rate),
             None => Ok(question),
         }
     }

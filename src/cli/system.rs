@@ -190,8 +190,17 @@ fn text(path: &Path) -> Result<String> {
 fn source(path: &Path, common: &Common) -> Result<(String, Arrays)> {
     match &common.held {
         Some(held) => Ok((held.text.clone(), held.arrays.clone())),
-        None => Ok((text(path)?, Arrays::from(path.parent().unwrap_or(Path::new(""))))),
+        None => Ok((text(path)?, folder(path))),
     }
+}
+
+/// Where the arrays are that a file refers to.
+pub fn arrays(path: &Path, common: &Common) -> Arrays {
+    common.held.as_ref().map_or_else(|| folder(path), |held| held.arrays.clone())
+}
+
+fn folder(path: &Path) -> Arrays {
+    Arrays::from(path.parent().unwrap_or(Path::new("")))
 }
 
 /// A system file, read.

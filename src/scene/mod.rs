@@ -33,6 +33,8 @@ use crate::resonance::Families;
 
 pub use document::{Document, Quantity};
 pub use grid::{GridRange, shown_range};
+#[cfg(feature = "advise")]
+pub use system::of_archive;
 #[cfg(feature = "system")]
 pub use system::{Array, Arrays, Axis, Displacement, RunRequest, Scan, Span, SystemScene, TwoLevels};
 pub use want::{Product, Want};

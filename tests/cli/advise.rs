@@ -77,10 +77,20 @@ fn what_is_missing_is_named_with_a_remedy() {
         ("advise data/scenes/ring24.json", "stiffness = given in place"),
         ("advise data/scenes/water4.json --steps 0.7fs,4fs", "a multiple of the inner one"),
         ("advise data/scenes/water4.json --period 10fs", "cannot be used with"),
+        (
+            "advise data/scenes/water4.json --constraints h-bonds",
+            "potentials[0].force missing: give the force of each potential",
+        ),
+        ("advise data/scenes/water4.json --constraints OH", "write h-bonds, or pairs of particles"),
+        ("advise data/scenes/water4.json --hmr 30", "leaves every heavy particle some"),
+        ("advise data/scenes/water4.json --friction 0/ps", "a friction must be positive"),
+        ("advise data/hessians/water4.npz", "steps missing: give the inner and the outer step"),
+        ("advise data/hessians/water4.npz --steps 1fs", "steps missing: give the inner and the outer step"),
+        ("advise data/hessians/nowhere.npz --steps 0.5fs,4fs", "nowhere.npz"),
         ("advise --engine nowhere.mdp --period 10fs", "nowhere.mdp"),
     ];
     for (line, expected) in cases {
-        let line = line.replace("data/scenes", concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let line = line.replace(" data/", concat!(" ", env!("CARGO_MANIFEST_DIR"), "/data/"));
         let line = line.as_str();
         let ended = run(&words(line, &[]));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line}");
@@ -133,4 +143,37 @@ fn exact_inputs_are_echoed() {
     assert_eq!(document["input"]["modes"][0]["stiffness"], "pi^2/25");
     assert_eq!(document["schemes"][0]["safe"], "3");
     assert_eq!(document["schemes"][1]["status"], "island");
+}
+
+/// Arrays in an archive, and a system file that refers to them.
+#[test]
+fn an_archive_is_advised_as_its_system_file_is() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data");
+    let desk = Desk::new();
+    let first = |line: &str| {
+        let ended = desk.run(&words(line, &[]));
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{line}");
+        ended.stdout.lines().next().unwrap().to_string()
+    };
+    let bare = format!("advise {folder}/hessians/water4.npz --steps 0.5fs,4fs");
+    let (bare, file) = (first(&bare), first(&format!("advise {folder}/scenes/water4.json")));
+    assert!(bare == file && bare.starts_with("4 fs    stable; next unstable interval 4.4"), "{bare}\n{file}");
+}
+
+#[test]
+fn a_molecule_is_drawn_and_its_advice_verified() {
+    let desk = Desk::new();
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/data");
+    for name in ["tiny.json", "tiny-fast.npy", "tiny-slow.npy"] {
+        std::fs::copy(folder.join(name), desk.path().join(name)).unwrap();
+    }
+    let line = "advise tiny.json --steps 0.5fs,4.5fs --steps 0.5fs,5fs --length 1ns";
+    for name in ["a.svg", "a.json", "a.csv", "a.tex"] {
+        let ended = desk.run(&words(line, &["--output", name]));
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{name}");
+    }
+    assert!(desk.read("a.svg").starts_with(b"<svg"));
+    let ended = desk.run(&["verify", "a.json"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(ended.stdout.contains("the action as one matrix over the paths"), "{}", ended.stdout);
 }

@@ -1,11 +1,13 @@
 //! The rows of the document `kickdrift/advise/1`, and what concerns it as a whole.
 
 use num_traits::{One, Zero};
-use serde_json::Value;
+use serde_json::{Value, json};
 
-use super::mass::{BITS, Mass, crosses, exact};
+use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
+use crate::advise::{Caution, Intervals, MOST_INTERVALS, PUBLISHED, reach};
 use crate::error::Result;
-use crate::number::{Ball, Laurent, Rational, Real, Sign};
+use crate::number::rational::to_f64;
+use crate::number::{Ball, Laurent, Ratio, Rational, Real, Sign};
 use crate::recheck::context::{Checked, Context, Outcome, Place, holds, same};
 use crate::recheck::written::{Ends, Written, nullable};
 use crate::verdict::Kind;
@@ -143,8 +145,7 @@ impl Claim {
             context.outcome(ROUTE, ("the schemes", self.whole()), &self.rows, |row| self.row(row))?;
         outcome.not_rechecked.extend([
             "that no other unstable interval lies nearer to a scheme than those of below and above",
-            "tenfold_steps of intervals: held against 64 places inside, to a hundredth",
-            "statement and source of published, unknown: words",
+            "unknown: words",
             "before: the masses are not part of the document; held to be shorter",
         ]);
         if self.engine.is_some() {
@@ -158,7 +159,7 @@ impl Claim {
         let steps: Vec<Rational> = match self.input.schemes.get(scheme) {
             Some(steps) => steps.iter().map(|step| step.0.clone()).collect(),
             None => {
-                return holds(false, || format!("there is no scheme {}", scheme + 1))
+                return holds(false, || format!("there is no scheme {}", scheme.wrapping_add(1)))
                     .map(|()| unreachable!());
             }
         };
@@ -201,13 +202,83 @@ impl Claim {
         for (n, scheme) in self.schemes.iter().enumerate() {
             self.scheme(n, scheme)?;
             let grows = self.of(n).any(|row| row.tenfold_steps.is_some());
-            holds(scheme.within_run.is_some() == (grows && length.is_some()), || {
-                "within_run is told of what grows in a run".into()
-            })?;
+            let least = self.of(n).filter_map(|row| row.tenfold_steps).map(|steps| steps.hi);
+            let time = least.fold(f64::INFINITY, f64::min) * to_f64(&scheme.outer);
+            let truth = length.as_ref().filter(|_| grows).map(|length| time <= to_f64(length));
+            holds(scheme.within_run == truth, || "within_run is not what growth in the run says".into())?;
         }
+        self.whole_lists()?;
         self.pairs.iter().try_for_each(|pair| self.pair(pair))?;
         self.intervals.iter().try_for_each(|interval| self.interval(interval))?;
         self.published()
+    }
+
+    /// A row for each mode that is not on the outermost clock alone at each scheme, all pairs of them, and no interval left out.
+    fn whole_lists(&self) -> Checked {
+        let last = self.input.schemes.first().map_or(0, Vec::len) as u64;
+        let inner = |mode: &&Mode| last == 1 || mode.clock < last;
+        let mut names: Vec<&str> =
+            self.input.modes.iter().filter(inner).map(|mode| mode.name.as_str()).collect();
+        if names.is_empty() {
+            names = self.input.modes.iter().map(|mode| mode.name.as_str()).collect();
+        }
+        let schemes = 1..=self.schemes.len() as u64;
+        let rows = schemes.clone().flat_map(|n| names.iter().map(move |name| (n, *name)));
+        let told = self.rows.iter().map(|row| (row.scheme, row.mode.as_str()));
+        holds(told.eq(rows), || "the rows are not those of each mode at each scheme".into())?;
+        let of = |n: u64| {
+            let names = &names;
+            (0..names.len()).flat_map(move |i| names[i + 1..].iter().map(move |other| (n, names[i], *other)))
+        };
+        let told = self.pairs.iter().map(|pair| (pair.scheme, pair.first.as_str(), pair.second.as_str()));
+        holds(told.eq(schemes.flat_map(of)), || {
+            "the pairs are not all pairs of modes at each scheme".into()
+        })?;
+        let known =
+            |own: &Interval| self.rows.iter().any(|row| row.scheme == own.scheme && row.mode == own.mode);
+        holds(self.intervals.iter().all(known), || "an interval is of no row".into())?;
+        self.rows.iter().try_for_each(|row| self.list(row))
+    }
+
+    /// The intervals of a row: labels rise by one, but past closed ones, until one begins beyond what is listed.
+    fn list(&self, row: &Row) -> Checked {
+        let mode = self.input.modes.iter().find(|mode| mode.name == row.mode);
+        let mass = self.mass(row.scheme as usize - 1, mode)?;
+        let listed = |own: &&Interval| own.scheme == row.scheme && own.mode == row.mode;
+        let own: Vec<&Interval> = self.intervals.iter().filter(listed).collect();
+        let rises = own.windows(2).all(|pair| pair[0].m < pair[1].m);
+        holds(rises, || format!("the intervals of {} are not in their order", row.mode))?;
+        let (Some(first), [inner, outer]) = (row.first_lower, &mass.steps[..]) else { return Ok(()) };
+        if let (Some(upper), Some(begins)) = (row.first_upper, own.first()) {
+            let told = (begins.m, begins.lower.lo, begins.upper.map(|upper| upper.hi));
+            holds(told == (1, first.lo, Some(upper.hi)), || "the first interval is another one".into())?;
+        }
+        let stiffness = self.exact_stiffness(row)?;
+        if stiffness[0].is_zero() || own.len() == MOST_INTERVALS {
+            return Ok(());
+        }
+        let intervals = Intervals::new(Ratio::try_from(&(outer / inner))?, &stiffness[0], &stiffness[1])?;
+        let reach = reach(row.first_upper.map(|upper| upper.hi), to_f64(outer));
+        let listed = own.iter().map(|own| own.m).max().unwrap_or(0);
+        for m in (1..=listed + 1).take_while(|m| *m <= intervals.last()) {
+            let truth = intervals.get(m)?.filter(|truth| truth.lower.0 <= reach);
+            holds(truth.is_some() == own.iter().any(|own| own.m == m), || {
+                format!("interval {m} is missing")
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The stiffness on each clock, as [`Claim::mass`] has it in balls.
+    fn exact_stiffness(&self, row: &Row) -> Checked<Vec<Laurent>> {
+        let clocks = self.input.schemes[row.scheme as usize - 1].len() as u64;
+        let of = |clock: u64| {
+            let on = || self.input.modes.iter().filter(move |mode| mode.clock == clock);
+            let own = on().find(|mode| mode.name == row.mode);
+            let stiffest = own.or_else(|| on().max_by(|a, b| a.stiffness.cmp(&b.stiffness)));
+            stiffest.map_or_else(Laurent::zero, |mode| mode.stiffness.0.clone())
+        };
+        Ok((1..=clocks).map(of).collect())
     }
 
     pub fn of(&self, scheme: usize) -> impl Iterator<Item = &Row> {
@@ -242,10 +313,16 @@ impl Claim {
         })?;
         crosses(&at, own.lower, "lower")?;
         crosses(&at, upper, "upper")?;
-        let inside = at(own.lower.hi / 2.0 + upper.lo / 2.0).excess()?;
-        holds(inside != Some(Sign::Negative), || {
+        let inside = at(own.lower.hi / 2.0 + upper.lo / 2.0);
+        holds(inside.excess()? != Some(Sign::Negative), || {
             format!("interval {} of {} is stable inside", own.m, own.mode)
-        })
+        })?;
+        // In tongue m the trace has the sign (-1)^m.
+        let sign = inside.trace()?.0.sign();
+        holds((sign == Some(Sign::Positive)) == (own.m % 2 == 0), || {
+            format!("{} is not the label of that interval", own.m)
+        })?;
+        own.tenfold_steps.map_or(Ok(()), |steps| fastest_growth(&at, (own.lower.hi, upper.lo), steps))
     }
 
     fn pair(&self, pair: &Pair) -> Checked {
@@ -268,22 +345,33 @@ impl Claim {
 
     fn published(&self) -> Checked {
         let fastest = self.fastest()?;
-        for row in &self.published {
-            let limit = |end: &str| row["limit"][end].as_f64();
-            let known = match row["parts"].as_u64() {
-                Some(3) => Some(fastest.third),
-                Some(4) => Some(fastest.quarter),
-                Some(5) => Some(fastest.fifth),
-                Some(10) => Some(fastest.tenth),
-                _ => None,
+        let one = |of: &Caution| {
+            let limit = match of.parts {
+                3 => fastest.third,
+                4 => fastest.quarter,
+                5 => fastest.fifth,
+                _ => fastest.tenth,
             };
-            let right =
-                known.is_some_and(|ends| (limit("lo"), limit("hi")) == (Some(ends.lo), Some(ends.hi)));
-            holds(right && row["mode"] == fastest.name.as_str(), || {
-                "a published limit is not that part of the fastest period".into()
-            })?;
+            json!({"mode": fastest.name, "parts": of.parts, "step": if of.inner { "inner" } else { "outer" },
+                "limit": {"lo": limit.lo, "hi": limit.hi}, "statement": of.statement, "source": of.source})
+        };
+        let all: Vec<Value> = PUBLISHED.iter().map(one).collect();
+        let told = same_json(&json!(self.published), &json!(all));
+        holds(told, || "a published limit is not that part of the fastest period".into())
+    }
+}
+
+/// Numbers by their value: 1 and 1.0 are the same.
+fn same_json(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same_json(a, b))
         }
-        Ok(())
+        (Value::Object(a), Value::Object(b)) => {
+            a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| same_json(a, b)))
+        }
+        _ => a == b,
     }
 }
 

@@ -1,15 +1,79 @@
-//! Advice on Hessians: computed again, whole.
+//! Advice on Hessians: computed again, whole; what it proves, and growth, by another route.
 
 use serde_json::{Map, Value};
 
-use crate::advise::Scheme;
+use crate::advise::{Finding, Scheme};
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::recheck::context::{Context, Outcome, REMEDY};
+use crate::number::rational::to_f64;
+use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
 use crate::recheck::system::same_values;
 use crate::recheck::written::Written;
 use crate::report::advise::of_molecule;
 use crate::scene::SystemScene;
+use crate::system::levels::{Hessians, Near};
+
+/// The action and the full period, in the coordinates of the Hessians.
+struct Other {
+    hessians: Hessians,
+    /// Upper bounds of both norms, times the accuracy.
+    off: [f64; 2],
+    band: f64,
+    /// fs in the file's unit of time.
+    unit: f64,
+}
+
+/// A route's room at the end of a region, relative: the smallest eigenvalue of the action there is some 10^-6 of its largest.
+const ROOM: f64 = 1e-6;
+
+/// By how much growth per period may differ: a multiplier near a double one moves by the square root of the roundings.
+const GROWTH: f64 = 1e-5;
+
+impl Other {
+    fn new(scene: &SystemScene, band: f64) -> Result<Other> {
+        let levels = scene.two_levels()?;
+        let off = levels.kernel.norms().map(|norm| levels.accuracy * norm);
+        let unit = to_f64(&scene.femtoseconds()?);
+        Ok(Other { hessians: scene.hessians()?, off, band, unit })
+    }
+
+    fn inner_steps(own: &Finding) -> u64 {
+        to_f64(&(own.scheme.outer() / own.scheme.inner())).round() as u64
+    }
+
+    fn has_paths(&self, own: &Finding) -> bool {
+        self.hessians.has_paths(Other::inner_steps(own))
+    }
+
+    fn row(&self, own: &Finding) -> Checked {
+        let (p, outer) = (Other::inner_steps(own), to_f64(own.scheme.outer()));
+        let growth = self.hessians.growth_of_period(outer / self.unit, p) * outer / self.unit;
+        holds((growth - own.rate * outer).abs() < GROWTH, || format!("growth is {growth} in a period"))?;
+        if !self.has_paths(own) {
+            return Ok(());
+        }
+        let stable = |step: f64, near: Near| self.hessians.paths_prove_stable(step / self.unit, p, near);
+        let unstable = |step: f64| self.hessians.paths_prove_unstable(step / self.unit, p);
+        if let Some((lo, hi)) = own.first {
+            holds(stable(lo * (1.0 - ROOM), Near::EXACTLY), || format!("is not proven stable up to {lo}"))?;
+            holds(unstable(hi * (1.0 + ROOM)), || format!("is not proven unstable from {hi} on"))?;
+        }
+        if let Some(upper) = own.first_upper {
+            holds(unstable(upper * (1.0 - ROOM)), || format!("is not proven unstable up to {upper}"))?;
+        }
+        if let Some(edge) = own.band_edge {
+            let [most, least] = [1.0 - self.band, 1.0 + self.band].map(|part| part.powi(-2));
+            for slow in [most, least] {
+                let off = [most * self.off[0], slow * self.off[1]];
+                let near = Near { factors: [most, slow], off };
+                holds(stable(edge * (1.0 - ROOM), near), || {
+                    format!("the band is not proven stable up to {edge}")
+                })?;
+            }
+        }
+        Ok(())
+    }
+}
 
 rows! {
     struct Input {
@@ -19,6 +83,7 @@ rows! {
         band: Written<Rational>,
         schemes: Vec<Vec<Written<Rational>>>,
         length: Option<Written<Rational>>,
+        friction: Option<Written<Rational>>,
     }
 }
 
@@ -38,17 +103,31 @@ impl Claim {
             |own: &Vec<Written<Rational>>| Scheme::new(own.iter().map(|step| step.0.clone()).collect());
         let schemes = input.schemes.iter().map(steps).collect::<Result<Vec<_>>>()?;
         let length = input.length.as_ref().map(|length| &length.0);
-        let findings = scene.molecule()?.0.advise(&schemes, &input.band, length)?;
+        let friction = input.friction.as_ref().map(|friction| &friction.0);
+        let findings = scene.molecule()?.0.advise(&schemes, &input.band, length, friction)?;
         let mut told = self.0.clone();
         let engine = told.remove("engine");
-        let again = of_molecule(&findings, None).value();
-        let failures =
+        let again = of_molecule(&findings, None, &[]).value();
+        let mut failures: Vec<_> =
             context.failure(0, || "the document".into(), same_values(&told, &again))?.into_iter().collect();
-        let mut not_rechecked = vec!["file: a name", "statement and source of published, unknown: words"];
+        let mut not_rechecked = vec!["file: a name"];
+        let other = Other::new(&scene, to_f64(&input.band))?;
+        for (n, own) in findings.schemes.iter().enumerate() {
+            if !failures.is_empty() {
+                break;
+            }
+            let place = || format!("outer step {} fs", own.scheme.outer());
+            failures.extend(context.failure(n as u64 + 1, place, other.row(own))?);
+        }
+        if !findings.schemes.iter().all(|own| other.has_paths(own)) {
+            not_rechecked
+                .push("first, band_edge by the action: too many steps for its matrix, computed again only");
+        }
         if engine.is_some() {
             not_rechecked.push("engine: its text is not part of the document");
         }
-        let route = "computed again, by the same route: stiffnesses were measured";
+        let route = "computed again; the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
+                     period kick by kick";
         Ok(Outcome { rows: 1, route, sample: None, failures, not_rechecked })
     }
 }

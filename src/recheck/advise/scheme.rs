@@ -10,7 +10,7 @@ use crate::recheck::written::Ends;
 use crate::verdict::Kind;
 
 impl Claim {
-    /// Every field of a scheme but `within_run`.
+    /// Every field of a scheme but `within_run`; `needs` is told to a millionth.
     pub fn scheme(&self, n: usize, row: &SchemeRow) -> Checked {
         let corner = self.corner(n)?;
         let outer = corner.steps.last().cloned().unwrap_or_default();
@@ -48,7 +48,7 @@ impl Claim {
         let right = needs > 0.0
             && needs.is_finite()
             && with(needs)? == Some(true)
-            && with(0.99 * needs)? == Some(false);
+            && with(0.999_99 * needs)? == Some(false);
         holds(right, || "needs is not the shortest slow period".into())
     }
 

@@ -1,10 +1,14 @@
 //! Advice drawn: the outer step across, each mode and pair of modes a row.
 
+use std::f64::consts::PI;
+
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Pair, Row};
+use crate::advise::{Advice, Answer, Finding, Findings, Group, Pair, Row, Scheme, Status, Unstable};
+use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::figure::palette::{COEXISTENCE, Colour, GREY, HYPERBOLIC, INK, PARABOLIC};
 use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke, Tick};
+use crate::system::levels::Growing;
 
 /// Half the height of a row.
 const HALF: f64 = 0.34;
@@ -13,6 +17,10 @@ const HALF: f64 = 0.34;
 const SAFE: Colour = Colour(0xcf, 0xec, 0xdf);
 const CAUTION: Colour = Colour(0xf3, 0xb4, 0x7a);
 const UNSTABLE: Colour = HYPERBOLIC;
+const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
+
+/// Groups of a molecule's modes are drawn up to this many.
+const MOST_ROWS: usize = 8;
 
 /// One stretch of outer steps in a row.
 struct Band {
@@ -43,19 +51,46 @@ impl Band {
     }
 }
 
-/// A row of the figure: a fast mode, or a pair of them, at one scheme's ratio.
-enum Subject<'a> {
-    Mode(&'a Row),
-    Pair(&'a Pair),
+/// A row of the figure: a mode, a pair of modes, a molecule; in fs.
+#[derive(Default)]
+struct Line {
+    label: String,
+    /// T/3, and how far all periods of the band are proven stable.
+    third: f64,
+    band: f64,
+    /// Proven unstable.
+    unstable: Vec<[f64; 2]>,
+    /// Growing wherever it was sampled.
+    sampled: Vec<[f64; 2]>,
+    /// Where a resonance is near.
+    near: Option<f64>,
 }
 
-/// One scheme for each ratio, with the rows that belong to it.
-fn by_ratio(advice: &Advice) -> Vec<(&Answer, Vec<&Answer>)> {
-    let mut found: Vec<(&Answer, Vec<&Answer>)> = Vec::new();
-    for answer in &advice.schemes {
-        match found.iter_mut().find(|(first, _)| ratio(first) == ratio(answer)) {
-            Some((_, all)) => all.push(answer),
-            None => found.push((answer, vec![answer])),
+/// The rows at one ratio of steps, and the schemes that have it.
+struct Block {
+    ratio: String,
+    lines: Vec<Line>,
+    /// The outer step, and what it is told of it.
+    chosen: Vec<(f64, String)>,
+    safe: Option<f64>,
+}
+
+/// Blocks of one ratio each.
+fn blocks<'a, T>(
+    all: &'a [T],
+    scheme: impl Fn(&T) -> &Scheme,
+    of: impl Fn(&'a T) -> (Vec<Line>, Status, &'a Option<Rational>),
+) -> Vec<Block> {
+    let mut found: Vec<Block> = Vec::new();
+    for own in all {
+        let (ratio, outer) = (ratio(scheme(own)), scheme(own).outer());
+        let (lines, status, safe) = of(own);
+        let chosen = (to_f64(outer), format!("{} fs: {}", decimal(outer), status.name()));
+        match found.iter_mut().find(|block| block.ratio == ratio) {
+            Some(block) => block.chosen.push(chosen),
+            None => {
+                found.push(Block { ratio, lines, chosen: vec![chosen], safe: safe.as_ref().map(to_f64) });
+            }
         }
     }
     found
@@ -63,62 +98,120 @@ fn by_ratio(advice: &Advice) -> Vec<(&Answer, Vec<&Answer>)> {
 
 /// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through their rows.
 pub fn figure(advice: &Advice, title: &str) -> Figure {
-    let groups = by_ratio(advice);
-    let count = |answer: &Answer| answer.rows.len() + answer.pairs.len();
-    let rows: usize = groups.iter().map(|(answer, _)| count(answer)).sum();
-    let outers = advice.schemes.iter().map(|answer| to_f64(answer.scheme.outer()));
+    let lines = |answer: &Answer| {
+        let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
+        modes.chain(answer.pairs.iter().map(|own| pair(advice, answer, own))).collect()
+    };
+    let of = |answer| (lines(answer), answer.status, &answer.safe);
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
-    let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).chain(outers).fold(0.0, f64::max) * 1.12;
+    let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).fold(0.0, f64::max);
+    let near = "two modes may resonate (first order)";
+    draw(&blocks(&advice.schemes, |answer| &answer.scheme, of), right, (title, near))
+}
+
+/// Safe up to T/3, caution up to the band's edge, the unstable intervals over what is not advised.
+fn mode(advice: &Advice, answer: &Answer, own: &Row) -> Line {
+    let alone = answer.scheme.steps().len() == 1;
+    let band = own.first.as_ref().map_or(0.0, |first| first.lower.0) * (1.0 - to_f64(&advice.band));
+    let first = own.first.iter().filter(|of| alone || of.upper.is_some());
+    let ends = |of: &Unstable| [of.lower.0, of.upper.map_or(f64::INFINITY, |upper| upper.1)];
+    Line {
+        label: advice.modes[own.mode].name.clone(),
+        third: if alone { band } else { advice.modes[own.mode].part(3).0 },
+        band,
+        unstable: first.chain(&own.inside).chain(&own.intervals).map(ends).collect(),
+        ..Line::default()
+    }
+}
+
+/// A pair is proven stable as far as all couplings are.
+fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
+    Line {
+        label: own.modes.map(|i| advice.modes[i].name.as_str()).join(" + "),
+        third: advice.modes[advice.fastest].part(3).0,
+        band: answer.band_edge.0,
+        near: Some(own.near),
+        ..Line::default()
+    }
+}
+
+/// The molecule and each group of its fast modes at each scheme's own ratio.
+pub fn figure_of_molecule(findings: &Findings, title: &str) -> Figure {
+    let of = |own| (molecule(findings, own), own.status, &own.safe);
+    let far =
+        |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));
+    let right = findings.schemes.iter().filter_map(far).fold(0.0, f64::max);
+    let near = "half a turn of these modes alone";
+    draw(&blocks(&findings.schemes, |own| &own.scheme, of), right, (title, near))
+}
+
+/// The whole first; below it where each group alone has turned half way round in an outer step.
+fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
+    let (third, band) = (findings.groups[0].period.0 / 3.0, own.band_edge.unwrap_or(0.0));
+    let proven = own.first.zip(own.first_upper).map(|(first, upper)| [first.1, upper]);
+    let ends = |growing: &Growing| [growing.lower, growing.upper.unwrap_or(f64::INFINITY)];
+    let whole = Line {
+        label: "all, coupled".into(),
+        third,
+        band,
+        unstable: proven.into_iter().collect(),
+        sampled: own.growing.iter().map(ends).collect(),
+        near: None,
+    };
+    let parts = to_f64(&(own.scheme.outer() / own.scheme.inner()));
+    let half = |period: f64| parts * period / PI * (PI / (2.0 * parts)).sin();
+    let group = |own: &Group| Line {
+        label: own.atoms.clone(),
+        third: own.period.0 / 3.0,
+        band,
+        near: Some(half(own.period.0)),
+        ..Line::default()
+    };
+    [whole].into_iter().chain(findings.groups.iter().take(MOST_ROWS).map(group)).collect()
+}
+
+/// All rows, from the top down; in words what is near.
+fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
+    let rows: usize = blocks.iter().map(|block| block.lines.len()).sum();
+    let outers = blocks.iter().flat_map(|block| &block.chosen).map(|(outer, _)| *outer);
+    let right = 1.12 * outers.fold(right, f64::max);
     let (mut layers, mut ticks, mut notes) = (Layers::default(), Vec::new(), Vec::new());
     let mut at = rows as f64;
-    for (answer, all) in &groups {
+    for block in blocks {
         let top = at - 0.5;
-        let modes = answer.rows.iter().map(Subject::Mode);
-        for subject in modes.chain(answer.pairs.iter().map(Subject::Pair)) {
+        for line in &block.lines {
             at -= 1.0;
-            layers.add(advice, answer, &subject, at, right);
-            let name = match subject {
-                Subject::Mode(row) => advice.modes[row.mode].name.clone(),
-                Subject::Pair(pair) => pair.modes.map(|i| advice.modes[i].name.as_str()).join(" + "),
-            };
-            let label = if groups.len() > 1 { format!("{name}, {}", ratio(answer)) } else { name };
+            layers.add(line, at, right);
+            let many = blocks.len() > 1;
+            let label = if many { format!("{} at {}", line.label, block.ratio) } else { line.label.clone() };
             ticks.push(Tick { at, label: Some(label) });
         }
-        for (i, own) in all.iter().enumerate() {
-            let outer = to_f64(own.scheme.outer());
-            layers.chosen.push(vec![[outer, at - 0.5], [outer, top]]);
+        for (i, (outer, text)) in block.chosen.iter().enumerate() {
+            layers.chosen.push(vec![[*outer, at - 0.5], [*outer, top]]);
             let (anchor, shift) =
-                if outer > 0.7 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
-            let text = format!("{} fs: {}", decimal(own.scheme.outer()), own.status.name());
+                if *outer > 0.7 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
             // Above its first row, in lines of their own.
-            notes.push(
-                Note::new([outer, top - 0.06 - 0.2 * (i % 2) as f64], &text)
-                    .anchored(anchor, [shift, 0.0])
-                    .in_colour(INK),
-            );
+            let note = Note::new([*outer, top - 0.06 - 0.2 * (i % 2) as f64], text);
+            notes.push(note.anchored(anchor, [shift, 0.0]).in_colour(INK));
         }
-        if let Some(safe) = answer.safe.as_ref().map(to_f64) {
+        if let Some(safe) = block.safe {
             layers.recommended.push(vec![[safe, at - 0.5], [safe, top]]);
         }
     }
-    let only = if groups.len() == 1 {
-        format!(", {} inner steps in each", ratio(groups[0].0))
-    } else {
-        String::new()
-    };
+    let only = if let [block] = blocks { format!(", steps {}", block.ratio) } else { String::new() };
     let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
     let panel = Panel::new(x, Axis::linear("", -0.6, rows as f64 - 0.4).ticks(ticks));
-    let panel = notes.into_iter().fold(layers.on(panel, right / 90.0), Panel::note);
+    let panel = notes.into_iter().fold(layers.on(panel, right / 90.0, near), Panel::note);
     Figure::new(150.0, 54.0 + 11.0 * rows as f64).named(title).with(panel.legend(Place::Above))
 }
 
-fn ratio(answer: &Answer) -> String {
-    let steps = answer.scheme.steps();
+fn ratio(scheme: &Scheme) -> String {
+    let steps = scheme.steps();
     if steps.len() == 1 {
         return "one clock".into();
     }
     let ratios: Vec<String> = steps.windows(2).map(|pair| decimal(&(&pair[1] / &pair[0]))).collect();
-    ratios.join(" x ")
+    format!("{}:1", ratios.join(" x "))
 }
 
 /// What is drawn, kind by kind.
@@ -127,6 +220,7 @@ struct Layers {
     safe: Vec<Band>,
     caution: Vec<Band>,
     unstable: Vec<Band>,
+    sampled: Vec<Band>,
     beyond: Vec<Band>,
     near: Vec<[f64; 2]>,
     chosen: Vec<Vec<[f64; 2]>>,
@@ -134,37 +228,21 @@ struct Layers {
 }
 
 impl Layers {
-    /// Safe up to T/3, caution up to the band's edge, then what is not advised, the unstable intervals over it. A pair is proven
-    /// stable as far as all couplings are.
-    fn add(&mut self, advice: &Advice, answer: &Answer, subject: &Subject, row: f64, right: f64) {
-        let alone = answer.scheme.steps().len() == 1;
-        let (band, fastest) = match subject {
-            Subject::Mode(own) => {
-                let edge = own.first.as_ref().map_or(0.0, |first| first.lower.0);
-                (edge * (1.0 - to_f64(&advice.band)), own.mode)
-            }
-            Subject::Pair(pair) => {
-                self.near.extend(Some([pair.near, row]).filter(|at| at[0] < right));
-                (answer.band_edge.0, advice.fastest)
-            }
-        };
-        let third = if alone { band } else { advice.modes[fastest].part(3).0 };
+    fn add(&mut self, line: &Line, row: f64, right: f64) {
         let push = |list: &mut Vec<Band>, lo: f64, hi: f64| {
             if lo < hi.min(right) {
                 list.push(Band { at: [lo, hi.min(right)], row });
             }
         };
-        push(&mut self.safe, 0.0, third.min(band));
-        push(&mut self.caution, third, band);
-        push(&mut self.beyond, band, right);
-        let Subject::Mode(own) = subject else { return };
-        let first = own.first.iter().filter(|of| alone || of.upper.is_some());
-        for interval in first.chain(&own.inside).chain(&own.intervals) {
-            push(&mut self.unstable, interval.lower.0, interval.upper.map_or(right, |upper| upper.1));
-        }
+        push(&mut self.safe, 0.0, line.third.min(line.band));
+        push(&mut self.caution, line.third, line.band);
+        push(&mut self.beyond, line.band, right);
+        line.unstable.iter().for_each(|&[lo, hi]| push(&mut self.unstable, lo, hi));
+        line.sampled.iter().for_each(|&[lo, hi]| push(&mut self.sampled, lo, hi));
+        self.near.extend(line.near.filter(|&at| at < right).map(|at| [at, row]));
     }
 
-    fn on(self, panel: Panel, pitch: f64) -> Panel {
+    fn on(self, panel: Panel, pitch: f64, near: &str) -> Panel {
         let areas =
             |bands: &[Band], colour| Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
         let hatch = |bands: &[Band], pitch, falls| {
@@ -172,20 +250,30 @@ impl Layers {
         };
         let panel = panel
             .with(areas(&self.safe, SAFE).labelled("proven stable, all periods in the band"))
-            .with(areas(&self.caution, CAUTION).labelled("the same, beyond T/3 (published drift)"))
+            .with(
+                areas(&self.caution, CAUTION)
+                    .labelled("the same, beyond T/3: published drift (rising strokes)"),
+            )
             .with(Layer::lines(hatch(&self.caution, pitch, false), Stroke::THIN))
             .with(
                 Layer::lines(hatch(&self.beyond, 1.5 * pitch, true), Stroke::THIN.in_colour(GREY))
-                    .labelled("not to be recommended"),
-            )
+                    .labelled("not to be recommended (falling strokes)"),
+            );
+        let panel = match self.sampled.is_empty() {
+            true => panel,
+            false => panel
+                .with(
+                    areas(&self.sampled, SAMPLED)
+                        .labelled("growing at every step sampled (grey, falling strokes)"),
+                )
+                .with(Layer::lines(hatch(&self.sampled, pitch, true), Stroke::THIN)),
+        };
+        let panel = panel
             .with(areas(&self.unstable, UNSTABLE).labelled("unstable, proven"))
             .with(Layer::lines(self.chosen, Stroke::LINE));
         let panel = match self.near.is_empty() {
             true => panel,
-            false => panel.with(
-                Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC)
-                    .labelled("two modes may resonate (first order)"),
-            ),
+            false => panel.with(Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC).labelled(near)),
         };
         panel.with(
             Layer::lines(self.recommended, Stroke::DASHED.in_colour(COEXISTENCE)).labelled("recommended"),

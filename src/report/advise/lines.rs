@@ -199,6 +199,13 @@ pub(super) fn published(told: &str, part: impl Fn(f64) -> String) -> String {
     )
 }
 
+pub(super) fn friction(rate: &Rational) -> String {
+    let rate = decimal(&(rate * Rational::from_integer(1000.into())));
+    format!(
+        "  friction   {rate}/ps in the middle of every drift (BAOAB): it can hide a linear resonance, no advice rests on it"
+    )
+}
+
 /// What is proven, published, unknown.
 fn reasons(advice: &Advice) -> Vec<String> {
     let fastest = &advice.modes[advice.fastest];
@@ -242,8 +249,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
         ));
     }
     if let Some(friction) = &advice.friction {
-        let rate = decimal(&(friction * Rational::from_integer(1000.into())));
-        lines.push(format!("  friction   {rate}/ps in the middle of every drift (BAOAB): it can hide a linear resonance, no advice rests on it"));
+        lines.push(self::friction(friction));
     }
     if let Some(why) = not_nested(&answer.scheme) {
         lines.push(format!("  engines    {why}: OpenMM, LAMMPS, GROMACS and NAMD refuse that; the scheme is decided above all the same"));

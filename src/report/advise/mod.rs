@@ -17,7 +17,7 @@ use crate::advise::{Advice, Answer, Mode, PUBLISHED, Pair, Row, Unstable};
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
-pub use chart::figure;
+pub use chart::{figure, figure_of_molecule};
 pub use molecule::document as of_molecule;
 pub use words::nearest;
 

@@ -14,9 +14,10 @@ use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use crate::system::Holds;
+use crate::system::levels::Growing;
 
-/// The document `kickdrift/advise-system/1`, but for the input.
-pub fn document(findings: &Findings, reading: Option<&Reading>) -> Document {
+/// The document `kickdrift/advise-system/1`, but for the input; for people with `notes` on how it was read.
+pub fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
     let removed = findings.removed.as_ref().map(|own| json!({"count": own.count, "found_by": own.found_by}));
     let document = Document::new("advise-system")
         .input("band", &findings.band)
@@ -25,12 +26,17 @@ pub fn document(findings: &Findings, reading: Option<&Reading>) -> Document {
         Some(length) => document.input("length", length),
         None => document,
     };
+    let document = match &findings.friction {
+        Some(friction) => document.input("friction", friction),
+        None => document,
+    };
     let document = document
         .entry("rigid_motions", removed)
         .entry("accuracy", findings.accuracy)
         .entry("slow_period", findings.slow)
         .entry("groups", groups(findings, true).to_json_rows())
         .entry("rows", rows(findings, true).to_json_rows())
+        .entry("intervals", intervals(findings, true).to_json_rows())
         .entry("published", published(findings))
         .entry("unknown", UNKNOWN.to_vec());
     let best = &findings.schemes[0];
@@ -40,8 +46,9 @@ pub fn document(findings: &Findings, reading: Option<&Reading>) -> Document {
     };
     document
         .long_rows(rows(findings, false))
+        .and_rows(intervals(findings, false))
         .and_rows(groups(findings, false))
-        .summary(&summary(findings, reading))
+        .summary(&summary(findings, reading, notes))
 }
 
 fn steps(scheme: &Scheme) -> Value {
@@ -58,7 +65,7 @@ fn advised_step(finding: &Finding) -> Option<&Rational> {
     advised(&finding.scheme, &finding.safe, &finding.largest)
 }
 
-fn summary(findings: &Findings, reading: Option<&Reading>) -> Vec<String> {
+fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
     let mut lines: Vec<String> = findings.schemes.iter().map(|own| line(findings, own)).collect();
     let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
     let period = fastest.period.0;
@@ -79,6 +86,10 @@ fn summary(findings: &Findings, reading: Option<&Reading>) -> Vec<String> {
     }
     lines.push(lines::published(&told, |n| rounded(period / n, 4)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
+    lines.extend(notes.iter().map(|note| format!("  read       {note}")));
+    if let Some(friction) = &findings.friction {
+        lines.push(lines::friction(friction));
+    }
     if let Some(removed) = &findings.removed {
         lines.push(format!("  rigid      {} motions projected out, by {}", removed.count, removed.found_by));
     }
@@ -89,13 +100,17 @@ fn rounded(x: f64, digits: usize) -> String {
     nearest((x, x), digits)
 }
 
+/// "5.0226-5.0228 fs (tenfold in ...), 5.0229-5.032 fs (...)".
 fn interval(own: &Finding) -> Option<String> {
     let (lo, hi) = own.first?;
-    let lower = nearest((lo, hi), 5);
-    Some(own.first_upper.map_or_else(
-        || format!("{lower} fs and on"),
-        |upper| format!("{lower} to at least {} fs", rounded(upper, 5)),
-    ))
+    let one = |(n, growing): (usize, &Growing)| {
+        let lower = if n == 0 { nearest((lo, hi), 5) } else { rounded(growing.lower, 5) };
+        let end = growing.upper.map_or_else(|| " and on".into(), |upper| format!("-{}", rounded(upper, 5)));
+        let (at, rate) = growing.worst;
+        let worst = rounded(std::f64::consts::LN_10 / (rate * at), 3);
+        format!("{lower}{end} fs (at worst tenfold in {worst} steps)")
+    };
+    Some(own.growing.iter().enumerate().map(one).collect::<Vec<_>>().join(", "))
 }
 
 fn line(findings: &Findings, own: &Finding) -> String {
@@ -137,12 +152,18 @@ fn line(findings: &Findings, own: &Finding) -> String {
 fn grows(own: &Finding) -> String {
     let Some(steps) = own.tenfold_steps() else { return String::new() };
     let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
+    let friction = match (own.is_damped, own.masking) {
+        (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
+        (_, Some(mask)) => {
+            format!("only a friction above {}/ps masks it, the one given does not", rounded(1000.0 * mask, 3))
+        }
+        _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * own.rate, 2)),
+    };
     format!(
-        ": tenfold in {} outer steps = {} ps, {}/ps{atoms} (a friction of some {}/ps would mask it, to first order)",
+        ": tenfold in {} outer steps = {} ps, {}/ps{atoms} ({friction})",
         rounded(steps, 3),
         rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
-        rounded(1000.0 * own.rate, 3),
-        rounded(2000.0 * own.rate, 2)
+        rounded(1000.0 * own.rate, 3)
     )
 }
 
@@ -177,6 +198,33 @@ fn groups(findings: &Findings, all: bool) -> Table {
     record.table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
 }
 
+/// Of each scheme, those at its ratio.
+fn intervals(findings: &Findings, all: bool) -> Table {
+    let schemes = (1u64..).zip(&findings.schemes);
+    let found: Vec<(u64, &Growing)> =
+        schemes.flat_map(|(n, own)| own.growing.iter().map(move |growing| (n, growing))).collect();
+    type One<'a> = (u64, &'a Growing);
+    let record = Record::new()
+        .field(Column::new("scheme"), |own: &One| own.0.into())
+        .field(Column::new("lower").in_words("grows from").in_unit("fs"), move |own| {
+            number(Some(own.1.lower), all)
+        })
+        .field(Column::new("upper").in_words("to").in_unit("fs"), move |own| number(own.1.upper, all))
+        .field(Column::new("stable_again").in_words("stable again").in_unit("fs"), move |own| {
+            number(own.1.stable_again, all)
+        })
+        .field(Column::new("worst_outer").in_words("worst at").in_unit("fs"), move |own| {
+            number(Some(own.1.worst.0), all)
+        })
+        .field(Column::new("worst_growth_rate").in_words("growth there").in_unit("1/ps"), move |own| {
+            number(Some(1000.0 * own.1.worst.1), all)
+        })
+        .field(Column::new("worst_tenfold_steps").in_words("tenfold in steps"), move |own| {
+            number(Some(std::f64::consts::LN_10 / (own.1.worst.0 * own.1.worst.1)), all)
+        });
+    record.table("intervals", "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled", &found)
+}
+
 fn rows(findings: &Findings, all: bool) -> Table {
     let exact = |x: &Option<Rational>| x.as_ref().map_or(Cell::Missing, Cell::exact);
     let holds = |holds: Holds| Cell::from(holds.name());
@@ -202,7 +250,17 @@ fn rows(findings: &Findings, all: bool) -> Table {
         })
         .field(Column::new("atoms").in_words("growing").left(), |own| {
             own.atoms.as_deref().map_or(Cell::Missing, Cell::from)
-        })
+        });
+    let record = match all || findings.friction.is_some() {
+        false => record,
+        true => record
+            .field(
+                Column::new("masked_above").in_words("masked above a friction").in_unit("1/ps"),
+                move |own| number(own.masking.map(|rate| 1000.0 * rate), all),
+            )
+            .field(Column::new("damped"), |own| own.is_damped.into()),
+    };
+    let record = record
         .field(Column::new("band_edge").in_words("stable below").in_unit("fs"), move |own| {
             number(own.band_edge, all)
         })

@@ -13,9 +13,13 @@
 //!     ]
 //! }
 //! ```
+//!
+//! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
+//! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
 
 use std::sync::{Arc, OnceLock};
 
+use faer::Mat;
 use nalgebra::DMatrix;
 use num_traits::One;
 use serde::Deserialize;
@@ -23,6 +27,7 @@ use serde_json::Value;
 
 use super::array::{Arrays, Reference};
 use super::document::{LARGEST, Number, no_system};
+use super::held::{Constraints, Particles, reweigh};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
@@ -47,6 +52,8 @@ struct Document {
     masses: Option<Reference>,
     positions: Option<Reference>,
     accuracy: Option<Number>,
+    constraints: Option<Constraints>,
+    hydrogen_mass: Option<Number>,
     potentials: Vec<PotentialDocument>,
     #[serde(rename = "labels")]
     _labels: Option<Vec<String>>,
@@ -59,6 +66,7 @@ struct PotentialDocument {
     step: Number,
     scale: Option<Number>,
     stiffness: Reference,
+    force: Option<Reference>,
 }
 
 /// Measured stiffnesses with their clocks.
@@ -72,6 +80,8 @@ pub(super) struct Measured {
     is_weighted: bool,
     accuracy: f64,
     keeps_rigid: bool,
+    /// Particles whose distances are held; the stiffnesses are bent by them.
+    held: Vec<[usize; 2]>,
     scales: Vec<Scale>,
     kernel: Arc<OnceLock<Kernel>>,
 }
@@ -112,25 +122,41 @@ impl Measured {
     /// From a file of such stiffnesses.
     pub fn read(source: &Value, arrays: &Arrays) -> Result<Measured> {
         let document = Document::deserialize(source).map_err(no_system)?;
+        let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
+        let mut read = read.collect::<Result<Vec<_>>>()?;
+        let scale = |(index, (own, (step, scale, _))): (usize, (&PotentialDocument, &(_, _, _)))| Scale {
+            index,
+            name: own.name.clone(),
+            step: Rational::clone(step),
+            scale: *scale,
+        };
+        let scales = document.potentials.iter().zip(&read).enumerate().map(scale).collect();
+        let n = read.first().map_or(0, |(.., k)| k.nrows());
+        if n == 0 || n > LARGEST {
+            return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
+        }
+        if read.iter().any(|(.., k)| k.iter().any(|x| !x.is_finite()) || k.shape() != (n, n)) {
+            let remedy = format!("give {n} x {n} finite numbers for each potential");
+            return Err(Error::input("potentials", "a stiffness", remedy));
+        }
+        let masses = document.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
+        let masses = masses.map(|own| spread(own.into_values(), n)).transpose()?;
+        if masses.is_none() && !document.mass_weighted {
+            return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
+        }
+        let positions = document.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
+        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+        let mut body = Body { masses, positions, is_weighted: document.mass_weighted };
+        let held = body.transform(&document, &mut read, arrays)?;
+        let Body { masses, positions, is_weighted } = body;
         let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
-        let mut scales = Vec::new();
-        for (k, own) in document.potentials.iter().enumerate() {
-            let (step, scale, stiffness) = own.read(k, arrays)?;
-            scales.push(Scale { index: k, name: own.name.clone(), step: step.clone(), scale });
-            match potentials.iter_mut().find(|(other, k)| *other == step && k.shape() == stiffness.shape()) {
+        for (step, _, stiffness) in read {
+            match potentials.iter_mut().find(|(other, _)| *other == step) {
                 Some((_, sum)) => *sum += stiffness,
                 None => potentials.push((step, stiffness)),
             }
         }
         potentials.sort_by(|a, b| a.0.cmp(&b.0));
-        let n = potentials.first().map_or(0, |(_, k)| k.nrows());
-        if n == 0 || n > LARGEST {
-            return Err(Error::input("potentials", n, format!("give 1 to {LARGEST} degrees of freedom")));
-        }
-        if potentials.iter().any(|(_, k)| k.iter().any(|x| !x.is_finite()) || k.shape() != (n, n)) {
-            let remedy = format!("give {n} x {n} finite numbers for each potential");
-            return Err(Error::input("potentials", "a stiffness", remedy));
-        }
         // The steps, checked as those of any system are: what is read can be decided.
         let clock = |step: &Rational| Potential {
             stiffness: Symmetric::zero(1),
@@ -145,20 +171,14 @@ impl Measured {
             Some(number) => to_f64(&number.read("accuracy")?),
             None => USUAL_ACCURACY,
         };
-        let masses = document.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
-        let masses = masses.map(|own| spread(own.into_values(), n)).transpose()?;
-        if masses.is_none() && !document.mass_weighted {
-            return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
-        }
-        let positions = document.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
-        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
         let read = Measured {
             potentials,
             masses,
             positions,
-            is_weighted: document.mass_weighted,
+            is_weighted,
             accuracy: 0.0,
             keeps_rigid: false,
+            held,
             scales,
             kernel: Arc::default(),
         };
@@ -237,6 +257,7 @@ impl Measured {
     /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
+            self.refuse_constraints()?;
             let mut analysis = decide_by(route, &self.system(), limits)?;
             analysis.warnings.push(
                 "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the \
@@ -291,7 +312,8 @@ impl Measured {
         Ok(self.kernel.get_or_init(|| kernel))
     }
 
-    fn hessians(&self) -> Result<Hessians> {
+    /// Both stiffnesses, rigid motions and held distances projected out.
+    pub fn hessians(&self) -> Result<Hessians> {
         let fast = &self.potentials[0].1;
         let nothing = DMatrix::zeros(fast.nrows(), fast.ncols());
         let slow = self.potentials.get(1).map_or(&nothing, |(_, k)| k);
@@ -300,13 +322,33 @@ impl Measured {
             _ => Hessians::new(fast, slow, self.accuracy)?,
         };
         Ok(match (&self.positions, &self.masses) {
-            _ if self.keeps_rigid => hessians,
-            (Some(positions), Some(masses)) => {
-                let own: Vec<f64> = masses.iter().step_by(3).copied().collect();
-                hessians.without(&rigid_motions(positions, &own), "positions")
+            (Some(positions), Some(masses)) if !self.held.is_empty() => {
+                let held = Particles { masses, positions }.gradients(&self.held);
+                let rigid = if self.keeps_rigid { Mat::new() } else { self.rigid(positions, masses) };
+                let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
+                    None => held[(i, j)],
+                    Some(j) => rigid[(i, j)],
+                };
+                let all = Mat::from_fn(held.nrows(), held.ncols() + rigid.ncols(), all);
+                let by = if self.keeps_rigid { "constraints" } else { "positions and constraints" };
+                hessians.without(&all.qr().compute_thin_Q(), by)
             }
+            _ if self.keeps_rigid => hessians,
+            (Some(positions), Some(masses)) => hessians.without(&self.rigid(positions, masses), "positions"),
             _ => hessians.without_null_space(self.accuracy),
         })
+    }
+
+    fn rigid(&self, positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
+        rigid_motions(positions, &masses.iter().step_by(3).copied().collect::<Vec<_>>())
+    }
+
+    /// Where the matrices themselves would be taken, all distances free.
+    pub fn refuse_constraints(&self) -> Result<()> {
+        let remedy =
+            "held distances are answered for two steps, the longer a multiple of the other, in doubles";
+        let given = || Error::input("constraints", format!("{} pairs", self.held.len()), remedy);
+        if self.held.is_empty() { Ok(()) } else { Err(given()) }
     }
 
     /// The two levels, with their period; `None` where the steps are of another kind.
@@ -341,6 +383,52 @@ impl Measured {
     /// The number of degrees of freedom.
     pub fn size(&self) -> usize {
         self.potentials[0].1.nrows()
+    }
+}
+
+/// What moves.
+struct Body {
+    masses: Option<Vec<f64>>,
+    positions: Option<Vec<[f64; 3]>>,
+    is_weighted: bool,
+}
+
+impl Body {
+    /// Heavier hydrogens first, then constraints: the stiffnesses as they are then, and the pairs that are held.
+    fn transform(
+        &mut self,
+        document: &Document,
+        read: &mut [(Rational, f64, DMatrix<f64>)],
+        arrays: &Arrays,
+    ) -> Result<Vec<[usize; 2]>> {
+        if document.constraints.is_none() && document.hydrogen_mass.is_none() {
+            return Ok(Vec::new());
+        }
+        let (Some(masses), Some(positions)) = (&mut self.masses, &self.positions) else {
+            let field = if self.masses.is_none() { "masses" } else { "positions" };
+            return Err(Error::missing(
+                field,
+                "constraints and heavy hydrogens need masses and positions in the file",
+            ));
+        };
+        let old = self.is_weighted.then(|| masses.clone());
+        if let Some(mass) = &document.hydrogen_mass {
+            *masses = Particles { masses, positions }.heavier(to_f64(&mass.read("hydrogen_mass")?))?;
+        }
+        read.iter_mut().for_each(|(.., stiffness)| reweigh(stiffness, old.as_deref(), masses));
+        self.is_weighted = true;
+        let Some(constraints) = &document.constraints else { return Ok(Vec::new()) };
+        let particles = Particles { masses, positions };
+        let pairs = particles.pairs(constraints)?;
+        for (k, (own, (_, scale, stiffness))) in document.potentials.iter().zip(read).enumerate() {
+            let field = format!("potentials[{k}].force");
+            let remedy = "give the force of each potential at the positions: its tension bends the bonds that are held";
+            let force = own.force.as_ref().ok_or_else(|| Error::missing(&field, remedy))?;
+            let force: Vec<f64> =
+                force.read(&field, arrays)?.into_values().iter().map(|x| x * *scale).collect();
+            particles.bend(stiffness, &force, &pairs)?;
+        }
+        Ok(pairs)
     }
 }
 

@@ -41,6 +41,7 @@
 //! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
 //! | `mesh` | finite elements |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
+//! | `held` | their constraints, heavy hydrogens |
 //! | `molecule` | two measured levels, to be advised on |
 //! | `run` | Algorithm 1 run on it |
 //! | `scan`, `intervals` | one file, many systems: any number of it over a range; its unstable intervals |
@@ -48,6 +49,7 @@
 mod array;
 mod bonds;
 mod document;
+mod held;
 mod intervals;
 mod linear;
 mod market;
@@ -70,6 +72,7 @@ use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::propagator;
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
+use crate::system::levels::Hessians;
 use crate::system::{
     Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
     verdict_cost,
@@ -80,6 +83,8 @@ use document::{Document, no_system};
 pub use intervals::Span;
 use measured::Measured;
 pub use measured::TwoLevels;
+#[cfg(feature = "advise")]
+pub use molecule::of_archive;
 use oscillator::Oscillator;
 pub use run::{Displacement, RunRequest};
 pub use scan::{Axis, Scan};
@@ -362,6 +367,15 @@ impl SystemScene {
         self.measured.as_ref().ok_or_else(exact)?.two_levels()
     }
 
+    /// The matrices of [`SystemScene::two_levels`], rigid motions projected out.
+    ///
+    /// # Errors
+    /// As [`SystemScene::two_levels`].
+    pub fn hessians(&self) -> Result<Hessians> {
+        self.two_levels()?;
+        self.measured.as_ref().expect("measured, as two levels are").hessians()
+    }
+
     /// The clocks exactly, where one oscillator has irrational quantities: in units of its shortest step.
     pub fn many_clocks(&self) -> Option<&ManyClocks<Laurent>> {
         self.oscillator.as_ref().map(|own| &own.clocks)
@@ -445,6 +459,7 @@ impl SystemScene {
     }
 
     fn masses(&self) -> Result<Vec<Rational>> {
+        self.measured.as_ref().map_or(Ok(()), Measured::refuse_constraints)?;
         if !self.system().mass().is_diagonal() {
             let remedy = "Algorithm 1 moves particle by particle: give masses in place of mass_matrix";
             return Err(Error::input("mass_matrix", "not diagonal", remedy));

@@ -1,11 +1,23 @@
 //! Two measured levels as a molecule to be advised on.
 
 use serde::Deserialize;
+use serde_json::{Value, json};
 
 use super::SystemScene;
 use crate::advise::unit::{self, Dimension};
 use crate::advise::{Molecule, Scheme};
 use crate::error::{Error, Result};
+use crate::number::Rational;
+
+/// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps², the steps in fs.
+pub fn of_archive(npz: &str, steps: [&Rational; 2]) -> Value {
+    let at = |array: &str| json!({"npz": npz, "array": array});
+    let step = |step: &Rational| (step / Rational::from_integer(1000.into())).to_string();
+    let potential =
+        |name: &str, own: &Rational| json!({"name": name, "step": step(own), "stiffness": at(name)});
+    json!({"schema": super::SCHEMA, "title": npz, "time_unit": "ps", "mass_weighted": true, "masses": at("masses"), "positions": at("positions"),
+        "potentials": [potential("fast", steps[0]), potential("slow", steps[1])]})
+}
 
 impl SystemScene {
     /// The molecule with the scheme of steps of its file, in fs.
@@ -13,14 +25,21 @@ impl SystemScene {
     /// # Errors
     /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`SystemScene::two_levels`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
-        let levels = self.two_levels()?;
-        let missing =
-            || Error::missing("time_unit", "say in the file what its steps are in, as \"time_unit\": \"ps\"");
-        let one = format!("1 {}", self.time_unit().ok_or_else(missing)?);
-        let unit = unit::rational("time_unit", &one, Dimension::Time)?;
+        let (levels, unit) = (self.two_levels()?, self.femtoseconds()?);
         let labels = self.source().get("labels").map(Vec::<String>::deserialize);
         let names = labels.and_then(std::result::Result::ok).unwrap_or_default();
         let scheme = Scheme::new([levels.inner, levels.outer].map(|step| step * &unit).to_vec())?;
         Ok((Molecule::new(levels.kernel.clone(), unit, names, levels.accuracy), scheme))
+    }
+
+    /// The file's unit of time in fs.
+    ///
+    /// # Errors
+    /// A file without `time_unit`, or with another than fs, ps, ns or s.
+    pub fn femtoseconds(&self) -> Result<Rational> {
+        let missing =
+            || Error::missing("time_unit", "say in the file what its steps are in, as \"time_unit\": \"ps\"");
+        let one = format!("1 {}", self.time_unit().ok_or_else(missing)?);
+        unit::rational("time_unit", &one, Dimension::Time)
     }
 }

@@ -137,6 +137,11 @@ impl Kernel {
         })
     }
 
+    /// Upper bounds of the 2-norms of both stiffnesses.
+    pub fn norms(&self) -> [f64; 2] {
+        self.norms
+    }
+
     /// The number of modes.
     pub fn size(&self) -> usize {
         self.values.len()

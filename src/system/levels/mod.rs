@@ -39,6 +39,8 @@
 //! | `counts` | verdicts by counts of negative eigenvalues, wherever the step lies |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `cell` | the verdict on all outer steps, or scales, between two |
+//! | `growth` | how fast it grows past that, and up to where: sampled |
+//! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
@@ -47,13 +49,17 @@ mod band;
 mod beyond;
 mod cell;
 mod counts;
+mod growth;
 mod half;
 mod interval;
 mod intervals;
 mod kernel;
+mod paths;
 mod region;
 mod rigid;
 
 pub use cell::Cells;
+pub use growth::Growing;
 pub use kernel::{Kernel, Outer};
+pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions};

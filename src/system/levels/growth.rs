@@ -1,0 +1,184 @@
+//! Growth past the first stable region, in doubles: where it is fastest, where it ends. Sampled and rounded but for the step that is proven
+//! stable again.
+
+use faer::Mat;
+use num_complex::Complex64;
+
+use super::half::Half;
+use super::kernel::{Kernel, Outer};
+use crate::error::Result;
+use crate::system::analysis::exponent;
+
+/// A stretch of outer steps that grow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growing {
+    /// Where it begins,
+    pub lower: f64,
+    /// and the last step of those sampled that grows, none between being still; `None` up to 1.3 times the first.
+    pub upper: Option<f64>,
+    /// The first step above it that is proven stable, as near as doubles tell.
+    pub stable_again: Option<f64>,
+    /// The outer step at which growth is fastest of those sampled, and ln |λ| per unit time there.
+    pub worst: (f64, f64),
+}
+
+/// The farthest that growth is followed, relative.
+const REACH: f64 = 1.3;
+
+/// Samples are no farther apart, relative.
+const WIDEST: f64 = 1.0 / 60.0;
+
+/// Growth is looked for at so many steps of a stretch.
+const SAMPLES: usize = 12;
+
+/// A stretch up to this, relative, is thin: the next one is looked for as far.
+const THIN: f64 = 1e-3;
+const MOST_STRETCHES: usize = 4;
+
+/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of 10^-16 times its condition.
+const STILL: f64 = 1e-5;
+
+impl Kernel {
+    /// max ln |λ|/H at an outer step H, from the eigenvalues μ of Bᵀ C = b (c − d M) in doubles.
+    pub fn growth(&self, outer: &Outer) -> f64 {
+        let halves: Vec<Half> =
+            self.values.iter().map(|x| Half::new(outer.inner_square * x, outer.inner_steps)).collect();
+        let factor = outer.half_kick();
+        let entry = |i: usize, j: usize| {
+            let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|own| own.mid());
+            b * ((if i == j { c } else { 0.0 }) - d * factor * self.slow[(i, j)])
+        };
+        let period = Mat::from_fn(self.size(), self.size(), entry);
+        let rate = |mu: Complex64| exponent(mu).re;
+        period.eigenvalues().map_or(f64::NAN, |mu| mu.into_iter().map(rate).fold(0.0, f64::max)) / outer.step
+    }
+
+    /// Stretches from an unstable outer step `from` on, as many inner ones in it, the first samples `width` apart, relative: up to the first
+    /// one that is not thin, as a thin one tells little of what comes next.
+    ///
+    /// # Errors
+    /// As [`Outer::new`].
+    pub fn growing(&self, inner_steps: u64, from: f64, width: f64) -> Result<Vec<Growing>> {
+        let mut found = vec![self.stretch(inner_steps, from, width)?];
+        while let Some(Growing { lower, upper: Some(upper), .. }) = found.last().copied() {
+            let thin = upper / lower - 1.0;
+            let next = if thin < THIN { self.next_growing(inner_steps, upper, thin)? } else { None };
+            let Some(next) = next.filter(|_| found.len() < MOST_STRETCHES) else { break };
+            found.push(self.stretch(inner_steps, next, thin.max(1e-5))?);
+        }
+        Ok(found)
+    }
+
+    fn rate_at(&self, inner_steps: u64, step: f64) -> Result<f64> {
+        Ok(self.growth(&Outer::new(step, inner_steps)?))
+    }
+
+    /// Where growth begins again within `THIN` above a step, to 1e-7.
+    fn next_growing(&self, inner_steps: u64, above: f64, thin: f64) -> Result<Option<f64>> {
+        let (mut last, mut width) = (above * (1.0 + 1e-6), (thin / 4.0).max(1e-6));
+        while last < above * (1.0 + THIN) {
+            let step = last * (1.0 + width);
+            if grows(step, self.rate_at(inner_steps, step)?) {
+                let still = |step: f64| Ok(!grows(step, self.rate_at(inner_steps, step)?));
+                return bisected(last, step, still).map(|ends| Some(ends.1));
+            }
+            (last, width) = (step, 1.3 * width);
+        }
+        Ok(None)
+    }
+
+    fn stretch(&self, inner_steps: u64, from: f64, width: f64) -> Result<Growing> {
+        let (mut last, mut width, mut still) = (from, width, None);
+        while last < REACH * from && still.is_none() {
+            let step = last * (1.0 + width);
+            if grows(step, self.rate_at(inner_steps, step)?) {
+                (last, width) = (step, (1.5 * width).min(WIDEST));
+            } else {
+                still = Some(step);
+            }
+        }
+        let ends = still
+            .map(|still| bisected(last, still, |step| Ok(grows(step, self.rate_at(inner_steps, step)?))));
+        let ends = ends.transpose()?;
+        let worst = self.fastest(inner_steps, from, ends.map_or(last, |(upper, _)| upper))?;
+        // At the end itself multipliers are double, and doubles tell nothing.
+        let proven = |still: f64| (0..12).map(move |k| still * (1.0 + 1e-7 * f64::from(4u32.pow(k))));
+        let is_stable =
+            |step: &f64| Outer::new(*step, inner_steps).is_ok_and(|outer| self.is_stable(&outer, 0.0));
+        let stable_again = ends.and_then(|(_, still)| proven(still).find(is_stable));
+        Ok(Growing { lower: from, upper: ends.map(|(upper, _)| upper), stable_again, worst })
+    }
+
+    /// The spectral radius of a period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, in doubles.
+    pub fn damped_radius(&self, outer: &Outer, friction: f64) -> f64 {
+        let m = self.size();
+        let decay = (-friction * outer.step / outer.inner_steps as f64).exp();
+        // Of each mode, from (x, v) behind half a slow kick to the next: in the time unit h.
+        let inner = |square: &f64| {
+            let half = |[x, v]: [f64; 2]| [x, v - outer.inner_square * square / 2.0 * x];
+            let drift = |[x, v]: [f64; 2]| [x + v / 2.0 * (1.0 + decay), decay * v];
+            let step = |own| half(drift(half(own)));
+            [[1.0, 0.0], [0.0, 1.0]].map(|own| (0..outer.inner_steps).fold(own, |own, _| step(own)))
+        };
+        let modes: Vec<[[f64; 2]; 2]> = self.values.iter().map(inner).collect();
+        let kick = Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
+            (false, true) => -outer.half_kick() * self.slow[(i - m, j)],
+            _ => f64::from(u8::from(i == j)),
+        });
+        let fast =
+            Mat::from_fn(2 * m, 2 * m, |i, j| if i % m == j % m { modes[i % m][j / m][i / m] } else { 0.0 });
+        let period = &kick * fast * &kick;
+        period.eigenvalues().map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
+    }
+
+    /// A friction at which the radius is 1, within 1e-4 of it, where it is above 1 without.
+    pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
+        let is_damped = |friction: f64| self.damped_radius(outer, friction) < 1.0;
+        let mut hi = 2.0 * self.growth(outer);
+        while hi > 0.0 && !is_damped(hi) {
+            hi *= 2.0;
+            if hi * outer.step > 1e3 {
+                return None;
+            }
+        }
+        let mut lo = 0.0;
+        while hi - lo > 1e-4 * hi {
+            let middle = lo + (hi - lo) / 2.0;
+            *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
+        }
+        (hi > 0.0).then_some(hi)
+    }
+
+    /// The fastest of `SAMPLES` steps between, and of some nearer and nearer to it.
+    fn fastest(&self, inner_steps: u64, lo: f64, hi: f64) -> Result<(f64, f64)> {
+        let mut worst = (lo, self.rate_at(inner_steps, lo)?);
+        let mut width = (hi - lo) / SAMPLES as f64;
+        let see = |step: f64, worst: &mut (f64, f64)| -> Result<()> {
+            let rate = self.rate_at(inner_steps, step)?;
+            if rate > worst.1 {
+                *worst = (step, rate);
+            }
+            Ok(())
+        };
+        (1..SAMPLES).try_for_each(|k| see(lo + width * k as f64, &mut worst))?;
+        for _ in 0..6 {
+            width /= 2.0;
+            let middle = worst.0;
+            [middle - width, middle + width].into_iter().try_for_each(|step| see(step, &mut worst))?;
+        }
+        Ok(worst)
+    }
+}
+
+fn grows(step: f64, rate: f64) -> bool {
+    rate * step > STILL
+}
+
+/// Neighbours to 1e-7 between which what holds at `lo` ends.
+fn bisected(mut lo: f64, mut hi: f64, holds: impl Fn(f64) -> Result<bool>) -> Result<(f64, f64)> {
+    while hi - lo > 1e-7 * lo {
+        let middle = lo + (hi - lo) / 2.0;
+        *(if holds(middle)? { &mut lo } else { &mut hi }) = middle;
+    }
+    Ok((lo, hi))
+}
