@@ -83,7 +83,7 @@ fn what_is_missing_is_named_with_a_remedy() {
         ),
         ("advise data/scenes/water4.json --constraints OH", "write h-bonds, or pairs of particles"),
         ("advise data/scenes/water4.json --hmr 30", "leaves every heavy particle some"),
-        ("advise data/scenes/water4.json --friction 0/ps", "a friction must be positive"),
+        ("advise data/scenes/water4.json --friction 0/ps", "friction = 0/ps: must be positive"),
         ("advise data/hessians/water4.npz", "steps missing: give the inner and the outer step"),
         ("advise data/hessians/water4.npz --steps 1fs", "steps missing: give the inner and the outer step"),
         ("advise data/hessians/nowhere.npz --steps 0.5fs,4fs", "nowhere.npz"),

@@ -311,7 +311,11 @@ impl Tamper<'_> {
 
 /// Tamperings after which what is written is still true: it says less, or asks another question to which the same answer
 /// belongs (all of them computed again for the new question).
-const STILL_TRUE: [(&str, &str); 31] = [
+const STILL_TRUE: [(&str, &str); 34] = [
+    // The usual accuracy; the steps that the schemes replace.
+    ("advise tiny", ".input.system.accuracy gone"),
+    ("advise tiny", ".input.system.accuracy -> null"),
+    ("advise tiny", ".input.system.potentials.1.step digit"),
     // Whether it is tenfold within the run, and whether friction masks it, are the same for runs and frictions not far off.
     ("advise", ".input.length digit"),
     ("advise", ".input.friction digit"),

@@ -4,10 +4,10 @@ use num_traits::{One, Zero};
 use serde_json::{Value, json};
 
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
-use crate::advise::{Caution, Intervals, MOST_INTERVALS, PUBLISHED, reach};
+use crate::advise::{Caution, PUBLISHED, Scheme};
 use crate::error::Result;
 use crate::number::rational::to_f64;
-use crate::number::{Ball, Laurent, Ratio, Rational, Real, Sign};
+use crate::number::{Ball, Laurent, Rational, Real, Sign};
 use crate::recheck::context::{Checked, Context, Outcome, Place, holds, same};
 use crate::recheck::written::{Ends, Written, nullable};
 use crate::verdict::Kind;
@@ -192,6 +192,9 @@ impl Claim {
         holds(!self.unknown.is_empty(), || "something is always unknown".into())?;
         same("the number of modes", self.modes.len(), modes.len())?;
         same("the number of schemes", self.schemes.len(), schemes.len())?;
+        for steps in schemes {
+            Scheme::new(steps.iter().map(|step| step.0.clone()).collect())?;
+        }
         for (row, mode) in self.modes.iter().zip(modes) {
             let told = (&row.name, &row.from, row.clock, &row.stiffness.0);
             holds(told == (&mode.name, &mode.from, mode.clock, &mode.stiffness.0), || {
@@ -211,74 +214,6 @@ impl Claim {
         self.pairs.iter().try_for_each(|pair| self.pair(pair))?;
         self.intervals.iter().try_for_each(|interval| self.interval(interval))?;
         self.published()
-    }
-
-    /// A row for each mode that is not on the outermost clock alone at each scheme, all pairs of them, and no interval left out.
-    fn whole_lists(&self) -> Checked {
-        let last = self.input.schemes.first().map_or(0, Vec::len) as u64;
-        let inner = |mode: &&Mode| last == 1 || mode.clock < last;
-        let mut names: Vec<&str> =
-            self.input.modes.iter().filter(inner).map(|mode| mode.name.as_str()).collect();
-        if names.is_empty() {
-            names = self.input.modes.iter().map(|mode| mode.name.as_str()).collect();
-        }
-        let schemes = 1..=self.schemes.len() as u64;
-        let rows = schemes.clone().flat_map(|n| names.iter().map(move |name| (n, *name)));
-        let told = self.rows.iter().map(|row| (row.scheme, row.mode.as_str()));
-        holds(told.eq(rows), || "the rows are not those of each mode at each scheme".into())?;
-        let of = |n: u64| {
-            let names = &names;
-            (0..names.len()).flat_map(move |i| names[i + 1..].iter().map(move |other| (n, names[i], *other)))
-        };
-        let told = self.pairs.iter().map(|pair| (pair.scheme, pair.first.as_str(), pair.second.as_str()));
-        holds(told.eq(schemes.flat_map(of)), || {
-            "the pairs are not all pairs of modes at each scheme".into()
-        })?;
-        let known =
-            |own: &Interval| self.rows.iter().any(|row| row.scheme == own.scheme && row.mode == own.mode);
-        holds(self.intervals.iter().all(known), || "an interval is of no row".into())?;
-        self.rows.iter().try_for_each(|row| self.list(row))
-    }
-
-    /// The intervals of a row: labels rise by one, but past closed ones, until one begins beyond what is listed.
-    fn list(&self, row: &Row) -> Checked {
-        let mode = self.input.modes.iter().find(|mode| mode.name == row.mode);
-        let mass = self.mass(row.scheme as usize - 1, mode)?;
-        let listed = |own: &&Interval| own.scheme == row.scheme && own.mode == row.mode;
-        let own: Vec<&Interval> = self.intervals.iter().filter(listed).collect();
-        let rises = own.windows(2).all(|pair| pair[0].m < pair[1].m);
-        holds(rises, || format!("the intervals of {} are not in their order", row.mode))?;
-        let (Some(first), [inner, outer]) = (row.first_lower, &mass.steps[..]) else { return Ok(()) };
-        if let (Some(upper), Some(begins)) = (row.first_upper, own.first()) {
-            let told = (begins.m, begins.lower.lo, begins.upper.map(|upper| upper.hi));
-            holds(told == (1, first.lo, Some(upper.hi)), || "the first interval is another one".into())?;
-        }
-        let stiffness = self.exact_stiffness(row)?;
-        if stiffness[0].is_zero() || own.len() == MOST_INTERVALS {
-            return Ok(());
-        }
-        let intervals = Intervals::new(Ratio::try_from(&(outer / inner))?, &stiffness[0], &stiffness[1])?;
-        let reach = reach(row.first_upper.map(|upper| upper.hi), to_f64(outer));
-        let listed = own.iter().map(|own| own.m).max().unwrap_or(0);
-        for m in (1..=listed + 1).take_while(|m| *m <= intervals.last()) {
-            let truth = intervals.get(m)?.filter(|truth| truth.lower.0 <= reach);
-            holds(truth.is_some() == own.iter().any(|own| own.m == m), || {
-                format!("interval {m} is missing")
-            })?;
-        }
-        Ok(())
-    }
-
-    /// The stiffness on each clock, as [`Claim::mass`] has it in balls.
-    fn exact_stiffness(&self, row: &Row) -> Checked<Vec<Laurent>> {
-        let clocks = self.input.schemes[row.scheme as usize - 1].len() as u64;
-        let of = |clock: u64| {
-            let on = || self.input.modes.iter().filter(move |mode| mode.clock == clock);
-            let own = on().find(|mode| mode.name == row.mode);
-            let stiffest = own.or_else(|| on().max_by(|a, b| a.stiffness.cmp(&b.stiffness)));
-            stiffest.map_or_else(Laurent::zero, |mode| mode.stiffness.0.clone())
-        };
-        Ok((1..=clocks).map(of).collect())
     }
 
     pub fn of(&self, scheme: usize) -> impl Iterator<Item = &Row> {
@@ -322,7 +257,7 @@ impl Claim {
         holds((sign == Some(Sign::Positive)) == (own.m % 2 == 0), || {
             format!("{} is not the label of that interval", own.m)
         })?;
-        own.tenfold_steps.map_or(Ok(()), |steps| fastest_growth(&at, (own.lower.hi, upper.lo), steps))
+        fastest_growth(&at, (own.lower.hi, upper.lo), own.tenfold_steps)
     }
 
     fn pair(&self, pair: &Pair) -> Checked {

@@ -53,14 +53,16 @@ impl Claim {
             (row.below_lower, row.below_upper, row.below_tenfold_steps),
             (row.above_lower, row.above_upper, row.above_tenfold_steps),
         ];
-        for (lower, upper, worst) in intervals {
-            // An interval without an upper end is one point or has no end: the pivots tell where the first one begins.
-            let Some((lower, upper)) = lower.zip(upper) else { continue };
+        for (n, (lower, upper, worst)) in intervals.into_iter().enumerate() {
+            let (Some(lower), Some(upper)) = (lower, upper) else {
+                // One point, or without an end: the pivots tell where the first one begins.
+                holds(upper.is_none() && worst.is_none(), || "an interval lacks an end".into())?;
+                lower.filter(|_| n > 0).map_or(Ok(()), |lower| crosses(&at, lower, "lower"))?;
+                continue;
+            };
             crosses(&at, lower, "lower")?;
             crosses(&at, upper, "upper")?;
-            if let Some(worst) = worst {
-                fastest_growth(&at, (lower.hi, upper.lo), worst)?;
-            }
+            fastest_growth(&at, (lower.hi, upper.lo), worst)?;
         }
         let order = |a: Option<Ends>, b: &Rational| a.is_none_or(|a| exact(a.lo) <= *b);
         holds(order(row.below_upper, &outer) && row.above_lower.is_none_or(|a| exact(a.hi) >= outer), || {

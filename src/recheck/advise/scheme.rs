@@ -4,7 +4,7 @@ use num_traits::One;
 
 use super::claim::{Claim, SchemeRow};
 use super::mass::{BITS, Mass, exact};
-use crate::number::{Ball, Rational};
+use crate::number::{Ball, Rational, Sign};
 use crate::recheck::context::{Checked, holds, same};
 use crate::recheck::written::Ends;
 use crate::verdict::Kind;
@@ -36,6 +36,9 @@ impl Claim {
         };
         same("status", row.status.as_str(), status)?;
         self.largest(&corner, row)?;
+        let silent = corner.steps.len() > 1
+            && corner.stiffness.last().is_some_and(|last| last.sign() == Some(Sign::Zero));
+        holds(row.needs.is_some() == (silent && in_band), || "needs is told of a silent clock".into())?;
         let Some(needs) = row.needs else { return Ok(()) };
         let with = |period: f64| -> Checked<Option<bool>> {
             let turn = Ball::pi(BITS).scale2(1);
@@ -82,7 +85,8 @@ impl Claim {
         let Some(safe) = &row.safe else {
             return holds(count > 1 && corner.steps[count - 2] >= third, || "safe is missing".into());
         };
-        let bounded = safe.0 <= largest.0 && (safe.0 < third || (count == 1 && safe.0 == third));
+        let whole = count == 1 || (&safe.0 / &corner.steps[count - 2]).is_integer();
+        let bounded = whole && safe.0 <= largest.0 && (safe.0 < third || (count == 1 && safe.0 == third));
         let longest = count == 1 || safe.0 == largest.0 || &safe.0 + &corner.steps[count - 2] >= third;
         holds(bounded && longest, || format!("{} is not the longest outer step below T/3", safe.0))
     }
