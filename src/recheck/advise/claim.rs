@@ -254,7 +254,7 @@ impl Claim {
         })?;
         // In tongue m the trace has the sign (-1)^m.
         let sign = inside.trace()?.0.sign();
-        holds((sign == Some(Sign::Positive)) == (own.m % 2 == 0), || {
+        holds((sign == Some(Sign::Positive)) == (own.m.is_multiple_of(2)), || {
             format!("{} is not the label of that interval", own.m)
         })?;
         fastest_growth(&at, (own.lower.hi, upper.lo), own.tenfold_steps)

@@ -37,7 +37,7 @@ impl Hessians {
     /// J of `proofs/REGION.md`, section 1, in the time unit h, over x_0 … x_(N−1) (x_N = 0) or x_1 … x_N (x_0 = 0), and how far it may be off.
     fn action(&self, step: f64, inner_steps: u64, start_held: bool, near: Near) -> (Mat<f64>, f64) {
         let (n, last) = (self.size(), Hessians::nodes(inner_steps));
-        let is_odd = inner_steps % 2 == 1;
+        let is_odd = !inner_steps.is_multiple_of(2);
         let square = (step / inner_steps as f64).powi(2);
         // A full fast kick, half a slow one.
         let [fast, slow] = [square * near.factors[0], square * near.factors[1] * inner_steps as f64 / 2.0];
