@@ -267,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "half a minute, optimized"]
+    #[ignore = "some minutes"]
     fn signs_of_forms_agree_with_characteristic_polynomials_of_10_000_systems() {
         println!("10,000 systems of 1 to 3 degrees of freedom, all equal; by forms {:?}", agreed(10_000));
     }
