@@ -1,6 +1,8 @@
 //! Figures as a whole: what a tiny one looks like to the byte, and that larger ones hold together.
 
-use kickdrift::report::figure::palette::{Gradient, family};
+use kickdrift::report::figure::palette::{
+    COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, INK, PARABOLIC, WHITE, family,
+};
 use kickdrift::report::figure::{
     Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Picture, Place, Shape, Stroke,
 };
@@ -261,4 +263,77 @@ fn a_figure_takes_the_width_and_the_unit_asked_for() {
     assert!(svg.contains("> (fs)<") && svg.contains(">growth (1/fs)<"), "{svg}");
     assert!(!svg.contains("height=\"45mm\""), "a heading takes no room from the panels");
     assert!(tiny().wide(80.0).svg().contains("width=\"80mm\" height=\"60mm\""));
+}
+
+/// Linear sRGB to OKLab (Ottosson 2020): distances are as large as they look.
+fn oklab([r, g, b]: [f64; 3]) -> [f64; 3] {
+    let cone = |x: f64, y: f64, z: f64| (x * r + y * g + z * b).cbrt();
+    let l = cone(0.4122214708, 0.5363325363, 0.0514459929);
+    let m = cone(0.2119034982, 0.6806995451, 0.1073969566);
+    let s = cone(0.0883024619, 0.2817188376, 0.6299787005);
+    [
+        0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+        1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+        0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s,
+    ]
+}
+
+fn linear(Colour(r, g, b): Colour) -> [f64; 3] {
+    [r, g, b]
+        .map(f64::from)
+        .map(|c| c / 255.0)
+        .map(|c| if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) })
+}
+
+fn seen_through(matrix: [[f64; 3]; 3], colour: Colour) -> [f64; 3] {
+    let rgb = linear(colour);
+    oklab(matrix.map(|row| row.iter().zip(rgb).map(|(m, c)| m * c).sum::<f64>().clamp(0.0, 1.0)))
+}
+
+/// As eyes without green cones see it, and without red ones: Machado, Oliveira and Fernandes, IEEE Transactions on
+/// Visualization and Computer Graphics 15 (2009) 1291, severity 1.0.
+const DEUTERANOPIA: [[f64; 3]; 3] =
+    [[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]];
+const PROTANOPIA: [[f64; 3]; 3] =
+    [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]];
+/// As a printer without colour does: relative luminance (ITU-R BT.709).
+const PRINT: [[f64; 3]; 3] = [[0.2126, 0.7152, 0.0722]; 3];
+
+fn least_distance(colours: &[Colour], matrix: [[f64; 3]; 3]) -> f64 {
+    let pairs = colours.iter().enumerate().flat_map(|(n, a)| colours[..n].iter().map(move |b| (*a, *b)));
+    let distance = |(a, b)| {
+        let [a, b] = [a, b].map(|own| seen_through(matrix, own));
+        (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
+    };
+    pairs.map(distance).fold(f64::INFINITY, f64::min)
+}
+
+/// 0.02 in OKLab is just noticeable side by side. Colours that carry a meaning are three times as far apart for the
+/// colour-blind, and twice in grey, where marks and dashes differ besides.
+#[test]
+fn colours_with_a_meaning_stay_apart_for_the_colour_blind_and_in_grey() {
+    let families: Vec<Colour> = (0..8).map(family).collect();
+    let kinds = [HYPERBOLIC, PARABOLIC, COEXISTENCE, WHITE];
+    let lines = [INK, GREY, WHITE];
+    for colours in [&families[..], &kinds, &lines] {
+        for matrix in [DEUTERANOPIA, PROTANOPIA] {
+            let least = least_distance(colours, matrix);
+            assert!(least > 0.06, "{least}: {colours:?}");
+        }
+        let least = least_distance(colours, PRINT);
+        assert!(least > 0.04, "in grey {least}: {colours:?}");
+    }
+}
+
+/// A gradient tells more from less by its lightness alone, for every eye; a tenth of it is more than just noticeable.
+#[test]
+fn gradients_keep_their_order_for_the_colour_blind_and_in_grey() {
+    for (gradient, sign) in [(Gradient::on_white(), -1.0), (Gradient::full(), 1.0)] {
+        for matrix in [DEUTERANOPIA, PROTANOPIA, PRINT] {
+            let light: Vec<f64> =
+                gradient.steps(11).into_iter().map(|own| seen_through(matrix, own)[0]).collect();
+            let least = light.windows(2).map(|pair| sign * (pair[1] - pair[0])).fold(f64::INFINITY, f64::min);
+            assert!(least > 0.02, "{least}: {light:?}");
+        }
+    }
 }

@@ -51,6 +51,7 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
         &[
             "tongues --ratio 7/3 --rho 1/25 --m 3..5 --digits 30",
             "tongues --ratio 5/3,7/2 --rho 5/2 --figure diagram --output tongues.svg",
+            "tongues --ratio 5/3 --rho 1/25 --m 3 --figure trace --output trace.pdf --width 174mm",
             "tongues --survey --max-sum 12 --rho 1/25 --format latex",
         ],
     ),

@@ -1,15 +1,16 @@
-//! How strong the families are: measured widths of tongues over the first-order law, against a.
+//! How strong the families are: measured widths of tongues over the first-order law, against a and against |S_a|.
 //!
 //! To first order a tongue is 2 s ρ |S| wide in s, and for long periods |S| is |S_a(θ)| (see
 //! [`crate::resonance::strength`]). So near one angle θ all tongues of a family whose q is large lie on one value.
 
-use super::figure::palette::{Gradient, INK};
+use super::figure::palette::{GREY, Gradient, INK, family};
 use super::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::resonance::strength;
 
-/// A tongue at the angle: its family, its number of slow kicks, and width/(2 s ρ).
+/// A tongue: θ of its resonance, its family, its number of slow kicks, and width/(2 s ρ).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
+    pub theta: f64,
     pub a: i64,
     pub q: u64,
     pub strength: f64,
@@ -31,7 +32,7 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
     let (low, high) =
         all().filter(|&y| y > 0.0).fold((1.0, 0.0), |(lo, hi): (f64, f64), y| (lo.min(y), hi.max(y)));
     let x = Axis::linear("*a*", first as f64 - 0.6, last as f64 + 0.6);
-    let y = Axis::log("width/(2*s*ρ), |*S_a*|", 0.7 * low, 1.4 * high);
+    let y = Axis::log("width/(2*sρ*), |*S_a*|", 0.7 * low, 1.4 * high);
     let most = measured.iter().map(|m| m.q).max().unwrap_or(1);
     let bar = ColourBar::new(Axis::log("*q*", 1.0, most.max(2) as f64), Gradient::on_white());
     let mut panel = Panel::new(x, y).titled(title).gridded();
@@ -48,4 +49,38 @@ pub fn figure(share: f64, title: &str, measured: &[Measured]) -> Figure {
     Figure::new(130.0, 95.0)
         .named("Strength of families")
         .with(panel.with(crosses).bar(bar).legend(Place::Above))
+}
+
+/// The smallest strength drawn, relative to the largest: beyond this the law has the corrections of higher orders alone to
+/// compare with.
+const DECADES: f64 = 1e-5;
+
+/// Each tongue's width over 2 s ρ against |S_a(θ)| of its own family and angle: on the diagonal where the first-order law for
+/// long periods holds. Families differ in shape as well as in hue.
+pub fn widths(title: &str, measured: &[Measured]) -> Figure {
+    let places: Vec<(i64, [f64; 2])> =
+        measured.iter().map(|m| (m.a, [strength(m.a, m.theta).abs(), m.strength])).collect();
+    let places: Vec<_> = places.into_iter().filter(|(_, [law, width])| law.min(*width) > DECADES).collect();
+    let all = || places.iter().flat_map(|(_, place)| *place);
+    let (low, high) = (0.7 * all().fold(1.0, f64::min), 1.4 * all().fold(0.0, f64::max));
+    let axis = |label| Axis::log(label, low, high);
+    let mut panel = Panel::new(axis("|*S_a*(*θ*)|"), axis("width/(2*sρ*)")).titled(title).gridded();
+    let kinds: [(&str, fn(i64) -> bool, Shape); 5] = [
+        ("|*a*| > 3", |a| a.abs() > 3, Shape::Cross),
+        ("|*a*| = 3", |a| a.abs() == 3, Shape::Square),
+        ("|*a*| = 2", |a| a.abs() == 2, Shape::Diamond),
+        ("|*a*| = 1", |a| a.abs() == 1, Shape::Triangle),
+        ("*a* = 0", |a| a == 0, Shape::Disc),
+    ];
+    for (n, (name, is_in, shape)) in kinds.into_iter().enumerate() {
+        let points: Vec<[f64; 2]> =
+            places.iter().filter(|(a, _)| is_in(*a)).map(|(_, place)| *place).collect();
+        if !points.is_empty() {
+            let colour = if n == 0 { GREY } else { family(4 - n) };
+            panel = panel.with(Layer::dots(points, shape, 2.4, colour).labelled(name));
+        }
+    }
+    let law = Layer::lines(vec![vec![[low, low], [high, high]]], Stroke::LINE.in_colour(INK));
+    let panel = panel.with(law.labelled("first-order law for long periods")).legend(Place::Above);
+    Figure::new(110.0, 110.0).named("Widths of tongues against the first-order law").with(panel)
 }

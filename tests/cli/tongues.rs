@@ -254,3 +254,35 @@ fn the_atlas_beside_the_readme_is_what_its_scene_writes() {
     let kept = std::fs::read(root.join("data/figures/atlas.svg")).unwrap();
     assert!(desk.read("out/atlas.svg") == kept, "data/figures/atlas.svg is not what its scene writes");
 }
+
+#[test]
+fn traces_and_widths_are_drawn() {
+    let desk = Desk::new();
+    let draw = |line: &str| desk.run(&words(line, &["--output", "f.svg"]));
+    let text = || String::from_utf8(desk.read("f.svg")).unwrap();
+    let ended = draw("tongues --ratio 5/3 --rho 1/25 --m 4 --figure trace");
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    // Tongue 4 of 5/3 is between zeros of C and B, 0.0526 apart.
+    for piece in [">entry C<", ">entry B<", "width 0.05264", ">Tongue 4: half a period<"] {
+        assert!(text().contains(piece), "no {piece}");
+    }
+    let ended = draw("tongues --max-sum 12 --rho 1/1000 --figure widths");
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(text().contains(">first-order law for long periods<"));
+    for (line, message) in [
+        ("tongues --ratio 5/3 --rho 1/25 --m 3,4 --figure trace", "m = 3,4: give one label"),
+        ("tongues --ratio 5/3 --rho 1/25 --m 99 --figure trace", "m = 99"),
+        ("tongues --ratio 5/3 --rho 114/55 --m 4 --figure trace", "m = 4: is closed at this rho"),
+        ("tongues --max-sum 9 --rho 1/25 --figure trace", "missing: ratio"),
+        ("tongues --ratio 5/3 --rho 1/25 --figure widths", "max-sum"),
+        ("tongues --max-sum 9 --rho 0 --figure widths", "rho = 0"),
+        ("tongues --max-sum 2 --rho 1 --figure widths", "max-sum = 2"),
+    ] {
+        let ended = draw(line);
+        assert!(
+            ended.code == Some(2) && ended.stderr.contains(message.split(':').next().unwrap()),
+            "{}",
+            ended.stderr
+        );
+    }
+}

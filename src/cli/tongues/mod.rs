@@ -5,6 +5,7 @@ mod diagram;
 mod output;
 mod question;
 mod strength;
+mod trace;
 
 use std::path::{Path, PathBuf};
 
@@ -105,8 +106,12 @@ enum Drawn {
     Atlas,
     /// Measured widths over the first-order law |S_a| at one angle, against a.
     Strength,
+    /// Measured widths of all tongues against |S_a|, family by family.
+    Widths,
     /// The tongues of one or several ratios: s across, rho from 0 to the one given, closings and resonances marked.
     Diagram,
+    /// Tr Q of one ratio through its tongues, and through the one of --m [default: the widest], with half a period's entries.
+    Trace,
 }
 
 /// Digits beyond this are a slip of the keyboard.
@@ -124,6 +129,15 @@ impl Args {
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
                 put(strength::drawn(self.ratios()?, &self.stiffness()?, &theta)?)
+            }
+            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Widths)) => {
+                put(strength::widths(self.ratios()?, &self.stiffness()?)?)
+            }
+            (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Trace)) => {
+                let Ratios::One(ratio) = self.ratios()? else {
+                    return Err(Error::missing("ratio", "traces are of one ratio: give --ratio P/Q"));
+                };
+                put(trace::drawn(ratio, &self.stiffness()?.rho, self.m.as_ref())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
                 put(diagram::drawn(self.which.several()?, &self.stiffness()?.rho)?)
@@ -156,7 +170,7 @@ impl Args {
         let figure = format.is_figure();
         self.paper.check(figure)?;
         let strength = figure && self.figure == Some(Drawn::Strength);
-        let bare = strength || figure && self.figure == Some(Drawn::Diagram);
+        let bare = figure && self.figure.is_some_and(|drawn| drawn != Drawn::Atlas);
         let wrong = [
             (
                 "figure",
@@ -189,7 +203,7 @@ impl Args {
         let given = [
             ("h1-range", self.h1_range.is_some()),
             ("h2-range", self.h2_range.is_some()),
-            ("m", self.m.is_some()),
+            ("m", self.m.is_some() && self.figure != Some(Drawn::Trace)),
             ("a", self.a.is_some()),
             ("b", self.b.is_some()),
         ];

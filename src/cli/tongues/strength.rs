@@ -1,4 +1,4 @@
-//! The figure of measured widths against the first-order law.
+//! The figures of measured widths against the first-order law.
 
 use crate::parallel::try_map;
 use num_traits::{ToPrimitive, Zero};
@@ -8,54 +8,68 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational, rational};
 use crate::report::figure::{Figure, typeset};
-use crate::report::strength::{Measured, figure};
+use crate::report::strength::{self as report, Measured, figure};
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Stiffness, Tongues};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
 const HALF_WINDOW: (i64, i64) = (1, 50);
 
-/// Draws the tongues about p θ = m π near one angle.
+/// The tongues about p θ = m π near one angle.
 ///
 /// # Errors
 /// An angle that is no rational multiple of π, one ratio only, ρ = 0, a sum without such a tongue.
 pub fn drawn(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Result<Figure> {
-    let Ratios::UpTo(max_sum) = ratios else {
-        return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
-    };
-    if stiffness.rho.is_zero() {
-        return Err(Error::input(
-            "rho",
-            0,
-            "without a slow force there are no widths: choose a positive one",
-        ));
-    }
     let share = share_of_pi(theta)?;
-    let measured = measure(max_sum, stiffness, &share)?;
+    let around = rational::ratio(HALF_WINDOW.0, HALF_WINDOW.1);
+    let (max_sum, measured) = measure(ratios, stiffness, [&share - &around, &share + &around])?;
     if measured.is_empty() {
         let remedy =
             format!("no tongue with p + q <= {max_sum} is near this angle: choose a larger --max-sum");
         return Err(Error::input("theta", theta, remedy));
     }
-    let (n, d) = HALF_WINDOW;
+    let d = HALF_WINDOW.1;
     let title = format!(
-        "All tongues with *p* + *q* ≤ {max_sum}, *θ* = {} ± π{n}/{d}, *ρ* = {}",
+        "All tongues with *p* + *q* ≤ {max_sum}, *θ* = {} ± π/{d}, *ρ* = {}",
         typeset(theta),
         stiffness.rho
-    )
-    .replace("π1/", "π/");
+    );
     Ok(figure(rational::to_f64(&share), &title, &measured))
 }
 
-/// The tongues with m/p near the share, in the order of p + q, p, m.
-fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<Measured>> {
-    let around = rational::ratio(HALF_WINDOW.0, HALF_WINDOW.1);
+/// All tongues that have a point p θ = m π: their widths against the law.
+///
+/// # Errors
+/// One ratio only, ρ = 0, a sum without such a tongue.
+pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
+    let whole = |n: i64| rational::ratio(n, 1);
+    let (max_sum, measured) = measure(ratios, stiffness, [whole(0), whole(1)])?;
+    if measured.is_empty() {
+        return Err(Error::input(
+            "max-sum",
+            max_sum,
+            "has no tongue about p theta = m pi: choose a larger one",
+        ));
+    }
+    let title = format!("All tongues with *p* + *q* ≤ {max_sum}, 0 < *m* < *p*; *ρ* = {}", stiffness.rho);
+    Ok(report::widths(&title, &measured))
+}
+
+/// The sum, and its tongues with m/p between two shares of π, 0 < m < p, in the order of p + q, p, m.
+fn measure(ratios: Ratios, stiffness: &Stiffness, shares: [Rational; 2]) -> Result<(u64, Vec<Measured>)> {
+    let Ratios::UpTo(max_sum) = ratios else {
+        return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
+    };
+    if stiffness.rho.is_zero() {
+        let remedy = "without a slow force there are no widths: choose a positive one";
+        return Err(Error::input("rho", 0, remedy));
+    }
     let rho = rational::to_f64(&stiffness.rho);
     let one = |&ratio: &Ratio| -> Result<Vec<Measured>> {
         let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);
         let terms = Rational::from_integer(ratio.p().into());
-        let from = whole(((share - &around) * &terms).ceil()).max(1);
-        let upto = whole(((share + &around) * &terms).floor()).min(ratio.p() - 1);
+        let from = whole((&shares[0] * &terms).ceil()).max(1);
+        let upto = whole((&shares[1] * &terms).floor()).min(ratio.p() - 1);
         if from > upto {
             return Ok(Vec::new());
         }
@@ -64,11 +78,13 @@ fn measure(max_sum: u64, stiffness: &Stiffness, share: &Rational) -> Result<Vec<
         let measured = |gap: &Gap| {
             let s = tongues.resonance(gap.m, 64).mid_f64();
             let width = 0.5 * (gap.width.0 + gap.width.1);
-            Measured { a: dominant_family(ratio, gap.m).0, q: ratio.q(), strength: width / (2.0 * s * rho) }
+            let theta = std::f64::consts::PI * gap.m as f64 / ratio.p() as f64;
+            let a = dominant_family(ratio, gap.m).0;
+            Measured { theta, a, q: ratio.q(), strength: width / (2.0 * s * rho) }
         };
         Ok(gaps.iter().map(measured).collect())
     };
     let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
     let all: Vec<Vec<Measured>> = try_map(&ratios, one)?;
-    Ok(all.into_iter().flatten().collect())
+    Ok((max_sum, all.into_iter().flatten().collect()))
 }

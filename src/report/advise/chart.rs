@@ -252,7 +252,7 @@ impl Layers {
             .with(areas(&self.safe, SAFE).labelled("proven stable, all periods in the band"))
             .with(
                 areas(&self.caution, CAUTION)
-                    .labelled("the same, beyond T/3: published drift (rising strokes)"),
+                    .labelled("the same, beyond *T*/3: published drift (rising strokes)"),
             )
             .with(Layer::lines(hatch(&self.caution, pitch, false), Stroke::THIN))
             .with(

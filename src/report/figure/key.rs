@@ -106,7 +106,10 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
         Some(Layer::areas(vec![outline], colour, opacity))
     };
     let sample = match &layer.mark {
-        Mark::Lines { stroke, .. } => Some(Layer::lines(vec![vec![[0.0, 0.5], [1.0, 0.5]]], *stroke)),
+        Mark::Lines { stroke, marks, .. } => {
+            marks::layer(canvas, &plane, &Layer::lines(vec![vec![[0.0, 0.5], [1.0, 0.5]]], *stroke));
+            marks.map(|(shape, size)| Layer::dots(vec![[0.5, 0.5]], shape, size, stroke.colour))
+        }
         Mark::Dots { shape, size, colour, .. } => {
             // A dot in a legend is for being seen.
             let size = if *shape == Shape::Disc { size.max(2.5) } else { *size };

@@ -73,7 +73,7 @@ pub enum Shape {
 /// A layer's content, in data units.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
-    Lines { lines: Vec<Vec<[f64; 2]>>, stroke: Stroke },
+    Lines { lines: Vec<Vec<[f64; 2]>>, stroke: Stroke, marks: Option<(Shape, f64)> },
     Dots { points: Vec<[f64; 2]>, shape: Shape, size: f64, colour: Colour },
     Area { outlines: Vec<Vec<[f64; 2]>>, colour: Colour, opacity: f64 },
     Cells(Cells),
@@ -90,7 +90,7 @@ pub struct Layer {
 impl Layer {
     /// Polylines in one stroke; a point that is not finite breaks its line. Two points make a segment.
     pub fn lines(lines: Vec<Vec<[f64; 2]>>, stroke: Stroke) -> Self {
-        Mark::Lines { lines, stroke }.into()
+        Mark::Lines { lines, stroke, marks: None }.into()
     }
 
     /// Dots of one shape, colour and size (in points).
@@ -111,6 +111,15 @@ impl Layer {
     /// A picture that fills a rectangle.
     pub fn picture(picture: Picture) -> Self {
         Mark::Picture(picture).into()
+    }
+
+    /// The same lines with a mark of so many points at each of their points; what has no lines stays as it is.
+    #[must_use]
+    pub fn marked(mut self, shape: Shape, size: f64) -> Self {
+        if let Mark::Lines { marks, .. } = &mut self.mark {
+            *marks = Some((shape, size));
+        }
+        self
     }
 
     /// The same layer with an entry in the legend.

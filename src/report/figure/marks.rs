@@ -14,7 +14,12 @@ const SQUARE: f64 = 0.5;
 /// Draws a layer.
 pub(super) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
     match &layer.mark {
-        Mark::Lines { lines: all, stroke } => lines(canvas, plane, all, stroke),
+        Mark::Lines { lines: all, stroke, marks } => {
+            lines(canvas, plane, all, stroke);
+            if let Some((shape, size)) = *marks {
+                dots(canvas, plane, &all.concat(), (shape, size, stroke.colour));
+            }
+        }
         Mark::Dots { points, shape, size, colour } => dots(canvas, plane, points, (*shape, *size, *colour)),
         Mark::Area { outlines, colour, opacity } => {
             let mut path = Path::default();

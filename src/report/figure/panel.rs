@@ -2,7 +2,9 @@
 
 use super::axis::Axis;
 use super::canvas::Anchor;
+use super::label::Label;
 use super::layer::Layer;
+use super::measure::NUMBER;
 use super::palette::{Colour, Gradient, INK};
 
 /// Where the legend stands.
@@ -95,6 +97,11 @@ impl Note {
     /// Words that begin a little to the right of a point.
     pub fn new(at: [f64; 2], text: &str) -> Self {
         Note { at, text: text.into(), anchor: Anchor::Start, shift: [3.0, 0.0], turn: 0.0, colour: INK }
+    }
+
+    /// How wide the words are, in points.
+    pub fn width(&self) -> f64 {
+        NUMBER * Label::new(&self.text).width
     }
 
     /// The same words with another side at the point, moved by so many points right and up.

@@ -65,41 +65,84 @@ fn style(a: i64) -> (usize, Dash) {
     (n, [Dash::Solid, Dash::Dashed, Dash::Dotted, Dash::DashDotted][n % 4])
 }
 
-/// Where labels may stand, as shares of the largest ρ, and how much higher or lower the next one in the same gap stands.
-const HEIGHTS: [f64; 8] = [0.15, 0.25, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85];
+/// Heights at which labels may stand, as shares of the largest ρ.
+const HEIGHTS: usize = 24;
+/// What a label's letters take of the height, and a point of paper of s: of a panel of the usual size.
+const TALL: f64 = 0.07;
+const POINT: f64 = LARGEST_S / 455.0;
+/// Between a tongue and its label, in points.
+const APART: f64 = 2.5;
 
-/// A label beside each tongue, where the gap between it and its neighbour is widest and no other label stands.
+/// A place for a label: [left, right] in s, and the height.
+type Spot = ([f64; 2], f64);
+
+/// A label beside each tongue, in a gap that holds all of it, else inside the tongue; where neither holds it m alone.
 fn labels(mut panel: Panel, bands: &[Band]) -> Panel {
-    // Taken: the gap before band n, and the height.
-    let mut taken: Vec<(usize, f64)> = Vec::new();
+    let mut taken: Vec<Spot> = Vec::new();
     for (n, band) in bands.iter().enumerate() {
-        let at = |n: usize, height: f64| bands.get(n).and_then(|band| band.at(height));
-        let room = |&(gap, height): &(usize, f64)| {
-            let before = gap.checked_sub(1).and_then(|n| at(n, height)).map_or(0.0, |edge| edge[1]);
-            at(gap, height).map_or(LARGEST_S, |edge| edge[0].min(LARGEST_S)) - before
-        };
-        let is_free = |&(gap, height): &(usize, f64)| {
-            !taken.iter().any(|&(other, at)| other == gap && (at - height).abs() < 0.15)
-        };
-        let places = HEIGHTS.into_iter().flat_map(|height| [(n, height), (n + 1, height)]);
-        let best = places.filter(is_free).max_by(|a, b| room(a).total_cmp(&room(b)));
-        let Some((gap, height)) = best else { continue };
-        let Some([lower, upper, rho]) = band.at(height) else { continue };
-        taken.push((gap, height));
         let (a, b) = band.family;
-        let text = format!("{} ({a}, {b})", band.m).replace('-', "−");
-        let note = match gap == n {
-            true => Note::new([lower, rho], &text).anchored(Anchor::End, [-2.5, 0.0]),
-            false => Note::new([upper, rho], &text).anchored(Anchor::Start, [2.5, 0.0]),
-        };
-        panel = panel.note(note);
+        let texts = [format!("{} ({a}, {b})", band.m).replace('-', "−"), band.m.to_string()];
+        let found = texts.iter().find_map(|text| Some((text, spot(bands, n, text, &taken)?)));
+        let Some((text, ([left, right], height))) = found else { continue };
+        let rho = band.edges.last().map_or(0.0, |top| top[2]) * height;
+        taken.push(([left, right], height));
+        panel = panel.note(Note::new([0.5 * (left + right), rho], text).anchored(Anchor::Middle, [0.0, 0.0]));
     }
     panel
+}
+
+/// The roomiest free place for the label of tongue n.
+fn spot(bands: &[Band], n: usize, text: &str, taken: &[Spot]) -> Option<Spot> {
+    let wide = (Note::new([0.0; 2], text).width() + 2.0 * APART) * POINT;
+    let is_free = |&([left, right], height): &Spot| {
+        !taken.iter().any(|&([a, b], at)| left < b && a < right && (at - height).abs() < TALL)
+    };
+    let places = || (1..HEIGHTS).map(|k| k as f64 / HEIGHTS as f64);
+    let beside = places().flat_map(|height| spots(bands, n, height, wide));
+    let inside = places().filter_map(|height| {
+        let [lower, upper] = bands[n].within(height)?;
+        let middle = 0.5 * (lower + upper);
+        Some((([middle - 0.5 * wide, middle + 0.5 * wide], height), upper - lower - wide))
+    });
+    let roomiest = |spots: &mut dyn Iterator<Item = (Spot, f64)>| {
+        let fit = spots.filter(|(spot, room)| *room >= 0.0 && is_free(spot));
+        fit.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(spot, _)| spot)
+    };
+    roomiest(&mut beside.into_iter()).or_else(|| roomiest(&mut inside.into_iter()))
+}
+
+/// Left and right of tongue n, beside it: places of a width that touch no tongue, with the room that is left over.
+fn spots(bands: &[Band], n: usize, height: f64, wide: f64) -> Vec<(Spot, f64)> {
+    let Some([lower, upper]) = bands[n].around(height) else { return Vec::new() };
+    let side = |n: Option<usize>| n.and_then(|n| bands.get(n)).and_then(|band| band.around(height));
+    let before = side(n.checked_sub(1)).map_or(0.0, |other| other[1]);
+    let after = side(Some(n + 1)).map_or(LARGEST_S, |other| other[0]).min(LARGEST_S);
+    let found =
+        [([lower - wide, lower], lower - before - wide), ([upper, upper + wide], after - upper - wide)];
+    found.map(|(place, room)| ((place, height), room)).to_vec()
 }
 
 impl Band {
     /// The edges at a share of the largest ρ.
     fn at(&self, height: f64) -> Option<[f64; 3]> {
-        self.edges.get((height * (self.edges.len() as f64 - 1.0)) as usize).copied()
+        self.edges.get((height.clamp(0.0, 1.0) * (self.edges.len() as f64 - 1.0)) as usize).copied()
+    }
+
+    /// Both edges over the height of a label, folded.
+    fn spread(&self, height: f64, fold: [fn(f64, f64) -> f64; 2]) -> Option<[f64; 2]> {
+        let edges = [-0.6, -0.3, 0.0, 0.3, 0.6].into_iter().filter_map(|part| self.at(height + part * TALL));
+        edges
+            .map(|[lower, upper, _]| [lower, upper])
+            .reduce(|a, b| [fold[0](a[0], b[0]), fold[1](a[1], b[1])])
+    }
+
+    /// What it covers anywhere over the height of a label.
+    fn around(&self, height: f64) -> Option<[f64; 2]> {
+        self.spread(height, [f64::min, f64::max])
+    }
+
+    /// What it covers all over the height of a label.
+    fn within(&self, height: f64) -> Option<[f64; 2]> {
+        self.spread(height, [f64::max, f64::min]).map(|[lower, upper]| [lower, upper.min(LARGEST_S)])
     }
 }

@@ -4,12 +4,15 @@
 //! |---|---|
 //! | `rows` | what is written of one: every column, or those that fit paper |
 //! | `diagram` | those of a few ratios over s and ρ |
+//! | `trace` | the trace of one ratio through its tongues |
 //! | `tally` | what stands out among many |
 
 #[cfg(feature = "figure")]
 pub mod diagram;
 mod rows;
 mod tally;
+#[cfg(feature = "figure")]
+pub mod trace;
 
 pub use rows::{CAPTION, CAPTION_LATEX, record};
 pub use tally::Tally;

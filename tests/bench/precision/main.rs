@@ -2,7 +2,7 @@
 //!
 //! Prints tables and writes precision.json and precision.svg (trace and verdict by every method) and
 //! neighbours.svg (a naive verdict beside the certified one, double by double) into DIRECTORY, target/precision
-//! unless given. Times are minima over repetitions; only those of one run compare.
+//! unless given; with --redraw the figures alone, from the precision.json that is there. Times are minima over repetitions; only those of one run compare.
 
 #[path = "../common.rs"]
 mod common;
@@ -25,6 +25,18 @@ fn main() {
         .find(|argument| !argument.starts_with("--"))
         .map_or_else(|| PathBuf::from("target/precision"), PathBuf::from);
     std::fs::create_dir_all(&directory).expect("a directory to write to");
+    let write = |name: &str, text: String| {
+        let path = directory.join(name);
+        std::fs::write(&path, text).expect("the directory can be written to");
+        println!("{}", path.display());
+    };
+    let picture = neighbours::picture();
+    write("neighbours.svg", picture.figure.svg());
+    if std::env::args().any(|argument| argument == "--redraw") {
+        let kept = std::fs::read_to_string(directory.join("precision.json")).expect("what was measured");
+        let document = serde_json::from_str(&kept).expect("JSON");
+        return write("precision.svg", figure::precision(&document).svg());
+    }
     let traces = traces::measure();
     traces::print(&traces);
     let verdicts = verdicts::measure();
@@ -35,7 +47,6 @@ fn main() {
         "multipliers of stable systems: distance from the unit circle, radius of proven discs",
         &systems,
     );
-    let picture = neighbours::picture();
     let document = json!({
         "schema": "kickdrift/precision/1",
         "traces": traces.iter().map(traces::Row::json).collect::<Vec<_>>(),
@@ -44,12 +55,6 @@ fn main() {
         "systems": others::json(&systems),
         "neighbours": { "pairs": picture.pairs, "wrong": picture.wrong },
     });
-    let write = |name: &str, text: String| {
-        let path = directory.join(name);
-        std::fs::write(&path, text).expect("the directory can be written to");
-        println!("{}", path.display());
-    };
+    write("precision.svg", figure::precision(&document).svg());
     write("precision.json", serde_json::to_string_pretty(&document).expect("JSON") + "\n");
-    write("precision.svg", figure::precision(&traces, &verdicts).svg());
-    write("neighbours.svg", picture.figure.svg());
 }

@@ -29,7 +29,7 @@ pub fn picture() -> Picture {
     let edge = tongues.gap(m).expect("a tongue").lower.lo;
     let neighbour = |x: f64, n: i64| f64::from_bits((x.to_bits() as i64 + n) as u64);
     let side = (2 * AROUND + 1) as u32;
-    let cells = || Cells::new([-AROUND as f64; 2], [1.0; 2], vec![GREY, RED]);
+    let cells = || Cells::new([-AROUND as f64; 2], [1.0; 2], vec![GREY.lighter(), RED]);
     let (mut naive, mut certified, mut wrong) = (cells(), cells(), 0);
     for i in 0..side {
         for j in 0..side {
