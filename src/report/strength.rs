@@ -65,16 +65,19 @@ pub fn widths(title: &str, measured: &[Measured]) -> Figure {
     let (low, high) = (0.7 * all().fold(1.0, f64::min), 1.4 * all().fold(0.0, f64::max));
     let axis = |label| Axis::log(label, low, high);
     let mut panel = Panel::new(axis("|*S_a*(*θ*)|"), axis("width/(2*sρ*)")).titled(title).gridded();
-    let kinds: [(&str, fn(i64) -> bool, Shape); 5] = [
-        ("|*a*| > 3", |a| a.abs() > 3, Shape::Cross),
-        ("|*a*| = 3", |a| a.abs() == 3, Shape::Square),
-        ("|*a*| = 2", |a| a.abs() == 2, Shape::Diamond),
-        ("|*a*| = 1", |a| a.abs() == 1, Shape::Triangle),
-        ("*a* = 0", |a| a == 0, Shape::Disc),
+    let kinds = [
+        ("|*a*| > 3", 4..=u64::MAX, Shape::Cross),
+        ("|*a*| = 3", 3..=3, Shape::Square),
+        ("|*a*| = 2", 2..=2, Shape::Diamond),
+        ("|*a*| = 1", 1..=1, Shape::Triangle),
+        ("*a* = 0", 0..=0, Shape::Disc),
     ];
-    for (n, (name, is_in, shape)) in kinds.into_iter().enumerate() {
-        let points: Vec<[f64; 2]> =
-            places.iter().filter(|(a, _)| is_in(*a)).map(|(_, place)| *place).collect();
+    for (n, (name, sizes, shape)) in kinds.into_iter().enumerate() {
+        let points: Vec<[f64; 2]> = places
+            .iter()
+            .filter(|(a, _)| sizes.contains(&a.unsigned_abs()))
+            .map(|(_, place)| *place)
+            .collect();
         if !points.is_empty() {
             let colour = if n == 0 { GREY } else { family(4 - n) };
             panel = panel.with(Layer::dots(points, shape, 2.4, colour).labelled(name));

@@ -44,7 +44,7 @@ pub fn drawn(ratio: Ratio, rho: &Rational, labels: Option<&Labels>) -> Result<Fi
     let places: Vec<f64> = (0..=NEAR).map(|n| 3.0 * f64::from(n) / f64::from(NEAR) - 1.0).collect();
     let halves = map(&places, |x| at(lower + x * (upper - lower)));
     let two = Rational::from_integer(2.into());
-    let sign = |trace: Rational| if m % 2 == 0 { trace } else { -trace };
+    let sign = |trace: Rational| if m.is_multiple_of(2) { trace } else { -trace };
     let excess =
         places.iter().zip(&halves).map(|(x, half)| [*x, to_f64(&(sign(half.trace()) - &two))]).collect();
     let entries = [near.lower.entry, near.upper.expect("not the last").entry].map(|entry| {

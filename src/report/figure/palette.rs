@@ -23,11 +23,11 @@ pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 
 impl Colour {
-    /// Half way to white.
+    /// A third of the way to white.
     #[must_use]
     pub const fn lighter(self) -> Colour {
         let Colour(r, g, b) = self;
-        Colour(r / 2 + 128, g / 2 + 128, b / 2 + 128)
+        Colour(r - r / 3 + 85, g - g / 3 + 85, b - b / 3 + 85)
     }
 }
 

@@ -57,7 +57,8 @@ impl Atlas<'_> {
         // The weak ones first: the strong ones lie on top.
         if let Some(&first) = others.first() {
             let rest: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) >= first).collect();
-            panel = self.put(entry(panel, palette::GREY, "others"), &rest, palette::GREY);
+            let grey = palette::family(FAMILIES);
+            panel = self.put(entry(panel, grey, "others"), &rest, grey);
         }
         for (n, &own) in own.iter().enumerate().rev() {
             let family: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) == own).collect();

@@ -73,8 +73,8 @@ pub struct Chart {
     edges: Raster<Edge>,
 }
 
-/// Families with a colour of their own; the others share a grey.
-pub(super) const FAMILIES: usize = 8;
+/// Families with a colour of their own; the others share the next, nearly a grey.
+pub(super) const FAMILIES: usize = 7;
 /// Pairs in points of paper; on an edge they are few and should be found.
 const PAIR: f64 = 0.35;
 const EDGE: f64 = 3.4;
@@ -173,7 +173,7 @@ impl Chart {
             panel = panel.with(Layer::cells(cells).labelled(&family_name(rank)));
         }
         if let Some(&first) = others.first() {
-            let mut cells = cells(&self.growing, steps, vec![palette::GREY]);
+            let mut cells = cells(&self.growing, steps, vec![palette::family(FAMILIES)]);
             let rest = self.growing.filled().filter(|(_, _, strength)| -strength >= first);
             rest.for_each(|(k, l, _)| cells.push(k, l, 0));
             panel = panel.with(Layer::cells(cells).labelled("others"));

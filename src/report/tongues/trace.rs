@@ -63,7 +63,7 @@ fn whole(own: &Trace) -> Panel {
     let panel =
         panel.with(Layer::lines(vec![own.whole.clone()], Stroke::LINE.in_colour(INK)).labelled("Tr *Q*"));
     let note = |(m, [lower, upper]): &(u64, [f64; 2])| {
-        let side = if m % 2 == 0 { -2.6 } else { 2.6 };
+        let side = if m.is_multiple_of(2) { -2.6 } else { 2.6 };
         Note::new([0.5 * (lower + upper), side], &m.to_string()).anchored(Anchor::Middle, [0.0, 0.0])
     };
     own.tongues.iter().map(note).fold(panel, Panel::note).legend(Place::Above)
@@ -86,7 +86,7 @@ fn excess(own: &Near) -> Panel {
     let values = || own.excess.iter().map(|point| point[1]);
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     let (low, high) = (low.max(-3.0 * high) * 1.1, high * 1.25);
-    let sign = if own.m % 2 == 0 { "" } else { "−" };
+    let sign = if own.m.is_multiple_of(2) { "" } else { "−" };
     let panel = Panel::new(across(own), Axis::linear(&format!("{sign}Tr *Q* − 2"), low, high));
     let panel = shade(
         panel.titled(&format!("Tongue {}: the full period", own.m)),
