@@ -127,10 +127,16 @@ fn rectangles(cells: impl Iterator<Item = (u32, u32)>) -> Vec<Run> {
     }
     let mut open: BTreeMap<(u32, u32), Run> = BTreeMap::new();
     for column in runs.chunk_by(|a, b| a.i == b.i) {
+        // What ends before this column's neighbour grows no more.
+        let (near, ended): (BTreeMap<_, _>, BTreeMap<_, _>) = std::mem::take(&mut open)
+            .into_iter()
+            .partition(|(_, known)| known.i + known.across == column[0].i);
+        done.extend(ended.into_values());
+        open = near;
         let mut still = BTreeMap::new();
         for run in column {
-            let known = open.remove(&(run.j, run.up)).filter(|known| known.i + known.across == run.i);
-            let joined = known.map_or(*run, |known| Run { across: known.across + 1, ..known });
+            let joined =
+                open.remove(&(run.j, run.up)).map_or(*run, |known| Run { across: known.across + 1, ..known });
             still.insert((run.j, run.up), joined);
         }
         done.extend(std::mem::replace(&mut open, still).into_values());
@@ -173,5 +179,20 @@ mod tests {
             rectangles(cells.into_iter()).iter().map(|run| [run.i, run.j, run.across, run.up]).collect();
         found.sort_unstable();
         assert_eq!(found, [[0, 1, 3, 2], [1, 4, 1, 1], [4, 1, 1, 2]]);
+    }
+
+    #[test]
+    fn rectangles_cover_each_cell_once() {
+        let all = |n: u32| {
+            (0..900).map(|k| (k / 30, k % 30)).filter(move |(i, j)| (i * i + 7 * i * j + 3 * j) % n < 2)
+        };
+        for n in 2..12 {
+            let covered = |run: Run| {
+                (0..run.across * run.up).map(move |k| (run.i + k % run.across, run.j + k / run.across))
+            };
+            let mut found: Vec<(u32, u32)> = rectangles(all(n)).into_iter().flat_map(covered).collect();
+            found.sort_unstable();
+            assert_eq!(found, all(n).collect::<Vec<_>>(), "modulo {n}");
+        }
     }
 }
