@@ -10,7 +10,7 @@ use crate::format::Format;
 use crate::map::{Grid, Map, Resources};
 use crate::number::Laurent;
 use crate::report::map::Counts;
-use crate::report::plane::{Chart, Colouring, window};
+use crate::report::plane::{Chart, Colouring, parameters, window};
 use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
 
 /// Pairs and kicks of a picture.
@@ -53,7 +53,8 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let format = query.read("format", figure)?.unwrap_or(Format::Svg);
     let colouring = query.read("what", colouring)?.unwrap_or_default();
     let (lambda1, lambda2) = query.stiffnesses(session)?;
-    let grid = range(session, query)?.of(lambda1, lambda2)?;
+    let range = range(session, query)?;
+    let grid = range.of(lambda1, lambda2)?;
     if grid.pairs() > MOST_PAIRS || grid.kicks() > MOST_KICKS as f64 {
         let (pairs, kicks) = (grid.pairs(), grid.kicks());
         let message =
@@ -64,8 +65,11 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
         Some("1") => FAMILIES.curves_within(grid.lambdas().0, &window(&grid))?,
         _ => Vec::new(),
     };
-    let bytes =
-        drawn(&grid, colouring, |chart, counts| chart.figure(&grid, counts, &curves).file(format, DPI))?;
+    let bytes = drawn(&grid, colouring, |chart, counts| {
+        let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
+        let figure = chart.figure(&grid, counts, &curves).footed(&foot);
+        figure.file(format, DPI)
+    })?;
     let (name, media) = match format {
         Format::Png => ("map.png", "image/png"),
         Format::Pdf => ("map.pdf", "application/pdf"),

@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Products, Shard};
 pub use drawing::Drawing;
-pub use output::{Output, document, parameters};
+pub use output::{Output, document};
 pub use part::{Map, Part};
 pub use source::Source;
 

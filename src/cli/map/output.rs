@@ -6,13 +6,11 @@ use super::{Drawing, Map, Source};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Band, Grid, Products, Shard};
-use crate::number::Laurent;
 use crate::report::csv;
 use crate::report::document::Document;
-use crate::report::figure::typeset;
 use crate::report::file::{write_output, write_with};
 use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
-use crate::report::plane::Chart;
+use crate::report::plane::{Chart, parameters};
 use crate::report::table::Table;
 use crate::scene::GridRange;
 
@@ -106,20 +104,11 @@ impl Output<'_> {
             counts.add(band);
             Ok(())
         })?;
-        let figure =
-            chart.figure(grid, &counts, &curves).footed(&parameters(grid.lambdas(), &self.map.range));
+        let range = &self.map.range;
+        let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
+        let figure = chart.figure(grid, &counts, &curves).footed(&foot);
         self.drawing.paper.write(figure, self.format, path)
     }
-}
-
-/// What a grid's figure is made from, in the notation of labels.
-pub fn parameters((lambda1, lambda2): (&Laurent, &Laurent), range: &GridRange) -> String {
-    let of_clock = |n: usize, stiffness| {
-        let ((lo, hi), step) = (&range.ranges()[n - 1], &range.steps()[n - 1]);
-        let [stiffness, lo, hi, step] = [stiffness, lo, hi, step].map(typeset);
-        format!("*λ*_{n} = {stiffness}, *h*_{n} from {lo} to {hi} by {step}")
-    };
-    [of_clock(1, lambda1), of_clock(2, lambda2)].join("; ")
 }
 
 /// The verdicts of a scene as a document.

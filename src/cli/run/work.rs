@@ -144,7 +144,8 @@ impl<'a> Work<'a> {
             }
             let (window, cloud) = (self.window()?, self.verdicts()?.cloud(&self.scene.grid()?));
             let draw = if product == Product::Overlay { plane::overlay } else { plane::side_by_side };
-            let foot = map::parameters(self.scene.grid()?.lambdas(), self.scene.range()?);
+            let range = self.scene.range()?;
+            let foot = plane::parameters(self.scene.grid()?.lambdas(), range.ranges(), range.steps());
             Ok(draw(&window, &cloud, self.curves()?, &self.scene.title).footed(&foot))
         })
     }

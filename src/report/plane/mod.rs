@@ -10,7 +10,8 @@ pub use chart::{Chart, Colouring, window};
 use lines::{lines, lines_in};
 
 use super::figure::palette::{Colour, GREY};
-use super::figure::{Axis, Cells, Figure, Layer, Panel};
+use super::figure::{Axis, Cells, Figure, Layer, Panel, typeset};
+use crate::number::Laurent;
 use crate::resonance::{Curve, Window};
 
 /// Unstable pairs as cells of a grid: (i, j) is centred at (i D1, j D2).
@@ -31,6 +32,20 @@ pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &st
     let left = panel(window).titled("(a) Unstable pairs").with(cells(cloud, UNSTABLE));
     let right = lines(panel(window).titled("(b) Curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2"), curves);
     Figure::double_column(110.0).named(title).with(left).with(right)
+}
+
+/// What a grid's figure is made from, in the notation of labels: stiffnesses, ranges, spacings.
+pub fn parameters(
+    (lambda1, lambda2): (&Laurent, &Laurent),
+    ranges: &[(Laurent, Laurent); 2],
+    steps: &[Laurent; 2],
+) -> String {
+    let of_clock = |n: usize, stiffness| {
+        let ((lo, hi), step) = (&ranges[n - 1], &steps[n - 1]);
+        let [stiffness, lo, hi, step] = [stiffness, lo, hi, step].map(typeset);
+        format!("*λ*_{n} = {stiffness}, *h*_{n} from {lo} to {hi} by {step}")
+    };
+    [of_clock(1, lambda1), of_clock(2, lambda2)].join("; ")
 }
 
 /// The curves over the unstable pairs.
