@@ -24,8 +24,9 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
 /// --output FILE.svg, FILE.pdf or FILE.png draws: the outer step across, each mode a row.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Hessians in place of periods: a system file of two steps, as data/scenes/flexible-water.json, whose steps are the first scheme; or
-    /// FILE.npz with fast and slow (mass-weighted, 1/ps^2), masses and positions
+    /// Hessians in place of periods: a system file of two steps, or FILE.npz.
+    ///
+    /// The file's steps are the first scheme; an archive holds fast, slow (mass-weighted, 1/ps^2), masses and positions.
     #[arg(value_name = "FILE", conflicts_with_all = ["period", "bond", "on"])]
     file: Option<PathBuf>,
     /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
@@ -52,8 +53,9 @@ pub struct Args {
     /// The friction of the thermostat, as 1/ps: does it mask what grows?
     #[arg(long, value_name = "RATE")]
     friction: Option<String>,
-    /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]; of Hessians h-bonds, with
-    /// the force of each potential in the file
+    /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
+    ///
+    /// Of Hessians h-bonds only, with the force of each potential in the file.
     #[arg(long, value_name = "WHICH")]
     constraints: Option<String>,
     /// Hydrogens of this mass in amu, taken from their heavy atoms.

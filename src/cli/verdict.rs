@@ -29,7 +29,7 @@ pub struct Args {
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
     exact: bool,
-    /// Also write a Coq proof of the verdict, for fractions times powers of pi; check it with proofs/tools/certificate.sh.
+    /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
     /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
