@@ -208,21 +208,21 @@ class System:
         options += [flag for flag, asked in (("--exact", exact), ("--keep-rigid", keep_rigid)) if asked]
         return SystemVerdict(self._ask("system", options), self, tuple(options))
 
-    def intervals(self, outer: Range, *, width: float = 1e-4, accuracy: float | None = None) -> Intervals:
+    def intervals(self, outer: Range, *, resolution: float = 1e-4, accuracy: float | None = None) -> Intervals:
         """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
 
         Parameters
         ----------
         outer : Range
             The closed range of outer steps, rational.
-        width : float
+        resolution : float
             The relative width above which no interval is missed.
         accuracy : float, optional
             How well the Hessians are known.
         """
         options = given(
             intervals=f"outer={range_text('outer', outer)}",
-            width=str(width),
+            resolution=str(resolution),
             accuracy=None if accuracy is None else str(accuracy),
         )
         return Intervals(self._ask("system", options), tuple(options), "stretches", self)

@@ -7,7 +7,7 @@ use kickdrift::format::Format;
 use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
 use kickdrift::number::Laurent;
 use kickdrift::report::map::{Rows, Tally, document, marked};
-use kickdrift::report::plane::{Chart, Colouring};
+use kickdrift::report::plane::{Chart, Colouring, parameters};
 use kickdrift::scene::GridRange;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -184,7 +184,8 @@ impl Map {
             let (growing, counters) = (Vec::new(), Counters::default());
             chart.add(&self.grid, &Band { first, columns: 1, rows, verdicts, tiers, growing, counters });
         }
-        let figure = chart.figure(&self.grid, &self.tally.counts, &[]);
+        let foot = parameters(self.grid.lambdas(), self.range.ranges(), self.range.steps());
+        let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&foot);
         let bytes = figure.file(Format::Svg, 300.0).map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }

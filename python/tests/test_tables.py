@@ -189,7 +189,7 @@ def test_a_system_made_in_python_is_that_of_its_file(program: Callable[..., str]
     assert verdict.measured is not None and verdict.measured["accuracy"] == 1e-7
     assert kd.recheck(verdict).holds and kd.recheck(verdict.to_json(), folder=tmp_path).holds
     assert "made" in repr(system) and "fast: step 1/40" in repr(system)
-    table = system.intervals(("1/100", "1/5"), width=1e-2)
+    table = system.intervals(("1/100", "1/5"), resolution=1e-2)
     flags = ["system", str(path), "--intervals=outer=1/100..1/5", "--resolution=0.01"]
     assert table.to_json() == program(*flags, "--format", "json")
     assert table.to_csv() == program(*flags, "--format", "csv")
