@@ -16,6 +16,13 @@ impl Numbers {
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
+    /// Symmetric, with this norm.
+    fn of_norm(&mut self, n: usize, size: f64) -> DMatrix<f64> {
+        let e = self.symmetric(n);
+        let length = norm(&e);
+        e * (size / length)
+    }
+
     fn symmetric(&mut self, n: usize) -> DMatrix<f64> {
         let mut k = DMatrix::zeros(n, n);
         for i in 0..n {
@@ -103,13 +110,9 @@ fn no_perturbation_within_a_margin_flips_a_verdict_and_one_just_beyond_two_does(
         let Some(margin) = kernel(&fast, &slow).margin(&outer).filter(|m| *m > 1e-4) else { continue };
         systems += 1;
         let sizes = [norm(&fast), norm(&slow)];
-        let mut perturb = |size: f64| {
-            let e = numbers.symmetric(n);
-            let length = norm(&e);
-            e * (0.999 * margin * size / length)
-        };
         for _ in 0..100 {
-            let (f, s) = (&fast + perturb(sizes[0]), &slow + perturb(sizes[1]));
+            let mut near = |m: &DMatrix<f64>, size: f64| m + numbers.of_norm(n, 0.999 * margin * size);
+            let (f, s) = (near(&fast, sizes[0]), near(&slow, sizes[1]));
             // Near ±1 multipliers are good to the root of roundoff.
             assert!(largest_multiplier(&f, &s, step, inner) < 1.0 + 1e-6);
         }
@@ -137,13 +140,9 @@ fn no_perturbation_within_the_margin_of_an_unstable_verdict_is_stable() {
         let Some(margin) = margin.filter(|_| !analysis.is_stable()) else { continue };
         systems[usize::from(kernel.has_real_unstable_mode(&outer, 0.0))] += 1;
         let sizes = [norm(&fast), norm(&slow)];
-        let mut perturb = |size: f64| {
-            let e = numbers.symmetric(n);
-            let length = norm(&e);
-            e * (0.999 * margin * size / length)
-        };
         for _ in 0..100 {
-            let (f, s) = (&fast + perturb(sizes[0]), &slow + perturb(sizes[1]));
+            let mut near = |m: &DMatrix<f64>, size: f64| m + numbers.of_norm(n, 0.999 * margin * size);
+            let (f, s) = (near(&fast, sizes[0]), near(&slow, sizes[1]));
             assert!(
                 largest_multiplier(&f, &s, step, inner) > 1.0 + 1e-9,
                 "{margin} of {fast} {slow} at {step}"

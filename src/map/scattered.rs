@@ -1,13 +1,12 @@
 //! Pairs that lie on no grid, side by side all the same.
 
 use super::resources::Resources;
-use super::work::LANES;
+use super::work::{LANES, in_groups};
 use crate::error::Result;
-use crate::orbit::filter::{Group, UNDECIDED};
+use crate::orbit::filter::UNDECIDED;
 use crate::orbit::floquet::{Floquet, Pair};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::vector::instructions::Instructions;
 use crate::verdict::{Decidable, Decision, Tier, Verdict, decide};
 
 /// Pairs that are sorted by their numbers of updates together: enough for each to find company.
@@ -48,7 +47,7 @@ fn together<S: Decidable>(clocks: &[TwoClocks<S>], resources: &Resources) -> Res
         (0..clocks.len()).filter(|&n| floquets[n].as_ref().is_some_and(allowed)).collect();
     order.sort_by_key(|&n| floquets[n].as_ref().map(Floquet::updates));
     let mut found = vec![UNDECIDED; clocks.len()];
-    let mut decide_in = |mut group: Group<LANES>, order: &[usize]| -> Result<Vec<usize>> {
+    in_groups(&order, |mut group, order| {
         for positions in order.chunks(LANES) {
             resources.go_on()?;
             let pairs: Vec<Pair> =
@@ -56,11 +55,7 @@ fn together<S: Decidable>(clocks: &[TwoClocks<S>], resources: &Resources) -> Res
             positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
         }
         Ok(order.iter().copied().filter(|&n| found[n] == UNDECIDED).collect())
-    };
-    let rest = decide_in(Group::new(Instructions::best()), &order)?;
-    if rest.len() >= LANES {
-        decide_in(Group::watched(Instructions::best(), 1), &rest)?;
-    }
+    })?;
     let decided = |(verdict, clocks)| match verdict {
         UNDECIDED => {
             resources.go_on()?;

@@ -16,6 +16,17 @@ use crate::verdict::{Limits, decide};
 /// Pairs that run side by side: two AVX-512 registers hide each other's latency.
 pub(super) const LANES: usize = 16;
 
+/// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not certify, and these
+/// again where there are enough: long ones, for which a look at every update is the sharpest bound, and still many times
+/// faster than one by one. Returns what is left.
+pub(super) fn in_groups<P>(
+    order: &[P],
+    mut decide: impl FnMut(Group<LANES>, &[P]) -> Result<Vec<P>>,
+) -> Result<Vec<P>> {
+    let rest = decide(Group::new(Instructions::best()), order)?;
+    if rest.len() < LANES { Ok(rest) } else { decide(Group::watched(Instructions::best(), 1), &rest) }
+}
+
 /// A band at work.
 pub(super) struct Work<'a> {
     grid: &'a Grid,
@@ -86,15 +97,10 @@ impl<'a> Work<'a> {
         let undecided = |verdicts: &[u8]| -> Vec<u32> {
             self.order.iter().copied().filter(|&n| verdicts[n as usize] == filter::UNDECIDED).collect()
         };
-        let groups = Group::<LANES>::new(Instructions::best());
-        band.counters.kicks = self.decide_in(groups, &self.order, &mut band.verdicts)?;
-        let mut rest = undecided(&band.verdicts);
-        if rest.len() >= LANES {
-            // Long ones: a look at every update is the sharpest bound, and still many times faster than one by one.
-            let groups = Group::watched(Instructions::best(), 1);
-            band.counters.kicks += self.decide_in(groups, &rest, &mut band.verdicts)?;
-            rest = undecided(&band.verdicts);
-        }
+        let mut rest = in_groups(&self.order, |group, order| {
+            band.counters.kicks += self.decide_in(group, order, &mut band.verdicts)?;
+            Ok(undecided(&band.verdicts))
+        })?;
         rest.sort_unstable();
         band.counters.escalated = rest.len() as u64;
         for n in rest.into_iter().map(|n| n as usize) {

@@ -163,10 +163,7 @@ fn an_archive_is_advised_as_its_system_file_is() {
 #[test]
 fn a_molecule_is_drawn_and_its_advice_verified() {
     let desk = Desk::new();
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/data");
-    for name in ["tiny.json", "tiny-fast.npy", "tiny-slow.npy"] {
-        std::fs::copy(folder.join(name), desk.path().join(name)).unwrap();
-    }
+    desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
     let line = "advise tiny.json --steps 0.5fs,4.5fs --steps 0.5fs,5fs --length 1ns";
     for name in ["a.svg", "a.json", "a.csv", "a.tex"] {
         let ended = desk.run(&words(line, &["--output", name]));

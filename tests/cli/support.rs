@@ -25,6 +25,14 @@ impl Desk {
         self.0.path()
     }
 
+    /// These files of tests/cli/data.
+    pub fn copy(&self, names: &[&str]) {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/data");
+        for name in names {
+            std::fs::copy(folder.join(name), self.path().join(name)).unwrap();
+        }
+    }
+
     pub fn command(&self, args: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_kickdrift"));
         command.args(args).current_dir(self.path()).stdin(Stdio::null());

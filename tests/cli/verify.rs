@@ -399,10 +399,7 @@ fn every_field_is_rechecked_or_said_not_to_be() {
 #[test]
 fn every_field_of_advice_is_rechecked_or_said_not_to_be() {
     let desk = Desk::new();
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/data");
-    for name in ["tiny.json", "tiny-fast.npy", "tiny-slow.npy"] {
-        std::fs::copy(folder.join(name), desk.path().join(name)).unwrap();
-    }
+    desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
     let lines = [
         "advise --period OH=10fs --period 40fs --steps 2fs,4fs --steps 2.2fs,4.4fs --length 10ns --friction 1/ps",
         "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period CH=3000/cm --period slow=40fs --steps 1fs,2fs",

@@ -42,12 +42,11 @@ fn diagram(ratio: Ratio, rho: &Rational) -> Result<Diagram> {
     })?;
     let tongues = Tongues::new(ratio, rho)?;
     let resonance = |m: u64| tongues.resonance(m, 64).mid_f64();
-    let middle = |edge: &crate::tongue::Edge| 0.5 * (edge.lo + edge.hi);
     let band = |m: u64| {
         let begin = (m < ratio.p()).then(|| [resonance(m), resonance(m), 0.0]);
         let edges = slices.iter().zip(&rhos).map(|(gaps, rho)| {
-            let gap = &gaps[m as usize - 1];
-            [middle(&gap.lower), gap.upper.as_ref().map_or(f64::INFINITY, middle), to_f64(rho)]
+            let [lower, upper] = gaps[m as usize - 1].middles();
+            [lower, upper, to_f64(rho)]
         });
         Band { m, family: dominant_family(ratio, m), edges: begin.into_iter().chain(edges).collect() }
     };

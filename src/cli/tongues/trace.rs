@@ -38,9 +38,9 @@ pub fn drawn(ratio: Ratio, rho: &Rational, labels: Option<&Labels>) -> Result<Fi
     let whole = map(&places, |&s| [s, to_f64(&at(s).trace())]);
     let spans = gaps
         .iter()
-        .filter(|gap| edges(gap)[0] < end)
-        .map(|gap| (gap.m, edges(gap).map(|edge| edge.min(end))));
-    let (m, [lower, upper]) = (near.m, edges(near));
+        .filter(|gap| gap.middles()[0] < end)
+        .map(|gap| (gap.m, gap.middles().map(|edge| edge.min(end))));
+    let (m, [lower, upper]) = (near.m, near.middles());
     let places: Vec<f64> = (0..=NEAR).map(|n| 3.0 * f64::from(n) / f64::from(NEAR) - 1.0).collect();
     let halves = map(&places, |x| at(lower + x * (upper - lower)));
     let two = Rational::from_integer(2.into());
@@ -50,7 +50,10 @@ pub fn drawn(ratio: Ratio, rho: &Rational, labels: Option<&Labels>) -> Result<Fi
     let entries = [near.lower.entry, near.upper.expect("not the last").entry].map(|entry| {
         let values: Vec<f64> = halves.iter().map(|half| to_f64(value(half, entry))).collect();
         let largest = values.iter().fold(0.0, |a: f64, value| a.max(value.abs()));
-        (format!("{entry:?}"), places.iter().zip(values).map(|(x, value)| [*x, value / largest]).collect())
+        (
+            entry.name().to_string(),
+            places.iter().zip(values).map(|(x, value)| [*x, value / largest]).collect(),
+        )
     });
     let near = Near { m, lower, width: upper - lower, excess, entries };
     Ok(figure(&Trace { ratio, rho: typeset(rho), whole, tongues: spans.collect(), near }))
@@ -65,16 +68,10 @@ fn value(half: &HalfPeriod<Rational>, entry: Entry) -> &Rational {
     }
 }
 
-/// The middles of the edges; the last tongue has no end.
-fn edges(gap: &Gap) -> [f64; 2] {
-    let middle = |edge: &crate::tongue::Edge| 0.5 * (edge.lo + edge.hi);
-    [middle(&gap.lower), gap.upper.as_ref().map_or(f64::INFINITY, middle)]
-}
-
 fn chosen<'a>(gaps: &'a [Gap], labels: Option<&Labels>) -> Result<&'a Gap> {
-    let width = |gap: &Gap| edges(gap)[1] - edges(gap)[0];
+    let width = |gap: &Gap| gap.middles()[1] - gap.middles()[0];
     let Some(labels) = labels else {
-        let inner = gaps.iter().filter(|gap| edges(gap)[1] < LARGEST_S && !gap.closed);
+        let inner = gaps.iter().filter(|gap| gap.middles()[1] < LARGEST_S && !gap.closed);
         return inner.max_by(|a, b| width(a).total_cmp(&width(b))).ok_or_else(|| {
             Error::input("ratio", "given", "has no tongue below s = 4 to look at: choose another")
         });

@@ -19,6 +19,11 @@ pub struct Edge {
 const WIDEST: f64 = 2.5e-15;
 
 impl Edge {
+    /// The middle of its enclosure, rounded.
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.lo + self.hi)
+    }
+
     /// Whether it is as narrow as an edge shall be.
     pub(crate) fn is_narrow(&self) -> bool {
         self.hi - self.lo <= WIDEST * self.lo

@@ -37,6 +37,11 @@ fn is_accurate(width: (f64, f64)) -> bool {
 }
 
 impl Gap {
+    /// The middles of both edges, rounded; infinite where there is no upper one.
+    pub fn middles(&self) -> [f64; 2] {
+        [self.lower.middle(), self.upper.as_ref().map_or(f64::INFINITY, Edge::middle)]
+    }
+
     /// Tongue m between its two edges, ordered or proven equal.
     ///
     /// # Errors

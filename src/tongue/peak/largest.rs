@@ -132,7 +132,7 @@ struct Inside<'a> {
 impl<'a> Inside<'a> {
     fn new(string: &'a HalfString, gap: &Gap, upper: &Edge) -> Self {
         let odd = gap.m % 2 == 1;
-        let middle = |edge: &Edge| Twofold { hi: 0.5 * (edge.lo + edge.hi), lo: 0.0 };
+        let middle = |edge: &Edge| Twofold { hi: edge.middle(), lo: 0.0 };
         let (mut lower, mut width) = (middle(&gap.lower), 0.5 * (gap.width.0 + gap.width.1));
         let relative = width / lower.hi;
         if THIN < relative && relative < NARROW {
