@@ -2,12 +2,12 @@
 
 use kickdrift::error::Kind as ErrorKind;
 use kickdrift::map::{
-    Band, Counters, Grid, Map, Products, Resources, Shard, Store, decide_all, instruction_sets, merge,
+    Band, Counters, Grid, Map, Pairs, Products, Resources, Shard, Store, decide_all, instruction_sets, merge,
 };
-use kickdrift::number::Ratio;
 use kickdrift::number::parse::parse;
 use kickdrift::number::rational::ratio;
-use kickdrift::propagator::TwoClocks;
+use kickdrift::number::{Laurent, Ratio};
+use kickdrift::propagator::{Oscillator, TwoClocks};
 use kickdrift::verdict::{Kind, Limits, Tier, decide, decide_from, growth};
 use rayon::prelude::*;
 
@@ -426,6 +426,52 @@ fn scattered_pairs_side_by_side_are_those_of_the_ladder() {
     }
     let few = Resources { limits: Limits { kicks: 3 }, ..Resources::default() };
     assert_eq!(decide_all(&pairs, &few).unwrap_err().kind(), ErrorKind::Budget);
+}
+
+#[test]
+fn pairs_made_of_few_quantities_are_decided_as_each_alone() {
+    let mut numbers = random::Random::new(20_261_123);
+    let pi = |k: i32, c| Laurent::monomial(c, k);
+    // Rational ones and powers of pi, a sum of both, none and repelling; steps in units of pi too, one too long for doubles.
+    let sum = &pi(2, ratio(1, 30)) + &pi(0, ratio(1, 7));
+    let lambda1 = vec![pi(2, ratio(1, 1)), pi(0, ratio(10, 1)), sum.clone()];
+    let lambda2 = vec![pi(2, ratio(1, 25)), pi(0, ratio(0, 1)), pi(0, ratio(-3, 10)), sum];
+    let long = Laurent::from_rational(ratio((1 << 61) - 1, 1 << 61));
+    let mut steps: Vec<Laurent> =
+        (0..60).map(|_| pi(0, ratio(1 + numbers.below(400) as i64, 1 + numbers.below(500) as i64))).collect();
+    steps.extend((1..20).map(|n| pi(0, ratio(2, n))));
+    let upto = |n: usize, numbers: &mut random::Random| numbers.below(n as u64) as usize;
+    let mut picked: [Vec<usize>; 4] = Default::default();
+    for _ in 0..800 {
+        for (picked, count) in picked.iter_mut().zip([3, 4, steps.len(), steps.len()]) {
+            picked.push(upto(count, &mut numbers));
+        }
+    }
+    let lists = [lambda1, lambda2, steps.clone(), steps];
+    let exact = |lists: &[Vec<Laurent>; 4], picked: &[Vec<usize>; 4], n: usize| {
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| lists[k][picked[k][n]].clone());
+        Oscillator::new(a, b, c, d).unwrap().clocks()
+    };
+    let found = Pairs::new(lists.clone(), picked.clone()).unwrap().verdicts(&Resources::default()).unwrap();
+    assert_eq!(found.len(), 800);
+    for (n, found) in found.iter().enumerate() {
+        let clocks = exact(&lists, &picked, n);
+        assert_eq!(found.verdict, decide(&clocks, &Limits::default()).unwrap().verdict, "{clocks:?}");
+    }
+    let first = |x: &Laurent| vec![x.clone()];
+    let one = Laurent::from_rational(ratio(1, 1));
+    let of_steps =
+        |h1: &Laurent, h2: &Laurent| Pairs::of_steps(one.clone(), one.clone(), [[h1.clone(), h2.clone()]]);
+    let few = Resources { limits: Limits { kicks: 1000 }, ..Resources::default() };
+    let refused = |pairs: Pairs| pairs.verdicts(&few).unwrap_err();
+    assert_eq!(refused(of_steps(&one, &long).unwrap()).kind(), ErrorKind::Budget);
+    assert_eq!(refused(of_steps(&one, &pi(1, ratio(1, 3))).unwrap()).field(), "h2/h1");
+    assert_eq!(of_steps(&one, &pi(0, ratio(-1, 3))).unwrap_err().field(), "h2");
+    let uneven = [first(&one), first(&one), first(&one), first(&one)];
+    assert!(Pairs::new(uneven.clone(), [vec![0], vec![0], vec![0], vec![]]).is_err());
+    assert_eq!(Pairs::new(uneven, [vec![0], vec![1], vec![0], vec![0]]).unwrap_err().field(), "lambda2");
+    let none = Pairs::of_steps(one.clone(), one.clone(), []).unwrap();
+    assert_eq!(none.verdicts(&Resources::default()).unwrap(), []);
 }
 
 /// All instruction sets give the same bits: verdicts, tiers, labels and the ends of every enclosure.

@@ -1,6 +1,6 @@
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from typing import Any, final
+from typing import Any, Final, final
 
 import numpy as np
 import numpy.typing as npt
@@ -69,11 +69,14 @@ class Stop:
 
 @final
 class Page:
+    LONGEST: Final[float]
     @staticmethod
     def of_springs(lambda1: str, lambda2: str, window: Sequence[str] | None, unit: str | None) -> Page: ...
     @staticmethod
     def of_system(text: str, arrays: Mapping[str, npt.NDArray[np.float64]], folder: str | None) -> Page: ...
     def ask(self, path: str, query: str, stop: Stop) -> tuple[int, str, bytes]: ...
+    @staticmethod
+    def overdue(path: str) -> tuple[int, str, bytes]: ...
 
 def names() -> tuple[list[str], list[str]]: ...
 def number(field: str, value: Any) -> Number: ...

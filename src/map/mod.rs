@@ -5,8 +5,8 @@
 //! of the base clock's turns made once a column and once a row. What the filter cannot certify goes up the ladder
 //! as any single pair does. Bands come in order and depend on the grid alone, not on threads, shards or the machine.
 //!
-//! [`Map`] computes all of it into one vector, into a slice, or band by band; [`decide_all`] takes pairs that lie on no
-//! grid.
+//! [`Map`] computes all of it into one vector, into a slice, or band by band; [`decide_all`] and
+//! [`Pairs`] take pairs that lie on no grid.
 
 mod band;
 mod bases;
@@ -16,6 +16,7 @@ mod gcd;
 mod grid;
 mod grow;
 mod growth;
+mod pairs;
 mod products;
 mod resources;
 mod run;
@@ -27,6 +28,7 @@ mod work;
 pub use band::{Band, Counters};
 pub use enclosure::Enclosure;
 pub use grid::Grid;
+pub use pairs::Pairs;
 pub use products::{Growing, Products};
 pub use resources::Resources;
 pub use run::{Map, merge, uncertified_unstable};

@@ -12,6 +12,9 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (s, (a - (s - t)) + (b - t))
 }
 
+/// Farther from 1 no number is taken from a ball.
+const LARGEST: f64 = 1e30;
+
 /// hi + lo, |lo| ≤ ulp(hi)/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Twofold {
@@ -130,13 +133,24 @@ impl Twofold {
 
     /// x to within 2^-100 relative; `None` where the ball is wider than that, negative, or far from 1.
     pub fn from_ball(x: &Ball) -> Option<Twofold> {
-        const LARGEST: f64 = 1e30;
         let near = x.mid_f64();
         if !(1.0 / LARGEST..=LARGEST).contains(&near) {
             return None;
         }
         // 105 places below the leading one.
         Twofold::from_fixed(x, 105 - ((near.to_bits() >> 52) as i64 - 1023), 32)
+    }
+
+    /// What [`Twofold::near`] asks for.
+    pub const ENCLOSURE_BITS: u32 = 160;
+
+    /// x to within 2^-103 relative, of either sign; `None` where the ball is wider than that, or x is 0 or far from 1.
+    pub fn near(x: &Ball) -> Option<Twofold> {
+        let near = x.mid_f64();
+        if !(1.0 / LARGEST..=LARGEST).contains(&near.abs()) {
+            return None;
+        }
+        Twofold::from_fixed(x, 105 - ((near.abs().to_bits() >> 52) as i64 - 1023), 2)
     }
 
     /// x to within (`most` + 1) 2^-places, |x| 2^places below 2^107; `None` where the ball is wider.
@@ -185,6 +199,8 @@ mod tests {
             let (exact_x, exact_y) = (Ball::from_rational(&x, 300), Ball::from_rational(&y, 300));
             let two = |x: &Ball| Twofold::from_ball(x).unwrap();
             prop_assert!(within(two(&exact_x), &exact_x, 100));
+            let negative = exact_x.neg();
+            prop_assert!(within(Twofold::near(&negative).unwrap(), &negative, 103));
             let (x, y) = (two(&exact_x), two(&exact_y));
             let (in_x, in_y) = (ball(x), ball(y));
             prop_assert!(within(x.root(), &in_x.sqrt(300).unwrap(), 101));
@@ -214,7 +230,8 @@ mod tests {
     #[test]
     fn wide_balls_and_far_ones_are_refused() {
         let third = Ball::from_rational(&ratio(1, 3), 90);
-        assert!(Twofold::from_ball(&third).is_none());
+        assert!(Twofold::from_ball(&third).is_none() && Twofold::near(&third).is_none());
+        assert!(Twofold::near(&Ball::zero()).is_none());
         assert!(Twofold::from_ball(&Ball::from_rational(&ratio(1, 3), 110).scale2(200)).is_none());
         assert!(Twofold::from_ball(&Ball::from_rational(&ratio(-1, 3), 110)).is_none());
     }

@@ -22,7 +22,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use crate::number::{Ball, Real, Sign, Twofold};
+use crate::number::{Ball, Ratio, Real, Sign, Twofold};
 use crate::propagator::TwoClocks;
 
 /// Bits of the strengths; the constants are made of two doubles each and end as one.
@@ -140,6 +140,9 @@ fn root_of_quarter(x: &Ball) -> Option<Twofold> {
     Some(Twofold::from_ball(x)?.root().half())
 }
 
+/// [`Pair::modulus`] is below this.
+const LARGEST_MODULUS: u64 = 1 << 50;
+
 /// Turns by more steps come from multiple precision.
 const LONGEST: u64 = 1 << 40;
 
@@ -221,6 +224,14 @@ impl Floquet {
         if clocks.p() >= clocks.q() { own().or_else(other) } else { other().or_else(own) }
     }
 
+    /// The pair with the first clock as the base, from the two strengths in two doubles each, within 2^-99; `None` where that
+    /// does not suffice for the base.
+    pub fn in_doubles(ratio: Ratio, fast: Twofold, slow: Twofold) -> Option<Floquet> {
+        let ((p, q), whole) = (ratio.terms(), ratio.p() / ratio.q());
+        let base = Base::quick((fast.hi, fast.lo), whole.saturating_sub(1), whole + 1)?;
+        (within_range(slow.hi) && q < LARGEST_MODULUS).then_some(Floquet { base, p, q, kick: slow.hi })
+    }
+
     /// The number of updates: the half kick at t = 0 and ⌊q/2⌋ more.
     pub fn updates(&self) -> u64 {
         self.q / 2 + 1
@@ -248,7 +259,7 @@ impl Floquet {
         let base = quick.or_else(|| Base::new(&fast.enclosure(BITS), first, last))?;
         let near = slow.two_doubles().map(|(kick, _)| kick).filter(|kick| within_range(*kick));
         let kick = near.or_else(|| ordinary(&slow.enclosure(BITS)))?;
-        (q < 1 << 50).then_some(Floquet { base, p, q, kick })
+        (q < LARGEST_MODULUS).then_some(Floquet { base, p, q, kick })
     }
 }
 

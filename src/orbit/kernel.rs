@@ -18,7 +18,7 @@
 use std::marker::PhantomData;
 
 use super::floquet::Pair;
-use crate::vector::instructions::{Instructions, Kernel, Task};
+use crate::vector::instructions::{Instructions, Kernel};
 use crate::vector::{Vector, each};
 
 /// Above this squared norm an orbit is scaled down.
@@ -185,6 +185,18 @@ impl<V: Vector> State<V> {
         }
     }
 
+    /// The state before in the lanes of the mask.
+    #[inline(always)]
+    fn unless(self, mask: V::Mask, before: Self) -> Self {
+        let two = |old: [V; 2], new: [V; 2]| [kept(mask, old[0], new[0]), kept(mask, old[1], new[1])];
+        State {
+            place: kept(mask, before.place, self.place),
+            re: two(before.re, self.re),
+            w: two(before.w, self.w),
+            crossings: std::array::from_fn(|n| kept(mask, before.crossings[n], self.crossings[n])),
+        }
+    }
+
     /// Counts where the even solution's re has changed its sign, and where the coefficient is negative too.
     #[inline(always)]
     fn count(&mut self, shear: usize, before: V, coefficient: V) {
@@ -241,6 +253,12 @@ impl<V: Vector> State<V> {
             }
         }
     }
+}
+
+/// `old` where the mask says yes, else `new`.
+#[inline(always)]
+fn kept<V: Vector>(mask: V::Mask, old: V, new: V) -> V {
+    V::choose(mask, V::alternatives(old, new))
 }
 
 #[inline(always)]
@@ -379,13 +397,16 @@ struct Apart<'a, W, const L: usize> {
     watch: PhantomData<W>,
 }
 
-impl<W: Watch, const L: usize> Task for Apart<'_, W, L> {
+impl<W: Watch, const L: usize> Kernel for Apart<'_, W, L> {
     type Output = ();
 
     #[inline(always)]
-    fn run(self) {
+    fn run<V: Vector>(self) {
         for k in self.updates + 1..=self.longest {
-            self.lanes.update_some::<W>(k);
+            let share = self.lanes.share(k);
+            for at in (0..L).step_by(V::WIDTH) {
+                self.lanes.update_some::<V, W>(k, &share, at);
+            }
         }
     }
 }
@@ -474,8 +495,13 @@ impl<const L: usize> Lanes<L> {
         } else {
             instructions.compute_by_register(together)
         }
-        if longest > updates {
-            instructions.perform(Apart { lanes: self, updates, longest, watch: PhantomData::<W> });
+        if L > 1 && longest > updates {
+            instructions.compute_by_register(Apart {
+                lanes: self,
+                updates,
+                longest,
+                watch: PhantomData::<W>,
+            });
         }
     }
 
@@ -485,31 +511,44 @@ impl<const L: usize> Lanes<L> {
         each(|i| if k as f64 == self.updates[i] { self.last_kick[i] } else { 1.0 })
     }
 
-    /// The k-th update in the lanes that have one.
+    /// The k-th update in those lanes of the vector at `at` that have one.
     #[inline(always)]
-    fn update_some<W: Watch>(&mut self, k: u64) {
-        let (before, updates) = (*self, self.updates);
-        let mut state = State::<[f64; L]>::load::<W, L>(self, 0);
-        state.travel::<W>(&Course::load(self, 0));
-        state.strike_by(self.share(k));
+    fn update_some<V: Vector, W: Watch>(&mut self, k: u64, share: &[f64; L], at: usize) {
+        let over = V::splat(k as f64).exceeds(V::load(&self.updates[at..]));
+        let (sums, before) = (self.sums::<V>(at), State::load::<W, L>(self, at));
+        let mut state = before;
+        state.travel::<W>(&Course::load(self, at));
+        state.strike_by(V::load(&share[at..]));
         if W::CERTIFY {
-            state.look::<W, L>(self, 0, true);
+            state.look::<W, L>(self, at, true);
+            let now = self.sums::<V>(at);
+            self.keep(at, std::array::from_fn(|n| kept(over, sums[n], now[n])));
         }
-        state.store::<W, L>(self, 0);
-        let keep = |new: &mut [f64; L], old: &[f64; L]| {
-            *new = each(|i| if k as f64 <= updates[i] { new[i] } else { old[i] });
+        state.unless(over, before).store::<W, L>(self, at);
+    }
+
+    /// What a look changes in the lanes themselves, of both solutions.
+    #[inline(always)]
+    fn sums<V: Vector>(&self, at: usize) -> [V; 6] {
+        let of = |orbits: &Orbits<L>| {
+            [&orbits.squares, &orbits.worst, &orbits.exponent].map(|x| V::load(&x[at..]))
         };
-        keep(&mut self.place, &before.place);
-        for (new, old) in [(&mut self.even, &before.even), (&mut self.odd, &before.odd)] {
-            keep(&mut new.re, &old.re);
-            keep(&mut new.w, &old.w);
-            keep(&mut new.squares, &old.squares);
-            keep(&mut new.worst, &old.worst);
-            keep(&mut new.exponent, &old.exponent);
-        }
-        if W::WIND {
-            self.crossings.iter_mut().zip(&before.crossings).for_each(|(new, old)| keep(new, old));
-        }
+        let ([a, b, c], [d, e, f]) = (of(&self.even), of(&self.odd));
+        [a, b, c, d, e, f]
+    }
+
+    #[inline(always)]
+    fn keep<V: Vector>(&mut self, at: usize, sums: [V; 6]) {
+        let (even, odd) = (&mut self.even, &mut self.odd);
+        let places = [
+            &mut even.squares,
+            &mut even.worst,
+            &mut even.exponent,
+            &mut odd.squares,
+            &mut odd.worst,
+            &mut odd.exponent,
+        ];
+        places.into_iter().zip(sums).for_each(|(place, sum)| sum.store(&mut place[at..]));
     }
 
     /// ⌊angle/(π/2)⌋ of the even solution after its last update in (re, im), in lane i.

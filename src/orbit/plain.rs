@@ -47,7 +47,7 @@ pub fn sharp<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends
 
 fn run_in<N: Number, S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule) -> Option<Ends> {
     let steps = Steps::<N>::new(clocks, schedule)?;
-    let (even, odd, half_turns) = Instructions::best().perform(Run(&steps, schedule));
+    let (even, odd, half_turns) = Instructions::best().perform_alone(Run(&steps, schedule));
     // After N half turns of x's sign the angle is within a quarter of N half turns, beyond it where x and v differ in sign.
     let (x, y) = (even.x.near(), even.y.near());
     let quarters = 2 * half_turns - i64::from(x.is_sign_negative() == y.is_sign_negative());

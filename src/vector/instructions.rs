@@ -7,6 +7,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use super::registers::{Avx2, Avx2Single, Avx512, Avx512Single};
 use super::{LANES, Vector};
 
+/// The width of a portable vector that stands for one register. On x86-64 without AVX2 fused operations are calls, and one by one
+/// they are no slower.
+const PLAIN: usize = if cfg!(target_arch = "x86_64") { 1 } else { 4 };
+
 /// The instruction sets that kernels are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Instructions {
@@ -23,12 +27,14 @@ impl Instructions {
     /// Those that this processor has, the best first.
     pub fn available() -> impl Iterator<Item = Instructions> {
         #[cfg(target_arch = "x86_64")]
+        let fused = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        #[cfg(target_arch = "x86_64")]
         let vector = [
             (
                 Instructions::Avx512,
-                is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
+                fused && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl"),
             ),
-            (Instructions::Avx2, is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")),
+            (Instructions::Avx2, fused),
         ];
         #[cfg(not(target_arch = "x86_64"))]
         let vector: [(Instructions, bool); 0] = [];
@@ -45,6 +51,16 @@ impl Instructions {
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => unsafe { avx2(task) },
             Instructions::Portable => task.run(),
+        }
+    }
+
+    /// A task that is done number by number: of all vector instructions it needs the fused operations, which come with AVX2.
+    pub fn perform_alone<T: Task>(self, task: T) -> T::Output {
+        match self {
+            Instructions::Portable => task.run(),
+            // Safety: who has AVX-512 has the others too, as `available` has seen.
+            #[cfg(target_arch = "x86_64")]
+            Instructions::Avx2 | Instructions::Avx512 => unsafe { avx2(task) },
         }
     }
 
@@ -68,13 +84,13 @@ impl Instructions {
             Instructions::Avx512 => unsafe { avx512(With::<Avx512Single, K>(kernel, PhantomData)) },
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2 => unsafe { avx2(With::<Avx2Single, K>(kernel, PhantomData)) },
-            Instructions::Portable => kernel.run::<[f64; 4]>(),
+            Instructions::Portable => kernel.run::<[f64; PLAIN]>(),
         }
     }
 
     /// The kernel on one lane.
     pub fn compute_alone<K: Kernel>(self, kernel: K) -> K::Output {
-        self.perform(With::<[f64; 1], K>(kernel, PhantomData))
+        self.perform_alone(With::<[f64; 1], K>(kernel, PhantomData))
     }
 
     /// The best that this processor has, or those that were [forced](force_instructions).

@@ -2,12 +2,16 @@
 //! write (tests/bench/peers/full_period.c, built here if gcc is there), with each instruction set that the processor has
 //! and beside the time of its fused operations alone. Minima over repetitions; ratios count.
 //!
-//! `cargo bench --bench map [-- N]`: steps of 1/N, 1000 unless given; with `curve`, the cost for N up to 4000.
+//! `cargo bench --bench map [-- N]`: steps of 1/N, 1000 unless given; with `curve`, the cost for N up to 4000; with
+//! `scattered`, pairs on no grid beside the grid.
 
 use std::path::PathBuf;
 use std::process::Command;
 
-use kickdrift::map::{Counters, Grid, Map, Resources, instruction_sets, uncertified_unstable};
+use kickdrift::map::{Counters, Grid, Map, Pairs, Resources, instruction_sets, uncertified_unstable};
+use kickdrift::number::parse::parse;
+use kickdrift::number::rational::ratio;
+use kickdrift::number::{Laurent, Ratio, Rational};
 
 mod common;
 
@@ -18,6 +22,9 @@ fn main() {
         std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     if arguments.iter().any(|argument| argument == "curve") {
         return curve();
+    }
+    if arguments.iter().any(|argument| argument == "scattered") {
+        return scattered();
     }
     side_by_side(arguments.first().and_then(|n| n.parse().ok()).unwrap_or(1000));
 }
@@ -83,6 +90,57 @@ fn curve() {
         let each = seconds / counters.kicks as f64 * 1e9;
         println!("{n:>6} {:>12} {:>14} {seconds:>10.3} {each:>12.4}", counters.pairs, counters.kicks);
     }
+}
+
+/// A million pairs of the window of Figure 1, each on a grid of its own: steps of 1/d with d between 500 and 2000.
+fn scattered() {
+    const COUNT: u64 = 1_000_000;
+    let (grid, one) = (figure_1(1000), Resources { threads: 1, ..Resources::default() });
+    let mut state = 20_261_122u64;
+    let mut below = |n: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % n
+    };
+    let steps: Vec<[Rational; 2]> = (0..COUNT)
+        .map(|_| {
+            let d = 500 + below(1500);
+            [2 * d * 1000 / 3142, 7 * d / 2].map(|most| ratio(1 + below(most) as i64, d as i64))
+        })
+        .collect();
+    let kicks: u64 = steps
+        .iter()
+        .map(|[h1, h2]| {
+            let ratio = Ratio::try_from(&(h2 / h1)).expect("small");
+            ratio.p().min(ratio.q()) / 2 + 1
+        })
+        .sum();
+    let x = |text| parse("x", text).expect("a number");
+    let (mut ours, mut theirs, mut made) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
+    for _ in 0..4 {
+        theirs = theirs.min(processor_time(|| certified(&grid, one)));
+        let laurent =
+            || steps.iter().map(|pair| pair.clone().map(Laurent::from_rational)).collect::<Vec<_>>();
+        let (given, mut pairs) = (laurent(), None);
+        made = made.min(processor_time(|| pairs = Pairs::of_steps(x("pi^2"), x("pi^2/25"), given).ok()));
+        let pairs = pairs.expect("positive steps");
+        ours = ours.min(processor_time(|| pairs.verdicts(&one).expect("within the budget")));
+    }
+    let all = certified(&grid, one).1;
+    let (ours, theirs) = (ours * 1e9, theirs * 1e9);
+    println!(
+        "grid      {:8.1} ns a pair, {:.3} ns a kick, {:.0} kicks a pair",
+        theirs / all.pairs as f64,
+        theirs / all.kicks as f64,
+        all.kicks as f64 / all.pairs as f64
+    );
+    println!(
+        "scattered {:8.1} ns a pair, {:.3} ns a kick, {:.0} kicks a pair; {:.2} times the grid's cost a kick; read in {:.1} ns a pair",
+        ours / COUNT as f64,
+        ours / kicks as f64,
+        kicks as f64 / COUNT as f64,
+        ours / kicks as f64 / (theirs / all.kicks as f64),
+        made * 1e9 / COUNT as f64
+    );
 }
 
 /// The peer's program, where there is a gcc.

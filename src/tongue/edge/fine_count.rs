@@ -27,7 +27,7 @@ pub(crate) fn enclose(
     index: usize,
     around: Option<(f64, f64)>,
 ) -> Enclosure {
-    let [lo, hi] = string.instructions.perform(Halving { string, entry, index, around });
+    let [lo, hi] = string.instructions.perform_alone(Halving { string, entry, index, around });
     let eta = rational::from_f64_exact((4.0 * string.nodes.len() as f64 + 16.0) * EPSILON).expect("finite");
     let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
     let s = |kappa: Twofold| (exact(kappa.hi) + exact(kappa.lo)) * exact(string.ticks);

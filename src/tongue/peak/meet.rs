@@ -73,7 +73,7 @@ pub(crate) struct Meeting {
 impl Meeting {
     /// At s, for the tongues of odd or of even m.
     pub fn new(string: &HalfString, s: Twofold, odd: bool) -> Meeting {
-        string.instructions.perform(Meet { string, s, odd })
+        string.instructions.perform_alone(Meet { string, s, odd })
     }
 
     /// The slope of ln E.
