@@ -1,10 +1,11 @@
 //! Figures as a whole: what a tiny one looks like to the byte, and that larger ones hold together.
 
 use kickdrift::report::figure::palette::{
-    COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, INK, PARABOLIC, WHITE, family,
+    CAUTION, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE,
+    family,
 };
 use kickdrift::report::figure::{
-    Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Picture, Place, Shape, Stroke,
+    Axis, Cells, ColourBar, Figure, Foot, Hatch, Layer, Note, Panel, Picture, Place, Shape, Stroke,
 };
 
 /// One panel with one of everything that is small.
@@ -156,7 +157,7 @@ fn cells_have_no_seams() {
 
 #[test]
 fn the_words_of_an_svg_are_text_unless_shapes_are_asked_for() {
-    let figure = tiny().headed("*h*_1 & more").footed("made of *λ*_2");
+    let figure = tiny().headed("*h*_1 & more").footed(&Foot::default().part("made of *λ*_2".into()));
     let svg = figure.svg();
     for words in [
         ">Tiny</tspan>",
@@ -315,7 +316,8 @@ fn colours_with_a_meaning_stay_apart_for_the_colour_blind_and_in_grey() {
     let families: Vec<Colour> = (0..8).map(family).collect();
     let kinds = [HYPERBOLIC, PARABOLIC, COEXISTENCE, WHITE];
     let lines = [INK, GREY, WHITE];
-    for colours in [&families[..], &kinds, &lines] {
+    let advice = [SAFE, CAUTION, SAMPLED, UNSTABLE, WHITE];
+    for colours in [&families[..], &kinds, &lines, &advice] {
         for matrix in [DEUTERANOPIA, PROTANOPIA] {
             let least = least_distance(colours, matrix);
             assert!(least > 0.06, "{least}: {colours:?}");
@@ -323,6 +325,25 @@ fn colours_with_a_meaning_stay_apart_for_the_colour_blind_and_in_grey() {
         let least = least_distance(colours, PRINT);
         assert!(least > 0.04, "in grey {least}: {colours:?}");
     }
+}
+
+/// What has a hatch has one of its own: families in a map are told without any colour.
+#[test]
+fn families_differ_in_their_hatch_and_every_format_draws_it() {
+    let hatches: std::collections::HashSet<_> = (0..8).map(Hatch::of_family).collect();
+    assert_eq!(hatches.len(), 8);
+    let drawn = |hatch| {
+        let mut cells = Cells::new([0.5, 0.5], [1.0, 1.0], vec![family(2)]);
+        (0..12).for_each(|n| cells.push(n % 4, n / 4, 0));
+        let axes = (Axis::linear("", 0.0, 4.0), Axis::linear("", 0.0, 3.0));
+        let layer = Layer::cells(cells).hatched(hatch).labelled("family");
+        Figure::new(40.0, 30.0).with(Panel::new(axes.0, axes.1).with(layer).legend(Place::Above))
+    };
+    let (plain, hatched) = (drawn(None), drawn(Some(Hatch::Falling)));
+    let white = |figure: &Figure| figure.svg().matches("stroke=\"#ffffff\"").count();
+    assert_eq!((white(&plain), white(&hatched)), (0, 2), "the cells and their sample in the legend");
+    assert_ne!(plain.pdf(), hatched.pdf());
+    assert_ne!(plain.png(72.0).unwrap(), hatched.png(72.0).unwrap());
 }
 
 /// A gradient tells more from less by its lightness alone, for every eye; a tenth of it is more than just noticeable.

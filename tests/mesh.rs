@@ -3,6 +3,7 @@
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::scene::SystemScene;
+use kickdrift::system::nearest::Unstable;
 use kickdrift::system::{Analysis, Limits, Route};
 use kickdrift::verdict::Kind;
 
@@ -98,6 +99,33 @@ fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_
     let measured = kickdrift::avi::growth_rate(&mut run, &rest, 1.0, (40, kickdrift::avi::Ends::Symmetric));
     assert!((measured / mode.growth_rate - 1.0).abs() < 1e-6, "{measured} {}", mode.growth_rate);
     assert!(mode.growth_rate * to_f64(&scene.system().period()) > 0.0);
+}
+
+#[test]
+fn the_unstable_interval_of_the_bars_is_the_next_one_from_both_sides() {
+    let text = std::fs::read_to_string("data/scenes/two-bars.json").unwrap();
+    let nearest = |courant: &str| {
+        let scene = SystemScene::read(&text.replace("\"87/100\"", &format!("\"{courant}\""))).unwrap();
+        scene.nearest_unstable(1e-3, &Limits::default()).unwrap()
+    };
+    // The outer step is 3 C; C from 0.85571 to 0.88580 is unstable.
+    let is_that = |found: Option<Unstable>| {
+        let Unstable { proven, within } = found.unwrap();
+        let (lo, hi) = (within.0.unwrap(), within.1.unwrap());
+        // Ends are sharpened to a hundredth of the width, 1e-3, and better.
+        assert!(lo < proven.0 && proven.1 < hi && proven.0 - lo < 1e-5 && hi - proven.1 < 1e-5, "{found:?}");
+        assert!(
+            (proven.0 / 3.0 - 0.855_706).abs() < 1e-5 && (proven.1 / 3.0 - 0.885_804).abs() < 1e-5,
+            "{found:?}"
+        );
+    };
+    let (from_below, from_above, inside) = (nearest("4/5"), nearest("1"), nearest("87/100"));
+    assert!(from_below.own.is_none() && from_below.below.is_none() && from_below.searched.0 == 1.2);
+    is_that(from_below.above);
+    assert!(from_above.own.is_none());
+    is_that(from_above.below);
+    is_that(inside.own);
+    assert!(inside.below.is_none() && from_below.untold.is_empty() && from_above.untold.is_empty());
 }
 
 #[test]

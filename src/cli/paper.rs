@@ -30,6 +30,11 @@ pub struct Paper {
 }
 
 impl Paper {
+    /// The width asked for.
+    pub fn width_mm(&self) -> Option<f64> {
+        self.width
+    }
+
     /// That nothing is asked of a figure where none is drawn.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
 use crate::report::document::Document;
+use crate::report::figure::Foot;
 
 /// The flags that say which.
 #[derive(Debug, clap::Args)]
@@ -78,6 +79,14 @@ impl Ratios {
         match self {
             Ratios::One(ratio) => vec![ratio],
             Ratios::UpTo(max_sum) => Ratio::up_to(max_sum).collect(),
+        }
+    }
+
+    /// Below a figure.
+    pub fn below(self, foot: Foot) -> Foot {
+        match self {
+            Ratios::One(ratio) => foot.value("*h*_2/*h*_1", ratio),
+            Ratios::UpTo(max_sum) => foot.part(format!("all *h*_2/*h*_1 = *p*/*q*, *p* + *q* ≤ {max_sum}")),
         }
     }
 

@@ -8,6 +8,7 @@ use super::system::{limits, read};
 use crate::avi::Ends;
 use crate::error::Result;
 use crate::format::Format;
+use crate::report::figure::Foot;
 use crate::report::simulate as report;
 use crate::scene::{Displacement, RunRequest};
 
@@ -39,12 +40,18 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         self.paper.check(self.figure.is_some())?;
         self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
-        let ends = if self.staggered { Ends::Staggered } else { Ends::Symmetric };
+        let (ends, form) =
+            if self.staggered { (Ends::Staggered, "staggered") } else { (Ends::Symmetric, "symmetric") };
         let request = RunRequest { periods: self.periods, displacement: self.displace.clone(), ends };
         let scene = read(&self.file, common)?;
         let run = scene.run(&request, &limits(common))?;
         if let Some(path) = &self.figure {
-            let figure = report::figure(&run, scene.title());
+            let foot = Foot::default()
+                .words(scene.title())
+                .value("periods", request.periods)
+                .value("displaced by", &request.displacement)
+                .words(form);
+            let figure = report::figure(&run, scene.title()).footed(&foot);
             self.paper.draw("figure", path, figure.in_units_of(scene.time_unit().unwrap_or("time")))?;
         }
         let document = report::document(&run)
@@ -53,7 +60,7 @@ impl Args {
             .input_json("system", scene.source().clone())
             .input("periods", request.periods)
             .input("displace", &request.displacement)
-            .input("form", if self.staggered { "staggered" } else { "symmetric" });
+            .input("form", form);
         common.write(&self.columns.of(document)?, Format::Text)
     }
 }

@@ -12,7 +12,7 @@ use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::document::Document;
-use crate::report::figure::Figure;
+use crate::report::figure::{Figure, Foot};
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Arrays, Axis, Scan, Span, SystemScene};
 use crate::system::scan::scan;
@@ -42,8 +42,11 @@ pub struct Args {
     /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a spring, a mass
     #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["scan", "exact"], value_parser = from_str::<Span>)]
     intervals: Option<Span>,
-    /// The relative width above which no interval is missed [default: 1e-4].
-    #[arg(long, value_name = "W", requires = "intervals")]
+    /// With the verdict: the unstable intervals of the outer step next to this one, from half of it to twice it
+    #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]
+    nearest: bool,
+    /// The relative width above which no interval is missed, of --intervals and --nearest [default: 1e-4].
+    #[arg(long, value_name = "W")]
     resolution: Option<f64>,
     /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
@@ -75,6 +78,10 @@ impl Args {
         if let Some(span) = &self.intervals {
             return self.intervals(&scene, span, common);
         }
+        if let Some(width) = self.resolution.filter(|_| !self.nearest) {
+            let remedy = "is the width of intervals: add --intervals PATH=LO..HI or --nearest";
+            return Err(Error::input("--resolution", width, remedy));
+        }
         match self.scan.as_slice() {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
@@ -94,12 +101,17 @@ impl Args {
         if self.exact { Route::Exact } else { Route::Cheapest }
     }
 
+    fn width(&self) -> f64 {
+        self.resolution.unwrap_or(1e-4)
+    }
+
     fn intervals(&self, scene: &SystemScene, span: &Span, common: &Common) -> Result<()> {
-        let (width, limits) = (self.resolution.unwrap_or(1e-4), limits(common));
+        let (width, limits) = (self.width(), limits(common));
         let found = scene.intervals(span, width, &limits)?;
         if let Some(path) = drawing(common)? {
             let rates = scene.growth_rates(span, &report::sampled(&found.stretches), &limits)?;
-            return self.draw(scene, path, report::intervals_figure(&found, &rates, scene.title()));
+            let foot = Foot::default().words(&span.to_string());
+            return self.draw(scene, path, report::intervals_figure(&found, &rates, scene.title()), foot);
         }
         let document = report::intervals(&found).input("intervals", span).input("width", width);
         common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
@@ -110,7 +122,7 @@ impl Args {
         let analysis = scene.decide(self.route(), &limits(common))?;
         waiting.finish_and_clear();
         match drawing(common)? {
-            Some(path) => self.draw(scene, path, report::figure(&analysis, scene.title())),
+            Some(path) => self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default()),
             None => {
                 let limits = limits(common);
                 let friction = scene.friction(&limits)?;
@@ -118,9 +130,16 @@ impl Args {
                     Err(error) if error.kind() == Kind::Input => (None, true),
                     found => (found?, false),
                 };
-                let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
-                let beside = Beside { unit: scene.time_unit(), friction, orbit, is_orbit_missing, labels };
+                let nearest =
+                    self.nearest.then(|| scene.nearest_unstable(self.width(), &limits)).transpose()?;
+                let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
+                let (unit, labels) = (scene.time_unit(), scene.labels());
+                let beside = Beside { unit, friction, orbit, is_orbit_missing, labels, nearest };
                 let document = self.echo(report::document(&analysis, &beside), scene);
+                let document = match self.nearest {
+                    true => document.input("nearest", "true").input("width", self.width()),
+                    false => document,
+                };
                 common.write(&self.columns.of(document)?, Format::Text)
             }
         }
@@ -135,7 +154,14 @@ impl Args {
         let time_unit = scene.time_unit().map(String::from);
         let map = SystemMap { names: axes.names(), xs, ys, points: points?, time_unit };
         if let Some(path) = drawing(common)? {
-            return self.draw(scene, path, map.figure(self.colour.unwrap_or_default(), scene.title()));
+            let ranges = Foot::default().words(&axes.x.to_string());
+            let ranges = axes.y.iter().fold(ranges, |foot, axis| foot.words(&axis.to_string()));
+            return self.draw(
+                scene,
+                path,
+                map.figure(self.colour.unwrap_or_default(), scene.title()),
+                ranges,
+            );
         }
         let document = self.echo(map.document(), scene).input("scan_x", &axes.x);
         let document = match &axes.y {
@@ -145,9 +171,10 @@ impl Args {
         common.write(&self.columns.of(document)?, common.format_of_table(&Format::DOCUMENT)?)
     }
 
-    /// In the system's unit of time, and with its title below.
-    fn draw(&self, scene: &SystemScene, path: &Path, figure: Figure) -> Result<()> {
-        let figure = figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(scene.title());
+    /// In the system's unit of time, and with its title and what was varied below.
+    fn draw(&self, scene: &SystemScene, path: &Path, figure: Figure, varied: Foot) -> Result<()> {
+        let foot = Foot::default().words(scene.title()).part(varied.to_string());
+        let figure = figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot);
         self.paper.draw("output", path, figure)
     }
 

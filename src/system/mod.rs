@@ -25,7 +25,7 @@
 //! | `period` | whole periods in doubles, with friction or a stiffness of its own for each kick |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `along` | about a periodic orbit: a Hessian for each kick |
-//! | `scan`, `vary`, `stretches` | maps; all systems between two; a range covered |
+//! | `scan`, `vary`, `stretches`, `nearest` | maps; all systems between two; a range covered; the unstable intervals next to a number |
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
 //! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
@@ -66,6 +66,7 @@ pub mod mesh;
 mod model;
 mod modes;
 mod modular;
+pub mod nearest;
 mod norm;
 mod period;
 mod piece;

@@ -9,10 +9,10 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::report::figure::Figure;
+use crate::report::figure::{Figure, Foot};
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
-use crate::tongue::{Quantity, Tongue, TongueEdge, Wanted};
+use crate::tongue::{Quantity, Range, Tongue, TongueEdge, Wanted};
 
 /// What the colours stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -90,10 +90,25 @@ impl<'a> Atlas<'a> {
         let title = self.title();
         let atlas =
             plane::Atlas { window: self.window.clone(), segments: &segments, curves: &self.curves, title };
-        Ok(match self.colour {
+        let figure = match self.colour {
             Colour::Family => atlas.by_family(),
             Colour::Growth => atlas.by_growth(),
-        })
+        };
+        Ok(figure.footed(&self.foot()))
+    }
+
+    fn foot(&self) -> Foot {
+        let (stiffness, window) = (&self.question.asked.stiffness, &self.question.asked.window);
+        let clock = |foot: Foot, n: usize, lambda: Option<&Laurent>, range: Option<&Range>| {
+            let foot = match lambda {
+                Some(lambda) => foot.value(&format!("*Λ*_{n}"), lambda),
+                None => foot.value("*ρ*", &stiffness.rho),
+            };
+            range.map_or(foot.clone(), |(lo, hi)| foot.range(&format!("*h*_{n}"), lo, hi))
+        };
+        let foot = clock(Foot::default(), 1, stiffness.lambda1.as_ref(), window.h1.as_ref());
+        let foot = clock(foot, 2, stiffness.lambda2.as_ref(), window.h2.as_ref());
+        self.question.ratios.below(foot)
     }
 
     fn title(&self) -> String {

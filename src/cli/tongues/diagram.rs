@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Ratio, Rational};
 use crate::parallel::try_map;
-use crate::report::figure::Figure;
+use crate::report::figure::{Figure, Foot};
 use crate::report::tongues::diagram::{Band, Diagram, LARGEST_S, figure};
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Search, Tongues, closings};
@@ -22,7 +22,7 @@ const LEAST_SHARE: i64 = 1000;
 ///
 /// # Errors
 /// ρ = 0, a ratio with too many tongues to draw.
-pub fn drawn(ratios: &[Ratio], rho: &Rational) -> Result<Figure> {
+pub fn drawn(ratios: &[Ratio], rho: &Rational, width_mm: Option<f64>) -> Result<Figure> {
     if rho.is_zero() {
         return Err(Error::input("rho", 0, "the diagram goes from 0 up to it: choose a positive one"));
     }
@@ -30,7 +30,9 @@ pub fn drawn(ratios: &[Ratio], rho: &Rational) -> Result<Figure> {
         return Err(Error::input("ratio", ratio, format!("a diagram is readable for p + q <= {MOST_SUM}")));
     }
     let diagrams: Vec<Diagram> = ratios.iter().map(|&ratio| diagram(ratio, rho)).collect::<Result<_>>()?;
-    Ok(figure(&diagrams, to_f64(rho)))
+    let all = ratios.iter().map(Ratio::to_string).collect::<Vec<_>>().join(", ");
+    let foot = Foot::default().value("*h*_2/*h*_1", all).range("*ρ*", 0, rho).range("*s*", 0, LARGEST_S);
+    Ok(figure(&diagrams, to_f64(rho), width_mm).footed(&foot))
 }
 
 fn diagram(ratio: Ratio, rho: &Rational) -> Result<Diagram> {

@@ -15,7 +15,7 @@ use super::args::{Common, from_str, of, whole};
 use super::paper::Paper;
 use super::ratios::{Flags, Ratios};
 use super::request::{Request, THINNEST};
-use super::verdict::within;
+use super::verdict::{EDGES_WORTH_CERTIFYING, within};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
@@ -140,7 +140,7 @@ impl Args {
                 put(trace::drawn(ratio, &self.stiffness()?.rho, self.m.as_ref())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
-                put(diagram::drawn(self.which.several()?, &self.stiffness()?.rho)?)
+                put(diagram::drawn(self.which.several()?, &self.stiffness()?.rho, self.paper.width_mm())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
@@ -157,7 +157,7 @@ impl Args {
         let rho = self.stiffness()?.rho;
         let one = |remedy| Error::input("--certificate", path.display(), remedy);
         let [ratio] = self.ratios()?.list()[..] else { return Err(one("is for one ratio")) };
-        within(ratio.kicks(), common.budget)?;
+        within(ratio.kicks(), EDGES_WORTH_CERTIFYING, common.budget)?;
         let gaps =
             Tongues::new(ratio, &rho)?.select(&Selection { m: self.m.clone(), ..Selection::default() })?;
         let [gap] = &gaps[..] else { return Err(one("is for one tongue: choose it with --m")) };

@@ -7,7 +7,7 @@ use super::atlas::share_of_pi;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational, rational};
-use crate::report::figure::{Figure, typeset};
+use crate::report::figure::{Figure, Foot, typeset};
 use crate::report::strength::{self as report, Measured, figure};
 use crate::resonance::dominant_family;
 use crate::tongue::{Gap, Stiffness, Tongues};
@@ -34,7 +34,8 @@ pub fn drawn(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Result<F
         typeset(theta),
         stiffness.rho
     );
-    Ok(figure(rational::to_f64(&share), &title, &measured))
+    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho)).value("*θ*", theta);
+    Ok(figure(rational::to_f64(&share), &title, &measured).footed(&foot))
 }
 
 /// All tongues that have a point p θ = m π: their widths against the law.
@@ -52,7 +53,8 @@ pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
         ));
     }
     let title = format!("All tongues with *p* + *q* ≤ {max_sum}, 0 < *m* < *p*; *ρ* = {}", stiffness.rho);
-    Ok(report::widths(&title, &measured))
+    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho));
+    Ok(report::widths(&title, &measured).footed(&foot))
 }
 
 /// The sum, and its tongues with m/p between two shares of π, 0 < m < p, in the order of p + q, p, m.

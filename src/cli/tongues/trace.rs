@@ -5,7 +5,7 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ratio, Rational};
 use crate::parallel::map;
 use crate::propagator::{HalfPeriod, TwoClocks, half_period};
-use crate::report::figure::{Figure, typeset};
+use crate::report::figure::{Figure, Foot, typeset};
 use crate::report::tongues::diagram::LARGEST_S;
 use crate::report::tongues::trace::{Near, Trace, figure};
 use crate::tongue::{Entry, Gap, Labels, Tongues};
@@ -56,7 +56,9 @@ pub fn drawn(ratio: Ratio, rho: &Rational, labels: Option<&Labels>) -> Result<Fi
         )
     });
     let near = Near { m, lower, width: upper - lower, excess, entries };
-    Ok(figure(&Trace { ratio, rho: typeset(rho), whole, tongues: spans.collect(), near }))
+    let foot = Foot::default().value("*h*_2/*h*_1", ratio).value("*ρ*", rho).value("*m*", m);
+    let trace = Trace { ratio, rho: typeset(rho), whole, tongues: spans.collect(), near };
+    Ok(figure(&trace).footed(&foot))
 }
 
 fn value(half: &HalfPeriod<Rational>, entry: Entry) -> &Rational {

@@ -43,6 +43,7 @@ rows! {
         keep_rigid: Option<Written<bool>>,
         accuracy: Option<Written<Rational>>,
         friction: Option<Written<Rational>>,
+        nearest: Option<Written<bool>>,
         scan_x: Option<String>,
         scan_y: Option<String>,
         intervals: Option<String>,
@@ -148,9 +149,14 @@ impl Verdict {
             Err(error) if error.kind() == Reason::Input => None,
             found => found?,
         };
-        let (friction, orbit, labels) = (friction.as_ref(), orbit.as_ref(), scene.labels());
-        let beside =
-            report::Beside { unit: scene.time_unit(), friction, orbit, labels, ..report::Beside::default() };
+        let nearest = input.nearest.as_ref().map(|_| {
+            let width = input.width.as_ref().ok_or_else(|| missing("input.width"))?;
+            scene.nearest_unstable(crate::number::rational::to_f64(width), &limits)
+        });
+        let nearest = nearest.transpose()?;
+        let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
+        let (unit, labels) = (scene.time_unit(), scene.labels());
+        let beside = report::Beside { unit, friction, orbit, labels, nearest, ..report::Beside::default() };
         let again = report::document(&analysis, &beside).value();
         if analysis.measured.is_some() {
             return self.outcome(

@@ -6,18 +6,16 @@ use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Finding, Findings, Group, Pair, Row, Scheme, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::report::figure::palette::{COEXISTENCE, Colour, GREY, HYPERBOLIC, INK, PARABOLIC};
-use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke, Tick};
+use crate::report::figure::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
+use crate::report::figure::{
+    Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick,
+};
 use crate::system::levels::Growing;
+
+use super::words::{nearest, percent, told};
 
 /// Half the height of a row.
 const HALF: f64 = 0.34;
-
-/// Safe, caution, unstable: from light to dark, so that grey print tells them apart; hatching tells them too.
-const SAFE: Colour = Colour(0xcf, 0xec, 0xdf);
-const CAUTION: Colour = Colour(0xf3, 0xb4, 0x7a);
-const UNSTABLE: Colour = HYPERBOLIC;
-const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
 
 /// Groups of a molecule's modes are drawn up to this many.
 const MOST_ROWS: usize = 8;
@@ -32,22 +30,6 @@ impl Band {
     fn outline(&self) -> Vec<[f64; 2]> {
         let ([a, b], [lo, hi]) = (self.at, [self.row - HALF, self.row + HALF]);
         vec![[a, lo], [b, lo], [b, hi], [a, hi]]
-    }
-
-    /// Strokes rising (or falling) across, `pitch` apart.
-    fn hatch(&self, pitch: f64, falls: bool) -> Vec<Vec<[f64; 2]>> {
-        let [a, b] = self.at;
-        let (lean, count) = (1.6 * pitch, ((b - a) / pitch).ceil() as usize + 2);
-        let line = |k: usize| {
-            let x = a - lean + k as f64 * pitch;
-            // Cut at both ends of the stretch.
-            let [p, q] = [(a - x) / lean, (b - x) / lean].map(|t| t.clamp(0.0, 1.0));
-            let at = |t: f64| {
-                [x + t * lean, self.row + (if falls { 1.0 - 2.0 * t } else { 2.0 * t - 1.0 }) * HALF]
-            };
-            (p < q).then(|| vec![at(p), at(q)])
-        };
-        (0..count.min(400)).filter_map(line).collect()
     }
 }
 
@@ -106,7 +88,16 @@ pub fn figure(advice: &Advice, title: &str) -> Figure {
     let ends = advice.schemes.iter().flat_map(|answer| &answer.rows).filter_map(|row| row.first.as_ref());
     let right = ends.map(|of| of.upper.unwrap_or(of.lower).1).fold(0.0, f64::max);
     let near = "two modes may resonate (first order)";
-    draw(&blocks(&advice.schemes, |answer| &answer.scheme, of), right, (title, near))
+    let foot = advice.modes.iter().fold(Foot::default(), |foot, mode| foot.words(&told(mode)));
+    let foot = within(foot, &advice.band, advice.friction.as_ref());
+    draw(&blocks(&advice.schemes, |answer| &answer.scheme, of), right, (title, near)).footed(&foot)
+}
+
+/// How far all periods may be off, and the friction.
+fn within(foot: Foot, band: &Rational, friction: Option<&Rational>) -> Foot {
+    let foot = foot.words(&format!("all periods within {}", percent(band)));
+    let per_ps = |rate: &Rational| decimal(&(rate * Rational::from_integer(1000.into())));
+    friction.map_or(foot.clone(), |rate| foot.words(&format!("friction {}/ps", per_ps(rate))))
 }
 
 /// Safe up to T/3, caution up to the band's edge, the unstable intervals over what is not advised.
@@ -142,7 +133,10 @@ pub fn figure_of_molecule(findings: &Findings, title: &str) -> Figure {
         |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));
     let right = findings.schemes.iter().filter_map(far).fold(0.0, f64::max);
     let near = "half a turn of these modes alone";
-    draw(&blocks(&findings.schemes, |own| &own.scheme, of), right, (title, near))
+    let group = |foot: Foot, own: &Group| foot.words(&format!("{} {} fs", own.atoms, nearest(own.period, 4)));
+    let foot = findings.groups.iter().take(MOST_ROWS).fold(Foot::default(), group);
+    let foot = within(foot, &findings.band, findings.friction.as_ref());
+    draw(&blocks(&findings.schemes, |own| &own.scheme, of), right, (title, near)).footed(&foot)
 }
 
 /// The whole first; below it where each group alone has turned half way round in an outer step.
@@ -201,7 +195,7 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
     let only = if let [block] = blocks { format!(", steps {}", block.ratio) } else { String::new() };
     let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
     let panel = Panel::new(x, Axis::linear("", -0.6, rows as f64 - 0.4).ticks(ticks));
-    let panel = notes.into_iter().fold(layers.on(panel, right / 90.0, near), Panel::note);
+    let panel = notes.into_iter().fold(layers.on(panel, near), Panel::note);
     Figure::new(150.0, 54.0 + 11.0 * rows as f64).named(title).with(panel.legend(Place::Above))
 }
 
@@ -242,41 +236,25 @@ impl Layers {
         self.near.extend(line.near.filter(|&at| at < right).map(|at| [at, row]));
     }
 
-    fn on(self, panel: Panel, pitch: f64, near: &str) -> Panel {
-        let areas =
-            |bands: &[Band], colour| Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
-        let hatch = |bands: &[Band], pitch, falls| {
-            bands.iter().flat_map(|band| band.hatch(pitch, falls)).collect::<Vec<_>>()
-        };
-        let panel = panel
-            .with(areas(&self.safe, SAFE).labelled("proven stable, all periods in the band"))
-            .with(
-                areas(&self.caution, CAUTION)
-                    .labelled("the same, beyond *T*/3: published drift (rising strokes)"),
-            )
-            .with(Layer::lines(hatch(&self.caution, pitch, false), Stroke::THIN))
-            .with(
-                Layer::lines(hatch(&self.beyond, 1.5 * pitch, true), Stroke::THIN.in_colour(GREY))
-                    .labelled("not to be recommended (falling strokes)"),
-            );
-        let panel = match self.sampled.is_empty() {
-            true => panel,
-            false => panel
-                .with(
-                    areas(&self.sampled, SAMPLED)
-                        .labelled("growing at every step sampled (grey, falling strokes)"),
-                )
-                .with(Layer::lines(hatch(&self.sampled, pitch, true), Stroke::THIN)),
-        };
-        let panel = panel
-            .with(areas(&self.unstable, UNSTABLE).labelled("unstable, proven"))
-            .with(Layer::lines(self.chosen, Stroke::LINE));
-        let panel = match self.near.is_empty() {
-            true => panel,
-            false => panel.with(Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC).labelled(near)),
-        };
-        panel.with(
-            Layer::lines(self.recommended, Stroke::DASHED.in_colour(COEXISTENCE)).labelled("recommended"),
-        )
+    /// Every kind has a hatch of its own, for those who see no colours.
+    fn on(self, panel: Panel, near: &str) -> Panel {
+        let kinds = [
+            (&self.safe, SAFE, None, "proven stable, all periods in the band"),
+            (&self.caution, CAUTION, Some(Hatch::Rising), "the same, beyond *T*/3: published drift"),
+            (&self.beyond, WHITE, Some(Hatch::Falling), "not to be recommended"),
+            (&self.sampled, SAMPLED, Some(Hatch::Crossed), "growing at every step sampled"),
+            (&self.unstable, UNSTABLE, None, "unstable, proven"),
+        ];
+        let mut panel = panel;
+        for (bands, colour, hatch, name) in kinds.into_iter().filter(|(bands, ..)| !bands.is_empty()) {
+            let layer = Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
+            panel = panel.with(layer.hatched(hatch).labelled(name));
+        }
+        panel = panel.with(Layer::lines(self.chosen, Stroke::LINE));
+        if !self.near.is_empty() {
+            panel = panel.with(Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC).labelled(near));
+        }
+        let recommended = Layer::lines(self.recommended, Stroke::DASHED.wide(1.0));
+        panel.with(recommended.labelled("recommended"))
     }
 }

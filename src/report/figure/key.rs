@@ -115,9 +115,10 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
             let size = if *shape == Shape::Disc { size.max(2.5) } else { *size };
             Some(Layer::dots(vec![[0.5, 0.5]], *shape, size, *colour))
         }
-        Mark::Area { colour, opacity, .. } => swatch(*colour, *opacity),
+        Mark::Area { colour, opacity, .. } => swatch(*colour, *opacity).map(|own| own.hatched(layer.hatch)),
         Mark::Cells(cells) => {
-            cells.colours.get(cells.colours.len() / 2).and_then(|colour| swatch(*colour, 1.0))
+            let colour = cells.colours.get(cells.colours.len() / 2);
+            colour.and_then(|colour| swatch(*colour, 1.0)).map(|own| own.hatched(layer.hatch))
         }
         Mark::Picture(_) => None,
     };

@@ -70,6 +70,43 @@ pub enum Shape {
     Cross,
 }
 
+/// Strokes over what is filled, for those who see no colours. They run across the page, whatever the axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Hatch {
+    /// From the lower left to the upper right.
+    Rising,
+    /// From the upper left to the lower right.
+    Falling,
+    /// Horizontal.
+    Level,
+    /// Vertical.
+    Upright,
+    /// Rising and falling.
+    Crossed,
+    /// Horizontal and vertical.
+    Chequered,
+    /// Rising, twice as dense.
+    Dense,
+}
+
+impl Hatch {
+    /// A pattern of its own for each of eight families that have no order; the first is plain.
+    pub fn of_family(index: usize) -> Option<Hatch> {
+        // Along rows and columns of cells run dark strokes only: light ones would make thin rows vanish.
+        const CHOSEN: [Option<Hatch>; 8] = [
+            None,
+            Some(Hatch::Rising),
+            Some(Hatch::Falling),
+            Some(Hatch::Crossed),
+            Some(Hatch::Upright),
+            Some(Hatch::Level),
+            Some(Hatch::Dense),
+            Some(Hatch::Chequered),
+        ];
+        CHOSEN[index % CHOSEN.len()]
+    }
+}
+
 /// A layer's content, in data units.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
@@ -85,6 +122,7 @@ pub(super) enum Mark {
 pub struct Layer {
     pub(super) mark: Mark,
     pub(super) label: Option<String>,
+    pub(super) hatch: Option<Hatch>,
 }
 
 impl Layer {
@@ -122,6 +160,13 @@ impl Layer {
         self
     }
 
+    /// The same areas or cells with strokes over them, white on what is dark and dark on what is light.
+    #[must_use]
+    pub fn hatched(mut self, hatch: Option<Hatch>) -> Self {
+        self.hatch = hatch;
+        self
+    }
+
     /// The same layer with an entry in the legend.
     #[must_use]
     pub fn labelled(mut self, label: &str) -> Self {
@@ -132,7 +177,7 @@ impl Layer {
 
 impl From<Mark> for Layer {
     fn from(mark: Mark) -> Self {
-        Layer { mark, label: None }
+        Layer { mark, label: None, hatch: None }
     }
 }
 

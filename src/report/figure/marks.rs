@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::canvas::{Canvas, Element, Image, Path, Pen};
 use super::clip::{self, Rect};
-use super::layer::{Cells, Layer, Mark, Picture, Run, Shape, Stroke};
+use super::hatch;
+use super::layer::{Cells, Hatch, Layer, Mark, Picture, Run, Shape, Stroke};
 use super::measure::Plane;
 use super::palette::{Colour, WHITE};
 
@@ -22,15 +23,23 @@ pub(super) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
         }
         Mark::Dots { points, shape, size, colour } => dots(canvas, plane, points, (*shape, *size, *colour)),
         Mark::Area { outlines, colour, opacity } => {
+            let kept = |outline: &Vec<_>| clip::polygon(plane.frame, outline.iter().map(|&p| plane.place(p)));
+            let kept: Vec<Vec<[f64; 2]>> = outlines.iter().map(kept).collect();
             let mut path = Path::default();
-            for outline in outlines {
-                let kept = clip::polygon(plane.frame, outline.iter().map(|&p| plane.place(p)));
-                put_outline(&mut path, &kept);
-            }
+            kept.iter().for_each(|outline| put_outline(&mut path, outline));
             canvas.fill(path, *colour, Some(*opacity));
+            hatched(canvas, layer.hatch, &kept, *colour);
         }
-        Mark::Cells(grid) => cells(canvas, plane, grid),
+        Mark::Cells(grid) => cells(canvas, plane, grid, layer.hatch),
         Mark::Picture(pixels) => picture(canvas, plane, pixels),
+    }
+}
+
+/// Strokes over what is filled.
+fn hatched(canvas: &mut Canvas, hatch: Option<Hatch>, outlines: &[Vec<[f64; 2]>], colour: Colour) {
+    if let Some(hatch) = hatch {
+        let strokes = hatch.over(outlines.iter().map(Vec::as_slice));
+        canvas.stroke(strokes, Pen::new(colour.opposite(), hatch::WIDTH));
     }
 }
 
@@ -95,7 +104,7 @@ fn put_outline(path: &mut Path, outline: &[[f64; 2]]) {
 /// Each colour over all cells of it and of later colours, in one outline: then nothing but the colour below can show where two
 /// cells meet, however the page is rasterized. Growth falls from the middle of a tongue to its edges, so that this is no more
 /// than a rectangle a colour and column either.
-fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells) {
+fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells, hatch: Option<Hatch>) {
     let single = |run: &Run| {
         let (run, wide) = (*run, run.across);
         (0..wide * run.up).map(move |n| (run.i + n % wide, run.j + n / wide, run.class))
@@ -106,13 +115,16 @@ fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells) {
     classes.sort_unstable();
     classes.dedup();
     for class in classes {
+        let runs = rectangles(all.iter().filter(|cell| cell.2 >= class).map(|&(i, j, _)| (i, j)));
+        let places: Vec<Rect> = runs.iter().filter_map(|run| rectangle(plane, cells, run)).collect();
         let mut path = Path::default();
-        for run in rectangles(all.iter().filter(|cell| cell.2 >= class).map(|&(i, j, _)| (i, j))) {
-            if let Some(place) = rectangle(plane, cells, &run) {
-                path.rectangle(place);
-            }
-        }
-        canvas.fill(path, cells.colours[usize::from(class)], None);
+        places.iter().for_each(|&place| path.rectangle(place));
+        let colour = cells.colours[usize::from(class)];
+        canvas.fill(path, colour, None);
+        let corners = |&[left, top, right, bottom]: &Rect| {
+            vec![[left, top], [right, top], [right, bottom], [left, bottom]]
+        };
+        hatched(canvas, hatch, &places.iter().map(corners).collect::<Vec<_>>(), colour);
     }
 }
 

@@ -27,7 +27,9 @@
 //! | `draw` | a panel onto the canvas |
 //! | `key` | legends and colour bars onto the canvas |
 //! | `marks` | layers onto the canvas |
+//! | `hatch` | strokes over areas |
 //! | `clip` | what lies in the frame |
+//! | `foot` | what stands below: the parameters |
 //! | `font`, `label` | glyphs, and words made of them |
 //! | `canvas` | paths, rectangles, pictures, words: what every format draws |
 //! | `outline` | its lines and curves, for formats that draw by themselves |
@@ -42,6 +44,8 @@ mod clip;
 mod draw;
 mod embed;
 mod font;
+mod foot;
+mod hatch;
 mod key;
 mod label;
 mod layer;
@@ -58,7 +62,8 @@ mod svg;
 
 pub use axis::{Axis, Scale, Tick};
 pub use canvas::Anchor;
-pub use layer::{Cells, Dash, Layer, Picture, Shape, Stroke};
+pub use foot::Foot;
+pub use layer::{Cells, Dash, Hatch, Layer, Picture, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
 use crate::error::{Error, Result};
@@ -147,10 +152,10 @@ impl Figure {
         self.named(&Label::new(heading).words)
     }
 
-    /// The same figure with small words below all panels, in the notation of labels: what it was made from.
+    /// The same figure with small words below all panels: what it was made from.
     #[must_use]
-    pub fn footed(mut self, foot: &str) -> Self {
-        self.foot = foot.into();
+    pub fn footed(mut self, foot: &Foot) -> Self {
+        self.foot = foot.to_string();
         self
     }
 
@@ -177,6 +182,30 @@ impl Figure {
     #[must_use]
     pub fn with(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
+        self
+    }
+
+    /// How wide and high the frame of each panel is, in points: for words that need to know.
+    pub fn frames(&self) -> Vec<[f64; 2]> {
+        let (_, sites) = self.sites();
+        let size = |[left, top, right, bottom]: [f64; 4]| [right - left, bottom - top];
+        sites.into_iter().map(|site| size(site.frame)).collect()
+    }
+
+    /// The panels with their units, and their places.
+    fn sites(&self) -> (Vec<Panel>, Vec<layout::Site>) {
+        let columns = self.columns.min(self.panels.len()).max(1);
+        let panels: Vec<Panel> = self.panels.iter().map(|panel| panel.in_units_of(&self.time_unit)).collect();
+        let sites = layout::sites(&panels, columns, self.width_mm * canvas::MM, self.height_mm * canvas::MM);
+        (panels, sites)
+    }
+
+    /// The same figure with these notes in its panels, in their order.
+    #[must_use]
+    pub fn noted(mut self, notes: Vec<Vec<Note>>) -> Self {
+        for (panel, notes) in self.panels.iter_mut().zip(notes) {
+            panel.notes.extend(notes);
+        }
         self
     }
 
@@ -216,9 +245,7 @@ impl Figure {
 
     fn drawn(&self) -> Canvas {
         let (width, height) = (self.width_mm * canvas::MM, self.height_mm * canvas::MM);
-        let columns = self.columns.min(self.panels.len()).max(1);
-        let panels: Vec<Panel> = self.panels.iter().map(|panel| panel.in_units_of(&self.time_unit)).collect();
-        let sites = layout::sites(&panels, columns, width, height);
+        let (panels, sites) = self.sites();
         let left = sites.first().map_or(layout::RIM, |site| site.frame[0]);
         let lines =
             |markup: &str, face, size: f64| wrapped(markup, face, (width - left - layout::RIM) / size);

@@ -22,12 +22,28 @@ pub const HYPERBOLIC: Colour = Colour(0x27, 0x3c, 0x75);
 pub const PARABOLIC: Colour = Colour(0xd9, 0x5f, 0x02);
 pub const COEXISTENCE: Colour = Colour(0x1b, 0xb0, 0x8a);
 
+/// What advice says of steps: safe, with caution, growing where it was sampled, unstable. From light to dark, so that grey
+/// print tells them apart.
+pub const SAFE: Colour = Colour(0xcf, 0xec, 0xdf);
+pub const CAUTION: Colour = Colour(0xf3, 0xb4, 0x7a);
+pub const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
+pub const UNSTABLE: Colour = HYPERBOLIC;
+
 impl Colour {
     /// A third of the way to white.
     #[must_use]
     pub const fn lighter(self) -> Colour {
         let Colour(r, g, b) = self;
         Colour(r - r / 3 + 85, g - g / 3 + 85, b - b / 3 + 85)
+    }
+
+    /// What is seen on it: white on what is dark, ink on what is light.
+    #[must_use]
+    pub fn opposite(self) -> Colour {
+        let Colour(r, g, b) = self;
+        // About as light as it looks (ITU-R BT.601, on encoded values); no finer measure is needed to choose one of two.
+        let light = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+        if light > 140.0 { INK } else { WHITE }
     }
 }
 
@@ -80,21 +96,28 @@ impl Gradient {
     }
 }
 
+/// Hue and lightness step differently, so that neighbours differ in both.
+pub(crate) const FAMILIES: [Lch; 8] = [
+    [0.40, 0.17, 0.715],
+    [0.68, 0.17, 0.13],
+    [0.56, 0.13, 0.45],
+    [0.47, 0.19, 0.03],
+    [0.76, 0.11, 0.64],
+    [0.85, 0.16, 0.26],
+    [0.29, 0.13, 0.86],
+    [0.62, 0.03, 0.75],
+];
+
 /// Eight colours for families that have no order, distinct in lightness as well as in hue; they repeat after that.
 pub fn family(index: usize) -> Colour {
-    // Hue and lightness step differently, so that neighbours differ in both.
-    const CHOSEN: [Lch; 8] = [
-        [0.40, 0.17, 0.715],
-        [0.68, 0.17, 0.13],
-        [0.56, 0.13, 0.45],
-        [0.47, 0.19, 0.03],
-        [0.76, 0.11, 0.64],
-        [0.85, 0.16, 0.26],
-        [0.29, 0.13, 0.86],
-        [0.62, 0.03, 0.75],
-    ];
-    let [lightness, chroma, hue] = CHOSEN[index % CHOSEN.len()];
+    let [lightness, chroma, hue] = FAMILIES[index % FAMILIES.len()];
     from_lch(lightness, chroma, hue)
+}
+
+/// The same hues for lines behind their families: paler, and all about as light as each other.
+pub fn behind(index: usize) -> Colour {
+    let [lightness, chroma, hue] = FAMILIES[index % FAMILIES.len()];
+    from_lch(0.62 + 0.15 * lightness, 0.6 * chroma, hue)
 }
 
 /// The sRGB colour of given OKLab lightness, chroma and hue; a chroma that no screen has is reduced to one it has.
@@ -160,6 +183,17 @@ mod tests {
         let contrast = |colour| 1.05 / (luminance(colour) + 0.05);
         assert!(contrast(Gradient::on_white().at(0.0)) > 1.7);
         assert!((0..8).all(|i| contrast(family(i)) > 1.5));
+        // Thin lines need more.
+        assert!((0..8).all(|i| contrast(behind(i)) > 2.0));
+    }
+
+    #[test]
+    fn strokes_are_seen_on_every_family() {
+        let contrast = |a: f64, b: f64| (a.max(b) + 0.05) / (a.min(b) + 0.05);
+        for colour in (0..8).map(family).chain([SAFE, CAUTION, SAMPLED, UNSTABLE]) {
+            let seen = contrast(luminance(colour), luminance(colour.opposite()));
+            assert!(seen > 3.0, "{colour}: {seen}");
+        }
     }
 
     #[test]

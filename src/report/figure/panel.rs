@@ -99,6 +99,16 @@ impl Note {
         Note { at, text: text.into(), anchor: Anchor::Start, shift: [3.0, 0.0], turn: 0.0, colour: INK }
     }
 
+    /// The letters alone.
+    pub fn words(&self) -> String {
+        Label::new(&self.text).words
+    }
+
+    /// Whether the words stand upright.
+    pub fn is_turned(&self) -> bool {
+        self.turn != 0.0
+    }
+
     /// How wide the words are, in points.
     pub fn width(&self) -> f64 {
         NUMBER * Label::new(&self.text).width

@@ -38,6 +38,21 @@ const WIDTH: f64 = 0.55;
 const ACROSS: f64 = 320.0;
 /// A line in the legend, wide enough to show its colour.
 const SAMPLE: f64 = 2.0;
+/// What tells the families without colours, on the middle of each segment that is longer than so many points; the strongest
+/// family is the one without.
+const SHAPES: [Option<Shape>; FAMILIES] = [
+    None,
+    Some(Shape::Triangle),
+    Some(Shape::Square),
+    Some(Shape::Diamond),
+    Some(Shape::Cross),
+    Some(Shape::Ring),
+    Some(Shape::Disc),
+];
+const MARKED: f64 = 1.6;
+const MARK: f64 = 2.0;
+/// The same in the legend.
+const SAMPLED: f64 = 4.0;
 /// Curves, behind the tongues.
 const PALE: Colour = Colour(0xc2, 0xc5, 0xcc);
 
@@ -50,19 +65,24 @@ impl Atlas<'_> {
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
         // Each curve in a pale shade of its family's hue: the pattern of the line tells the family, too.
         let place = |a| own.iter().position(|&own| own == rank(a));
-        let mut panel = self.panel(|a| place(a).map_or(PALE, |n| palette::family(n).lighter()));
+        let mut panel = self.panel(|a| place(a).map_or(PALE, palette::behind));
         for (n, &own) in own.iter().enumerate() {
-            panel = entry(panel, palette::family(n), &family_name(own));
+            panel = entry(panel, palette::family(n), SHAPES[n], &family_name(own));
         }
         // The weak ones first: the strong ones lie on top.
         if let Some(&first) = others.first() {
             let rest: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) >= first).collect();
             let grey = palette::family(FAMILIES);
-            panel = self.put(entry(panel, grey, "others"), &rest, grey);
+            panel = self.put(entry(panel, grey, None, "others"), &rest, grey);
         }
         for (n, &own) in own.iter().enumerate().rev() {
             let family: Vec<&Segment> = self.open().filter(|segment| rank(segment.a) == own).collect();
             panel = self.put(panel, &family, palette::family(n));
+            if let Some(shape) = SHAPES[n] {
+                let long = family.iter().filter(|segment| self.length(segment) > MARKED);
+                let middles = long.map(|segment| middle(segment)).collect();
+                panel = panel.with(Layer::dots(middles, shape, MARK, palette::family(n)));
+            }
         }
         self.finish(panel, 135.0)
     }
@@ -101,8 +121,7 @@ impl Atlas<'_> {
 
     fn put(&self, mut panel: Panel, segments: &[&Segment], colour: Colour) -> Panel {
         let (dots, lines): (Vec<&Segment>, Vec<&Segment>) = segments.iter().partition(|s| self.is_short(s));
-        let points =
-            dots.into_iter().map(|s| [0, 1].map(|i| 0.5 * (s.from[i] + s.to[i]))).collect::<Vec<_>>();
+        let points = dots.into_iter().map(middle).collect::<Vec<_>>();
         let lines = lines.into_iter().map(|s| vec![s.from, s.to]).collect::<Vec<_>>();
         if points.is_empty() && lines.is_empty() {
             return panel;
@@ -112,8 +131,13 @@ impl Atlas<'_> {
     }
 
     fn is_short(&self, segment: &Segment) -> bool {
+        self.length(segment) < WIDTH
+    }
+
+    /// On paper, in points, about.
+    fn length(&self, segment: &Segment) -> f64 {
         let share = |i: usize, (lo, hi): (f64, f64)| (segment.to[i] - segment.from[i]) / (hi - lo);
-        share(0, self.window.h1).hypot(share(1, self.window.h2)) * ACROSS < WIDTH
+        share(0, self.window.h1).hypot(share(1, self.window.h2)) * ACROSS
     }
 
     fn finish(&self, mut panel: Panel, wide: f64) -> Figure {
@@ -128,6 +152,15 @@ impl Atlas<'_> {
 }
 
 /// A legend's entry alone, so that entries stand in the order of families and tongues in that of strength.
-fn entry(panel: Panel, colour: Colour, label: &str) -> Panel {
-    panel.with(Layer::lines(Vec::new(), Stroke::LINE.in_colour(colour).wide(SAMPLE)).labelled(label))
+fn entry(panel: Panel, colour: Colour, shape: Option<Shape>, label: &str) -> Panel {
+    let line = Layer::lines(
+        Vec::new(),
+        Stroke::LINE.in_colour(colour).wide(if shape.is_some() { WIDTH } else { SAMPLE }),
+    );
+    let line = shape.map_or(line.clone(), |shape| line.marked(shape, SAMPLED));
+    panel.with(line.labelled(label))
+}
+
+fn middle(segment: &Segment) -> [f64; 2] {
+    [0, 1].map(|i| 0.5 * (segment.from[i] + segment.to[i]))
 }

@@ -4,7 +4,9 @@ use super::lines::{lines_in, stroke};
 use super::raster::Raster;
 use crate::map::{Band, Enclosure, Grid, Products};
 use crate::report::figure::palette::{self, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, PARABOLIC};
-use crate::report::figure::{Anchor, Axis, Cells, ColourBar, Figure, Layer, Note, Panel, Place, Shape};
+use crate::report::figure::{
+    Anchor, Axis, Cells, ColourBar, Figure, Hatch, Layer, Note, Panel, Place, Shape,
+};
 use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;
@@ -166,19 +168,20 @@ impl Chart {
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
-        for (n, &rank) in own.iter().enumerate() {
+        // A family is told by its hatch, too: without colours, and by eyes that see few.
+        let layer = |n: usize, belongs: &dyn Fn(f64) -> bool| {
             let mut cells = cells(&self.growing, steps, vec![palette::family(n)]);
-            let of_rank_n = self.growing.filled().filter(|(_, _, strength)| -strength == rank);
-            of_rank_n.for_each(|(k, l, _)| cells.push(k, l, 0));
-            panel = panel.with(Layer::cells(cells).labelled(&family_name(rank)));
+            let found = self.growing.filled().filter(|(_, _, strength)| belongs(-strength));
+            found.for_each(|(k, l, _)| cells.push(k, l, 0));
+            Layer::cells(cells).hatched(Hatch::of_family(n))
+        };
+        for (n, &rank) in own.iter().enumerate() {
+            panel = panel.with(layer(n, &|own| own == rank).labelled(&family_name(rank)));
         }
-        if let Some(&first) = others.first() {
-            let mut cells = cells(&self.growing, steps, vec![palette::family(FAMILIES)]);
-            let rest = self.growing.filled().filter(|(_, _, strength)| -strength >= first);
-            rest.for_each(|(k, l, _)| cells.push(k, l, 0));
-            panel = panel.with(Layer::cells(cells).labelled("others"));
+        match others.first() {
+            Some(&first) => panel.with(layer(FAMILIES, &|own| own >= first).labelled("others")),
+            None => panel,
         }
-        panel
     }
 }
 
@@ -213,7 +216,9 @@ pub(super) fn axis(label: &str, (lo, hi): (f64, f64)) -> Axis {
 pub(super) fn labels(mut panel: Panel, curves: &[Curve], window: &Window) -> Panel {
     let share = |(lo, hi): (f64, f64), x: f64| (x - lo) / (hi - lo);
     for curve in curves.iter().filter(|curve| stroke(curve.a) == stroke(0)) {
-        let roomy = |h1: f64, h2: f64| share(window.h1, h1) > 0.06 && share(window.h2, h2) < 0.94;
+        // Room for the letters: the right rim and the top are not to cut them.
+        let roomy =
+            |h1: f64, h2: f64| (0.06..0.9).contains(&share(window.h1, h1)) && share(window.h2, h2) < 0.94;
         let mut points = curve.pieces.iter().flatten();
         if let Some(point) = points.find(|point| roomy(point.h1, point.h2)) {
             let text = format!("({}, {})", curve.a, curve.b).replace('-', "−");

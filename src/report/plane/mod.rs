@@ -10,7 +10,7 @@ pub use chart::{Chart, Colouring, window};
 use lines::{lines, lines_in};
 
 use super::figure::palette::{Colour, GREY};
-use super::figure::{Axis, Cells, Figure, Layer, Panel, typeset};
+use super::figure::{Axis, Cells, Figure, Foot, Layer, Panel};
 use crate::number::Laurent;
 use crate::resonance::{Curve, Window};
 
@@ -34,18 +34,17 @@ pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &st
     Figure::double_column(110.0).named(title).with(left).with(right)
 }
 
-/// What a grid's figure is made from, in the notation of labels: stiffnesses, ranges, spacings.
+/// What a grid's figure is made from: stiffnesses, ranges, spacings.
 pub fn parameters(
     (lambda1, lambda2): (&Laurent, &Laurent),
     ranges: &[(Laurent, Laurent); 2],
     steps: &[Laurent; 2],
-) -> String {
-    let of_clock = |n: usize, stiffness| {
+) -> Foot {
+    let of_clock = |foot: Foot, (n, stiffness): (usize, _)| {
         let ((lo, hi), step) = (&ranges[n - 1], &steps[n - 1]);
-        let [stiffness, lo, hi, step] = [stiffness, lo, hi, step].map(typeset);
-        format!("*λ*_{n} = {stiffness}, *h*_{n} from {lo} to {hi} by {step}")
+        foot.value(&format!("*Λ*_{n}"), stiffness).grid(&format!("*h*_{n}"), [lo, hi, step])
     };
-    [of_clock(1, lambda1), of_clock(2, lambda2)].join("; ")
+    [(1, lambda1), (2, lambda2)].into_iter().fold(Foot::default(), of_clock)
 }
 
 /// The curves over the unstable pairs.

@@ -2,8 +2,10 @@
 
 use serde_json::{Value, json};
 
+use super::nearest;
 use crate::report::friction;
 use crate::system::friction::Friction;
+use crate::system::nearest::Nearest;
 use crate::system::{Analysis, Instability, OwnOrbit};
 
 /// What is known beside the verdict at the equilibrium and without friction.
@@ -17,6 +19,8 @@ pub struct Beside<'a> {
     pub is_orbit_missing: bool,
     /// What each degree of freedom is called.
     pub labels: Option<&'a [String]>,
+    /// The unstable outer steps next to this one, where they were asked for.
+    pub nearest: Option<&'a Nearest>,
 }
 
 /// The degrees of freedom told of a growing mode: those that move most.
@@ -43,6 +47,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         ("friction", own.friction.map(friction::value)),
         ("own_orbit", orbit),
         ("moving", own.labels.as_ref().map(moving)),
+        ("nearest_unstable", own.nearest.map(nearest::value)),
     ];
     all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }

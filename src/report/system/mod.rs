@@ -8,6 +8,7 @@ mod map;
 mod measured;
 #[cfg(feature = "figure")]
 mod modes;
+mod nearest;
 
 use serde_json::{Value, json};
 
@@ -148,6 +149,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     lines.extend(beside::lines(beside, analysis));
     lines
         .extend(analysis.measured.iter().flat_map(|own| measured::lines(own, analysis.is_stable(), &suffix)));
+    lines.extend(beside.nearest.iter().flat_map(|own| nearest::lines(own, &suffix)));
     lines.extend(analysis.warnings.iter().map(|warning| format!("  warning: {warning}")));
     lines
 }

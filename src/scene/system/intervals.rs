@@ -13,10 +13,11 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::nearest::Nearest;
 use crate::system::stretches::Stretch;
 use crate::system::stretches::{cover, merged};
 use crate::system::vary::{Intervals, verdict_between};
-use crate::system::{Holds, Limits, Potential, Route, System};
+use crate::system::{Analysis, Holds, Limits, Potential, Route, System};
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,23 +107,15 @@ impl SystemScene {
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
     /// [`cover`] and [`verdict_between`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
-        let refused = |what: &str, remedy: &str| Err(Error::input("intervals", what, remedy));
-        if self.friction.is_some() {
-            return refused("with friction", "take the friction out of the file");
-        }
-        if !self.is_linear() || self.oscillator.is_some() {
-            return refused("of this file", "are for linear systems of rational numbers");
-        }
-        limits.allow(self.cost(), || format!("a verdict on {} degrees of freedom", self.size()))?;
+        self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
+        if role == Role::Outer && span.lo <= Rational::default() {
+            return Err(Error::input("intervals", span, "steps are positive"));
+        }
         let levels = self.measured.as_ref().filter(|own| own.is_of_two_levels());
         let is_scale = span.path.ends_with(".scale");
         let (inner_steps, stretches) = match (role, levels) {
-            (Role::Outer, Some(own)) => {
-                let (inner_steps, stretches) = own.stretches(span.ends(), width)?;
-                (Some(inner_steps), stretches)
-            }
-            (Role::Outer, None) => (None, self.at_fixed_ratio(span, width)?),
+            (Role::Outer, _) => self.outer_stretches(span.ends(), width)?,
             (Role::Step, _) => (None, self.multiples(span, limits)?),
             (Role::Linear, Some(own)) if is_scale => {
                 let (level, factor) = own.scaled_at(&span.path)?;
@@ -158,16 +151,57 @@ impl SystemScene {
             return own.growth_rates(values);
         }
         let rate = |&value: &f64| {
-            let scene = match role {
-                Role::Outer => {
-                    let factor = exact(value) / self.outer_step();
-                    SystemScene::linear(self.source.clone(), String::new(), self.slowed(&factor)?)
+            let analysis = match role {
+                Role::Outer => self.decide_at(&exact(value), limits)?,
+                _ => {
+                    self.with("intervals", &[(&span.path, &exact(value))])?.decide(Route::Cheapest, limits)?
                 }
-                _ => self.with("intervals", &[(&span.path, &exact(value))])?,
             };
-            Ok(Some(scene.decide(Route::Cheapest, limits)?.growth_rate()))
+            Ok(Some(analysis.growth_rate()))
         };
         crate::parallel::try_map(values, rate)
+    }
+
+    /// The verdict with the outer step `outer` > 0, all steps in the proportions of the file.
+    ///
+    /// # Errors
+    /// As [`SystemScene::decide`].
+    pub fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        if let Some(own) = self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
+            return own.decide_at(outer, limits);
+        }
+        let slowed = self.slowed(&(outer / self.outer_step()))?;
+        SystemScene::linear(self.source.clone(), String::new(), slowed).decide(Route::Cheapest, limits)
+    }
+
+    /// The unstable intervals of the outer step next to the one of the file, all steps in their ratios: between half of it and twice it.
+    ///
+    /// # Errors
+    /// As [`SystemScene::intervals`].
+    pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
+        self.allow_intervals("nearest", limits)?;
+        let step = self.steps().into_iter().max().unwrap_or_default();
+        Nearest::search(to_f64(&step), |range| Ok(self.outer_stretches(range, width)?.1))
+    }
+
+    /// What has no intervals is refused, and what costs too much.
+    fn allow_intervals(&self, field: &str, limits: &Limits) -> Result<()> {
+        let refused = |what: &str, remedy: &str| Err(Error::input(field, what, remedy));
+        if self.friction.is_some() {
+            return refused("with friction", "take the friction out of the file");
+        }
+        if !self.is_linear() || self.oscillator.is_some() {
+            return refused("of this file", "are for linear systems of rational numbers");
+        }
+        limits.allow(self.cost(), || format!("a verdict on {} degrees of freedom", self.size()))
+    }
+
+    /// The verdicts on a range of outer steps, all steps in their ratios, and the inner steps in each where these are two levels.
+    fn outer_stretches(&self, range: (f64, f64), width: f64) -> Result<(Option<u64>, Vec<Stretch>)> {
+        match self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
+            Some(own) => own.stretches(range, width).map(|(inner_steps, found)| (Some(inner_steps), found)),
+            None => Ok((None, self.at_fixed_ratio(range, width)?)),
+        }
     }
 
     fn outer_step(&self) -> Rational {
@@ -182,10 +216,7 @@ impl SystemScene {
     }
 
     /// All steps times t/outer: in the old steps all stiffnesses times its square.
-    fn at_fixed_ratio(&self, span: &Span, width: f64) -> Result<Vec<Stretch>> {
-        if span.lo <= Rational::default() {
-            return Err(Error::input("intervals", span, "steps are positive"));
-        }
+    fn at_fixed_ratio(&self, range: (f64, f64), width: f64) -> Result<Vec<Stretch>> {
         let own = self.outer_step();
         let stiffened = |factor: &Rational| {
             let stiffer =
@@ -195,7 +226,7 @@ impl SystemScene {
                 self.system().potentials().iter().map(stiffer).collect(),
             )
         };
-        cover(span.ends(), width, |lo, hi| {
+        cover(range, width, |lo, hi| {
             let [lo, hi] = [lo, hi].map(|step| {
                 let ratio = exact(step) / &own;
                 &ratio * &ratio

@@ -271,6 +271,17 @@ impl Measured {
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
     }
 
+    /// The verdict at an outer step, as many inner ones as in the file.
+    pub fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))?;
+        let at = Outer::new(to_f64(outer), self.inner_steps())?;
+        Ok(self.kernel()?.decide(&at, outer, self.accuracy))
+    }
+
+    fn inner_steps(&self) -> u64 {
+        self.outer().map_or(1, |(outer, _)| outer.inner_steps())
+    }
+
     /// The products that a verdict costs, roughly.
     pub fn cost(&self) -> u64 {
         (self.size() as u64).saturating_pow(3).saturating_mul(200)
@@ -288,8 +299,7 @@ impl Measured {
 
     /// The growth rate at each outer step, as many inner ones as in the file; `None` where none is told.
     pub fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
-        let (inner_steps, kernel) =
-            (self.outer().map_or(1, |(outer, _)| outer.inner_steps()), self.kernel()?);
+        let (inner_steps, kernel) = (self.inner_steps(), self.kernel()?);
         steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
     }
 

@@ -1,0 +1,49 @@
+//! The unstable outer steps next to that of a verdict, in JSON and in words.
+
+use serde_json::{Value, json};
+
+use crate::report::decimal;
+use crate::report::document::enclosure;
+use crate::system::nearest::{Nearest, Unstable};
+
+/// The entry `nearest_unstable` of a document.
+pub(super) fn value(own: &Nearest) -> Value {
+    let interval = |own: Unstable| json!({"lo": own.proven.0, "hi": own.proven.1, "stable_below": own.within.0, "stable_above": own.within.1});
+    json!({
+        "step": own.number,
+        "searched": enclosure(own.searched),
+        "own": own.own.map(interval),
+        "below": own.below.map(interval),
+        "above": own.above.map(interval),
+        "untold": own.untold.iter().copied().map(enclosure).collect::<Vec<_>>(),
+    })
+}
+
+/// The same for people; `unit` is that of times, after a space.
+pub(super) fn lines(own: &Nearest, unit: &str) -> Vec<String> {
+    let told = |name: &str, found: Option<Unstable>, end: f64| match found {
+        Some(found) => format!("  {name}: {}", interval(found, unit)),
+        None => format!("  {name}: none between {} and {end:.6}{unit}", own.number),
+    };
+    let mut lines = vec!["  unstable outer steps next to this one, all steps in their ratios:".to_string()];
+    if let Some(found) = own.own {
+        lines.push(format!("  this one lies in {}", interval(found, unit)));
+    }
+    lines.push(told("below", own.below, own.searched.0));
+    lines.push(told("above", own.above, own.searched.1));
+    for &(lo, hi) in &own.untold {
+        lines.push(format!("  nothing is proven of {}{unit}", decimal::enclosure(lo, hi)));
+    }
+    lines
+}
+
+/// Its two ends, each between the last step proven one thing and the first proven the other.
+fn interval(own: Unstable, unit: &str) -> String {
+    let lower = own.within.0.map_or(format!("{:.6} or below", own.proven.0), |stable| {
+        decimal::enclosure(stable, own.proven.0).to_string()
+    });
+    let upper = own.within.1.map_or(format!("{:.6} or above", own.proven.1), |stable| {
+        decimal::enclosure(own.proven.1, stable).to_string()
+    });
+    format!("{lower} to {upper}{unit}")
+}
