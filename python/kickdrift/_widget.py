@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from threading import Timer
 from typing import Any
 from urllib.parse import urlencode
 
@@ -16,11 +19,26 @@ from kickdrift._errors import KickdriftError
 #: A page asks for six tiles at once; two more, so that what the pointer asks need not wait for them.
 _AT_ONCE = 8
 
+#: Seconds that a question may take, as the server has it.
+_LONGEST = _native.Page.LONGEST
+
 _FILES = _native.Page.of_springs("1", "1", None, None)
 
 
 def _file(name: str) -> str:
     return _FILES.ask(name, "", _native.Stop())[2].decode()
+
+
+@contextmanager
+def _overdue(act: Callable[[], None]) -> Iterator[None]:
+    """Does `act` once what is within takes longer than a question may."""
+    timer = Timer(_LONGEST, act)
+    timer.daemon = True
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
 
 
 class Explorer(anywidget.AnyWidget):
@@ -44,9 +62,19 @@ class Explorer(anywidget.AnyWidget):
         Raises
         ------
         KickdriftError
-            A question that there is not, a bad parameter, or an answer that costs too much.
+            A question that there is not, a bad parameter, or an answer that costs too much or takes longer than half a
+            minute.
         """
-        status, media, data = self._page.ask(question, urlencode(parameters), _native.Stop())
+        stop, late = _native.Stop(), []
+
+        def end() -> None:
+            late.append(True)
+            stop.set()
+
+        with _overdue(end):
+            status, media, data = self._page.ask(question, urlencode(parameters), stop)
+        if late and status != 200:
+            status, media, data = self._page.overdue(question)
         body: Any = json.loads(data) if media == "application/json" else data
         if status == 200:
             return body
@@ -69,7 +97,18 @@ class Explorer(anywidget.AnyWidget):
         # One that was stopped while it waited is not begun.
         if number not in self._stops:
             return
-        status, media, data = self._page.ask(path, query, stop)
+
+        def late() -> None:
+            # At once, however soon the work ends.
+            self._reply(number, *self._page.overdue(path))
+            stop.set()
+
+        with _overdue(late):
+            status, media, data = self._page.ask(path, query, stop)
+        self._reply(number, status, media, data)
+
+    def _reply(self, number: str, status: int, media: str, data: bytes) -> None:
+        """An answer to a question that has none yet, and was not stopped."""
         if self._stops.pop(number, None) is not None:
             self.send({"id": number, "status": status, "type": media}, [data])
 

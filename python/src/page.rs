@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use kickdrift::error::Result;
-use kickdrift::explore::{self, Session};
+use kickdrift::explore::{self, Reply, Session};
 use kickdrift::number::parse::{parse, parse_range};
 use kickdrift::scene::SystemScene;
 use numpy::PyReadonlyArrayDyn;
@@ -38,6 +38,10 @@ pub struct Page(Session);
 
 #[pymethods]
 impl Page {
+    /// Seconds that a question may take.
+    #[classattr]
+    const LONGEST: f64 = explore::LONGEST.as_secs_f64();
+
     /// The plane of two stiffnesses, the window as texts where one is given.
     #[staticmethod]
     fn of_springs(
@@ -82,11 +86,24 @@ impl Page {
         path: &str,
         query: &str,
         stop: &Stop,
-    ) -> (u16, &'static str, Bound<'py, PyBytes>) {
+    ) -> Answer<'py> {
         let answer = || explore::ask(&self.0, path, query, &stop.0).or_else(|| explore::asset(path));
         match py.detach(answer) {
-            Some(reply) => (reply.status, reply.media, PyBytes::new(py, &reply.bytes)),
+            Some(reply) => shared(py, &reply),
             None => (404, "text/plain; charset=utf-8", PyBytes::new(py, b"there is nothing here")),
         }
     }
+
+    /// The same of what takes longer than `LONGEST`.
+    #[staticmethod]
+    fn overdue<'py>(py: Python<'py>, path: &str) -> Answer<'py> {
+        shared(py, &explore::overdue(path))
+    }
+}
+
+/// Status, type and bytes.
+type Answer<'py> = (u16, &'static str, Bound<'py, PyBytes>);
+
+fn shared<'py>(py: Python<'py>, reply: &Reply) -> Answer<'py> {
+    (reply.status, reply.media, PyBytes::new(py, &reply.bytes))
 }

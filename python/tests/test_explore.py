@@ -7,11 +7,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 import numpy as np
 import pytest
 
 import kickdrift as kd
+from kickdrift import _widget
 
 FIGURE1: dict[str, Any] = {"lambda1": "pi^2", "lambda2": "pi^2/25"}
 
@@ -74,6 +76,24 @@ def test_a_question_that_is_stopped_has_no_answer_and_ends_soon(front: Front) ->
     front.page._workers.shutdown(wait=True)
     assert time.monotonic() - start < 15
     assert front.answers == {}
+
+
+def test_what_takes_too_long_is_cut_off_and_ends(front: Front, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert _widget._LONGEST == 30
+    monkeypatch.setattr(_widget, "_LONGEST", 0.2)
+    # Half a minute for the trace, if nobody ended it.
+    long = {"h1": "1/999999", "h2": "1/999983"}
+    start = time.monotonic()
+    front.say(id="a-1", path="point", query=urlencode(long))
+    content, data = front.answer("a-1")
+    assert content["status"] == 422
+    assert json.loads(data)["too_costly"]["message"] == "this takes longer than half a minute"
+    front.page._workers.shutdown(wait=True)
+    with pytest.raises(kd.KickdriftError, match="longer than half a minute"):
+        front.page.ask("point", **long)
+    assert time.monotonic() - start < 25
+    # One answer to a question.
+    assert list(front.answers) == ["a-1"]
 
 
 def test_closing_ends_all_work(front: Front) -> None:

@@ -25,7 +25,6 @@ macro_rules! scripts {
 
 const FILES: &[(&str, &[u8])] = &[
     page!("index.html"),
-    page!("boot.js"),
     page!("icon.svg"),
     page!("page.css"),
     font!("LibertinusSerif-Regular.otf"),
@@ -36,10 +35,14 @@ const FILES: &[(&str, &[u8])] = &[
 const SCRIPTS: &[(&str, &str)] = scripts!(
     "address.js" "ask.js" "exact.js" "colours.js" "dom.js" "writing.js" "picking.js" "state.js" "grid.js" "view.js" "tiles.js"
     "vectors.js" "axes.js" "map.js" "input.js" "card.js" "plot.js" "drawer.js" "panels.js" "layout.js" "pairs.js" "acts.js"
-    "main.js" "widget.js"
+    "main.js" "boot.js" "widget.js"
 );
 
-/// The file at `path` below the page's address, `explore.js` all scripts as one module; the page itself at the empty path.
+/// Scripts of one host alone.
+const HOSTS: [&str; 2] = ["boot.js", "widget.js"];
+
+/// The file at `path` below the page's address; the page itself at the empty path. All scripts are one module: `page.js` mounts the page
+/// that was served, `explore.js` exports what another host mounts.
 pub fn asset(path: &str) -> Option<Reply> {
     let path = if path.is_empty() { "index.html" } else { path };
     let media = match path.rsplit_once('.')?.1 {
@@ -49,18 +52,39 @@ pub fn asset(path: &str) -> Option<Reply> {
         "otf" => "font/otf",
         _ => "text/javascript; charset=utf-8",
     };
-    if path == "explore.js" {
-        return Some(Reply::new(media, MODULE.as_bytes()));
+    match path {
+        "explore.js" => return Some(Reply::new(media, MODULE.as_bytes())),
+        "page.js" => return Some(Reply::new(media, PAGE.as_bytes())),
+        _ => {}
     }
     FILES.iter().find(|(name, _)| *name == path).map(|&(_, bytes)| Reply::new(media, bytes))
 }
 
-/// All scripts as one module, which a host that has no addresses for files can load, and a browser with a single request:
-/// each becomes a function that returns what it exported, imports take that apart.
+/// The page with what it starts on inside, so that it need not ask for it.
+#[cfg(feature = "explore")]
+pub(super) fn index(begun: &[u8]) -> Reply {
+    const PLACE: &str = "id=\"begun\">";
+    let index = include_str!("page/index.html");
+    let at = index.find(PLACE).expect("a place for it") + PLACE.len();
+    // Data in a script end at the first tag that closes one.
+    let begun = String::from_utf8_lossy(begun).replace('<', "\\u003c");
+    let whole = [&index[..at], &begun, &index[at..]].concat();
+    Reply { bytes: whole.into_bytes().into(), ..asset("").expect("the page") }
+}
+
+/// What a host that has no addresses for files can load.
 static MODULE: LazyLock<String> = LazyLock::new(|| {
-    let scripts: String = SCRIPTS.iter().map(|(name, text)| enclosed(name, text)).collect();
-    format!("{scripts}export const {{ mount }} = $main;\nexport default {{ render: $widget.render }};\n")
+    module("widget.js", "export const { mount } = $main;\nexport default { render: $widget.render };\n")
 });
+
+static PAGE: LazyLock<String> = LazyLock::new(|| module("boot.js", ""));
+
+/// All scripts as one module, which takes a browser a single request: each becomes a function that returns what it exported, imports take
+/// that apart.
+fn module(host: &str, end: &str) -> String {
+    let own = SCRIPTS.iter().filter(|(name, _)| *name == host || !HOSTS.contains(name));
+    own.map(|(name, text)| enclosed(name, text)).chain([end.into()]).collect()
+}
 
 fn enclosed(name: &str, text: &str) -> String {
     let (mut body, mut exports) = (String::new(), Vec::new());
@@ -113,8 +137,29 @@ mod tests {
 
     #[test]
     fn one_module_exports_what_two_hosts_need() {
-        let lines = |word| MODULE.lines().filter(|line| line.starts_with(word)).count();
-        assert_eq!((lines("import "), lines("export ")), (0, 2));
+        let lines = |module: &str, word| module.lines().filter(|line| line.starts_with(word)).count();
+        assert_eq!((lines(&MODULE, "import "), lines(&MODULE, "export ")), (0, 2));
+        assert_eq!((lines(&PAGE, "import "), lines(&PAGE, "export ")), (0, 0));
+        assert!(MODULE.contains("const $widget") && !MODULE.contains("const $boot"));
+        assert!(PAGE.contains("const $boot") && !PAGE.contains("const $widget"));
         assert_eq!(exported("async function fetched(path) {"), "fetched");
+    }
+    #[cfg(feature = "explore")]
+    #[test]
+    fn what_the_page_starts_on_cannot_leave_its_place() {
+        let page = index(br#"{"title": "</script><b>\u00e9"}"#);
+        let text = String::from_utf8(page.bytes.into_owned()).unwrap();
+        assert!(text.contains(r#">{"title": "\u003c/script>\u003cb>\u00e9"}</script>"#), "{text}");
+    }
+
+    #[test]
+    fn families_have_the_colours_of_the_figures() {
+        let rows = crate::report::figure::palette::FAMILIES.map(|[l, c, h]| format!("[{l:.2}, {c}, {h}]"));
+        let script = SCRIPTS.iter().find(|(name, _)| *name == "colours.js").unwrap().1;
+        let mut rest = script.split_once("const FAMILIES = ").unwrap().1;
+        for row in rows {
+            rest = rest.split_once(&row).unwrap_or_else(|| panic!("{row} in its place")).1;
+        }
+        assert!(rest.starts_with(",\n];"), "no more than these");
     }
 }

@@ -48,6 +48,7 @@ mod tongues;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use crate::error::Result;
 use crate::parallel::stoppable;
@@ -67,7 +68,7 @@ struct Question {
     answer: Answer,
 }
 
-const QUESTIONS: [Question; 12] = [
+const QUESTIONS: [Question; 13] = [
     question("start", true, 0, start::answer),
     question("tile", false, tile::MOST_KICKS, tile::answer),
     question("tongues", false, tongues::MOST_KICKS, tongues::answer),
@@ -78,6 +79,7 @@ const QUESTIONS: [Question; 12] = [
     question("cut", false, cut::MOST_KICKS, cut::answer),
     question("strip", false, strip::MOST_KICKS, strip::answer),
     question("system", false, outer::MOST_PRODUCTS, outer::answer),
+    question("modes", false, outer::MOST_PRODUCTS, outer::modes),
     question("scene", true, 0, shown::scene),
     question("picture", false, shown::MOST_KICKS, shown::picture),
 ];
@@ -91,6 +93,16 @@ const fn question(name: &'static str, at_once: bool, limit: u64, answer: Answer)
 
 fn named(name: &str) -> Option<&'static Question> {
     QUESTIONS.iter().find(|question| question.name == name)
+}
+
+/// No question is to be worked on for longer: what it costs is bounded before, but far beyond the Verlet limit, where doubles overflow,
+/// pairs take the slower tiers. Who asks sets the flag then, and has [`overdue`] for an answer.
+pub const LONGEST: Duration = Duration::from_secs(30);
+
+/// The answer to a question at `path` that took longer than [`LONGEST`].
+pub fn overdue(path: &str) -> Reply {
+    let limit = named(path).map_or(0, |question| question.limit);
+    Reply::too_costly(None, limit, "this takes longer than half a minute")
 }
 
 /// The answer to the question at `path` with the parameters of `query` (`key=value&...`, percent-encoded), an error's too; `None`

@@ -2,15 +2,15 @@
 
 use serde_json::{Value, json};
 
-use super::query::{Query, count};
+use super::query::{Query, count, positive};
 use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Kind, Result};
 use crate::number::parse::parse_rational_range;
 use crate::number::{Rational, rational};
 use crate::report::system::{Beside, document};
-use crate::scene::Span;
-use crate::system::{Limits, Route};
+use crate::scene::{Span, SystemScene};
+use crate::system::{Analysis, Limits, Route};
 
 /// Products that all samples together may cost, some 10 s of a core.
 pub(super) const MOST_PRODUCTS: u64 = 20_000_000_000;
@@ -18,13 +18,32 @@ pub(super) const MOST_PRODUCTS: u64 = 20_000_000_000;
 /// The relative width of intervals that none is missed of.
 const WIDTH: f64 = 1e-3;
 
+/// The verdict's document at the outer step `at`, all steps in the proportions of the file: the modes that grow there.
+pub(super) fn modes(session: &Session, query: &Query) -> Result<Reply> {
+    let scene = system(session)?;
+    let at = query.need("at", positive)?;
+    if scene.cost() > MOST_PRODUCTS {
+        return Err(Error::budget("a verdict on this system", scene.cost()));
+    }
+    let analysis = scene.decide_at(&at, &Limits::default())?;
+    Ok(Reply::json(&json!({"at": rational::to_f64(&at), "verdict": verdict(scene, &analysis)})))
+}
+
+fn system(session: &Session) -> Result<&SystemScene> {
+    let remedy = "start the page on a system file, as data/scenes/diatomic-tether.json";
+    session.system().ok_or_else(|| Error::missing("system", remedy))
+}
+
+fn verdict(scene: &SystemScene, analysis: &Analysis) -> Value {
+    let beside = Beside { unit: scene.time_unit(), labels: scene.labels(), ..Beside::default() };
+    document(analysis, &beside).value()
+}
+
 /// `outer` and `rate` (null where it is not told) at evenly spaced outer steps, `stretches` {`lo`, `hi`, `verdict`} that cover the range
 /// (null of systems that have none proven), `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time,
 /// `title`.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
-    let none =
-        || Error::missing("system", "start the page on a system file, as data/scenes/diatomic-tether.json");
-    let scene = session.system().ok_or_else(none)?;
+    let scene = system(session)?;
     let own =
         scene.system().clocks().iter().map(|clock| clock.step.clone()).max().expect("a system has clocks");
     let (lo, hi) = match query.read("outer", parse_rational_range)? {
@@ -56,9 +75,8 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
         Err(_) => Value::Null,
     };
     let analysis = scene.decide(Route::Cheapest, &limits)?;
-    let beside = Beside { unit: scene.time_unit(), labels: scene.labels(), ..Beside::default() };
     Ok(Reply::json(&json!({
         "outer": steps, "rate": rates, "stretches": stretches, "own": rational::to_f64(&own),
-        "verdict": document(&analysis, &beside).value(), "unit": scene.time_unit(), "title": scene.title(),
+        "verdict": verdict(scene, &analysis), "unit": scene.time_unit(), "title": scene.title(),
     })))
 }

@@ -27,15 +27,11 @@ use tokio::time::timeout;
 use super::listen::Bounded;
 use super::reply::Reply;
 use super::session::Session;
-use super::{Question, ask, asset, named};
+use super::{LONGEST, Question, ask, asset, assets, named, overdue};
 use crate::error::{Error, Result};
 
 /// The longest path and query, in bytes.
 const LONGEST_ADDRESS: usize = 8192;
-
-/// No question is worked on for longer: what it costs is bounded before, but far beyond the Verlet limit, where doubles overflow, pairs
-/// take the slower tiers.
-const LONGEST: Duration = Duration::from_secs(30);
 
 /// Questions that wait for their turn.
 const WAITING: usize = 64;
@@ -71,6 +67,8 @@ pub struct Server {
 #[derive(Debug)]
 struct Shared {
     session: Arc<Session>,
+    /// The page, with what it starts on.
+    index: Reply,
     token: String,
     /// What `Host` may be.
     hosts: [String; 3],
@@ -105,7 +103,9 @@ impl Server {
         let port = listener.local_addr().map_err(failed)?.port();
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores } else { threads };
+        let begun = ask(&session, "start", "", &Arc::default()).filter(|reply| reply.status == 200);
         let shared = Shared {
+            index: assets::index(&begun.map_or_else(Vec::new, |reply| reply.bytes.into_owned())),
             session: Arc::new(session),
             token: token()?,
             hosts: ["127.0.0.1", "localhost", "[::1]"].map(|host| format!("{host}:{port}")),
@@ -168,6 +168,9 @@ impl Shared {
         if !self.is_own_token(token) {
             return Err((StatusCode::FORBIDDEN, "open the address that the program printed"));
         }
+        if path.is_empty() {
+            return Ok(self.index.clone());
+        }
         match (asset(path), named(path)) {
             (Some(reply), _) => Ok(reply),
             (None, Some(question)) => self.work(question, query).await,
@@ -208,7 +211,7 @@ impl Shared {
         let failed = (StatusCode::INTERNAL_SERVER_ERROR, "this question broke the program: please report it");
         match timeout(self.longest, done).await {
             Ok(done) => done.ok().flatten().ok_or(failed),
-            Err(_) => Ok(Reply::too_costly(None, question.limit, "this takes longer than half a minute")),
+            Err(_) => Ok(overdue(question.name)),
         }
     }
 }

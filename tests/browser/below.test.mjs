@@ -86,5 +86,20 @@ test("a system's growth is the program's, at its own step and where it is proven
   const at = (x) => reply.stretches.find(({ lo, hi }) => lo < x && x < hi)?.verdict;
   const wrong = reply.outer.filter((x, k) => (at(x) === "unstable" && !(reply.rate[k] > 0)) || (at(x) === "stable" && reply.rate[k] > 0));
   assert.deepEqual(wrong, []);
+  // Where it grows most a click tells the modes, and the address has them.
+  const box = await page.locator(".plot .frame").boundingBox();
+  const most = reply.rate.indexOf(Math.max(...reply.rate));
+  const share = (reply.outer[most] - reply.outer[0]) / (reply.outer.at(-1) - reply.outer[0]);
+  const peak = [box.x + share * box.width, box.y + 0.5 * box.height];
+  await page.mouse.move(...peak);
+  assert.match(await page.textContent(".below p"), /^Outer step \S+ \S+: growth (\S+ per|none)/);
+  await page.mouse.click(...peak);
+  await page.waitForFunction(() => window.kickdrift.drawer.modes);
+  const { at: chosen, verdict } = await page.evaluate(() => window.kickdrift.drawer.modes);
+  assert.ok(Math.abs(chosen / reply.outer[most] - 1) < 0.01 && !verdict.stable, `${chosen}: ${verdict.kind}`);
+  const growing = verdict.parts.flatMap(({ instabilities }) => instabilities);
+  assert.ok(growing.length > 0);
+  assert.match(await page.textContent(".below"), new RegExp(`At the outer step that was chosen, ${chosen} [a-z]+: unstable, .*${growing.length} modes? grows?`));
+  await page.waitForFunction((chosen) => new URLSearchParams(location.hash.slice(1)).get("a") === String(chosen), chosen);
   own.stop();
 });

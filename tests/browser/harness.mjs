@@ -99,7 +99,7 @@ export async function file(page, selector) {
 export async function settled(page) {
   const quiet = () => {
     const { map, status } = window.kickdrift;
-    return status && !status.waiting && !map.moving && !map.due;
+    return status && map.lettered && !status.waiting && !map.moving && !map.due;
   };
   await page.waitForFunction(quiet, null, { timeout: 180_000 });
   await page.waitForTimeout(450);

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { SPRINGS, kickdrift, pixels, settled, stage } from "./harness.mjs";
 
-const { opened } = stage();
+const { address, opened } = stage();
 
 test("cells are those of the program's own picture", async () => {
   // At zoom 0 a cell is a pixel: d1 = 1/1000, d2 = 8/1000.
@@ -78,6 +78,20 @@ test("lines of tongues lie on unstable cells", async () => {
   await settled(page);
   const colours = await pixels(page, cells.map((cell) => cell.slice(4)));
   assert.deepEqual(colours.filter((colour) => String(colour) !== "39,60,117"), []);
+});
+
+test("no tile is asked for twice", async () => {
+  const page = await opened({ address: "about:blank", ready: false });
+  const asked = [];
+  page.on("request", (request) => request.url().includes("/tile?") && asked.push(request.url()));
+  await page.goto(address());
+  await page.evaluate(() => window.kickdrift.ready);
+  await settled(page);
+  await page.focus("canvas");
+  await page.keyboard.press("+");
+  await settled(page);
+  assert.ok(asked.length >= 12, `${asked.length} tiles`);
+  assert.equal(new Set(asked).size, asked.length);
 });
 
 test("what nobody looks at any more is no longer asked for", async () => {

@@ -363,6 +363,14 @@ fn a_system_grows_where_its_own_verdict_says() {
     // A stretch may not tell; it does not contradict.
     let opposite = if told["verdict"]["stable"] == true { "unstable" } else { "stable" };
     assert_ne!(holds["verdict"], opposite, "{holds}");
+    // The same step, chosen: the same verdict.
+    let chosen = ask(&session, "modes", "at=3/50", &stop).unwrap();
+    let chosen: Value = serde_json::from_slice(&chosen.bytes).unwrap();
+    assert_eq!(chosen["at"], 0.06);
+    for key in ["stable", "kind", "growth_rate", "parts"] {
+        assert_eq!(chosen["verdict"][key], told["verdict"][key], "{key}");
+    }
+    assert_eq!(ask(&session, "modes", "at=0", &stop).unwrap().status, 400);
     let start: Value = serde_json::from_slice(&ask(&session, "start", "", &stop).unwrap().bytes).unwrap();
     assert!(start["lambda1"].is_null() && start["system"].is_object());
 }

@@ -39,6 +39,9 @@ fn the_page_is_whole_and_may_load_nothing_else() {
         seen += 1;
     }
     assert!(seen > 8, "{seen}");
+    // What it would ask for first is in it.
+    let begun = html.split_once("id=\"begun\">").unwrap().1.split_once("</script>").unwrap().0;
+    assert_eq!(begun.as_bytes(), page.get("start").body);
 }
 
 #[test]

@@ -79,6 +79,11 @@ export function onMap(explorer) {
       map.draft = stroke && map.cutLine(stroke);
       map.redraw();
     },
+    // With Shift a drag draws a box to zoom to.
+    frame: (box) => {
+      map.framed = box;
+      map.redraw();
+    },
     drawn: () => {
       map.draft = null;
       explorer.tool = "move";
@@ -123,6 +128,7 @@ export function onDrawer(explorer) {
   const none = { cut: { cut: null }, strip: { strip: null }, system: { system: false } };
   return {
     outer: (outer) => explorer.change({ outer }),
+    at: (at) => explorer.change({ at }),
     close: (kind) => explorer.change(none[kind]),
     probe: (t) => {
       map.probe = explorer.state.cut ? t : null;

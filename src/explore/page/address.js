@@ -1,6 +1,6 @@
 // The state in the address, so that a view can be shared, undone and brought back bit for bit.
 
-const KEYS = { lambda1: "l1", lambda2: "l2", step: "d", view: "v", what: "w", tongues: "t", maxSum: "n", curves: "c", labels: "b", pin: "p", cut: "x", strip: "s", system: "y" };
+const KEYS = { lambda1: "l1", lambda2: "l2", step: "d", view: "v", what: "w", tongues: "t", maxSum: "n", curves: "c", labels: "b", pin: "p", cut: "x", strip: "s", system: "y", outer: "o", at: "a" };
 
 /** `state`: texts; what is empty is left out. */
 export function written(state) {
@@ -40,6 +40,13 @@ export class Past {
       this.at += 1;
     } else if (!location.hash) history.replaceState({ kickdrift: 0 }, "", hash);
     else if (location.hash !== hash) history.pushState({ kickdrift: this.#place + 1 }, "", hash);
+  }
+
+  /** The same state in another form: what was taken down of it is written again. */
+  rewrite(state) {
+    const hash = written(state);
+    if (this.own && location.hash) history.replaceState(history.state, "", hash);
+    if (!this.own && this.at >= 0) this.list[this.at] = hash;
   }
 
   undo() {

@@ -45,8 +45,10 @@ function title(axis, base, power, unit) {
   return [...name, { words: ` − ${base}  (10${raised(power)} ${unit})` }];
 }
 
-/** `box`: the plot's [left, top, width, height]. Returns what the numbers are offsets from, exactly. */
-export function drawAxes(context, view, colours, [left, top, width, height], unit, narrow) {
+/**
+ * `box`: the plot's [left, top, width, height]; `lettered`: with numbers and names. Returns what the numbers are offsets from, exactly.
+ */
+export function drawAxes(context, view, colours, [left, top, width, height], unit, narrow, lettered) {
   const size = narrow ? 13 : 15;
   context.strokeStyle = context.fillStyle = css(colours.ink);
   context.lineWidth = 1;
@@ -73,6 +75,7 @@ export function drawAxes(context, view, colours, [left, top, width, height], uni
     }
     marks.ticks.forEach(({ px }) => stroke(px, 6));
     context.stroke();
+    if (!lettered) return exact ?? null;
     context.font = `${size}px ${SERIF}`;
     context.textBaseline = axis ? "middle" : "top";
     context.textAlign = axis ? "right" : "center";

@@ -1,7 +1,8 @@
 // The page on its own: mounted below the address that it was served from.
 
-import { mount } from "./explore.js";
+import { mount } from "./main.js";
 
-const shown = mount(document.getElementById("explore"));
+/** What the server wrote into the page, so that it need not be asked for. */
+const written = document.getElementById("begun").textContent;
 // For whoever drives the page, such as a test.
-window.kickdrift = shown;
+window.kickdrift = mount(document.getElementById("explore"), { begun: written ? JSON.parse(written) : null });

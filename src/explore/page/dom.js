@@ -18,6 +18,12 @@ export function h(name, properties = {}, ...children) {
   return element;
 }
 
+/** `set`, called with a value only where it is another than before: what is written into the page is laid out again. */
+export const whenNew = (set) => {
+  let before;
+  return (value) => value === before || set((before = value));
+};
+
 let mounts = 0;
 
 /** From now on names belong to another page in the same document. */

@@ -45,7 +45,7 @@ const table = (caption, head, rows) =>
   h("details", {}, h("summary", {}, caption), h("div.scroll", { tabindex: 0, role: "region", "aria-label": caption }, h("table", {}, h("thead", {}, h("tr", {}, ...head.map((cell) => h("th", { scope: "col" }, ...[cell].flat())))), h("tbody", {}, ...rows.map((row) => h("tr", {}, ...row.map((cell) => h("td", {}, cell))))))));
 
 export class Drawer {
-  /** `shared()`: {lambda1, lambda2, rho, values, palette, unit, pin}; `act`: {close(kind), probe(t), rho(text), ratio(text)}. */
+  /** `shared()`: {lambda1, lambda2, rho, values, palette, unit, pin}; `act`: {close(kind), probe(t), rho(text), ratio(text), outer(text), at(text)}. */
   constructor(host, questions, shared, act) {
     Object.assign(this, { host, questions, shared, act, shown: null, data: null });
     this.title = h("h2", {});
@@ -58,14 +58,19 @@ export class Drawer {
       this.data = { of: kind, reply: kind === "strip" ? joined(replies) : replies[0] };
       this.paint();
     }, 30);
+    this.loadModes = latest(async (at, signal) => {
+      this.modes = await questions.json("modes", { at }, signal).catch((error) => ({ at: Number(at), error: error.message }));
+      this.paint();
+    });
     new ResizeObserver(() => this.paint()).observe(this.field);
   }
 
-  /** `what`: null, {kind: "cut", ...cut}, {kind: "strip", ratio} or {kind: "system"}. */
+  /** `what`: null, {kind: "cut", ...cut}, {kind: "strip", ratio} or {kind: "system", outer, at}. */
   show(what) {
     const { lambda1, lambda2 } = this.shared();
-    const key = what && JSON.stringify([what, lambda1, lambda2]);
+    const key = what && JSON.stringify([{ ...what, at: null }, lambda1, lambda2]);
     this.host.hidden = !what;
+    this.#choose(what?.at ?? null);
     if (!what || this.key === key) return;
     Object.assign(this, { key, shown: what });
     this.#head(what);
@@ -76,6 +81,16 @@ export class Drawer {
       this.field.replaceChildren(h("p.quiet", { role: "status" }, error.message));
       this.below.replaceChildren();
     });
+  }
+
+  /** The outer step whose modes are told, or none. */
+  #choose(at) {
+    if (at === (this.at ?? null)) return;
+    Object.assign(this, { at, modes: null });
+    if (this.chosen) this.chosen.value = at ?? "";
+    if (at) this.loadModes(at);
+    else this.loadModes.stop();
+    this.paint();
   }
 
   #ask(what, springs) {
@@ -99,9 +114,10 @@ export class Drawer {
       this.extra.append(h("label.entry", {}, h("i", {}, "p/q"), input));
     } else {
       const input = h("input", { value: what.outer ?? "", placeholder: "from..to", size: 10, "aria-label": "Range of the outer step, from..to", onchange: () => this.act.outer(input.value.trim() || null) });
-      this.range = input;
+      const chosen = h("input", { value: what.at ?? "", placeholder: "step", size: 6, "aria-label": "Outer step whose modes are told", onchange: () => this.act.at(chosen.value.trim() || null) });
+      Object.assign(this, { range: input, chosen });
       this.title.replaceChildren("Growth against the outer step");
-      this.extra.append(h("label.entry.wide", {}, "range", input));
+      this.extra.append(h("label.entry.wide", {}, "range", input), h("label.entry", {}, "modes at", chosen));
     }
   }
 
@@ -165,20 +181,33 @@ export class Drawer {
     const spans = (wanted, colour) => ({ kind: "spans", colour: css(colour), spans: (stretches ?? []).filter((own) => own.verdict === wanted).map(({ lo, hi, verdict: label }) => ({ lo, hi, label })) });
     const shades = [spans("unstable", palette.accent), spans("the data do not tell", palette.faint)];
     const layers = [...shades, { kind: "line", x: outer, y: rate, colour: css(palette.kinds[1]), below: true }, { kind: "upright", at: own, colour: css(palette.ink) }];
+    const { modes } = this;
+    if (modes) layers.push({ kind: "upright", at: modes.at, colour: css(palette.accent) });
+    const begin = "Point at the curve to read it; a click tells the modes that grow there.";
+    const pointed = h("p.quiet.number", {}, begin);
+    const read = (x) => {
+      const k = x === null ? null : Math.round(((x - outer[0]) / (outer.at(-1) - outer[0])) * (outer.length - 1));
+      const rated = rate[k] === null ? "not told" : rate[k] > 0 ? `${number(rate[k], 3)} per ${unit}` : "none";
+      pointed.textContent = k === null ? begin : `Outer step ${number(outer[k], 4)} ${unit}: growth ${rated}.`;
+    };
     plot(this.field, {
       x: { lo: outer[0], hi: outer.at(-1), title: `outer step (${unit})` },
       y: { ...upward(rate), title: `growth rate (1/${unit})` },
       layers, label: "Growth rate against the outer step",
+      probe: read, pick: (x) => this.act.at(String(Number(x.toPrecision(4)))),
     });
     const says = [`proven unstable on ${shades[0].spans.length}`, `not decided on ${shades[1].spans.length}`];
-    this.below.replaceChildren(...told(verdict, own, unit), ...(stretches ? [h("p.quiet", {}, `Of the intervals of outer steps it is ${says.join(" (red), ")} (grey); on the others it is proven stable.`)] : []));
+    const chosen = modes && (modes.error ? [h("p.quiet", { role: "status" }, modes.error)] : told("At the outer step that was chosen", modes.verdict, modes.at, unit));
+    this.below.replaceChildren(
+      pointed, ...told("The dashed line is the file's own outer step", verdict, own, unit), ...(chosen ?? []),
+      ...(stretches ? [h("p.quiet", {}, `Of the intervals of outer steps it is ${says.join(" (red), ")} (grey); on the others it is proven stable.`)] : []));
   }
 }
 
-/** The file's own steps: stable, or which modes grow. */
-function told(verdict, own, unit) {
+/** What holds at an outer step: stable, or which modes grow. */
+function told(place, verdict, at, unit) {
   const modes = (verdict?.parts ?? []).flatMap(({ instabilities }) => instabilities ?? []);
-  const said = h("p.quiet", {}, `The dashed line is the file's own outer step, ${own} ${unit}: ${verdict?.stable ? "stable" : "unstable"}${verdict?.kind ? `, ${verdict.kind}` : ""}.`);
+  const said = h("p.quiet", {}, `${place}, ${at} ${unit}: ${verdict?.stable ? "stable" : "unstable"}${verdict?.kind ? `, ${verdict.kind}` : ""}.`);
   if (!modes.length) return [said];
   const rows = modes.map(({ growth_rate: rate, origin, resonance, shape }) => [
     number(rate, 6), origin ?? "–", resonance ? minus(`m = ${resonance.m}, (${resonance.family})`.replace(",", ", ")) : "–",

@@ -7,13 +7,13 @@ export function told(status, view) {
   const [d1, d2] = [0, 1].map((axis) => spacing(view.unit(axis), status.level));
   const { costly, vectors, sum, pale, refused, fault } = status;
   const said = [];
-  if (!costly || status.cells) said.push(`Every cell is one exact verdict: multiples of d₁ = ${d1} and d₂ = ${d2}.`);
+  if (!costly || status.cells) said.push(`Every cell is one exact verdict: multiples of d₁\u00a0=\u00a0${d1} and d₂\u00a0=\u00a0${d2}.`);
   if (costly) {
     said.push(tooMuch(costly, d1, status.cells));
     if (!vectors) said.push("Tongues as lines are switched off.");
     else if (sum) said.push(`Shown instead: certified tongues wider than a cell, all ratios with p + q ≤ ${grouped(sum)}.`);
     else said.push("Asking for certified tongues instead …");
-    if (pale !== null) said.push(`Pale: verdicts on a coarser grid, d₁ = ${spacing(view.unit(0), pale)}.`);
+    if (pale !== null) said.push(`Pale: verdicts on a coarser grid, d₁\u00a0=\u00a0${spacing(view.unit(0), pale)}.`);
   } else if (vectors && sum) said.push(`Lines: tongues with p + q ≤ ${sum}.`);
   if (refused && vectors) said.push(refused);
   if (fault) said.push(fault);
@@ -22,6 +22,6 @@ export function told(status, view) {
 
 function tooMuch({ cost, limit, unit }, d1, elsewhere) {
   if (elsewhere) return "Some tiles would cost too much.";
-  if (cost === null) return `Cells of d₁ = ${d1} would cost too much.`;
-  return `A tile of d₁ = ${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`;
+  if (cost === null) return `Cells of d₁\u00a0=\u00a0${d1} would cost too much.`;
+  return `A tile of d₁\u00a0=\u00a0${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`;
 }

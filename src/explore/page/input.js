@@ -4,7 +4,7 @@ const CLICK = 4;
 const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
 export class Input {
-  /** `act`: {moved, settled, hover, leave, click, unclick, home, draw, drawn, escape}; `tool()`: "move" or a kind of cut. */
+  /** `act`: {moved, settled, hover, leave, click, unclick, home, draw, drawn, frame, escape}; `tool()`: "move" or a kind of cut. */
   constructor(map, act, tool) {
     Object.assign(this, { map, act, tool, pointers: new Map(), glide: null });
     const { canvas } = map;
@@ -34,7 +34,7 @@ export class Input {
     this.halt();
     const at = this.at(event);
     this.pointers.set(event.pointerId, at);
-    this.start = { at, moved: this.pointers.size > 1, time: event.timeStamp, trail: [] };
+    this.start = { at, moved: this.pointers.size > 1, trail: [], frames: event.shiftKey && this.tool() === "move" };
     this.map.moving = true;
   }
 
@@ -48,6 +48,7 @@ export class Input {
     if (Math.hypot(at[0] - this.start.at[0], at[1] - this.start.at[1]) > CLICK) this.start.moved = true;
     if (!this.start.moved) return;
     if (this.pointers.size === 2) this.pinch(event.pointerId, before, at);
+    else if (this.start.frames) this.act.frame([...this.start.at, ...at]);
     else if (this.tool() === "move") {
       this.map.view.pan(at[0] - before[0], at[1] - before[1]);
       this.start.trail = [...this.start.trail.slice(-4), { at, time: event.timeStamp }];
@@ -69,11 +70,22 @@ export class Input {
     if (!this.pointers.delete(event.pointerId) || this.pointers.size) return;
     this.map.moving = false;
     const at = this.at(event);
-    const { moved, trail } = this.start;
-    if (!moved && event.type === "pointerup") this.act.click(at, event.pointerType === "touch" ? 16 : 7);
+    const { moved, trail, frames } = this.start;
+    if (moved && frames) this.fill(this.start.at, at);
+    else if (!moved && event.type === "pointerup") this.act.click(at, event.pointerType === "touch" ? 16 : 7);
     else if (this.tool() !== "move") this.act.drawn();
     else this.coast(trail, event.timeStamp);
     this.act.settled();
+  }
+
+  /** The box between two pixels fills the map, as far as its shape allows. */
+  fill([x0, y0], [x1, y1]) {
+    const { view } = this.map;
+    this.act.frame(null);
+    const [width, height] = [Math.max(8, Math.abs(x1 - x0)), Math.max(8, Math.abs(y1 - y0))];
+    view.pan((view.width - x0 - x1) / 2, (view.height - y0 - y1) / 2);
+    view.zoomTo(view.zoom + Math.log2(Math.min(view.width / width, view.height / height)));
+    this.act.moved();
   }
 
   /** A drag let go in motion runs out slowly. */

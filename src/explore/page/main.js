@@ -13,25 +13,26 @@ import { StabilityMap } from "./map.js";
 import { Pairs } from "./pairs.js";
 import { legend } from "./panels.js";
 import { typed } from "./picking.js";
-import { begun, saved, taken } from "./state.js";
+import { plain, saved, taken } from "./state.js";
 import { mathematics, number } from "./writing.js";
 
 /**
  * Puts the page into an element. `ask(path, params, signal)` reaches the program and resolves to {status, type, bytes};
- * `own`: the page is ours, with its address and history. Returns the explorer, with `ready` (a promise) and `remove()`.
+ * `own`: the page is ours, with its address and history; `begun`: the answer to `start`, where the host has it. Returns the explorer,
+ * with `ready` (a promise) and `remove()`.
  */
-export function mount(element, { ask = fetched, own = ask === fetched } = {}) {
-  return new Explorer(element, ask, own);
+export function mount(element, { ask = fetched, own = ask === fetched, begun = null } = {}) {
+  return new Explorer(element, ask, own, begun);
 }
 
 class Explorer {
-  constructor(element, ask, own) {
-    Object.assign(this, { questions: questions(ask), own, tool: "move", state: begun() });
+  constructor(element, ask, own, begun) {
+    Object.assign(this, { questions: questions(ask), own, begun, tool: "move", state: plain() });
     this.springs = () => ({ lambda1: this.state.lambda1, lambda2: this.state.lambda2 });
     this.ended = new AbortController();
     this.dark = matchMedia("(prefers-color-scheme: dark)");
     this.dark.addEventListener("change", () => this.themed(), { signal: this.ended.signal });
-    this.page = layout(element, this.state, onPanels(this), own);
+    this.page = layout(element, own);
     this.past = new Past(own, (texts) => this.restore(texts), this.ended.signal);
     this.pairs = new Pairs({
       page: this.page, questions: this.questions, springs: this.springs, settings: () => this.settings(), redraw: () => this.map.redraw(),
@@ -43,7 +44,8 @@ class Explorer {
   async #start() {
     const texts = this.own ? read(location.hash) : {};
     const springs = texts.lambda1 && texts.lambda2 ? { lambda1: texts.lambda1, lambda2: texts.lambda2 } : {};
-    this.begun = await this.questions.json("start", springs);
+    const known = this.begun && Object.entries(springs).every(([name, value]) => this.begun[name] === value);
+    if (!known) this.begun = await this.questions.json("start", springs);
     this.#springs(this.begun);
     this.state.step = (texts.step && parse(texts.step) ? texts.step : this.begun.step) ?? "1/1000";
     this.map = new StabilityMap(this.page.canvas, this.questions, parse(this.state.step), () => this.settings(), (status) => this.#told(status));
@@ -51,21 +53,28 @@ class Explorer {
     const alone = Boolean(this.begun.system && !this.begun.lambda1);
     this.map.idle = alone;
     this.page.root.dataset.alone = String(alone);
+    this.map.home = () => this.map.view.fit(this.begun.window ?? [0, 1, 0, 1]);
+    Object.assign(this.state, taken(texts));
+    this.#measure();
+    const restored = this.map.view.restore(texts.view);
+    if (!restored) this.map.home();
+    // The program works on the first tiles while the rest of the page is built.
+    if (!alone) this.map.ask();
+    this.page.furnish(this.state, onPanels(this));
     this.drawer = new Drawer(this.page.drawer, this.questions, () => this.settings(), onDrawer(this));
     this.input = new Input(this.map, onMap(this), () => this.tool);
-    this.map.home = () => this.map.view.fit(this.begun.window ?? [0, 1, 0, 1]);
     this.#take(texts);
     this.refresh();
-    this.#measure();
     this.resized = new ResizeObserver(() => this.#measure());
     this.resized.observe(this.page.frame);
-    if (!this.map.view.restore(texts.view)) this.#fit();
+    if (!restored) this.#fit();
+    // Numbers of the axes are written once their face is here.
+    const faces = ["15px", "italic 15px", "600 15px"].map((face) => document.fonts?.load(`${face} "Libertinus Serif"`));
+    await Promise.all(faces).catch(() => {});
+    this.map.lettered = true;
+    this.page.root.dataset.lettered = "true";
+    this.map.redraw();
     this.past.record(() => this.saved(), true);
-    // Tiles are asked for now, not with the next frame.
-    if (!alone) this.map.paint();
-    // Numbers of the axes in the right face as soon as it is here.
-    const faces = ["15px", "italic 15px"].map((face) => document.fonts?.load(`${face} "Libertinus Serif"`));
-    Promise.all(faces).then(() => this.map.redraw(), () => {});
   }
 
   /** What the pictures need to know. */
@@ -131,7 +140,7 @@ class Explorer {
     const [a, b] = [state.lambda1, state.lambda2].map((x) => mathematics(x ?? ""));
     page.subject(this.begun.title, a, b, mathematics(state.rho), this.begun.unit);
     page.systemButton.hidden = !this.begun.system || this.map.idle;
-    this.drawer.show(state.cut ? { ...state.cut, kind: "cut", along: state.cut.kind } : state.strip ? { kind: "strip", ratio: state.strip } : state.system ? { kind: "system", outer: state.outer } : null);
+    this.drawer.show(state.cut ? { ...state.cut, kind: "cut", along: state.cut.kind } : state.strip ? { kind: "strip", ratio: state.strip } : state.system ? { kind: "system", outer: state.outer, at: state.at } : null);
     page.tools.choose(this.tool);
     page.canvas.dataset.tool = this.tool;
     this.map.redraw();
@@ -162,16 +171,18 @@ class Explorer {
     if (!clientWidth || !clientHeight) return;
     const whole = this.fitted === this.map.view.save();
     this.map.resize(clientWidth, clientHeight);
-    if (whole) this.#fit();
+    if (!whole) return;
+    this.#fit();
+    this.past.rewrite(this.saved());
   }
 
   #told(status) {
     this.status = status;
     const { page } = this;
-    page.note.say(told(status, this.map.view));
-    page.where.textContent = `zoom ${status.level}`.replace("-", "−");
+    page.note(told(status, this.map.view));
+    page.where(`zoom ${status.level}`.replace("-", "−"));
     page.offsets(status.offsets);
-    page.root.dataset.busy = String(Boolean(status.waiting));
+    page.busy(Boolean(status.waiting));
   }
 
   /** Takes new springs once the program has read them. */

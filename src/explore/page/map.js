@@ -28,6 +28,11 @@ export class StabilityMap {
     });
   }
 
+  /** Asks for the tiles that the screen shows, before there is a picture. */
+  ask() {
+    this.tiles.want(this.settings().layer, this.view.tiles(this.view.level));
+  }
+
   /** The plot's box within an element of this size. */
   resize(width, height) {
     const [left, bottom, top, right] = this.narrow ? [56, 48, 10, 12] : [74, 58, 12, 16];
@@ -69,7 +74,7 @@ export class StabilityMap {
     this.#outside(palette);
     this.#marks(now);
     context.restore();
-    status.offsets = drawAxes(context, view, palette, box, now.unit, this.narrow);
+    status.offsets = drawAxes(context, view, palette, box, now.unit, this.narrow, this.lettered);
     this.report({ ...status, level: view.level, sum: this.vectors.shownSum(this.view), refused: this.vectors.refused });
   }
 
@@ -163,7 +168,7 @@ export class StabilityMap {
       context.restore();
       labels.unshift(...(byCost ? found.filter(({ spots }) => this.#isBare(spots[0])) : found));
     }
-    if (now.labels) drawLabels(context, labels, now.palette, `14px ${SERIF}`, view);
+    if (now.labels && this.lettered) drawLabels(context, labels, now.palette, `14px ${SERIF}`, view);
     status.vectors = shown;
   }
 
@@ -201,6 +206,14 @@ export class StabilityMap {
       if (this.probe !== undefined && this.probe !== null) {
         this.#dot(line[0] + this.probe * (line[2] - line[0]), line[1] + this.probe * (line[3] - line[1]), accent, paper, 4.5);
       }
+    }
+    if (this.framed) {
+      const [x0, y0, x1, y1] = this.framed;
+      context.fillStyle = css(accent, 0.12);
+      context.fillRect(x0, y0, x1 - x0, y1 - y0);
+      context.strokeStyle = css(accent);
+      context.lineWidth = 1.5;
+      context.strokeRect(x0, y0, x1 - x0, y1 - y0);
     }
     if (now.pin) {
       const [x, y] = now.pin.map((value, axis) => view.place(axis, value));

@@ -35,9 +35,9 @@ export function legend(host, { what, palette, frequency, unit }) {
     return;
   }
   if (what === "family") {
-    const order = [0, 1, -1, 2, -2, 3, -3, 4];
+    const order = [0, 1, -1, 2, -2, 3, -3];
     const families = order.map((a, k) => [palette.families[k], h("i", {}, "a"), ` = ${a}`.replace("-", "−")]);
-    host.replaceChildren(list([...families, [palette.grey, "others"], [palette.paper, "stable"]]));
+    host.replaceChildren(list([...families, [palette.families.at(-1), "others"], [palette.paper, "stable"]]));
     host.firstChild.classList.add("columns");
     return;
   }

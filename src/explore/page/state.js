@@ -6,17 +6,18 @@ const COLOURINGS = ["verdict", "growth", "family"];
 const SUM = 40;
 
 /** What a page begins with. */
-export const begun = () => ({ what: "verdict", tongues: "auto", maxSum: SUM, curves: false, labels: true, cut: null, strip: null, system: false });
+export const plain = () => ({ what: "verdict", tongues: "auto", maxSum: SUM, curves: false, labels: true, cut: null, strip: null, system: false, outer: null, at: null });
 
 /** The largest p + q of tongues as lines, kept within what the program lays out quickly. */
 export const summed = (entered) => Math.min(400, Math.max(2, Math.round(entered) || SUM));
 
 /** All that an address says; what is as a page begins is empty. */
-export function saved({ lambda1, lambda2, step, what, tongues, maxSum, curves, labels, pin, cut, strip, system }, view) {
+export function saved({ lambda1, lambda2, step, what, tongues, maxSum, curves, labels, pin, cut, strip, system, outer, at }, view) {
   return {
     lambda1, lambda2, step, view: view.save(), what: what === "verdict" ? "" : what, tongues: tongues === "auto" ? "" : tongues,
     maxSum: maxSum === SUM ? "" : String(maxSum), curves: curves ? "1" : "", labels: labels ? "" : "0",
     pin: pin ? pin.text.join(",") : "", cut: cut ? [cut.kind, cut.value, cut.lo, cut.hi].join(",") : "", strip: strip ?? "", system: system ? "1" : "",
+    outer: outer ?? "", at: at ?? "",
   };
 }
 
@@ -29,7 +30,7 @@ export function taken(texts) {
     maxSum: summed(Number(texts.maxSum)),
     curves: texts.curves === "1", labels: texts.labels !== "0", system: texts.system === "1",
     cut: ["h1", "h2", "ratio"].includes(kind) && [value, lo, hi].every(parse) ? { kind, value, lo, hi } : null,
-    strip: ratio(texts.strip),
+    strip: ratio(texts.strip), outer: texts.outer || null, at: texts.at || null,
   };
 }
 

@@ -55,9 +55,11 @@ export class Tiles {
     const store = this.#layer(layer);
     const lost = (p) => store.lost.get(placeKey(p)) > performance.now();
     const open = places.filter((p) => !store.tiles.has(placeKey(p)) && !this.cost(layer, p) && !lost(p));
-    const ids = new Set(open.map((p) => `${key}/${placeKey(p)}`));
+    const asked = open.map((place) => ({ place, layer, id: `${key}/${placeKey(place)}` }));
+    const ids = new Set(asked.map(({ id }) => id));
     for (const [id, controller] of this.under) if (!ids.has(id)) controller.abort();
-    this.wanted = open.map((place) => ({ place, layer, id: `${key}/${placeKey(place)}` }));
+    // What is under way stands in line no more: it would be asked for again when it has come.
+    this.wanted = asked.filter(({ id }) => !this.under.has(id));
     this.#next();
   }
 
@@ -69,7 +71,7 @@ export class Tiles {
   #next() {
     while (this.under.size < AT_ONCE && this.wanted.length) {
       const { id, layer, place } = this.wanted.shift();
-      if (!this.under.has(id)) this.#load(id, layer, place);
+      this.#load(id, layer, place);
     }
   }
 
@@ -142,13 +144,8 @@ export class Tiles {
   /** A tile as a picture, its lowest row at the bottom; painted once for each palette. */
   picture(tile, layer, colours) {
     if (tile.picture && tile.colours === colours) return tile.picture;
-    const paint = painter(layer.what, colours, layer.frequency);
     const image = new ImageData(SIZE, SIZE);
-    const words = new Uint32Array(image.data.buffer);
-    for (let j = 0, at = 0; j < SIZE; j++) {
-      const row = (SIZE - 1 - j) * SIZE;
-      for (let i = 0; i < SIZE; i++, at += tile.each) words[row + i] = paint(tile.values[at]);
-    }
+    painter(layer.what, colours, layer.frequency)(tile.values, new Uint32Array(image.data.buffer), SIZE);
     tile.picture ??= Object.assign(document.createElement("canvas"), { width: SIZE, height: SIZE });
     tile.picture.getContext("2d").putImageData(image, 0, 0);
     tile.colours = colours;
