@@ -6,12 +6,14 @@ them with the commands that they come from.
 """
 
 import json
+import re
 import shlex
 import subprocess
 import sys
 import textwrap
 import time
 from fractions import Fraction
+from math import gcd
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -80,6 +82,8 @@ def shown(found, form):
         return f"{found:,}".replace(",", "\\,")
     if kind == "text":
         return found
+    if kind == "all":
+        return r"\text{all}" if found == 1 else f"{100 * float(found):.6f}\\,\\%"
     if kind == "percent":
         return f"{100 * float(found):.{digits[0]}f}\\,\\%"
     if isinstance(found, dict):
@@ -93,6 +97,27 @@ def shown(found, form):
     return f"{mantissa} \\times 10^{{{int(power)}}}" if power else mantissa
 
 
+def references(name):
+    """A macro for the label of each table of a document: its name, and a letter from the second one on."""
+    labels = re.findall(r"\\label\{(tab:[^}]*)\}", (BUILD / name).read_text())
+    stem = f"Ref{Path(name).stem.capitalize()}"
+    return [f"\\newcommand{{\\{stem}{'' if n == 0 else chr(ord('A') + n)}}}{{\\ref{{{label}}}}}" for n, label in enumerate(labels)]
+
+
+def counts(document):
+    """The closings by p + q, in two columns: ratios, with min(p, q) > 2, with a closing, closings, below the Verlet limit."""
+    rows = []
+    for total in range(3, int(document["input"]["max_sum"]) + 1):
+        ratios = [(p, total - p) for p in range(1, total) if gcd(p, total) == 1]
+        own = [closing for closing in document["closings"] if closing["p"] + closing["q"] == total]
+        ratios_closing = {(closing["p"], closing["q"]) for closing in own}
+        assert ratios_closing <= set(ratios)
+        below = sum(closing["below_verlet"] for closing in own)
+        rows.append([total, len(ratios), sum(min(ratio) > 2 for ratio in ratios), len(ratios_closing), len(own), below])
+    half = len(rows) // 2
+    return "".join(" & ".join(map(str, left + right)) + r" \\" + "\n" for left, right in zip(rows[:half], rows[half:], strict=True))
+
+
 def main(program):
     BUILD.mkdir(exist_ok=True)
     commands, seconds = dict(lines("documents.txt")), {}
@@ -104,15 +129,17 @@ def main(program):
         text = shown(value(json.loads((BUILD / f"{name}.json").read_text()), path), form)
         macros.append(f"\\newcommand{{\\{macro}}}{{\\ensuremath{{{text}}}}}")
         rows.append(f"\\texttt{{{macro}}} & ${text}$ & \\texttt{{{path.replace('_', chr(92) + '_')}}} & \\texttt{{{name}}} \\\\")
+    (BUILD / "counts.tex").write_text(counts(json.loads((BUILD / "closings.json").read_text())))
+    macros += [macro for name in commands if name.endswith(".tex") for macro in references(name)]
     pairs = json.loads((BUILD / "map1000.json").read_text())["pairs"]
     rate = f"{pairs / seconds['map1000'] / 1e6:.1f}"
     macros.append(f"\\newcommand{{\\PairsASecond}}{{\\ensuremath{{{rate}}}}}")
     (BUILD / "numbers.tex").write_text("\n".join(macros) + "\n")
     (BUILD / "provenance.tex").write_text("\n".join(rows) + "\n")
     escape = str.maketrans({"^": r"\^{}", "_": r"\_", "&": r"\&", "%": r"\%", "#": r"\#"})
-    said = {name: arguments.removeprefix("../") if arguments.startswith(PUBLISHED) else f"kickdrift {arguments}"
+    said = {name: arguments.removeprefix("../") if arguments.startswith(PUBLISHED) else f"kickdrift {arguments.replace('../data', 'data')}"
             for name, arguments in commands.items()}
-    told = (rf"\item[\texttt{{{name}}}] \texttt{{{line.translate(escape)}}}" for name, line in said.items())
+    told = (rf"\item[{name}] \texttt{{{line.translate(escape)}}}" for name, line in said.items())
     (BUILD / "commands.tex").write_text("\n".join(told).replace("--", "-{}-") + "\n")
 
 

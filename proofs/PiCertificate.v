@@ -4,6 +4,10 @@
     pi/4 = 2 atan(1/3) + atan(1/7), the half period's matrix by intervals with integer ends over one power of two; where the
     four signs come out definite, they decide. So only the open kinds can be proven: elliptic and hyperbolic.
 
+    Kick by kick an interval loses a bit or two at every kick, whatever the orbit does. So only a few kicks are made one by
+    one; such blocks are multiplied in pairs, these in pairs, and so on: then the loss grows with the logarithm of their
+    number, and 128 bits do for thousands of kicks.
+
     - [pi_bounds]       integers about w pi;
     - [check_pi]        the computation, a boolean;
     - [certificate_pi]  check_pi = true proves the verdict about the real full-period propagator;
@@ -21,12 +25,14 @@ Open Scope Z_scope.
 Record iv := Iv { lo : Z; hi : Z }.
 
 Definition up (n d : Z) := - (- n / d).
+(** x / w for a power of two: its bits are dropped, which takes no division. *)
+Definition down (w x : Z) := Z.shiftr x (Z.log2 w).
 Definition iadd (a b : iv) := Iv (lo a + lo b) (hi a + hi b).
 Definition isub (a b : iv) := Iv (lo a - hi b) (hi a - lo b).
 Definition iscale (t : Z) (a : iv) := Iv (t * lo a) (t * hi a).
 Definition imul (w : Z) (a b : iv) :=
   let x := lo a * lo b in let y := lo a * hi b in let z := hi a * lo b in let u := hi a * hi b in
-  Iv (Z.min (Z.min x y) (Z.min z u) / w) (up (Z.max (Z.max x y) (Z.max z u)) w).
+  Iv (down w (Z.min (Z.min x y) (Z.min z u))) (- down w (- Z.max (Z.max x y) (Z.max z u))).
 Definition iinv (w : Z) (a : iv) := Iv (w * w / hi a) (up (w * w) (lo a)).
 Definition iratio (w : Z) (c : Q) := Iv (Qnum c * w / QDen c) (up (Qnum c * w) (QDen c)).
 Fixpoint ipow (w : Z) (a : iv) (n : nat) := match n with O => Iv w w | S n' => imul w a (ipow w a n') end.
@@ -47,6 +53,33 @@ Definition ikick (w : Z) (n : iv) (M : imat) :=
   IMat (iA M) (iB M) (isub (iC M) (imul w n (iA M))) (isub (iD M) (imul w n (iB M))).
 Definition ihalf (p q : Z) (n1 n2 : iv) (j : Z) :=
   iadd (if j mod (2 * q) =? 0 then n1 else Iv 0 0) (if j mod (2 * p) =? 0 then n2 else Iv 0 0).
+
+(** Products of blocks: the last block, its kicks, and before it products of 1, 2, 4, ... blocks, where there are such. *)
+Definition imat_mul (w : Z) (M N : imat) :=
+  IMat (iadd (imul w (iA M) (iA N)) (imul w (iB M) (iC N))) (iadd (imul w (iA M) (iB N)) (imul w (iB M) (iD N)))
+       (iadd (imul w (iC M) (iA N)) (imul w (iD M) (iC N))) (iadd (imul w (iC M) (iB N)) (imul w (iD M) (iD N))).
+Fixpoint push (w : Z) (M : imat) (stack : list (option imat)) :=
+  match stack with
+  | [] => [Some M]
+  | None :: rest => Some M :: rest
+  | Some N :: rest => None :: push w (imat_mul w M N) rest
+  end.
+Fixpoint collect (w : Z) (M : imat) (stack : list (option imat)) :=
+  match stack with
+  | [] => M
+  | None :: rest => collect w M rest
+  | Some N :: rest => collect w (imat_mul w M N) rest
+  end.
+
+Record blocks := Blocks { block : imat; kicks : nat; earlier : list (option imat) }.
+Definition ione (w : Z) := IMat (Iv w w) (Iv 0 0) (Iv 0 0) (Iv w w).
+Definition bdrift (t : Z) (X : blocks) := Blocks (idrift t (block X)) (kicks X) (earlier X).
+Definition bkick (w : Z) (n : iv) (X : blocks) :=
+  let M := ikick w n (block X) in
+  match kicks X with
+  | O => Blocks (ione w) 7 (push w M (earlier X))
+  | S more => Blocks M more (earlier X)
+  end.
 
 Definition open_kind (M : imat) (k : kind) : bool :=
   match k with
@@ -72,9 +105,9 @@ Definition check_pi (bits : Z) (k : kind) (p q : nat) (h1 L1 h2 L2 : Q * Z) : bo
   (1 <=? p)%nat && (1 <=? q)%nat && (Nat.gcd p q =? 1)%nat &&
   (0 <? Qnum (fst h1)) && (0 <? Qnum (fst h2)) && (snd h1 =? snd h2) &&
   Qeq_bool (inject_Z zp * fst h1) (inject_Z zq * fst h2) && (0 <? w) && (0 <? lo pi) &&
-  match run zp zq idrift (fun j => ikick w (ihalf zp zq n1 n2 j)) (fun j => ikick w (iscale 2 (ihalf zp zq n1 n2 j)))
-          (p + q) 0 (ikick w (iadd n1 n2) (IMat (Iv w w) (Iv 0 0) (Iv 0 0) (Iv w w))) with
-  | Some M => open_kind M k
+  match run zp zq bdrift (fun j => bkick w (ihalf zp zq n1 n2 j)) (fun j => bkick w (iscale 2 (ihalf zp zq n1 n2 j)))
+          (p + q) 0 (bkick w (iadd n1 n2) (Blocks (ione w) 7 [])) with
+  | Some X => open_kind (collect w (block X) (earlier X)) k
   | None => false
   end.
 
@@ -112,6 +145,7 @@ Qed.
 Section Intervals.
 Variable w : Z.
 Hypothesis w_pos : (0 < w)%Z.
+Hypothesis w_power : w = (2 ^ Z.log2 w)%Z.
 Let W : 0 < IZR w.
 Proof. now apply IZR_lt. Qed.
 
@@ -130,9 +164,12 @@ Proof. unfold encloses; simpl; rewrite !minus_IZR; lra. Qed.
 Lemma enclose_scale t a x : (0 <= t)%Z -> encloses w a x -> encloses w (iscale t a) (IZR t * x).
 Proof. intros T; apply IZR_le in T; unfold encloses; simpl; rewrite !mult_IZR; nra. Qed.
 
+Lemma down_div x : down w x = (x / w)%Z.
+Proof. unfold down; rewrite Z.shiftr_div_pow2 by apply Z.log2_nonneg; now rewrite <- w_power. Qed.
+
 Lemma enclose_mul a b x y : encloses w a x -> encloses w b y -> encloses w (imul w a b) (x * y).
 Proof.
-  intros A B; unfold imul.
+  intros A B; unfold imul; rewrite !down_div.
   set (p1 := (lo a * lo b)%Z); set (p2 := (lo a * hi b)%Z); set (p3 := (hi a * lo b)%Z); set (p4 := (hi a * hi b)%Z).
   set (l := Z.min (Z.min p1 p2) (Z.min p3 p4)); set (u := Z.max (Z.max p1 p2) (Z.max p3 p4)).
   assert (Product : IZR l <= IZR w * x * (IZR w * y) <= IZR u).
@@ -143,7 +180,7 @@ Proof.
         rewrite Ropp_mult_distr_l_reverse; apply Ropp_le_contravar; rewrite <- mult_IZR; apply IZR_le;
         unfold u, p1, p2, p3, p4; lia. }
   assert (E : IZR w * (x * y) = IZR w * x * (IZR w * y) / IZR w) by (field; lra).
-  unfold encloses; simpl; fold l u; rewrite E; split.
+  fold l u; change (- (- u / w))%Z with (up u w); unfold encloses; cbv [lo hi]; rewrite E; split.
   - apply Rle_trans with (1 := down_le l w w_pos); apply Rmult_le_compat_r; [left; now apply Rinv_0_lt_compat | lra].
   - apply Rle_trans with (2 := up_ge u w w_pos); apply Rmult_le_compat_r; [left; now apply Rinv_0_lt_compat | lra].
 Qed.
@@ -247,6 +284,56 @@ Proof.
   rewrite !Rmult_1_l, !Rmult_0_l, !Rplus_0_r; auto 7 using enclose_sub, enclose_mul.
 Qed.
 
+Lemma enclose_one_matrix : encloses_matrix (ione w) one.
+Proof. repeat split; simpl; try apply enclose_one; apply enclose_zero. Qed.
+
+Lemma enclose_product Y Z M N : encloses_matrix Y M -> encloses_matrix Z N -> encloses_matrix (imat_mul w Y Z) (M ** N).
+Proof.
+  intros (A & B & C & D) (A' & B' & C' & D'); unfold encloses_matrix, mul, imat_mul; cbn [iA iB iC iD mA mB mC mD].
+  auto 8 using enclose_add, enclose_mul.
+Qed.
+
+(** The product of a stack, the latest factor first. *)
+Fixpoint stacked (stack : list (option imat)) (M : mat) : Prop :=
+  match stack with
+  | [] => M = one
+  | None :: rest => stacked rest M
+  | Some Z :: rest => exists L N, encloses_matrix Z L /\ stacked rest N /\ M = L ** N
+  end.
+
+Lemma push_sound stack : forall Z L N, encloses_matrix Z L -> stacked stack N -> stacked (push w Z stack) (L ** N).
+Proof.
+  induction stack as [|[Y|] rest IH]; intros Z L N E S; simpl in S |- *.
+  - exists L, one; subst N; auto.
+  - destruct S as (K & P & F & R & ->); rewrite mul_assoc; apply IH; [now apply enclose_product | assumption].
+  - now exists L, N.
+Qed.
+
+Lemma collect_sound stack : forall Z L N, encloses_matrix Z L -> stacked stack N -> encloses_matrix (collect w Z stack) (L ** N).
+Proof.
+  induction stack as [|[Y|] rest IH]; intros Z L N E S; simpl in S |- *.
+  - subst N; now rewrite mul_one_r.
+  - destruct S as (K & P & F & R & ->); rewrite mul_assoc; apply IH; [now apply enclose_product | assumption].
+  - now apply IH.
+Qed.
+
+Definition multiplied (X : blocks) (M : mat) :=
+  exists L N, encloses_matrix (block X) L /\ stacked (earlier X) N /\ M = L ** N.
+
+Lemma multiplied_drift t X M : (0 <= t)%Z -> multiplied X M -> multiplied (bdrift t X) (drift (IZR t) ** M).
+Proof.
+  intros T (L & N & E & R & ->); exists (drift (IZR t) ** L), N.
+  split; [now apply enclose_drift | split; [assumption | apply mul_assoc]].
+Qed.
+
+Lemma multiplied_kick n k X M : encloses w n k -> multiplied X M -> multiplied (bkick w n X) (kick k ** M).
+Proof.
+  intros K (L & N & E & R & ->); pose proof (enclose_kick _ _ _ _ K E) as F; unfold bkick.
+  destruct (kicks X); rewrite mul_assoc.
+  - exists one, (kick k ** L ** N); split; [apply enclose_one_matrix | split; [now apply push_sound | now rewrite mul_one_l]].
+  - now exists (kick k ** L), N.
+Qed.
+
 Lemma open_kind_sound k Z M : encloses_matrix Z M -> open_kind Z k = true -> row k M.
 Proof.
   intros (A & B & C & D).
@@ -281,6 +368,8 @@ Proof.
   apply Nat.leb_le in Pp, Pq; apply Nat.eqb_eq in G; apply Z.ltb_lt in H1, H2, Wp, Pip; apply Z.eqb_eq in E.
   apply Qeq_bool_eq, Qeq_eqR in T; rewrite !Q2R_mult, !Q2R_inject, <- !INR_IZR_INZ in T.
   pose proof PI_RGT_0 as Pi0.
+  assert (W2 : w = (2 ^ Z.log2 w)%Z).
+  { unfold w in *; destruct (Z.le_gt_cases 0 bits); [now rewrite Z.log2_pow2 | now rewrite Z.pow_neg_r in Wp]. }
   assert (Power : forall e, encloses w (ipower w pi e) (powerRZ PI e)).
   { intros [|n|n]; simpl; [now apply enclose_one | now apply enclose_pow, enclose_pi |].
     rewrite <- pow_inv; apply enclose_pow, enclose_inv; auto; now apply enclose_pi. }
@@ -303,26 +392,29 @@ Proof.
         unfold Q2R in Z; simpl in Z; lra. }
   pose proof (Half h1 L1 q Pq) as N1; pose proof (Half h2 L2 p Pp) as N2; fold n1 in N1; fold n2 in N2.
   assert (Steps : INR p * times_pi h1 = INR q * times_pi h2) by (unfold times_pi; rewrite <- !Rmult_assoc, T, E; reflexivity).
-  clearbody n1 n2; clear Half Power; clearbody w.
+  clearbody n1 n2; clear Half Power.
+  clearbody w.
   apply verdict_in_ticks; auto.
   set (k1 := times_pi h1 * _ * _) in *; set (k2 := times_pi h2 * _ * _) in *; clearbody k1 k2.
-  destruct (run _ _ _ _ _ _ _ _) as [M|] eqn:R; [|discriminate].
-  apply (open_kind_sound w Wp _ M); [|assumption].
+  destruct (run _ _ _ _ _ _ _ _) as [X|] eqn:R; [|discriminate].
+  apply (open_kind_sound w Wp _ (collect w (block X) (earlier X))); [|assumption].
   assert (Each : forall j, encloses w (ihalf (Z.of_nat p) (Z.of_nat q) n1 n2 (Z.of_nat j)) (two_clocks p q false false k1 k2 j / 2)).
   { intros j; unfold ihalf, two_clocks; rewrite <- !strikes_Z by assumption.
     replace (_ / 2) with ((if strikes q false j then k1 / 2 else 0) + (if strikes p false j then k2 / 2 else 0))
       by (destruct (strikes q false j), (strikes p false j); field).
     apply enclose_add; [destruct (strikes q false j) | destruct (strikes p false j)]; auto; apply enclose_zero. }
-  refine (run_sound p q k1 k2 Pp Pq _ _ _ (encloses_matrix w) (enclose_drift w) _ _ (p + q) 0 _ M _ _ R).
-  - intros j Z N B; now apply enclose_kick.
-  - intros j Z N B; apply enclose_kick; auto.
+  enough (Product : multiplied w X (propagator (schedule (two_clocks p q false false k1 k2) 1 (p * q)))).
+  { destruct Product as (L & N & F & T' & ->); now apply collect_sound. }
+  refine (run_sound p q k1 k2 Pp Pq _ _ _ (multiplied w) (multiplied_drift w) _ _ (p + q) 0 _ X _ _ R).
+  - intros j Z N B; now apply multiplied_kick.
+  - intros j Z N B; apply multiplied_kick; auto.
     replace (two_clocks p q false false k1 k2 j) with (2 * (two_clocks p q false false k1 k2 j / 2)) by field.
     apply enclose_scale; auto; lia.
   - nia.
   - change (Z.of_nat 0) with 0%Z.
     replace (kick _ ** propagator (schedule _ 1 0)) with (kick (k1 / 2 + k2 / 2) ** one).
-    + apply enclose_kick; auto; [now apply enclose_add|].
-      repeat split; simpl; auto using enclose_one, enclose_zero; try apply enclose_one; try apply enclose_zero; assumption.
+    + apply multiplied_kick; auto; [now apply enclose_add|].
+      exists one, one; simpl; rewrite mul_one_l; auto using enclose_one_matrix.
     + f_equal; f_equal; unfold two_clocks, strikes; rewrite !Nat.mod_0_l by lia; simpl; field.
 Qed.
 

@@ -34,6 +34,39 @@ fn the_examples_are_what_the_command_writes() {
     assert_eq!(kinds.len(), 7);
 }
 
+/// As many kicks as a certificate may have: elliptic and hyperbolic, with pi and without, and a tongue's edges. Needs coqc and the
+/// compiled theory (make -C proofs theory); half an hour of Coq's time.
+#[test]
+#[ignore = "half an hour of Coq"]
+fn what_is_allowed_is_proven() {
+    let proofs = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs");
+    let folder = std::env::temp_dir().join(format!("kickdrift-certificates-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let proven = |name: &str, text: String| {
+        let file = folder.join(name);
+        std::fs::write(&file, text).unwrap();
+        let check =
+            std::process::Command::new("sh").arg(proofs.join("tools/certificate.sh")).arg(&file).output();
+        let check = check.unwrap();
+        assert!(check.status.success(), "{name}: {}", String::from_utf8_lossy(&check.stdout));
+    };
+    let x = |text: &str| parse("x", text).unwrap();
+    for (name, lambda1, lambda2, h1, h2) in [
+        ("pi_elliptic.v", "pi^2", "pi^2/25", "2499/10000", "2501/10000"),
+        ("pi_hyperbolic.v", "pi^2", "pi^2/25", "631/1000", "4369/1000"),
+        ("hyperbolic.v", "10", "2/5", "631/1000", "4369/1000"),
+    ] {
+        let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
+        assert_eq!(oscillator.clocks().p() + oscillator.clocks().q(), 5000, "{name}");
+        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        proven(name, coq(&oscillator, verdict, name).unwrap());
+    }
+    let (ratio, rho) = ("667/333".parse().unwrap(), x("1/25").as_rational().unwrap());
+    let gap = Tongues::new(ratio, &rho).unwrap().gap(333).unwrap();
+    proven("edges.v", coq_of_tongue(ratio, &rho, &gap, "edges.v").unwrap());
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 #[test]
 fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
     let x = |text: &str| parse("x", text).unwrap();
