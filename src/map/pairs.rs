@@ -1,14 +1,19 @@
 //! Many pairs made of few quantities: each quantity is read once, so that a pair costs no exact arithmetic as long as doubles
 //! decide it.
 
+use std::ops::Range;
+
 use num_traits::ToPrimitive;
 
 use super::resources::Resources;
 use super::scattered::{Source, decide_each};
+use super::work::LANES;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Ratio, Rational, Real, Sign, Twofold};
-use crate::orbit::floquet::Floquet;
+use crate::orbit::strengths::Strengths;
 use crate::propagator::{Oscillator, TwoClocks};
+use crate::vector::each;
+use crate::vector::instructions::{Instructions, Task};
 use crate::verdict::{Decision, Limits, decide};
 
 /// The quantities' names, and what those must hear that are not positive.
@@ -44,7 +49,7 @@ struct Known {
     /// Within 2^-103; `None` for 0 and far from 1.
     near: Option<Twofold>,
     /// c π^k as the numerator and the denominator of c > 0, below 2^32, and k.
-    monomial: Option<(u64, u64, i32)>,
+    monomial: Option<(u32, u32, i32)>,
 }
 
 impl Pairs {
@@ -109,17 +114,6 @@ impl Pairs {
         let [lambda1, lambda2, h1, h2] = self.known(n).map(|known| known.exact.clone());
         Ok(Oscillator::new(lambda1, lambda2, h1, h2)?.clocks())
     }
-
-    /// The strengths are products of three: within 3 2^-103 + 2 2^-101 < 2^-99.
-    fn in_doubles(&self, n: usize) -> Option<Floquet> {
-        let [lambda1, lambda2, h1, h2] = self.known(n);
-        let ratio = h1.below(h2)?;
-        let [lambda1, lambda2, h1, h2] = [lambda1.near?, lambda2.near?, h1.near?, h2.near?];
-        let both = h1.times(h2);
-        let own = || Floquet::in_doubles(ratio, h1.times(h1).times(lambda1), both.times(lambda2));
-        let other = || Floquet::in_doubles(ratio.inverse(), h2.times(h2).times(lambda2), both.times(lambda1));
-        if ratio.p() >= ratio.q() { own().or_else(other) } else { other().or_else(own) }
-    }
 }
 
 impl Source for Pairs {
@@ -127,9 +121,17 @@ impl Source for Pairs {
         self.picked[0].len()
     }
 
-    fn floquet(&self, n: usize) -> Result<Option<Floquet>> {
-        let quick = self.in_doubles(n);
-        if quick.is_some() { Ok(quick) } else { Ok(Floquet::new(&self.clocks(n)?)) }
+    fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
+        let (instructions, end) = (Instructions::best(), part.end);
+        for first in part.step_by(LANES) {
+            let known: [_; LANES] = std::array::from_fn(|i| self.known((first + i).min(end - 1)));
+            let found = instructions.perform(Combine(&known));
+            (first..end).zip(found).for_each(|(n, pair)| {
+                if let Some(pair) = pair {
+                    each(n, pair)
+                }
+            });
+        }
     }
 
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
@@ -145,19 +147,80 @@ impl Known {
     fn new(exact: Laurent) -> Known {
         let small = |x: &Rational| {
             let (p, q) = (x.numer().to_u32()?, x.denom().to_u32()?);
-            (p > 0).then_some((u64::from(p), u64::from(q)))
+            (p > 0).then_some((p, q))
         };
         let monomial = exact.as_monomial().and_then(|(k, c)| small(c).map(|(p, q)| (p, q, k)));
         let near = match monomial {
-            Some((p, q, 0)) => Twofold::quotient(p, q),
+            Some((p, q, 0)) => Twofold::quotient(p.into(), q.into()),
             _ => Twofold::near(&exact.enclosure(Twofold::ENCLOSURE_BITS)),
         };
         Known { exact, near, monomial }
     }
+}
 
-    /// `other`/self in lowest terms, where both are small.
-    fn below(&self, other: &Known) -> Option<Ratio> {
-        let ((p1, q1, k1), (p2, q2, k2)) = (self.monomial?, other.monomial?);
-        if k1 == k2 { Ratio::new(p2 * q1, q2 * p1).ok() } else { None }
+/// Λ1, Λ2, h1, h2 of as many pairs as run side by side, to be combined without a branch.
+struct Combine<'a>(&'a [[&'a Known; 4]; LANES]);
+
+impl Task for Combine<'_> {
+    type Output = [Option<Strengths>; LANES];
+
+    /// Strengths are products of three: within 3 2^-103 + 2 2^-101 < 2^-99.
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let mut near = [[[0.0; LANES]; 2]; 4];
+        let (mut above, mut below) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+        let mut serves = [false; LANES];
+        for (i, known) in self.0.iter().enumerate() {
+            let (Some(first), Some(second)) = (known[2].monomial, known[3].monomial) else { continue };
+            serves[i] = first.2 == second.2 && known.iter().all(|own| own.near.is_some());
+            for (to, own) in near.iter_mut().zip(known) {
+                let own = own.near.unwrap_or(Twofold::PI);
+                (to[0][i], to[1][i]) = (own.hi, own.lo);
+            }
+            for (k, (p, q, _)) in [first, second].into_iter().enumerate() {
+                (above[k][i], below[k][i]) = (f64::from(p), f64::from(q));
+            }
+        }
+        // Each step is in lowest terms already: two short common divisors instead of a long one.
+        let (over, under) = (gcd(&above), gcd(&below));
+        let p: [f64; LANES] = each(|i| (above[1][i] / over[i]) * (below[0][i] / under[i]));
+        let q: [f64; LANES] = each(|i| (above[0][i] / over[i]) * (below[1][i] / under[i]));
+        let two = |k: usize, i: usize| Twofold { hi: near[k][0][i], lo: near[k][1][i] };
+        let mut products = [[[0.0; LANES]; 4]; 2];
+        for i in 0..LANES {
+            let ([lambda1, lambda2], [h1, h2]) = ([two(0, i), two(1, i)], [two(2, i), two(3, i)]);
+            let both = h1.times(h2);
+            let first = (h1.times(h1).times(lambda1), both.times(lambda2));
+            let second = (h2.times(h2).times(lambda2), both.times(lambda1));
+            for (to, (s, kick)) in products.iter_mut().zip([first, second]) {
+                (to[0][i], to[1][i], to[2][i], to[3][i]) = (s.hi, s.lo, kick.hi, kick.lo);
+            }
+        }
+        std::array::from_fn(|i| {
+            // What is beyond 2^53 may be rounded.
+            let exact = serves[i] && p[i].max(q[i]) < (1u64 << 53) as f64;
+            let ratio = exact.then(|| Ratio::of_coprime(p[i] as u64, q[i] as u64)).flatten()?;
+            let of = |k: usize| {
+                let two = |n: usize| Twofold { hi: products[k][n][i], lo: products[k][n + 1][i] };
+                Some([two(0), two(2)])
+            };
+            Strengths::on_either(ratio, || of(0), || of(1))
+        })
     }
+}
+
+/// The greatest common divisors of whole numbers below 2^32, by Euclid: their quotients are no integer rounded up, being 1/b below
+/// the next one at least.
+#[inline(always)]
+fn gcd([a, b]: &[[f64; LANES]; 2]) -> [f64; LANES] {
+    let (mut a, mut b) = (*a, *b);
+    while b.iter().fold(0.0, |most, &b| if b > most { b } else { most }) > 0.0 {
+        let rest: [f64; LANES] = each(|i| {
+            let whole = (a[i] / b[i]).floor();
+            if b[i] > 0.0 { (-whole).mul_add(b[i], a[i]) } else { 0.0 }
+        });
+        a = each(|i| if b[i] > 0.0 { b[i] } else { a[i] });
+        b = rest;
+    }
+    a
 }

@@ -3,16 +3,17 @@
 use std::ops::Range;
 
 use super::resources::Resources;
-use super::work::{LANES, in_groups};
+use super::work::{LANES, by_counting, in_groups};
 use crate::error::Result;
 use crate::orbit::filter::UNDECIDED;
-use crate::orbit::floquet::{Floquet, Pair};
+use crate::orbit::strengths::Strengths;
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
 
-/// Pairs that are sorted by their numbers of updates together: enough for each to find company.
-const TOGETHER: usize = 1 << 14;
+/// Pairs that are sorted by their numbers of updates and their strengths together: enough for each to find company, few enough for
+/// the processor's caches.
+const TOGETHER: usize = 1 << 15;
 
 /// The verdicts of any pairs, in their order: those of [`decide`], with pairs of about the same number of updates run
 /// side by side.
@@ -41,8 +42,8 @@ pub fn decide_all<S: Decidable + Sync>(
 pub(super) trait Source: Sync {
     fn count(&self) -> usize;
 
-    /// The n-th pair in Floquet coordinates, where these serve.
-    fn floquet(&self, n: usize) -> Result<Option<Floquet>>;
+    /// Hands these pairs on in doubles, in their order and with their numbers, without those that doubles do not serve.
+    fn strengths(&self, part: Range<usize>, each: impl FnMut(usize, Strengths));
 
     /// Its verdict by the ladder.
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision>;
@@ -53,8 +54,12 @@ impl<S: Decidable + Sync> Source for [TwoClocks<S>] {
         self.len()
     }
 
-    fn floquet(&self, n: usize) -> Result<Option<Floquet>> {
-        Ok(Floquet::new(&self[n]))
+    fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
+        part.for_each(|n| {
+            if let Some(pair) = Strengths::of(&self[n]) {
+                each(n, pair);
+            }
+        });
     }
 
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
@@ -80,21 +85,28 @@ fn together<P: Source + ?Sized>(
 ) -> Result<Vec<Decision>> {
     resources.go_on()?;
     let limits = &resources.limits;
-    let floquets: Vec<Option<Floquet>> = part.clone().map(|n| source.floquet(n)).collect::<Result<_>>()?;
     // Longer ones than the limits allow are left to the ladder, which says so.
-    let allowed = |floquet: &Floquet| floquet.updates() <= limits.kicks;
-    let mut order: Vec<usize> =
-        (0..floquets.len()).filter(|&n| floquets[n].as_ref().is_some_and(allowed)).collect();
-    order.sort_by_key(|&n| floquets[n].as_ref().map(Floquet::updates));
-    let mut found = vec![UNDECIDED; floquets.len()];
-    in_groups(&order, |mut group, order| {
-        for positions in order.chunks(LANES) {
-            resources.go_on()?;
-            let pairs: Vec<Pair> =
-                positions.iter().filter_map(|&n| floquets[n].as_ref().map(Floquet::pair)).collect();
-            positions.iter().zip(group.verdicts(&pairs)).for_each(|(&n, verdict)| found[n] = verdict);
+    let allowed = |pair: &Strengths| pair.updates() < limits.kicks;
+    let (first, mut pairs) = (part.start, Vec::with_capacity(part.len()));
+    source.strengths(part.clone(), |n, pair| {
+        if allowed(&pair) {
+            pairs.push((pair, (n - first) as u32));
         }
-        Ok(order.iter().copied().filter(|&n| found[n] == UNDECIDED).collect())
+    });
+    let key = |(pair, _): &(Strengths, u32)| pair.updates().min(1 << 27) as u32 * 16 + pair.class() as u32;
+    let order = by_counting(&pairs.iter().map(key).collect::<Vec<u32>>());
+    let mut found = vec![UNDECIDED; part.len()];
+    let mut together = Vec::with_capacity(LANES);
+    in_groups(&order, |mut group, order| {
+        let place = |n: u32| pairs[n as usize].1 as usize;
+        for order in order.chunks(LANES) {
+            resources.go_on()?;
+            together.clear();
+            together.extend(order.iter().map(|&n| pairs[n as usize].0));
+            let verdicts = group.verdicts_of(&together);
+            order.iter().zip(verdicts).for_each(|(&n, verdict)| found[place(n)] = verdict);
+        }
+        Ok(order.iter().copied().filter(|&n| found[place(n)] == UNDECIDED).collect())
     })?;
     let decided = |(verdict, n)| match verdict {
         UNDECIDED => {

@@ -194,7 +194,7 @@ impl<'a> Work<'a> {
 }
 
 /// The positions of the keys in increasing order, equal keys in order of position.
-fn by_counting(keys: &[u32]) -> Vec<u32> {
+pub(super) fn by_counting(keys: &[u32]) -> Vec<u32> {
     let largest = keys.iter().copied().max().unwrap_or(0) as usize;
     if largest > 8 * keys.len() + 1024 {
         let mut order: Vec<u32> = (0..keys.len() as u32).collect();

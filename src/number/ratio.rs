@@ -37,11 +37,15 @@ impl Ratio {
     /// A zero, or 2^62 and more above or below the line.
     pub fn new(p: u64, q: u64) -> Result<Self> {
         let gcd = p.gcd(&q).max(1);
+        Ratio::of_coprime(p / gcd, q / gcd)
+            .ok_or_else(|| Error::input("ratio", format!("{p}/{q}"), "p and q must lie between 1 and 2^62"))
+    }
+
+    /// p/q, in lowest terms already; `None` for a zero, or 2^62 and more.
+    pub(crate) fn of_coprime(p: u64, q: u64) -> Option<Self> {
         let small = |n: u64| (1..1 << 62).contains(&n);
-        if !small(p / gcd) || !small(q / gcd) {
-            return Err(Error::input("ratio", format!("{p}/{q}"), "p and q must lie between 1 and 2^62"));
-        }
-        Ok(Ratio { p: p / gcd, q: q / gcd })
+        debug_assert!(p == 0 || q == 0 || p.gcd(&q) == 1);
+        (small(p) && small(q)).then_some(Ratio { p, q })
     }
 
     /// The numerator: the number of fast kicks in a period.

@@ -34,6 +34,7 @@ impl Twofold {
     }
 
     /// A half of it, exactly.
+    #[inline(always)]
     pub fn half(self) -> Twofold {
         Twofold { hi: 0.5 * self.hi, lo: 0.5 * self.lo }
     }

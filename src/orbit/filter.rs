@@ -5,7 +5,8 @@
 
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Lanes, Orbits, Watch};
+use super::kernel::{Constants, Lanes, Orbits, Watch};
+use super::strengths::{Strengths, constants};
 use super::winding;
 use crate::number::{Sign, U};
 use crate::propagator::PartialSigns;
@@ -147,6 +148,14 @@ impl<const L: usize> Group<L> {
             .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }
 
+    /// The same of pairs in doubles.
+    pub fn verdicts_of(&mut self, pairs: &[Strengths]) -> [u8; L] {
+        let extremes = self.instructions.perform(StartMany(pairs, &mut self.lanes, &mut self.left));
+        let certificate = self.advance::<SignsOnly>(extremes, pairs.iter().map(Strengths::updates).max());
+        certificate
+            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+    }
+
     /// The signs as they come out, certified or not: for the benchmark alone.
     pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
         let certificate = self.run::<Bare>(pairs).map(Certificate::void);
@@ -155,23 +164,30 @@ impl<const L: usize> Group<L> {
     }
 
     fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
-        let (beta, slope) = self.instructions.perform(Start(pairs, &mut self.lanes));
-        let steps = pairs.iter().map(|pair| pair.updates).max().unwrap_or(0) + 1;
-        let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
-        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong);
-        // Who does not look needs no blocks.
-        let block = if W::CERTIFY { certificate.block } else { u64::MAX };
-        self.lanes.advance::<W>(self.instructions, block);
+        let extremes = self.instructions.perform(Start(pairs, &mut self.lanes));
+        let certificate = self.advance::<W>(extremes, pairs.iter().map(|pair| pair.updates).max())?;
         for (i, pair) in pairs.iter().enumerate() {
             let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
             (self.left[0][i], self.left[1][i]) = (cos, sin);
         }
         Some(certificate)
     }
+
+    /// All updates of what has been started, with the certificate for its strongest kick, steepest slope and most updates.
+    fn advance<W: Watch>(&mut self, (beta, slope): (f64, f64), most: Option<u64>) -> Option<Certificate> {
+        let steps = most.unwrap_or(0) + 1;
+        let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
+        (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong);
+        // Who does not look needs no blocks.
+        let block = if W::CERTIFY { certificate.block } else { u64::MAX };
+        self.lanes.advance::<W>(self.instructions, block);
+        Some(certificate)
+    }
 }
 
 /// What is compiled for each instruction set.
 struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
+struct StartMany<'a, const L: usize>(&'a [Strengths], &'a mut Lanes<L>, &'a mut [[f64; L]; 2]);
 struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
 
@@ -181,7 +197,19 @@ impl<const L: usize> Task for Start<'_, L> {
     /// The strongest kick and the steepest tan(θ/2).
     #[inline(always)]
     fn run(self) -> (f64, f64) {
-        self.1.start(self.0);
+        self.1.start(Constants::gather(self.0));
+        (self.1.strongest(), self.1.steepest())
+    }
+}
+
+impl<const L: usize> Task for StartMany<'_, L> {
+    type Output = (f64, f64);
+
+    #[inline(always)]
+    fn run(self) -> (f64, f64) {
+        let (constants, left) = constants(self.0);
+        self.1.start(constants);
+        *self.2 = left;
         (self.1.strongest(), self.1.steepest())
     }
 }

@@ -22,7 +22,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use crate::number::{Ball, Ratio, Real, Sign, Twofold};
+use crate::number::{Ball, Real, Sign, Twofold};
 use crate::propagator::TwoClocks;
 
 /// Bits of the strengths; the constants are made of two doubles each and end as one.
@@ -71,15 +71,15 @@ impl Base {
         Base::of(half, start, first..=last)
     }
 
-    /// The same, many times faster, from s in two doubles, within 2^-99; `None` too for few steps a turn, where 4 − s
-    /// has lost digits, and for long turns.
+    /// The same, many times faster, from s in two doubles, within 2^-99; `None` too so near 4 that 4 − s has lost digits, and for
+    /// long turns.
     ///
-    /// 4 − s is within 2^-97 and at least 2^-4, so its root is within 2^-96 and e^{iθ/2} within 2^-96, e^{inθ/2} within
-    /// n 2^-95: for n below 2^36 less than 2^-58.
+    /// 4 − s is within 2^-97 and at least 2^-20, so its root is within 2^-88, a half of that and e^{iθ/2} within 2^-88, and
+    /// e^{inθ/2} within n 2^-87: for n below 2^28 less than 2^-59.
     fn quick((hi, lo): (f64, f64), first: u64, last: u64) -> Option<Base> {
         let s = Twofold { hi, lo };
         let rest = Twofold { hi: 4.0, lo: 0.0 }.accurate_difference(s);
-        if !(hi >= TINY && rest.hi >= 0.0625 && last < 1 << 36) {
+        if !(TINY..=NEAR_LIMIT).contains(&hi) || last >= LONGEST_QUICK {
             return None;
         }
         let half = Phase { re: rest.root().half(), im: s.root().half() };
@@ -106,20 +106,35 @@ impl Base {
 
 /// e^{iα} in two doubles a component.
 #[derive(Clone, Copy)]
-struct Phase {
-    re: Twofold,
-    im: Twofold,
+pub(super) struct Phase {
+    pub re: Twofold,
+    pub im: Twofold,
 }
 
 impl Phase {
+    pub const ONE: Phase = Phase { re: Twofold { hi: 1.0, lo: 0.0 }, im: Twofold { hi: 0.0, lo: 0.0 } };
+
     /// To within 2^-97 absolutely.
     fn of(sharp: &Sharp) -> Option<Phase> {
         let component = |x: &Ball| Twofold::from_fixed(x, 100, 4);
         Some(Phase { re: component(&sharp.re)?, im: component(&sharp.im)? })
     }
 
+    /// e^{-iα}, exactly.
+    #[inline(always)]
+    pub fn conjugate(self) -> Phase {
+        Phase { re: self.re, im: Twofold { hi: -self.im.hi, lo: -self.im.lo } }
+    }
+
+    /// Each component in one double.
+    #[inline(always)]
+    pub fn rounded(self) -> [f64; 2] {
+        [self.re.hi, self.im.hi]
+    }
+
     /// To within 2^-100 absolutely, beside what the factors are off.
-    fn times(self, other: Phase) -> Phase {
+    #[inline(always)]
+    pub fn times(self, other: Phase) -> Phase {
         Phase {
             re: self.re.times(other.re).minus(self.im.times(other.im)),
             im: self.re.times(other.im).plus(self.im.times(other.re)),
@@ -127,8 +142,7 @@ impl Phase {
     }
 
     fn power(self, n: u64) -> Phase {
-        let (zero, one) = (Twofold { hi: 0.0, lo: 0.0 }, Twofold { hi: 1.0, lo: 0.0 });
-        (0..64 - n.leading_zeros()).rev().fold(Phase { re: one, im: zero }, |power, bit| {
+        (0..64 - n.leading_zeros()).rev().fold(Phase::ONE, |power, bit| {
             let square = power.times(power);
             if n >> bit & 1 == 1 { square.times(self) } else { square }
         })
@@ -141,7 +155,11 @@ fn root_of_quarter(x: &Ball) -> Option<Twofold> {
 }
 
 /// [`Pair::modulus`] is below this.
-const LARGEST_MODULUS: u64 = 1 << 50;
+pub(super) const LARGEST_MODULUS: u64 = 1 << 50;
+
+/// [`Base::quick`] takes s up to this, and so many steps.
+pub(super) const NEAR_LIMIT: f64 = 4.0 - 2.0 / (1 << 20) as f64;
+pub(super) const LONGEST_QUICK: u64 = 1 << 28;
 
 /// Turns by more steps come from multiple precision.
 const LONGEST: u64 = 1 << 40;
@@ -153,7 +171,7 @@ const LONGEST: u64 = 1 << 40;
 fn turns(half: Phase, start: Phase, theta: f64, range: RangeInclusive<u64>) -> Vec<Turn> {
     let mut now = start;
     let turn = |n: u64| {
-        let turn = Turn::new([now.re.hi, now.im.hi], n as f64 * theta);
+        let turn = Turn::new(now.rounded(), n as f64 * theta);
         now = now.times(half);
         turn
     };
@@ -162,17 +180,25 @@ fn turns(half: Phase, start: Phase, theta: f64, range: RangeInclusive<u64>) -> V
 
 impl Turn {
     /// From e^{inθ/2} = cos + i sin, whose components are within 0.18u and one rounding.
-    ///
-    /// sin α = 2 sin cos: 2u · |2 sin cos| + 2 · 0.18u · √2 + u ≤ 3.6u. tan(α/2) = sin/cos where that is at most
-    /// 1: then cos ≥ 0.7, each of both is within 1.26u relatively beside 0.26u: 3.6u in all.
     fn new([cos, sin]: [f64; 2], angle: f64) -> Turn {
         // The nearest h of the parity that the octant gives.
         let odd = sin.abs() > cos.abs();
         let shift = f64::from(u8::from(odd));
         let half_turns = 2 * ((angle / (2.0 * FRAC_PI_2) - shift) / 2.0).round() as i64 + i64::from(odd);
-        let (tan, sign) = if odd { (-cos / sin, -2.0) } else { (sin / cos, 2.0) };
-        Turn { tan, sin: sign * sin * cos, half: [cos, sin], half_turns }
+        let (tan, sine) = shears([cos, sin]);
+        Turn { tan, sin: sine, half: [cos, sin], half_turns }
     }
+}
+
+/// tan(α/2) and sin α from e^{iα/2}, α reduced by half turns.
+///
+/// Components within 0.18u and one rounding: sin α = 2 sin cos is within 2u · |2 sin cos| + 2 · 0.18u · √2 + u ≤ 3.6u. tan(α/2) is
+/// sin/cos where that is at most 1: then cos ≥ 0.7, each of both is within 1.26u relatively beside 0.26u: 3.6u in all.
+#[inline(always)]
+pub(super) fn shears([cos, sin]: [f64; 2]) -> (f64, f64) {
+    let odd = sin.abs() > cos.abs();
+    let (over, under, sign) = if odd { (-cos, sin, -2.0) } else { (sin, cos, 2.0) };
+    (over / under, sign * sin * cos)
 }
 
 /// One pair's half period on its base: the other clock's kicks strike at the multiples of p/q base steps.
@@ -222,14 +248,6 @@ impl Floquet {
     pub fn new<S: Real>(clocks: &TwoClocks<S>) -> Option<Floquet> {
         let (own, other) = (|| Floquet::on_base(clocks), || Floquet::on_base(&clocks.swapped()));
         if clocks.p() >= clocks.q() { own().or_else(other) } else { other().or_else(own) }
-    }
-
-    /// The pair with the first clock as the base, from the two strengths in two doubles each, within 2^-99; `None` where that
-    /// does not suffice for the base.
-    pub fn in_doubles(ratio: Ratio, fast: Twofold, slow: Twofold) -> Option<Floquet> {
-        let ((p, q), whole) = (ratio.terms(), ratio.p() / ratio.q());
-        let base = Base::quick((fast.hi, fast.lo), whole.saturating_sub(1), whole + 1)?;
-        (within_range(slow.hi) && q < LARGEST_MODULUS).then_some(Floquet { base, p, q, kick: slow.hi })
     }
 
     /// The number of updates: the half kick at t = 0 and ⌊q/2⌋ more.
@@ -313,7 +331,7 @@ impl Sharp {
 }
 
 /// The comfortable range of doubles: nothing in it or made of it comes near an end.
-const TINY: f64 = 1e-30;
+pub(super) const TINY: f64 = 1e-30;
 
 fn comfortable(x: Twofold) -> Option<f64> {
     (TINY..1.0 / TINY).contains(&x.hi).then_some(x.hi)
@@ -326,7 +344,7 @@ pub fn ordinary(x: &Ball) -> Option<f64> {
     (within_range(value) && x.relative_accuracy_bits() >= 60).then_some(value)
 }
 
-fn within_range(x: f64) -> bool {
+pub(super) fn within_range(x: f64) -> bool {
     x.abs() > TINY && x.abs() < 1.0 / TINY
 }
 
@@ -346,11 +364,11 @@ mod tests {
         /// Of every constant: the error that it is said to have at most, in units of u.
         #[test]
         fn constants_are_as_near_as_they_say(
-            a in 1i64..1 << 40, first in 0u64..1 << 41, small in any::<bool>(), quick in any::<bool>(),
+            a in 1i64..1 << 40, first in 0u64..1 << 41, small in any::<bool>(), quick in any::<bool>(), close in any::<bool>(),
         ) {
-            let s = Ball::from_rational(&ratio(a, 1 << 38), 300);
+            let exact = if close { ratio((4 << 60) - (a << 2), 1 << 60) } else { ratio(a, 1 << 38) };
+            let s = Ball::from_rational(&exact, 300);
             let first = if small { first % 100 } else { first };
-            let exact = ratio(a, 1 << 38);
             let base = match quick {
                 true => exact.two_doubles().and_then(|s| Base::quick(s, first, first + 70)),
                 false => Base::new(&s, first, first + 70),

@@ -347,22 +347,23 @@ fn blocks<V: Vector, W: Watch, const N: usize>(
 }
 
 /// What the lanes start from, by kind instead of by pair: one walk over the pairs, then vectors only.
-struct Constants<const L: usize> {
-    kick: [f64; L],
-    slope: [f64; L],
-    sin: [f64; L],
-    modulus: [f64; L],
-    rest: [f64; L],
+pub struct Constants<const L: usize> {
+    pub kick: [f64; L],
+    pub slope: [f64; L],
+    pub sin: [f64; L],
+    pub modulus: [f64; L],
+    pub rest: [f64; L],
     /// tan(α/2) and sin α of the turns without and with a carry.
-    tan: [[f64; L]; 2],
-    sine: [[f64; L]; 2],
-    updates: [f64; L],
-    last_kick: [f64; L],
+    pub tan: [[f64; L]; 2],
+    pub sine: [[f64; L]; 2],
+    pub updates: [f64; L],
+    pub last_kick: [f64; L],
 }
 
 impl<const L: usize> Constants<L> {
+    /// Lane i holds `pairs[i]`, lanes to spare the last pair.
     #[inline(always)]
-    fn gather(pairs: &[Pair]) -> Self {
+    pub fn gather(pairs: &[Pair]) -> Self {
         let zero = [0.0; L];
         let (kick, slope, sin, modulus, rest, updates) = (zero, zero, zero, zero, zero, zero);
         let (tan, sine, last_kick) = ([zero; 2], [zero; 2], zero);
@@ -435,13 +436,12 @@ impl<const L: usize> Lanes<L> {
         }
     }
 
-    /// The pairs after the half kick at t = 0. Lane i holds `pairs[i]`, lanes to spare the last pair.
+    /// After the half kick at t = 0.
     ///
     /// Even start (1, (sin θ + B)/2), odd start (0, −1), in (re, im) and in the scales cos(θ/2) and 1/cos(θ/2),
     /// which are |g| before the half kick; products of the two solutions have the right scale.
     #[inline(always)]
-    pub fn start(&mut self, pairs: &[Pair]) {
-        let of = Constants::gather(pairs);
+    pub fn start(&mut self, of: Constants<L>) {
         let scale: [f64; L] = each(|i| of.kick[i] / (2.0 * of.slope[i]));
         let inverse: [f64; L] = each(|i| 1.0 / scale[i]);
         let secant2: [f64; L] = each(|i| of.slope[i].mul_add(of.slope[i], 1.0));

@@ -1,0 +1,219 @@
+//! The constants of many pairs at a time, from the strengths of their kicks in doubles.
+//!
+//! The coordinates are those of [`super::floquet`]; the base's are made of two doubles each, lane by lane without a branch, so
+//! that they cost a pair less than its updates do.
+
+use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, shears, within_range};
+use super::kernel::Constants;
+use crate::number::{Ratio, Real, Twofold};
+use crate::propagator::TwoClocks;
+use crate::vector::each;
+
+/// A pair in doubles: the other clock's kicks strike at the multiples of p/q base steps.
+#[derive(Clone, Copy, Debug)]
+pub struct Strengths {
+    /// The base's own, within 2^-99.
+    s: Twofold,
+    /// The other clock's in the base's unit of time, within 3u.
+    kick: f64,
+    p: u64,
+    q: u64,
+}
+
+impl Strengths {
+    /// With the first clock as the base; `None` near its Verlet limit or beyond it, where 4 − s has lost digits, and far from
+    /// ordinary numbers.
+    pub fn new(ratio: Ratio, s: Twofold, kick: Twofold) -> Option<Strengths> {
+        let (p, q) = ratio.terms();
+        let serves = (TINY..=NEAR_LIMIT).contains(&s.hi) && within_range(kick.hi);
+        (serves && p.max(q) < LARGEST_MODULUS && p / q + 1 < LONGEST_QUICK).then_some(Strengths {
+            s,
+            kick: kick.hi,
+            p,
+            q,
+        })
+    }
+
+    /// Of two clocks: the one of more kicks is the base, or the other one where that does not serve.
+    pub fn of<S: Real>(clocks: &TwoClocks<S>) -> Option<Strengths> {
+        let two = |x: &S| x.two_doubles().map(|(hi, lo)| Twofold { hi, lo });
+        let both = |clocks: &TwoClocks<S>| Some([two(clocks.fast())?, two(clocks.slow())?]);
+        Strengths::on_either(clocks.ratio(), || both(clocks), || both(&clocks.swapped()))
+    }
+
+    /// The same from [s, k] with the first clock as the base and with the second.
+    pub fn on_either(
+        ratio: Ratio,
+        first: impl Fn() -> Option<[Twofold; 2]>,
+        second: impl Fn() -> Option<[Twofold; 2]>,
+    ) -> Option<Strengths> {
+        let on_first = || first().and_then(|[s, kick]| Strengths::new(ratio, s, kick));
+        let on_second = || second().and_then(|[s, kick]| Strengths::new(ratio.inverse(), s, kick));
+        if ratio.p() >= ratio.q() { on_first().or_else(on_second) } else { on_second().or_else(on_first) }
+    }
+
+    /// How strong a foreign kick is, in powers of two of β² = (k / sin θ)², 0 to 15, as near as doubles get: a group looks at |g| as
+    /// often as its strongest pair wants.
+    pub fn class(&self) -> u64 {
+        let beta2 = 4.0 * self.kick * self.kick / (self.s.hi * (4.0 - self.s.hi));
+        // From 2^-11 to 2^4.
+        ((beta2.to_bits() >> 52).saturating_sub(1023 - 11)).min(15)
+    }
+
+    /// ⌊q/2⌋: the updates after the half kick at t = 0.
+    pub fn updates(&self) -> u64 {
+        self.q / 2
+    }
+}
+
+/// e^{iα} in each lane, its components in two doubles each: re, im.
+#[derive(Clone, Copy)]
+struct Phases<const L: usize>([[[f64; L]; 2]; 2]);
+
+impl<const L: usize> Phases<L> {
+    #[inline(always)]
+    fn each(f: impl Fn(usize) -> Phase) -> Self {
+        let ([mut re, mut re_low], [mut im, mut im_low]) = ([[0.0; L]; 2], [[0.0; L]; 2]);
+        for (i, re) in re.iter_mut().enumerate() {
+            let phase = f(i);
+            (*re, re_low[i], im[i], im_low[i]) = (phase.re.hi, phase.re.lo, phase.im.hi, phase.im.lo);
+        }
+        Phases([[re, re_low], [im, im_low]])
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> Phase {
+        let two = |n: usize| Twofold { hi: self.0[n][0][i], lo: self.0[n][1][i] };
+        Phase { re: two(0), im: two(1) }
+    }
+
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        Self::each(|i| self.at(i).times(other.at(i)))
+    }
+
+    /// Each to the power n, a whole number in a double: squared for each of the places of the largest n, and times itself
+    /// where its own has a one there.
+    #[inline(always)]
+    fn power(&self, n: &[f64; L]) -> Self {
+        let largest = n.iter().fold(0.0, |most, &n| if n > most { n } else { most }) as u64;
+        let mut power = Self::each(|_| Phase::ONE);
+        for place in (0..64 - largest.leading_zeros()).rev() {
+            let unit = 1.0 / (1u64 << place) as f64;
+            let odd: [f64; L] = each(|i| parity((n[i] * unit).floor()));
+            let square = power.times(&power);
+            let more = square.times(self);
+            power = Self::each(|i| if odd[i] > 0.0 { more.at(i) } else { square.at(i) });
+        }
+        power
+    }
+
+    /// tan(α/2) and sin α of e^{iα/2}, α reduced by half turns.
+    #[inline(always)]
+    fn shears(&self) -> [[f64; L]; 2] {
+        let (mut tan, mut sine) = ([0.0; L], [0.0; L]);
+        for i in 0..L {
+            (tan[i], sine[i]) = shears(self.at(i).rounded());
+        }
+        [tan, sine]
+    }
+}
+
+/// 1 for odd whole numbers, 0 for even ones.
+#[inline(always)]
+fn parity(n: f64) -> f64 {
+    n - 2.0 * (0.5 * n).floor()
+}
+
+/// What the kernel starts from of at most L pairs, lanes to spare holding the last, and the cosine and sine of the base's last
+/// turn.
+#[inline(always)]
+pub fn constants<const L: usize>(pairs: &[Strengths]) -> (Constants<L>, [[f64; L]; 2]) {
+    let (mut p, mut q, mut odd, mut kick) = ([0.0; L], [0.0; L], [[0.0; L]; 2], [0.0; L]);
+    let mut s = [[0.0; L]; 2];
+    for i in 0..L {
+        let pair = &pairs[i.min(pairs.len() - 1)];
+        (p[i], q[i], kick[i]) = (pair.p as i64 as f64, pair.q as i64 as f64, pair.kick);
+        (odd[0][i], odd[1][i]) = ((pair.p & 1) as i64 as f64, (pair.q & 1) as i64 as f64);
+        (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
+    }
+    // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
+    let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
+    let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
+    let half = Phases::<L>::each(|i| {
+        let s = Twofold { hi: s[0][i], lo: s[1][i] };
+        let four = Twofold { hi: 4.0, lo: 0.0 };
+        Phase { re: four.accurate_difference(s).root().half(), im: s.root().half() }
+    });
+    let now = half.power(&whole);
+    let (before, after) = (now.times(&Phases::each(|i| half.at(i).conjugate())), now.times(&half));
+    let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
+    let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
+    for i in 0..L {
+        let Phase { re, im } = half.at(i);
+        (slope[i], sin[i]) = (im.divided_by(re).hi, im.times(re).scaled(2.0).hi);
+    }
+    // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
+    let mut left = [[1.0; L], [0.0; L]];
+    for i in 0..L {
+        let above = parity(whole[i] + 1.0);
+        let (near, far) = (now.at(i).rounded(), after.at(i).rounded());
+        let next = if above == odd[0][i] { near } else { far };
+        let last = if q[i] == 1.0 { before.at(i).rounded() } else { next };
+        (left[0][i], left[1][i]) = if odd[1][i] > 0.0 { (last[0], last[1]) } else { (1.0, 0.0) };
+    }
+    let updates = each(|i| (0.5 * q[i]).floor());
+    let last_kick = each(|i| if odd[1][i] > 0.0 { 1.0 } else { 0.5 });
+    let (tan, sine) = ([tan, carried_tan], [sine, carried_sine]);
+    (Constants { kick, slope, sin, modulus: q, rest, tan, sine, updates, last_kick }, left)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::number::{Ball, U};
+    use crate::orbit::floquet::{Base, Pair};
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Against the constants from multiple precision, each within what both are said to be off.
+        #[test]
+        fn constants_are_as_near_as_they_say(
+            all in prop::collection::vec((1i64..1 << 40, any::<bool>(), 1u64..1 << 20, 1u64..1 << 20, 0u32..20), 1..17),
+        ) {
+            let pairs: Vec<(Ball, Ratio, Strengths)> = all
+                .iter()
+                .filter_map(|&(a, close, p, q, short)| {
+                    let s = if close { ratio((4 << 60) - (a << 2), 1 << 60) } else { ratio(a, 1 << 38) };
+                    let steps = Ratio::new(p, q >> short).ok()?;
+                    let strengths = Strengths::new(steps, Twofold::from_rational(&s), Twofold::sum(1.0, 0.0))?;
+                    Some((Ball::from_rational(&s, 300), steps, strengths))
+                })
+                .collect();
+            prop_assume!(!pairs.is_empty());
+            let strengths: Vec<Strengths> = pairs.iter().map(|(_, _, strengths)| *strengths).collect();
+            let (found, left) = constants::<16>(&strengths);
+            for (i, (s, steps, _)) in pairs.iter().enumerate() {
+                let (p, q) = steps.terms();
+                let whole = p / q;
+                let base = Base::new(s, whole.saturating_sub(1), whole + 1).unwrap();
+                let near = |a: f64, b: f64, units: f64| (a - b).abs() <= units * U;
+                prop_assert!(near(found.slope[i], base.slope, 4.0 * base.slope));
+                prop_assert!(near(found.sin[i], base.sin, 4.0 * base.sin));
+                for carry in [0, 1] {
+                    let turn = base.turn(whole + carry as u64);
+                    // At |tan| = 1 the octants meet, and either is right.
+                    let same = near(found.tan[carry][i], turn.tan, 8.0) && near(found.sine[carry][i], turn.sin, 8.0);
+                    prop_assert!(same || turn.tan.abs() > 1.0 - 8.0 * U);
+                }
+                let pair = Pair {
+                    base: &base, kick: 1.0, whole, rest: p % q, modulus: q, p_odd: p % 2 == 1, q_even: q % 2 == 0, updates: q / 2,
+                };
+                prop_assert_eq!((found.rest[i], found.updates[i]), (pair.rest as f64, pair.updates as f64));
+                let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| base.turn(n).half);
+                prop_assert!(near(left[0][i], cos, 2.4) && near(left[1][i], sin, 2.4));
+            }
+        }
+    }
+}
