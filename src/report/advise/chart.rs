@@ -14,8 +14,12 @@ use crate::system::levels::Growing;
 
 use super::words::{nearest, percent, told};
 
-/// Half the height of a row.
-const HALF: f64 = 0.34;
+/// A row's share of the height, in mm, and half the height of its bars in rows.
+const ROW: f64 = 8.5;
+const HALF: f64 = 0.3;
+/// Below the last row and above the first, whose words need room, in rows.
+const FOOT: f64 = 0.5;
+const HEAD: f64 = 0.8;
 
 /// Groups of a molecule's modes are drawn up to this many.
 const MOST_ROWS: usize = 8;
@@ -180,23 +184,24 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
             let label = if many { format!("{} at {}", line.label, block.ratio) } else { line.label.clone() };
             ticks.push(Tick { at, label: Some(label) });
         }
-        for (i, (outer, text)) in block.chosen.iter().enumerate() {
-            layers.chosen.push(vec![[*outer, at - 0.5], [*outer, top]]);
+        // Words stand between the rows; lines end at the bars, those of the words' own steps beside these.
+        let (edge, end) = (top - 0.5 + HALF + 0.06, at - HALF - 0.06);
+        for (outer, text) in &block.chosen {
+            layers.chosen.push(vec![[*outer, end], [*outer, top + 0.14]]);
             let (anchor, shift) =
-                if *outer > 0.7 * right { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
-            // Above its first row, in lines of their own.
-            let note = Note::new([*outer, top - 0.06 - 0.2 * (i % 2) as f64], text);
-            notes.push(note.anchored(anchor, [shift, 0.0]).in_colour(INK));
+                if *outer > 0.7 * right { (Anchor::End, -3.0) } else { (Anchor::Start, 3.0) };
+            notes.push(Note::new([*outer, top], text).anchored(anchor, [shift, 0.0]).in_colour(INK));
         }
         if let Some(safe) = block.safe {
-            layers.recommended.push(vec![[safe, at - 0.5], [safe, top]]);
+            layers.recommended.push(vec![[safe, end], [safe, edge]]);
         }
     }
     let only = if let [block] = blocks { format!(", steps {}", block.ratio) } else { String::new() };
     let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
-    let panel = Panel::new(x, Axis::linear("", -0.6, rows as f64 - 0.4).ticks(ticks));
+    let (low, high) = (-FOOT, rows as f64 - 1.0 + HEAD);
+    let panel = Panel::new(x, Axis::linear("", low, high).ticks(ticks));
     let panel = notes.into_iter().fold(layers.on(panel, near), Panel::note);
-    Figure::new(150.0, 54.0 + 11.0 * rows as f64).named(title).with(panel.legend(Place::Above))
+    Figure::of_rows(150.0, ROW * (high - low)).named(title).with(panel.legend(Place::Above))
 }
 
 fn ratio(scheme: &Scheme) -> String {

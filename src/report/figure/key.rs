@@ -4,6 +4,7 @@ use super::canvas::{Anchor, Canvas, Element, Patch, Path, Pen, Set};
 use super::clip::Rect;
 use super::label::Label;
 use super::layer::{Layer, Mark, Shape};
+use super::layout;
 use super::marks;
 use super::measure::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, WORDS, set, ticks, widest_number};
 use super::palette::{INK, WHITE};
@@ -52,9 +53,17 @@ fn rows<'a>(entries: Vec<Entry<'a>>, room: f64) -> Vec<Vec<Entry<'a>>> {
     rows
 }
 
-/// The height of a legend above a frame of the given width.
-pub(super) fn rows_height(panel: &Panel, room: f64) -> f64 {
-    let count = rows(entries(panel), room).len();
+/// How far a legend above a frame so wide reaches to the left of it: over the numbers and names there, `left` wide, if one of its
+/// entries is longer than the frame.
+fn indent(entries: &[Entry], wide: f64, left: f64) -> f64 {
+    if entries.iter().any(|entry| width(entry) > wide) { left } else { 0.0 }
+}
+
+/// The height of a legend above a frame of the given width, with what stands left of that.
+pub(super) fn rows_height(panel: &Panel, wide: f64, left: f64) -> f64 {
+    let entries = entries(panel);
+    let room = wide + indent(&entries, wide, left);
+    let count = rows(entries, room).len();
     if count == 0 { 0.0 } else { ROW * count as f64 + 3.0 }
 }
 
@@ -64,9 +73,10 @@ pub(super) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
     match panel.legend {
         None => {}
         Some(Place::Above) => {
-            let height = rows_height(panel, frame[2] - frame[0]);
-            for (i, row) in rows(entries, frame[2] - frame[0]).iter().enumerate() {
-                let mut x = frame[0];
+            let (wide, left) = (frame[2] - frame[0], layout::left(panel, frame[3] - frame[1]));
+            let (height, indent) = (rows_height(panel, wide, left), indent(&entries, wide, left));
+            for (i, row) in rows(entries, wide + indent).iter().enumerate() {
+                let mut x = frame[0] - indent;
                 for entry in row {
                     draw_entry(canvas, entry, [x, frame[1] - height + ROW * (i as f64 + 0.5)]);
                     x += width(entry) + TO_NEXT;

@@ -44,7 +44,8 @@ pub(super) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -
     let mut wide = width / columns as f64;
     let (mut high, mut vertical, mut horizontal) = (0.0, Vec::new(), Vec::new());
     for _ in 0..2 {
-        vertical = panels.iter().map(|panel| (above(panel, wide), below(panel))).collect();
+        let beside = |panel| left(panel, height / rows as f64);
+        vertical = panels.iter().map(|panel| (above(panel, wide, beside(panel)), below(panel))).collect();
         high = share(rows, &vertical, row, height);
         horizontal = panels.iter().map(|panel| (left(panel, high), right(panel, wide, high))).collect();
         wide = share(columns, &horizontal, column, width);
@@ -88,9 +89,9 @@ fn starts(
         .collect()
 }
 
-fn above(panel: &Panel, width: f64) -> f64 {
+fn above(panel: &Panel, width: f64, left: f64) -> f64 {
     let title = title_height(panel, width);
-    let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width) } else { 0.0 };
+    let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width, left) } else { 0.0 };
     // The topmost number of the vertical axis reaches over the frame by half its height.
     (title + legend).max(NUMBER * DIGIT / 2.0)
 }
@@ -111,7 +112,8 @@ fn below(panel: &Panel) -> f64 {
     TICK + GAP + NUMBER * DIGIT + 2.0 + label
 }
 
-fn left(panel: &Panel, height: f64) -> f64 {
+/// What stands left of a frame so high.
+pub(super) fn left(panel: &Panel, height: f64) -> f64 {
     if !panel.y.numbered {
         return TICK;
     }
@@ -156,7 +158,10 @@ mod tests {
         assert!((found[1][2] - found[1][0] - (found[0][2] - found[0][0])).abs() < 1e-9);
         for (frame, panel) in found.iter().zip(&panels) {
             let (wide, high) = (frame[2] - frame[0], frame[3] - frame[1]);
-            assert!(frame[0] >= left(panel, high) && frame[1] >= above(panel, wide), "{frame:?}");
+            assert!(
+                frame[0] >= left(panel, high) && frame[1] >= above(panel, wide, left(panel, high)),
+                "{frame:?}"
+            );
             assert!(
                 frame[2] + right(panel, wide, high) <= 400.0 && frame[3] + below(panel) <= 300.0,
                 "{frame:?}"

@@ -76,6 +76,8 @@ use measure::TITLE;
 
 /// The least height of a row of panels in a figure that is made narrower, in mm.
 const LEAST_ROW: f64 = 45.0;
+/// More than any legend, title and label take of a height, in points.
+const ROOM: f64 = 1000.0;
 /// The size of letters below all panels, in points.
 const FOOT: f64 = 7.0;
 
@@ -84,6 +86,8 @@ const FOOT: f64 = 7.0;
 pub struct Figure {
     width_mm: f64,
     height_mm: f64,
+    /// The height of a single frame, where that is given instead.
+    frame_mm: Option<f64>,
     columns: usize,
     title: String,
     heading: String,
@@ -101,6 +105,7 @@ impl Figure {
         Figure {
             width_mm,
             height_mm,
+            frame_mm: None,
             columns,
             title,
             heading,
@@ -121,6 +126,11 @@ impl Figure {
         Self::new(175.0, height_mm)
     }
 
+    /// A figure of one panel whose frame has this height in any width, for axes of rows; what stands around it comes on top.
+    pub fn of_rows(width_mm: f64, frame_mm: f64) -> Self {
+        Figure { frame_mm: Some(frame_mm), ..Self::new(width_mm, frame_mm) }
+    }
+
     /// The same figure with at most so many panels side by side; further ones go below.
     #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
@@ -135,7 +145,8 @@ impl Figure {
         self
     }
 
-    /// The same figure in another width; its height follows, but no row of panels falls below 45 mm that was higher.
+    /// The same figure in another width; its height follows unless it is that of rows, but no row of panels falls below 45 mm
+    /// that was higher.
     #[must_use]
     pub fn wide(mut self, width_mm: f64) -> Self {
         let rows = self.panels.len().div_ceil(self.columns.max(1)).max(1) as f64;
@@ -187,17 +198,27 @@ impl Figure {
 
     /// How wide and high the frame of each panel is, in points: for words that need to know.
     pub fn frames(&self) -> Vec<[f64; 2]> {
-        let (_, sites) = self.sites();
+        let (_, sites, _) = self.sites();
         let size = |[left, top, right, bottom]: [f64; 4]| [right - left, bottom - top];
         sites.into_iter().map(|site| size(site.frame)).collect()
     }
 
-    /// The panels with their units, and their places.
-    fn sites(&self) -> (Vec<Panel>, Vec<layout::Site>) {
+    /// The panels with their units, their places, and the height of all, in points.
+    fn sites(&self) -> (Vec<Panel>, Vec<layout::Site>, f64) {
         let columns = self.columns.min(self.panels.len()).max(1);
         let panels: Vec<Panel> = self.panels.iter().map(|panel| panel.in_units_of(&self.time_unit)).collect();
-        let sites = layout::sites(&panels, columns, self.width_mm * canvas::MM, self.height_mm * canvas::MM);
-        (panels, sites)
+        let placed = |height: f64| layout::sites(&panels, columns, self.width_mm * canvas::MM, height);
+        let height = match self.frame_mm.map(|frame| frame * canvas::MM) {
+            None => self.height_mm * canvas::MM,
+            Some(frame) => {
+                // High enough for any surroundings: they take as much of it as of the height that is wanted.
+                let trial = frame + ROOM;
+                let inside = placed(trial).first().map_or(frame, |site| site.frame[3] - site.frame[1]);
+                frame + (trial - inside)
+            }
+        };
+        let sites = placed(height);
+        (panels, sites, height)
     }
 
     /// The same figure with these notes in its panels, in their order.
@@ -244,9 +265,11 @@ impl Figure {
     }
 
     fn drawn(&self) -> Canvas {
-        let (width, height) = (self.width_mm * canvas::MM, self.height_mm * canvas::MM);
-        let (panels, sites) = self.sites();
-        let left = sites.first().map_or(layout::RIM, |site| site.frame[0]);
+        let width = self.width_mm * canvas::MM;
+        let (panels, sites, height) = self.sites();
+        // Below the frame, or from the rim on where numbers and names take much of the width.
+        let left = sites.first().map(|site| site.frame[0]).filter(|left| *left < 0.3 * width);
+        let left = left.unwrap_or(layout::RIM);
         let lines =
             |markup: &str, face, size: f64| wrapped(markup, face, (width - left - layout::RIM) / size);
         let head = lines(&self.heading, Face::Semibold, TITLE);

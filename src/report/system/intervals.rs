@@ -5,7 +5,7 @@ use crate::report::document::{Document, enclosure};
 #[cfg(feature = "figure")]
 use crate::report::figure::palette::{GREY, HYPERBOLIC, INK};
 #[cfg(feature = "figure")]
-use crate::report::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
+use crate::report::figure::{Axis, Figure, Hatch, Layer, Panel, Place, Stroke};
 use crate::report::record::Record;
 use crate::report::table::Column;
 use crate::report::text::counted;
@@ -59,12 +59,13 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str) -> Figure {
     let mut panel = Panel::new(across(own, lo, hi), Axis::linear("growth rate", 0.0, top).per_time()).titled(
         &[Some(unstable), own.inner_steps.map(inner)].into_iter().flatten().collect::<Vec<_>>().join(", "),
     );
-    for (verdict, colour, name) in
-        [(Holds::Unstable, HYPERBOLIC, "proven unstable"), (Holds::NotTold, GREY, "nothing proven")]
-    {
+    for (verdict, colour, hatch, name) in [
+        (Holds::Unstable, HYPERBOLIC, None, "proven unstable"),
+        (Holds::NotTold, GREY, Some(Hatch::Falling), "nothing proven"),
+    ] {
         let outlines = shade(verdict);
         if !outlines.is_empty() {
-            panel = panel.with(Layer::areas(outlines, colour, 0.25).labelled(name));
+            panel = panel.with(Layer::areas(outlines, colour, 0.25).hatched(hatch).labelled(name));
         }
     }
     let line = Layer::lines(vec![line], Stroke::LINE.in_colour(INK)).labelled("growth rate");
