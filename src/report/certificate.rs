@@ -22,9 +22,13 @@ use crate::propagator::Oscillator;
 use crate::tongue::Gap;
 use crate::verdict::{Kind, Verdict};
 
+/// Coq multiplies exact matrices of so many kicks in some seconds.
+const LONGEST_EXACT: u64 = 500;
+
 /// The text of the certificate; `file_name` is the name it will have, without folders.
 ///
-/// Input with π is proven by intervals, for verdicts that hold around it: elliptic or hyperbolic.
+/// Input with π is proven by intervals, for verdicts that hold around it, elliptic or hyperbolic; so are these of rational input where
+/// exact numbers, which gain digits with every kick, would be long.
 ///
 /// # Errors
 /// A quantity that is no rational times a power of π, an edge where π is, or a file name that Coq does not take for a
@@ -43,16 +47,18 @@ pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result
         numbers.push(monomial(field, x)?);
     }
     let irrational = numbers.iter().any(|(_, power)| *power != 0);
-    if irrational && matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence) {
+    let edge = matches!(verdict.kind(), Kind::Parabolic | Kind::Coexistence);
+    if irrational && edge {
         let remedy =
             "an edge needs rational numbers: measure time in a unit without pi (h / pi, lambda * pi^2)";
         return Err(Error::input("certificate", file_name, remedy));
     }
+    let by_intervals = irrational || (clocks.ratio().kicks() > LONGEST_EXACT && !edge);
     let said =
         numbers.iter().map(|(c, power)| if *power == 0 { c.to_string() } else { format!("{c}*pi^{power}") });
     let said: Vec<String> = said.collect();
     let (words, tactic) =
-        if irrational { ("PiCertificate", "certify_pi") } else { ("Certificate", "certify") };
+        if by_intervals { ("PiCertificate", "certify_pi") } else { ("Certificate", "certify") };
     Ok(format!(
         "(* kickdrift verdict --lambda1 {} --lambda2 {} --h1 {} --h2 {} --certificate {file_name} *)\n\
          From Coq Require Import Reals QArith.\n\
@@ -69,17 +75,17 @@ pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result
         kind(verdict),
         clocks.p(),
         clocks.q(),
-        written(&numbers, irrational, '/'),
-        written(&numbers, irrational, '#'),
+        written(&numbers, by_intervals, '/'),
+        written(&numbers, by_intervals, '#'),
     ))
 }
 
 /// The numbers as reals of Coq (sign /) or as what its computation takes (sign #).
-fn written(numbers: &[(Rational, i32)], irrational: bool, sign: char) -> String {
+fn written(numbers: &[(Rational, i32)], by_intervals: bool, sign: char) -> String {
     let one = |(c, power): &(Rational, i32)| {
         let fraction = format!("{} {sign} {}", c.numer(), c.denom());
         let power = if *power < 0 { format!("({power})") } else { power.to_string() };
-        match (irrational, sign) {
+        match (by_intervals, sign) {
             (false, _) => format!("({fraction})"),
             (true, '/') => format!("({fraction} * powerRZ PI {power})"),
             (true, _) => format!("({fraction}, {power}%Z)"),

@@ -54,6 +54,7 @@ fn what_is_allowed_is_proven() {
     for (name, lambda1, lambda2, h1, h2) in [
         ("pi_elliptic.v", "pi^2", "pi^2/25", "2499/10000", "2501/10000"),
         ("pi_hyperbolic.v", "pi^2", "pi^2/25", "631/1000", "4369/1000"),
+        ("elliptic.v", "10", "2/5", "2499/10000", "2501/10000"),
         ("hyperbolic.v", "10", "2/5", "631/1000", "4369/1000"),
     ] {
         let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
@@ -81,4 +82,26 @@ fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
     for name in ["a b.v", "a.txt", ".v", "a-b.v"] {
         assert!(file(["2", "1", "1/4", "1"], name).is_err(), "{name}");
     }
+}
+
+/// Exact numbers gain digits with every kick: where a verdict holds around its input, many kicks are proven by intervals.
+#[test]
+fn many_kicks_are_proven_by_intervals_and_edges_never() {
+    let x = |text: &str| parse("x", text).unwrap();
+    let file = |[lambda1, lambda2, h1, h2]: [&str; 4]| {
+        let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
+        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        coq(&oscillator, verdict, "a.v").unwrap()
+    };
+    assert!(file(["10", "2/5", "249/1000", "251/1000"]).contains("Proof. certify (249 # 1000) (10 # 1)"));
+    let long = file(["10", "2/5", "299/1000", "301/1000"]);
+    assert!(
+        long.contains("Import Vocabulary PiCertificate.") && long.contains("--lambda1 10 --lambda2 2/5 ")
+    );
+    assert!(
+        long.contains("(10 / 1 * powerRZ PI 0)")
+            && long.contains("certify_pi (299 # 1000, 0%Z) (10 # 1, 0%Z)")
+    );
+    // s = 2, q = 1, p even: an edge whatever the slow stiffness.
+    assert!(file(["2", "1", "1", "600"]).contains("Proof. certify (1 # 1)"));
 }
