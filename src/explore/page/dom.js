@@ -38,7 +38,7 @@ export const step = (index) => h("span.step", {}, h("i", {}, "h"), h("sub", {}, 
 /** Text with quantities as the figures set them: d₁, h₂ and p + q become italic letters with indices. */
 export const formulas = (said) =>
   said.split(/([dh][₁₂]|p \+ q)/).map((part) => {
-    if (part === "p + q") return [h("i", {}, "p"), " + ", h("i", {}, "q")];
+    if (part === "p + q") return h("span.step", {}, h("i", {}, "p"), " + ", h("i", {}, "q"));
     return /^[dh][₁₂]$/.test(part) ? [h("i", {}, part[0]), h("sub", {}, part[1] === "₁" ? "1" : "2")] : part;
   }).flat();
 

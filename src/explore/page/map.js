@@ -169,7 +169,7 @@ export class StabilityMap {
       labels.unshift(...(byCost ? found.filter(({ spots }) => this.#isBare(spots[0])) : found));
     }
     if (now.labels && this.lettered) drawLabels(context, labels, now.palette, `14px ${SERIF}`, view);
-    status.vectors = shown;
+    Object.assign(status, { vectors: shown, asked: now.maxSum });
   }
 
   /** Lines that stand for cells are drawn where there are none. */

@@ -69,6 +69,8 @@ export function over(state, act) {
   const set = (now, view) => {
     tongues.value = now.tongues;
     sum.value = String(now.maxSum);
+    // Where cells end, lines are chosen by their width.
+    sum.disabled = now.tongues !== "on";
     curves.set(now.curves);
     labels.set(now.labels);
     stretch.value = String(view.stretch);
