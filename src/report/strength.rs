@@ -6,15 +6,7 @@
 use super::figure::palette::{GREY, Gradient, INK, family};
 use super::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::resonance::strength;
-
-/// A tongue: θ of its resonance, its family, its number of slow kicks, and width/(2 s ρ).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measured {
-    pub theta: f64,
-    pub a: i64,
-    pub q: u64,
-    pub strength: f64,
-}
+use crate::tongue::sampled::Measured;
 
 /// The largest |a| shown.
 const LARGEST_A: i64 = 12;

@@ -19,6 +19,7 @@
 //! | `tongues`, `select` | the tongues of one ratio, and some of them |
 //! | `request`, `question` | a tongue with all that is asked for, tongues of many ratios |
 //! | `survey` | what all ratios up to a sum have to say |
+//! | [`sampled`] | tongues as points: over ρ, through one resonance, beside the first-order law |
 //!
 //! Every edge is enclosed, as a rule between neighbouring doubles, and every tongue is proven open or closed.
 //! Inside tongue m the growing solution changes sign m times in a period: m is the label that the map and the
@@ -46,6 +47,7 @@ mod peak;
 mod question;
 mod request;
 mod row;
+pub mod sampled;
 mod select;
 mod string;
 mod survey;

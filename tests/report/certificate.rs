@@ -35,9 +35,9 @@ fn the_examples_are_what_the_command_writes() {
 }
 
 /// As many kicks as a certificate may have: elliptic and hyperbolic, with pi and without, and a tongue's edges. Needs coqc and the
-/// compiled theory (make -C proofs theory); half an hour of Coq's time.
+/// compiled theory (make -C proofs theory); some three minutes of Coq's time.
 #[test]
-#[ignore = "half an hour of Coq"]
+#[ignore = "three minutes of Coq"]
 fn what_is_allowed_is_proven() {
     let proofs = Path::new(env!("CARGO_MANIFEST_DIR")).join("proofs");
     let folder = std::env::temp_dir().join(format!("kickdrift-certificates-{}", std::process::id()));

@@ -1,16 +1,13 @@
 //! The figures of measured widths against the first-order law.
 
-use crate::parallel::try_map;
-use num_traits::{ToPrimitive, Zero};
-
 use super::atlas::share_of_pi;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Ratio, Rational, rational};
+use crate::number::{Laurent, Rational, rational};
 use crate::report::figure::{Figure, Foot, typeset};
-use crate::report::strength::{self as report, Measured, figure};
-use crate::resonance::dominant_family;
-use crate::tongue::{Gap, Stiffness, Tongues};
+use crate::report::strength::{self as report, figure};
+use crate::tongue::Stiffness;
+use crate::tongue::sampled::{self, Measured};
 
 /// Tongues within this of the angle, in units of π, are measured: on a logarithmic axis |S_a| hardly changes there.
 const HALF_WINDOW: (i64, i64) = (1, 50);
@@ -57,36 +54,10 @@ pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
     Ok(report::widths(&title, &measured).footed(&foot))
 }
 
-/// The sum, and its tongues with m/p between two shares of π, 0 < m < p, in the order of p + q, p, m.
+/// The sum, and its tongues with m/p between two shares of π.
 fn measure(ratios: Ratios, stiffness: &Stiffness, shares: [Rational; 2]) -> Result<(u64, Vec<Measured>)> {
     let Ratios::UpTo(max_sum) = ratios else {
         return Err(Error::missing("max-sum", "this figure is of many ratios: give --max-sum N"));
     };
-    if stiffness.rho.is_zero() {
-        let remedy = "without a slow force there are no widths: choose a positive one";
-        return Err(Error::input("rho", 0, remedy));
-    }
-    let rho = rational::to_f64(&stiffness.rho);
-    let one = |&ratio: &Ratio| -> Result<Vec<Measured>> {
-        let whole = |x: Rational| x.to_integer().to_u64().unwrap_or(0);
-        let terms = Rational::from_integer(ratio.p().into());
-        let from = whole((&shares[0] * &terms).ceil()).max(1);
-        let upto = whole((&shares[1] * &terms).floor()).min(ratio.p() - 1);
-        if from > upto {
-            return Ok(Vec::new());
-        }
-        let tongues = Tongues::new(ratio, &stiffness.rho)?;
-        let gaps = tongues.gaps(from, upto)?;
-        let measured = |gap: &Gap| {
-            let s = tongues.resonance(gap.m, 64).mid_f64();
-            let width = 0.5 * (gap.width.0 + gap.width.1);
-            let theta = std::f64::consts::PI * gap.m as f64 / ratio.p() as f64;
-            let a = dominant_family(ratio, gap.m).0;
-            Measured { theta, a, q: ratio.q(), strength: width / (2.0 * s * rho) }
-        };
-        Ok(gaps.iter().map(measured).collect())
-    };
-    let ratios: Vec<Ratio> = Ratio::up_to(max_sum).collect();
-    let all: Vec<Vec<Measured>> = try_map(&ratios, one)?;
-    Ok((max_sum, all.into_iter().flatten().collect()))
+    Ok((max_sum, sampled::widths(max_sum, &stiffness.rho, &shares)?))
 }

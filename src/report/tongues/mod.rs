@@ -4,13 +4,10 @@
 //! |---|---|
 //! | `rows` | what is written of one: every column, or those that fit paper |
 //! | `diagram` | those of a few ratios over s and ρ |
-//! | `bands` | what it is made from |
 //! | `labels` | where its labels stand |
 //! | `trace` | the trace of one ratio through its tongues |
 //! | `tally` | what stands out among many |
 
-#[cfg(feature = "figure")]
-mod bands;
 #[cfg(feature = "figure")]
 pub mod diagram;
 #[cfg(feature = "figure")]

@@ -1,35 +1,9 @@
 //! Traces through a resonance: Tr Q over s between the lines ±2, one tongue close by, and what of the half period vanishes
 //! at its edges.
 
-use crate::number::Ratio;
 use crate::report::figure::palette::{GREY, INK, family};
-use crate::report::figure::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke};
-
-/// Tr Q of one ratio, in exact arithmetic, rounded to doubles.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Trace {
-    pub ratio: Ratio,
-    /// As shown.
-    pub rho: String,
-    /// [s, Tr Q] from 0 to the limit of the fast clock.
-    pub whole: Vec<[f64; 2]>,
-    /// Each tongue's m, lower and upper s.
-    pub tongues: Vec<(u64, [f64; 2])>,
-    /// The one that is shown close by.
-    pub near: Near,
-}
-
-/// One tongue; x is 0 at its lower edge and 1 at its upper one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Near {
-    pub m: u64,
-    pub lower: f64,
-    pub width: f64,
-    /// [x, ±Tr Q − 2], the sign being (−1)^m: positive where unstable.
-    pub excess: Vec<[f64; 2]>,
-    /// The two entries of the half-period propagator that vanish at the edges, each over its largest value: name, [x, value].
-    pub entries: [(String, Vec<[f64; 2]>); 2],
-}
+use crate::report::figure::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke, typeset};
+use crate::tongue::sampled::{Near, Trace};
 
 /// Beyond this Tr Q is cut.
 const SHOWN: f64 = 3.2;
@@ -57,7 +31,11 @@ fn whole(own: &Trace) -> Panel {
     let end = own.whole.last().map_or(4.0, |point| point[0]);
     let panel =
         Panel::new(Axis::linear("*s* = *h*_1^2*Λ*_1", 0.0, end), Axis::linear("Tr *Q*", -SHOWN, SHOWN));
-    let panel = panel.titled(&format!("*h*_2/*h*_1 = {}, *ρ* = {}; at each tongue *m*", own.ratio, own.rho));
+    let panel = panel.titled(&format!(
+        "*h*_2/*h*_1 = {}, *ρ* = {}; at each tongue *m*",
+        own.ratio,
+        typeset(&own.rho)
+    ));
     let panel = shade(panel, own.tongues.iter().map(|own| own.1), [-SHOWN, SHOWN]);
     let panel = panel.with(level(&[-2.0, 2.0], [0.0, end]).labelled("|Tr *Q*| = 2"));
     let panel =
@@ -111,8 +89,8 @@ fn entries(own: &Near) -> Panel {
         Stroke { dash: Dash::Dashed, ..Stroke::LINE.in_colour(family(1)) },
     ];
     let lines = own.entries.iter().zip(strokes);
-    let lines = lines.map(|((name, line), stroke)| {
-        Layer::lines(vec![line.clone()], stroke.wide(1.1)).labelled(&format!("entry {name}"))
+    let lines = lines.map(|((entry, line), stroke)| {
+        Layer::lines(vec![line.clone()], stroke.wide(1.1)).labelled(&format!("entry {}", entry.name()))
     });
     lines.fold(panel, Panel::with).legend(Place::Above)
 }
