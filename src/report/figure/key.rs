@@ -4,9 +4,10 @@ use super::canvas::{Anchor, Canvas, Element, Patch, Path, Pen, Set};
 use super::clip::Rect;
 use super::label::Label;
 use super::layer::{Layer, Mark, Shape};
-use super::layout;
 use super::marks;
-use super::measure::{DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, WORDS, set, ticks, widest_number};
+use super::measure::{
+    DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, WORDS, beside, set, ticks, widest_number,
+};
 use super::palette::{INK, WHITE};
 use super::panel::{ColourBar, Panel, Place};
 use crate::report::figure::Axis;
@@ -73,7 +74,7 @@ pub(super) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
     match panel.legend {
         None => {}
         Some(Place::Above) => {
-            let (wide, left) = (frame[2] - frame[0], layout::left(panel, frame[3] - frame[1]));
+            let (wide, left) = (frame[2] - frame[0], beside(&panel.y, frame[3] - frame[1]));
             let (height, indent) = (rows_height(panel, wide, left), indent(&entries, wide, left));
             for (i, row) in rows(entries, wide + indent).iter().enumerate() {
                 let mut x = frame[0] - indent;

@@ -7,7 +7,7 @@ use super::clip::Rect;
 use super::font::Face;
 use super::key;
 use super::label::wrapped;
-use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, overhang, widest_number};
+use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, beside, overhang};
 use super::panel::{Panel, Place};
 
 /// The paper's rim.
@@ -44,10 +44,10 @@ pub(super) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -
     let mut wide = width / columns as f64;
     let (mut high, mut vertical, mut horizontal) = (0.0, Vec::new(), Vec::new());
     for _ in 0..2 {
-        let beside = |panel| left(panel, height / rows as f64);
-        vertical = panels.iter().map(|panel| (above(panel, wide, beside(panel)), below(panel))).collect();
+        let left = |panel: &Panel| beside(&panel.y, height / rows as f64);
+        vertical = panels.iter().map(|panel| (above(panel, wide, left(panel)), below(panel))).collect();
         high = share(rows, &vertical, row, height);
-        horizontal = panels.iter().map(|panel| (left(panel, high), right(panel, wide, high))).collect();
+        horizontal = panels.iter().map(|panel| (beside(&panel.y, high), right(panel, wide, high))).collect();
         wide = share(columns, &horizontal, column, width);
     }
     let xs = starts(columns, &horizontal, column, wide + BESIDE);
@@ -112,15 +112,6 @@ fn below(panel: &Panel) -> f64 {
     TICK + GAP + NUMBER * DIGIT + 2.0 + label
 }
 
-/// What stands left of a frame so high.
-pub(super) fn left(panel: &Panel, height: f64) -> f64 {
-    if !panel.y.numbered {
-        return TICK;
-    }
-    let label = if panel.y.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
-    TICK + GAP + widest_number(&panel.y, height) + 1.5 + label
-}
-
 fn right(panel: &Panel, width: f64, height: f64) -> f64 {
     match &panel.bar {
         Some(bar) => key::bar_width(bar, height),
@@ -159,7 +150,7 @@ mod tests {
         for (frame, panel) in found.iter().zip(&panels) {
             let (wide, high) = (frame[2] - frame[0], frame[3] - frame[1]);
             assert!(
-                frame[0] >= left(panel, high) && frame[1] >= above(panel, wide, left(panel, high)),
+                frame[0] >= beside(&panel.y, high) && frame[1] >= above(panel, wide, beside(&panel.y, high)),
                 "{frame:?}"
             );
             assert!(

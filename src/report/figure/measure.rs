@@ -86,6 +86,15 @@ pub(super) fn widest_number(axis: &Axis, length: f64) -> f64 {
     ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)
 }
 
+/// What an upright axis so long takes to its left: ticks, numbers and its label.
+pub(super) fn beside(axis: &Axis, length: f64) -> f64 {
+    if !axis.numbered {
+        return TICK;
+    }
+    let label = if axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
+    TICK + GAP + widest_number(axis, length) + 1.5 + label
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
