@@ -2,7 +2,8 @@
 
 use std::cmp::Ordering;
 
-use faer::{Mat, Side};
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::{Accum, Mat, Side};
 
 use super::norm;
 use crate::number::U;
@@ -99,18 +100,17 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
         let lblt = Mat::from_fn(n, n, at).lblt(Side::Lower);
         let (order, l) = (lblt.P().arrays().0, lblt.L().to_owned());
         let (diagonal, next) = (lblt.B_diag().column_vector(), lblt.B_subdiag().column_vector());
-        let terms = |i: usize, j: usize| {
-            let left = if j > 0 { l[(i, j - 1)] * next[j - 1] } else { 0.0 };
-            let right = if j + 1 < n { l[(i, j + 1)] * next[j] } else { 0.0 };
-            [left, l[(i, j)] * diagonal[j], right]
-        };
-        let product = Mat::from_fn(n, n, |i, j| terms(i, j).iter().sum());
-        let sizes = Mat::from_fn(n, n, |i, j| terms(i, j).iter().map(|x| x.abs()).sum());
-        let whole = &product * l.transpose();
-        let residual = Mat::from_fn(n, n, |i, j| at(order[i], order[j]) - whole[(i, j)]);
-        let products = (n as f64 + 4.0) * norm::frobenius(&product) + 4.0 * norm::frobenius(&sizes);
+        let (product, sizes) = times_blocks(&l, &|i| diagonal[i], &|i| next[i]);
+        let mut whole = Mat::<f64>::zeros(n, n);
+        let (lower, upper) = (BlockStructure::TriangularLower, BlockStructure::TriangularUpper);
+        let (any, threads) = (BlockStructure::Rectangular, faer::get_global_parallelism());
+        matmul(&mut whole, lower, Accum::Replace, &product, any, l.transpose(), upper, 1.0, threads);
+        let entry = |i: usize, j: usize| at(order[i], order[j]) - whole[(i, j)];
+        let residual = Mat::from_fn(n, n, |i, j| if i < j { 0.0 } else { entry(i, j) });
+        let products = (n as f64 + 4.0) * norm::frobenius(&product) + 4.0 * sizes;
         let rounding = 1.1 * U * (norm::frobenius(&l) * products + 2.0 * (size + shift * n as f64));
-        let off = 1.01 * (norm::frobenius(&residual) + rounding + slack);
+        // What the lower triangle stands for twice is the whole residual at most.
+        let off = 1.01 * (2f64.sqrt() * norm::frobenius(&residual) + rounding + slack);
         if off <= shift {
             return of_blocks(&|i| diagonal[i], &|i| next[i], n);
         }
@@ -120,6 +120,30 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
         }
     }
     None
+}
+
+/// L B, and the Frobenius norm of |L| |B|, for a block-diagonal B.
+fn times_blocks(
+    l: &Mat<f64>,
+    diagonal: &dyn Fn(usize) -> f64,
+    next: &dyn Fn(usize) -> f64,
+) -> (Mat<f64>, f64) {
+    let n = l.nrows();
+    let (mut product, none) = (Mat::zeros(n, n), vec![0.0; n]);
+    let mut squares = 0.0;
+    for j in 0..n {
+        let beside = |k: Option<usize>| k.filter(|&k| k < n).map_or(&none[..], |k| l.col_as_slice(k));
+        let (left, own, right) = (beside(j.checked_sub(1)), l.col_as_slice(j), beside(Some(j + 1)));
+        let (a, b, c) =
+            (j.checked_sub(1).map_or(0.0, next), diagonal(j), if j + 1 < n { next(j) } else { 0.0 });
+        let terms = left.iter().zip(own).zip(right).map(|((x, y), z)| [a * x, b * y, c * z]);
+        for (to, [x, y, z]) in product.col_as_slice_mut(j).iter_mut().zip(terms) {
+            *to = x + y + z;
+            let size = x.abs() + y.abs() + z.abs();
+            squares += size * size;
+        }
+    }
+    (product, 1.01 * f64::sqrt(squares))
 }
 
 /// The inertia of a block-diagonal B of 1 x 1 and 2 x 2 blocks, the latter where the entry below the diagonal is not 0; `None` where one of
