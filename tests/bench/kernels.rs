@@ -4,9 +4,9 @@
 //!
 //! `cargo bench --bench kernels` lists the names; a second argument (`portable`, `avx2`, `avx512`) forces that form.
 
-use kickdrift::map::{Map, Products, Resources};
-use kickdrift::number::Ratio;
+use kickdrift::map::{Map, Pairs, Products, Resources};
 use kickdrift::number::rational::ratio;
+use kickdrift::number::{Laurent, Ratio};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Limits, Tier, decide_from};
@@ -16,13 +16,14 @@ mod common;
 use common::figure_1;
 
 /// A name, and the work.
-const KERNELS: [(&str, fn()); 8] = [
+const KERNELS: [(&str, fn()); 9] = [
     ("start", || ()),
     ("short", || tier(Tier::Filter, 21, 19, 1000)),
     ("filter", || tier(Tier::Filter, 61_803, 38_197, 1)),
     ("refine", || tier(Tier::Refine, 619, 381, 1)),
     ("exact", || tier(Tier::Exact, 619, 381, 1)),
     ("map", || map(Products::default())),
+    ("scattered", scattered),
     ("map-growth", || map(Products { label: true, growth: true })),
     ("tongues", || {
         Tongues::new("61/39".parse().unwrap(), &ratio(1, 25))
@@ -45,6 +46,15 @@ fn map(products: Products) {
     };
     let one = Resources { threads: 1, ..Resources::default() };
     Map::of(&figure_1(100)).with(products).within(one).for_each_band(see).expect("within the budget");
+}
+
+/// Pairs on no grid, each step with a denominator of its own.
+fn scattered() {
+    let whole = |n| Laurent::from_rational(ratio(n, 1));
+    let steps = (0..512).map(|n| [ratio(1 + n % 30, 50 + n % 41), ratio(1 + n * 7 % 160, 70 + n % 29)]);
+    let pairs = Pairs::of_steps(whole(10), whole(1), steps.map(|pair| pair.map(Laurent::from_rational)));
+    let one = Resources { threads: 1, ..Resources::default() };
+    std::hint::black_box(pairs.and_then(|pairs| pairs.verdicts(&one)).expect("within the budget"));
 }
 
 fn main() {
