@@ -21,6 +21,9 @@ const HALF: f64 = 0.3;
 const FOOT: f64 = 0.5;
 const HEAD: f64 = 0.8;
 
+/// From a line of words to the next, in rows.
+const NEXT: f64 = 0.36;
+
 /// Groups of a molecule's modes are drawn up to this many.
 const MOST_ROWS: usize = 8;
 
@@ -186,11 +189,13 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
         }
         // Words stand between the rows; lines end at the bars, those of the words' own steps beside these.
         let (edge, end) = (top - 0.5 + HALF + 0.06, at - HALF - 0.06);
-        for (outer, text) in &block.chosen {
+        for (i, (outer, text)) in block.chosen.iter().enumerate() {
             layers.chosen.push(vec![[*outer, end], [*outer, top + 0.14]]);
             let (anchor, shift) =
                 if *outer > 0.7 * right { (Anchor::End, -3.0) } else { (Anchor::Start, 3.0) };
-            notes.push(Note::new([*outer, top], text).anchored(anchor, [shift, 0.0]).in_colour(INK));
+            // Neighbours in lines of their own.
+            let note = Note::new([*outer, top - NEXT * (i % 2) as f64], text);
+            notes.push(note.anchored(anchor, [shift, 0.0]).in_colour(INK));
         }
         if let Some(safe) = block.safe {
             layers.recommended.push(vec![[safe, end], [safe, edge]]);
