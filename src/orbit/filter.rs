@@ -144,21 +144,24 @@ impl<const L: usize> Group<L> {
     /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
     pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
         let certificate = self.run::<SignsOnly>(pairs);
-        certificate
-            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+        self.proven(certificate)
     }
 
     /// The same of pairs in doubles.
     pub fn verdicts_of(&mut self, pairs: &[Strengths]) -> [u8; L] {
         let extremes = self.instructions.perform(StartMany(pairs, &mut self.lanes, &mut self.left));
         let certificate = self.advance::<SignsOnly>(extremes, pairs.iter().map(Strengths::updates).max());
-        certificate
-            .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
+        self.proven(certificate)
     }
 
     /// The signs as they come out, certified or not: for the benchmark alone.
     pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
         let certificate = self.run::<Bare>(pairs).map(Certificate::void);
+        self.proven(certificate)
+    }
+
+    /// The verdicts after a run as far as its certificate goes.
+    fn proven(&self, certificate: Option<Certificate>) -> [u8; L] {
         certificate
             .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }

@@ -77,12 +77,10 @@ impl Base {
     /// 4 − s is within 2^-97 and at least 2^-20, so its root is within 2^-88, a half of that and e^{iθ/2} within 2^-88, and
     /// e^{inθ/2} within n 2^-87: for n below 2^28 less than 2^-59.
     fn quick((hi, lo): (f64, f64), first: u64, last: u64) -> Option<Base> {
-        let s = Twofold { hi, lo };
-        let rest = Twofold { hi: 4.0, lo: 0.0 }.accurate_difference(s);
         if !(TINY..=NEAR_LIMIT).contains(&hi) || last >= LONGEST_QUICK {
             return None;
         }
-        let half = Phase { re: rest.root().half(), im: s.root().half() };
+        let half = Phase::half(Twofold { hi, lo });
         Base::of(half, half.power(first), first..=last)
     }
 
@@ -90,8 +88,8 @@ impl Base {
     fn of(half: Phase, start: Phase, steps: RangeInclusive<u64>) -> Option<Base> {
         let theta = 2.0 * half.im.hi.atan2(half.re.hi);
         Some(Base {
-            slope: comfortable(half.im.divided_by(half.re))?,
-            sin: comfortable(half.im.times(half.re).scaled(2.0))?,
+            slope: comfortable(half.tan())?,
+            sin: comfortable(half.sin_of_twice())?,
             theta,
             first: *steps.start(),
             turns: turns(half, start, theta, steps),
@@ -118,6 +116,25 @@ impl Phase {
     fn of(sharp: &Sharp) -> Option<Phase> {
         let component = |x: &Ball| Twofold::from_fixed(x, 100, 4);
         Some(Phase { re: component(&sharp.re)?, im: component(&sharp.im)? })
+    }
+
+    /// e^{iθ/2} = (√(4 − s) + i √s)/2 of the strength s.
+    #[inline(always)]
+    pub fn half(s: Twofold) -> Phase {
+        let rest = Twofold { hi: 4.0, lo: 0.0 }.accurate_difference(s);
+        Phase { re: rest.root().half(), im: s.root().half() }
+    }
+
+    /// tan α.
+    #[inline(always)]
+    pub fn tan(self) -> Twofold {
+        self.im.divided_by(self.re)
+    }
+
+    /// sin 2α.
+    #[inline(always)]
+    pub fn sin_of_twice(self) -> Twofold {
+        self.im.times(self.re).scaled(2.0)
     }
 
     /// e^{-iα}, exactly.

@@ -140,18 +140,14 @@ pub fn constants<const L: usize>(pairs: &[Strengths]) -> (Constants<L>, [[f64; L
     // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
     let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
     let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
-    let half = Phases::<L>::each(|i| {
-        let s = Twofold { hi: s[0][i], lo: s[1][i] };
-        let four = Twofold { hi: 4.0, lo: 0.0 };
-        Phase { re: four.accurate_difference(s).root().half(), im: s.root().half() }
-    });
+    let half = Phases::<L>::each(|i| Phase::half(Twofold { hi: s[0][i], lo: s[1][i] }));
     let now = half.power(&whole);
     let (before, after) = (now.times(&Phases::each(|i| half.at(i).conjugate())), now.times(&half));
     let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
     let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
     for i in 0..L {
-        let Phase { re, im } = half.at(i);
-        (slope[i], sin[i]) = (im.divided_by(re).hi, im.times(re).scaled(2.0).hi);
+        let half = half.at(i);
+        (slope[i], sin[i]) = (half.tan().hi, half.sin_of_twice().hi);
     }
     // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
     let mut left = [[1.0; L], [0.0; L]];
