@@ -345,6 +345,20 @@ mod tests {
         }
     }
 
+    #[test]
+    fn kicks_that_cancel_leave_their_rest_as_sharp_as_a_number_of_its_own() {
+        let sharp = |rest: &Rational| {
+            let clocks = TwoClocks::new(Ratio::ONE, ratio(5403, 1000), rest - ratio(5403, 1000));
+            (
+                half_period(&clocks).signs().verdict(),
+                sharp(&clocks, &Schedule::two_clocks(clocks.ratio()).unwrap()),
+            )
+        };
+        assert!(sharp(&ratio(0, 1)).1.is_some());
+        let (exact, ends) = sharp(&ratio(1, 10i64.pow(17)));
+        assert_eq!(ends.and_then(|ends| ends.signs().verdict()), Some(exact));
+    }
+
     /// Growth far beyond the range of doubles, and decay of the other solution's share.
     #[test]
     fn long_orbits_stay_in_range() {

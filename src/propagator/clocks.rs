@@ -153,7 +153,13 @@ impl<S: Real> TwoClocks<S> {
     /// [`TwoClocks::strengths`] in balls.
     pub(crate) fn enclosures(&self, bits: u32) -> [Ball; 3] {
         let (fast, slow) = (self.fast.enclosure(bits), self.slow.enclosure(bits));
-        let both = fast.add(&slow, bits);
+        // Of opposite signs much may cancel, and all of it: only the exact sum says so.
+        let alike = fast.sign().is_some() && fast.sign() == slow.sign();
+        let both = if alike {
+            fast.add(&slow, bits)
+        } else {
+            (self.fast.clone() + self.slow.clone()).enclosure(bits)
+        };
         [fast, slow, both]
     }
 }
