@@ -7,13 +7,13 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
-use crate::propagator::{Oscillator, TwoClocks};
+use crate::propagator::Oscillator;
 use crate::report::certificate;
 use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::verdict::Answer;
 use crate::system::friction::damped_pair;
-use crate::verdict::{Decidable, Tier, Verdict, decide_from};
+use crate::verdict::{Tier, Verdict, decide_from};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]
@@ -47,28 +47,19 @@ impl Args {
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
         let Stiffness { lambda1, lambda2 } = self.stiffness.clone();
         let oscillator = Oscillator::new(lambda1, lambda2, self.h1.clone(), self.h2.clone())?;
-        let clocks = oscillator.clocks();
-        // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
-        let stable = match clocks.as_rational() {
-            Some(rational) => self.answer(&oscillator, &rational, common)?,
-            None => self.answer(&oscillator, &clocks, common)?,
-        };
+        let stable = self.answer(&oscillator, common)?;
         Ok(u8::from(self.exit_code && !stable))
     }
 
     /// Whether the pair is stable; the rest of the answer is computed only where it is shown.
-    fn answer<S: Decidable>(
-        &self,
-        oscillator: &Oscillator,
-        clocks: &TwoClocks<S>,
-        common: &Common,
-    ) -> Result<bool> {
+    fn answer(&self, oscillator: &Oscillator, common: &Common) -> Result<bool> {
         let first = if self.exact { Tier::Exact } else { Tier::Filter };
-        let answer = decide_from(first, clocks, &common.limits())?;
+        let clocks = oscillator.clocks();
+        let answer = decide_from(first, &clocks, &common.limits())?;
         let silent = self.exit_code && common.quiet && common.output.is_none();
         let document = (!silent).then(|| -> Result<Document> {
             let (decision, growth) = (answer.decision(), answer.growth()?.clone());
-            let exact_trace = Answer::exact_trace(&oscillator.clocks(), self.exact);
+            let exact_trace = Answer::exact_trace(&clocks, self.exact);
             let friction = self.friction.as_ref().map(|rate| damped_pair(oscillator, rate)).transpose()?;
             Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction }.document())
         });

@@ -14,7 +14,7 @@ use crate::number::{Laurent, Rational, Real};
 use crate::parallel::try_map;
 use crate::propagator::Oscillator;
 use crate::tongue::{Question, Request, Selection, Stiffness, Window};
-use crate::verdict::{Decidable, Kind, decide};
+use crate::verdict::{Kind, decide};
 
 /// Kicks of all samples together.
 pub(super) const MOST_KICKS: u64 = 400_000_000;
@@ -85,16 +85,9 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
 
 /// The verdict's code, as in tiles, and the growth rate.
 fn sample(pair: &Oscillator) -> Result<(u8, f64)> {
-    let clocks = pair.clocks();
-    match clocks.as_rational() {
-        Some(rational) => sampled(&rational, pair),
-        None => sampled(&clocks, pair),
-    }
-}
-
-fn sampled<S: Decidable>(clocks: &crate::propagator::TwoClocks<S>, pair: &Oscillator) -> Result<(u8, f64)> {
     const BITS: u32 = 96;
-    let answer = decide(clocks, &LIMITS)?;
+    let clocks = pair.clocks();
+    let answer = decide(&clocks, &LIMITS)?;
     if answer.verdict.kind() != Kind::Hyperbolic {
         return Ok((code(answer.verdict), 0.0));
     }

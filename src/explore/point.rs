@@ -82,17 +82,8 @@ fn simplified(h1: &Laurent, h2: &Laurent, within: &Rational) -> Result<Laurent> 
 
 pub(super) fn decided(oscillator: &Oscillator) -> Result<Answer> {
     let clocks = oscillator.clocks();
-    // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
-    let (decision, growth) = match clocks.as_rational() {
-        Some(rational) => {
-            let answer = decide(&rational, &LIMITS)?;
-            (answer.decision(), answer.growth()?.clone())
-        }
-        None => {
-            let answer = decide(&clocks, &LIMITS)?;
-            (answer.decision(), answer.growth()?.clone())
-        }
-    };
+    let answer = decide(&clocks, &LIMITS)?;
+    let (decision, growth) = (answer.decision(), answer.growth()?.clone());
     let exact_trace = Answer::exact_trace(&clocks, false);
     Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction: None })
 }

@@ -114,10 +114,7 @@ impl Grid {
         Comparisons::gather(&columns, tolerance, |&i, found| {
             (self.rows.0..=self.rows.1).try_for_each(|j| {
                 let (clocks, place) = (self.clocks(i, j)?, || [self.h1(i), self.h2(j)]);
-                match clocks.as_rational() {
-                    Some(rational) => found.add(&rational, place, tolerance, limits),
-                    None => found.add(&clocks, place, tolerance, limits),
-                }
+                found.add(&clocks, place, tolerance, limits)
             })
         })
     }

@@ -135,11 +135,7 @@ impl Source for Pairs {
     }
 
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
-        let clocks = self.clocks(n)?;
-        match clocks.as_rational() {
-            Some(rational) => decide(&rational, limits).map(|answer| answer.decision()),
-            None => decide(&clocks, limits).map(|answer| answer.decision()),
-        }
+        decide(&self.clocks(n)?, limits).map(|answer| answer.decision())
     }
 }
 

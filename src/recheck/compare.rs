@@ -141,11 +141,8 @@ impl Claim {
     }
 
     fn rule(&self, clocks: &TwoClocks<Laurent>, verdict: Verdict) -> Option<Rule> {
-        let near = |p| match clocks.as_rational() {
-            Some(rational) => rational.angle().map(|angle| angle.is_resonant(p, &self.input.tolerance)),
-            None => clocks.angle().map(|angle| angle.is_resonant(p, &self.input.tolerance)),
-        };
-        near(clocks.p()).map(|near| Rule::of(verdict.is_stable(), near))
+        let near = clocks.angle().map(|angle| angle.is_resonant(clocks.p(), &self.input.tolerance));
+        near.map(|near| Rule::of(verdict.is_stable(), near))
     }
 
     fn counts(&self, pairs: &Pairs, lines: &[Line]) -> Checked {

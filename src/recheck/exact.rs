@@ -8,9 +8,7 @@ use crate::number::{Ball, ExactSign, Laurent, Ratio, Rational, Real, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
 use crate::tongue::Entry;
-use crate::verdict::{
-    Decidable, Decision, Growth, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth,
-};
+use crate::verdict::{Decidable, Decision, HalfSigns, Kind, Limits, Tier, Verdict, decide_from, exact_trace};
 
 /// p/q, in lowest terms as it has to be written.
 pub fn lowest(p: u64, q: u64) -> Checked<Ratio> {
@@ -172,16 +170,5 @@ pub fn ln_multiplier_at(clocks: &TwoClocks<Rational>, bits: u32) -> Option<Ball>
 
 /// The verdict without the tiers below `first`.
 pub fn again(first: Tier, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Decision> {
-    match clocks.as_rational() {
-        Some(rational) => decide_from(first, &rational, limits).map(|answer| answer.decision()),
-        None => decide_from(first, clocks, limits).map(|answer| answer.decision()),
-    }
-}
-
-/// The enclosures of trace and growth, and the label.
-pub fn growth_again(clocks: &TwoClocks<Laurent>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
-    match clocks.as_rational() {
-        Some(rational) => growth(&rational, verdict, limits),
-        None => growth(clocks, verdict, limits),
-    }
+    decide_from(first, clocks, limits).map(|answer| answer.decision())
 }

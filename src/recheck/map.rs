@@ -6,13 +6,13 @@ use crate::parallel::try_map;
 use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds, same};
-use super::exact::{again, growth_again};
+use super::exact::again;
 use super::sample::sample;
 use super::written::{Ends, Range, Written};
 use crate::error::{Error, Result};
 use crate::map::{Band, Grid, Map, Products, Resources};
 use crate::number::{Ball, Laurent, Real};
-use crate::verdict::{Kind, Tier, Verdict};
+use crate::verdict::{Kind, Tier, Verdict, growth};
 
 const ROUTE: &str =
     "the counts by the map's own certified route again; the pairs of a random sample kick by kick";
@@ -191,7 +191,7 @@ impl Claim {
         let j = inside((&told.h2, step2), grid.rows())?;
         let (clocks, limits) = (grid.clocks(i, j)?, context.limits());
         const BITS: u32 = 128;
-        let ln = growth_again(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
+        let ln = growth(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
         let ln = ln.ok_or_else(|| Fault::Wrong("the fastest pair does not grow".into()))?;
         let period = told.h1.enclosure(BITS).mul(&Ball::from_integer(&clocks.p().into()), BITS);
         let rate = ln.div(&period, BITS).expect("T > 0");

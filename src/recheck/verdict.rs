@@ -3,13 +3,13 @@
 use serde::de::IgnoredAny;
 
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
-use super::exact::{FullPeriod, affordable, again, full_period, growth_again, ln_multiplier};
+use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Written, nullable};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::resonance::dominant_family;
-use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace};
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace, growth};
 
 const ROUTE: &str =
     "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
@@ -110,7 +110,7 @@ impl Claim {
         }
         let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
         let verdict = again(tier, clocks, limits)?.verdict;
-        let Growth { trace, ln_multiplier, .. } = growth_again(clocks, verdict, limits)?;
+        let Growth { trace, ln_multiplier, .. } = growth(clocks, verdict, limits)?;
         let rational = clocks.as_rational().filter(|_| self.trace.exact.is_some());
         Ok(Truth { verdict, trace, ln_multiplier, exact: rational.map(|clocks| exact_trace(&clocks)) })
     }
@@ -150,7 +150,7 @@ impl Claim {
         };
         holds(due && m < 1 << 31, || "has no label".into())?;
         let verdict = again(Tier::Refine, clocks, limits)?.verdict;
-        let turns = growth_again(clocks, verdict, limits)?.label;
+        let turns = growth(clocks, verdict, limits)?.label;
         holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))?;
         let family = dominant_family(clocks.ratio(), m);
         holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))

@@ -46,6 +46,7 @@ pub trait Decidable: Real {
     }
 }
 
+/// Rational strengths are decided as such, whatever the stiffnesses and steps look like.
 impl Decidable for Laurent {
     /// Over the rationals where both strengths are rational; otherwise generically.
     fn half_signs(clocks: &TwoClocks<Laurent>) -> HalfSigns {
@@ -68,7 +69,7 @@ impl Decidable for Laurent {
 
     /// By residues: exact arithmetic over Q\[π\] is dear, and its only zeros are polynomial identities.
     fn surely_nonzero(clocks: &TwoClocks<Laurent>) -> bool {
-        residue::nonzero_entries(clocks)
+        clocks.as_rational().is_none() && residue::nonzero_entries(clocks)
     }
 }
 
