@@ -121,6 +121,21 @@ pub(crate) fn try_map<T: Sync, R: Send>(
     places.into_iter().map_while(|place| place.into_inner().expect("one thread a place")).collect()
 }
 
+/// Two pieces of work, side by side where they are `worth` a thread; never stopped.
+#[cfg(feature = "system")]
+pub(crate) fn both<A: Send, B: Send>(
+    worth: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    #[cfg(feature = "parallel")]
+    if worth {
+        return rayon::join(|| under(None, first), || under(None, second));
+    }
+    let _ = worth;
+    (first(), second())
+}
+
 /// `work` of 0, 1, ..., n − 1, in any order: the only place that is compiled with the threads' machinery.
 fn each(n: usize, work: &(dyn Fn(usize) + Sync)) {
     #[cfg(feature = "parallel")]

@@ -72,6 +72,15 @@ impl Leading {
     }
 }
 
+/// The double nearest to n/d, n and d positive, and the double nearest to what it lacks, but for 2^-51 of that.
+pub(super) fn short_quotient(n: u64, d: u64) -> (f64, f64) {
+    let hi = Leading::of_quotient(n, d).around().nearest;
+    // hi = m 2^e with m of 53 bits, and hi d differs from n by less than 2^e d: both are whole in units of 2^min(e, 0).
+    let (m, e) = ((hi.to_bits() & ((1 << 52) - 1)) | 1 << 52, (hi.to_bits() >> 52) as i32 - 1075);
+    let (n, product) = (i128::from(n) << (-e).max(0), (i128::from(m) << e.max(0)) * i128::from(d));
+    (hi, (n - product) as f64 / d as f64 * 2f64.powi(e.min(0)))
+}
+
 /// The doubles around `numerator / denominator`, denominator > 0.
 fn around_quotient(numerator: &BigUint, denominator: &BigUint) -> Around {
     // Numbers as people write them, many times faster.
@@ -120,6 +129,8 @@ fn signed(sign: IntSign, around: Around) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::Rational;
+    use num_traits::Signed;
     use proptest::prelude::*;
 
     proptest! {
@@ -135,6 +146,12 @@ mod tests {
             let other = around_quotient(&(&long * n), &(&long * d));
             let bits = |own: &Around| [own.down, own.up, own.nearest].map(f64::to_bits);
             prop_assert_eq!(bits(&short), bits(&other));
+            // In two doubles: n/d = hi + lo to within 2^-104.
+            let (hi, lo) = short_quotient(n, d);
+            prop_assert_eq!(hi, short.nearest);
+            let exact = |x: f64| Rational::from_float(x).unwrap();
+            let off = (exact(hi) + exact(lo)) * Rational::new(d.into(), n.into()) - exact(1.0);
+            prop_assert!(off.abs() * (Rational::from_integer(BigInt::from(1) << 104)) <= exact(1.0), "{off}");
         }
     }
 }

@@ -1,8 +1,8 @@
 //! A number as the unevaluated sum of two doubles.
 
-use num_traits::{ToPrimitive, Zero};
+use num_traits::{Signed, ToPrimitive};
 
-use super::{Ball, Rational, rational};
+use super::{Ball, Rational, float, rational};
 
 /// The rounded sum and what rounding took from it, exactly (Knuth).
 #[inline(always)]
@@ -49,7 +49,7 @@ impl Twofold {
     /// a − b, likewise.
     #[inline(always)]
     pub fn minus(self, other: Twofold) -> Twofold {
-        self.plus(Twofold { hi: -other.hi, lo: -other.lo })
+        self.plus(other.negative())
     }
 
     /// a + b to within 2^-104 of itself, whatever cancels (Joldes, Muller, Popescu 2017, theorem 3.1: 3 u² + 13 u³).
@@ -63,7 +63,7 @@ impl Twofold {
     /// a − b, likewise.
     #[inline(always)]
     pub fn accurate_difference(self, other: Twofold) -> Twofold {
-        self.accurate_sum(Twofold { hi: -other.hi, lo: -other.lo })
+        self.accurate_sum(other.negative())
     }
 
     /// a b to within 2^-101 relative.
@@ -105,10 +105,16 @@ impl Twofold {
         Twofold::joined(hi, rest / b.hi)
     }
 
+    /// −a.
+    #[inline(always)]
+    pub fn negative(self) -> Twofold {
+        Twofold { hi: -self.hi, lo: -self.lo }
+    }
+
     /// |a|.
     #[inline(always)]
     pub fn magnitude(self) -> Twofold {
-        if self.hi < 0.0 { Twofold { hi: -self.hi, lo: -self.lo } } else { self }
+        if self.hi < 0.0 { self.negative() } else { self }
     }
 
     /// hi + lo, |lo| ≤ |hi| (Dekker).
@@ -162,16 +168,32 @@ impl Twofold {
         (error <= most.into()).then(|| Twofold::sum(high * unit, low * unit))
     }
 
-    /// x to within 2^-104 relative.
+    /// x to within 2^-104 relative as long as neither part is subnormal, hi being the double nearest to x.
     pub fn from_rational(x: &Rational) -> Twofold {
-        if let (Some(a), Some(b)) = (x.numer().to_u64(), x.denom().to_u64())
-            && let Some(quotient) = Twofold::quotient(a, b)
-        {
-            return quotient;
+        if let (Some(n @ 1..), Some(d)) = (x.numer().magnitude().to_u64(), x.denom().to_u64()) {
+            let (hi, lo) = float::short_quotient(n, d);
+            let two = Twofold { hi, lo };
+            return if x.is_negative() { two.negative() } else { two };
         }
         let hi = rational::to_f64(x);
-        let rest = rational::from_f64_exact(hi).map_or_else(Rational::zero, |hi| x - hi);
-        Twofold { hi, lo: rational::to_f64(&rest) }
+        let rest = match rational::from_f64_exact(hi) {
+            Some(exact) if exact != *x => rational::to_f64(&(x - exact)),
+            _ => 0.0,
+        };
+        Twofold { hi, lo: rest }
+    }
+
+    /// The double nearest to the product of what two stand for, each within 2^-104 relative; `None` where that is not certain, or a
+    /// number far from 1.
+    #[cfg(feature = "system")]
+    pub fn nearest_product(self, other: Twofold) -> Option<f64> {
+        const RANGE: std::ops::Range<f64> = 1e-250..1e250;
+        // Within 2^-101 + 2 2^-104 relative, and what the sums below round.
+        let product = self.times(other);
+        let slack = product.hi.abs() * 2f64.powi(-99);
+        let (least, most) = (product.hi + (product.lo - slack), product.hi + (product.lo + slack));
+        let in_range = [self.hi, other.hi, product.hi].iter().all(|x| RANGE.contains(&x.abs()));
+        (in_range && least == most).then_some(least)
     }
 }
 
@@ -220,6 +242,29 @@ mod tests {
                 let two = Twofold { hi, lo };
                 prop_assert!(hi + lo == hi && within(two, &x.enclosure(300), 99));
             }
+        }
+    }
+
+    #[cfg(feature = "system")]
+    proptest! {
+        #[test]
+        fn products_are_rounded_as_exact_ones(
+            a in any::<i64>(), b in 1i64.., c in any::<i64>(), d in 1i64.., tie in 0u32..3, scale in 0u32..200,
+        ) {
+            // Products of whole doubles lie on ties, or next to them.
+            let whole = |x: i64, bits: u32| Rational::from_integer((x >> bits).into());
+            let (x, y) = match tie {
+                0 => (ratio(a, b), ratio(c, d)),
+                1 => (whole(a, 11), whole(c, 61)),
+                _ => (whole(a, 11), whole(c, 61) + ratio(1, 1 << 60)),
+            };
+            let x = x / Rational::from_integer(2.into()).pow(scale as i32);
+            let (two_x, two_y) = (Twofold::from_rational(&x), Twofold::from_rational(&y));
+            prop_assert!(two_x.hi == rational::to_f64(&x) && two_y.hi == rational::to_f64(&y));
+            let rounded = two_x.nearest_product(two_y);
+            let exact = rational::product_to_f64(&x, &y);
+            prop_assert!(rounded.is_none_or(|rounded| rounded == exact));
+            prop_assert!(rounded.is_some() || tie > 0 || exact == 0.0);
         }
     }
 

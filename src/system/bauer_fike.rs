@@ -3,8 +3,10 @@
 use faer::Mat;
 use faer::linalg::solvers::DenseSolveCore;
 
+use super::limits::SIDE_BY_SIDE;
 use super::norm;
 use crate::number::U;
+use crate::parallel::both;
 
 /// γ: a sum of m products, in any order, has an error of at most this times the sum of their absolute values.
 pub(super) fn gamma(m: usize) -> f64 {
@@ -55,9 +57,14 @@ impl Residual {
 /// With W V = I − Y, F = (I − Y)⁻¹ W (S V − V D), and the rows of (I − Y)⁻¹ W are within ‖Y‖ ‖W‖/(1 − ‖Y‖) of those of W.
 pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -> Option<Residual> {
     let m = v.ncols();
-    let w = v.partial_piv_lu().inverse();
     let vd = times_blocks(v, d);
-    let residual = norm::frobenius(&(s * v - &vd));
+    let residual = || (norm::frobenius(&(s * v - &vd)), norm::spectral(v));
+    let inverse = || {
+        let w = v.partial_piv_lu().inverse();
+        let size = norm::spectral(&w);
+        (w, size)
+    };
+    let ((residual, v_size), (w, w_size)) = both(m >= SIDE_BY_SIDE, residual, inverse);
     let (nv, nw) = (norm::frobenius(v), norm::frobenius(&w));
     let rounding = gamma(m) * (norm::frobenius(s) * nv + norm::frobenius(&vd) + nv * norm::frobenius(d));
     let y = Mat::<f64>::identity(m, m) - &w * v;
@@ -65,8 +72,8 @@ pub(super) fn bauer_fike(s: &Mat<f64>, delta: f64, v: &Mat<f64>, d: &Mat<f64>) -
     if y.is_nan() || y >= 0.5 {
         return None;
     }
-    let off = residual + rounding + delta * norm::spectral(v);
-    let norm = 1.01 * norm::spectral(&w) * off / (1.0 - y);
+    let off = residual + rounding + delta * v_size;
+    let norm = 1.01 * w_size * off / (1.0 - y);
     let row = |i: usize| (0..m).map(|j| w[(i, j)] * w[(i, j)]).sum::<f64>().sqrt();
     let rows = (0..m).map(|i| 1.01 * (row(i) + nw * y / (1.0 - y)) * off).collect();
     norm.is_finite().then_some(Residual { norm, rows })

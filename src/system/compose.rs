@@ -10,6 +10,7 @@
 //!
 //! multiplications (for a diagonal mass matrix; else whole islands of M drift together), not (T/2h) n² m.
 
+use faer::Mat;
 use nalgebra::DMatrix;
 use num_traits::{One, Zero};
 
@@ -17,7 +18,7 @@ use super::limits::Limits;
 use super::model::{Potential, System};
 use super::sparse::Symmetric;
 use crate::error::Result;
-use crate::number::rational::product_to_f64;
+use crate::number::rational::to_f64;
 use crate::number::{Rational, Ring};
 use crate::schedule::{Event, Weight};
 
@@ -72,38 +73,49 @@ pub(super) fn inverse_mass(system: &System) -> (Vec<Vec<usize>>, Vec<Row<Rationa
     (islands, inverse)
 }
 
+/// M⁻¹, each entry rounded.
+pub(super) fn rounded_inverse_mass(system: &System) -> Mat<f64> {
+    let mut rounded = Mat::zeros(system.size(), system.size());
+    for (i, row) in inverse_mass(system).1.iter().enumerate() {
+        row.iter().for_each(|(j, x)| rounded[(i, *j)] = to_f64(x));
+    }
+    rounded
+}
+
 impl Program<Rational> {
     pub fn new(system: &System) -> Self {
-        Program::over(system, |x, factor| x * factor)
+        Program::over(system, Rational::clone, |k, factor| {
+            let entry = |(&j, x): (&usize, &Rational)| (j, x * factor);
+            k.support().into_iter().map(|i| (i, k.row(i).iter().map(entry).collect())).collect()
+        })
     }
 }
 
 impl Program<f64> {
     /// Each coefficient the double nearest to it.
     pub fn rounded(system: &System) -> Self {
-        Program::over(system, product_to_f64)
+        Program::over(system, to_f64, Symmetric::rounded_products)
     }
 }
 
 impl<S> Program<S> {
-    /// Over the scalars that `product` makes of two rationals.
-    fn over(system: &System, product: impl Fn(&Rational, &Rational) -> S) -> Self {
+    /// Over the scalars that `entry` makes of one of M⁻¹, and `products` of a stiffness and the factor of its clock: the
+    /// rows that are not 0.
+    fn over(
+        system: &System,
+        entry: impl Fn(&Rational) -> S,
+        products: impl Fn(&Symmetric, &Rational) -> Vec<(usize, Row<S>)>,
+    ) -> Self {
         let (islands, inverse_mass) = inverse_mass(system);
         let mut island_of = vec![0; system.size()];
         for (k, island) in islands.iter().enumerate() {
             island.iter().for_each(|&i| island_of[i] = k);
         }
-        let one = Rational::one();
-        let row = |row: &Row<Rational>| row.iter().map(|(j, x)| (*j, product(x, &one))).collect();
+        let row = |row: &Row<Rational>| row.iter().map(|(j, x)| (*j, entry(x))).collect();
         let inverse_mass = inverse_mass.iter().map(row).collect();
         let kick = |(clock, ticks): (&Potential, u64)| {
             let factor = system.tick() * system.tick() * Rational::from_integer(ticks.into());
-            let rows: Vec<_> = clock
-                .stiffness
-                .support()
-                .into_iter()
-                .map(|i| (i, clock.stiffness.row(i).iter().map(|(&j, x)| (j, product(x, &factor))).collect()))
-                .collect();
+            let rows = products(&clock.stiffness, &factor);
             let mut islands: Vec<_> = rows.iter().map(|(i, _)| island_of[*i]).collect();
             islands.sort_unstable();
             islands.dedup();
@@ -257,6 +269,10 @@ pub(super) fn connected<'a>(n: usize, graphs: impl IntoIterator<Item = &'a Symme
 fn inverse(mass: &Symmetric, islands: &[Vec<usize>]) -> Vec<Row<Rational>> {
     let mut rows = vec![Vec::new(); mass.size()];
     for island in islands {
+        if let [i] = island[..] {
+            rows[i] = vec![(i, mass.row(i)[&i].recip())];
+            continue;
+        }
         let inverse = inverted(mass.restricted(island).to_dense());
         for (a, &i) in island.iter().enumerate() {
             let entry = |(b, &j): (usize, &usize)| (j, inverse[(a, b)].clone());

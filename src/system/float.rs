@@ -18,11 +18,13 @@ use faer::Mat;
 
 use super::compose::{Program, Row, State};
 use super::frame::Frame;
+use super::limits::SIDE_BY_SIDE;
 use super::model::System;
 use super::modes::frequency_range;
 use super::norm;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
+use crate::parallel::both;
 use crate::schedule::Weight;
 
 /// The blocks of Ĥ in the frame's coordinates, row by row, and the bound on their error.
@@ -217,7 +219,9 @@ impl Rows {
         let block = |rows: &[f64], first: usize| {
             norm::spectral(&Mat::from_fn(n, n, |i, j| rows[i * self.columns + first + j])).powi(2)
         };
-        1.01 * (block(&self.x, 0) + block(&self.x, n) + block(&self.p, 0) + block(&self.p, n)).sqrt()
+        let of = |rows: &[f64]| [block(rows, 0), block(rows, n)];
+        let ([a, b], [c, d]) = both(n >= SIDE_BY_SIDE, || of(&self.x), || of(&self.p));
+        1.01 * (a + b + c + d).sqrt()
     }
 }
 

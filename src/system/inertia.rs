@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Side};
 
 use super::norm;
@@ -53,11 +53,8 @@ pub(super) fn is_definite(m: &Mat<f64>, slack: f64) -> bool {
     shifted.llt(Side::Lower).is_ok()
 }
 
-/// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has.
-///
-/// A definite one by Cholesky; else with the computed eigenvectors V and eigenvalues Λ, ‖Vᵀ V − I‖ ≤ η: for the
-/// orthogonal factor Q of V, ‖Q − V‖ ≤ η, Qᵀ m Q = Λ + E with ‖E‖ ≤ ‖m V − V Λ‖ + η (‖m‖ + ‖Λ‖), and no eigenvalue is
-/// farther than ‖E‖ + slack from its place in Λ (Weyl).
+/// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has: of a definite one by Cholesky, else by
+/// L B Lᵀ, or, where that does not tell all signs, by eigenvalues.
 pub(super) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     let n = m.nrows();
     if is_definite(m, slack) {
@@ -66,10 +63,23 @@ pub(super) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     if is_definite(&-m, slack) {
         return Inertia { negative: n, ..Inertia::default() };
     }
+    match by_factors(m, m, slack) {
+        (Some(negative), Some(most)) if negative == most => {
+            Inertia { positive: n - negative, negative, ..Inertia::default() }
+        }
+        _ => by_eigenvalues(m, slack),
+    }
+}
+
+/// The same with the computed eigenvectors V and eigenvalues Λ, ‖Vᵀ V − I‖ ≤ η: for the
+/// orthogonal factor Q of V, ‖Q − V‖ ≤ η, Qᵀ m Q = Λ + E with ‖E‖ ≤ ‖m V − V Λ‖ + η (‖m‖ + ‖Λ‖), and no eigenvalue is
+/// farther than ‖E‖ + slack from its place in Λ (Weyl).
+fn by_eigenvalues(m: &Mat<f64>, slack: f64) -> Inertia {
+    let n = m.nrows();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
     let Ok(eigen) = m.self_adjoint_eigen(Side::Lower) else { return unknown };
     let values: Vec<f64> = (0..n).map(|i| eigen.S()[i]).collect();
-    let Some(error) = backward_error(m, eigen.U().to_owned(), &values) else { return unknown };
+    let Some((error, _)) = backward_error(m, &eigen.U().to_owned(), &values) else { return unknown };
     let radius = 1.01 * (error + slack);
     let count = |test: &dyn Fn(f64) -> bool| values.iter().filter(|&&x| test(x)).count();
     let (positive, negative) = (count(&|x| x > radius), count(&|x| x < -radius));
@@ -78,16 +88,22 @@ pub(super) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
 
 /// Of every symmetric matrix within `slack` (2-norm) of one between `low` ≤ `high` in Loewner's order: no fewer negative eigenvalues than
 /// the first number, no more that are negative or 0 than the second.
+pub(super) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (usize, usize) {
+    let (least, most) = by_factors(low, high, slack);
+    (
+        least.unwrap_or_else(|| by_eigenvalues(high, slack).negative),
+        most.unwrap_or_else(|| low.nrows() - by_eigenvalues(low, slack).positive),
+    )
+}
+
+/// These numbers, each where a factorization tells it.
 ///
 /// L B Lᵀ (Bunch and Kaufman 1977) of a matrix moved by c I has the inertia of B (Sylvester), and where it is within c − `slack` of that it
 /// lies above, or below, all of them. No eigenvector and no gap between eigenvalues is asked for.
-pub(super) fn negative_bounds(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (usize, usize) {
+fn by_factors(low: &Mat<f64>, high: &Mat<f64>, slack: f64) -> (Option<usize>, Option<usize>) {
     let least = moved(high, slack, 1.0).map(|own| own.negative);
     let most = moved(low, slack, -1.0).map(|own| own.negative + own.zero);
-    (
-        least.unwrap_or_else(|| proven(high, slack).negative),
-        most.unwrap_or_else(|| low.nrows() - proven(low, slack).positive),
-    )
+    (least, most)
 }
 
 /// The inertia of some matrix that is no smaller (sign 1), or no greater (−1), than all within `slack` of m; `None` where the factorization is too far from it.
@@ -97,20 +113,15 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
     // What the check usually asks for; once more with as much as it did ask for.
     for _ in 0..2 {
         let at = |i: usize, j: usize| m[(i.max(j), i.min(j))] + if i == j { sign * shift } else { 0.0 };
-        let lblt = Mat::from_fn(n, n, at).lblt(Side::Lower);
+        let own = Mat::from_fn(n, n, at);
+        let lblt = own.lblt(Side::Lower);
         let (order, l) = (lblt.P().arrays().0, lblt.L().to_owned());
         let (diagonal, next) = (lblt.B_diag().column_vector(), lblt.B_subdiag().column_vector());
         let (product, sizes) = times_blocks(&l, &|i| diagonal[i], &|i| next[i]);
-        let mut whole = Mat::<f64>::zeros(n, n);
-        let (lower, upper) = (BlockStructure::TriangularLower, BlockStructure::TriangularUpper);
-        let (any, threads) = (BlockStructure::Rectangular, faer::get_global_parallelism());
-        matmul(&mut whole, lower, Accum::Replace, &product, any, l.transpose(), upper, 1.0, threads);
-        let entry = |i: usize, j: usize| at(order[i], order[j]) - whole[(i, j)];
-        let residual = Mat::from_fn(n, n, |i, j| if i < j { 0.0 } else { entry(i, j) });
+        let residual = 1.01 * lower_residual(&own, order, &product, &l);
         let products = (n as f64 + 4.0) * norm::frobenius(&product) + 4.0 * sizes;
         let rounding = 1.1 * U * (norm::frobenius(&l) * products + 2.0 * (size + shift * n as f64));
-        // What the lower triangle stands for twice is the whole residual at most.
-        let off = 1.01 * (2f64.sqrt() * norm::frobenius(&residual) + rounding + slack);
+        let off = 1.01 * (residual + rounding + slack);
         if off <= shift {
             return of_blocks(&|i| diagonal[i], &|i| next[i], n);
         }
@@ -120,6 +131,31 @@ fn moved(m: &Mat<f64>, slack: f64, sign: f64) -> Option<Inertia> {
         }
     }
     None
+}
+
+/// The Frobenius norm of X − L B Lᵀ, X being `own` in the order given and `product` L B, rounded: column by column of the lower triangle,
+/// which needs as many columns of L as the last of them has rows.
+fn lower_residual(own: &Mat<f64>, order: &[usize], product: &Mat<f64>, l: &Mat<f64>) -> f64 {
+    const PANEL: usize = 32;
+    let (n, threads) = (own.nrows(), faer::get_global_parallelism());
+    let mut panel = Mat::<f64>::zeros(n, PANEL);
+    let mut squares = 0.0;
+    for first in (0..n).step_by(PANEL) {
+        let (rows, columns) = (n - first, PANEL.min(n - first));
+        let last = first + columns;
+        // L B reaches a column beyond L's diagonal, where L has nothing.
+        let left = product.submatrix(first, 0, rows, last);
+        let right = l.submatrix(first, 0, columns, last).transpose();
+        matmul(panel.submatrix_mut(first, 0, rows, columns), Accum::Replace, left, right, 1.0, threads);
+        for j in first..last {
+            let (own, found) = (own.col_as_slice(order[j]), &panel.col_as_slice(j - first)[j..]);
+            let off = |(&i, x): (&usize, &f64)| (own[i] - x).powi(2);
+            let (diagonal, below): (f64, f64) =
+                (off((&order[j], &found[0])), order[j + 1..].iter().zip(&found[1..]).map(off).sum());
+            squares += diagonal + 2.0 * below;
+        }
+    }
+    squares.sqrt()
 }
 
 /// L B, and the Frobenius norm of |L| |B|, for a block-diagonal B.
@@ -169,18 +205,18 @@ fn of_blocks(diagonal: &dyn Fn(usize) -> f64, next: &dyn Fn(usize) -> f64, n: us
     Some(found)
 }
 
-/// More than ‖E‖₂, Qᵀ m Q = Λ + E for the orthogonal Q nearest to the computed eigenvectors V; `None` where these are not
-/// nearly orthogonal.
-pub(super) fn backward_error(m: &Mat<f64>, v: Mat<f64>, values: &[f64]) -> Option<f64> {
-    let defect = orthogonality(&v)?;
+/// More than ‖E‖₂, Qᵀ m Q = Λ + E for the orthogonal Q nearest to the computed eigenvectors V, and the defect of these; `None` where they
+/// are not nearly orthogonal.
+pub(super) fn backward_error(m: &Mat<f64>, v: &Mat<f64>, values: &[f64]) -> Option<(f64, f64)> {
+    let defect = orthogonality(v)?;
     let n = m.nrows();
     let scaled = Mat::from_fn(n, n, |i, j| v[(i, j)] * values[j]);
     let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
-    let residual = m * &v - &scaled;
-    let (size, length) = (norm::frobenius(m), norm::frobenius(&v));
+    let residual = m * v - &scaled;
+    let (size, length) = (norm::frobenius(m), norm::frobenius(v));
     let rounding = 1.1 * (n as f64 + 4.0) * U * length * (size + largest);
     let error = norm::frobenius(&residual) + rounding + 1.01 * defect * (size + largest);
-    error.is_finite().then_some(error)
+    error.is_finite().then_some((error, defect))
 }
 
 /// More than ‖Vᵀ V − I‖₂; `None` from 1/10 on.

@@ -19,6 +19,9 @@ pub struct Limits {
     pub products: u64,
 }
 
+/// From so many degrees of freedom on pieces of work with their matrices are worth threads of their own.
+pub(super) const SIDE_BY_SIDE: usize = 64;
+
 impl Default for Limits {
     /// 5·10^10 products: a minute or two at worst.
     fn default() -> Self {

@@ -173,7 +173,11 @@ impl System {
 
     /// The degrees of freedom in `indices` alone; `None` where no potential acts on them.
     pub(super) fn component(&self, indices: &[usize]) -> Option<System> {
-        let part = self.mapped(self.mass.restricted(indices), |k| k.restricted(indices));
+        let part = if indices.len() == self.size() {
+            self.clone()
+        } else {
+            self.mapped(self.mass.restricted(indices), |k| k.restricted(indices))
+        };
         part.potentials.iter().any(|own| !own.stiffness.is_zero()).then_some(part)
     }
 

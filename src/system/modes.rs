@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use faer::linalg::solvers::{DenseSolveCore, Solve};
 use faer::{Mat, Side, c64};
 
-use super::compose::inverse_mass as of_mass;
+use super::compose::rounded_inverse_mass;
 use super::frame::Frame;
 use super::model::System;
 use super::scalar::shortest_family;
@@ -53,7 +53,8 @@ pub(super) struct NormalModes {
 /// Highest by Gershgorin's rows of M⁻¹ K, lowest by a few steps of inverse iteration.
 pub(super) fn frequency_range(system: &System, frame: &Frame) -> Option<(f64, f64)> {
     let (m, stiffness) = (frame.kept.len(), kept_stiffness(system, frame));
-    let masses: Vec<f64> = frame.kept.iter().map(|&i| to_f64(&system.mass().get(i, i))).collect();
+    let diagonal = system.mass().rounded_diagonal();
+    let masses: Vec<f64> = frame.kept.iter().map(|&i| diagonal[i]).collect();
     let row = |a: usize| (0..m).map(|b| stiffness[(a, b)].abs()).sum::<f64>() / masses[a];
     let highest = (0..m).map(row).fold(0.0, f64::max).sqrt();
     let factor = stiffness.llt(Side::Lower).ok()?;
@@ -77,16 +78,12 @@ fn kept_stiffness(system: &System, frame: &Frame) -> Mat<f64> {
 /// G and Gᵀ K G: with P = (I, −N), y'' = −P M⁻¹ Pᵀ K y; let P M⁻¹ Pᵀ = G Gᵀ and y = G u, then u'' = −Gᵀ K G u.
 fn symmetric_form(system: &System, frame: &Frame) -> Option<(Mat<f64>, Mat<f64>)> {
     let (n, m) = (system.size(), frame.kept.len());
-    let mut inverse_mass = Mat::<f64>::zeros(n, n);
-    for (i, row) in of_mass(system).1.iter().enumerate() {
-        row.iter().for_each(|(j, x)| inverse_mass[(i, *j)] = to_f64(x));
-    }
     let mut projection = Mat::<f64>::zeros(m, n);
     for (a, &i) in frame.kept.iter().enumerate() {
         projection[(a, i)] = 1.0;
         frame.rigid.iter().for_each(|(own, n)| projection[(a, *own)] = -to_f64(&n[i]));
     }
-    let reduced = &projection * &inverse_mass * projection.transpose();
+    let reduced = &projection * rounded_inverse_mass(system) * projection.transpose();
     let stiffness = kept_stiffness(system, frame);
     let g = reduced.llt(Side::Lower).ok()?.L().to_owned();
     let symmetric = g.transpose() * &stiffness * &g;

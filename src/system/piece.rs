@@ -6,7 +6,7 @@ use super::exact::{MuCount, decide_by_signs, decide_exact};
 use super::float;
 use super::frame::Frame;
 use super::large;
-use super::limits::{Limits, Route, degrees_of_freedom};
+use super::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
 use super::model::System;
 use super::signs::{self, Forms};
 use super::single;
@@ -15,6 +15,7 @@ use super::spectrum::{Spectrum, from_segment};
 use super::split::{Subspace, invariant_subspaces, may_split};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Laurent, Rational};
+use crate::parallel::both;
 use crate::verdict::Kind;
 
 /// Components of at most this size are brought to rational normal forms before anything else.
@@ -102,12 +103,12 @@ impl Piece {
             return Ok(part);
         }
         let blocks = float::half_period(&self.system, &self.frame);
-        let spectrum = Spectrum::new(&blocks);
-        let signed = || Some((signs::judge(&mut Forms::new(&blocks)?)?, Evidence::Signs));
+        let signed = || asked.is_none().then(|| signs::judge(&mut Forms::new(&blocks)?)).flatten();
+        let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
         let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
             Some(exact) => (exact.kind, Evidence::Exact, Some(exact.roots)),
-            None => match signed().or_else(certified) {
+            None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
                 Some((kind, evidence)) => (kind, evidence, None),
                 None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
             },

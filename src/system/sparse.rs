@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
 use nalgebra::DMatrix;
@@ -10,21 +11,58 @@ use num_traits::{Signed, Zero};
 use super::inertia::{Inertia, proven};
 use super::norm;
 use crate::error::{Error, Result};
-use crate::number::rational::{from_f64_exact, to_f64};
-use crate::number::{Rational, U};
+use crate::number::rational::{from_f64_exact, product_to_f64};
+use crate::number::{Rational, Twofold, U};
 
-/// A symmetric n x n matrix over ℚ.
-///
-/// Invariant: `rows[i][j] == rows[j][i]`, and no stored entry is 0.
+/// A symmetric n x n matrix over ℚ. Clones share their entries until one of them is changed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Symmetric {
+    entries: Arc<Entries>,
+}
+
+/// The entries by rows.
+///
+/// Invariant: `rows[i][j] == rows[j][i]`, and no stored entry is 0.
+#[derive(Clone, Debug)]
+struct Entries {
     rows: Vec<BTreeMap<usize, Rational>>,
+    /// The same in two doubles, once they are asked for: rounding them costs more than a small system's verdict.
+    doubles: OnceLock<Vec<Vec<(usize, Twofold)>>>,
+}
+
+impl PartialEq for Entries {
+    fn eq(&self, other: &Self) -> bool {
+        self.rows == other.rows
+    }
 }
 
 impl Symmetric {
     /// The zero matrix.
     pub fn zero(n: usize) -> Self {
-        Symmetric { rows: vec![BTreeMap::new(); n] }
+        Symmetric::of_rows(vec![BTreeMap::new(); n])
+    }
+
+    fn of_rows(rows: Vec<BTreeMap<usize, Rational>>) -> Self {
+        Symmetric { entries: Arc::new(Entries { rows, doubles: OnceLock::new() }) }
+    }
+
+    fn rows(&self) -> &[BTreeMap<usize, Rational>] {
+        &self.entries.rows
+    }
+
+    /// To be changed.
+    fn rows_mut(&mut self) -> &mut [BTreeMap<usize, Rational>] {
+        let entries = Arc::make_mut(&mut self.entries);
+        entries.doubles.take();
+        &mut entries.rows
+    }
+
+    /// The entries by rows, in two doubles.
+    fn doubles(&self) -> &[Vec<(usize, Twofold)>] {
+        let row = |row: &BTreeMap<usize, Rational>| {
+            row.iter().map(|(&j, x)| (j, Twofold::from_rational(x))).collect()
+        };
+        self.entries.doubles.get_or_init(|| self.rows().iter().map(row).collect())
     }
 
     /// diag(d_1, ..., d_n).
@@ -63,22 +101,10 @@ impl Symmetric {
     /// # Panics
     /// Where an index is out of range.
     pub fn add(&mut self, i: usize, j: usize, x: &Rational) {
-        self.add_at(i, j, x);
+        let rows = self.rows_mut();
+        add(&mut rows[i], j, x);
         if i != j {
-            self.add_at(j, i, x);
-        }
-    }
-
-    fn add_at(&mut self, i: usize, j: usize, x: &Rational) {
-        match self.rows[i].entry(j) {
-            Entry::Vacant(place) if !x.is_zero() => drop(place.insert(x.clone())),
-            Entry::Vacant(_) => {}
-            Entry::Occupied(mut place) => {
-                *place.get_mut() += x;
-                if place.get().is_zero() {
-                    place.remove();
-                }
-            }
+            add(&mut rows[j], i, x);
         }
     }
 
@@ -96,57 +122,57 @@ impl Symmetric {
 
     /// Adds the other matrix of the same size.
     pub fn add_all(&mut self, other: &Symmetric) {
-        for (i, row) in other.rows.iter().enumerate() {
-            row.iter().for_each(|(&j, x)| self.add_at(i, j, x));
+        for (own, row) in self.rows_mut().iter_mut().zip(other.rows()) {
+            row.iter().for_each(|(&j, x)| add(own, j, x));
         }
     }
 
     /// c times the matrix.
     pub fn scaled(&self, c: &Rational) -> Self {
-        let mut matrix = Symmetric::zero(self.size());
-        for (i, row) in self.rows.iter().enumerate() {
-            row.iter().for_each(|(&j, x)| matrix.add_at(i, j, &(x * c)));
-        }
-        matrix
+        let scaled = |row: &BTreeMap<usize, Rational>| {
+            row.iter().map(|(&j, x)| (j, x * c)).filter(|(_, x)| !x.is_zero()).collect()
+        };
+        Symmetric::of_rows(self.rows().iter().map(scaled).collect())
     }
 
     /// n.
     pub fn size(&self) -> usize {
-        self.rows.len()
+        self.rows().len()
     }
 
     /// The entries of row i that are not 0, by column.
     pub fn row(&self, i: usize) -> &BTreeMap<usize, Rational> {
-        &self.rows[i]
+        &self.rows()[i]
     }
 
     /// The entry (i, j).
     pub fn get(&self, i: usize, j: usize) -> Rational {
-        self.rows[i].get(&j).cloned().unwrap_or_else(Rational::zero)
+        self.rows()[i].get(&j).cloned().unwrap_or_else(Rational::zero)
     }
 
     /// The rows that are not 0.
     pub fn support(&self) -> Vec<usize> {
-        (0..self.size()).filter(|&i| !self.rows[i].is_empty()).collect()
+        (0..self.size()).filter(|&i| !self.rows()[i].is_empty()).collect()
     }
 
     /// Whether all entries are 0.
     pub fn is_zero(&self) -> bool {
-        self.rows.iter().all(BTreeMap::is_empty)
+        self.rows().iter().all(BTreeMap::is_empty)
     }
 
     /// Whether all entries off the diagonal are 0.
     pub fn is_diagonal(&self) -> bool {
-        self.rows.iter().enumerate().all(|(i, row)| row.keys().all(|&j| i == j))
+        self.rows().iter().enumerate().all(|(i, row)| row.keys().all(|&j| i == j))
     }
 
     /// The rows and columns in `indices`.
     pub fn restricted(&self, indices: &[usize]) -> Self {
         let place: BTreeMap<usize, usize> =
             indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
-        let row =
-            |&i: &usize| self.rows[i].iter().filter_map(|(j, x)| Some((*place.get(j)?, x.clone()))).collect();
-        Symmetric { rows: indices.iter().map(row).collect() }
+        let row = |&i: &usize| {
+            self.rows()[i].iter().filter_map(|(j, x)| Some((*place.get(j)?, x.clone()))).collect()
+        };
+        Symmetric::of_rows(indices.iter().map(row).collect())
     }
 
     /// Zᵀ self Z for the n x m matrix with the given columns.
@@ -167,7 +193,7 @@ impl Symmetric {
             row.iter()
                 .fold(Rational::zero(), |sum, (&j, a)| if x[j].is_zero() { sum } else { sum + a * &x[j] })
         };
-        self.rows.iter().map(row).collect()
+        self.rows().iter().map(row).collect()
     }
 
     /// All entries.
@@ -195,18 +221,40 @@ impl Symmetric {
     /// The entries, each rounded.
     pub(super) fn rounded(&self) -> Mat<f64> {
         let mut rounded = Mat::<f64>::zeros(self.size(), self.size());
-        for (i, row) in self.rows.iter().enumerate() {
-            row.iter().for_each(|(&j, x)| rounded[(i, j)] = to_f64(x));
+        for (i, row) in self.doubles().iter().enumerate() {
+            row.iter().for_each(|(j, x)| rounded[(i, *j)] = x.hi);
         }
         rounded
     }
 
+    /// The entries on the diagonal, each rounded.
+    pub(super) fn rounded_diagonal(&self) -> Vec<f64> {
+        let entry = |(i, row): (usize, &Vec<(usize, Twofold)>)| {
+            row.iter().find(|(j, _)| *j == i).map_or(0.0, |(_, x)| x.hi)
+        };
+        self.doubles().iter().enumerate().map(entry).collect()
+    }
+
+    /// The rows that are not 0, c times each entry, rounded once.
+    pub(super) fn rounded_products(&self, c: &Rational) -> Vec<(usize, Vec<(usize, f64)>)> {
+        let factor = Twofold::from_rational(c);
+        let rows = self.rows().iter().zip(self.doubles()).enumerate();
+        rows.filter(|(_, (row, _))| !row.is_empty())
+            .map(|(i, (row, doubles))| {
+                let entry = |((&j, x), (_, double)): ((&usize, &Rational), &(usize, Twofold))| {
+                    (j, double.nearest_product(factor).unwrap_or_else(|| product_to_f64(x, c)))
+                };
+                (i, row.iter().zip(doubles).map(entry).collect())
+            })
+            .collect()
+    }
+
     /// The number of positive pivots of a semidefinite matrix (its rank), or `None` if it is not one.
     fn pivots(&self) -> Option<usize> {
-        let mut rest = self.clone();
+        let mut rest = self.rows().to_vec();
         let mut rank = 0;
         for i in 0..self.size() {
-            let row = std::mem::take(&mut rest.rows[i]);
+            let row = std::mem::take(&mut rest[i]);
             let pivot = row.get(&i).cloned().unwrap_or_else(Rational::zero);
             let others: Vec<_> = row.into_iter().filter(|(j, _)| *j != i).collect();
             if pivot.is_negative() || (pivot.is_zero() && !others.is_empty()) {
@@ -214,9 +262,9 @@ impl Symmetric {
             }
             rank += usize::from(pivot.is_positive());
             for (j, a) in &others {
-                rest.rows[*j].remove(&i);
+                rest[*j].remove(&i);
                 let factor = a / &pivot;
-                others.iter().for_each(|(k, b)| rest.add_at(*j, *k, &-(&factor * b)));
+                others.iter().for_each(|(k, b)| add(&mut rest[*j], *k, &-(&factor * b)));
             }
         }
         Some(rank)
@@ -225,7 +273,21 @@ impl Symmetric {
     /// A basis of the null space in reduced form, each vector with the coordinate of its own where it is 1
     /// and all others are 0.
     pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
-        null_space(self.rows.clone(), self.size())
+        null_space(self.rows().to_vec(), self.size())
+    }
+}
+
+/// row\[j\] += x.
+fn add(row: &mut BTreeMap<usize, Rational>, j: usize, x: &Rational) {
+    match row.entry(j) {
+        Entry::Vacant(place) if !x.is_zero() => drop(place.insert(x.clone())),
+        Entry::Vacant(_) => {}
+        Entry::Occupied(mut place) => {
+            *place.get_mut() += x;
+            if place.get().is_zero() {
+                place.remove();
+            }
+        }
     }
 }
 
@@ -243,7 +305,7 @@ pub(super) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnOnce() -> Sy
 pub(super) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
     let n = parts.first().map_or(0, |own| own.size());
-    let entries: usize = parts.iter().flat_map(|own| &own.rows).map(BTreeMap::len).sum();
+    let entries: usize = parts.iter().flat_map(|own| own.rows()).map(BTreeMap::len).sum();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
     if n > SMALL && entries < 5 * n {
         return unknown;
@@ -333,4 +395,35 @@ pub(super) fn dot(x: &[Rational], y: &[Rational]) -> Rational {
         .zip(y)
         .filter(|(a, b)| !a.is_zero() && !b.is_zero())
         .fold(Rational::zero(), |sum, (a, b)| sum + a * b)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn a_changed_clone_is_rounded_anew_and_leaves_the_other_as_it_was() {
+        let first = Symmetric::diagonal(&[ratio(1, 3), ratio(2, 7)]);
+        assert_eq!(first.rounded()[(0, 0)], 1.0 / 3.0);
+        let mut other = first.clone();
+        other.add(0, 1, &ratio(1, 10));
+        other.add(0, 0, &ratio(-1, 3));
+        assert_eq!((other.rounded()[(0, 1)], other.rounded()[(0, 0)]), (0.1, 0.0));
+        assert_eq!((first.rounded()[(0, 1)], first.rounded_diagonal()), (0.0, vec![1.0 / 3.0, 2.0 / 7.0]));
+        assert_ne!(first, other);
+    }
+
+    #[test]
+    fn products_are_rounded_once_whatever_their_size() {
+        let long = Rational::new(num_bigint::BigInt::from(3).pow(90), num_bigint::BigInt::from(7).pow(70));
+        let tiny = Rational::new(1.into(), num_bigint::BigInt::from(10).pow(300));
+        for x in [ratio(1, 3), ratio(-22, 7), ratio((1 << 53) + 1, 1), long.clone(), -&long, tiny] {
+            let (matrix, c) = (Symmetric::diagonal(std::slice::from_ref(&x)), ratio(355, 113));
+            for c in [c.clone(), ratio(1, 1), &c * &long] {
+                let expected = product_to_f64(&x, &c);
+                assert_eq!(matrix.rounded_products(&c), [(0, vec![(0, expected)])], "{x} {c}");
+            }
+        }
+    }
 }

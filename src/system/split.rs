@@ -6,17 +6,17 @@
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Zero};
 
-use super::compose::inverse_mass;
+use super::compose::{inverse_mass, rounded_inverse_mass};
 use super::model::System;
 use super::roots;
 use super::sparse::null_space;
 use crate::number::polynomial::squarefree;
-use crate::number::rational::to_f64;
 use crate::number::{Polynomial, Rational, U};
 
 /// Columns that span an invariant subspace.
@@ -66,13 +66,13 @@ pub(super) fn invariant_subspaces(system: &System) -> Option<Vec<Subspace>> {
 /// terms within (n² + 12) u of the sum of their absolute values.
 pub(super) fn may_split(system: &System) -> bool {
     let n = system.size();
-    let inverse = dense_inverse(system).map(|x| to_f64(&x));
+    let dense = |rounded: Mat<f64>| DMatrix::from_fn(n, n, |i, j| rounded[(i, j)]);
+    let inverse = dense(rounded_inverse_mass(system));
     let products: Vec<[DMatrix<f64>; 2]> = system
         .clocks()
         .iter()
         .map(|clock| {
-            let rounded = clock.stiffness.rounded();
-            let k = DMatrix::from_fn(n, n, |i, j| rounded[(i, j)]);
+            let k = dense(clock.stiffness.rounded());
             [&inverse * &k, inverse.abs() * k.abs()]
         })
         .collect();

@@ -50,7 +50,7 @@ impl Kernel {
 
     fn warnings(&self, evidence: Evidence) -> Vec<String> {
         let mut warnings = Vec::new();
-        if !self.is_total_definite {
+        if !self.is_total_definite() {
             let (lowest, mode) = self.lowest_total();
             let moves = match mode {
                 Some(i) => format!(", of a mode that moves degree of freedom {i} most (from 0)"),
@@ -69,9 +69,7 @@ impl Kernel {
 
     /// The lowest eigenvalue of F + S, and the mass-weighted coordinate that its mode moves most; rounded.
     fn lowest_total(&self) -> (f64, Option<usize>) {
-        let mut total = self.slow.clone();
-        (0..self.size()).for_each(|i| total[(i, i)] += self.values[i]);
-        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return (f64::NAN, None) };
+        let Ok(eigen) = self.total().self_adjoint_eigen(Side::Lower) else { return (f64::NAN, None) };
         let amplitudes: Vec<_> = (0..self.size()).map(|k| eigen.U()[(k, 0)].into()).collect();
         let shape = self.shape(&amplitudes).into_iter().map(|x| x.re.abs()).enumerate();
         (eigen.S()[0], shape.max_by(|x, y| x.1.total_cmp(&y.1)).map(|(i, _)| i))

@@ -17,12 +17,12 @@ impl Kernel {
     pub fn covers_band(&self, outer: &Outer, band: f64, epsilon: f64) -> bool {
         let most = (1.0 - band).powi(-2) * (1.0 + ROOM);
         let least = (1.0 + band).powi(-2) * (1.0 - ROOM);
-        let shift = self.fast_error + epsilon * self.norms[0];
+        let [shift, _] = self.errors_within(epsilon);
         // Where errors take an eigenvalue below 0, 0 is above it.
         let highest = |x: &f64| outer.scaled_up((most * (x + shift).max(0.0)).next_up());
         let halves: Vec<Half> =
             self.values.iter().map(|x| Half::new(highest(x), outer.inner_steps)).collect();
-        if !self.is_total_definite || !halves.iter().all(Half::rises) {
+        if !self.is_total_definite() || !halves.iter().all(Half::rises) {
             return false;
         }
         let stretch: Vec<f64> = halves.iter().map(|half| half.stretch().lo).collect();

@@ -53,15 +53,15 @@ impl Kernel {
     fn blocks(&self, outer: &Outer, epsilon: f64) -> Option<Blocks> {
         let p = outer.inner_steps;
         let (lowest, highest) = (*self.values.first()?, *self.values.last()?);
-        let shift = self.fast_error + epsilon * self.norms[0];
+        let [shift, slow] = self.errors_within(epsilon);
+        let [fast_norm, slow_norm] = self.norms();
         if outer.scaled_up(highest + shift) > 4.0
             || outer.scaled_down(lowest - shift) < -0.02 / (p as f64).powi(2)
         {
             return None;
         }
         // In s: the shift, and the rounding of h² and of the product.
-        let moved =
-            1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * self.norms[0]);
+        let moved = 1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * fast_norm);
         let halves: Vec<Half> = self.values.iter().map(|x| Half::new(outer.inner_square * x, p)).collect();
         let near = |pick: fn(&Half) -> Interval, lipschitz: f64| {
             let radius = halves.iter().map(|half| pick(half).radius()).fold(0.0, f64::max);
@@ -74,8 +74,8 @@ impl Kernel {
         let factor = outer.half_kick();
         let m = self.size();
         let kick = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
-        let slow = self.slow_error + epsilon * self.norms[1] + 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
-        let near_kick = Near { size: 1.01 * factor * (self.norms[1] + slow), off: 1.01 * factor * slow };
+        let slow = slow + 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
+        let near_kick = Near { size: 1.01 * factor * (slow_norm + slow), off: 1.01 * factor * slow };
         let halves = halves.iter().map(|h| [h.a.mid(), h.b.mid(), h.c.mid(), h.d.mid()]).collect();
         Some(Blocks { halves, near, kick, near_kick })
     }

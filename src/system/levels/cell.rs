@@ -13,7 +13,7 @@ use super::interval::Interval;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
 use crate::error::{Error, Result};
 use crate::number::U;
-use crate::system::inertia::{backward_error, orthogonality};
+use crate::system::inertia::backward_error;
 use crate::system::measured::Holds;
 use crate::system::norm;
 use crate::system::spectrum::Spectrum;
@@ -48,8 +48,7 @@ impl<'a> Cells<'a> {
         let m = kernel.size();
         let eigen = kernel.slow.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
         let (v, values) = (eigen.U().to_owned(), (0..m).map(|i| eigen.S()[i]).collect::<Vec<_>>());
-        let defect = orthogonality(&v).ok_or_else(failed)?;
-        let error = backward_error(&kernel.slow, v.clone(), &values).ok_or_else(failed)?;
+        let (error, defect) = backward_error(&kernel.slow, &v, &values).ok_or_else(failed)?;
         let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
         let scaled = Mat::from_fn(m, m, |i, j| v[(i, j)] * values[j].abs());
         let mut size = &scaled * v.transpose();
@@ -157,7 +156,7 @@ impl<'a> Cells<'a> {
             1.01 * (own + coupled) + 2.0 * U * s[(i, j)].abs()
         });
         let error = 1.01 * cell.fast.hi * shift;
-        let slow = most * (kernel.norms[1] + kernel.slow_error);
+        let slow = most * (kernel.norms()[1] + kernel.slow_error);
         let error =
             1.01 * (f_slope * error + g_slope * error * slow + 1.05 * p / 2.0 * most * kernel.slow_error);
         Some((Spectrum::of(s, Some(error))?, off))

@@ -1,5 +1,7 @@
 //! The eigenbasis of the fast stiffness, computed once for every ratio and step.
 
+use std::sync::OnceLock;
+
 use faer::{Mat, Side};
 use num_traits::ToPrimitive;
 
@@ -7,7 +9,9 @@ use super::rigid::{Hessians, halved};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
-use crate::system::inertia::{backward_error, is_definite, orthogonality};
+use crate::parallel::both;
+use crate::system::inertia::{backward_error, is_definite};
+use crate::system::limits::SIDE_BY_SIDE;
 use crate::system::measured::Removed;
 use crate::system::norm;
 
@@ -20,10 +24,11 @@ pub struct Kernel {
     /// S'.
     pub(super) slow: Mat<f64>,
     pub(super) slow_error: f64,
-    /// Upper bounds of ‖F‖₂ and ‖S‖₂.
-    pub(super) norms: [f64; 2],
-    /// Whether F + S is proven positive definite.
-    pub(super) is_total_definite: bool,
+    /// Upper bounds of ‖F‖₂ and, once it is asked for, ‖S‖₂.
+    fast_norm: f64,
+    slow_norm: OnceLock<f64>,
+    /// Whether F + S is proven positive definite, once it is asked for.
+    is_total_definite: OnceLock<bool>,
     /// The modes as columns in the mass-weighted coordinates given, rounded.
     pub(super) modes: Mat<f64>,
     /// What was projected out before.
@@ -95,7 +100,7 @@ impl Outer {
 }
 
 impl Kernel {
-    /// One eigendecomposition and two products.
+    /// One eigendecomposition and four products.
     ///
     /// # Errors
     /// Where the eigenvalue iteration fails: never seen, but not excluded.
@@ -107,31 +112,29 @@ impl Kernel {
         let eigen = fast.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
         let vectors = eigen.U().to_owned();
         let values: Vec<f64> = (0..m).map(|i| eigen.S()[i]).collect();
-        let defect = orthogonality(&vectors).ok_or_else(failed)?;
-        let fast_error =
-            hessians.errors[0] + backward_error(fast, vectors.clone(), &values).ok_or_else(failed)?;
-        let turned = halved((vectors.transpose() * slow * &vectors).as_ref());
+        let (checked, turned) = both(
+            m >= SIDE_BY_SIDE,
+            || backward_error(fast, &vectors, &values),
+            || halved((vectors.transpose() * slow * &vectors).as_ref()),
+        );
+        let (error, defect) = checked.ok_or_else(failed)?;
+        let fast_error = hessians.errors[0] + error;
         let size = norm::frobenius(slow);
         let rounding = 2.2 * (m as f64 + 4.0) * U * norm::frobenius(&vectors).powi(2) * size;
         let slow_error = hessians.errors[1] + rounding + 2.1 * defect * size;
         let fast_norm = values.iter().fold(0.0, |a: f64, x| a.max(x.abs())) + fast_error;
-        let slow_norm = spectral_norm(&turned, slow_error);
-        let mut total = turned.clone();
-        (0..m).for_each(|i| total[(i, i)] += values[i]);
         let modes = match &hessians.basis {
             Some(basis) => basis * &vectors,
             None => vectors,
         };
         Ok(Kernel {
-            is_total_definite: is_definite(
-                &total,
-                1.01 * (fast_error + slow_error) + U * (fast_norm + slow_norm),
-            ),
             values,
             fast_error,
             slow: turned,
             slow_error,
-            norms: [fast_norm, slow_norm],
+            fast_norm,
+            slow_norm: OnceLock::new(),
+            is_total_definite: OnceLock::new(),
             modes,
             removed: hessians.removed.clone(),
         })
@@ -139,7 +142,31 @@ impl Kernel {
 
     /// Upper bounds of the 2-norms of both stiffnesses.
     pub fn norms(&self) -> [f64; 2] {
-        self.norms
+        [self.fast_norm, *self.slow_norm.get_or_init(|| spectral_norm(&self.slow, self.slow_error))]
+    }
+
+    /// How far (2-norm) Λ and S' are from those of all stiffnesses within ε of their norms.
+    pub(super) fn errors_within(&self, epsilon: f64) -> [f64; 2] {
+        if epsilon == 0.0 {
+            return [self.fast_error, self.slow_error];
+        }
+        let [fast, slow] = self.norms();
+        [self.fast_error + epsilon * fast, self.slow_error + epsilon * slow]
+    }
+
+    /// Whether F + S is proven positive definite.
+    pub(super) fn is_total_definite(&self) -> bool {
+        *self.is_total_definite.get_or_init(|| {
+            let size = self.fast_norm + norm::frobenius(&self.slow);
+            is_definite(&self.total(), 1.01 * (self.fast_error + self.slow_error) + U * size)
+        })
+    }
+
+    /// Λ + S'.
+    pub(super) fn total(&self) -> Mat<f64> {
+        let mut total = self.slow.clone();
+        (0..self.size()).for_each(|i| total[(i, i)] += self.values[i]);
+        total
     }
 
     /// The number of modes.

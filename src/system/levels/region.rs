@@ -35,11 +35,11 @@ pub(super) fn largest(width: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
 
 impl Kernel {
     pub(super) fn shifted(&self, outer: &Outer, epsilon: f64) -> Shifted {
-        let shift = (self.fast_error + epsilon * self.norms[0]).next_up();
+        let [fast, slow] = self.errors_within(epsilon);
+        let shift = fast.next_up();
         let half = |s: f64| Half::new(s, outer.inner_steps);
         let less = self.values.iter().map(|x| half(outer.scaled_down((x - shift).next_down()))).collect();
         let more = self.values.iter().map(|x| half(outer.scaled_up((x + shift).next_up()))).collect();
-        let slow = self.slow_error + epsilon * self.norms[1];
         let rounding = 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
         Shifted { less, more, slow_slack: 1.01 * outer.half_kick() * (slow + rounding) }
     }
@@ -78,7 +78,7 @@ impl Kernel {
     /// `None` where F + S is not proven definite, so that the region does not begin at 0.
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         let outer = |step: f64| Outer::new(step, inner_steps).ok();
-        if !self.is_total_definite || self.highest_frequency() == 0.0 {
+        if !self.is_total_definite() || self.highest_frequency() == 0.0 {
             return None;
         }
         let stable = |step: f64| outer(step).is_some_and(|outer| self.is_in_first_region(&outer, 0.0));

@@ -24,10 +24,11 @@ pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
         (sign, _) if sign != 0 => r.times(sign),
         (_, sign) if sign != 0 => p.times(sign),
         _ => {
-            let w = forms.w().definite();
-            let sign = if w != 0 { w } else { forms.z().definite() };
+            let w = forms.w();
+            let z = (w.definite() == 0).then(|| forms.z());
+            let sign = z.as_ref().unwrap_or(&w).definite();
             if sign == 0 {
-                return counts_differ(p, r, forms).then_some(Kind::Hyperbolic);
+                return counts_differ([p, r], [Some(w), z]).then_some(Kind::Hyperbolic);
             }
             let (p, r) = (p.times(sign), r.times(sign));
             let both = |f: fn(&Inertia) -> usize| f(&p) + f(&r);
@@ -49,13 +50,10 @@ pub(in crate::system) fn judge(forms: &mut impl Inertias) -> Option<Kind> {
 
 /// Whether the number of negative eigenvalues of P or R is told and differs from that of W or Z: as many μ are real and outside
 /// \[−1, 0\].
-fn counts_differ(p: Inertia, r: Inertia, forms: &mut impl Inertias) -> bool {
+fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
     let told = |own: Inertia| (own.unknown + own.zero == 0).then_some(own.negative);
-    let differ = |own: Inertia| {
-        let count = told(own);
-        count.is_some() && [p, r].into_iter().filter_map(told).any(|other| Some(other) != count)
-    };
-    differ(forms.w()) || differ(forms.z())
+    let others: Vec<usize> = others.into_iter().flatten().filter_map(told).collect();
+    ends.into_iter().filter_map(told).any(|count| others.iter().any(|other| *other != count))
 }
 
 /// The forms of a half period in doubles, within the bound on its error.
