@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use kickdrift::map::Grid;
 use kickdrift::number::parse::parse;
+use nalgebra::DMatrix;
 
 /// The least time in seconds of at least `runs` runs, and as many more as `seconds` hold; with the last result.
 pub fn least<T>(runs: u32, seconds: f64, mut work: impl FnMut() -> T) -> (f64, T) {
@@ -17,6 +18,33 @@ pub fn least<T>(runs: u32, seconds: f64, mut work: impl FnMut() -> T) -> (f64, T
         if done >= runs && begin.elapsed().as_secs_f64() >= seconds {
             return (least, result);
         }
+    }
+}
+
+/// Numbers that repeat, in [−1, 1).
+pub struct Numbers(pub u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// G Gᵀ/n plus a multiple of the identity, G random.
+    pub fn definite(&mut self, n: usize, scale: f64) -> Vec<Vec<f64>> {
+        let g: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| self.next()).collect()).collect();
+        let entry = |i: usize, j: usize| {
+            let (i, j) = (i.max(j), i.min(j));
+            let product: f64 = g[i].iter().zip(&g[j]).map(|(x, y)| x * y).sum();
+            scale * (product / n as f64 + f64::from(u8::from(i == j)) * 0.1)
+        };
+        (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
+    }
+
+    /// The same as a matrix.
+    pub fn matrix(&mut self, n: usize, scale: f64) -> DMatrix<f64> {
+        let rows = self.definite(n, scale);
+        DMatrix::from_fn(n, n, |i, j| rows[i][j])
     }
 }
 

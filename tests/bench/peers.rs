@@ -12,12 +12,11 @@ use kickdrift::propagator::TwoClocks;
 use kickdrift::system::levels::{Hessians, Kernel, Outer};
 use kickdrift::tongue::{Edge, Tongues};
 use kickdrift::verdict::{Limits, decide, exact_trace};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 mod common;
 
-use common::{figure_1, least};
+use common::{Numbers, figure_1, least};
 
 /// Repeats the work until a second has passed, at least three times, and prints the least time.
 fn timed<T>(name: &str, work: impl FnMut() -> T) -> T {
@@ -43,16 +42,8 @@ fn main() {
 /// Two dense levels of 288 degrees of freedom, four inner steps: a verdict from the matrices on, and ten outer steps in one eigenbasis.
 fn levels(folder: &Path) {
     let n = 288;
-    // Weyl's sequence: numbers in [−1, 1) without a pattern.
-    let mut count = 0.0;
-    let mut definite = |scale: f64| {
-        let g = DMatrix::from_fn(n, n, |_, _| {
-            count += 1.0;
-            2.0 * (count * 0.754_877_666_246_692_7_f64).fract() - 1.0
-        });
-        (&g * g.transpose() / n as f64 + DMatrix::identity(n, n) * 0.1) * scale
-    };
-    let (fast, slow) = (definite(1.0), definite(0.05));
+    let mut numbers = Numbers(5);
+    let (fast, slow) = (numbers.matrix(n, 1.0), numbers.matrix(n, 0.05));
     for (name, matrix) in [("fast", &fast), ("slow", &slow)] {
         let rows = matrix.row_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
         write(folder, name, &rows.collect::<Vec<_>>().join("\n"));

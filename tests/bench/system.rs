@@ -14,13 +14,12 @@ use kickdrift::scene::{Axis, Scan, SystemScene};
 use kickdrift::system::levels::{Hessians, Kernel, Outer};
 use kickdrift::system::scan::scan;
 use kickdrift::system::{Holds, Limits, Route, System, builders, decide_system};
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 mod common;
 mod dense;
 
-use common::least;
+use common::{Numbers, least};
 use dense::multipliers;
 
 /// Says where a promise is not kept.
@@ -63,27 +62,6 @@ fn simulation() {
     let rate = kicks as f64 / time;
     println!("two springs through the queue: {:.1} million kicks a second", rate / 1e6);
     promise(rate >= 1e7, "10^7 kicks a second");
-}
-
-/// Numbers that repeat, in [−1, 1).
-struct Numbers(u64);
-
-impl Numbers {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    /// G Gᵀ/n plus a multiple of the identity, G random.
-    fn definite(&mut self, n: usize, scale: f64) -> Vec<Vec<f64>> {
-        let g: Vec<Vec<f64>> = (0..n).map(|_| (0..n).map(|_| self.next()).collect()).collect();
-        let entry = |i: usize, j: usize| {
-            let (i, j) = (i.max(j), i.min(j));
-            let product: f64 = g[i].iter().zip(&g[j]).map(|(x, y)| x * y).sum();
-            scale * (product / n as f64 + f64::from(u8::from(i == j)) * 0.1)
-        };
-        (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
-    }
 }
 
 /// The file of a random dense system of two levels, `inner` inner steps in the outer one.
@@ -140,11 +118,7 @@ fn dense() {
 fn levels() {
     let n = 1000;
     let mut numbers = Numbers(5);
-    let mut matrix = |scale: f64| {
-        let rows = numbers.definite(n, scale);
-        DMatrix::from_fn(n, n, |i, j| rows[i][j])
-    };
-    let (fast, slow) = (matrix(1.0), matrix(0.05));
+    let (fast, slow) = (numbers.matrix(n, 1.0), numbers.matrix(n, 0.05));
     let hessians = || Hessians::new(&fast, &slow, 1e-6).expect("two Hessians");
     let (making, kernel) = least(1, 0.0, || Kernel::new(&hessians()).expect("a basis"));
     let (first, analysis) = least(1, 0.0, || {
