@@ -1,6 +1,7 @@
 //! Labels and growth of a band's pairs in tongues.
 
 use super::band::Band;
+use super::bases::OnBase;
 use super::enclosure::Enclosure;
 use super::growth::ln_multiplier;
 use super::products::{Growing, Products};
@@ -8,7 +9,7 @@ use super::work::{LANES, Work};
 use crate::error::Result;
 use crate::number::Laurent;
 use crate::orbit::filter::{Ends, Group};
-use crate::orbit::floquet::Floquet;
+use crate::orbit::floquet::{Floquet, Pair};
 use crate::orbit::plain;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -27,11 +28,12 @@ impl Work<'_> {
         for most in BLOCKS {
             let (mut group, mut ends) = (Group::<LANES>::watched(Instructions::best(), most), [None; LANES]);
             kicks += self.side_by_side(&rest, |pairs, positions| {
+                let pairs: Vec<Pair> = pairs.iter().map(OnBase::pair).collect();
                 let ends = &mut ends[..pairs.len()];
                 if products.label {
-                    group.everything(pairs, ends)
+                    group.everything(&pairs, ends)
                 } else {
-                    group.measured(pairs, ends)
+                    group.measured(&pairs, ends)
                 }
                 for (&n, ends) in positions.iter().zip(ends) {
                     let ends = ends.as_ref().filter(|_| band.tiers[n] == Tier::Filter as u8);
@@ -39,6 +41,7 @@ impl Work<'_> {
                     seen[n] = found.is_some();
                     growing.extend(found);
                 }
+                group.kicks()
             })?;
             rest.retain(|&n| !seen[n as usize]);
         }

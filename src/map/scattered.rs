@@ -103,7 +103,7 @@ fn together<P: Source + ?Sized>(
             resources.go_on()?;
             together.clear();
             together.extend(order.iter().map(|&n| pairs[n as usize].0));
-            let verdicts = group.verdicts_of(&together);
+            let verdicts = group.verdicts(&together);
             order.iter().zip(verdicts).for_each(|(&n, verdict)| found[place(n)] = verdict);
         }
         Ok(order.iter().copied().filter(|&n| found[place(n)] == UNDECIDED).collect())

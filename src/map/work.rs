@@ -3,18 +3,18 @@
 use std::cell::OnceCell;
 
 use super::band::{Band, Counters};
-use super::bases::{Bases, quotient};
+use super::bases::{Bases, OnBase};
 use super::gcd;
 use super::grid::Grid;
 use super::resources::Resources;
 use crate::error::{Error, Result};
 use crate::orbit::filter::{self, Group};
-use crate::orbit::floquet::{Base, Pair};
-use crate::vector::instructions::Instructions;
+use crate::orbit::floquet::Base;
+use crate::vector::instructions::{Instructions, Task};
 use crate::verdict::{Limits, decide};
 
-/// Pairs that run side by side: two AVX-512 registers hide each other's latency.
-pub(super) const LANES: usize = 16;
+/// Pairs that run side by side: four AVX-512 registers hide each other's latency.
+pub(super) const LANES: usize = 32;
 
 /// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not certify, and these
 /// again where there are enough: long ones, for which a look at every update is the sharpest bound, and still many times
@@ -73,11 +73,10 @@ impl<'a> Work<'a> {
     /// Positions by min(p, q)/2: equal numbers run together.
     fn sorted(&self) -> Vec<u32> {
         let (a, b) = self.grid.step_ratio();
-        let (rows, first_row) = (self.grid.shape().1, self.grid.rows().0);
+        let rows = (self.grid.rows().0 as f64, a as f64);
         let mut keys = Vec::with_capacity(self.gcds.len());
-        for (i, gcds) in (self.first..).zip(self.gcds.chunks(rows)) {
-            let updates = |(j, &gcd): (u64, &u32)| quotient((i * b).min(j * a), u64::from(gcd)) / 2;
-            keys.extend((first_row..).zip(gcds).map(updates).map(|n| n.min(u64::from(u32::MAX)) as u32));
+        for (i, gcds) in (self.first..).zip(self.gcds.chunks(self.grid.shape().1)) {
+            Instructions::best().perform(Updates { column: (i * b) as f64, rows, gcds, keys: &mut keys });
         }
         by_counting(&keys)
     }
@@ -117,6 +116,7 @@ impl<'a> Work<'a> {
         self.side_by_side(order, |pairs, positions| {
             let found = group.verdicts(pairs);
             positions.iter().zip(found).for_each(|(&n, verdict)| verdicts[n] = verdict);
+            group.kicks()
         })
     }
 
@@ -125,13 +125,18 @@ impl<'a> Work<'a> {
         self.side_by_side(&self.order, |pairs, _| {
             let verdicts = group.uncertified(pairs);
             unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
+            group.kicks()
         })?;
         Ok(unstable)
     }
 
-    /// Hands the pairs at the given positions on in groups that run side by side, without those that have no base,
-    /// and counts the kicks they compose.
-    pub(super) fn side_by_side(&self, order: &[u32], mut run: impl FnMut(&[Pair], &[usize])) -> Result<u64> {
+    /// Hands the pairs at the given positions, which are in the order of their updates, on in groups that run side by side, without
+    /// those that have no base, and counts the kicks that the groups say they compose.
+    pub(super) fn side_by_side(
+        &self,
+        order: &[u32],
+        mut run: impl FnMut(&[OnBase], &[usize]) -> u64,
+    ) -> Result<u64> {
         let mut kicks = 0;
         let (mut pairs, mut positions) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
         for group in order.chunks(LANES) {
@@ -140,16 +145,17 @@ impl<'a> Work<'a> {
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
                 let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
-                let pair = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd);
-                if let Some(pair) = pair {
-                    self.allow(pair.updates + 1)?;
-                    kicks += pair.updates + 1;
+                if let Some(pair) = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd) {
                     pairs.push(pair);
                     positions.push(n);
                 }
             }
+            // The last one has the most.
+            if pairs.last().is_some_and(|pair| pair.updates() >= self.limits().kicks) {
+                pairs.iter().try_for_each(|pair| self.allow(pair.updates() + 1))?;
+            }
             if !pairs.is_empty() {
-                run(&pairs, &positions);
+                kicks += run(&pairs, &positions);
             }
         }
         Ok(kicks)
@@ -190,6 +196,29 @@ impl<'a> Work<'a> {
 
     pub(super) fn order(&self) -> &[u32] {
         &self.order
+    }
+}
+
+/// Appends ⌊min(p, q)/2⌋ of a column's pairs: its step, the number of the first row and their unit, and the greatest common divisors.
+struct Updates<'a> {
+    column: f64,
+    rows: (f64, f64),
+    gcds: &'a [u32],
+    keys: &'a mut Vec<u32>,
+}
+
+impl Task for Updates<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let Updates { column, rows: (first, unit), gcds, keys } = self;
+        keys.extend(gcds.iter().zip(0u32..).map(|(&gcd, n)| {
+            let row = (first + f64::from(n)) * unit;
+            let shorter = if row < column { row } else { column };
+            // Whole numbers, or a half more; what is larger than a key is among the last.
+            (0.5 * (shorter / f64::from(gcd))) as u32
+        }));
     }
 }
 

@@ -5,8 +5,7 @@
 
 use super::certificate::{Certificate, Certificates, Hardest};
 use super::floquet::{Floquet, Pair};
-use super::kernel::{Constants, Lanes, Orbits, Watch};
-use super::strengths::{Strengths, constants};
+use super::kernel::{InLanes, Lanes, Orbits, Watch};
 use super::winding;
 use crate::number::{Sign, U};
 use crate::propagator::PartialSigns;
@@ -99,13 +98,14 @@ pub fn run(floquet: &Floquet) -> Option<Ends> {
 /// The filter could not decide.
 pub const UNDECIDED: u8 = u8::MAX;
 
-/// At most L pairs, 1 or 16, that run side by side. One certificate serves all: that of the strongest kick, the steepest
+/// At most L pairs, 1, 16 or 32, that run side by side. One certificate serves all: that of the strongest kick, the steepest
 /// slope and the most updates.
 pub struct Group<const L: usize> {
     instructions: Instructions,
     lanes: Lanes<L>,
     /// Cosine and sine of the base's last turn.
     left: [[f64; L]; 2],
+    kicks: u64,
     certificates: Certificates,
 }
 
@@ -113,7 +113,7 @@ impl<const L: usize> Group<L> {
     /// Room for L pairs.
     pub fn new(instructions: Instructions) -> Self {
         let certificates = if L == 1 { Certificates::alone() } else { Certificates::of_groups() };
-        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], certificates }
+        Group { instructions, lanes: Lanes::empty(), left: [[0.0; L]; 2], kicks: 0, certificates }
     }
 
     /// The same for bounds that are the sharper the fewer updates there are between two looks.
@@ -123,13 +123,13 @@ impl<const L: usize> Group<L> {
 
     /// Runs the half periods of the pairs and writes of each what [`run`] returns for one.
     pub fn everything(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
-        let certificate = self.run::<SignsAndTurns>(pairs);
+        let certificate = self.run::<SignsAndTurns, _>(pairs);
         self.report(pairs, certificate, ends);
     }
 
     /// The same but for the turns, which stay uncounted.
     pub fn measured(&mut self, pairs: &[Pair], ends: &mut [Option<Ends>]) {
-        let certificate = self.run::<Measured>(pairs);
+        let certificate = self.run::<Measured, _>(pairs);
         self.report(pairs, certificate, ends);
     }
 
@@ -142,21 +142,14 @@ impl<const L: usize> Group<L> {
     }
 
     /// Runs the half periods of the pairs for their verdicts: positions in `Verdict::ALL`, or [`UNDECIDED`].
-    pub fn verdicts(&mut self, pairs: &[Pair]) -> [u8; L] {
-        let certificate = self.run::<SignsOnly>(pairs);
-        self.proven(certificate)
-    }
-
-    /// The same of pairs in doubles.
-    pub fn verdicts_of(&mut self, pairs: &[Strengths]) -> [u8; L] {
-        let extremes = self.instructions.perform(StartMany(pairs, &mut self.lanes, &mut self.left));
-        let certificate = self.advance::<SignsOnly>(extremes, pairs.iter().map(Strengths::updates).max());
+    pub fn verdicts<P: InLanes>(&mut self, pairs: &[P]) -> [u8; L] {
+        let certificate = self.run::<SignsOnly, P>(pairs);
         self.proven(certificate)
     }
 
     /// The signs as they come out, certified or not: for the benchmark alone.
-    pub fn uncertified(&mut self, pairs: &[Pair]) -> [u8; L] {
-        let certificate = self.run::<Bare>(pairs).map(Certificate::void);
+    pub fn uncertified<P: InLanes>(&mut self, pairs: &[P]) -> [u8; L] {
+        let certificate = self.run::<Bare, _>(pairs).map(Certificate::void);
         self.proven(certificate)
     }
 
@@ -166,54 +159,40 @@ impl<const L: usize> Group<L> {
             .map_or([UNDECIDED; L], |certificate| self.instructions.perform(Verdicts(self, &certificate)))
     }
 
-    fn run<W: Watch>(&mut self, pairs: &[Pair]) -> Option<Certificate> {
-        let extremes = self.instructions.perform(Start(pairs, &mut self.lanes));
-        let certificate = self.advance::<W>(extremes, pairs.iter().map(|pair| pair.updates).max())?;
-        for (i, pair) in pairs.iter().enumerate() {
-            let [cos, sin] = pair.left().map_or([1.0, 0.0], |n| pair.base.turn(n).half);
-            (self.left[0][i], self.left[1][i]) = (cos, sin);
-        }
-        Some(certificate)
-    }
-
-    /// All updates of what has been started, with the certificate for its strongest kick, steepest slope and most updates.
-    fn advance<W: Watch>(&mut self, (beta, slope): (f64, f64), most: Option<u64>) -> Option<Certificate> {
-        let steps = most.unwrap_or(0) + 1;
-        let certificate = self.certificates.get(Hardest { beta, slope, steps })?;
+    /// All updates of the pairs, with the certificate for their strongest kick, steepest slope and most updates.
+    fn run<W: Watch, P: InLanes>(&mut self, pairs: &[P]) -> Option<Certificate> {
+        let (hardest, kicks) = self.instructions.perform(Start(pairs, &mut self.lanes, &mut self.left));
+        self.kicks = kicks;
+        let certificate = self.certificates.get(hardest)?;
         (self.lanes.worst, self.lanes.strong) = (certificate.worst, certificate.strong);
         // Who does not look needs no blocks.
         let block = if W::CERTIFY { certificate.block } else { u64::MAX };
         self.lanes.advance::<W>(self.instructions, block);
         Some(certificate)
     }
-}
 
-/// What is compiled for each instruction set.
-struct Start<'a, const L: usize>(&'a [Pair<'a>], &'a mut Lanes<L>);
-struct StartMany<'a, const L: usize>(&'a [Strengths], &'a mut Lanes<L>, &'a mut [[f64; L]; 2]);
-struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
-struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
-
-impl<const L: usize> Task for Start<'_, L> {
-    type Output = (f64, f64);
-
-    /// The strongest kick and the steepest tan(θ/2).
-    #[inline(always)]
-    fn run(self) -> (f64, f64) {
-        self.1.start(Constants::gather(self.0));
-        (self.1.strongest(), self.1.steepest())
+    /// The kicks that the pairs of the latest run composed.
+    pub fn kicks(&self) -> u64 {
+        self.kicks
     }
 }
 
-impl<const L: usize> Task for StartMany<'_, L> {
-    type Output = (f64, f64);
+/// What is compiled for each instruction set.
+struct Start<'a, P, const L: usize>(&'a [P], &'a mut Lanes<L>, &'a mut [[f64; L]; 2]);
+struct Finish<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+struct Verdicts<'a, const L: usize>(&'a Group<L>, &'a Certificate);
+
+impl<P: InLanes, const L: usize> Task for Start<'_, P, L> {
+    /// The hardest of them, and the kicks of all.
+    type Output = (Hardest, u64);
 
     #[inline(always)]
-    fn run(self) -> (f64, f64) {
-        let (constants, left) = constants(self.0);
-        self.1.start(constants);
-        *self.2 = left;
-        (self.1.strongest(), self.1.steepest())
+    fn run(self) -> Self::Output {
+        let Start(pairs, lanes, left) = self;
+        let (constants, turn) = P::constants(pairs);
+        lanes.start(constants);
+        *left = turn;
+        (lanes.hardest(), lanes.kicks(pairs.len()))
     }
 }
 
@@ -337,7 +316,7 @@ mod tests {
                 ratio(2 * k + 1, 2000),
             ))
         });
-        prop::collection::vec(pair, 1..17).prop_map(|pairs| pairs.into_iter().flatten().collect())
+        prop::collection::vec(pair, 1..40).prop_map(|pairs| pairs.into_iter().flatten().collect())
     }
 
     /// All that groups of `L` lanes report on at most as many pairs, as text: doubles by their shortest exact name.
@@ -357,7 +336,7 @@ mod tests {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
             let results: Vec<String> = Instructions::available()
-                .map(|set| written::<1>(set, &pairs) + &written::<16>(set, &pairs))
+                .map(|set| written::<1>(set, &pairs) + &written::<16>(set, &pairs) + &written::<32>(set, &pairs))
                 .collect();
             prop_assert!(results.windows(2).all(|two| two[0] == two[1]), "{results:?}");
         }
@@ -366,7 +345,8 @@ mod tests {
         fn side_by_side_and_alone_agree(floquets in pairs()) {
             prop_assume!(!floquets.is_empty());
             let pairs: Vec<Pair> = floquets.iter().map(Floquet::pair).collect();
-            let verdicts = Group::<16>::new(Instructions::best()).verdicts(&pairs);
+            let mut group = Group::<32>::new(Instructions::best());
+            let verdicts = pairs.chunks(32).flat_map(|pairs| group.verdicts(pairs).into_iter().take(pairs.len()));
             for (floquet, verdict) in floquets.iter().zip(verdicts) {
                 let alone = run(floquet).and_then(|ends| ends.signs().verdict());
                 prop_assert!(verdict == UNDECIDED || alone.is_some_and(|alone| alone.index() == verdict));

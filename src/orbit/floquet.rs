@@ -100,6 +100,14 @@ impl Base {
     pub fn turn(&self, n: u64) -> &Turn {
         &self.turns[(n - self.first) as usize]
     }
+
+    /// Those by nθ and (n + 1)θ.
+    #[inline(always)]
+    pub fn turns_from(&self, n: u64) -> &[Turn; 2] {
+        self.turns[(n - self.first) as usize..]
+            .first_chunk()
+            .expect("a table reaches beyond its pairs' turns")
+    }
 }
 
 /// e^{iα} in two doubles a component.

@@ -17,9 +17,10 @@
 
 use std::marker::PhantomData;
 
+use super::certificate::Hardest;
 use super::floquet::Pair;
 use crate::vector::instructions::{Instructions, Kernel};
-use crate::vector::{Vector, each};
+use crate::vector::{Vector, double_of, each, largest, sum};
 
 /// Above this squared norm an orbit is scaled down.
 const LARGE: f64 = power_of_two(300);
@@ -221,14 +222,12 @@ impl<V: Vector> State<V> {
         }
     }
 
-    /// Adds |g|² to the sums, compares them, and scales down what is large.
+    /// Adds |g|² to the sums and compares them.
     #[inline(always)]
-    fn look<W: Watch, const L: usize>(&mut self, lanes: &mut Lanes<L>, at: usize, scaling: bool) {
-        let (tilt, scale) = (self.place.mul(V::load(&lanes.tilt[at..])), V::load(&lanes.scale[at..]));
-        let (worst, strong) = (V::splat(lanes.worst), lanes.strong && scaling);
-        for (n, orbits) in [&mut lanes.even, &mut lanes.odd].into_iter().enumerate() {
-            let (re, im) = (tilt.mul_add(self.w[n], self.re[n]), scale.mul(self.w[n]));
-            let norm = re.mul_add(re, im.mul(im));
+    fn look<W: Watch, const L: usize>(&self, lanes: &mut Lanes<L>, at: usize) {
+        let norms = self.norms(lanes, at);
+        let worst = V::splat(lanes.worst);
+        for (norm, orbits) in norms.into_iter().zip([&mut lanes.even, &mut lanes.odd]) {
             let squares = V::load(&orbits.squares[at..]).add(norm);
             let so_far = V::load(&orbits.worst[at..]);
             let now = if W::MEASURE {
@@ -242,15 +241,32 @@ impl<V: Vector> State<V> {
             };
             now.store(&mut orbits.worst[at..]);
             squares.store(&mut orbits.squares[at..]);
-            if strong {
-                // Powers of two: exact.
-                let large = norm.exceeds(V::splat(LARGE));
-                let once = either::<V>(large, power_of_two(-150), 1.0);
-                (self.re[n], self.w[n]) = (self.re[n].mul(once), self.w[n].mul(once));
-                squares.mul(either(large, power_of_two(-300), 1.0)).store(&mut orbits.squares[at..]);
-                let exponent = V::load(&orbits.exponent[at..]).add(either(large, 150.0, 0.0));
-                exponent.store(&mut orbits.exponent[at..]);
-            }
+        }
+    }
+
+    /// |g|² of both solutions.
+    #[inline(always)]
+    fn norms<const L: usize>(&self, lanes: &Lanes<L>, at: usize) -> [V; 2] {
+        let (tilt, scale) = (self.place.mul(V::load(&lanes.tilt[at..])), V::load(&lanes.scale[at..]));
+        let norm = |re: V, w: V| {
+            let (re, im) = (tilt.mul_add(w, re), scale.mul(w));
+            re.mul_add(re, im.mul(im))
+        };
+        [norm(self.re[0], self.w[0]), norm(self.re[1], self.w[1])]
+    }
+
+    /// Scales down what is large, by powers of two: exactly.
+    #[inline(always)]
+    fn scale_down<const L: usize>(&mut self, lanes: &mut Lanes<L>, at: usize) {
+        let norms = self.norms(lanes, at);
+        for (n, orbits) in [&mut lanes.even, &mut lanes.odd].into_iter().enumerate() {
+            let large = norms[n].exceeds(V::splat(LARGE));
+            let once = either::<V>(large, power_of_two(-150), 1.0);
+            (self.re[n], self.w[n]) = (self.re[n].mul(once), self.w[n].mul(once));
+            let squares = V::load(&orbits.squares[at..]);
+            squares.mul(either(large, power_of_two(-300), 1.0)).store(&mut orbits.squares[at..]);
+            let exponent = V::load(&orbits.exponent[at..]).add(either(large, 150.0, 0.0));
+            exponent.store(&mut orbits.exponent[at..]);
         }
     }
 }
@@ -279,9 +295,16 @@ impl<W: Watch, const L: usize> Kernel for Together<'_, W, L> {
 
     #[inline(always)]
     fn run<V: Vector>(mut self) {
-        // Two vectors on their way hide most of each other's latency, and leave registers for what they need.
         if L == V::WIDTH {
             return self.strands::<V, 1>(0);
+        }
+        // Two vectors on their way hide most of each other's latency, and leave registers for what they need; where there are
+        // twice as many registers, four.
+        if V::WIDTH == 8 && L.is_multiple_of(4 * V::WIDTH) {
+            for at in (0..L).step_by(4 * V::WIDTH) {
+                self.strands::<V, 4>(at);
+            }
+            return;
         }
         for at in (0..L).step_by(2 * V::WIDTH) {
             self.strands::<V, 2>(at);
@@ -307,11 +330,10 @@ impl<W: Watch, const L: usize> Together<'_, W, L> {
             (done, due, looks) = (due, due + self.block, looks + 1);
         }
         states = blocks::<V, W, N>(states, &courses, last - done);
-        let share = self.lanes.share(self.updates);
         for n in 0..N {
             if self.updates > 0 {
                 states[n].travel::<W>(&courses[n]);
-                states[n].strike_by(V::load(&share[at + n * V::WIDTH..]));
+                states[n].strike_by(self.lanes.share(self.updates, at + n * V::WIDTH));
             }
         }
         self.look(&mut states, at, true);
@@ -323,14 +345,22 @@ impl<W: Watch, const L: usize> Together<'_, W, L> {
     #[inline(always)]
     fn look<V: Vector, const N: usize>(&mut self, states: &mut [State<V>; N], at: usize, scaling: bool) {
         if W::CERTIFY {
-            for (n, state) in states.iter_mut().enumerate() {
-                state.look::<W, L>(self.lanes, at + n * V::WIDTH, scaling);
+            for (n, state) in states.iter().enumerate() {
+                state.look::<W, L>(self.lanes, at + n * V::WIDTH);
+            }
+            if self.lanes.strong && scaling {
+                for (n, state) in states.iter_mut().enumerate() {
+                    state.scale_down(self.lanes, at + n * V::WIDTH);
+                }
             }
         }
     }
 }
 
 /// So many whole updates.
+///
+/// Where registers do not hold what four courses need, it is read from memory, at its own place: the compiler would copy it first, for
+/// each block anew, and not to whole cache lines.
 #[inline(always)]
 fn blocks<V: Vector, W: Watch, const N: usize>(
     mut states: [State<V>; N],
@@ -338,12 +368,19 @@ fn blocks<V: Vector, W: Watch, const N: usize>(
     count: u64,
 ) -> [State<V>; N] {
     for _ in 0..count {
+        let courses = if N > 2 { std::hint::black_box(courses) } else { courses };
         for n in 0..N {
             states[n].travel::<W>(&courses[n]);
             states[n].strike();
         }
     }
     states
+}
+
+/// Pairs that can be put into lanes.
+pub trait InLanes: Sized {
+    /// What the kernel starts from, lanes to spare holding the last pair, and the cosine and sine of the base's last turn.
+    fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]);
 }
 
 /// What the lanes start from, by kind instead of by pair: one walk over the pairs, then vectors only.
@@ -360,26 +397,27 @@ pub struct Constants<const L: usize> {
     pub last_kick: [f64; L],
 }
 
-impl<const L: usize> Constants<L> {
-    /// Lane i holds `pairs[i]`, lanes to spare the last pair.
+impl InLanes for Pair<'_> {
     #[inline(always)]
-    pub fn gather(pairs: &[Pair]) -> Self {
+    fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]) {
         let zero = [0.0; L];
         let (kick, slope, sin, modulus, rest, updates) = (zero, zero, zero, zero, zero, zero);
         let (tan, sine, last_kick) = ([zero; 2], [zero; 2], zero);
         let mut of = Constants { kick, slope, sin, modulus, rest, tan, sine, updates, last_kick };
+        let mut left = [zero; 2];
         for i in 0..L {
             let pair = &pairs[i.min(pairs.len() - 1)];
             let base = pair.base;
             (of.kick[i], of.slope[i], of.sin[i]) = (pair.kick, base.slope, base.sin);
-            (of.modulus[i], of.rest[i]) = (pair.modulus as f64, pair.rest as f64);
+            (of.modulus[i], of.rest[i]) = (double_of(pair.modulus), double_of(pair.rest));
             let turns = [base.turn(pair.whole), base.turn(pair.whole + 1)];
             (of.tan[0][i], of.sine[0][i]) = (turns[0].tan, turns[0].sin);
             (of.tan[1][i], of.sine[1][i]) = (turns[1].tan, turns[1].sin);
-            of.updates[i] = pair.updates as f64;
+            of.updates[i] = double_of(pair.updates);
             of.last_kick[i] = if pair.q_even { 0.5 } else { 1.0 };
+            [left[0][i], left[1][i]] = pair.left().map_or([1.0, 0.0], |n| base.turn(n).half);
         }
-        of
+        (of, left)
     }
 }
 
@@ -404,9 +442,8 @@ impl<W: Watch, const L: usize> Kernel for Apart<'_, W, L> {
     #[inline(always)]
     fn run<V: Vector>(self) {
         for k in self.updates + 1..=self.longest {
-            let share = self.lanes.share(k);
             for at in (0..L).step_by(V::WIDTH) {
-                self.lanes.update_some::<V, W>(k, &share, at);
+                self.lanes.update_some::<V, W>(k, at);
             }
         }
     }
@@ -471,18 +508,20 @@ impl<const L: usize> Lanes<L> {
         };
     }
 
-    /// The steepest tan(θ/2).
+    /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u, the steepest tan(θ/2) and the most updates.
     #[inline(always)]
-    pub fn steepest(&self) -> f64 {
-        self.slope.iter().fold(0.0, |most, &slope| if slope > most { slope } else { most })
+    pub fn hardest(&self) -> Hardest {
+        // The odd start's |g|² is 1 + tan²(θ/2) still.
+        let beta = each(|i| self.scale[i].abs() * self.odd.squares[i]);
+        let steps = largest(&self.updates) as u64 + 1;
+        Hardest { beta: largest::<L>(&beta), slope: largest(&self.slope), steps }
     }
 
-    /// The largest |β| = |B| (1 + tan²(θ/2)), to within 20u.
+    /// What the first so many lanes will have composed; the others hold the last one's pair.
     #[inline(always)]
-    pub fn strongest(&self) -> f64 {
-        // The odd start's |g|² is 1 + tan²(θ/2) still.
-        let beta: [f64; L] = each(|i| self.scale[i].abs() * self.odd.squares[i]);
-        beta.iter().fold(0.0, |most, &beta| if beta > most { beta } else { most })
+    pub fn kicks(&self, pairs: usize) -> u64 {
+        let spare = (L - pairs) as f64 * self.updates[L - 1];
+        (sum(&self.updates) - spare) as u64 + pairs as u64
     }
 
     /// The updates of all lanes, looking at |g| every `block` of them.
@@ -505,22 +544,26 @@ impl<const L: usize> Lanes<L> {
         }
     }
 
-    /// The shares of a whole kick that the k-th ones are.
+    /// The shares of a whole kick that the k-th ones are, in lanes that have as many.
     #[inline(always)]
-    fn share(&self, k: u64) -> [f64; L] {
-        each(|i| if k as f64 == self.updates[i] { self.last_kick[i] } else { 1.0 })
+    fn share<V: Vector>(&self, k: u64, at: usize) -> V {
+        let last = V::load(&self.last_kick[at..]);
+        V::load(&self.updates[at..]).if_above(V::splat(k as f64), V::splat(1.0), last)
     }
 
     /// The k-th update in those lanes of the vector at `at` that have one.
     #[inline(always)]
-    fn update_some<V: Vector, W: Watch>(&mut self, k: u64, share: &[f64; L], at: usize) {
+    fn update_some<V: Vector, W: Watch>(&mut self, k: u64, at: usize) {
         let over = V::splat(k as f64).exceeds(V::load(&self.updates[at..]));
-        let (sums, before) = (self.sums::<V>(at), State::load::<W, L>(self, at));
+        let (sums, before) = (self.sums::<V>(at), State::<V>::load::<W, L>(self, at));
         let mut state = before;
         state.travel::<W>(&Course::load(self, at));
-        state.strike_by(V::load(&share[at..]));
+        state.strike_by(self.share(k, at));
         if W::CERTIFY {
-            state.look::<W, L>(self, at, true);
+            state.look::<W, L>(self, at);
+            if self.strong {
+                state.scale_down(self, at);
+            }
             let now = self.sums::<V>(at);
             self.keep(at, std::array::from_fn(|n| kept(over, sums[n], now[n])));
         }

@@ -12,7 +12,7 @@ mod certificate;
 mod ends;
 pub mod filter;
 pub mod floquet;
-mod kernel;
+pub mod kernel;
 mod leap;
 pub mod plain;
 pub mod refine;

@@ -4,7 +4,7 @@
 //! that they cost a pair less than its updates do.
 
 use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, shears, within_range};
-use super::kernel::Constants;
+use super::kernel::{Constants, InLanes};
 use crate::number::{Ratio, Real, Twofold};
 use crate::propagator::TwoClocks;
 use crate::vector::each;
@@ -125,43 +125,43 @@ fn parity(n: f64) -> f64 {
     n - 2.0 * (0.5 * n).floor()
 }
 
-/// What the kernel starts from of at most L pairs, lanes to spare holding the last, and the cosine and sine of the base's last
-/// turn.
-#[inline(always)]
-pub fn constants<const L: usize>(pairs: &[Strengths]) -> (Constants<L>, [[f64; L]; 2]) {
-    let (mut p, mut q, mut odd, mut kick) = ([0.0; L], [0.0; L], [[0.0; L]; 2], [0.0; L]);
-    let mut s = [[0.0; L]; 2];
-    for i in 0..L {
-        let pair = &pairs[i.min(pairs.len() - 1)];
-        (p[i], q[i], kick[i]) = (pair.p as i64 as f64, pair.q as i64 as f64, pair.kick);
-        (odd[0][i], odd[1][i]) = ((pair.p & 1) as i64 as f64, (pair.q & 1) as i64 as f64);
-        (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
+impl InLanes for Strengths {
+    #[inline(always)]
+    fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]) {
+        let (mut p, mut q, mut odd, mut kick) = ([0.0; L], [0.0; L], [[0.0; L]; 2], [0.0; L]);
+        let mut s = [[0.0; L]; 2];
+        for i in 0..L {
+            let pair = &pairs[i.min(pairs.len() - 1)];
+            (p[i], q[i], kick[i]) = (pair.p as i64 as f64, pair.q as i64 as f64, pair.kick);
+            (odd[0][i], odd[1][i]) = ((pair.p & 1) as i64 as f64, (pair.q & 1) as i64 as f64);
+            (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
+        }
+        // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
+        let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
+        let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
+        let half = Phases::<L>::each(|i| Phase::half(Twofold { hi: s[0][i], lo: s[1][i] }));
+        let now = half.power(&whole);
+        let (before, after) = (now.times(&Phases::each(|i| half.at(i).conjugate())), now.times(&half));
+        let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
+        let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
+        for i in 0..L {
+            let half = half.at(i);
+            (slope[i], sin[i]) = (half.tan().hi, half.sin_of_twice().hi);
+        }
+        // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
+        let mut left = [[1.0; L], [0.0; L]];
+        for i in 0..L {
+            let above = parity(whole[i] + 1.0);
+            let (near, far) = (now.at(i).rounded(), after.at(i).rounded());
+            let next = if above == odd[0][i] { near } else { far };
+            let last = if q[i] == 1.0 { before.at(i).rounded() } else { next };
+            (left[0][i], left[1][i]) = if odd[1][i] > 0.0 { (last[0], last[1]) } else { (1.0, 0.0) };
+        }
+        let updates = each(|i| (0.5 * q[i]).floor());
+        let last_kick = each(|i| if odd[1][i] > 0.0 { 1.0 } else { 0.5 });
+        let (tan, sine) = ([tan, carried_tan], [sine, carried_sine]);
+        (Constants { kick, slope, sin, modulus: q, rest, tan, sine, updates, last_kick }, left)
     }
-    // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
-    let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
-    let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
-    let half = Phases::<L>::each(|i| Phase::half(Twofold { hi: s[0][i], lo: s[1][i] }));
-    let now = half.power(&whole);
-    let (before, after) = (now.times(&Phases::each(|i| half.at(i).conjugate())), now.times(&half));
-    let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
-    let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
-    for i in 0..L {
-        let half = half.at(i);
-        (slope[i], sin[i]) = (half.tan().hi, half.sin_of_twice().hi);
-    }
-    // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
-    let mut left = [[1.0; L], [0.0; L]];
-    for i in 0..L {
-        let above = parity(whole[i] + 1.0);
-        let (near, far) = (now.at(i).rounded(), after.at(i).rounded());
-        let next = if above == odd[0][i] { near } else { far };
-        let last = if q[i] == 1.0 { before.at(i).rounded() } else { next };
-        (left[0][i], left[1][i]) = if odd[1][i] > 0.0 { (last[0], last[1]) } else { (1.0, 0.0) };
-    }
-    let updates = each(|i| (0.5 * q[i]).floor());
-    let last_kick = each(|i| if odd[1][i] > 0.0 { 1.0 } else { 0.5 });
-    let (tan, sine) = ([tan, carried_tan], [sine, carried_sine]);
-    (Constants { kick, slope, sin, modulus: q, rest, tan, sine, updates, last_kick }, left)
 }
 
 #[cfg(test)]
@@ -189,7 +189,7 @@ mod tests {
                 .collect();
             prop_assume!(!pairs.is_empty());
             let strengths: Vec<Strengths> = pairs.iter().map(|(_, _, strengths)| *strengths).collect();
-            let (found, left) = constants::<16>(&strengths);
+            let (found, left) = Strengths::constants::<16>(&strengths);
             for (i, (s, steps, _)) in pairs.iter().enumerate() {
                 let (p, q) = steps.terms();
                 let whole = p / q;

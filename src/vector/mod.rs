@@ -21,6 +21,45 @@ pub(crate) fn each<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
     all
 }
 
+/// All lanes in one number, from 0 on: in eight chains at a time, for compilers make vector instructions of them, and no lane waits for
+/// all before it.
+#[inline(always)]
+fn gathered<const N: usize>(lanes: &[f64; N], join: impl Fn(f64, f64) -> f64) -> f64 {
+    let (eights, rest) = lanes.as_chunks::<8>();
+    let mut all = [0.0; 8];
+    for eight in eights {
+        all = each(|i| join(all[i], eight[i]));
+    }
+    all.iter().chain(rest).fold(0.0, |all, &x| join(all, x))
+}
+
+/// The largest of the lanes, or 0 where none is above it; NaN is passed over.
+#[inline(always)]
+pub(crate) fn largest<const N: usize>(lanes: &[f64; N]) -> f64 {
+    gathered(lanes, |most, x| if x > most { x } else { most })
+}
+
+/// The sum of the lanes.
+#[inline(always)]
+pub(crate) fn sum<const N: usize>(lanes: &[f64; N]) -> f64 {
+    gathered(lanes, |sum, x| sum + x)
+}
+
+/// 2^52: the doubles from here to 2^53 are the whole numbers.
+const WHOLE: f64 = (1u64 << 52) as f64;
+
+/// A whole number below 2^52 as a double. (Vectors have no instruction for it before AVX-512's extensions.)
+#[inline(always)]
+pub(crate) fn double_of(n: u64) -> f64 {
+    f64::from_bits(n | WHOLE.to_bits()) - WHOLE
+}
+
+/// A double that is a whole number from 0 on, below 2^52, as an integer.
+#[inline(always)]
+pub(crate) fn integer_of(x: f64) -> u64 {
+    (x + WHOLE).to_bits() ^ WHOLE.to_bits()
+}
+
 /// One number for each lane. All instruction sets give the same bits.
 pub(crate) trait Vector: Copy {
     /// How many numbers it has.
@@ -194,6 +233,15 @@ mod tests {
                 assert_eq!(set.compute_alone(EveryOperation(numbers)), portable);
             }
         }
+    }
+
+    #[test]
+    fn whole_numbers_are_the_same_in_either_form() {
+        for n in [0, 1, 2, 12_345, (1 << 51) - 1, (1 << 52) - 1] {
+            assert_eq!((double_of(n), integer_of(double_of(n))), (n as f64, n));
+        }
+        assert_eq!(largest(&[1.0, f64::NAN, 7.0, -8.0, 3.0]), 7.0);
+        assert_eq!((largest(&[-1.0; 16]), largest(&[f64::NAN]), largest(&[2.0])), (0.0, 0.0, 2.0));
     }
 
     #[test]
