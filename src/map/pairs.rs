@@ -210,7 +210,7 @@ impl Task for Combine<'_> {
 #[inline(always)]
 fn gcd([a, b]: &[[f64; LANES]; 2]) -> [f64; LANES] {
     let (mut a, mut b) = (*a, *b);
-    while b.iter().fold(0.0, |most, &b| if b > most { b } else { most }) > 0.0 {
+    while b.iter().fold(0, |bits, b| bits | b.to_bits()) != 0 {
         let rest: [f64; LANES] = each(|i| {
             let whole = (a[i] / b[i]).floor();
             if b[i] > 0.0 { (-whole).mul_add(b[i], a[i]) } else { 0.0 }

@@ -11,7 +11,7 @@ use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
 
-/// Pairs that are sorted by their numbers of updates and their strengths together: enough for each to find company, few enough for
+/// Pairs that are sorted by their strengths and their numbers of updates together: enough for each to find company, few enough for
 /// the processor's caches.
 const TOGETHER: usize = 1 << 15;
 
@@ -93,7 +93,10 @@ fn together<P: Source + ?Sized>(
             pairs.push((pair, (n - first) as u32));
         }
     });
-    let key = |(pair, _): &(Strengths, u32)| pair.updates().min(1 << 27) as u32 * 16 + pair.class() as u32;
+    // By strength first: few updates more cost less than looks as frequent as a stronger pair wants.
+    let longest = pairs.iter().map(|(pair, _)| pair.updates().min(1 << 27)).max().unwrap_or(0);
+    let key =
+        |(pair, _): &(Strengths, u32)| (pair.class() * (longest + 1) + pair.updates().min(longest)) as u32;
     let order = by_counting(&pairs.iter().map(key).collect::<Vec<u32>>());
     let mut found = vec![UNDECIDED; part.len()];
     let mut together = Vec::with_capacity(LANES);

@@ -7,7 +7,7 @@ use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, sh
 use super::kernel::{Constants, InLanes};
 use crate::number::{Ratio, Real, Twofold};
 use crate::propagator::TwoClocks;
-use crate::vector::each;
+use crate::vector::{each, largest};
 
 /// A pair in doubles: the other clock's kicks strike at the multiples of p/q base steps.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +23,7 @@ pub struct Strengths {
 impl Strengths {
     /// With the first clock as the base; `None` near its Verlet limit or beyond it, where 4 − s has lost digits, and far from
     /// ordinary numbers.
+    #[inline(always)]
     pub fn new(ratio: Ratio, s: Twofold, kick: Twofold) -> Option<Strengths> {
         let (p, q) = ratio.terms();
         let serves = (TINY..=NEAR_LIMIT).contains(&s.hi) && within_range(kick.hi);
@@ -42,6 +43,7 @@ impl Strengths {
     }
 
     /// The same from [s, k] with the first clock as the base and with the second.
+    #[inline(always)]
     pub fn on_either(
         ratio: Ratio,
         first: impl Fn() -> Option<[Twofold; 2]>,
@@ -52,12 +54,11 @@ impl Strengths {
         if ratio.p() >= ratio.q() { on_first().or_else(on_second) } else { on_second().or_else(on_first) }
     }
 
-    /// How strong a foreign kick is, in powers of two of β² = (k / sin θ)², 0 to 15, as near as doubles get: a group looks at |g| as
-    /// often as its strongest pair wants.
+    /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3 on), as near as doubles get:
+    /// a group looks at |g| as often as its strongest pair wants.
     pub fn class(&self) -> u64 {
         let beta2 = 4.0 * self.kick * self.kick / (self.s.hi * (4.0 - self.s.hi));
-        // From 2^-11 to 2^4.
-        ((beta2.to_bits() >> 52).saturating_sub(1023 - 11)).min(15)
+        ((beta2.to_bits() >> 53).saturating_sub(511 - 5)).min(7)
     }
 
     /// ⌊q/2⌋: the updates after the half kick at t = 0.
@@ -66,21 +67,12 @@ impl Strengths {
     }
 }
 
-/// e^{iα} in each lane, its components in two doubles each: re, im.
+/// e^{iα} in each lane, its components in two doubles each: re, im. (In loops: closures as long as these are not made part of what is
+/// compiled for an instruction set.)
 #[derive(Clone, Copy)]
 struct Phases<const L: usize>([[[f64; L]; 2]; 2]);
 
 impl<const L: usize> Phases<L> {
-    #[inline(always)]
-    fn each(f: impl Fn(usize) -> Phase) -> Self {
-        let ([mut re, mut re_low], [mut im, mut im_low]) = ([[0.0; L]; 2], [[0.0; L]; 2]);
-        for (i, re) in re.iter_mut().enumerate() {
-            let phase = f(i);
-            (*re, re_low[i], im[i], im_low[i]) = (phase.re.hi, phase.re.lo, phase.im.hi, phase.im.lo);
-        }
-        Phases([[re, re_low], [im, im_low]])
-    }
-
     #[inline(always)]
     fn at(&self, i: usize) -> Phase {
         let two = |n: usize| Twofold { hi: self.0[n][0][i], lo: self.0[n][1][i] };
@@ -88,22 +80,36 @@ impl<const L: usize> Phases<L> {
     }
 
     #[inline(always)]
+    fn set(&mut self, i: usize, phase: Phase) {
+        for (n, two) in [phase.re, phase.im].into_iter().enumerate() {
+            (self.0[n][0][i], self.0[n][1][i]) = (two.hi, two.lo);
+        }
+    }
+
+    #[inline(always)]
     fn times(&self, other: &Self) -> Self {
-        Self::each(|i| self.at(i).times(other.at(i)))
+        let mut product = *self;
+        for i in 0..L {
+            product.set(i, self.at(i).times(other.at(i)));
+        }
+        product
     }
 
     /// Each to the power n, a whole number in a double: squared for each of the places of the largest n, and times itself
     /// where its own has a one there.
     #[inline(always)]
     fn power(&self, n: &[f64; L]) -> Self {
-        let largest = n.iter().fold(0.0, |most, &n| if n > most { n } else { most }) as u64;
-        let mut power = Self::each(|_| Phase::ONE);
+        let largest = largest(n) as u64;
+        let mut power = Phases([[[1.0; L], [0.0; L]], [[0.0; L]; 2]]);
         for place in (0..64 - largest.leading_zeros()).rev() {
             let unit = 1.0 / (1u64 << place) as f64;
             let odd: [f64; L] = each(|i| parity((n[i] * unit).floor()));
             let square = power.times(&power);
             let more = square.times(self);
-            power = Self::each(|i| if odd[i] > 0.0 { more.at(i) } else { square.at(i) });
+            power = square;
+            for (power, more) in power.0.as_flattened_mut().iter_mut().zip(more.0.as_flattened()) {
+                *power = each(|i| chosen(odd[i] > 0.0, more[i], power[i]));
+            }
         }
         power
     }
@@ -117,6 +123,13 @@ impl<const L: usize> Phases<L> {
         }
         [tan, sine]
     }
+}
+
+/// One of two numbers, by their bits: compilers would choose between their places and gather them one by one.
+#[inline(always)]
+fn chosen(first: bool, a: f64, b: f64) -> f64 {
+    let mask = u64::from(first).wrapping_neg();
+    f64::from_bits((a.to_bits() & mask) | (b.to_bits() & !mask))
 }
 
 /// 1 for odd whole numbers, 0 for even ones.
@@ -139,9 +152,14 @@ impl InLanes for Strengths {
         // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
         let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
         let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
-        let half = Phases::<L>::each(|i| Phase::half(Twofold { hi: s[0][i], lo: s[1][i] }));
+        let (mut half, mut back) = (Phases([[[0.0; L]; 2]; 2]), Phases([[[0.0; L]; 2]; 2]));
+        for (i, (&hi, &lo)) in s[0].iter().zip(&s[1]).enumerate() {
+            let own = Phase::half(Twofold { hi, lo });
+            half.set(i, own);
+            back.set(i, own.conjugate());
+        }
         let now = half.power(&whole);
-        let (before, after) = (now.times(&Phases::each(|i| half.at(i).conjugate())), now.times(&half));
+        let (before, after) = (now.times(&back), now.times(&half));
         let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
         let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
         for i in 0..L {
@@ -149,14 +167,15 @@ impl InLanes for Strengths {
             (slope[i], sin[i]) = (half.tan().hi, half.sin_of_twice().hi);
         }
         // The last turn is by nθ/2: of q = 1 with n = ⌊p/q⌋ − 1, else with the integer of p's parity in (p/q, p/q + 2) less one.
-        let mut left = [[1.0; L], [0.0; L]];
-        for i in 0..L {
-            let above = parity(whole[i] + 1.0);
-            let (near, far) = (now.at(i).rounded(), after.at(i).rounded());
-            let next = if above == odd[0][i] { near } else { far };
-            let last = if q[i] == 1.0 { before.at(i).rounded() } else { next };
-            (left[0][i], left[1][i]) = if odd[1][i] > 0.0 { (last[0], last[1]) } else { (1.0, 0.0) };
-        }
+        let above: [f64; L] = each(|i| parity(whole[i] + 1.0));
+        let component = |n: usize| -> [f64; L] {
+            each(|i| {
+                let next = if above[i] == odd[0][i] { now.0[n][0][i] } else { after.0[n][0][i] };
+                let last = if q[i] == 1.0 { before.0[n][0][i] } else { next };
+                if odd[1][i] > 0.0 { last } else { 1.0 - n as f64 }
+            })
+        };
+        let left = [component(0), component(1)];
         let updates = each(|i| (0.5 * q[i]).floor());
         let last_kick = each(|i| if odd[1][i] > 0.0 { 1.0 } else { 0.5 });
         let (tan, sine) = ([tan, carried_tan], [sine, carried_sine]);
