@@ -78,6 +78,20 @@ pub(super) fn decide_each<P: Source + ?Sized>(source: &P, resources: &Resources)
     Ok(done.concat())
 }
 
+/// Pairs in the order of these are in company that suits them: of like strength first, where there are so many that their numbers of
+/// updates are alike all the same, for a look costs three updates; then of like numbers of updates, then of like strength.
+fn keys(pairs: &[(Strengths, u32)]) -> Vec<u32> {
+    let updates = |pair: &Strengths| pair.updates().min(1 << 26);
+    let longest = pairs.iter().map(|(pair, _)| updates(pair)).max().unwrap_or(0) + 1;
+    let kinds = (pairs.len() as u64 / (2 * longest)).clamp(1, Strengths::CLASSES);
+    let key = |(pair, _): &(Strengths, u32)| {
+        let class = pair.class();
+        let kind = class * kinds / Strengths::CLASSES;
+        ((kind * longest + updates(pair)) * Strengths::CLASSES + class) as u32
+    };
+    pairs.iter().map(key).collect()
+}
+
 fn together<P: Source + ?Sized>(
     source: &P,
     part: Range<usize>,
@@ -93,11 +107,7 @@ fn together<P: Source + ?Sized>(
             pairs.push((pair, (n - first) as u32));
         }
     });
-    // By strength first: few updates more cost less than looks as frequent as a stronger pair wants.
-    let longest = pairs.iter().map(|(pair, _)| pair.updates().min(1 << 27)).max().unwrap_or(0);
-    let key =
-        |(pair, _): &(Strengths, u32)| (pair.class() * (longest + 1) + pair.updates().min(longest)) as u32;
-    let order = by_counting(&pairs.iter().map(key).collect::<Vec<u32>>());
+    let order = by_counting(&keys(&pairs));
     let mut found = vec![UNDECIDED; part.len()];
     let mut together = Vec::with_capacity(LANES);
     in_groups(&order, |mut group, order| {

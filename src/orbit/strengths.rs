@@ -54,11 +54,14 @@ impl Strengths {
         if ratio.p() >= ratio.q() { on_first().or_else(on_second) } else { on_second().or_else(on_first) }
     }
 
+    /// How many classes there are.
+    pub const CLASSES: u64 = 8;
+
     /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3 on), as near as doubles get:
     /// a group looks at |g| as often as its strongest pair wants.
     pub fn class(&self) -> u64 {
         let beta2 = 4.0 * self.kick * self.kick / (self.s.hi * (4.0 - self.s.hi));
-        ((beta2.to_bits() >> 53).saturating_sub(511 - 5)).min(7)
+        ((beta2.to_bits() >> 53).saturating_sub(511 - 5)).min(Strengths::CLASSES - 1)
     }
 
     /// ⌊q/2⌋: the updates after the half kick at t = 0.
