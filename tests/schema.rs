@@ -88,7 +88,7 @@ const LINES: [&str; 48] = [
     "simulate data/scenes/tension.json --periods 20",
     "system data/scenes/three-clocks.json",
     "system data/scenes/bar-resonant.json",
-    "system data/scenes/water4.json --accuracy 1e-7",
+    "system data/scenes/water4.json --accuracy 1e-7 --friction 1",
     "system data/scenes/two-bars.json --nearest --resolution 1e-3",
     "system data/scenes/water4.json --intervals outer=0.0043..0.0045 --resolution 1e-3",
     "system data/scenes/diatomic-tether.json --intervals masses.0=1/2..1 --resolution 1e-2",

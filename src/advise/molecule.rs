@@ -10,6 +10,7 @@ use super::levels::Scheme;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::friction::Damping;
 use crate::system::levels::{Growing, Kernel, Outer};
 use crate::system::{Analysis, Holds, Removed};
 
@@ -54,8 +55,9 @@ pub struct Finding {
     pub rate: f64,
     /// Who moves in what grows fastest.
     pub atoms: Option<String>,
-    /// Where a friction was given: whether it keeps all bounded, and, where something grows, the friction per fs above which it would be; in doubles.
+    /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles do not tell.
     pub is_damped: Option<bool>,
+    /// And where something grows without one, a friction per fs that is proven to mask it, about the least.
     pub masking: Option<f64>,
     /// Every outer step up to this, at this ratio, is proven stable for all periods in the band.
     pub band_edge: Option<f64>,
@@ -255,7 +257,9 @@ impl Molecule {
             first_upper,
             growing,
             rate,
-            is_damped: friction.map(|rate| self.kernel.damped_radius(&outer, to_f64(rate) * unit) < 1.0),
+            is_damped: friction
+                .and_then(|rate| self.kernel.damping(&outer, to_f64(rate) * unit))
+                .map(|own| own == Damping::Damped),
             masking: friction
                 .filter(|_| rate > 0.0)
                 .and_then(|_| self.kernel.masking_friction(&outer))

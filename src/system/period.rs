@@ -88,7 +88,7 @@ pub(super) fn follow<'a>(
 }
 
 /// exp(−decay ticks), to the nearest double but for 2^-60.
-fn decayed(decay: &Rational, ticks: u64) -> f64 {
+pub(super) fn decayed(decay: &Rational, ticks: u64) -> f64 {
     let exponent = decay * Rational::from_integer(ticks.into());
     Ball::from_rational(&exponent, 96).neg().exp(96).mid_f64()
 }

@@ -154,8 +154,14 @@ fn grows(own: &Finding) -> String {
     let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
     let friction = match (own.is_damped, own.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
-        (_, Some(mask)) => {
+        (Some(false), Some(mask)) => {
             format!("only a friction above {}/ps masks it, the one given does not", rounded(1000.0 * mask, 3))
+        }
+        (None, Some(mask)) => {
+            format!(
+                "a friction of {}/ps masks it, of the one given it is not told",
+                rounded(1000.0 * mask, 3)
+            )
         }
         _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * own.rate, 2)),
     };

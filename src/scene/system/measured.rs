@@ -31,6 +31,7 @@ use super::held::{Constraints, Particles, reweigh};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::friction::Friction;
 use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions};
 use crate::system::stretches::{Stretch, cover};
 use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System, decide_by};
@@ -276,6 +277,18 @@ impl Measured {
         limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))?;
         let at = Outer::new(to_f64(outer), self.inner_steps())?;
         Ok(self.kernel()?.decide(&at, outer, self.accuracy))
+    }
+
+    /// What friction of this rate per unit time does.
+    pub fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        let (outer, _) = self.outer().ok_or_else(|| {
+            let remedy = "friction is answered for two levels, the outer step a multiple of the inner one";
+            Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
+        })?;
+        // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
+        let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
+        limits.allow(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
+        Ok(self.kernel()?.friction(&outer, rate))
     }
 
     fn inner_steps(&self) -> u64 {

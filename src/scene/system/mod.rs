@@ -286,9 +286,6 @@ impl SystemScene {
         if rate <= Rational::default() {
             return Err(Error::input("friction", rate, "a rate of friction must be positive"));
         }
-        if self.measured.is_some() {
-            return Err(Error::input("friction", rate, "is for exact stiffnesses: these stand by reference"));
-        }
         self.friction = Some(rate);
         Ok(self)
     }
@@ -297,11 +294,14 @@ impl SystemScene {
     ///
     /// # Errors
     /// As [`damped_system`]; an oscillator that involves π takes its rounded stiffnesses, and is refused where its steps are
-    /// irrational.
+    /// irrational; measured stiffnesses are answered for two steps, one a multiple of the other.
     pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
         let Some(rate) = &self.friction else { return Ok(None) };
         if let Some(own) = &self.oscillator {
             return damped_oscillator(&own.clocks, &own.unit, rate).map(Some);
+        }
+        if let Some(own) = &self.measured {
+            return own.friction(rate, limits).map(Some);
         }
         damped_system(self.system(), rate, limits).map(Some)
     }

@@ -15,7 +15,7 @@
 //! |---|---|
 //! | `scalar` | one oscillator: exact for a rational c, enclosed for a rate γ |
 //! | `masking` | the smallest friction that masks a resonance of one oscillator, from the polynomial Tr Q(c) |
-//! | `matrices` | many degrees of freedom, in doubles with a proven bound |
+//! | `matrices` | many degrees of freedom, in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](super::levels::Kernel::friction)) |
 //!
 //! ```
 //! use kickdrift::number::{Rational, rational::ratio};
@@ -38,4 +38,5 @@ mod scalar;
 pub use damping::Damping;
 pub use masking::{Masking, masking};
 pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_pair, damped_system};
+pub(in crate::system) use matrices::{Radius, damping};
 pub use scalar::{Damped, damped, damped_exactly};

@@ -8,6 +8,7 @@ use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
 use crate::system::analysis::exponent;
+use crate::system::friction::Damping;
 
 /// A stretch of outer steps that grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ impl Kernel {
     }
 
     /// The spectral radius of a period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, in doubles.
-    pub fn damped_radius(&self, outer: &Outer, friction: f64) -> f64 {
+    pub(super) fn damped_radius(&self, outer: &Outer, friction: f64) -> f64 {
         let m = self.size();
         let decay = (-friction * outer.step / outer.inner_steps as f64).exp();
         // Of each mode, from (x, v) behind half a slow kick to the next: in the time unit h.
@@ -131,7 +132,8 @@ impl Kernel {
         period.eigenvalues().map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
     }
 
-    /// A friction at which the radius is 1, within 1e-4 of it, where it is above 1 without.
+    /// A friction that is proven to mask, where the radius is above 1 without one: within 1e-3 of the least that does so in doubles. `None`
+    /// where none was found.
     pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
         let is_damped = |friction: f64| self.damped_radius(outer, friction) < 1.0;
         let mut hi = 2.0 * self.growth(outer);
@@ -146,7 +148,8 @@ impl Kernel {
             let middle = lo + (hi - lo) / 2.0;
             *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
         }
-        (hi > 0.0).then_some(hi)
+        let proven = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Damped);
+        [1.0, 1.0003, 1.0009].map(|off| off * hi).into_iter().find(proven)
     }
 
     /// The fastest of `SAMPLES` steps between, and of some nearer and nearer to it.

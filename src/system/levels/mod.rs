@@ -40,6 +40,7 @@
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `cell` | the verdict on all outer steps, or scales, between two |
 //! | `growth` | how fast it grows past that, and up to where: sampled |
+//! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
@@ -49,6 +50,7 @@ mod band;
 mod beyond;
 mod cell;
 mod counts;
+mod damped;
 mod growth;
 mod half;
 mod interval;

@@ -1,0 +1,248 @@
+//! Friction on two levels: where the spectral radius of the period lies, proven, for all stiffnesses within their errors.
+//!
+//! With γ the friction and c = exp(−γ h), an inner step in (x, h v) is half a fast kick, the drift with v → c v in its middle, and half
+//! a kick: G = H D H, for each mode of Λ
+//!
+//! ```text
+//!     H = [[1, 0], [−s/2, 1]],     D = [[1, (1 + c)/2], [0, c]],     ‖H‖ ≤ 1 + |s|/2,  ‖D‖ ≤ √3.
+//! ```
+//!
+//! Let X_k be the computed k-th power, X_(k+1) = G X_k + ρ_k with ‖ρ_k‖ ≤ η ‖X_k‖, and T the true step, no longer mode by mode, ‖T − G‖ ≤ δ.
+//! Then Z_k = T^k − X_k obeys Z_(k+1) = T Z_k + (T − G) X_k − ρ_k, so that
+//!
+//! ```text
+//!     ‖Z_p‖ ≤ (δ + η) Σ_(k<p) (‖X_(p−1−k)‖ + ‖Z_(p−1−k)‖) ‖X_k‖:
+//! ```
+//!
+//! sums of products of two powers' norms instead of powers of norms. Between two halves of the slow kick that is the period; its
+//! eigenvalues lie in discs about the computed ones (Bauer and Fike), or it shrinks a form (Stein).
+
+use faer::Mat;
+
+use super::kernel::{Kernel, Outer, STEP_ERROR};
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::{Rational, U};
+use crate::system::friction::{Damping, Friction, Mask, Masked, Radius, damping};
+use crate::system::norm;
+use crate::system::period::decayed;
+
+/// The sums take a step for each pair of inner steps.
+const MOST_INNER_STEPS: u64 = 1 << 12;
+
+/// √3, from above.
+const DRIFT: f64 = 1.7321;
+
+/// The fast modes over an outer step, (x, h v) → (a x + b h v, c x + d h v), and bounds on the norm of all of them together and on their
+/// distance from the true ones.
+struct Fast {
+    modes: Vec<[f64; 4]>,
+    size: f64,
+    off: f64,
+}
+
+impl Kernel {
+    /// Where the spectral radius of a period with friction γ per unit time lies, v → exp(−γ t) v in the middle of every drift;
+    /// `None`: doubles do not tell.
+    pub fn damping(&self, outer: &Outer, friction: f64) -> Option<Damping> {
+        let (q, error) = self.damped_period(outer, friction)?;
+        damping(&q, error, Radius::of(&q, error))
+    }
+
+    /// What friction of the rate γ per unit time does, and how much of it masks what grows without: all of it proven.
+    pub fn friction(&self, outer: &Outer, rate: &Rational) -> Friction {
+        let period = self.damped_period(outer, to_f64(rate));
+        let own = period.map(|(q, error)| {
+            let radius = Radius::of(&q, error);
+            (damping(&q, error, radius), radius.map(|own| own.growth(outer.step)))
+        });
+        let (damping, growth) = own.unwrap_or_default();
+        Friction { rate: rate.clone(), damping, growth, masking: self.mask(outer) }
+    }
+
+    fn mask(&self, outer: &Outer) -> Mask {
+        // A friction that is next to none: does anything grow?
+        if self.damping(outer, 1e-6 / outer.step) != Some(Damping::Growing) {
+            return Mask::NotNeeded;
+        }
+        let Some(hi) = self.masking_friction(outer) else { return Mask::NotTold };
+        let grows = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Growing);
+        let below = [0.9995, 0.998, 0.99].map(|part| part * hi).into_iter().find(grows);
+        below.map_or(Mask::NotTold, |lo| Mask::At(Masked { rate: (lo, hi), stays: None }))
+    }
+
+    fn damped_modes(&self, outer: &Outer, friction: f64) -> Option<Fast> {
+        let p = outer.inner_steps;
+        let exponent =
+            from_f64_exact(friction * (outer.step / p as f64)).filter(|x| *x >= Default::default())?;
+        if p > MOST_INNER_STEPS {
+            return None;
+        }
+        // The friction and the step are within 4u each, and x exp(−x) < 1/2.
+        let c = decayed(&exponent, 1);
+        let decay_error = 6.0 * U;
+        let [fast_norm, _] = self.norms();
+        let moved =
+            1.01 * (outer.inner_square * self.fast_error + 2.0 * STEP_ERROR * outer.inner_square * fast_norm);
+        let kick = 1.01 * (1.0 + outer.scaled_up(fast_norm) / 2.0 + moved);
+        // Two half kicks that are off by moved/2, a drift by 1.12 of what c is.
+        let delta = 1.01 * (kick * DRIFT * moved + 1.2 * kick * kick * decay_error);
+        // A rounding for each of two fused half kicks, three for the drift, on two columns.
+        let eta = 20.0 * U * kick * kick;
+        let mut modes: Vec<[f64; 4]> = vec![[1.0, 0.0, 0.0, 1.0]; self.size()];
+        let (mut sizes, mut offs) = (Vec::new(), Vec::<f64>::new());
+        for _ in 0..=p {
+            let products =
+                offs.iter().zip(&sizes).rev().zip(&sizes).map(|((off, size), other)| (off + size) * other);
+            offs.push(1.01 * (delta + eta) * products.sum::<f64>());
+            sizes.push(1.01 * modes.iter().map(norm_of).fold(0.0, f64::max));
+            if offs.len() as u64 <= p {
+                modes
+                    .iter_mut()
+                    .zip(&self.values)
+                    .for_each(|(x, value)| step(x, outer.inner_square * value, c));
+            }
+        }
+        let (size, off) = (*sizes.last()?, *offs.last()?);
+        (size + off).is_finite().then_some(Fast { modes, size: size + off, off })
+    }
+
+    /// The period, and a bound on its error (2-norm).
+    fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
+        let fast = self.damped_modes(outer, friction)?;
+        let (m, factor) = (self.size(), outer.half_kick());
+        let [_, slow_norm] = self.norms();
+        let k = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
+        let kick_off = 1.01 * factor * (self.slow_error + 2.0 * STEP_ERROR * norm::frobenius(&self.slow));
+        let kick_size = 1.01 * (1.0 + factor * slow_norm + kick_off);
+        let bk = Mat::from_fn(m, m, |i, j| fast.modes[i][1] * k[(i, j)]);
+        let kbk = &k * &bk;
+        let q = Mat::from_fn(2 * m, 2 * m, |row, column| {
+            let (i, j) = (row % m, column % m);
+            let diagonal = |n: usize| if i == j { fast.modes[i][n] } else { 0.0 };
+            let [a, b, _, _] = fast.modes[j];
+            match (row < m, column < m) {
+                (true, true) => diagonal(0) - bk[(i, j)],
+                (true, false) => diagonal(1),
+                (false, true) => diagonal(2) - fast.modes[i][3] * k[(i, j)] - k[(i, j)] * a + kbk[(i, j)],
+                (false, false) => diagonal(3) - k[(i, j)] * b,
+            }
+        });
+        let (size_k, size_bk) = (norm::frobenius(&k), norm::frobenius(&bk));
+        let root = (m as f64).sqrt();
+        // Four roundings of an entry's terms at most, and those of the product.
+        let terms = 4.0 * fast.size * (root + 4.0 * size_k);
+        let rounding = 1.1 * U * (terms + (m as f64 + 8.0) * size_k * size_bk);
+        let true_off = kick_size * (2.0 * kick_off * fast.size + kick_size * fast.off);
+        Some((q, 1.01 * (true_off + rounding)))
+    }
+}
+
+/// The Frobenius norm.
+fn norm_of(x: &[f64; 4]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// G x.
+fn step([a, b, c, d]: &mut [f64; 4], s: f64, decay: f64) {
+    let (half, drift) = (-0.5 * s, 0.5 * (1.0 + decay));
+    for (x, v) in [(a, c), (b, d)] {
+        *v = half.mul_add(*x, *v);
+        *x = drift.mul_add(*v, *x);
+        *v *= decay;
+        *v = half.mul_add(*x, *v);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+    use crate::system::friction::{damped, damped_system};
+    use crate::system::levels::Hessians;
+    use crate::system::{ManyClocks, Potential, Symmetric, System};
+    use nalgebra::DMatrix;
+
+    /// One mode, whose own route is exact: near the friction that masks, and on both sides of it.
+    #[test]
+    fn one_mode_is_damped_as_by_the_exact_route() {
+        let one = |x: f64| DMatrix::from_element(1, 1, x);
+        let mut told = 0;
+        for p in [1u64, 2, 3, 8] {
+            for turn in [0.9, 0.98, 1.01] {
+                // p θ = turn π, h = 1: a resonance of the outer step.
+                let fast = 4.0 * (turn * std::f64::consts::PI / (2 * p) as f64).sin().powi(2);
+                let slow = 0.05 * fast;
+                let kernel = Kernel::new(&Hessians::new(&one(fast), &one(slow), 0.0).unwrap()).unwrap();
+                let outer = Outer::new(p as f64, p).unwrap();
+                let exact = |x: f64| from_f64_exact(x).unwrap();
+                let whole = |n: u64| Rational::from_integer(n.into());
+                let strengths = vec![exact(fast), exact(slow) * whole(p)];
+                let clocks =
+                    ManyClocks::new(&[whole(1), whole(p)], &[ratio(0, 1), ratio(0, 1)], strengths).unwrap();
+                let mask = kernel.masking_friction(&outer).unwrap_or(0.1);
+                for off in [-0.5, -1e-3, -1e-10, 0.0, 1e-10, 1e-3, 0.5] {
+                    let friction = mask * (1.0 + off);
+                    let truth = damped(&clocks, &exact(friction)).unwrap().damping;
+                    let found = kernel.damping(&outer, friction);
+                    assert!(
+                        found.is_none_or(|found| found == truth),
+                        "{p} {turn} {off}: {found:?} {truth:?}"
+                    );
+                    assert!(found.is_some() || off.abs() < 1e-6, "{p} {turn} {off}");
+                    told += usize::from(found == Some(Damping::Growing));
+                }
+            }
+        }
+        assert!(told > 3, "{told}");
+    }
+
+    /// Three modes against the whole period composed event by event.
+    #[test]
+    fn three_modes_are_damped_as_by_the_composed_period() {
+        let fast = [[3, 1, 0], [1, 2, 1], [0, 1, 1]];
+        let slow = [[1, 0, 2], [0, 1, 1], [2, 1, 3]];
+        let dense = |rows: &[[i64; 3]; 3], c: f64| DMatrix::from_fn(3, 3, |i, j| c * rows[i][j] as f64);
+        let exact = |rows: &[[i64; 3]; 3], c: Rational| {
+            let mut own = Symmetric::zero(3);
+            for (i, row) in rows.iter().enumerate() {
+                (0..=i).for_each(|j| own.add(i, j, &(&c * ratio(row[j], 1))));
+            }
+            own
+        };
+        let (mut told, mut growing, mut masked) = (0, 0, 0);
+        for tenths in 4..24 {
+            let h = f64::from(tenths) / 16.0;
+            let kernel =
+                Kernel::new(&Hessians::new(&dense(&fast, 1.0), &dense(&slow, 1.0 / 16.0), 0.0).unwrap())
+                    .unwrap();
+            let (inner, outer) = (ratio(tenths.into(), 16), ratio(tenths.into(), 4));
+            let potentials = vec![
+                Potential::new(exact(&fast, ratio(1, 1)), inner.clone()),
+                Potential::new(exact(&slow, ratio(1, 16)), outer),
+            ];
+            let system =
+                System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1), ratio(1, 1)]), potentials)
+                    .unwrap();
+            for friction in [1.0 / 128.0, 1.0 / 8.0] {
+                let rate = from_f64_exact(friction).unwrap();
+                let truth = damped_system(&system, &rate, &Default::default()).unwrap();
+                let found = kernel.friction(&Outer::new(4.0 * h, 4).unwrap(), &rate);
+                if let (Mask::At(truth), Mask::At(found)) = (truth.masking, found.masking) {
+                    let ((a, b), (c, d)) = (truth.rate, found.rate);
+                    assert!(c <= b && a <= d && d < 1.01 * c, "{h}: {truth:?} {found:?}");
+                    masked += 1;
+                }
+                if let (Some((a, b)), Some((c, d))) = (truth.growth, found.growth) {
+                    assert!(c <= b && a <= d, "{h} {friction}: {truth:?} {found:?}");
+                }
+                let (truth, found) = (truth.damping, found.damping);
+                if let (Some(truth), Some(found)) = (truth, found) {
+                    assert_eq!(found, truth, "{h} {friction}");
+                    told += 1;
+                    growing += usize::from(found == Damping::Growing);
+                }
+            }
+        }
+        assert!(told >= 36 && growing > 3 && growing < told - 3 && masked > 3, "{told} {growing} {masked}");
+    }
+}
