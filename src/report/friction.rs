@@ -39,7 +39,7 @@ pub(super) fn lines(own: &Friction) -> Vec<String> {
             format!("  a friction above {at} masks all growth{stays}")
         }
         Mask::NotNeeded => "  nothing grows without friction".into(),
-        Mask::NotTold => "  the friction that masks the growth was not found".into(),
+        Mask::NotTold => "  a friction that masks what may grow was not found".into(),
     });
     lines
 }

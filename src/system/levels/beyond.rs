@@ -10,7 +10,7 @@ use faer::Mat;
 
 use super::half::Half;
 use super::interval::Interval;
-use super::kernel::{Kernel, Outer, STEP_ERROR};
+use super::kernel::{Kernel, Outer};
 use super::region::largest;
 use crate::number::U;
 use crate::system::norm;
@@ -54,14 +54,12 @@ impl Kernel {
         let p = outer.inner_steps;
         let (lowest, highest) = (*self.values.first()?, *self.values.last()?);
         let [shift, slow] = self.errors_within(epsilon);
-        let [fast_norm, slow_norm] = self.norms();
         if outer.scaled_up(highest + shift) > 4.0
             || outer.scaled_down(lowest - shift) < -0.02 / (p as f64).powi(2)
         {
             return None;
         }
-        // In s: the shift, and the rounding of h² and of the product.
-        let moved = 1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * fast_norm);
+        let moved = self.moved(outer, shift);
         let halves: Vec<Half> = self.values.iter().map(|x| Half::new(outer.inner_square * x, p)).collect();
         let near = |pick: fn(&Half) -> Interval, lipschitz: f64| {
             let radius = halves.iter().map(|half| pick(half).radius()).fold(0.0, f64::max);
@@ -71,11 +69,8 @@ impl Kernel {
         };
         let [a, b, c, d] = lipschitz(p);
         let near = [near(|h| h.a, a), near(|h| h.b, b), near(|h| h.c, c), near(|h| h.d, d)];
-        let factor = outer.half_kick();
-        let m = self.size();
-        let kick = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
-        let slow = slow + 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
-        let near_kick = Near { size: 1.01 * factor * (slow_norm + slow), off: 1.01 * factor * slow };
+        let (kick, [size, off]) = self.half_kick(outer, slow);
+        let near_kick = Near { size, off };
         let halves = halves.iter().map(|h| [h.a.mid(), h.b.mid(), h.c.mid(), h.d.mid()]).collect();
         Some(Blocks { halves, near, kick, near_kick })
     }

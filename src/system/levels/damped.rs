@@ -18,8 +18,9 @@
 //! eigenvalues lie in discs about the computed ones (Bauer and Fike), or it shrinks a form (Stein).
 
 use faer::Mat;
+use num_complex::Complex64;
 
-use super::kernel::{Kernel, Outer, STEP_ERROR};
+use super::kernel::{Kernel, Outer};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
 use crate::system::friction::{Damping, Friction, Mask, Masked, Radius, damping};
@@ -61,13 +62,41 @@ impl Kernel {
 
     fn mask(&self, outer: &Outer) -> Mask {
         // A friction that is next to none: does anything grow?
-        if self.damping(outer, 1e-6 / outer.step) != Some(Damping::Growing) {
-            return Mask::NotNeeded;
+        match self.damping(outer, 1e-6 / outer.step) {
+            Some(Damping::Growing) => {}
+            None if !self.is_stable(outer, 0.0) => return Mask::NotTold,
+            _ => return Mask::NotNeeded,
         }
         let Some(hi) = self.masking_friction(outer) else { return Mask::NotTold };
         let grows = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Growing);
         let below = [0.9995, 0.998, 0.99].map(|part| part * hi).into_iter().find(grows);
         below.map_or(Mask::NotTold, |lo| Mask::At(Masked { rate: (lo, hi), stays: None }))
+    }
+
+    /// The spectral radius of the computed period, no more than computed.
+    fn rounded_radius(&self, outer: &Outer, friction: f64) -> f64 {
+        let eigenvalues = self.damped_period(outer, friction).and_then(|(q, _)| q.eigenvalues().ok());
+        eigenvalues.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
+    }
+
+    /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above the least that does so in doubles. `None`
+    /// where none was found.
+    pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
+        let is_damped = |friction: f64| self.rounded_radius(outer, friction) < 1.0;
+        let mut hi = 2.0 * self.growth(outer);
+        while hi > 0.0 && !is_damped(hi) {
+            hi *= 2.0;
+            if hi * outer.step > 1e3 {
+                return None;
+            }
+        }
+        let mut lo = 0.0;
+        while hi - lo > 1e-4 * hi {
+            let middle = lo + (hi - lo) / 2.0;
+            *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
+        }
+        let proven = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Damped);
+        [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(proven)
     }
 
     fn damped_modes(&self, outer: &Outer, friction: f64) -> Option<Fast> {
@@ -81,8 +110,7 @@ impl Kernel {
         let c = decayed(&exponent, 1);
         let decay_error = 6.0 * U;
         let [fast_norm, _] = self.norms();
-        let moved =
-            1.01 * (outer.inner_square * self.fast_error + 2.0 * STEP_ERROR * outer.inner_square * fast_norm);
+        let moved = self.moved(outer, self.fast_error);
         let kick = 1.01 * (1.0 + outer.scaled_up(fast_norm) / 2.0 + moved);
         // Two half kicks that are off by moved/2, a drift by 1.12 of what c is.
         let delta = 1.01 * (kick * DRIFT * moved + 1.2 * kick * kick * decay_error);
@@ -109,11 +137,9 @@ impl Kernel {
     /// The period, and a bound on its error (2-norm).
     fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
         let fast = self.damped_modes(outer, friction)?;
-        let (m, factor) = (self.size(), outer.half_kick());
-        let [_, slow_norm] = self.norms();
-        let k = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
-        let kick_off = 1.01 * factor * (self.slow_error + 2.0 * STEP_ERROR * norm::frobenius(&self.slow));
-        let kick_size = 1.01 * (1.0 + factor * slow_norm + kick_off);
+        let m = self.size();
+        let (k, [kick_size, kick_off]) = self.half_kick(outer, self.slow_error);
+        let kick_size = 1.01 * (1.0 + kick_size);
         let bk = Mat::from_fn(m, m, |i, j| fast.modes[i][1] * k[(i, j)]);
         let kbk = &k * &bk;
         let q = Mat::from_fn(2 * m, 2 * m, |row, column| {

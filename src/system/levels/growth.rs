@@ -8,7 +8,6 @@ use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
 use crate::system::analysis::exponent;
-use crate::system::friction::Damping;
 
 /// A stretch of outer steps that grow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,48 +107,6 @@ impl Kernel {
             |step: &f64| Outer::new(*step, inner_steps).is_ok_and(|outer| self.is_stable(&outer, 0.0));
         let stable_again = ends.and_then(|(_, still)| proven(still).find(is_stable));
         Ok(Growing { lower: from, upper: ends.map(|(upper, _)| upper), stable_again, worst })
-    }
-
-    /// The spectral radius of a period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, in doubles.
-    pub(super) fn damped_radius(&self, outer: &Outer, friction: f64) -> f64 {
-        let m = self.size();
-        let decay = (-friction * outer.step / outer.inner_steps as f64).exp();
-        // Of each mode, from (x, v) behind half a slow kick to the next: in the time unit h.
-        let inner = |square: &f64| {
-            let half = |[x, v]: [f64; 2]| [x, v - outer.inner_square * square / 2.0 * x];
-            let drift = |[x, v]: [f64; 2]| [x + v / 2.0 * (1.0 + decay), decay * v];
-            let step = |own| half(drift(half(own)));
-            [[1.0, 0.0], [0.0, 1.0]].map(|own| (0..outer.inner_steps).fold(own, |own, _| step(own)))
-        };
-        let modes: Vec<[[f64; 2]; 2]> = self.values.iter().map(inner).collect();
-        let kick = Mat::from_fn(2 * m, 2 * m, |i, j| match (i < m, j < m) {
-            (false, true) => -outer.half_kick() * self.slow[(i - m, j)],
-            _ => f64::from(u8::from(i == j)),
-        });
-        let fast =
-            Mat::from_fn(2 * m, 2 * m, |i, j| if i % m == j % m { modes[i % m][j / m][i / m] } else { 0.0 });
-        let period = &kick * fast * &kick;
-        period.eigenvalues().map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
-    }
-
-    /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above the least that does so in doubles. `None`
-    /// where none was found.
-    pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
-        let is_damped = |friction: f64| self.damped_radius(outer, friction) < 1.0;
-        let mut hi = 2.0 * self.growth(outer);
-        while hi > 0.0 && !is_damped(hi) {
-            hi *= 2.0;
-            if hi * outer.step > 1e3 {
-                return None;
-            }
-        }
-        let mut lo = 0.0;
-        while hi - lo > 1e-4 * hi {
-            let middle = lo + (hi - lo) / 2.0;
-            *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
-        }
-        let proven = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Damped);
-        [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(proven)
     }
 
     /// The fastest of `SAMPLES` steps between, and of some nearer and nearer to it.

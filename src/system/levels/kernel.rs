@@ -154,6 +154,19 @@ impl Kernel {
         [self.fast_error + epsilon * fast, self.slow_error + epsilon * slow]
     }
 
+    /// How far (2-norm) h² Λ, computed, is from that of a fast stiffness within `shift`: that, and the rounding of h² and of the product.
+    pub(super) fn moved(&self, outer: &Outer, shift: f64) -> f64 {
+        1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * self.fast_norm)
+    }
+
+    /// Half an outer kick, and upper bounds of the norm of the true one and of its distance, the slow stiffness being within `shift`.
+    pub(super) fn half_kick(&self, outer: &Outer, shift: f64) -> (Mat<f64>, [f64; 2]) {
+        let (m, factor, [_, slow_norm]) = (self.size(), outer.half_kick(), self.norms());
+        let off = shift + 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
+        let kick = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
+        (kick, [1.01 * factor * (slow_norm + off), 1.01 * factor * off])
+    }
+
     /// Whether F + S is proven positive definite.
     pub(super) fn is_total_definite(&self) -> bool {
         *self.is_total_definite.get_or_init(|| {
