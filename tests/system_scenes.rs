@@ -115,6 +115,80 @@ fn the_unit_of_time_may_hold_pi() {
     assert!(error.starts_with("masses[0] = "), "{error}");
 }
 
+/// A system of unit masses from its potentials.
+fn of_unit_masses(n: usize, potentials: &str) -> Result<SystemScene, kickdrift::error::Error> {
+    let masses = vec!["\"1\""; n].join(", ");
+    SystemScene::read(&format!(
+        r#"{{"schema": "kickdrift/system/1", "masses": [{masses}], "potentials": [{potentials}]}}"#
+    ))
+}
+
+#[test]
+fn stiffnesses_of_several_masses_may_hold_pi() {
+    let decide = |n: usize, potentials: &str| {
+        of_unit_masses(n, potentials).unwrap().decide(Route::Cheapest, &Limits::default()).unwrap()
+    };
+    // A = 1 − (K_1 + 2 K_2)/2 vanishes, whatever pi is; the eigenvectors of K_1 are irrational, so nothing splits.
+    let edge = r#"{"step": "1", "stiffness": [["pi/5", "pi/10"], ["pi/10", "3*pi/10"]]},
+        {"step": "2", "stiffness": [["1 - pi/10", "-pi/20"], ["-pi/20", "1 - 3*pi/20"]]}"#;
+    let analysis = decide(2, edge);
+    assert_eq!((analysis.kind, analysis.parts[0].evidence), (Kind::Parabolic, Evidence::Exact));
+    // A hair more or less of it: unstable and stable, proven in doubles.
+    for (factor, kind) in [("1.00001", Kind::Hyperbolic), ("0.99999", Kind::Elliptic)] {
+        let scaled = edge.replace(r#""step": "2""#, &format!(r#""step": "2", "scale": "{factor}""#));
+        let analysis = decide(2, &scaled);
+        assert!(analysis.kind == kind && analysis.is_proof());
+    }
+    // A rigid shift, and two modes that are oscillators over Q[pi].
+    let chain = r#"{"step": "1/10", "springs": [[0, 1, "pi^2"], [1, 2, "pi^2"]]}, {"step": "3/10", "springs": [[0, 2, "1/pi"]]}"#;
+    let analysis = decide(3, chain);
+    assert_eq!((analysis.rigid_modes.len(), analysis.parts.len(), analysis.kind), (1, 2, Kind::Elliptic));
+    assert!(analysis.is_proof());
+    // By the exact route, and by the cheapest at a rational next to pi.
+    let exact = of_unit_masses(3, chain).unwrap().decide(Route::Exact, &Limits::default()).unwrap();
+    assert_eq!(exact.kind, Kind::Elliptic);
+    let rational = chain.replace("pi^2", "9.8696044").replace("1/pi", "0.31830989");
+    let near = decide(3, &rational);
+    for (own, near) in analysis.parts.iter().zip(&near.parts) {
+        let difference = own.multipliers[0].mu - near.multipliers[0].mu;
+        assert!(difference.norm() < 1e-6, "{difference}");
+    }
+}
+
+#[test]
+fn what_pi_may_not_be_in_is_refused() {
+    let refused = |potentials: &str| {
+        let scene = of_unit_masses(2, potentials);
+        scene.and_then(|scene| scene.decide(Route::Cheapest, &Limits::default())).unwrap_err().to_string()
+    };
+    for (potentials, message) in [
+        (
+            r#"{"step": "1", "stiffness": [["pi^2", "pi"], ["2*pi", "1"]]}"#,
+            "potentials[0].stiffness[1][0] = 2*pi: differs",
+        ),
+        (r#"{"step": "1", "stiffness": [["pi^2", "pi"], ["pi"]]}"#, "potentials[0].stiffness[1] = 1 entries"),
+        (r#"{"step": "1", "stiffness": [["pi^2"]]}"#, "potentials[0].stiffness = 1 x 1: there are 2"),
+        (r#"{"step": "pi", "springs": [[0, 1, "pi"]]}"#, "potentials[0].step = pi: must be rational"),
+        (r#"{"step": "1", "springs": [[0, 1, "pie"]]}"#, "potentials[0].springs[0] = "),
+        // The vector (1, −pi).
+        (
+            r#"{"step": "1", "stiffness": [["pi^2", "pi"], ["pi", "1"]]}"#,
+            "stiffness = all potentials have a null vector",
+        ),
+    ] {
+        let error = refused(potentials);
+        assert!(error.starts_with(message), "{error}\nexpected {message}");
+    }
+    let scene = of_unit_masses(2, r#"{"step": "1/2", "springs": [[0, 1, "pi"], [0, null, "1"]]}"#).unwrap();
+    let error = scene.clone().with_friction(ratio(1, 2)).unwrap().friction(&Limits::default()).unwrap_err();
+    assert_eq!(error.field(), "friction");
+    assert!(scene.nearest_unstable(1e-3, &Limits::default()).is_err());
+    // One outer step after another is no matter: 4/h² is passed between.
+    let kinds =
+        [ratio(1, 2), ratio(1, 1)].map(|step| scene.decide_at(&step, &Limits::default()).unwrap().kind);
+    assert_eq!(kinds, [Kind::Elliptic, Kind::Hyperbolic]);
+}
+
 #[test]
 fn scans_vary_any_number_of_the_file() {
     let text =

@@ -12,6 +12,11 @@
 
 mod display;
 mod enclose;
+#[cfg(feature = "system")]
+mod integral;
+
+#[cfg(feature = "system")]
+pub(crate) use integral::PiInteger;
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -53,6 +58,13 @@ impl Laurent {
     /// The terms (k, c_k), c_k ≠ 0, by increasing k.
     pub fn terms(&self) -> &[(i32, Rational)] {
         &self.terms
+    }
+
+    /// The value with π replaced by x: Σ c_k x^k.
+    ///
+    /// **Panics** for x = 0 where there are negative powers.
+    pub fn at(&self, x: &Rational) -> Rational {
+        self.terms.iter().fold(Rational::zero(), |sum, (k, c)| sum + c * x.pow(*k))
     }
 
     /// The number as a rational, if it is one: zero, or the term k = 0 alone.

@@ -26,6 +26,8 @@
 
 pub mod ball;
 pub mod cyclotomic;
+#[cfg(feature = "system")]
+mod domain;
 mod enclosed;
 mod float;
 pub mod laurent;
@@ -42,8 +44,12 @@ mod twofold;
 
 pub use ball::Ball;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
+#[cfg(feature = "system")]
+pub(crate) use domain::Domain;
 pub(crate) use enclosed::Enclosed;
 pub use laurent::Laurent;
+#[cfg(feature = "system")]
+pub(crate) use laurent::PiInteger;
 pub use polynomial::Polynomial;
 pub(crate) use prime_field::Lift;
 pub use prime_field::{PrimeField, prime_fields};

@@ -232,7 +232,12 @@ fn propagator<S: Ring>(program: &Program<S>, events: impl Iterator<Item = Event>
 /// H, the propagator over half the period, half of each kick at its ends, in any ring: 2n x 2n, positions before
 /// momenta, the momenta in the unit of time one tick.
 pub fn half_period<S: Ring>(system: &System) -> DMatrix<S> {
-    propagator(&Program::new(system).map(S::from_rational), system.schedule().half_period())
+    half_period_of(&Program::new(system).map(S::from_rational), system)
+}
+
+/// H of a program with the events of `system`.
+pub(super) fn half_period_of<S: Ring>(program: &Program<S>, system: &System) -> DMatrix<S> {
+    propagator(program, system.schedule().half_period())
 }
 
 /// Q of the time-symmetric form, like [`half_period`].

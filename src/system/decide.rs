@@ -13,12 +13,12 @@
 
 use super::analysis::Analysis;
 use super::compose::{self, connected};
-use super::exact::decide_exact;
 use super::frame::Frame;
 use super::large;
 use super::limits::{Limits, Route};
 use super::model::System;
-use super::piece::{pieces, unit};
+use super::piece::{Piece, pieces, unit};
+use super::sparse::Symmetric;
 use crate::error::Result;
 use crate::number::{Laurent, Rational};
 use crate::verdict::Kind;
@@ -39,16 +39,32 @@ pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
 /// # Errors
 /// As [`decide_system`]; by [`Route::Exact`] also where exact arithmetic exceeds the budget.
 pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analysis> {
+    let how = (route, limits);
+    decided((system, System::stiffnesses), system, Ok, how)
+}
+
+/// A system, and its stiffnesses that an invariant subspace is to be invariant under.
+pub(super) type Structure<'a> = (&'a System, fn(&System) -> Vec<&Symmetric>);
+
+/// The verdict on a system whose parts are those of `structure`; `prepared` makes such a part one of the system.
+///
+/// # Errors
+/// As [`decide_by`]; as `prepared`.
+pub(super) fn decided(
+    (structure, stiffnesses): Structure,
+    system: &System,
+    prepared: impl Fn(Piece) -> Result<Piece>,
+    how: (Route, &Limits),
+) -> Result<Analysis> {
     let mut warnings = Vec::new();
     if !system.is_total_semidefinite() {
         warnings.push(
             "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
         );
     }
-    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
     let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
-    for dofs in connected(system.size(), graphs) {
-        let Some(component) = system.component(&dofs) else {
+    for dofs in components(structure) {
+        let Some(component) = structure.component(&dofs) else {
             rigid_modes.extend(dofs.iter().map(|&i| unit(system.size(), i)));
             continue;
         };
@@ -59,8 +75,8 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
             x
         };
         rigid_modes.extend(frame.rigid.iter().map(|(_, v)| place(v)));
-        for piece in pieces(component, frame) {
-            parts.push(piece.decide(system.size(), &dofs, (route, limits), &mut warnings)?);
+        for piece in pieces(component, frame, stiffnesses) {
+            parts.push(prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)?);
         }
     }
     let kind = parts.iter().map(|part| part.kind).max_by_key(severity).unwrap_or(Kind::Elliptic);
@@ -69,18 +85,32 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
+/// The degrees of freedom that some entry connects.
+fn components(system: &System) -> Vec<Vec<usize>> {
+    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
+    connected(system.size(), graphs)
+}
+
 /// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
 ///
 /// # Errors
 /// A budget error, before the work on the part that exceeds it.
 pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
-    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
-    let components = connected(system.size(), graphs).into_iter().filter_map(|dofs| system.component(&dofs));
-    let parts = components.flat_map(|own| {
+    exact_kind_of((system, System::stiffnesses), Ok, limits)
+}
+
+/// The same where parts are those of `structure`, as for [`decided`].
+pub(super) fn exact_kind_of(
+    (structure, stiffnesses): Structure,
+    prepared: impl Fn(Piece) -> Result<Piece>,
+    limits: &Limits,
+) -> Result<Kind> {
+    let parts = components(structure).into_iter().filter_map(|dofs| structure.component(&dofs));
+    let parts = parts.flat_map(|own| {
         let frame = Frame::new(&own);
-        pieces(own, frame)
+        pieces(own, frame, stiffnesses)
     });
-    let kinds = parts.map(|own| Ok(decide_exact(&own.system, limits)?.kind)).collect::<Result<Vec<_>>>()?;
+    let kinds = parts.map(|own| Ok(prepared(own)?.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
     Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
 }
 

@@ -16,7 +16,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::frame::Frame;
 use super::inertia::Inertia;
-use super::integers::{IntegerBlocks, IntegerProgram};
+use super::integers::{IntegerBlocks, IntegerProgram, product};
 use super::limits::{Limits, degrees_of_freedom};
 use super::model::System;
 use super::modular;
@@ -24,7 +24,7 @@ use super::roots::{self, RootCount};
 use super::signs::{self, Inertias};
 use crate::error::Result;
 use crate::number::polynomial::squarefree;
-use crate::number::{PrimeField, Rational};
+use crate::number::{Domain, PrimeField, Rational};
 use crate::verdict::Kind;
 
 /// What exact arithmetic says of a system without rigid modes.
@@ -89,21 +89,21 @@ pub(super) fn decide_by_signs(system: &System, frame: &Frame, limits: &Limits) -
     Ok(signs::judge(&mut program.half_period(system, frame)))
 }
 
-impl Inertias for IntegerBlocks {
+impl<D: Domain> Inertias for IntegerBlocks<D> {
     fn p(&mut self) -> Inertia {
-        signs::exact_inertia(&self.a * self.b.transpose())
+        signs::exact_inertia(product(&self.a, &self.b.transpose()))
     }
 
     fn r(&mut self) -> Inertia {
-        signs::exact_inertia(&self.c * self.d.transpose()).times(-1)
+        signs::exact_inertia(product(&self.c, &self.d.transpose())).times(-1)
     }
 
     fn w(&mut self) -> Inertia {
-        signs::exact_inertia(self.b.transpose() * &self.d)
+        signs::exact_inertia(product(&self.b.transpose(), &self.d))
     }
 
     fn z(&mut self) -> Inertia {
-        signs::exact_inertia(self.a.transpose() * &self.c).times(-1)
+        signs::exact_inertia(product(&self.a.transpose(), &self.c)).times(-1)
     }
 }
 
@@ -184,6 +184,7 @@ fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64>
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
+    use crate::system::pi::moments;
     use crate::system::{Potential, Symmetric, decide_system, exact_kind};
 
     /// Numbers that repeat, from 0 to n − 1.
@@ -233,14 +234,16 @@ mod tests {
         System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), potentials).unwrap()
     }
 
-    /// By forms where one is definite, by doubles or whatever tells, and by characteristic polynomials: how often which kind came of forms.
+    /// By forms where one is definite, by doubles or whatever tells, by characteristic polynomials and by power sums: how often which kind came
+    /// of forms.
     fn agreed(count: usize) -> std::collections::BTreeMap<&'static str, usize> {
         let (mut numbers, limits) = (Numbers(7), Limits::default());
         let mut decided = std::collections::BTreeMap::new();
         for _ in 0..count {
             let system = system(&mut numbers);
             let frame = Frame::new(&system);
-            let kind = decide_exact(&system, &limits).unwrap().kind;
+            let exact = decide_exact(&system, &limits).unwrap();
+            let kind = exact.kind;
             let parts = exact_kind(&system, &limits).unwrap();
             let analysis = decide_system(&system, &limits).unwrap();
             assert!(
@@ -248,6 +251,9 @@ mod tests {
                 "{:?} {parts:?} {system:?}",
                 analysis.kind
             );
+            // By inertias of power sums, which are what decides over ℚ[π].
+            let blocks = IntegerProgram::new(&system).half_period(&system, &frame);
+            assert_eq!(moments::judge(&blocks), (exact.kind, exact.roots), "{system:?}");
             if !frame.rigid.is_empty() {
                 *decided.entry("rigid").or_insert(0) += 1;
             }

@@ -12,6 +12,7 @@ use num_integer::Integer;
 use num_traits::One;
 
 use super::model::System;
+use super::sparse::null_space;
 use crate::number::rational::to_f64;
 use crate::number::{Rational, Ring};
 
@@ -63,6 +64,15 @@ impl Frame {
             }
         }
         y
+    }
+
+    /// A basis of the M-orthogonal complement of the rigid modes: x = Z y.
+    pub fn complement(&self, system: &System) -> Vec<Vec<Rational>> {
+        let conditions = self.rigid.iter().map(|(_, n)| {
+            let image = system.mass().times(n).into_iter().enumerate();
+            image.filter(|(_, x)| *x != Rational::default()).collect()
+        });
+        null_space(conditions.collect(), system.size()).into_iter().map(|(_, z)| z).collect()
     }
 
     /// The position whose coordinates are y, M-orthogonal to the rigid modes; rounded.

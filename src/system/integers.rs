@@ -11,17 +11,17 @@ use num_traits::{One, Zero};
 use super::compose::{Program, Row, State};
 use super::frame::Frame;
 use super::model::System;
-use crate::number::Rational;
+use crate::number::{Domain, Rational};
 use crate::schedule::Weight;
 
 /// Positive multiples of the blocks of H, and the scale of B and C together.
-pub(super) struct IntegerBlocks {
-    pub a: DMatrix<BigInt>,
-    pub b: DMatrix<BigInt>,
-    pub c: DMatrix<BigInt>,
-    pub d: DMatrix<BigInt>,
+pub(super) struct IntegerBlocks<D = BigInt> {
+    pub a: DMatrix<D>,
+    pub b: DMatrix<D>,
+    pub c: DMatrix<D>,
+    pub d: DMatrix<D>,
     /// Bᵀ C of the true blocks is that of these divided by it.
-    pub scale: BigInt,
+    pub scale: D,
 }
 
 /// A program in integers over the denominator f.
@@ -171,12 +171,19 @@ fn add(row: &mut [BigInt], factor: &BigInt, other: &[BigInt]) {
     }
 }
 
-impl IntegerBlocks {
+impl<D: Domain> IntegerBlocks<D> {
     /// Bᵀ C times [`IntegerBlocks::scale`].
-    pub fn product(&self) -> DMatrix<BigInt> {
-        let m = self.b.ncols();
-        DMatrix::from_fn(m, m, |i, j| {
-            (0..m).fold(BigInt::zero(), |sum, k| sum + &self.b[(k, i)] * &self.c[(k, j)])
-        })
+    pub fn product(&self) -> DMatrix<D> {
+        product(&self.b.transpose(), &self.c)
     }
+}
+
+/// a b.
+pub(super) fn product<D: Domain>(a: &DMatrix<D>, b: &DMatrix<D>) -> DMatrix<D> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
+        (0..a.ncols()).fold(D::zero(), |mut sum, k| {
+            sum += a[(i, k)].product(&b[(k, j)]);
+            sum
+        })
+    })
 }

@@ -20,6 +20,7 @@
 //! | `large`, `action`, `envelope` | thousands of degrees of freedom: signs of the sparse action, and the mode that grows fastest |
 //! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
 //! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
+//! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
 //! | `decide`, `piece` | the verdict, part by part |
 //! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
 //! | `period` | whole periods in doubles, with friction or a stiffness of its own for each kick |
@@ -69,6 +70,7 @@ mod modular;
 pub mod nearest;
 mod norm;
 mod period;
+mod pi;
 mod piece;
 mod roots;
 mod scalar;
@@ -90,6 +92,7 @@ pub use limits::{Limits, Route};
 pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
 pub use modes::{Origin, Resonance};
+pub use pi::{PiPotential, PiSystem};
 pub use scalar::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide_oscillator;
 pub use sparse::Symmetric;

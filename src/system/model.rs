@@ -119,6 +119,11 @@ impl System {
         self.schedule.period() / self.schedule.clocks()[clock].step()
     }
 
+    /// The stiffnesses of the potentials, each for itself.
+    pub(super) fn single_stiffnesses(&self) -> Vec<&Symmetric> {
+        self.potentials.iter().map(|own| &own.stiffness).collect()
+    }
+
     /// Σ K_k.
     pub fn total_stiffness(&self) -> Symmetric {
         let mut total = Symmetric::zero(self.size());
@@ -137,7 +142,8 @@ impl System {
         self.clocks.iter().fold(zero, |sum, clock| sum + clock.stiffness.rounded())
     }
 
-    fn stiffnesses(&self) -> Vec<&Symmetric> {
+    /// The stiffnesses of the clocks.
+    pub(super) fn stiffnesses(&self) -> Vec<&Symmetric> {
         self.clocks.iter().map(|clock| &clock.stiffness).collect()
     }
 
@@ -210,7 +216,7 @@ fn reduced(mut vectors: Vec<Vec<Rational>>, n: usize) -> Vec<(usize, Vec<Rationa
     pivots.into_iter().zip(vectors).collect()
 }
 
-fn check_mass(mass: &Symmetric) -> Result<()> {
+pub(super) fn check_mass(mass: &Symmetric) -> Result<()> {
     if mass.size() == 0 {
         return Err(Error::input("masses", "none", "give at least one mass"));
     }
@@ -225,7 +231,7 @@ fn check_mass(mass: &Symmetric) -> Result<()> {
     Ok(())
 }
 
-fn check_potential(k: usize, potential: &Potential, n: usize) -> Result<()> {
+pub(super) fn check_potential(k: usize, potential: &Potential, n: usize) -> Result<()> {
     let field = |name: &str| format!("potentials[{k}].{name}");
     if potential.stiffness.size() != n {
         let size = potential.stiffness.size();

@@ -8,9 +8,10 @@ use super::frame::Frame;
 use super::large;
 use super::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
 use super::model::System;
+use super::pi::Coefficients;
 use super::signs::{self, Forms};
 use super::single;
-use super::sparse::{dot, null_space};
+use super::sparse::{Symmetric, dot};
 use super::spectrum::{Spectrum, from_segment};
 use super::split::{Subspace, invariant_subspaces, may_split};
 use crate::error::{Kind as ErrorKind, Result};
@@ -32,23 +33,27 @@ pub(super) struct Piece {
     pub(super) frame: Frame,
     /// x = Z y in the component's coordinates; `None` for the component itself.
     pub(super) columns: Option<Subspace>,
+    /// The true stiffnesses, where they involve π: `system` then is very near to them.
+    pub(super) coefficients: Option<Coefficients>,
 }
 
-/// The component itself, or what it splits into.
-pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
-    if component.size() > SMALL {
-        return vec![Piece { system: component, frame, columns: None }];
+/// The component itself, or what it splits into: subspaces that are invariant under M⁻¹ times each of its `stiffnesses`.
+pub(super) fn pieces(
+    component: System,
+    frame: Frame,
+    stiffnesses: fn(&System) -> Vec<&Symmetric>,
+) -> Vec<Piece> {
+    let is_large = component.size() > SMALL;
+    if is_large || frame.rigid.is_empty() && !may_split(&component, &stiffnesses(&component)) {
+        return vec![Piece { system: component, frame, columns: None, coefficients: None }];
     }
-    if frame.rigid.is_empty() && !may_split(&component) {
-        return vec![Piece { system: component, frame, columns: None }];
-    }
-    let complement = complement(&component, &frame);
+    let complement = frame.complement(&component);
     if complement.is_empty() {
         return Vec::new();
     }
     let vibrating = component.restricted(&complement);
     let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
-    let subspaces = invariant_subspaces(&vibrating).unwrap_or_else(whole);
+    let subspaces = invariant_subspaces(&vibrating, &stiffnesses(&vibrating)).unwrap_or_else(whole);
     let piece = |space: Subspace| {
         let system = vibrating.restricted(&space);
         let frame = Frame::whole(system.size());
@@ -57,18 +62,10 @@ pub(super) fn pieces(component: System, frame: Frame) -> Vec<Piece> {
                 (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
             rows.map(|row| dot(&row, y)).collect()
         };
-        Piece { system, frame, columns: Some(space.iter().map(lifted).collect()) }
+        let columns = Some(space.iter().map(lifted).collect());
+        Piece { system, frame, columns, coefficients: None }
     };
     subspaces.into_iter().map(piece).collect()
-}
-
-/// A basis of the M-orthogonal complement of the rigid modes.
-pub(super) fn complement(component: &System, frame: &Frame) -> Subspace {
-    let conditions = frame.rigid.iter().map(|(_, n)| {
-        let image = component.mass().times(n).into_iter().enumerate();
-        image.filter(|(_, x)| *x != Rational::default()).collect()
-    });
-    null_space(conditions.collect(), component.size()).into_iter().map(|(_, z)| z).collect()
 }
 
 impl Piece {
@@ -81,7 +78,14 @@ impl Piece {
         warnings: &mut Vec<String>,
     ) -> Result<Part> {
         let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
-            single::decide(&self.system, how.1)?
+            match &self.coefficients {
+                None => single::decide(&self.system, how.1)?,
+                Some(own) => {
+                    let period = Laurent::from_rational(self.system.period());
+                    let clocks = own.as_many_clocks(&self.system);
+                    single::decide_with_pi(&clocks, &self.system, period, how.1)?
+                }
+            }
         } else {
             self.decide_many(how, warnings)?
         };
@@ -96,7 +100,7 @@ impl Piece {
 
     fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
         // What may be refused is asked for before anything else is computed.
-        let asked = (how.0 == Route::Exact).then(|| decide_exact(&self.system, how.1)).transpose()?;
+        let asked = (how.0 == Route::Exact).then(|| self.exact(how.1)).transpose()?;
         check_length(&self.system, how.1)?;
         if let Some(part) = asked.is_none().then(|| large::decide(&self.system, &self.frame)).flatten() {
             warnings.push(large::NOTE.into());
@@ -107,7 +111,7 @@ impl Piece {
         let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
         let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
-            Some(exact) => (exact.kind, Evidence::Exact, Some(exact.roots)),
+            Some((kind, roots)) => (kind, Evidence::Exact, Some(roots)),
             None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
                 Some((kind, evidence)) => (kind, evidence, None),
                 None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
@@ -122,17 +126,33 @@ impl Piece {
         Ok(Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator: None })
     }
 
+    /// The kind in exact arithmetic, and where the μ lie.
+    pub(super) fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
+        match &self.coefficients {
+            None => decide_exact(&self.system, limits).map(|exact| (exact.kind, exact.roots)),
+            Some(own) => own.decide_exact(&self.frame, limits),
+        }
+    }
+
+    /// The kind, where one of the half period's forms is definite, in exact arithmetic.
+    fn exact_by_signs(&self, limits: &Limits) -> Result<Option<Kind>> {
+        match &self.coefficients {
+            None => decide_by_signs(&self.system, &self.frame, limits),
+            Some(own) => own.decide_by_signs(&self.frame, limits),
+        }
+    }
+
     fn exact_or_estimate(
         &self,
         limits: &Limits,
         spectrum: Option<&Spectrum>,
         warnings: &mut Vec<String>,
     ) -> Result<(Kind, Evidence, Option<MuCount>)> {
-        if let Ok(Some(kind)) = decide_by_signs(&self.system, &self.frame, limits) {
+        if let Ok(Some(kind)) = self.exact_by_signs(limits) {
             return Ok((kind, Evidence::Exact, None));
         }
-        let error = match (decide_exact(&self.system, limits), spectrum) {
-            (Ok(exact), _) => return Ok((exact.kind, Evidence::Exact, Some(exact.roots))),
+        let error = match (self.exact(limits), spectrum) {
+            (Ok((kind, roots)), _) => return Ok((kind, Evidence::Exact, Some(roots))),
             (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,
             (Err(error), _) => return Err(error),
         };

@@ -77,15 +77,24 @@ pub fn decide_oscillator(
 ) -> Result<Analysis> {
     assert_eq!(clocks.strikes().len(), rounded.clocks().len(), "one stiffness a clock");
     let period = Laurent::from_rational(clocks.period()) * unit.clone();
-    // Over Q[π] the degree grows with each kick too.
-    let exact = |kicks: f64| 0.15 * kicks.powi(4);
-    let part = decide_clocks(clocks, rounded, period, exact, limits)?;
+    let part = decide_with_pi(clocks, rounded, period, limits)?;
     let warnings = if rounded.is_total_semidefinite() {
         Vec::new()
     } else {
         vec!["the total stiffness is negative: the oscillator itself is unstable, whatever the steps".into()]
     };
     Ok(Analysis::of_part(part, clocks.strikes().len(), warnings))
+}
+
+/// The verdict on K clocks over ℚ\[π\]; `rounded` as for [`decide_oscillator`].
+pub(super) fn decide_with_pi(
+    clocks: &ManyClocks<Laurent>,
+    rounded: &System,
+    period: Laurent,
+    limits: &Limits,
+) -> Result<Part> {
+    // Over Q[π] the degree grows with each kick too.
+    decide_clocks(clocks, rounded, period, |kicks| 0.15 * kicks.powi(4), limits)
 }
 
 /// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.

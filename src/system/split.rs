@@ -15,7 +15,7 @@ use num_traits::{One, Zero};
 use super::compose::{inverse_mass, rounded_inverse_mass};
 use super::model::System;
 use super::roots;
-use super::sparse::null_space;
+use super::sparse::{Symmetric, null_space};
 use crate::number::polynomial::squarefree;
 use crate::number::{Polynomial, Rational, U};
 
@@ -24,13 +24,13 @@ pub(super) type Subspace = Vec<Vec<Rational>>;
 
 /// Invariant subspaces of commuting potentials, M-orthogonal to each other: lines where they are rational, and
 /// at most one rest; `None` where potentials do not commute.
-pub(super) fn invariant_subspaces(system: &System) -> Option<Vec<Subspace>> {
+pub(super) fn invariant_subspaces(system: &System, stiffnesses: &[&Symmetric]) -> Option<Vec<Subspace>> {
     let n = system.size();
-    if !may_split(system) {
+    if !may_split(system, stiffnesses) {
         return None;
     }
     let inverse = dense_inverse(system);
-    let operators: Vec<_> = system.clocks().iter().map(|c| &inverse * c.stiffness.to_dense()).collect();
+    let operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
     let commute = |a: &DMatrix<Rational>, b: &DMatrix<Rational>| a * b == b * a;
     if operators.iter().enumerate().any(|(i, a)| operators[..i].iter().any(|b| !commute(a, b))) {
         return None;
@@ -64,15 +64,14 @@ pub(super) fn invariant_subspaces(system: &System) -> Option<Vec<Subspace>> {
 ///
 /// An entry of the rounded matrices is within 2 u of its size of the true one, a product of three of them summed over n²
 /// terms within (n² + 12) u of the sum of their absolute values.
-pub(super) fn may_split(system: &System) -> bool {
+pub(super) fn may_split(system: &System, stiffnesses: &[&Symmetric]) -> bool {
     let n = system.size();
     let dense = |rounded: Mat<f64>| DMatrix::from_fn(n, n, |i, j| rounded[(i, j)]);
     let inverse = dense(rounded_inverse_mass(system));
-    let products: Vec<[DMatrix<f64>; 2]> = system
-        .clocks()
+    let products: Vec<[DMatrix<f64>; 2]> = stiffnesses
         .iter()
-        .map(|clock| {
-            let k = dense(clock.stiffness.rounded());
+        .map(|k| {
+            let k = dense(k.rounded());
             [&inverse * &k, inverse.abs() * k.abs()]
         })
         .collect();

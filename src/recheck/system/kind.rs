@@ -3,17 +3,18 @@
 use crate::error::{Error, Result};
 use crate::recheck::context::{Checked, same};
 use crate::scene::SystemScene;
-use crate::system::{self, Limits};
+use crate::system::Limits;
 use crate::verdict::Kind;
 
-/// The kind by characteristic polynomials over ℚ, part by part; of an oscillator with π by the four signs over ℚ\[π\].
+/// The kind by characteristic polynomials over ℚ or power sums over ℚ\[π\], part by part; of an oscillator with π by the four signs.
 ///
 /// # Errors
 /// A budget error with the cost, before any work.
 pub fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Kind> {
-    let Some(clocks) = scene.many_clocks() else {
-        return system::exact_kind(scene.system(), limits);
-    };
+    if let Some(kind) = scene.exact_kind(limits)? {
+        return Ok(kind);
+    }
+    let clocks = scene.many_clocks().expect("one oscillator with pi");
     let kicks = clocks.schedule().strikes();
     // Kick by kick over ℚ[π], whose numbers grow by some words with each kick.
     let cost = kicks.saturating_mul(kicks).saturating_mul(kicks);

@@ -170,7 +170,11 @@ impl SystemScene {
         if let Some(own) = self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
             return own.decide_at(outer, limits);
         }
-        let slowed = self.slowed(&(outer / self.outer_step()))?;
+        let factor = outer / self.outer_step();
+        if let Some(own) = &self.with_pi {
+            return own.slowed(&factor)?.decide(Route::Cheapest, limits);
+        }
+        let slowed = self.slowed(&factor)?;
         SystemScene::linear(self.source.clone(), String::new(), slowed).decide(Route::Cheapest, limits)
     }
 
@@ -190,7 +194,7 @@ impl SystemScene {
         if self.friction.is_some() {
             return refused("with friction", "take the friction out of the file");
         }
-        if !self.is_linear() || self.oscillator.is_some() {
+        if !self.is_linear() || self.oscillator.is_some() || self.with_pi.is_some() {
             return refused("of this file", "are for linear systems of rational numbers");
         }
         limits.allow(self.cost(), || format!("a verdict on {} degrees of freedom", self.size()))

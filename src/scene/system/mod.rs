@@ -15,8 +15,8 @@
 //! }
 //! ```
 //!
-//! * All quantities are exact, texts or JSON numbers (0.1 is 1/10), without π; indices count from 0. One mass alone may have π in
-//!   its mass, stiffnesses and steps, as `"pi^2/25"`: K clocks on one oscillator.
+//! * All quantities are exact, texts or JSON numbers (0.1 is 1/10); indices count from 0. Stiffnesses, springs and scales may involve
+//!   π, as `"pi^2/25"`; of one mass alone (K clocks on one oscillator) its mass and its steps, too.
 //! * `time_unit`, if given, is the name of the unit of steps and periods, as "ps": answers name it.
 //! * `masses`, or `mass_matrix` by rows.
 //! * A potential has a `step`, a `phase` (0 unless given, or 1/2), and at least one of `springs` (i, j, k; j null for a
@@ -38,7 +38,8 @@
 //! | file | what |
 //! |---|---|
 //! | `document` | the fields |
-//! | `linear`, `bonds`, `oscillator` | rational systems, named forms at an equilibrium, one oscillator over ℚ\[π\] |
+//! | `linear`, `bonds` | rational systems, named forms at an equilibrium |
+//! | `oscillator`, `pi` | one oscillator over ℚ\[π\], several degrees of freedom with such stiffnesses |
 //! | `mesh` | finite elements |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `held` | their constraints, heavy hydrogens |
@@ -58,6 +59,7 @@ mod mesh;
 #[cfg(feature = "advise")]
 mod molecule;
 mod oscillator;
+mod pi;
 mod run;
 mod scan;
 
@@ -74,9 +76,10 @@ use crate::propagator;
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
 use crate::system::levels::Hessians;
 use crate::system::{
-    Analysis, Limits, ManyClocks, OwnOrbit, Potential, Route, System, decide_by, decide_oscillator,
-    verdict_cost,
+    Analysis, Limits, ManyClocks, OwnOrbit, PiSystem, Potential, Route, System, decide_by, decide_oscillator,
+    exact_kind, verdict_cost,
 };
+use crate::verdict::Kind;
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
@@ -121,6 +124,8 @@ pub struct SystemScene {
     system: OnceLock<System>,
     nonlinear: Option<Nonlinear>,
     oscillator: Option<Oscillator>,
+    /// Several degrees of freedom with stiffnesses that involve π.
+    with_pi: Option<PiSystem>,
     measured: Option<Measured>,
     /// One for each degree of freedom.
     labels: Option<Vec<String>>,
@@ -229,7 +234,15 @@ impl SystemScene {
         }
         let (mass, potentials) = (document.mass()?, document.potentials()?);
         let n = mass.size();
-        let linear = potentials.iter().enumerate().map(|(k, p)| p.linear(k, n)).collect::<Result<_>>()?;
+        let linear = potentials.iter().enumerate().map(|(k, p)| p.linear(k, n)).collect::<Result<_>>();
+        let linear = match linear {
+            Err(error) if potentials.iter().all(|p| p.bonds.is_empty()) => {
+                let own = document.with_pi(mass)?.ok_or(error)?;
+                let scene = SystemScene::linear(source, title, own.near().clone());
+                return Ok(SystemScene { with_pi: Some(own), ..scene });
+            }
+            linear => linear?,
+        };
         let (system, nonlinear) = if potentials.iter().all(|p| p.bonds.is_empty()) {
             (System::new(mass, linear)?, None)
         } else {
@@ -251,6 +264,7 @@ impl SystemScene {
             system: OnceLock::new(),
             nonlinear: None,
             oscillator: None,
+            with_pi: None,
             measured: None,
             labels: None,
             friction: None,
@@ -303,6 +317,10 @@ impl SystemScene {
         if let Some(own) = &self.measured {
             return own.friction(rate, limits).map(Some);
         }
+        if self.with_pi.is_some() {
+            let remedy = "with several degrees of freedom write stiffnesses without pi";
+            return Err(Error::input("friction", rate, remedy));
+        }
         damped_system(self.system(), rate, limits).map(Some)
     }
 
@@ -327,7 +345,8 @@ impl SystemScene {
     }
 
     /// The linear system: that at the equilibrium, where there are nonlinear bonds; rounded to doubles (and, where steps
-    /// are irrational, in the unit of time of the shortest one), where an oscillator involves π.
+    /// are irrational, in the unit of time of the shortest one), where an oscillator involves π; within 2^-150 of every entry
+    /// where several degrees of freedom do.
     pub fn system(&self) -> &System {
         self.system.get_or_init(|| self.measured.as_ref().expect("measured, where it was not built").system())
     }
@@ -337,10 +356,25 @@ impl SystemScene {
     /// # Errors
     /// As [`decide_by`] and [`decide_oscillator`].
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        if let Some(own) = &self.with_pi {
+            return own.decide(route, limits);
+        }
         match (&self.oscillator, &self.measured) {
             (Some(own), _) => decide_oscillator(&own.clocks, &own.rounded, &own.unit, limits),
             (None, Some(measured)) => measured.decide(route, limits),
             (None, None) => decide_by(route, self.system(), limits),
+        }
+    }
+
+    /// The kind by exact arithmetic alone, part by part; `None` for one oscillator with π, which [`SystemScene::many_clocks`] has.
+    ///
+    /// # Errors
+    /// A budget error, before the work on the part that exceeds it.
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Option<Kind>> {
+        match (&self.with_pi, &self.oscillator) {
+            (Some(own), _) => own.exact_kind(limits).map(Some),
+            (None, Some(_)) => Ok(None),
+            (None, None) => exact_kind(self.system(), limits).map(Some),
         }
     }
 

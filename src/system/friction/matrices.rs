@@ -18,7 +18,6 @@ use crate::system::limits::{Limits, degrees_of_freedom};
 use crate::system::model::System;
 use crate::system::norm;
 use crate::system::period::{Drifts, Stiff, follow};
-use crate::system::piece::complement;
 use crate::system::spectrum::{components, residual};
 
 /// What friction does to a system.
@@ -165,7 +164,7 @@ fn parts(system: &System) -> Vec<System> {
         if frame.rigid.is_empty() {
             return Some(component);
         }
-        let space = complement(&component, &frame);
+        let space = frame.complement(&component);
         (!space.is_empty()).then(|| component.restricted(&space))
     };
     connected(system.size(), graphs).into_iter().filter_map(own).collect()

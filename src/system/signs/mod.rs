@@ -28,10 +28,10 @@
 //! | file | what |
 //! |---|---|
 //! | `forms` | the table above, from inertias, and the forms of a half period in doubles |
-//! | `elimination` | exact inertias in integers |
+//! | `elimination` | exact inertias and ranks without fractions |
 
 mod elimination;
 mod forms;
 
-pub(super) use elimination::inertia as exact_inertia;
+pub(super) use elimination::{inertia as exact_inertia, rank as exact_rank};
 pub(super) use forms::{Forms, Inertias, judge};

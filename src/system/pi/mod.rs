@@ -1,0 +1,145 @@
+//! Systems whose stiffnesses involve π: M x'' + Σ_k (Σ_j π^j K_kj) x = 0, decided over ℚ\[π\].
+//!
+//! π is transcendental, so a rational statement about Σ_j π^j K_kj is one about all K_kj: rigid modes, connected parts and
+//! rational invariant subspaces are those that the *coefficients* K_kj have in common, and found over ℚ.
+//!
+//! Doubles decide as ever, at a rational ϖ in the place of π. It is so near that every entry is within 2^-150 of itself of the true one, while
+//! the bounds' constants leave a hundredth of u = 2^-53 for what is of second order: what they prove at ϖ they prove at π.
+//! Where they do not tell, the half period is composed over ℚ\[π\] and brought to ℤ\[π\], where forms have exact inertias and
+//! [`moments`] count the multipliers: nothing is left open. Proofs: section 6 of `proofs/SIGNS.md`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `coefficients` | one part by its coefficients: at ϖ, as clocks on one oscillator, its half period |
+//! | `moments` | the exact verdict without polynomials: inertias of power sums |
+
+mod coefficients;
+pub(super) mod moments;
+
+use std::collections::BTreeMap;
+
+pub(super) use coefficients::Coefficients;
+use coefficients::Term;
+
+use super::analysis::Analysis;
+use super::decide::{Structure, decided, exact_kind_of};
+use super::limits::{Limits, Route};
+use super::model::{Potential, System, check_mass, check_potential};
+use super::piece::Piece;
+use super::sparse::Symmetric;
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::verdict::Kind;
+
+/// One potential xᵀ K x/2 with K = Σ π^j K_j, its force applied as kicks at the times (n + phase) step.
+#[derive(Clone, Debug)]
+pub struct PiPotential {
+    /// K_j by j, force/length.
+    pub stiffness: BTreeMap<i32, Symmetric>,
+    /// The time between two kicks, positive.
+    pub step: Rational,
+    /// 0 or 1/2.
+    pub phase: Rational,
+}
+
+/// A system with stiffnesses over ℚ\[π, 1/π\], rational masses and steps.
+///
+/// ```
+/// use std::collections::BTreeMap;
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Limits, PiPotential, PiSystem, Route, Symmetric};
+/// use kickdrift::verdict::Kind;
+/// // Two unit masses, walls of stiffness π² and a spring of 7/10 between; velocity Verlet with the step 6/10.
+/// let mut walls = Symmetric::zero(2);
+/// (0..2).for_each(|i| walls.add_spring(i, None, &ratio(1, 1)));
+/// let mut spring = Symmetric::zero(2);
+/// spring.add_spring(0, Some(1), &ratio(7, 10));
+/// let stiffness = BTreeMap::from([(2, walls), (0, spring)]);
+/// let potential = PiPotential { stiffness, step: ratio(6, 10), phase: ratio(0, 1) };
+/// let system = PiSystem::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), vec![potential])?;
+/// let analysis = system.decide(Route::Cheapest, &Limits::default())?;
+/// // h² (π² + 7/5) = 4.06 > 4.
+/// assert!(analysis.is_proof() && analysis.kind == Kind::Hyperbolic);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct PiSystem {
+    whole: Coefficients,
+    near: System,
+}
+
+impl PiSystem {
+    /// From a rational mass matrix and potentials of its size.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn new(mass: Symmetric, potentials: Vec<PiPotential>) -> Result<Self> {
+        check_mass(&mass)?;
+        let (mut coefficients, mut terms) = (Vec::new(), Vec::new());
+        for (k, own) in potentials.into_iter().enumerate() {
+            for (power, stiffness) in own.stiffness {
+                let own = Potential { stiffness, step: own.step.clone(), phase: own.phase.clone() };
+                check_potential(k, &own, mass.size())?;
+                coefficients.push(own);
+                terms.push(Term { potential: k, power });
+            }
+        }
+        if coefficients.is_empty() {
+            return Err(Error::input("potentials", "none", "give at least one stiffness"));
+        }
+        let whole = Coefficients::new(mass, coefficients, terms)?;
+        let near = whole.near()?;
+        Ok(PiSystem { whole, near })
+    }
+
+    /// The system with a rational in the place of π, so near that every entry is within 2^-150 of itself of the true one.
+    pub fn near(&self) -> &System {
+        &self.near
+    }
+
+    /// The same with all steps times a positive factor.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn slowed(&self, factor: &Rational) -> Result<Self> {
+        let whole = self.whole.slowed(factor)?;
+        let near = whole.near()?;
+        Ok(PiSystem { whole, near })
+    }
+
+    /// The verdict, as [`decide_by`](super::decide_by): multipliers and growth rates are rounded ones of [`PiSystem::near`].
+    ///
+    /// # Errors
+    /// As [`decide_by`](super::decide_by); a common null vector of all potentials that is not rational.
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        decided(self.structure(), &self.near, |piece| self.over_pi(piece), (route, limits))
+    }
+
+    /// The kind by exact arithmetic alone, part by part.
+    ///
+    /// # Errors
+    /// A budget error, before the work on the part that exceeds it; as [`PiSystem::decide`].
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
+        exact_kind_of(self.structure(), |piece| self.over_pi(piece), limits)
+    }
+
+    /// Each coefficient is to leave a subspace invariant.
+    fn structure(&self) -> Structure<'_> {
+        (self.whole.system(), System::single_stiffnesses)
+    }
+
+    /// A part of the coefficients as one of the system.
+    fn over_pi(&self, piece: Piece) -> Result<Piece> {
+        let own = self.whole.of_part(piece.system);
+        let near = own.near()?;
+        if piece.frame.rigid.is_empty() && !near.rigid_modes().is_empty() {
+            let remedy = "choose coordinates in which the vector that no potential sees is rational";
+            return Err(Error::input(
+                "stiffness",
+                "all potentials have a null vector that involves pi",
+                remedy,
+            ));
+        }
+        Ok(Piece { system: near, coefficients: Some(own), ..piece })
+    }
+}
