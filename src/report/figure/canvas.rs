@@ -85,6 +85,16 @@ impl Path {
         self.close([left, top]);
     }
 
+    /// The rectangles of a path that consists of nothing else, in points.
+    pub(super) fn rectangles(&self) -> impl Iterator<Item = Rect> + '_ {
+        self.steps.chunks_exact(5).filter_map(|steps| match *steps {
+            [Step::Move(left, top), Step::Across(right), Step::Along(bottom), ..] => {
+                Some([left, top, right, bottom].map(|side| side as f64 / 100.0))
+            }
+            _ => None,
+        })
+    }
+
     /// Closes the outline; the pen is back where it began.
     pub(super) fn close(&mut self, [x, y]: [f64; 2]) {
         self.at = (hundredths(x), hundredths(y));
@@ -95,7 +105,12 @@ impl Path {
 /// How a path is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Paint {
-    Fill { colour: Colour, opacity: Option<f64> },
+    Fill {
+        colour: Colour,
+        opacity: Option<f64>,
+    },
+    /// A fill of rectangles beside each other, hundreds of thousands of them.
+    Cells(Colour),
     Stroke(Pen),
 }
 
@@ -247,6 +262,11 @@ impl Canvas {
     /// Adds a filled path.
     pub(super) fn fill(&mut self, path: Path, colour: Colour, opacity: Option<f64>) {
         self.path(path, Paint::Fill { colour, opacity });
+    }
+
+    /// Adds a path of rectangles beside each other.
+    pub(super) fn cells(&mut self, path: Path, colour: Colour) {
+        self.path(path, Paint::Cells(colour));
     }
 
     /// Adds a drawn line.

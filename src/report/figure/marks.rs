@@ -120,7 +120,7 @@ fn cells(canvas: &mut Canvas, plane: &Plane, cells: &Cells, hatch: Option<Hatch>
         let mut path = Path::default();
         places.iter().for_each(|&place| path.rectangle(place));
         let colour = cells.colours[usize::from(class)];
-        canvas.fill(path, colour, None);
+        canvas.cells(path, colour);
         let corners = |&[left, top, right, bottom]: &Rect| {
             vec![[left, top], [right, top], [right, bottom], [left, bottom]]
         };

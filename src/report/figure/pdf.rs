@@ -89,6 +89,9 @@ impl<'a> Drawing<'a> {
             Element::Path(path, Paint::Fill { colour, opacity }) => {
                 self.fill(*colour, *opacity, |content| outline::path(path, content));
             }
+            Element::Path(path, Paint::Cells(colour)) => {
+                self.fill(*colour, None, |content| outline::path(path, content));
+            }
             Element::Path(path, Paint::Stroke(pen)) => {
                 self.content.save_state();
                 self.take(pen);

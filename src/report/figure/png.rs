@@ -2,11 +2,11 @@
 
 use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
 use tiny_skia::{
-    Color, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Mask, Paint as Shade, PathBuilder, Pixmap,
-    PixmapPaint, Rect as Area, Stroke, StrokeDash, Transform,
+    Color, ColorU8, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Mask, Paint as Shade, PathBuilder,
+    Pixmap, PixmapPaint, PremultipliedColorU8, Rect as Area, Stroke, StrokeDash, Transform,
 };
 
-use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
+use super::canvas::{Canvas, Element, HALO, Image, Paint, Path, Pen, Words};
 use super::clip::Rect;
 use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
@@ -65,12 +65,14 @@ struct Brush {
 impl Brush {
     fn draw(&mut self, element: &Element) {
         match element {
+            Element::Path(path, Paint::Cells(colour)) if self.whole_pixels(path) => self.cells(path, *colour),
             Element::Path(path, paint) => {
                 if let Some(path) = traced(|pen| outline::path(path, pen)) {
                     match paint {
                         Paint::Fill { colour, opacity } => {
                             self.fill(&path, &shade(*colour, *opacity), self.page);
                         }
+                        Paint::Cells(colour) => self.fill(&path, &shade(*colour, None), self.page),
                         Paint::Stroke(pen) => self.stroke(&path, pen, self.page),
                     }
                 }
@@ -89,6 +91,27 @@ impl Brush {
 
     fn fill(&mut self, path: &tiny_skia::Path, shade: &Shade, place: Transform) {
         self.pixels.fill_path(path, shade, FillRule::Winding, place, self.clip.as_ref());
+    }
+
+    /// Whether each rectangle of a path is at least a pixel wide and high.
+    fn whole_pixels(&self, path: &Path) -> bool {
+        let least = 1.0 / f64::from(self.page.sx);
+        path.rectangles().all(|[left, top, right, bottom]| right - left >= least && bottom - top >= least)
+    }
+
+    /// The pixels whose centres lie in a rectangle: where two meet, each pixel is of one of them. Blending the edges of many
+    /// shades, one over another, would take ten times as long as all that is seen.
+    fn cells(&mut self, path: &Path, colour: Colour) {
+        let (scale, wide, high) = (f64::from(self.page.sx), self.pixels.width(), self.pixels.height());
+        let colour = opaque(colour);
+        let pixel = |at: f64, most: u32| (at * scale).round().clamp(0.0, f64::from(most)) as usize;
+        let pixels = self.pixels.pixels_mut();
+        for [left, top, right, bottom] in path.rectangles() {
+            let (left, right) = (pixel(left, wide), pixel(right, wide));
+            for row in pixels.chunks_mut(wide as usize).take(pixel(bottom, high)).skip(pixel(top, high)) {
+                row[left..right].fill(colour);
+            }
+        }
     }
 
     fn stroke(&mut self, path: &tiny_skia::Path, pen: &Pen, place: Transform) {
@@ -152,6 +175,10 @@ impl Brush {
     }
 }
 
+fn opaque(Colour(r, g, b): Colour) -> PremultipliedColorU8 {
+    ColorU8::from_rgba(r, g, b, 255).premultiply()
+}
+
 fn shade(Colour(r, g, b): Colour, opacity: Option<f64>) -> Shade<'static> {
     let mut shade = Shade::default();
     shade.set_color_rgba8(r, g, b, (255.0 * opacity.unwrap_or(1.0)).round() as u8);
@@ -181,5 +208,50 @@ impl Outline for PathBuilder {
 
     fn end(&mut self) {
         self.close();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two cells beside each other, 3 and 5 points wide and 4 high, on a sheet of 10 by 6; at `dpi`.
+    fn cells(dpi: f64) -> (u32, Vec<Colour>) {
+        let mut canvas = Canvas::new(10.0, 6.0, "");
+        let place = |left: f64, right: f64| {
+            let mut path = Path::default();
+            path.rectangle([left, 1.0, right, 5.0]);
+            path
+        };
+        canvas.cells(place(1.0, 4.0), Colour(200, 0, 0));
+        canvas.cells(place(4.0, 9.0), Colour(0, 0, 200));
+        let file = raster(&canvas, dpi).unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        let frame = reader.next_frame(&mut bytes).unwrap();
+        let pixels = bytes[..frame.buffer_size()].chunks(3).map(|p| Colour(p[0], p[1], p[2])).collect();
+        (frame.width, pixels)
+    }
+
+    #[test]
+    fn cells_meet_without_seam_or_blend() {
+        for dpi in [72.0, 100.0, 131.7, 300.0] {
+            let (width, pixels) = cells(dpi);
+            let count = |colour: Colour| pixels.iter().filter(|&&own| own == colour).count() as f64;
+            let (left, right) = (count(Colour(200, 0, 0)), count(Colour(0, 0, 200)));
+            assert_eq!(left + right + count(WHITE), pixels.len() as f64, "{dpi}");
+            // Each side is off by half a pixel at most, so each length by one.
+            let within = |found: f64, [wide, high]: [f64; 2]| {
+                let [wide, high] = [wide, high].map(|side| side * dpi / 72.0);
+                (wide - 1.0) * (high - 1.0) <= found && found <= (wide + 1.0) * (high + 1.0)
+            };
+            assert!(within(left, [3.0, 4.0]) && within(right, [5.0, 4.0]), "{dpi} {left} {right}");
+            let row = &pixels[(pixels.len() / width as usize / 2) * width as usize..][..width as usize];
+            let colours: Vec<Colour> = row.chunk_by(|a, b| a == b).map(|run| run[0]).collect();
+            assert_eq!(colours, [WHITE, Colour(200, 0, 0), Colour(0, 0, 200), WHITE], "{dpi}");
+        }
+        // Where cells are no pixels they are blended: none is lost, and none grows.
+        let (_, pixels) = cells(12.0);
+        assert!(pixels.iter().any(|&Colour(r, g, b)| r > 0 && g > 0 && b < 255 && r < 255));
     }
 }

@@ -118,6 +118,7 @@ fn data(path: &Path) -> String {
 
 fn attributes(paint: &Paint) -> String {
     match paint {
+        Paint::Cells(colour) => format!("fill=\"{colour}\""),
         Paint::Fill { colour, opacity } => format!("fill=\"{colour}\"{}", veil(*opacity)),
         Paint::Stroke(Pen { colour, width, round_joins, round_caps, dashes }) => {
             let joins = if *round_joins { " stroke-linejoin=\"round\"" } else { "" };
