@@ -109,24 +109,35 @@ fn together<P: Source + ?Sized>(
     });
     let order = by_counting(&keys(&pairs));
     let mut found = vec![UNDECIDED; part.len()];
-    let mut together = Vec::with_capacity(LANES);
+    let (mut together, mut places) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
     in_groups(&order, |mut group, order| {
-        let place = |n: u32| pairs[n as usize].1 as usize;
+        let mut rest = Vec::new();
         for order in order.chunks(LANES) {
             resources.go_on()?;
             together.clear();
+            places.clear();
             together.extend(order.iter().map(|&n| pairs[n as usize].0));
+            places.extend(order.iter().map(|&n| pairs[n as usize].1 as usize));
             let verdicts = group.verdicts(&together);
-            order.iter().zip(verdicts).for_each(|(&n, verdict)| found[place(n)] = verdict);
+            for ((&n, &place), verdict) in order.iter().zip(&places).zip(verdicts) {
+                found[place] = verdict;
+                if verdict == UNDECIDED {
+                    rest.push(n);
+                }
+            }
         }
-        Ok(order.iter().copied().filter(|&n| found[place(n)] == UNDECIDED).collect())
+        Ok(rest)
     })?;
-    let decided = |(verdict, n)| match verdict {
-        UNDECIDED => {
-            resources.go_on()?;
-            source.decide(n, limits)
-        }
-        verdict => Ok(Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter }),
+    // Nearly all of them first: what may fail one by one is slow to collect.
+    let filtered = |&verdict: &u8| {
+        let verdict = Verdict::ALL.get(usize::from(verdict)).copied().unwrap_or(Verdict::ALL[0]);
+        Decision { verdict, decided_by: Tier::Filter }
     };
-    found.into_iter().zip(part).map(decided).collect()
+    let mut decisions: Vec<Decision> = found.iter().map(filtered).collect();
+    let open = part.zip(found).zip(&mut decisions).filter(|((_, verdict), _)| *verdict == UNDECIDED);
+    for ((n, _), decision) in open {
+        resources.go_on()?;
+        *decision = source.decide(n, limits)?;
+    }
+    Ok(decisions)
 }

@@ -60,8 +60,10 @@ impl Strengths {
     /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3 on), as near as doubles get:
     /// a group looks at |g| as often as its strongest pair wants.
     pub fn class(&self) -> u64 {
-        let beta2 = 4.0 * self.kick * self.kick / (self.s.hi * (4.0 - self.s.hi));
-        ((beta2.to_bits() >> 53).saturating_sub(511 - 5)).min(Strengths::CLASSES - 1)
+        let (above, below) = (4.0 * self.kick * self.kick, self.s.hi * (4.0 - self.s.hi));
+        // The difference of two doubles' bits is nearly the logarithm of their quotient.
+        let logarithm = (above.to_bits() + (1023 << 52)).saturating_sub(below.to_bits());
+        (logarithm >> 53).saturating_sub(511 - 5).min(Strengths::CLASSES - 1)
     }
 
     /// ⌊q/2⌋: the updates after the half kick at t = 0.
