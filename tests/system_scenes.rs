@@ -176,6 +176,7 @@ fn what_pi_may_not_be_in_is_refused() {
         (r#"{"step": "1", "stiffness": [["pi^2"]]}"#, "potentials[0].stiffness = 1 x 1: there are 2"),
         (r#"{"step": "pi", "springs": [[0, 1, "pi"]]}"#, "potentials[0].step = pi: must be rational"),
         (r#"{"step": "1", "springs": [[0, 1, "pie"]]}"#, "potentials[0].springs[0] = "),
+        (r#"{"step": "1", "springs": [[0, 1, "pi^100"]]}"#, "potentials[0].stiffness = pi^100: powers of pi"),
         // The vector (1, −pi).
         (
             r#"{"step": "1", "stiffness": [["pi^2", "pi"], ["pi", "1"]]}"#,

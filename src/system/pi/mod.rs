@@ -31,6 +31,9 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::verdict::Kind;
 
+/// The highest power of π, and of 1/π: numbers at ϖ, and degrees in π, grow with it.
+const HIGHEST: u32 = 64;
+
 /// One potential xᵀ K x/2 with K = Σ π^j K_j, its force applied as kicks at the times (n + phase) step.
 #[derive(Clone, Debug)]
 pub struct PiPotential {
@@ -72,12 +75,20 @@ impl PiSystem {
     /// From a rational mass matrix and potentials of its size.
     ///
     /// # Errors
-    /// As [`System::new`].
+    /// As [`System::new`]; a power of π beyond ±64.
     pub fn new(mass: Symmetric, potentials: Vec<PiPotential>) -> Result<Self> {
         check_mass(&mass)?;
         let (mut coefficients, mut terms) = (Vec::new(), Vec::new());
         for (k, own) in potentials.into_iter().enumerate() {
             for (power, stiffness) in own.stiffness {
+                if power.unsigned_abs() > HIGHEST {
+                    let remedy = format!("powers of pi may be -{HIGHEST} to {HIGHEST}: choose other units");
+                    return Err(Error::input(
+                        &format!("potentials[{k}].stiffness"),
+                        format!("pi^{power}"),
+                        remedy,
+                    ));
+                }
                 let own = Potential { stiffness, step: own.step.clone(), phase: own.phase.clone() };
                 check_potential(k, &own, mass.size())?;
                 coefficients.push(own);
