@@ -191,7 +191,7 @@ impl Coefficients {
     pub fn decide_exact(&self, frame: &Frame, limits: &Limits) -> Result<(Kind, MuCount)> {
         let vibrating = self.vibrating(frame);
         let near = vibrating.near()?;
-        // Of power sums up to the (2n + 1)-th, two more factors n in length and degree; 3 to 13 as measured on chains of 3 to 6.
+        // Of power sums up to the (2n + 1)-th, two more factors n in length and degree. The 10 was 4 to 16 on chains of 3 to 6.
         vibrating.allow(&near, 10.0 * (near.size() as f64).powi(7), limits)?;
         Ok(moments::judge(&vibrating.half_period(&near)))
     }
