@@ -128,16 +128,15 @@ fn together<P: Source + ?Sized>(
         }
         Ok(rest)
     })?;
-    // Nearly all of them first: what may fail one by one is slow to collect.
-    let filtered = |&verdict: &u8| {
-        let verdict = Verdict::ALL.get(usize::from(verdict)).copied().unwrap_or(Verdict::ALL[0]);
-        Decision { verdict, decided_by: Tier::Filter }
-    };
-    let mut decisions: Vec<Decision> = found.iter().map(filtered).collect();
-    let open = part.zip(found).zip(&mut decisions).filter(|((_, verdict), _)| *verdict == UNDECIDED);
-    for ((n, _), decision) in open {
-        resources.go_on()?;
-        *decision = source.decide(n, limits)?;
+    let mut decisions = Vec::with_capacity(part.len());
+    for (verdict, n) in found.into_iter().zip(part) {
+        decisions.push(match verdict {
+            UNDECIDED => {
+                resources.go_on()?;
+                source.decide(n, limits)?
+            }
+            verdict => Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter },
+        });
     }
     Ok(decisions)
 }

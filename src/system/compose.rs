@@ -245,8 +245,14 @@ pub fn full_period<S: Ring>(system: &System) -> DMatrix<S> {
     propagator(&Program::new(system).map(S::from_rational), system.schedule().symmetric_period())
 }
 
+/// The degrees of freedom that some entry of the mass or of a stiffness connects.
+pub(super) fn connected_parts(system: &System) -> Vec<Vec<usize>> {
+    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
+    connected(system.size(), graphs)
+}
+
 /// The connected components of the union of the matrices' graphs.
-pub(super) fn connected<'a>(n: usize, graphs: impl IntoIterator<Item = &'a Symmetric>) -> Vec<Vec<usize>> {
+fn connected<'a>(n: usize, graphs: impl IntoIterator<Item = &'a Symmetric>) -> Vec<Vec<usize>> {
     let mut root: Vec<usize> = (0..n).collect();
     fn find(root: &mut [usize], mut i: usize) -> usize {
         while root[i] != i {

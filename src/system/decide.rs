@@ -12,7 +12,7 @@
 //! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
 
 use super::analysis::Analysis;
-use super::compose::{self, connected};
+use super::compose::{self, connected_parts};
 use super::frame::Frame;
 use super::large;
 use super::limits::{Limits, Route};
@@ -63,7 +63,7 @@ pub(super) fn decided(
         );
     }
     let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
-    for dofs in components(structure) {
+    for dofs in connected_parts(structure) {
         let Some(component) = structure.component(&dofs) else {
             rigid_modes.extend(dofs.iter().map(|&i| unit(system.size(), i)));
             continue;
@@ -85,12 +85,6 @@ pub(super) fn decided(
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
 }
 
-/// The degrees of freedom that some entry connects.
-fn components(system: &System) -> Vec<Vec<usize>> {
-    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
-    connected(system.size(), graphs)
-}
-
 /// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
 ///
 /// # Errors
@@ -105,7 +99,7 @@ pub(super) fn exact_kind_of(
     prepared: impl Fn(Piece) -> Result<Piece>,
     limits: &Limits,
 ) -> Result<Kind> {
-    let parts = components(structure).into_iter().filter_map(|dofs| structure.component(&dofs));
+    let parts = connected_parts(structure).into_iter().filter_map(|dofs| structure.component(&dofs));
     let parts = parts.flat_map(|own| {
         let frame = Frame::new(&own);
         pieces(own, frame, stiffnesses)
@@ -122,7 +116,7 @@ pub fn verdict_cost(system: &System) -> u64 {
     compose::cost(system).saturating_add(n.saturating_pow(3).saturating_mul(per_cube))
 }
 
-fn severity(kind: &Kind) -> u8 {
+pub(super) fn severity(kind: &Kind) -> u8 {
     match kind {
         Kind::Elliptic => 0,
         Kind::Coexistence => 1,

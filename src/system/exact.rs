@@ -184,18 +184,9 @@ fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64>
 mod tests {
     use super::*;
     use crate::number::rational::ratio;
+    use crate::system::numbers::Numbers;
     use crate::system::pi::moments;
     use crate::system::{Potential, Symmetric, decide_system, exact_kind};
-
-    /// Numbers that repeat, from 0 to n − 1.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn below(&mut self, n: u64) -> i64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((self.0 >> 33) % n) as i64
-        }
-    }
 
     /// Random entries, or (so that edges are met exactly) diagonal stiffnesses of 0 to 5, turned by (3, 4, 5); of these a third with two modes
     /// alike (multiple multipliers, of both of Krein's signs where single stiffnesses differ), a third with a rigid mode.

@@ -69,6 +69,8 @@ mod modes;
 mod modular;
 pub mod nearest;
 mod norm;
+#[cfg(test)]
+mod numbers;
 mod period;
 mod pi;
 mod piece;

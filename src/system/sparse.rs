@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::fmt::Display;
 use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
@@ -77,23 +78,34 @@ impl Symmetric {
     /// # Errors
     /// Names the first row of a wrong length and the first pair of entries that differ.
     pub fn dense(field: &str, entries: &[Vec<Rational>]) -> Result<Self> {
-        let n = entries.len();
-        let mut matrix = Symmetric::zero(n);
+        Symmetric::check(field, entries)?;
+        let mut matrix = Symmetric::zero(entries.len());
         for (i, row) in entries.iter().enumerate() {
-            if row.len() != n {
-                let remedy = format!("a matrix of {n} rows needs {n} entries in each");
-                return Err(Error::input(&format!("{field}[{i}]"), format!("{} entries", row.len()), remedy));
-            }
-            for (j, x) in row.iter().enumerate().take(i + 1) {
+            row[..=i].iter().enumerate().for_each(|(j, x)| matrix.add(i, j, x));
+        }
+        Ok(matrix)
+    }
+
+    /// That rows of any numbers make a symmetric matrix.
+    ///
+    /// # Errors
+    /// As [`Symmetric::dense`].
+    pub(crate) fn check<T: PartialEq + Display>(field: &str, entries: &[Vec<T>]) -> Result<()> {
+        let n = entries.len();
+        if let Some((i, row)) = entries.iter().enumerate().find(|(_, row)| row.len() != n) {
+            let remedy = format!("a matrix of {n} rows needs {n} entries in each");
+            return Err(Error::input(&format!("{field}[{i}]"), format!("{} entries", row.len()), remedy));
+        }
+        for (i, row) in entries.iter().enumerate() {
+            for (j, x) in row[..i].iter().enumerate() {
                 if entries[j][i] != *x {
                     let remedy =
                         format!("differs from {field}[{j}][{i}] = {}: make it symmetric", entries[j][i]);
                     return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
                 }
-                matrix.add(i, j, x);
             }
         }
-        Ok(matrix)
+        Ok(())
     }
 
     /// Adds x to the entries (i, j) and (j, i), once if i = j.

@@ -6,14 +6,13 @@
 
 mod again;
 mod dense;
-mod kind;
 
 use std::ops::Deref;
 
 use serde::de::IgnoredAny;
 use serde_json::{Map, Value};
 
-use super::context::{Checked, Context, Outcome, REMEDY};
+use super::context::{Checked, Context, Outcome, REMEDY, same};
 use super::sample::sample;
 use super::written::Written;
 use crate::avi::{Ends, Run};
@@ -23,8 +22,8 @@ use crate::report::system::{self as report, SystemMap};
 use crate::scene::{Axis, Displacement, RunRequest, Scan, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Analysis, Limits, Route};
+use crate::verdict::Kind;
 pub use again::same_values;
-use kind::{exact_kind, same_kind};
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
 const POINTS: u64 = 200;
@@ -167,7 +166,7 @@ impl Verdict {
             );
         }
         let traces = || dense::traces(&scene, &analysis);
-        match within(exact_kind(&scene, &limits))? {
+        match within(scene.exact_kind(&limits))? {
             Some(truth) => {
                 let other = same_kind(analysis.kind, truth).and_then(|()| traces());
                 let route = "computed again; the kind in exact arithmetic, multipliers by the traces of the dense full period \
@@ -215,7 +214,7 @@ impl Points {
         for &n in &drawn {
             let point = &map.points[n as usize];
             let (x, y) = &point.at;
-            let Some(truth) = within(exact_kind(&scan_of.at(x, y)?, &limits))? else { continue };
+            let Some(truth) = within(scan_of.at(x, y)?.exact_kind(&limits))? else { continue };
             decided += 1;
             let values = || map.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
             let place = || values().collect::<Vec<_>>().join(", ");
@@ -261,4 +260,9 @@ impl Simulated {
         }
         self.outcome(context, "computed again, by the same route", &again, Ok(()))
     }
+}
+
+/// Kinds agree, a part that is at rest apart.
+fn same_kind(found: Kind, truth: Kind) -> Checked {
+    same("kind", found.name(), truth.name())
 }

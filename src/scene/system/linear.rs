@@ -55,9 +55,16 @@ impl PotentialDocument {
         if let Some(scale) = &self.scale {
             stiffness = stiffness.scaled(&scale.read(&field("scale"))?);
         }
+        let [step, phase] = self.step_and_phase(k)?;
+        Ok(Potential { stiffness, step, phase })
+    }
+
+    /// The clock, in rational numbers.
+    pub fn step_and_phase(&self, k: usize) -> Result<[Rational; 2]> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
         let phase =
             self.phase.as_ref().map_or(Ok(Rational::default()), |phase| phase.read(&field("phase")))?;
-        Ok(Potential { stiffness, step: self.step.read(&field("step"))?, phase })
+        Ok([self.step.read(&field("step"))?, phase])
     }
 }
 

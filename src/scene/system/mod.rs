@@ -366,15 +366,16 @@ impl SystemScene {
         }
     }
 
-    /// The kind by exact arithmetic alone, part by part; `None` for one oscillator with π, which [`SystemScene::many_clocks`] has.
+    /// The kind by exact arithmetic alone: by characteristic polynomials over ℚ or power sums over ℚ\[π\], part by part; of an
+    /// oscillator with π by the four signs.
     ///
     /// # Errors
     /// A budget error, before the work on the part that exceeds it.
-    pub fn exact_kind(&self, limits: &Limits) -> Result<Option<Kind>> {
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
         match (&self.with_pi, &self.oscillator) {
-            (Some(own), _) => own.exact_kind(limits).map(Some),
-            (None, Some(_)) => Ok(None),
-            (None, None) => exact_kind(self.system(), limits).map(Some),
+            (Some(own), _) => own.exact_kind(limits),
+            (None, Some(own)) => own.exact_kind(limits),
+            (None, None) => exact_kind(self.system(), limits),
         }
     }
 

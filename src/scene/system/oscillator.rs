@@ -7,7 +7,8 @@ use num_traits::Zero;
 use super::document::{Document, PotentialDocument, ends};
 use crate::error::{Error, Result};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
-use crate::system::{ManyClocks, Potential, Symmetric, System};
+use crate::system::{Limits, ManyClocks, Potential, Symmetric, System};
+use crate::verdict::Kind;
 
 /// The clocks in units of h_1, the shortest step.
 #[derive(Clone, Debug)]
@@ -19,6 +20,19 @@ pub(super) struct Oscillator {
     /// steps are irrational.
     pub rounded: System,
     pub has_rational_steps: bool,
+}
+
+impl Oscillator {
+    /// The kind by the four signs.
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
+        let kicks = self.clocks.schedule().strikes();
+        // Kick by kick over ℚ[π], whose numbers grow by some words with each kick.
+        let cost = kicks.saturating_mul(kicks).saturating_mul(kicks);
+        if cost > limits.products {
+            return Err(Error::budget(format!("exact signs after {kicks} kicks"), cost));
+        }
+        Ok(self.clocks.half_signs().verdict().kind())
+    }
 }
 
 impl Document {

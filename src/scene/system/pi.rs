@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use num_traits::Zero;
-
 use super::document::{Document, Number, PotentialDocument, ends};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number::{Laurent, Rational};
 use crate::system::{PiPotential, PiSystem, Symmetric};
 
@@ -27,23 +25,25 @@ impl PotentialDocument {
     fn with_pi(&self, k: usize, n: usize) -> Result<PiPotential> {
         let field = |name: &str| format!("potentials[{k}].{name}");
         let scale = self.scale.as_ref().map(|own| own.read_laurent(&field("scale"))).transpose()?;
-        let mut stiffness = Coefficients { n, scale, by_power: BTreeMap::new() };
+        let size = self.stiffness.as_ref().map_or(n, Vec::len);
+        let mut stiffness = Coefficients { size, scale, by_power: BTreeMap::new() };
         if let Some(rows) = &self.stiffness {
             stiffness.add_matrix(&field("stiffness"), rows)?;
         }
-        for (s, (i, j, value)) in self.springs.iter().enumerate() {
+        // A matrix of another size is refused with the system.
+        for (s, (i, j, value)) in self.springs.iter().enumerate().filter(|_| size == n) {
             let field = field(&format!("springs[{s}]"));
             let (i, j) = ends(&field, i, j.as_ref(), n)?;
             stiffness.add(&value.read_laurent(&field)?, |matrix, x| matrix.add_spring(i, j, x));
         }
-        let phase = self.phase.as_ref().map_or(Ok(Rational::zero()), |phase| phase.read(&field("phase")))?;
-        Ok(PiPotential { stiffness: stiffness.finish(), step: self.step.read(&field("step"))?, phase })
+        let [step, phase] = self.step_and_phase(k)?;
+        Ok(PiPotential { stiffness: stiffness.finish(), step, phase })
     }
 }
 
 /// K_j by j, while it is being filled.
 struct Coefficients {
-    n: usize,
+    size: usize,
     scale: Option<Laurent>,
     by_power: BTreeMap<i32, Symmetric>,
 }
@@ -53,35 +53,19 @@ impl Coefficients {
     fn add(&mut self, x: &Laurent, add: impl Fn(&mut Symmetric, &Rational)) {
         let scaled = self.scale.as_ref().map(|scale| scale * x);
         for (power, c) in scaled.as_ref().unwrap_or(x).terms() {
-            add(self.by_power.entry(*power).or_insert_with(|| Symmetric::zero(self.n)), c);
+            add(self.by_power.entry(*power).or_insert_with(|| Symmetric::zero(self.size)), c);
         }
     }
 
     fn add_matrix(&mut self, field: &str, rows: &[Vec<Number>]) -> Result<()> {
-        let remedy =
-            |rows: usize| format!("there are {rows} degrees of freedom: give {rows} rows and columns");
-        if rows.len() != self.n {
-            let size = format!("{} x {}", rows.len(), rows.first().map_or(0, Vec::len));
-            return Err(Error::input(field, size, remedy(self.n)));
-        }
-        let mut read: Vec<Vec<Laurent>> = Vec::with_capacity(self.n);
-        for (i, row) in rows.iter().enumerate() {
-            if row.len() != self.n {
-                let length = format!("{} entries", row.len());
-                return Err(Error::input(&format!("{field}[{i}]"), length, remedy(self.n)));
-            }
+        let row = |(i, row): (usize, &Vec<Number>)| {
             let entry = |(j, x): (usize, &Number)| x.read_laurent(&format!("{field}[{i}][{j}]"));
-            read.push(row.iter().enumerate().map(entry).collect::<Result<_>>()?);
-        }
-        for (i, row) in read.iter().enumerate() {
-            for (j, x) in row.iter().enumerate().take(i + 1) {
-                if *x != read[j][i] {
-                    let remedy =
-                        format!("differs from {field}[{j}][{i}] = {}: make it symmetric", read[j][i]);
-                    return Err(Error::input(&format!("{field}[{i}][{j}]"), x, remedy));
-                }
-                self.add(x, |matrix, x| matrix.add(i, j, x));
-            }
+            row.iter().enumerate().map(entry).collect::<Result<Vec<_>>>()
+        };
+        let rows = rows.iter().enumerate().map(row).collect::<Result<Vec<_>>>()?;
+        Symmetric::check(field, &rows)?;
+        for (i, row) in rows.iter().enumerate() {
+            row[..=i].iter().enumerate().for_each(|(j, x)| self.add(x, |matrix, x| matrix.add(i, j, x)));
         }
         Ok(())
     }
@@ -90,7 +74,7 @@ impl Coefficients {
     fn finish(mut self) -> BTreeMap<i32, Symmetric> {
         self.by_power.retain(|_, matrix| !matrix.is_zero());
         if self.by_power.is_empty() {
-            self.by_power.insert(0, Symmetric::zero(self.n));
+            self.by_power.insert(0, Symmetric::zero(self.size));
         }
         self.by_power
     }

@@ -10,7 +10,7 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Rational, Real, U};
 use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
-use crate::system::compose::connected;
+use crate::system::compose::connected_parts;
 use crate::system::float::scaled_program;
 use crate::system::frame::Frame;
 use crate::system::inertia::is_definite;
@@ -157,7 +157,6 @@ fn worst(parts: impl Iterator<Item = Option<Damping>>) -> Option<Damping> {
 
 /// The connected components, rigid modes left out.
 fn parts(system: &System) -> Vec<System> {
-    let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
     let own = |dofs: Vec<usize>| {
         let component = system.component(&dofs)?;
         let frame = Frame::new(&component);
@@ -167,7 +166,7 @@ fn parts(system: &System) -> Vec<System> {
         let space = frame.complement(&component);
         (!space.is_empty()).then(|| component.restricted(&space))
     };
-    connected(system.size(), graphs).into_iter().filter_map(own).collect()
+    connected_parts(system).into_iter().filter_map(own).collect()
 }
 
 type At = (Option<Damping>, Option<(f64, f64)>);

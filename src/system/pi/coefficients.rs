@@ -98,7 +98,7 @@ impl Coefficients {
                 last = Some(term.potential);
             }
             let near = System::new(self.system.mass().clone(), potentials)?;
-            if self.potentials_are_near(&near, &pi) {
+            if self.is_near(&pi) {
                 return Ok(near);
             }
             bits *= 2;
@@ -106,7 +106,7 @@ impl Coefficients {
     }
 
     /// Whether no entry that is not 0 is farther from the true one than allowed.
-    fn potentials_are_near(&self, near: &System, pi: &Rational) -> bool {
+    fn is_near(&self, pi: &Rational) -> bool {
         let most = scale2(&BigInt::one(), -i64::from(ACCURACY));
         let is_near = |exact: &Laurent| {
             if exact.as_monomial().is_some() || exact.is_zero() {
@@ -117,12 +117,9 @@ impl Coefficients {
             let difference = exact.at(pi) / &truth - Rational::from_integer(1.into());
             difference.abs() < most
         };
-        let n = near.size();
-        let rows = |own: &Potential, i: usize| own.stiffness.row(i).keys().copied().collect::<Vec<_>>();
-        self.system
-            .potentials()
-            .iter()
-            .all(|own| (0..n).all(|i| rows(own, i).into_iter().all(|j| is_near(&self.entry(own, i, j)))))
+        let row_is_near =
+            |own: &Potential, i: usize| own.stiffness.row(i).keys().all(|&j| is_near(&self.entry(own, i, j)));
+        self.all().all(|(own, _)| (0..self.system.size()).all(|i| row_is_near(own, i)))
     }
 
     /// K clocks on one oscillator, where there is one degree of freedom: those of `near`.
@@ -221,17 +218,9 @@ mod tests {
     use crate::number::ExactSign;
     use crate::number::parse::parse;
     use crate::number::rational::ratio;
+    use crate::system::decide::severity;
     use crate::system::decide_exact;
-
-    /// Numbers that repeat, from 0 to n − 1.
-    struct Numbers(u64);
-
-    impl Numbers {
-        fn below(&mut self, n: u64) -> usize {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((self.0 >> 33) % n) as usize
-        }
-    }
+    use crate::system::numbers::Numbers;
 
     /// Stiffnesses of unit masses by steps: entries by powers of π.
     fn coefficients(potentials: &[(i64, DMatrix<Laurent>)]) -> Coefficients {
@@ -270,8 +259,8 @@ mod tests {
 
     /// The diagonal system of some oscillators, turned by (3, 4, 5) so that no entry shows it, and the oscillators' own kinds.
     fn turned(numbers: &mut Numbers) -> (Coefficients, Vec<Kind>) {
-        let n = 2 + numbers.below(2);
-        let mut chosen: Vec<_> = (0..n).map(|_| OSCILLATORS[numbers.below(10)]).collect();
+        let n = 2 + numbers.below(2) as usize;
+        let mut chosen: Vec<_> = (0..n).map(|_| OSCILLATORS[numbers.below(10) as usize]).collect();
         // Where the slow clock does nothing the period is another.
         if chosen.iter().all(|own| own[1] == "0") {
             chosen[0] = ["1", "1/10"];
@@ -297,13 +286,6 @@ mod tests {
         (coefficients(&[(1, stiffness(0)), (2, stiffness(1))]), chosen.iter().map(kind).collect())
     }
 
-    fn severity(kind: &Kind) -> usize {
-        [Kind::Elliptic, Kind::Coexistence, Kind::Parabolic, Kind::Hyperbolic]
-            .iter()
-            .position(|own| own == kind)
-            .unwrap()
-    }
-
     #[test]
     fn turned_oscillators_are_what_each_is() {
         let (mut numbers, limits) = (Numbers(11), Limits::default());
@@ -315,7 +297,7 @@ mod tests {
             let (kind, roots) = own.decide_exact(&frame, &limits).unwrap();
             assert_eq!(kind, truth, "{own:?}");
             assert_eq!(roots.complex, 0);
-            seen[severity(&kind)] += 1;
+            seen[usize::from(severity(&kind))] += 1;
             // The same with the rational ϖ in the place of π, over characteristic polynomials: what vanishes at π does there, too. (A
             // mode at rest is set apart there.)
             let near = own.near().unwrap();
@@ -335,12 +317,12 @@ mod tests {
         let (mut numbers, limits) = (Numbers(3), Limits::default());
         let (mut stable, mut complex) = (0, 0);
         for _ in 0..40 {
-            let n = 2 + numbers.below(2);
+            let n = 2 + numbers.below(2) as usize;
             let mut stiffness = |size: i64| {
                 let mut k = DMatrix::from_element(n, n, Laurent::zero());
                 for i in 0..n {
                     for j in 0..=i {
-                        let c = numbers.below(7) as i64 - 3 + 4 * i64::from(i == j);
+                        let c = numbers.below(7) - 3 + 4 * i64::from(i == j);
                         let x = Laurent::monomial(ratio(c, size), numbers.below(4) as i32 - 1);
                         (k[(i, j)], k[(j, i)]) = (x.clone(), x);
                     }

@@ -143,7 +143,7 @@ impl PiSystem {
     fn over_pi(&self, piece: Piece) -> Result<Piece> {
         let own = self.whole.of_part(piece.system);
         let near = own.near()?;
-        if piece.frame.rigid.is_empty() && !near.rigid_modes().is_empty() {
+        if near.rigid_modes().len() > piece.frame.rigid.len() {
             let remedy = "choose coordinates in which the vector that no potential sees is rational";
             return Err(Error::input(
                 "stiffness",

@@ -33,7 +33,7 @@ pub(in crate::system) fn judge<D: Domain>(blocks: &IntegerBlocks<D>) -> (Kind, M
     // P = d S, so that −1 becomes −d.
     let (p, d) = (blocks.product(), &blocks.scale);
     let n = p.nrows();
-    let sums = power_sums(&p, 2 * n + 2);
+    let sums: Vec<D> = powers(DMatrix::identity(n, n), &p, 2 * n + 2).iter().map(trace).collect();
     let (at_zero, at_minus_one) = multiplicities(&sums, d);
     let roots = count(&sums, d, [at_zero, at_minus_one]);
     let kind = if roots.above + roots.below + roots.complex > 0 {
@@ -48,18 +48,20 @@ pub(in crate::system) fn judge<D: Domain>(blocks: &IntegerBlocks<D>) -> (Kind, M
     (kind, roots)
 }
 
-/// tr P^k for k below `count`.
-fn power_sums<D: Domain>(p: &DMatrix<D>, count: usize) -> Vec<D> {
-    let mut power = DMatrix::<D>::identity(p.nrows(), p.nrows());
-    let mut sums = Vec::with_capacity(count);
-    for _ in 0..count {
-        sums.push((0..p.nrows()).fold(D::zero(), |mut sum, i| {
-            sum += power[(i, i)].clone();
-            sum
-        }));
-        power = product(&power, p);
+/// M, M P, M P², ..., so many.
+fn powers<D: Domain>(m: DMatrix<D>, p: &DMatrix<D>, count: usize) -> Vec<DMatrix<D>> {
+    let mut all = vec![m];
+    for k in 1..count {
+        all.push(product(&all[k - 1], p));
     }
-    sums
+    all
+}
+
+fn trace<D: Domain>(m: &DMatrix<D>) -> D {
+    (0..m.nrows()).fold(D::zero(), |mut sum, i| {
+        sum += m[(i, i)].clone();
+        sum
+    })
 }
 
 /// How often 0 and −d are zeros of the characteristic polynomial.
@@ -141,14 +143,10 @@ fn is_semisimple<D: Domain>(blocks: &IntegerBlocks<D>, p: &DMatrix<D>, roots: &M
     }
     let mut shifted = p.clone();
     (0..n).for_each(|i| shifted[(i, i)] += d.clone());
-    let times =
-        |m: DMatrix<D>, factor: &DMatrix<D>, count: usize| (0..count).fold(m, |m, _| product(&m, factor));
-    let t = times(DMatrix::identity(n, n), p, roots.at_zero);
-    let mut power = times(t, &shifted, roots.at_minus_one);
-    let mut rows = Vec::new();
-    for _ in 0..=roots.inside {
-        rows.push(power.iter().cloned().collect::<Vec<_>>());
-        power = product(&power, p);
-    }
-    exact_rank(DMatrix::from_fn(rows.len(), n * n, |i, j| rows[i][j].clone())) <= roots.inside
+    let times = |m: DMatrix<D>, factor: &DMatrix<D>, count: usize| {
+        powers(m, factor, count + 1).pop().expect("at least the first")
+    };
+    let t = times(times(DMatrix::identity(n, n), p, roots.at_zero), &shifted, roots.at_minus_one);
+    let rows = powers(t, p, roots.inside + 1);
+    exact_rank(DMatrix::from_fn(rows.len(), n * n, |i, j| rows[i].as_slice()[j].clone())) <= roots.inside
 }

@@ -14,14 +14,15 @@ use nalgebra::DMatrix;
 /// Cost: n³/3 products of integers of up to n times the entries' length.
 pub(in crate::system) fn inertia<D: Domain>(mut m: DMatrix<D>) -> Inertia {
     let n = m.nrows();
-    let (mut found, mut last) = (Inertia::default(), D::one());
+    let (mut found, mut last, mut was_positive) = (Inertia::default(), D::one(), true);
     for k in 0..n {
         if !bring_pivot(&mut m, k) {
             found.zero = n - k;
             break;
         }
         let pivot = m[(k, k)].clone();
-        if (pivot.sign() == Sign::Positive) == (last.sign() == Sign::Positive) {
+        let is_positive = pivot.sign() == Sign::Positive;
+        if is_positive == was_positive {
             found.positive += 1;
         } else {
             found.negative += 1;
@@ -36,7 +37,7 @@ pub(in crate::system) fn inertia<D: Domain>(mut m: DMatrix<D>) -> Inertia {
                 m[(i, j)] = m[(j, i)].clone();
             }
         }
-        last = pivot;
+        (last, was_positive) = (pivot, is_positive);
     }
     found
 }
