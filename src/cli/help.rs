@@ -103,7 +103,7 @@ fn below(name: &str, examples: &[&str]) -> String {
         _ => examples,
     };
     let codes = match name {
-        "verdict" => {
+        "verdict" | "system" => {
             EXIT_CODES.replace("done\n", "done; with --exit-code: stable\n  1  with --exit-code: unstable\n")
         }
         "verify" => EXIT_CODES

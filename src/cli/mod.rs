@@ -1,6 +1,6 @@
 //! The command line: arguments → a scene → the library → a report.
 //!
-//! Exit codes: 0 done, 1 unstable (only with `verdict --exit-code`), 2 error, with one line on standard error.
+//! Exit codes: 0 done, 1 unstable (only with `--exit-code`), 2 error, with one line on standard error.
 
 mod advise;
 mod args;
@@ -197,7 +197,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Tongues(args) => args.run(common)?,
         Command::Closings(args) => args.run(common)?,
         Command::Verify(args) => args.run(common)?,
-        Command::System(args) => args.run(common)?,
+        Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,

@@ -16,7 +16,7 @@ use crate::report::figure::{Figure, Foot};
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Arrays, Axis, Scan, Span, SystemScene};
 use crate::system::scan::scan;
-use crate::system::{Limits, Route};
+use crate::system::{Analysis, Holds, Limits, Route};
 
 /// Flags of `system`.
 ///
@@ -51,6 +51,9 @@ pub struct Args {
     /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
+    /// Exit with 0 if stable, 1 if unstable, both proven; with --quiet and without --output that is all the answer.
+    #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]
+    exit_code: bool,
     /// Leave the rigid motions of measured stiffnesses in.
     #[arg(long)]
     keep_rigid: bool,
@@ -61,7 +64,7 @@ pub struct Args {
 }
 
 impl Args {
-    pub fn run(&self, common: &Common) -> Result<()> {
+    pub fn run(&self, common: &Common) -> Result<u8> {
         // Refused before the work, not after it.
         self.paper.check(drawing(common)?.is_some())?;
         let (text, arrays) = source(&self.file, common)?;
@@ -76,7 +79,7 @@ impl Args {
             scene = scene.with_friction(rate.clone())?;
         }
         if let Some(span) = &self.intervals {
-            return self.intervals(&scene, span, common);
+            return self.intervals(&scene, span, common).map(|()| 0);
         }
         if let Some(width) = self.resolution.filter(|_| !self.nearest) {
             let remedy = "is the width of intervals: add --intervals PATH=LO..HI or --nearest";
@@ -86,10 +89,11 @@ impl Args {
             [] if self.colour.is_some() => {
                 Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
             }
-            [] => self.verdict(&scene, common),
+            [] if self.exit_code => self.exit_code(&scene, common),
+            [] => self.verdict(&scene, common).map(|_| 0),
             [x] | [x, _] => {
                 let axes = Scan::new(scene.clone(), x.clone(), self.scan.get(1).cloned())?;
-                self.map(&scene, &axes, common)
+                self.map(&scene, &axes, common).map(|()| 0)
             }
             other => {
                 Err(Error::input("--scan", format!("given {} times", other.len()), "a map has two axes"))
@@ -117,12 +121,32 @@ impl Args {
         common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
     }
 
-    fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<()> {
+    /// 0 or 1; nothing but the verdict is computed where nothing is shown.
+    fn exit_code(&self, scene: &SystemScene, common: &Common) -> Result<u8> {
+        let silent = common.quiet && common.output.is_none();
+        let holds = if silent {
+            scene.verdict(self.route(), &limits(common))?
+        } else {
+            self.verdict(scene, common)?.holds()
+        };
+        match holds {
+            Holds::Stable => Ok(0),
+            Holds::Unstable => Ok(1),
+            Holds::NotTold => {
+                let remedy = "doubles do not prove whether it is stable: decide it with --exact";
+                Err(Error::input("file", self.file.display(), remedy))
+            }
+        }
+    }
+
+    fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<Analysis> {
         let waiting = waiting(scene, common.quiet);
         let analysis = scene.decide(self.route(), &limits(common))?;
         waiting.finish_and_clear();
         match drawing(common)? {
-            Some(path) => self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default()),
+            Some(path) => {
+                self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default())?
+            }
             None => {
                 let limits = limits(common);
                 let friction = scene.friction(&limits)?;
@@ -140,9 +164,10 @@ impl Args {
                     true => document.input("nearest", "true").input("width", self.width()),
                     false => document,
                 };
-                common.write(&self.columns.of(document)?, Format::Text)
+                common.write(&self.columns.of(document)?, Format::Text)?;
             }
         }
+        Ok(analysis)
     }
 
     fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {

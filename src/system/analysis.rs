@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 
 use super::exact::MuCount;
-use super::measured::Measured;
+use super::measured::{Holds, Measured};
 use super::modes::{Origin, Resonance};
 use crate::number::{Ball, Laurent, Rational};
 use crate::verdict::{Kind, Tier};
@@ -176,6 +176,15 @@ impl Analysis {
     /// Whether every part's verdict is proven.
     pub fn is_proof(&self) -> bool {
         self.parts.iter().all(|part| part.evidence.is_proof())
+    }
+
+    /// What is proven.
+    pub fn holds(&self) -> Holds {
+        match (self.is_proof(), self.is_stable()) {
+            (false, _) => Holds::NotTold,
+            (true, true) => Holds::Stable,
+            (true, false) => Holds::Unstable,
+        }
     }
 
     /// The largest growth rate, 0 if stable.

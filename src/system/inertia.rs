@@ -2,6 +2,8 @@
 
 use std::cmp::Ordering;
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Side};
 
@@ -37,8 +39,8 @@ impl Inertia {
 /// Whether every symmetric matrix within `slack` (2-norm) of the symmetric m is positive definite, by Rump's criterion
 /// (Verification of positive definiteness, BIT 46, 2006): if Cholesky's factorization of m − c I runs to its end in
 /// doubles, m + c' I is positive definite for c' = γ/(1 − γ) tr m − c; no order of summation or fused product matters.
-/// Only the lower triangle of m is read.
-pub(super) fn is_definite(m: &Mat<f64>, slack: f64) -> bool {
+/// Only the lower triangle of m is read, and m is where it is factored.
+pub(super) fn is_definite(mut m: Mat<f64>, slack: f64) -> bool {
     let n = m.nrows();
     if n == 0 {
         return true;
@@ -49,18 +51,21 @@ pub(super) fn is_definite(m: &Mat<f64>, slack: f64) -> bool {
     if !shift.is_finite() || (0..n).any(|i| m[(i, i)] <= shift) {
         return false;
     }
-    let shifted = Mat::from_fn(n, n, |i, j| if i == j { m[(i, i)] - shift } else { m[(i, j)] });
-    shifted.llt(Side::Lower).is_ok()
+    (0..n).for_each(|i| m[(i, i)] -= shift);
+    let threads = faer::get_global_parallelism();
+    let mut room = MemBuffer::new(cholesky_in_place_scratch::<f64>(n, threads, Default::default()));
+    let none = Default::default();
+    cholesky_in_place(m.as_mut(), none, threads, MemStack::new(&mut room), Default::default()).is_ok()
 }
 
 /// The inertia that every symmetric matrix within `slack` (2-norm) of the symmetric m has: of a definite one by Cholesky, else by
 /// L B Lᵀ, or, where that does not tell all signs, by eigenvalues.
 pub(super) fn proven(m: &Mat<f64>, slack: f64) -> Inertia {
     let n = m.nrows();
-    if is_definite(m, slack) {
+    if is_definite(m.clone(), slack) {
         return Inertia { positive: n, ..Inertia::default() };
     }
-    if is_definite(&-m, slack) {
+    if is_definite(-m, slack) {
         return Inertia { negative: n, ..Inertia::default() };
     }
     match by_factors(m, m, slack) {

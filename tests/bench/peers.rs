@@ -48,13 +48,16 @@ fn levels(folder: &Path) {
         let rows = matrix.row_iter().map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" "));
         write(folder, name, &rows.collect::<Vec<_>>().join("\n"));
     }
-    let kernel = || Kernel::new(&Hessians::new(&fast, &slow, 1e-9).expect("two Hessians")).expect("a basis");
-    let verdict =
-        |kernel: &Kernel, step: f64| kernel.verdict_within(&Outer::new(step, 4).expect("a step"), 0.0).name();
-    let one = timed("levels_288", || verdict(&kernel(), 1.0));
+    let hessians = || Hessians::new(&fast, &slow, 1e-9).expect("two Hessians");
+    let outer = |step: f64| Outer::new(step, 4).expect("a step");
+    let one = timed("levels_288", || hessians().verdict(&outer(1.0)).expect("a verdict").name());
+    let in_basis = |kernel: &Kernel, step: f64| kernel.verdict_within(&outer(step), 0.0).name();
+    let basis = || Kernel::new(&hessians()).expect("a basis");
+    let from_basis = timed("levels_288_basis", || in_basis(&basis(), 1.0));
+    assert_eq!(one, from_basis);
     let ten = timed("levels_288_ten", || {
-        let kernel = kernel();
-        (1..=10).map(|k| verdict(&kernel, 0.3 * f64::from(k))).collect::<Vec<_>>()
+        let kernel = basis();
+        (1..=10).map(|k| in_basis(&kernel, 0.3 * f64::from(k))).collect::<Vec<_>>()
     });
     write(folder, "levels_288", &[vec![one], ten].concat().join("\n"));
 }

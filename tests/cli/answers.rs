@@ -98,6 +98,36 @@ fn a_quiet_exit_code_is_the_verdict_alone() {
     assert!(asked.stderr.contains("50052"), "{}", asked.stderr);
 }
 
+/// Rational systems by their ladder, measured ones without an eigenbasis where the chord tells.
+#[test]
+fn the_exit_code_of_a_system_is_its_proven_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("system.json");
+    let line = ["system", file.to_str().unwrap(), "--exit-code"];
+    let answers = |system: &str, code: i32| {
+        std::fs::write(&file, system).unwrap();
+        let loud = run(&line);
+        assert_eq!(loud.code, Some(code), "{system}: {}", loud.stderr);
+        assert!(loud.stdout.starts_with(["stable", "unstable"][usize::from(code == 1)]), "{}", loud.stdout);
+        let quiet = run(&words("--quiet", &line));
+        assert_eq!((quiet.code, quiet.stdout.as_str(), quiet.stderr.as_str()), (Some(code), "", ""));
+    };
+    for (step, code) in [("1", 0), ("25/8", 1)] {
+        answers(
+            &format!(
+                r#"{{"schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+                {{"name": "fast", "step": "1/8", "stiffness": [["1"]]}}, {{"name": "slow", "step": "{step}", "stiffness": [["1/25"]]}}]}}"#
+            ),
+            code,
+        );
+    }
+    let scene = std::fs::read_to_string("data/scenes/flexible-water.json").unwrap();
+    let arrays = std::fs::canonicalize("data/hessians").unwrap();
+    let here = scene.replace("../hessians", arrays.to_str().unwrap());
+    answers(&here, 0);
+    answers(&here.replace("1/250", "9/2000"), 1);
+}
+
 #[test]
 fn people_get_text_from_verdict_and_scripts_get_json_from_tables() {
     assert!(stdout(&words(UNSTABLE, &[])).starts_with("unstable: hyperbolic, Tr Q < -2"));

@@ -272,15 +272,10 @@ impl SystemScene {
 
     /// What is proven of the system.
     fn holds(&self, limits: &Limits) -> Result<Holds> {
-        if let Some(holds) = self.measured.as_ref().and_then(|own| own.holds().transpose()) {
-            return holds;
+        match self.measured.as_ref().and_then(|own| own.holds().transpose()) {
+            Some(holds) => holds,
+            None => Ok(self.decide(Route::Cheapest, limits)?.holds()),
         }
-        let analysis = self.decide(Route::Cheapest, limits)?;
-        Ok(match (analysis.is_proof(), analysis.is_stable()) {
-            (false, _) => Holds::NotTold,
-            (true, true) => Holds::Stable,
-            (true, false) => Holds::Unstable,
-        })
     }
 }
 

@@ -219,7 +219,14 @@ impl Measured {
         self.outer().is_some()
     }
 
-    /// What is proven of it; `None` where the kernel does not decide it.
+    /// What is proven of it, for this one verdict at the least cost; `None` where it is not of two levels.
+    pub fn verdict(&self, limits: &Limits) -> Result<Option<Holds>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        self.allow(limits)?;
+        Ok(Some(self.hessians()?.verdict(&outer)?))
+    }
+
+    /// What is proven of it, in an eigenbasis that serves others of the same file; `None` where it is not of two levels.
     pub fn holds(&self) -> Result<Option<Holds>> {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
         Ok(Some(self.kernel()?.verdict_within(&outer, 0.0)))
@@ -267,14 +274,13 @@ impl Measured {
             );
             return Ok(analysis);
         };
-        let n = self.size();
-        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {n} rows"))?;
+        self.allow(limits)?;
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
     }
 
     /// The verdict at an outer step, as many inner ones as in the file.
     pub fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
-        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))?;
+        self.allow(limits)?;
         let at = Outer::new(to_f64(outer), self.inner_steps())?;
         Ok(self.kernel()?.decide(&at, outer, self.accuracy))
     }
@@ -289,6 +295,10 @@ impl Measured {
         let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
         limits.allow(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
         Ok(self.kernel()?.friction(&outer, rate))
+    }
+
+    fn allow(&self, limits: &Limits) -> Result<()> {
+        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
     }
 
     fn inner_steps(&self) -> u64 {

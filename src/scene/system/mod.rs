@@ -76,8 +76,8 @@ use crate::propagator;
 use crate::system::friction::{Friction, damped_oscillator, damped_system};
 use crate::system::levels::Hessians;
 use crate::system::{
-    Analysis, Limits, ManyClocks, OwnOrbit, PiSystem, Potential, Route, System, decide_by, decide_oscillator,
-    exact_kind, verdict_cost,
+    Analysis, Holds, Limits, ManyClocks, OwnOrbit, PiSystem, Potential, Route, System, decide_by,
+    decide_oscillator, exact_kind, verdict_cost,
 };
 use crate::verdict::Kind;
 pub use array::{Array, Arrays};
@@ -363,6 +363,18 @@ impl SystemScene {
             (Some(own), _) => decide_oscillator(&own.clocks, &own.rounded, &own.unit, limits),
             (None, Some(measured)) => measured.decide(route, limits),
             (None, None) => decide_by(route, self.system(), limits),
+        }
+    }
+
+    /// Whether it is stable, and nothing else: of two measured levels without an eigenbasis where that proves it.
+    ///
+    /// # Errors
+    /// As [`SystemScene::decide`].
+    pub fn verdict(&self, route: Route, limits: &Limits) -> Result<Holds> {
+        let own = self.measured.as_ref().filter(|_| route == Route::Cheapest);
+        match own.map(|own| own.verdict(limits)).transpose()?.flatten() {
+            Some(holds) => Ok(holds),
+            None => Ok(self.decide(route, limits)?.holds()),
         }
     }
 

@@ -217,7 +217,7 @@ fn shrinks_a_form(q: &Mat<f64>, error: f64) -> bool {
     let rounding = 1.1 * U * ((2 * n + 8) as f64 * size_q * size_q + 4.0) * size_p;
     let slack = 1.01 * (rounding + error * (2.0 * size_q + error) * size_p);
     let rest = symmetric(&(&p - q.transpose() * &p * q));
-    slack.is_finite() && is_definite(&rest, slack) && is_definite(&p, 0.0)
+    slack.is_finite() && is_definite(rest, slack) && is_definite(p, 0.0)
 }
 
 /// An enclosure of a spectral radius.

@@ -27,7 +27,7 @@ impl Kernel {
         }
         let stretch: Vec<f64> = halves.iter().map(|half| half.stretch().lo).collect();
         let slack = self.shifted(outer, epsilon).slow_slack;
-        [least, most].into_iter().all(|s| is_definite(&self.with_slow(outer, -s, &stretch), 1.01 * s * slack))
+        [least, most].into_iter().all(|s| is_definite(self.with_slow(outer, -s, &stretch), 1.01 * s * slack))
     }
 
     /// The outer step, as many inner ones in it, up to which [`Kernel::covers_band`] provably holds, within 1e-6 of the longest; `None`

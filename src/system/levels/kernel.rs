@@ -171,7 +171,7 @@ impl Kernel {
     pub(super) fn is_total_definite(&self) -> bool {
         *self.is_total_definite.get_or_init(|| {
             let size = self.fast_norm + norm::frobenius(&self.slow);
-            is_definite(&self.total(), 1.01 * (self.fast_error + self.slow_error) + U * size)
+            is_definite(self.total(), 1.01 * (self.fast_error + self.slow_error) + U * size)
         })
     }
 
@@ -220,7 +220,7 @@ fn spectral_norm(m: &Mat<f64>, slack: f64) -> f64 {
     while bound < whole {
         let shifted =
             |sign: f64| Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) * bound + sign * m[(i, j)]);
-        if is_definite(&shifted(1.0), slack) && is_definite(&shifted(-1.0), slack) {
+        if is_definite(shifted(1.0), slack) && is_definite(shifted(-1.0), slack) {
             return bound;
         }
         bound *= 1.001;

@@ -35,6 +35,7 @@
 //! | `rigid` | rigid motions projected out |
 //! | `kernel` | the eigenbasis, its backward error, norms |
 //! | `region` | the first stable region: verdict, margin, first unstable step |
+//! | `chord` | the verdict in it without an eigenbasis |
 //! | `band` | the first region of a whole band of stiffnesses |
 //! | `counts` | verdicts by counts of negative eigenvalues, wherever the step lies |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
@@ -49,6 +50,7 @@ mod answer;
 mod band;
 mod beyond;
 mod cell;
+mod chord;
 mod counts;
 mod damped;
 mod growth;

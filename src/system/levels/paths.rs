@@ -81,10 +81,10 @@ impl Hessians {
         let slack = self.errors[0]
             + self.errors[1]
             + 4.0 * U * (norm::frobenius(&self.fast) + norm::frobenius(&self.slow));
-        is_definite(&total, slack)
+        is_definite(total, slack)
             && [false, true].into_iter().all(|start_held| {
                 let (form, off) = self.action(step, inner_steps, start_held, near);
-                is_definite(&form, off)
+                is_definite(form, off)
             })
     }
 

@@ -61,8 +61,8 @@ impl Kernel {
         }
         let stretch: Vec<f64> = shifted.more.iter().map(|half| half.stretch().lo).collect();
         let restoring: Vec<f64> = shifted.less.iter().map(|half| half.restoring().lo).collect();
-        is_definite(&self.with_slow(outer, -1.0, &stretch), shifted.slow_slack)
-            && is_definite(&self.with_slow(outer, 1.0, &restoring), shifted.slow_slack)
+        is_definite(self.with_slow(outer, -1.0, &stretch), shifted.slow_slack)
+            && is_definite(self.with_slow(outer, 1.0, &restoring), shifted.slow_slack)
     }
 
     /// The largest ε, within a percent (in the first stable region) or a tenth, for which [`Kernel::is_stable`] holds; `None` where

@@ -311,13 +311,25 @@ def dense_levels(folder, times):
     fast, slow = np.loadtxt(folder / "fast"), np.loadtxt(folder / "slow")
     one, *ten = (folder / "levels_288").read_text().split("\n")
     peer = "NumPy, `eigvals` of the 2n x 2n period"
-    for work, steps, name, mine in [
-        ("verdict on two dense levels, n = 288", [1.0], "levels_288", [one]),
-        ("verdicts at ten outer steps, n = 288", [0.3 * k for k in range(1, 11)], "levels_288_ten", ten),
+    for steps, mine, works in [
+        (
+            [1.0],
+            [one],
+            [
+                ("verdict on two dense levels, n = 288", "levels_288"),
+                ("the same by way of the eigenbasis", "levels_288_basis"),
+            ],
+        ),
+        (
+            [0.3 * k for k in range(1, 11)],
+            ten,
+            [("verdicts at ten outer steps, n = 288", "levels_288_ten")],
+        ),
     ]:
         seconds, found = timed(lambda: [dense_unstable(fast, slow, step) for step in steps])
         equal = sum(["stable", "unstable"][int(theirs)] == ours for theirs, ours in zip(found, mine))
-        row(work, peer, seconds, times[name], f"{equal} of {len(mine)} equal")
+        for work, name in works:
+            row(work, peer, seconds, times[name], f"{equal} of {len(mine)} equal")
 
 
 def processor():

@@ -1,0 +1,200 @@
+//! A verdict without an eigenbasis: four factorizations.
+//!
+//! In the first stable region condition (1) of proofs/REGION.md is a/b(h² F) − (p/2) h² S > 0, with a/b of one mode as a function of
+//! s = h² w². As a/b is concave where the odd solution is positive (section 7 there), it lies above its chord over any interval that
+//! holds the spectrum of h² F, and so does the matrix: α − β h² F − (p/2) h² S > 0 proves (1). Condition (2) asks only for the highest
+//! s, and (3) follows from (1) where F + S > 0.
+
+use faer::{Mat, Side};
+
+use super::half::Half;
+use super::kernel::{Kernel, Outer, STEP_ERROR};
+use super::rigid::Hessians;
+use crate::error::Result;
+use crate::number::U;
+use crate::parallel::both;
+use crate::system::inertia::is_definite;
+use crate::system::limits::SIDE_BY_SIDE;
+use crate::system::measured::Holds;
+use crate::system::norm;
+
+/// Steps of Lanczos's recursion for the ends of the spectrum: where it is dense at its ends, they are found to some hundredths.
+const STEPS: usize = 24;
+
+/// How much wider than these estimates the interval is that is then proven, relative to ‖F‖.
+const ROOM: f64 = 0.02;
+
+/// How far below 0 the interval begins for a positive F, relative to ‖F‖: Cholesky's criterion proves that for thousands of rows.
+const ZERO: f64 = 1e-6;
+
+/// Below so many rows the eigenbasis costs as little.
+const FEW: usize = 32;
+
+impl Hessians {
+    /// What is proven at one outer step. Where many steps are asked for, [`Kernel`] serves them all.
+    ///
+    /// Cost: four Cholesky factorizations, side by side in pairs, where [`Hessians::is_stable_by_chord`] holds: a tenth of the eigenbasis that is
+    /// made where it does not.
+    ///
+    /// # Errors
+    /// As [`Kernel::new`].
+    pub fn verdict(&self, outer: &Outer) -> Result<Holds> {
+        if self.size() >= FEW && self.is_stable_by_chord(outer) {
+            return Ok(Holds::Stable);
+        }
+        Ok(Kernel::new(self)?.verdict_within(outer, 0.0))
+    }
+
+    /// Whether the system is proven to be in the first stable region at this outer step, without the eigenvalues of F. `false` says nothing:
+    /// near the end of the region the chord lies below a/b by more than there is room for.
+    pub fn is_stable_by_chord(&self, outer: &Outer) -> bool {
+        let side_by_side = self.size() >= SIDE_BY_SIDE;
+        let sizes = [&self.fast, &self.slow].map(norm::frobenius);
+        if !(sizes[0] + sizes[1]).is_finite() {
+            return false;
+        }
+        let (ends, total) =
+            both(side_by_side, || ends(&self.fast), || self.is_positive(0.0, [1.0, 1.0], sizes));
+        let room = ROOM * ends[1].max(-ends[0]);
+        // Where F is positive but for rounding the interval begins near 0.
+        let low = if ends[0] > -room { -ZERO * ends[1] } else { ends[0] - room };
+        let high = ends[1] + room;
+        let Some([offset, slope]) = chord(outer, low, high).filter(|_| total) else { return false };
+        let (above, below) = both(
+            side_by_side,
+            || self.is_positive(offset, [-slope * outer.inner_square, -outer.half_kick()], sizes),
+            || self.is_positive(high, [-1.0, 0.0], sizes),
+        );
+        above && below && self.is_positive(-low, [1.0, 0.0], sizes)
+    }
+
+    /// Whether c + a F + b S > 0, a and b within [`STEP_ERROR`] of those meant.
+    fn is_positive(&self, c: f64, [a, b]: [f64; 2], sizes: [f64; 2]) -> bool {
+        let n = self.size();
+        let mut sum = Mat::zeros(n, n);
+        for j in 0..n {
+            let [fast, slow] = [&self.fast, &self.slow].map(|m| &m.col_as_slice(j)[j..]);
+            let sums = fast.iter().zip(slow).map(|(f, s)| a * f + b * s);
+            sum.col_as_slice_mut(j)[j..].iter_mut().zip(sums).for_each(|(to, entry)| *to = entry);
+            sum[(j, j)] += c;
+        }
+        let [fast, slow] = [0, 1].map(|k| ([a, b][k].abs(), sizes[k], self.errors[k]));
+        // Two products and two sums an entry beside the factors' own errors; c on the diagonal, in the 2-norm.
+        let rounding = 2.0 * STEP_ERROR * (fast.0 * fast.1 + slow.0 * slow.1) + 4.0 * U * c.abs();
+        is_definite(sum, 1.01 * (rounding + fast.0 * fast.2 + slow.0 * slow.2))
+    }
+}
+
+/// α and β of a line α − β s that is no higher than a/b between the ends of the spectrum of h² F; `None` where p θ < π is not certain up to there.
+fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
+    let ends = [outer.scaled_down(low), outer.scaled_up(high)];
+    let halves = ends.map(|s| Half::new(s, outer.inner_steps));
+    if !halves.iter().all(Half::rises) {
+        return None;
+    }
+    let values = halves.map(|half| half.stretch().lo);
+    let slope = (values[0] - values[1]) / (ends[1] - ends[0]);
+    // The roundings of a product and a sum taken off.
+    let below = |k: usize| {
+        let rise = slope * ends[k];
+        values[k] + rise - 4.0 * U * (values[k].abs() + rise.abs())
+    };
+    let offset = below(0).min(below(1));
+    (slope.is_finite() && offset.is_finite()).then_some([offset, slope])
+}
+
+/// The lowest and the highest eigenvalue, from within: Lanczos's recursion, rounded.
+fn ends(m: &Mat<f64>) -> [f64; 2] {
+    let n = m.nrows();
+    // No eigenvector of a structured matrix is orthogonal to this.
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let start = Mat::from_fn(n, 1, |_, _| number());
+    let mut now = &start / faer::Scale(start.norm_l2());
+    let mut before = Mat::<f64>::zeros(n, 1);
+    let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);
+    for _ in 0..STEPS.min(n) {
+        let last = beside[beside.len() - 1];
+        let mut next = m * &now - &before * faer::Scale(last);
+        let along = (next.transpose() * &now)[(0, 0)];
+        next -= &now * faer::Scale(along);
+        diagonal.push(along);
+        let length = next.norm_l2();
+        beside.push(length);
+        // The space is used up: what is found is exact but for rounding.
+        if length <= 1e-12 * (along.abs() + last) {
+            break;
+        }
+        before = now;
+        now = next / faer::Scale(length);
+    }
+    let k = diagonal.len();
+    let small = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => beside[i.max(j)],
+        _ => 0.0,
+    });
+    let values = small.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default();
+    [values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+
+    use super::*;
+
+    /// A symmetric matrix with the eigenvalues given, in a basis of reflections.
+    fn turned(values: &[f64], seed: u64) -> DMatrix<f64> {
+        let n = values.len();
+        let v = DMatrix::from_fn(n, 1, |i, _| ((i as u64 * 37 + seed * 101) % 17) as f64 - 7.5);
+        let reflection = DMatrix::identity(n, n) - &v * v.transpose() * (2.0 / v.norm_squared());
+        let m = &reflection * DMatrix::from_diagonal(&values.to_vec().into()) * &reflection;
+        (&m + m.transpose()) * 0.5
+    }
+
+    #[test]
+    fn what_the_chord_proves_the_eigenbasis_proves_too_and_little_more() {
+        let (mut by_chord, mut by_basis) = (0, 0);
+        for seed in 0..12_u64 {
+            let n = 3 + seed as usize;
+            let fast: Vec<f64> = (0..n).map(|i| (i * i) as f64 / (n * n) as f64).collect();
+            let slow: Vec<f64> = (0..n).map(|i| 0.02 + 0.03 * ((i * 7 + 3) % n) as f64 / n as f64).collect();
+            let hessians = Hessians::new(&turned(&fast, seed), &turned(&slow, seed + 5), 1e-9).unwrap();
+            let kernel = Kernel::new(&hessians).unwrap();
+            for p in [1, 2, 3, 4, 9] {
+                let last = 2.2 * p as f64;
+                for k in 1..=40 {
+                    let outer = Outer::new(last * f64::from(k) / 40.0, p).unwrap();
+                    let (chord, basis) =
+                        (hessians.is_stable_by_chord(&outer), kernel.is_in_first_region(&outer, 0.0));
+                    assert!(basis || !chord, "n {n} p {p} k {k}");
+                    assert_eq!(hessians.verdict(&outer).unwrap(), kernel.verdict_within(&outer, 0.0));
+                    by_chord += usize::from(chord);
+                    by_basis += usize::from(basis);
+                }
+            }
+        }
+        assert!(10 * by_chord > 8 * by_basis, "{by_chord} of {by_basis}");
+    }
+
+    #[test]
+    fn beyond_its_conditions_the_chord_proves_nothing() {
+        let outer = |step: f64| Outer::new(step, 4).unwrap();
+        let proves = |fast: &[f64], slow: &[f64], step: f64| {
+            Hessians::new(&turned(fast, 1), &turned(slow, 2), 1e-9).unwrap().is_stable_by_chord(&outer(step))
+        };
+        assert!(proves(&[0.1, 0.5, 1.0], &[0.05, 0.02, 0.01], 1.0));
+        // No minimum; at rest; past p θ = π; a slow one too stiff for its step.
+        assert!(!proves(&[0.1, 0.5, 1.0], &[-0.6, -0.6, -0.6], 1.0));
+        assert!(!proves(&[0.0, 0.0, 0.0], &[0.0, 0.0, 0.0], 1.0));
+        assert!(!proves(&[0.1, 0.5, 1.0], &[0.05, 0.02, 0.01], 3.3));
+        assert!(!proves(&[0.1, 0.5, 1.0], &[9.0, 9.0, 9.0], 1.0));
+        // Soft modes that the slow stiffness alone holds, and a fast one below 0 that it lifts.
+        assert!(proves(&[0.0, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
+        assert!(proves(&[-0.04, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
+    }
+}
