@@ -4,7 +4,7 @@ use kickdrift::number::Rational;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::scene::SystemScene;
 use kickdrift::system::nearest::Unstable;
-use kickdrift::system::{Analysis, Limits, Route};
+use kickdrift::system::{Analysis, Evidence, Limits, Route};
 use kickdrift::verdict::Kind;
 
 fn decided(text: &str) -> Analysis {
@@ -99,6 +99,17 @@ fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_
     let measured = kickdrift::avi::growth_rate(&mut run, &rest, 1.0, (40, kickdrift::avi::Ends::Symmetric));
     assert!((measured / mode.growth_rate - 1.0).abs() < 1e-6, "{measured} {}", mode.growth_rate);
     assert!(mode.growth_rate * to_f64(&scene.system().period()) > 0.0);
+}
+
+/// Steps between the end of the first stable region and the first unstable one, where every multiplier must be told from its neighbours.
+#[test]
+#[ignore = "half a minute"]
+fn a_plate_of_2000_triangles_is_proven_stable_between_its_first_region_and_its_instability() {
+    for h in [ratio(1, 5), ratio(9, 20)] {
+        let plate = decided(&plate(40, 25, &h));
+        assert!(plate.size == 2080 && plate.is_stable() && plate.is_proof(), "{h}");
+        assert!(plate.parts[0].evidence == Evidence::Discs);
+    }
 }
 
 #[test]

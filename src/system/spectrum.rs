@@ -111,11 +111,22 @@ impl Spectrum {
             }
             _ => false,
         };
-        components.iter().all(inside).then_some(Kind::Elliptic)
+        let alone = |component: &Vec<usize>| component.iter().all(|&i| self.is_alone(i));
+        components.iter().all(|own| inside(own) || alone(own)).then_some(Kind::Elliptic)
     }
 }
 
 impl Spectrum {
+    /// Whether some circle about a real μ_i, within (−1, 0) and at most half as wide as the nearest other μ is far, is free of eigenvalues as in
+    /// [`Spectrum::is_encircled`]: one eigenvalue of S is in it, real, and in no other such circle.
+    fn is_alone(&self, i: usize) -> bool {
+        let z = self.mu[i];
+        let others =
+            self.mu.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| (other - z).norm() / 2.0);
+        let room = 0.99 * others.fold((-z.re).min(1.0 + z.re), f64::min);
+        z.im == 0.0 && room > 0.0 && self.is_free(i, room)
+    }
+
     /// Whether some circle about μ_i that does not meet \[−1, 0\] is free of eigenvalues of D + tF, 0 ≤ t ≤ 1, so that it holds as
     /// many of S as of D.
     ///
@@ -127,15 +138,20 @@ impl Spectrum {
         if self.rows.get(i).is_none_or(|own| *own >= off) {
             return false;
         }
+        self.is_free(i, off)
+    }
+
+    /// Whether one of some circles about μ_i, of at most this radius, holds no eigenvalue of D + tF.
+    fn is_free(&self, i: usize, largest: f64) -> bool {
         let escape = |radius: f64| {
             let term = |(z, row): (&c64, &f64)| {
                 let distance = |z: c64| ((z - self.mu[i]).norm() - radius).abs();
                 let nearer = distance(*z).min(distance(z.conj()));
                 (row / nearer).powi(2)
             };
-            self.mu.iter().zip(&self.rows).map(term).sum::<f64>() < 0.99
+            self.rows.len() == self.mu.len() && self.mu.iter().zip(&self.rows).map(term).sum::<f64>() < 0.99
         };
-        (0..20).map(|k| off * 0.8f64.powi(k)).any(escape)
+        (0..20).map(|k| largest * 0.8f64.powi(k)).any(escape)
     }
 }
 
@@ -143,7 +159,8 @@ impl Spectrum {
 fn times_c(blocks: &FloatBlocks, z: &Mat<f64>) -> (Mat<f64>, Option<f64>) {
     let m = blocks.m;
     let c = Mat::from_fn(m, m, |i, j| blocks.p[i][j]);
-    let (size_z, size_c) = (norm::frobenius(z), norm::frobenius(&c));
+    // In the 2-norm that of |Z| and |C|, too.
+    let [size_z, size_c] = [z, &c].map(norm::absolute);
     let error = blocks.error.map(|e| {
         // What rounding the product adds: (m + 2) u |Z|ᵀ |C|.
         let rounding = 1.01 * (m as f64 + 2.0) * U * size_z * size_c;
