@@ -4,7 +4,7 @@ use kickdrift::number::parse::parse;
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::number::{Laurent, Rational};
 use kickdrift::system::friction::{Damping, Mask, Masked, damped, damped_exactly, damped_system, masking};
-use kickdrift::system::{Limits, ManyClocks, Potential, Symmetric, System, builders};
+use kickdrift::system::{Holds, Limits, ManyClocks, Potential, Symmetric, System, builders, decide_system};
 use nalgebra::Matrix2;
 
 fn two_clocks(ratio_of_steps: Rational, fast: Rational, slow: Rational) -> ManyClocks<Rational> {
@@ -172,4 +172,22 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     let (kernel, outer) = (scene.two_levels().unwrap().kernel, Outer::new(0.0045, 9).unwrap());
     let damping = |x: f64| kernel.damping(&outer, x);
     assert_eq!([damping(0.99 * lo), damping(1.01 * hi)], [Some(Damping::Growing), Some(Damping::Damped)]);
+}
+
+/// Of the slow mode doubles do not tell, at next to no friction, whether it grows: the verdict without friction does.
+#[test]
+fn what_grows_too_slowly_to_be_told_is_not_said_not_to_grow() {
+    let masking = |spring: Rational| {
+        let weak = ratio(1, 1_000_000_000_000);
+        let (mut fast, mut slow) = (Symmetric::zero(2), Symmetric::zero(2));
+        fast.add_spring(0, None, &ratio(1, 1));
+        slow.add_spring(0, Some(1), &weak);
+        slow.add_spring(1, None, &(weak * spring));
+        let potentials = vec![Potential::new(fast, ratio(1, 4)), Potential::new(slow, ratio(1, 1))];
+        let system = System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), potentials).unwrap();
+        let verdict = decide_system(&system, &Limits::default()).unwrap().holds();
+        (verdict, damped_system(&system, &ratio(1, 1_000_000_000), &Limits::default()).unwrap().masking)
+    };
+    assert_eq!(masking(ratio(1, 1)), (Holds::Stable, Mask::NotNeeded));
+    assert_eq!(masking(ratio(-2, 1)), (Holds::Unstable, Mask::NotTold));
 }

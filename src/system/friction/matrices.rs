@@ -11,10 +11,12 @@ use crate::number::{Ball, Laurent, Rational, Real, U};
 use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
 use crate::system::compose::connected_parts;
+use crate::system::decide::decide_by;
 use crate::system::float::scaled_program;
 use crate::system::frame::Frame;
 use crate::system::inertia::is_definite;
-use crate::system::limits::{Limits, degrees_of_freedom};
+use crate::system::limits::{Limits, Route, degrees_of_freedom};
+use crate::system::measured::Holds;
 use crate::system::model::System;
 use crate::system::norm;
 use crate::system::period::{Drifts, Stiff, follow};
@@ -37,11 +39,12 @@ pub struct Friction {
 /// Whether there is something to mask, and by which friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mask {
-    /// Nothing grows without friction (many degrees of freedom: at a friction of 10^-6 a period).
+    /// Nothing grows without friction, which is proven (many degrees of freedom: without or at one of 10^-6 a period).
     NotNeeded,
     /// Something does, and this masks it.
     At(Masked),
-    /// Not found: no friction that is proven to mask, or a period too long for the polynomial in c.
+    /// Not found: no friction that is proven to mask, a period too long for the polynomial in c, or doubles that do not tell whether anything
+    /// grows.
     NotTold,
 }
 
@@ -93,7 +96,7 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
             .allow(cost, || format!("the eigenvalues of a period of {}", degrees_of_freedom(part.size())))?;
     }
     let all = parts.iter().map(|part| at(part, rate)).collect::<Result<Vec<_>>>()?;
-    let masks = parts.iter().map(masked).collect::<Result<Vec<_>>>()?;
+    let masks = parts.iter().map(|part| masked(part, limits)).collect::<Result<Vec<_>>>()?;
     let growth = all.iter().map(|(_, growth)| *growth).collect::<Option<Vec<_>>>();
     Ok(Friction {
         rate: rate.clone(),
@@ -255,7 +258,7 @@ impl Radius {
 }
 
 /// The friction that masks what grows.
-fn masked(part: &System) -> Result<Mask> {
+fn masked(part: &System, limits: &Limits) -> Result<Mask> {
     if let Some(clocks) = part.as_many_clocks() {
         let unit = Laurent::from_rational(part.clocks()[0].step.clone());
         return Ok(damped_oscillator(&clocks, &unit, &Rational::from_integer(1.into()))?.masking);
@@ -265,8 +268,12 @@ fn masked(part: &System) -> Result<Mask> {
     // A friction that is next to none: does anything grow?
     let period = to_f64(&part.period());
     let mut lo = 1e-6 / period;
-    if side(lo)? != Some(Damping::Growing) {
-        return Ok(Mask::NotNeeded);
+    match side(lo)? {
+        Some(Damping::Growing) => {}
+        None if decide_by(Route::Cheapest, part, limits)?.holds() != Holds::Stable => {
+            return Ok(Mask::NotTold);
+        }
+        _ => return Ok(Mask::NotNeeded),
     }
     let mut hi = 1.0 / period;
     for _ in 0..40 {
