@@ -98,6 +98,12 @@ impl Shear {
         Shear { side: Side::Positions, rows, is_changed, share: 0.0, row: 0.0, columns, apart: [0.0; 2] }
     }
 
+    fn clear(&mut self) {
+        self.rows.drain(..).for_each(|i| self.is_changed[i] = false);
+        self.columns.fill(0.0);
+        (self.share, self.row, self.apart) = (0.0, 0.0, [0.0; 2]);
+    }
+
     /// Row i, changed by these multiples of the other side's rows.
     fn change(&mut self, i: usize, share: f64, multiples: impl Iterator<Item = (usize, f64)>) {
         self.rows.push(i);
@@ -179,7 +185,7 @@ impl Rows {
     }
 
     fn end_shear(&mut self) {
-        let Some(shear) = &self.shear else { return };
+        let Some(shear) = &mut self.shear else { return };
         let [changed, other] = match shear.side {
             Side::Positions => [&self.x, &self.p],
             Side::Momenta => [&self.p, &self.x],
@@ -188,7 +194,7 @@ impl Rows {
             if shear.rows.len() < FEW { shear.apart } else { shear.terms(self.columns, changed, other) };
         self.rho += rho;
         self.sigma += sigma;
-        self.shear = Some(Shear::empty(self.columns / 2));
+        shear.clear();
     }
 }
 

@@ -5,12 +5,13 @@ use std::sync::OnceLock;
 use faer::{Mat, Side};
 use num_traits::ToPrimitive;
 
+use super::basis::Basis;
 use super::rigid::{Hessians, halved};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
 use crate::parallel::both;
-use crate::system::inertia::{backward_error, is_definite};
+use crate::system::inertia::is_definite;
 use crate::system::limits::SIDE_BY_SIDE;
 use crate::system::measured::Removed;
 use crate::system::norm;
@@ -100,7 +101,8 @@ impl Outer {
 }
 
 impl Kernel {
-    /// One eigendecomposition and four products.
+    /// One eigendecomposition and four products, or as many small ones as the fast stiffness has blocks: molecules that no bond joins, as
+    /// long as no rigid motion of all of them was projected out.
     ///
     /// # Errors
     /// Where the eigenvalue iteration fails: never seen, but not excluded.
@@ -109,17 +111,12 @@ impl Kernel {
         let failed = || {
             Error::input("fast", "its eigenvalues", "the iteration does not converge: is the matrix sound?")
         };
-        let eigen = fast.self_adjoint_eigen(Side::Lower).map_err(|_| failed())?;
-        let vectors = eigen.U().to_owned();
-        let values: Vec<f64> = (0..m).map(|i| eigen.S()[i]).collect();
-        let (checked, turned) = both(
-            m >= SIDE_BY_SIDE,
-            || backward_error(fast, &vectors, &values),
-            || halved((vectors.transpose() * slow * &vectors).as_ref()),
-        );
+        let basis = Basis::new(fast).ok_or_else(failed)?;
+        let (checked, turned) =
+            both(m >= SIDE_BY_SIDE, || basis.backward_error(fast), || halved(basis.turned(slow).as_ref()));
         let (error, defect) = checked.ok_or_else(failed)?;
         let fast_error = hessians.errors[0] + error;
-        let size = norm::frobenius(slow);
+        let (size, vectors, values) = (norm::frobenius(slow), basis.vectors(), basis.values);
         let rounding = 2.2 * (m as f64 + 4.0) * U * norm::frobenius(&vectors).powi(2) * size;
         let slow_error = hessians.errors[1] + rounding + 2.1 * defect * size;
         let fast_norm = values.iter().fold(0.0, |a: f64, x| a.max(x.abs())) + fast_error;

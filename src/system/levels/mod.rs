@@ -33,6 +33,7 @@
 //! |---|---|
 //! | `half`, `interval` | the fast half period of one mode, in intervals |
 //! | `rigid` | rigid motions projected out |
+//! | `basis` | eigenvalues and eigenvectors, block by block |
 //! | `kernel` | the eigenbasis, its backward error, norms |
 //! | `region` | the first stable region: verdict, margin, first unstable step |
 //! | `chord` | the verdict in it without an eigenbasis |
@@ -48,6 +49,7 @@
 
 mod answer;
 mod band;
+mod basis;
 mod beyond;
 mod cell;
 mod chord;
