@@ -118,25 +118,15 @@ impl Shear {
 
     /// Upper bounds of the terms of ρ and σ, together or row by row, whichever is less: with |before| ≤ |after| + |F| |other|,
     /// ‖R‖₂ ≤ c ‖|after|‖₂ + 2 ‖C |F|‖₂ ‖|other|‖₂.
-    fn terms(&self, width: usize, changed: &[f64], other: &[f64]) -> [f64; 2] {
-        let changed = size(width, changed, self.rows.iter().copied());
+    fn terms<'a>(&self, width: usize, changed: &'a [f64], other: &'a [f64]) -> [f64; 2] {
+        let row = |of: &'a [f64], i: usize| &of[i * width..(i + 1) * width];
+        let changed = norm::by_sums(width, self.rows.iter().map(|&i| row(changed, i)));
         let taken = |j: &usize| self.is_changed[*j] || self.columns[*j] > 0.0;
-        let other = size(width, other, (0..self.columns.len()).filter(taken));
+        let other = norm::by_sums(width, (0..self.columns.len()).filter(taken).map(|j| row(other, j)));
         let column = self.columns.iter().fold(0.0, |a: f64, x| a.max(*x));
         let error = 1.01 * (self.share * changed + 2.0 * (self.row * column).sqrt() * other);
         if other * error < self.apart[1] { [error, other * error] } else { self.apart }
     }
-}
-
-/// More than ‖|rows|‖₂: the root of the largest sum of a row times that of a column.
-fn size(width: usize, all: &[f64], rows: impl Iterator<Item = usize>) -> f64 {
-    let (mut columns, mut largest) = (vec![0.0; width], 0.0_f64);
-    for i in rows {
-        let row = &all[i * width..(i + 1) * width];
-        columns.iter_mut().zip(row).for_each(|(sum, x)| *sum += x.abs());
-        largest = largest.max(row.iter().map(|x| x.abs()).sum());
-    }
-    1.01 * (largest * columns.into_iter().fold(0.0, f64::max)).sqrt()
 }
 
 impl Rows {
@@ -175,7 +165,7 @@ impl Rows {
     }
 
     /// Begins another shear where row i of this side does not belong to the one under way.
-    fn belongs(&mut self, side: Side, i: usize) {
+    fn enter(&mut self, side: Side, i: usize) {
         if self.shear.as_ref().is_some_and(|own| own.side != side || own.is_changed[i]) {
             self.end_shear();
         }
@@ -205,7 +195,7 @@ impl State<f64> for Rows {
         }
         let (m, t) = (self.columns, ticks as f64);
         for &i in &program.islands[island] {
-            self.belongs(Side::Positions, i);
+            self.enter(Side::Positions, i);
             let before = self.x_norms[i];
             let mut size = before.sqrt();
             let row = &mut self.x[i * m..(i + 1) * m];
@@ -228,7 +218,7 @@ impl State<f64> for Rows {
     fn kick(&mut self, i: usize, row: &Row<f64>, weight: Weight) {
         let m = self.columns;
         let weight = if weight == Weight::Full { -1.0 } else { -0.5 };
-        self.belongs(Side::Momenta, i);
+        self.enter(Side::Momenta, i);
         let before = self.p_norms[i];
         let mut size = before.sqrt();
         let target = &mut self.p[i * m..(i + 1) * m];

@@ -100,9 +100,7 @@ fn dominant(system: &System, frame: &Frame) -> Option<(f64, Vec<f64>)> {
         column.x.extend(column.p);
         column.x
     };
-    // Numbers without a pattern (Weyl's sequence): some part of every mode.
-    let start = (1..=2 * n).map(|i| (i as f64 * 0.754_877_666_246_692_7).fract() - 0.5).collect();
-    let mut z: Vec<f64> = unit(start)?;
+    let mut z: Vec<f64> = unit(start(2 * n))?;
     for _ in 0..ROUNDS {
         for _ in 0..POWER {
             z = unit(period(&z))?;
@@ -114,6 +112,11 @@ fn dominant(system: &System, frame: &Frame) -> Option<(f64, Vec<f64>)> {
         }
     }
     None
+}
+
+/// Where a recursion for eigenvectors begins: numbers without a pattern (Weyl's sequence), some part of every mode.
+pub(super) fn start(n: usize) -> Vec<f64> {
+    (1..=n).map(|i| (i as f64 * 0.754_877_666_246_692_7).fract() - 0.5).collect()
 }
 
 fn unit(z: Vec<f64>) -> Option<Vec<f64>> {

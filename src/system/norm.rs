@@ -25,13 +25,17 @@ pub(super) fn absolute(m: &Mat<f64>) -> f64 {
     if !size.is_finite() {
         return size;
     }
-    let (mut rows, mut largest) = (vec![0.0; m.nrows()], 0.0_f64);
-    for j in 0..m.ncols() {
-        let column = m.col_as_slice(j);
-        rows.iter_mut().zip(column).for_each(|(sum, x)| *sum += x.abs());
-        largest = largest.max(column.iter().map(|x| x.abs()).sum());
+    size.min(by_sums(m.nrows(), (0..m.ncols()).map(|j| m.col_as_slice(j))))
+}
+
+/// The same by sums alone, of a matrix of finite entries given by its columns, or by its rows, each of this length.
+pub(super) fn by_sums<'a>(length: usize, lines: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let (mut across, mut largest) = (vec![0.0; length], 0.0_f64);
+    for line in lines {
+        across.iter_mut().zip(line).for_each(|(sum, x)| *sum += x.abs());
+        largest = largest.max(line.iter().map(|x| x.abs()).sum());
     }
-    size.min(1.01 * (largest * rows.into_iter().fold(0.0, f64::max)).sqrt())
+    1.01 * (largest * across.into_iter().fold(0.0, f64::max)).sqrt()
 }
 
 /// More than the spectral norm, by at most a factor n^(1/8): ‖A‖₂^4 = ‖(Aᵀ A)²‖₂ ≤ ‖(Aᵀ A)²‖_F.

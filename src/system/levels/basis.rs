@@ -37,10 +37,7 @@ impl Basis {
 
     /// As [`backward_error`]: of a block-diagonal matrix the largest of its blocks'.
     pub fn backward_error(&self, m: &Mat<f64>) -> Option<(f64, f64)> {
-        let own = |block: &Block| match self.blocks.len() {
-            1 => backward_error(m, &block.vectors, &block.values),
-            _ => backward_error(&block.of(m), &block.vectors, &block.values),
-        };
+        let own = |block: &Block| backward_error(&block.of(m), &block.vectors, &block.values);
         let both = |(a, b): (f64, f64), (c, d): (f64, f64)| (a.max(c), b.max(d));
         self.blocks.iter().map(own).try_fold((0.0, 0.0), |worst, own| Some(both(worst, own?)))
     }
@@ -81,14 +78,9 @@ impl Basis {
 
 impl Block {
     fn new(m: &Mat<f64>, rows: Vec<usize>) -> Option<Block> {
-        let (k, n) = (rows.len(), m.nrows());
+        let k = rows.len();
         let mut block = Block { rows, places: vec![0; k], values: Vec::new(), vectors: Mat::new() };
-        let eigen = if k == n {
-            m.self_adjoint_eigen(Side::Lower)
-        } else {
-            block.of(m).self_adjoint_eigen(Side::Lower)
-        };
-        let eigen = eigen.ok()?;
+        let eigen = block.of(m).self_adjoint_eigen(Side::Lower).ok()?;
         block.vectors = eigen.U().to_owned();
         block.values = (0..k).map(|i| eigen.S()[i]).collect();
         Some(block)

@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::number::U;
 use crate::parallel::both;
 use crate::system::inertia::is_definite;
+use crate::system::large::start;
 use crate::system::limits::SIDE_BY_SIDE;
 use crate::system::measured::Holds;
 use crate::system::norm;
@@ -106,13 +107,8 @@ fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
 /// The lowest and the highest eigenvalue, from within: Lanczos's recursion, rounded.
 fn ends(m: &Mat<f64>) -> [f64; 2] {
     let n = m.nrows();
-    // No eigenvector of a structured matrix is orthogonal to this.
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut number = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    };
-    let start = Mat::from_fn(n, 1, |_, _| number());
+    let start = start(n);
+    let start = Mat::from_fn(n, 1, |i, _| start[i]);
     let mut now = &start / faer::Scale(start.norm_l2());
     let mut before = Mat::<f64>::zeros(n, 1);
     let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);

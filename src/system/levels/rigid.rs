@@ -128,8 +128,8 @@ fn symmetric(name: &str, k: &DMatrix<f64>, n: usize, accuracy: f64) -> Result<Ma
 /// Tile by tile: a whole row of a large matrix lies on as many pages as it has entries.
 fn is_symmetric(k: &[f64], n: usize) -> bool {
     const TILE: usize = 32;
-    let tiles = (0..n).step_by(TILE).flat_map(|left| (left..n).step_by(TILE).map(move |top| (top, left)));
-    tiles.into_iter().all(|(top, left)| {
+    let mut tiles = (0..n).step_by(TILE).flat_map(|left| (left..n).step_by(TILE).map(move |top| (top, left)));
+    tiles.all(|(top, left)| {
         let column = |j: usize| (top..n.min(top + TILE)).all(|i| k[i + j * n] == k[j + i * n]);
         (left..n.min(left + TILE)).all(column)
     })
