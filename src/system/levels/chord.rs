@@ -37,6 +37,20 @@ impl Hessians {
     /// Cost: four Cholesky factorizations, side by side in pairs, where [`Hessians::is_stable_by_chord`] holds: a tenth of the eigenbasis that is
     /// made where it does not.
     ///
+    /// ```
+    /// use kickdrift::system::Holds;
+    /// use kickdrift::system::levels::{Hessians, Outer};
+    /// use nalgebra::DMatrix;
+    /// let fast = DMatrix::from_row_slice(2, 2, &[1.0, 0.2, 0.2, 0.8]);
+    /// let slow = DMatrix::from_row_slice(2, 2, &[0.05, 0.01, 0.01, 0.04]);
+    /// let hessians = Hessians::new(&fast, &slow, 1e-9)?;
+    /// // Outer steps of eight inner ones, in the unit of time of the Hessians.
+    /// let outer = |step: f64| Outer::new(step, 8);
+    /// assert_eq!(hessians.verdict(&outer(1.0)?)?, Holds::Stable);
+    /// assert_eq!(hessians.verdict(&outer(2.93)?)?, Holds::Unstable);
+    /// # Ok::<(), kickdrift::error::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Kernel::new`].
     pub fn verdict(&self, outer: &Outer) -> Result<Holds> {
