@@ -9,7 +9,7 @@ use super::resources::Resources;
 use super::scattered::{Source, decide_each};
 use super::work::LANES;
 use crate::error::{Error, Result};
-use crate::number::{ExactSign, Laurent, Ratio, Rational, Real, Sign, Twofold};
+use crate::number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
 use crate::orbit::strengths::Strengths;
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::vector::each;
@@ -38,18 +38,19 @@ const FIELDS: [(&str, Option<&str>); 4] = [
 /// ```
 #[derive(Clone, Debug)]
 pub struct Pairs {
-    quantities: [Vec<Known>; 4],
+    quantities: [Vec<Laurent>; 4],
+    /// What doubles hold of them: apart, for it is read for every pair.
+    known: [Vec<Known>; 4],
     picked: [Vec<usize>; 4],
 }
 
-/// A quantity, and what doubles and machine integers hold of it.
-#[derive(Clone, Debug)]
+/// What doubles and machine integers hold of a quantity.
+#[derive(Clone, Copy, Debug)]
 struct Known {
-    exact: Laurent,
-    /// Within 2^-103; `None` for 0 and far from 1.
-    near: Option<Twofold>,
-    /// c π^k as the numerator and the denominator of c > 0, below 2^32, and k.
-    monomial: Option<(u32, u32, i32)>,
+    /// Within 2^-103; 0 of 0 and far from 1.
+    near: Twofold,
+    /// a, b and k of a/b π^k with 0 < a, b < 2^32; b = 0 of all others.
+    monomial: (u32, u32, i32),
 }
 
 impl Pairs {
@@ -75,10 +76,8 @@ impl Pairs {
         if others.iter().any(|&other| other != count) {
             return Err(Error::input("pairs", count, "pick as many of each of the four quantities"));
         }
-        Ok(Pairs {
-            quantities: quantities.map(|values| values.into_iter().map(Known::new).collect()),
-            picked,
-        })
+        let known = quantities.each_ref().map(|values| values.iter().map(Known::of).collect());
+        Ok(Pairs { quantities, known, picked })
     }
 
     /// One oscillator under many pairs of steps h1, h2.
@@ -107,11 +106,12 @@ impl Pairs {
     }
 
     fn known(&self, n: usize) -> [&Known; 4] {
-        std::array::from_fn(|k| &self.quantities[k][self.picked[k][n]])
+        std::array::from_fn(|k| &self.known[k][self.picked[k][n]])
     }
 
     fn clocks(&self, n: usize) -> Result<TwoClocks<Laurent>> {
-        let [lambda1, lambda2, h1, h2] = self.known(n).map(|known| known.exact.clone());
+        let [lambda1, lambda2, h1, h2] =
+            std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone());
         Ok(Oscillator::new(lambda1, lambda2, h1, h2)?.clocks())
     }
 }
@@ -124,13 +124,10 @@ impl Source for Pairs {
     fn strengths(&self, part: Range<usize>, mut each: impl FnMut(usize, Strengths)) {
         let (instructions, end) = (Instructions::best(), part.end);
         for first in part.step_by(LANES) {
-            let known: [_; LANES] = std::array::from_fn(|i| self.known((first + i).min(end - 1)));
-            let found = instructions.perform(Combine(&known));
-            (first..end).zip(found).for_each(|(n, pair)| {
-                if let Some(pair) = pair {
-                    each(n, pair)
-                }
-            });
+            let count = LANES.min(end - first);
+            let known: [_; LANES] = std::array::from_fn(|i| self.known(first + i.min(count - 1)));
+            let each = |i: usize, pair| each(first + i, pair);
+            instructions.perform(Combine { known: &known, count, each });
         }
     }
 
@@ -140,83 +137,111 @@ impl Source for Pairs {
 }
 
 impl Known {
-    fn new(exact: Laurent) -> Known {
+    fn of(exact: &Laurent) -> Known {
         let small = |x: &Rational| {
-            let (p, q) = (x.numer().to_u32()?, x.denom().to_u32()?);
-            (p > 0).then_some((p, q))
+            let (a, b) = (x.numer().to_u32()?, x.denom().to_u32()?);
+            (a > 0).then_some((a, b))
         };
-        let monomial = exact.as_monomial().and_then(|(k, c)| small(c).map(|(p, q)| (p, q, k)));
+        let monomial = exact.as_monomial().and_then(|(k, c)| small(c).map(|(a, b)| (a, b, k)));
         let near = match monomial {
-            Some((p, q, 0)) => Twofold::quotient(p.into(), q.into()),
+            Some((a, b, 0)) => Twofold::quotient(a.into(), b.into()),
             _ => Twofold::near(&exact.enclosure(Twofold::ENCLOSURE_BITS)),
         };
-        Known { exact, near, monomial }
+        Known { near: near.unwrap_or(Twofold::ZERO), monomial: monomial.unwrap_or((0, 0, 0)) }
     }
 }
 
-/// Λ1, Λ2, h1, h2 of as many pairs as run side by side, to be combined without a branch.
-struct Combine<'a>(&'a [[&'a Known; 4]; LANES]);
+/// Λ1, Λ2, h1, h2 of as many pairs as run side by side, to be combined without a branch; `each` is shown those of the first `count` that
+/// doubles serve, by number.
+struct Combine<'a, F> {
+    known: &'a [[&'a Known; 4]; LANES],
+    count: usize,
+    each: F,
+}
 
-impl Task for Combine<'_> {
-    type Output = [Option<Strengths>; LANES];
+impl<F: FnMut(usize, Strengths)> Task for Combine<'_, F> {
+    type Output = ();
 
     /// Strengths are products of three: within 3 2^-103 + 2 2^-101 < 2^-99.
     #[inline(always)]
-    fn run(self) -> Self::Output {
+    fn run(mut self) {
         let mut near = [[[0.0; LANES]; 2]; 4];
         let (mut above, mut below) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
         let mut serves = [false; LANES];
-        for (i, known) in self.0.iter().enumerate() {
-            let (Some(first), Some(second)) = (known[2].monomial, known[3].monomial) else { continue };
-            serves[i] = first.2 == second.2 && known.iter().all(|own| own.near.is_some());
+        for (i, known) in self.known.iter().enumerate() {
             for (to, own) in near.iter_mut().zip(known) {
-                let own = own.near.unwrap_or(Twofold::PI);
-                (to[0][i], to[1][i]) = (own.hi, own.lo);
+                (to[0][i], to[1][i]) = (own.near.hi, own.near.lo);
             }
-            for (k, (p, q, _)) in [first, second].into_iter().enumerate() {
-                (above[k][i], below[k][i]) = (f64::from(p), f64::from(q));
+            let steps = [known[2].monomial, known[3].monomial];
+            for (k, (a, b, _)) in steps.into_iter().enumerate() {
+                (above[k][i], below[k][i]) = (f64::from(a), f64::from(b));
             }
+            serves[i] = steps[0].2 == steps[1].2;
         }
-        // Each step is in lowest terms already: two short common divisors instead of a long one.
+        // Each step is in lowest terms already: two short common divisors instead of a long one. (Products beyond 2^53 are rounded, and
+        // serve not; nor does what comes of a quantity that is not known.)
         let (over, under) = (gcd(&above), gcd(&below));
         let p: [f64; LANES] = each(|i| (above[1][i] / over[i]) * (below[0][i] / under[i]));
         let q: [f64; LANES] = each(|i| (above[0][i] / over[i]) * (below[1][i] / under[i]));
         let two = |k: usize, i: usize| Twofold { hi: near[k][0][i], lo: near[k][1][i] };
-        let mut products = [[[0.0; LANES]; 4]; 2];
+        let nothing = Strengths { s: Twofold::ZERO, kick: 0.0, p: 0.0, q: 0.0 };
+        let mut found = [nothing; LANES];
         for i in 0..LANES {
             let ([lambda1, lambda2], [h1, h2]) = ([two(0, i), two(1, i)], [two(2, i), two(3, i)]);
             let both = h1.times(h2);
-            let first = (h1.times(h1).times(lambda1), both.times(lambda2));
-            let second = (h2.times(h2).times(lambda2), both.times(lambda1));
-            for (to, (s, kick)) in products.iter_mut().zip([first, second]) {
-                (to[0][i], to[1][i], to[2][i], to[3][i]) = (s.hi, s.lo, kick.hi, kick.lo);
+            let (p, q) = (p[i], q[i]);
+            let first = Strengths { s: h1.times(h1).times(lambda1), kick: both.times(lambda2).hi, p, q };
+            let second =
+                Strengths { s: h2.times(h2).times(lambda2), kick: both.times(lambda1).hi, p: q, q: p };
+            let (one, other) = (first.serves(), second.serves());
+            serves[i] &= one | other;
+            found[i] = Strengths::either(one & ((p >= q) | !other), first, second);
+        }
+        for i in 0..self.count {
+            if serves[i] {
+                (self.each)(i, found[i]);
             }
         }
-        std::array::from_fn(|i| {
-            // What is beyond 2^53 may be rounded.
-            let exact = serves[i] && p[i].max(q[i]) < (1u64 << 53) as f64;
-            let ratio = exact.then(|| Ratio::of_coprime(p[i] as u64, q[i] as u64)).flatten()?;
-            let of = |k: usize| {
-                let two = |n: usize| Twofold { hi: products[k][n][i], lo: products[k][n + 1][i] };
-                Some([two(0), two(2)])
-            };
-            Strengths::on_either(ratio, || of(0), || of(1))
-        })
     }
 }
 
-/// The greatest common divisors of whole numbers below 2^32, by Euclid: their quotients are no integer rounded up, being 1/b below
-/// the next one at least.
+/// The greatest common divisors of whole numbers below 2^32, by Euclid with the remainders that are least in size: a quotient rounded to
+/// the wrong neighbour, as near a half, leaves half of b all the same, exactly.
 #[inline(always)]
 fn gcd([a, b]: &[[f64; LANES]; 2]) -> [f64; LANES] {
     let (mut a, mut b) = (*a, *b);
     while b.iter().fold(0, |bits, b| bits | b.to_bits()) != 0 {
         let rest: [f64; LANES] = each(|i| {
-            let whole = (a[i] / b[i]).floor();
-            if b[i] > 0.0 { (-whole).mul_add(b[i], a[i]) } else { 0.0 }
+            let nearest = (a[i] / b[i]).round_ties_even();
+            if b[i] > 0.0 { (-nearest).mul_add(b[i], a[i]).abs() } else { 0.0 }
         });
         a = each(|i| if b[i] > 0.0 { b[i] } else { a[i] });
         b = rest;
     }
     a
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_integer::Integer;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Of numbers as they come, and of n b and (n + 1/2) b with one more or less: quotients next to a half.
+        #[test]
+        fn common_divisors_are_the_greatest(
+            all in prop::collection::vec((1u32.., 0u32..1 << 16, 0u32..1 << 15, -1i64..=1, any::<bool>()), LANES),
+        ) {
+            let numbers = |&(a, b, n, more, near): &(u32, u32, u32, i64, bool)| {
+                let halves = (i64::from(b) * i64::from(2 * n + 1) / 2 + more).max(0) as u32;
+                if near { [halves, b] } else { [a, b] }
+            };
+            let all: Vec<[u32; 2]> = all.iter().map(numbers).collect();
+            let found = gcd(&[0, 1].map(|k| each(|i| f64::from(all[i][k]))));
+            for ([a, b], found) in all.into_iter().zip(found) {
+                prop_assert_eq!(found, f64::from(a.gcd(&b)));
+            }
+        }
+    }
 }

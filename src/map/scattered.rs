@@ -6,7 +6,7 @@ use super::resources::Resources;
 use super::work::{LANES, by_counting, in_groups};
 use crate::error::Result;
 use crate::orbit::filter::UNDECIDED;
-use crate::orbit::strengths::Strengths;
+use crate::orbit::strengths::{Placed, Strengths};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
 use crate::verdict::{Decidable, Decision, Limits, Tier, Verdict, decide};
@@ -78,18 +78,36 @@ pub(super) fn decide_each<P: Source + ?Sized>(source: &P, resources: &Resources)
     Ok(done.concat())
 }
 
-/// Pairs in the order of these are in company that suits them: of like strength first, where there are so many that their numbers of
-/// updates are alike all the same, for a look costs three updates; then of like numbers of updates, then of like strength.
-fn keys(pairs: &[(Strengths, u32)]) -> Vec<u32> {
-    let updates = |pair: &Strengths| pair.updates().min(1 << 26);
-    let longest = pairs.iter().map(|(pair, _)| updates(pair)).max().unwrap_or(0) + 1;
-    let kinds = (pairs.len() as u64 / (2 * longest)).clamp(1, Strengths::CLASSES);
-    let key = |(pair, _): &(Strengths, u32)| {
-        let class = pair.class();
-        let kind = class * kinds / Strengths::CLASSES;
-        ((kind * longest + updates(pair)) * Strengths::CLASSES + class) as u32
-    };
-    pairs.iter().map(key).collect()
+/// Pairs on their way to their groups.
+struct Company {
+    pairs: Vec<Placed>,
+    /// The class and the number of updates, as far as they fit, of each: all that sorting looks at.
+    ranks: Vec<(u32, u32)>,
+}
+
+impl Company {
+    fn of_at_most(count: usize) -> Company {
+        Company { pairs: Vec::with_capacity(count), ranks: Vec::with_capacity(count) }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, pair: Placed) {
+        let Placed { strengths, .. } = &pair;
+        self.ranks.push((strengths.class(), strengths.updates().min(1 << 26) as u32));
+        self.pairs.push(pair);
+    }
+
+    /// In the company that suits them: those of like strength together first, where there are so many that their numbers of updates are
+    /// alike all the same, for a look costs three updates; then of like numbers of updates, then of like strength.
+    fn sorted(&self) -> Vec<Placed> {
+        let longest = 1 + self.ranks.iter().map(|&(_, updates)| updates).max().unwrap_or(0);
+        let kinds = (self.pairs.len() as u32 / (2 * longest)).clamp(1, Strengths::CLASSES);
+        let key = |&(class, updates): &(u32, u32)| {
+            let kind = class * kinds / Strengths::CLASSES;
+            (kind * longest + updates) * Strengths::CLASSES + class
+        };
+        by_counting(self.pairs.iter().copied(), &self.ranks.iter().map(key).collect::<Vec<u32>>())
+    }
 }
 
 fn together<P: Source + ?Sized>(
@@ -101,28 +119,21 @@ fn together<P: Source + ?Sized>(
     let limits = &resources.limits;
     // Longer ones than the limits allow are left to the ladder, which says so.
     let allowed = |pair: &Strengths| pair.updates() < limits.kicks;
-    let (first, mut pairs) = (part.start, Vec::with_capacity(part.len()));
-    source.strengths(part.clone(), |n, pair| {
-        if allowed(&pair) {
-            pairs.push((pair, (n - first) as u32));
+    let (first, mut company) = (part.start, Company::of_at_most(part.len()));
+    source.strengths(part.clone(), |n, strengths| {
+        if allowed(&strengths) {
+            company.push(Placed { strengths, place: (n - first) as u32 });
         }
     });
-    let order = by_counting(&keys(&pairs));
     let mut found = vec![UNDECIDED; part.len()];
-    let (mut together, mut places) = (Vec::with_capacity(LANES), Vec::with_capacity(LANES));
-    in_groups(&order, |mut group, order| {
+    in_groups(&company.sorted(), |mut group, pairs| {
         let mut rest = Vec::new();
-        for order in order.chunks(LANES) {
+        for pairs in pairs.chunks(LANES) {
             resources.go_on()?;
-            together.clear();
-            places.clear();
-            together.extend(order.iter().map(|&n| pairs[n as usize].0));
-            places.extend(order.iter().map(|&n| pairs[n as usize].1 as usize));
-            let verdicts = group.verdicts(&together);
-            for ((&n, &place), verdict) in order.iter().zip(&places).zip(verdicts) {
-                found[place] = verdict;
+            for (pair, verdict) in pairs.iter().zip(group.verdicts(pairs)) {
+                found[pair.place as usize] = verdict;
                 if verdict == UNDECIDED {
-                    rest.push(n);
+                    rest.push(*pair);
                 }
             }
         }

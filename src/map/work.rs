@@ -78,7 +78,7 @@ impl<'a> Work<'a> {
         for (i, gcds) in (self.first..).zip(self.gcds.chunks(self.grid.shape().1)) {
             Instructions::best().perform(Updates { column: (i * b) as f64, rows, gcds, keys: &mut keys });
         }
-        by_counting(&keys)
+        by_counting(0.., &keys)
     }
 
     /// The band's verdicts.
@@ -222,22 +222,23 @@ impl Task for Updates<'_> {
     }
 }
 
-/// The positions of the keys in increasing order, equal keys in order of position.
-pub(super) fn by_counting(keys: &[u32]) -> Vec<u32> {
+/// Items in the order of their keys, those of equal keys in the order that they have.
+pub(super) fn by_counting<T: Copy>(items: impl Iterator<Item = T>, keys: &[u32]) -> Vec<T> {
     let largest = keys.iter().copied().max().unwrap_or(0) as usize;
     if largest > 8 * keys.len() + 1024 {
-        let mut order: Vec<u32> = (0..keys.len() as u32).collect();
-        order.sort_by_key(|&n| keys[n as usize]);
-        return order;
+        let mut keyed: Vec<(u32, T)> = keys.iter().copied().zip(items).collect();
+        keyed.sort_by_key(|&(key, _)| key);
+        return keyed.into_iter().map(|(_, item)| item).collect();
     }
     let mut starts = vec![0u32; largest + 2];
     keys.iter().for_each(|&key| starts[key as usize + 1] += 1);
     (1..starts.len()).for_each(|key| starts[key] += starts[key - 1]);
-    let mut order = vec![0; keys.len()];
-    for (n, &key) in (0..).zip(keys) {
+    let mut items = items.peekable();
+    let mut sorted = items.peek().map_or(Vec::new(), |&first| vec![first; keys.len()]);
+    for (item, &key) in items.zip(keys) {
         let place = &mut starts[key as usize];
-        order[*place as usize] = n;
+        sorted[*place as usize] = item;
         *place += 1;
     }
-    order
+    sorted
 }

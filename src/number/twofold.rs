@@ -26,6 +26,8 @@ impl Twofold {
     /// π to within 2^-108 relative.
     pub const PI: Twofold = Twofold { hi: std::f64::consts::PI, lo: 1.224_646_799_147_353_2e-16 };
 
+    pub const ZERO: Twofold = Twofold { hi: 0.0, lo: 0.0 };
+
     /// a + b, exactly.
     #[inline(always)]
     pub fn sum(a: f64, b: f64) -> Twofold {
@@ -44,6 +46,12 @@ impl Twofold {
     pub fn plus(self, other: Twofold) -> Twofold {
         let (hi, lo) = two_sum(self.hi, other.hi);
         Twofold::joined(hi, lo + (self.lo + other.lo))
+    }
+
+    /// a + b for a small b, to within 2^-104 (|a.lo| + |b|).
+    #[inline(always)]
+    pub fn and(self, small: f64) -> Twofold {
+        Twofold::joined(self.hi, self.lo + small)
     }
 
     /// a − b, likewise.

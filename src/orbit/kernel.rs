@@ -443,7 +443,10 @@ impl<W: Watch, const L: usize> Kernel for Apart<'_, W, L> {
     fn run<V: Vector>(self) {
         for k in self.updates + 1..=self.longest {
             for at in (0..L).step_by(V::WIDTH) {
-                self.lanes.update_some::<V, W>(k, at);
+                // Those of fewer updates come first, and are soon done.
+                if V::load(&self.lanes.updates[at..]).any_above(V::splat((k - 1) as f64)) {
+                    self.lanes.update_some::<V, W>(k, at);
+                }
             }
         }
     }

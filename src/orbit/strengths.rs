@@ -7,69 +7,88 @@ use super::floquet::{LARGEST_MODULUS, LONGEST_QUICK, NEAR_LIMIT, Phase, TINY, sh
 use super::kernel::{Constants, InLanes};
 use crate::number::{Ratio, Real, Twofold};
 use crate::propagator::TwoClocks;
-use crate::vector::{each, largest};
+use crate::vector::{double_of, each, largest};
 
 /// A pair in doubles: the other clock's kicks strike at the multiples of p/q base steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Strengths {
     /// The base's own, within 2^-99.
-    s: Twofold,
+    pub(crate) s: Twofold,
     /// The other clock's in the base's unit of time, within 3u.
-    kick: f64,
-    p: u64,
-    q: u64,
+    pub(crate) kick: f64,
+    /// Whole numbers.
+    pub(crate) p: f64,
+    pub(crate) q: f64,
 }
 
 impl Strengths {
-    /// With the first clock as the base; `None` near its Verlet limit or beyond it, where 4 − s has lost digits, and far from
-    /// ordinary numbers.
+    /// Whether doubles serve it: not near the base's Verlet limit or beyond it, where 4 − s has lost digits, nor far from ordinary
+    /// numbers.
     #[inline(always)]
-    pub fn new(ratio: Ratio, s: Twofold, kick: Twofold) -> Option<Strengths> {
+    pub fn serves(&self) -> bool {
+        let Strengths { s: Twofold { hi: s, .. }, kick, p, q } = *self;
+        let strong = (TINY..=NEAR_LIMIT).contains(&s) & within_range(kick);
+        // The sum of doubles' quotient is no less than that of whole numbers'.
+        strong
+            & (p < LARGEST_MODULUS as f64)
+            & (q < LARGEST_MODULUS as f64)
+            & (p / q + 1.0 < LONGEST_QUICK as f64)
+    }
+
+    /// With the first clock as the base, where that serves.
+    fn new(ratio: Ratio, s: Twofold, kick: Twofold) -> Option<Strengths> {
         let (p, q) = ratio.terms();
-        let serves = (TINY..=NEAR_LIMIT).contains(&s.hi) && within_range(kick.hi);
-        (serves && p.max(q) < LARGEST_MODULUS && p / q + 1 < LONGEST_QUICK).then_some(Strengths {
-            s,
-            kick: kick.hi,
-            p,
-            q,
-        })
+        let pair = Strengths { s, kick: kick.hi, p: double_of(p), q: double_of(q) };
+        pair.serves().then_some(pair)
     }
 
     /// Of two clocks: the one of more kicks is the base, or the other one where that does not serve.
     pub fn of<S: Real>(clocks: &TwoClocks<S>) -> Option<Strengths> {
         let two = |x: &S| x.two_doubles().map(|(hi, lo)| Twofold { hi, lo });
-        let both = |clocks: &TwoClocks<S>| Some([two(clocks.fast())?, two(clocks.slow())?]);
-        Strengths::on_either(clocks.ratio(), || both(clocks), || both(&clocks.swapped()))
+        let on_first =
+            |clocks: &TwoClocks<S>| Strengths::new(clocks.ratio(), two(clocks.fast())?, two(clocks.slow())?);
+        let on_second = || on_first(&clocks.swapped());
+        let (p, q) = clocks.ratio().terms();
+        if p >= q { on_first(clocks).or_else(on_second) } else { on_second().or_else(|| on_first(clocks)) }
     }
 
-    /// The same from [s, k] with the first clock as the base and with the second.
+    /// The first where the condition holds, else the second: by bits, without a branch.
     #[inline(always)]
-    pub fn on_either(
-        ratio: Ratio,
-        first: impl Fn() -> Option<[Twofold; 2]>,
-        second: impl Fn() -> Option<[Twofold; 2]>,
-    ) -> Option<Strengths> {
-        let on_first = || first().and_then(|[s, kick]| Strengths::new(ratio, s, kick));
-        let on_second = || second().and_then(|[s, kick]| Strengths::new(ratio.inverse(), s, kick));
-        if ratio.p() >= ratio.q() { on_first().or_else(on_second) } else { on_second().or_else(on_first) }
+    pub fn either(condition: bool, first: Strengths, second: Strengths) -> Strengths {
+        let of = |part: fn(&Strengths) -> f64| chosen(condition, part(&first), part(&second));
+        Strengths {
+            s: Twofold { hi: of(|x| x.s.hi), lo: of(|x| x.s.lo) },
+            kick: of(|x| x.kick),
+            p: of(|x| x.p),
+            q: of(|x| x.q),
+        }
     }
 
     /// How many classes there are.
-    pub const CLASSES: u64 = 8;
+    pub const CLASSES: u32 = 8;
 
     /// How strong a foreign kick is, in powers of four of β² = (k / sin θ)², 0 (below 2^-9) to 7 (from 2^3 on), as near as doubles get:
     /// a group looks at |g| as often as its strongest pair wants.
-    pub fn class(&self) -> u64 {
+    #[inline(always)]
+    pub fn class(&self) -> u32 {
         let (above, below) = (4.0 * self.kick * self.kick, self.s.hi * (4.0 - self.s.hi));
         // The difference of two doubles' bits is nearly the logarithm of their quotient.
         let logarithm = (above.to_bits() + (1023 << 52)).saturating_sub(below.to_bits());
-        (logarithm >> 53).saturating_sub(511 - 5).min(Strengths::CLASSES - 1)
+        ((logarithm >> 53) as u32).saturating_sub(511 - 5).min(Strengths::CLASSES - 1)
     }
 
     /// ⌊q/2⌋: the updates after the half kick at t = 0.
+    #[inline(always)]
     pub fn updates(&self) -> u64 {
-        self.q / 2
+        (0.5 * self.q) as u64
     }
+}
+
+/// A pair and its place among others.
+#[derive(Clone, Copy, Debug)]
+pub struct Placed {
+    pub strengths: Strengths,
+    pub place: u32,
 }
 
 /// e^{iα} in each lane, its components in two doubles each: re, im. (In loops: closures as long as these are not made part of what is
@@ -100,21 +119,40 @@ impl<const L: usize> Phases<L> {
         product
     }
 
-    /// Each to the power n, a whole number in a double: squared for each of the places of the largest n, and times itself
-    /// where its own has a one there.
+    #[inline(always)]
+    fn square(&self) -> Self {
+        let mut square = *self;
+        for i in 0..L {
+            square.set(i, self.at(i).square());
+        }
+        square
+    }
+
+    /// `other` in the lanes of odd n.
+    #[inline(always)]
+    fn or(mut self, other: &Self, n: &[f64; L]) -> Self {
+        let odd: [f64; L] = each(|i| parity(n[i]));
+        for (own, other) in self.0.as_flattened_mut().iter_mut().zip(other.0.as_flattened()) {
+            *own = each(|i| chosen(odd[i] > 0.0, other[i], own[i]));
+        }
+        self
+    }
+
+    /// Each to the power n, a whole number in a double: squared for each of the places of the largest n but its first, and times
+    /// itself where its own has a one there.
     #[inline(always)]
     fn power(&self, n: &[f64; L]) -> Self {
-        let largest = largest(n) as u64;
-        let mut power = Phases([[[1.0; L], [0.0; L]], [[0.0; L]; 2]]);
-        for place in (0..64 - largest.leading_zeros()).rev() {
+        let places = 64 - (largest(n) as u64).leading_zeros();
+        let upto = |place: u32| -> [f64; L] {
             let unit = 1.0 / (1u64 << place) as f64;
-            let odd: [f64; L] = each(|i| parity((n[i] * unit).floor()));
-            let square = power.times(&power);
-            let more = square.times(self);
-            power = square;
-            for (power, more) in power.0.as_flattened_mut().iter_mut().zip(more.0.as_flattened()) {
-                *power = each(|i| chosen(odd[i] > 0.0, more[i], power[i]));
-            }
+            each(|i| (n[i] * unit).floor())
+        };
+        let one = Phases([[[1.0; L], [0.0; L]], [[0.0; L]; 2]]);
+        let first = places.saturating_sub(1);
+        let mut power = one.or(self, &upto(first));
+        for place in (0..first).rev() {
+            let square = power.square();
+            power = square.or(&square.times(self), &upto(place));
         }
         power
     }
@@ -143,17 +181,16 @@ fn parity(n: f64) -> f64 {
     n - 2.0 * (0.5 * n).floor()
 }
 
-impl InLanes for Strengths {
+impl InLanes for Placed {
     #[inline(always)]
     fn constants<const L: usize>(pairs: &[Self]) -> (Constants<L>, [[f64; L]; 2]) {
-        let (mut p, mut q, mut odd, mut kick) = ([0.0; L], [0.0; L], [[0.0; L]; 2], [0.0; L]);
-        let mut s = [[0.0; L]; 2];
+        let (mut p, mut q, mut kick, mut s) = ([0.0; L], [0.0; L], [0.0; L], [[0.0; L]; 2]);
         for i in 0..L {
-            let pair = &pairs[i.min(pairs.len() - 1)];
-            (p[i], q[i], kick[i]) = (pair.p as i64 as f64, pair.q as i64 as f64, pair.kick);
-            (odd[0][i], odd[1][i]) = ((pair.p & 1) as i64 as f64, (pair.q & 1) as i64 as f64);
+            let pair = &pairs[i.min(pairs.len() - 1)].strengths;
+            (p[i], q[i], kick[i]) = (pair.p, pair.q, pair.kick);
             (s[0][i], s[1][i]) = (pair.s.hi, pair.s.lo);
         }
+        let odd: [[f64; L]; 2] = [each(|i| parity(p[i])), each(|i| parity(q[i]))];
         // Doubles divide whole numbers below 2^50 as integers: where p/q is none it is 1/q below the next one at least.
         let whole: [f64; L] = each(|i| (p[i] / q[i]).floor());
         let rest = each(|i| (-whole[i]).mul_add(q[i], p[i]));
@@ -164,7 +201,9 @@ impl InLanes for Strengths {
             back.set(i, own.conjugate());
         }
         let now = half.power(&whole);
-        let (before, after) = (now.times(&back), now.times(&half));
+        let after = now.times(&half);
+        // Asked for by q = 1 alone.
+        let before = if q.contains(&1.0) { now.times(&back) } else { now };
         let ([tan, sine], [carried_tan, carried_sine]) = (now.shears(), after.shears());
         let (mut slope, mut sin) = ([0.0; L], [0.0; L]);
         for i in 0..L {
@@ -212,8 +251,8 @@ mod tests {
                 })
                 .collect();
             prop_assume!(!pairs.is_empty());
-            let strengths: Vec<Strengths> = pairs.iter().map(|(_, _, strengths)| *strengths).collect();
-            let (found, left) = Strengths::constants::<16>(&strengths);
+            let placed = |(_, _, strengths): &(_, _, Strengths)| Placed { strengths: *strengths, place: 0 };
+            let (found, left) = Placed::constants::<16>(&pairs.iter().map(placed).collect::<Vec<_>>());
             for (i, (s, steps, _)) in pairs.iter().enumerate() {
                 let (p, q) = steps.terms();
                 let whole = p / q;
