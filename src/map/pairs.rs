@@ -178,8 +178,8 @@ impl<F: FnMut(usize, Strengths)> Task for Combine<'_, F> {
             }
             serves[i] = steps[0].2 == steps[1].2;
         }
-        // Each step is in lowest terms already: two short common divisors instead of a long one. (Products beyond 2^53 are rounded, and
-        // serve not; nor does what comes of a quantity that is not known.)
+        // Each step is in lowest terms already: two short common divisors instead of a long one. (Products beyond 2^53 are rounded, and do
+        // not serve; nor does what comes of a quantity that is not known.)
         let (over, under) = (gcd(&above), gcd(&below));
         let p: [f64; LANES] = each(|i| (above[1][i] / over[i]) * (below[0][i] / under[i]));
         let q: [f64; LANES] = each(|i| (above[0][i] / over[i]) * (below[1][i] / under[i]));

@@ -79,15 +79,15 @@ pub(super) fn decide_each<P: Source + ?Sized>(source: &P, resources: &Resources)
 }
 
 /// Pairs on their way to their groups.
-struct Company {
+struct Unsorted {
     pairs: Vec<Placed>,
     /// The class and the number of updates, as far as they fit, of each: all that sorting looks at.
     ranks: Vec<(u32, u32)>,
 }
 
-impl Company {
-    fn of_at_most(count: usize) -> Company {
-        Company { pairs: Vec::with_capacity(count), ranks: Vec::with_capacity(count) }
+impl Unsorted {
+    fn of_at_most(count: usize) -> Self {
+        Unsorted { pairs: Vec::with_capacity(count), ranks: Vec::with_capacity(count) }
     }
 
     #[inline(always)]
@@ -97,8 +97,8 @@ impl Company {
         self.pairs.push(pair);
     }
 
-    /// In the company that suits them: those of like strength together first, where there are so many that their numbers of updates are
-    /// alike all the same, for a look costs three updates; then of like numbers of updates, then of like strength.
+    /// Those together that suit each other: of like strength first, where there are so many that their numbers of updates are alike all
+    /// the same, for a look costs three updates; then of like numbers of updates, then of like strength.
     fn sorted(&self) -> Vec<Placed> {
         let longest = 1 + self.ranks.iter().map(|&(_, updates)| updates).max().unwrap_or(0);
         let kinds = (self.pairs.len() as u32 / (2 * longest)).clamp(1, Strengths::CLASSES);
@@ -119,14 +119,14 @@ fn together<P: Source + ?Sized>(
     let limits = &resources.limits;
     // Longer ones than the limits allow are left to the ladder, which says so.
     let allowed = |pair: &Strengths| pair.updates() < limits.kicks;
-    let (first, mut company) = (part.start, Company::of_at_most(part.len()));
+    let (first, mut unsorted) = (part.start, Unsorted::of_at_most(part.len()));
     source.strengths(part.clone(), |n, strengths| {
         if allowed(&strengths) {
-            company.push(Placed { strengths, place: (n - first) as u32 });
+            unsorted.push(Placed { strengths, place: (n - first) as u32 });
         }
     });
     let mut found = vec![UNDECIDED; part.len()];
-    in_groups(&company.sorted(), |mut group, pairs| {
+    in_groups(&unsorted.sorted(), |mut group, pairs| {
         let mut rest = Vec::new();
         for pairs in pairs.chunks(LANES) {
             resources.go_on()?;

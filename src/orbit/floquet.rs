@@ -118,7 +118,7 @@ pub(super) struct Phase {
 }
 
 impl Phase {
-    pub const ONE: Phase = Phase { re: Twofold { hi: 1.0, lo: 0.0 }, im: Twofold { hi: 0.0, lo: 0.0 } };
+    pub const ONE: Phase = Phase { re: Twofold { hi: 1.0, lo: 0.0 }, im: Twofold::ZERO };
 
     /// To within 2^-97 absolutely.
     fn of(sharp: &Sharp) -> Option<Phase> {

@@ -122,7 +122,7 @@ impl HalfString {
     fn with_nodes(nodes: Vec<Node>, ticks: f64, slow: Twofold, last: u64) -> Self {
         let both = Twofold::sum(1.0, slow.hi);
         let both = Twofold { hi: both.hi, lo: both.lo + slow.lo };
-        let (one, none) = (Twofold { hi: 1.0, lo: 0.0 }, Twofold { hi: 0.0, lo: 0.0 });
+        let (one, none) = (Twofold { hi: 1.0, lo: 0.0 }, Twofold::ZERO);
         // Half a kick at t = 0 and at T/2.
         let masses = [both.half(), one, slow, [none, one, slow, both][last as usize].half()];
         let (masses, rests) = (masses.map(|mass| mass.hi), masses.map(|mass| mass.lo));
