@@ -28,7 +28,7 @@ impl Strengths {
     pub fn serves(&self) -> bool {
         let Strengths { s: Twofold { hi: s, .. }, kick, p, q } = *self;
         let strong = (TINY..=NEAR_LIMIT).contains(&s) & within_range(kick);
-        // The sum of doubles' quotient is no less than that of whole numbers'.
+        // p/q in doubles is at least the whole number ⌊p/q⌋.
         strong
             & (p < LARGEST_MODULUS as f64)
             & (q < LARGEST_MODULUS as f64)

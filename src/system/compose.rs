@@ -68,7 +68,7 @@ pub(super) struct Kick<S> {
 
 /// The islands of M, and the rows of M⁻¹.
 pub(super) fn inverse_mass(system: &System) -> (Vec<Vec<usize>>, Vec<Row<Rational>>) {
-    let islands = connected(system.size(), [system.mass()]);
+    let islands = connected(system.size(), system.mass().places());
     let inverse = inverse(system.mass(), &islands);
     (islands, inverse)
 }
@@ -248,11 +248,11 @@ pub fn full_period<S: Ring>(system: &System) -> DMatrix<S> {
 /// The degrees of freedom that some entry of the mass or of a stiffness connects.
 pub(super) fn connected_parts(system: &System) -> Vec<Vec<usize>> {
     let graphs = system.potentials().iter().map(|own| &own.stiffness).chain([system.mass()]);
-    connected(system.size(), graphs)
+    connected(system.size(), graphs.flat_map(Symmetric::places))
 }
 
-/// The connected components of the union of the matrices' graphs.
-fn connected<'a>(n: usize, graphs: impl IntoIterator<Item = &'a Symmetric>) -> Vec<Vec<usize>> {
+/// The connected components of the graph on 0, ..., n − 1 with these edges, each increasing, in the order of their first.
+pub(super) fn connected(n: usize, edges: impl Iterator<Item = (usize, usize)>) -> Vec<Vec<usize>> {
     let mut root: Vec<usize> = (0..n).collect();
     fn find(root: &mut [usize], mut i: usize) -> usize {
         while root[i] != i {
@@ -261,13 +261,9 @@ fn connected<'a>(n: usize, graphs: impl IntoIterator<Item = &'a Symmetric>) -> V
         }
         i
     }
-    for graph in graphs {
-        for i in 0..n {
-            for &j in graph.row(i).keys() {
-                let (a, b) = (find(&mut root, i), find(&mut root, j));
-                root[a.max(b)] = a.min(b);
-            }
-        }
+    for (i, j) in edges {
+        let (a, b) = (find(&mut root, i), find(&mut root, j));
+        root[a.max(b)] = a.min(b);
     }
     let mut components: std::collections::BTreeMap<usize, Vec<usize>> = Default::default();
     for i in 0..n {

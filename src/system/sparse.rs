@@ -157,6 +157,11 @@ impl Symmetric {
         &self.rows()[i]
     }
 
+    /// (i, j) of the entries that are not 0.
+    pub(super) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.rows().iter().enumerate().flat_map(|(i, row)| row.keys().map(move |&j| (i, j)))
+    }
+
     /// The entry (i, j).
     pub fn get(&self, i: usize, j: usize) -> Rational {
         self.rows()[i].get(&j).cloned().unwrap_or_else(Rational::zero)

@@ -2,6 +2,7 @@
 
 use faer::{Mat, Side};
 
+use crate::system::compose::connected;
 use crate::system::inertia::backward_error;
 
 /// V and Λ, V block-diagonal but for the order of rows and columns.
@@ -23,8 +24,10 @@ struct Block {
 impl Basis {
     /// `None` where the eigenvalue iteration fails: never seen, but not excluded.
     pub fn new(m: &Mat<f64>) -> Option<Basis> {
-        let mut blocks =
-            components(m).into_iter().map(|rows| Block::new(m, rows)).collect::<Option<Vec<_>>>()?;
+        let of_column = |j: usize| m.col_as_slice(j).iter().enumerate().filter(|(_, x)| **x != 0.0);
+        let places = (0..m.ncols()).flat_map(|j| of_column(j).map(move |(i, _)| (i, j)));
+        let parts = connected(m.nrows(), places);
+        let mut blocks = parts.into_iter().map(|rows| Block::new(m, rows)).collect::<Option<Vec<_>>>()?;
         let own =
             |(b, block): (usize, &Block)| (0..block.rows.len()).map(move |k| (b, k)).collect::<Vec<_>>();
         let mut order: Vec<(usize, usize)> = blocks.iter().enumerate().flat_map(own).collect();
@@ -90,33 +93,6 @@ impl Block {
         let k = self.rows.len();
         Mat::from_fn(k, k, |i, j| m[(self.rows[i], self.rows[j])])
     }
-}
-
-/// The rows that entries other than 0 join, each increasing.
-fn components(m: &Mat<f64>) -> Vec<Vec<usize>> {
-    let n = m.nrows();
-    let mut is_seen = vec![false; n];
-    let mut all = Vec::new();
-    for first in 0..n {
-        if is_seen[first] {
-            continue;
-        }
-        is_seen[first] = true;
-        let mut rows = vec![first];
-        let mut next = 0;
-        while let Some(&j) = rows.get(next) {
-            next += 1;
-            for (i, x) in m.col_as_slice(j).iter().enumerate() {
-                if *x != 0.0 && !is_seen[i] {
-                    is_seen[i] = true;
-                    rows.push(i);
-                }
-            }
-        }
-        rows.sort_unstable();
-        all.push(rows);
-    }
-    all
 }
 
 #[cfg(test)]
