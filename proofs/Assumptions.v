@@ -1,7 +1,7 @@
 (** What every theorem of Main.v says and rests on; this output is kept in Assumptions.golden. *)
 
 From Coq Require Import Reals.
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa Proposition Plane Cone.
+From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa Proposition Plane Cone Returns.
 From Kickdrift Require Main.
 Open Scope R_scope.
 Set Printing Width 110.
@@ -67,6 +67,11 @@ Check Main.contained_inverse. Print Assumptions Main.contained_inverse.
 Check Main.shrink_bound. Print Assumptions Main.shrink_bound.
 Check Main.cone_chain. Print Assumptions Main.cone_chain.
 Check Main.cone_criterion. Print Assumptions Main.cone_criterion.
+Check Main.pulled_back. Print Assumptions Main.pulled_back.
+Check Main.deep_level. Print Assumptions Main.deep_level.
+Check Main.last_period. Print Assumptions Main.last_period.
+Check Main.walk_product. Print Assumptions Main.walk_product.
+Check Main.band_growth. Print Assumptions Main.band_growth.
 Check Main.certificate. Print Assumptions Main.certificate.
 Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
 Check Main.edge_between. Print Assumptions Main.edge_between.

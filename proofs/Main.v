@@ -7,7 +7,7 @@
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
   Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Closings Proposition Plane Perturbation
-  Cone Certificate PiCertificate EdgeCertificate.
+  Cone Returns Certificate PiCertificate EdgeCertificate.
 Open Scope R_scope.
 
 (** ** 1. Algebra *)
@@ -387,7 +387,42 @@ Theorem cone_criterion : forall Q u w, det Q = 1 -> cross u w <> 0 ->
   (inside u w (smul (-1) (Q @ u)) -> inside u w (smul (-1) (Q @ w)) -> tr Q < -2).
 Proof. exact Cone.cone_criterion. Qed.
 
-(** ** 7. Certificates *)
+(** ** 7. Return maps (Returns.v has the levels, their branches and the walk) *)
+
+(** A slow kick at the offset x behind a fast kick, pulled back to that fast kick. *)
+Theorem pulled_back : forall k x,
+  drift (- x) ** kick k ** drift x = Mat (1 + k * x) (k * (x * x)) (- k) (1 - k * x).
+Proof. exact Returns.pulled_back. Qed.
+
+(** After any number of Euclid's steps the branches are the products over the kicks up to the return, heights times widths
+    sum to the whole length, ... *)
+Theorem deep_level : forall a b kicked k, 0 <= a -> 0 <= b ->
+  let l := deep a b kicked k in
+  0 <= left_width l /\ 0 <= right_width l /\ returns a b kicked l /\ area l = a + b.
+Proof. exact Returns.deep_level. Qed.
+
+(** ... where the left interval has shrunk to nothing the right branch at 0 is the product over the period, ... *)
+Theorem last_period : forall a b kicked k, 0 <= a -> 0 <= b -> 0 < a + b ->
+  let l := deep a b kicked k in
+  left_width l = 0 ->
+  let n := right_height l in
+  INR n * right_width l = a + b /\ turns a b n 0 = 0 /\ right_branch l 0 = along a b kicked n 0.
+Proof. exact Returns.last_period. Qed.
+
+(** ... and any walk over levels that uses up n kicks multiplies to the product over the next n kicks. *)
+Theorem walk_product : forall a b kicked n x P, walk a b kicked n x P -> P = along a b kicked n x.
+Proof. exact Returns.walk_product. Qed.
+
+(** Matrices that map one cone into its interior (or into the opposite one) by a margin d, in any order. *)
+Theorem band_growth : forall M u w d n,
+  cross u w <> 0 -> 0 <= d ->
+  (forall k, det (M k) = 1 /\ (inside_by d u w (M k) \/ inside_by d u w (opp (M k)))) ->
+  forall x y, 0 < x -> 0 < y -> exists s x' y',
+    (s = 1 \/ s = -1) /\ 0 < x' /\ 0 < y' /\ (1 + 4 * d) ^ n * (x * y) <= x' * y' /\
+    Cone.product M n @ add (smul x u) (smul y w) = smul s (add (smul x' u) (smul y' w)).
+Proof. exact Returns.band_growth. Qed.
+
+(** ** 8. Certificates *)
 
 Theorem certificate : forall k p q (h1 L1 h2 L2 : Q) x1 l1 x2 l2,
   x1 = Q2R h1 -> l1 = Q2R L1 -> x2 = Q2R h2 -> l2 = Q2R L2 ->
