@@ -16,6 +16,7 @@
 //!
 //! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
 //! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
+//! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
 use std::sync::{Arc, OnceLock};
 
@@ -55,6 +56,8 @@ struct Document {
     accuracy: Option<Number>,
     constraints: Option<Constraints>,
     hydrogen_mass: Option<Number>,
+    #[serde(default)]
+    keep_rigid: bool,
     potentials: Vec<PotentialDocument>,
     #[serde(rename = "labels")]
     _labels: Option<Vec<String>>,
@@ -178,7 +181,7 @@ impl Measured {
             positions,
             is_weighted,
             accuracy: 0.0,
-            keeps_rigid: false,
+            keeps_rigid: document.keep_rigid,
             held,
             scales,
             kernel: Arc::default(),
