@@ -1,7 +1,7 @@
 """Exact, certified linear stability of multiple-time-step integrators: velocity Verlet, r-RESPA, AVI.
 
 Numbers are exact: ``"0.3"`` is 3/10, ``"pi^2/25"`` means what it says, Fractions, Decimals and SymPy's rationals are
-taken as they are. **A float means exactly that double**: ``0.3`` is 5404319552844595/18014398509481984.
+taken as they are. **A float means what it prints**: ``0.3`` is 3/10; :func:`exact` gives the double itself.
 
 >>> import kickdrift as kd
 >>> print(kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.98"))
@@ -16,7 +16,7 @@ from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._explore import explore
 from kickdrift._map import Map, map
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Labels, Range, number
+from kickdrift._numbers import Exact, Labels, Range, exact, number
 from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
 from kickdrift._system import Intervals, Run, System, SystemVerdict, simulate
@@ -64,6 +64,7 @@ __all__ = [
     "compare",
     "curves",
     "decide",
+    "exact",
     "explore",
     "main",
     "map",

@@ -11,7 +11,7 @@ from html import escape
 from os import PathLike, fspath
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_checkable
 
 from kickdrift import _plot
 from kickdrift._document import Document, Row, ask, fields, frame, given
@@ -23,14 +23,25 @@ if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
 
+    from kickdrift._system import System
+
 Time: TypeAlias = Exact
 """A length of time: a text with its unit as ``"0.5fs"`` or ``"0.01ps"``, or an exact number of fs."""
 
 Engine: TypeAlias = str | PathLike[str] | Sequence[str | PathLike[str]]
 """An input of a simulation engine: a path, or its text (of several lines); of OpenMM a system and an integrator."""
 
-_COLOURS = {"safe": "#1b7837", "caution": "#b35806", "near": "#b35806", "island": "#b35806"}
-_COLOURS |= {"not told": "#b2182b", "unstable": "#b2182b"}
+
+@runtime_checkable
+class Advisable(Protocol):
+    """A system."""
+
+    def advise(
+        self, steps: str | Sequence[Any] = (), *, engine: Engine | None, band: Exact, length: Time | None
+    ) -> SystemAdvice: ...
+
+
+_COLOURS = {"safe": "safe", "caution": "caution", "near": "caution", "island": "caution"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -91,7 +102,8 @@ class Advised(Document):
         return f"{type(self).__name__}({', '.join(each)})"
 
     def _repr_html_(self) -> str:
-        style = f"border-left: 4px solid {_COLOURS[self.status]}; padding-left: 1em"
+        colour = _plot.COLOURS[_COLOURS.get(self.status, "unstable")]
+        style = f"border-left: 4px solid {colour}; padding-left: 1em"
         lines, *_ = self._text.split("\n\n")
         return f"<pre style='{style}'>{escape(lines)}</pre>"
 
@@ -138,6 +150,9 @@ class Advice(Advised):
 class SystemAdvice(Advised):
     """Which steps are safe for a molecule by its Hessians, as :meth:`System.advise` finds."""
 
+    warnings: tuple[str, ...] = ()
+    """What limits the advice, in words: what was found when the system was made, and what its verdict warns of."""
+
     _schemes_are = "rows"
 
     @cached_property
@@ -155,6 +170,7 @@ def _number(value: str | None) -> Number | None:
     return None if value is None else Number(value)
 
 
+@overload
 def advise(
     periods: Mapping[str, Time] | Sequence[Time] = (),
     *,
@@ -165,13 +181,38 @@ def advise(
     band: Exact = "5%",
     length: Time | None = None,
     hmr: Exact | None = None,
-) -> Advice:
+) -> Advice: ...
+
+
+@overload
+def advise(
+    periods: System,
+    *,
+    steps: str | Sequence[Any] = (),
+    engine: Engine | None = None,
+    band: Exact = "5%",
+    length: Time | None = None,
+) -> SystemAdvice: ...
+
+
+def advise(
+    periods: System | Mapping[str, Time] | Sequence[Time] = (),
+    *,
+    steps: str | Sequence[Any] = (),
+    bonds: Mapping[str, str] | None = None,
+    on: Mapping[str, int] | None = None,
+    engine: Engine | None = None,
+    band: Exact = "5%",
+    length: Time | None = None,
+    hmr: Exact | None = None,
+) -> Advice | SystemAdvice:
     """Say which steps are safe for these periods, for how long, and why.
 
     Parameters
     ----------
-    periods : mapping of str to Time, or a sequence of Time
-        The periods of the forces, fs, or wavenumbers as ``"3700/cm"``; the last ones are on the slower clocks.
+    periods : System, mapping of str to Time, or a sequence of Time
+        A system of measured Hessians, which is asked for :meth:`System.advise`; or the periods of the forces, fs, or
+        wavenumbers as ``"3700/cm"``; the last ones are on the slower clocks.
     steps : sequence of Time, or a sequence of such
         A scheme, from the innermost to the outermost step, fs; or several schemes.
     bonds : mapping of str to str, optional
@@ -203,6 +244,11 @@ def advise(
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
     ['mts-level2-factor = 6']
     """
+    if isinstance(periods, Advisable):
+        for field, value in {"bonds": bonds, "on": on, "hmr": hmr}.items():
+            if value is not None:
+                raise KickdriftError(field, str(value), "is for periods: a system has its modes and masses of its own")
+        return periods.advise(steps, engine=engine, band=band, length=length)
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in periods)
     arguments = ["advise", *common(band, length), *given(hmr=_mass(hmr))]
     for name, value in named:

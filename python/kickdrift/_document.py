@@ -6,15 +6,17 @@ import html
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from dataclasses import fields as parts
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Self, cast, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._errors import required
+from kickdrift._numbers import frozen
 
 if TYPE_CHECKING:
     import pandas
@@ -43,8 +45,35 @@ def given(**options: str | int | None) -> list[str]:
     return [f"--{name.replace('_', '-')}={value}" for name, value in pairs]
 
 
+class Frozen:
+    """A frozen dataclass whose copy is itself; it is pickled by its fields alone, which stay read only."""
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Self:
+        return self
+
+    def __getstate__(self) -> dict[str, Any]:
+        own = {part.name: getattr(self, part.name) for part in parts(cast(Any, self))}
+        return {name: dict(value) if isinstance(value, MappingProxyType) else value for name, value in own.items()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for name, value in state.items():
+            object.__setattr__(self, name, _held(value))
+
+
+def _held(value: Any) -> Any:
+    if isinstance(value, dict):
+        for own in value.values():
+            if isinstance(own, np.ndarray):
+                frozen(own)
+        return MappingProxyType(value)
+    return frozen(value) if isinstance(value, np.ndarray) else value
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Document:
+class Document(Frozen):
     """A result, frozen, with the text of its JSON document.
 
     Two results are equal where their documents are.
@@ -166,7 +195,7 @@ class Table(Document, Sequence[Row]):
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:
     """Rows as a data frame."""
-    made: pandas.DataFrame = required("pandas", "pandas").DataFrame(list(rows))
+    made: pandas.DataFrame = required("pandas").DataFrame(list(rows))
     return made
 
 

@@ -60,10 +60,10 @@ class BudgetError(KickdriftError):
     ...     print(error.needed, error.remedy)
     499992 choose steps with a simpler ratio
 
-    A double is rarely the number its writer meant: 0.98 is not 98 times 0.01, so their ratio has 53 bits.
+    The double nearest to 0.98 is not 98 times that nearest to 0.01: their ratio has 53 bits.
 
     >>> try:
-    ...     kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=0.01, h2=0.98)
+    ...     kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.01), h2=kd.exact(0.98))
     ... except kd.BudgetError as error:
     ...     print(error.needed)
     None
@@ -84,14 +84,14 @@ def _short(value: str) -> str:
     return line if len(line) <= 60 else f"{line[:30]}...{line[-15:]} ({len(line)} characters)"
 
 
-def required(package: str, extra: str) -> Any:
-    """An optional package."""
+def required(package: str, *more: str) -> Any:
+    """An optional package, or a module of it; and the packages that are needed beside it."""
     try:
         return import_module(package)
     except ImportError:
-        raise needs(package, extra) from None
+        raise needs(package.partition(".")[0], *more) from None
 
 
-def needs(package: str, extra: str) -> KickdriftError:
-    """The error where an optional package is not installed."""
-    return KickdriftError(package, "not installed", f"install it by pip install 'kickdrift[{extra}]'")
+def needs(*packages: str) -> KickdriftError:
+    """The error where optional packages are not installed."""
+    return KickdriftError(packages[0], "not installed", f"install {' and '.join(packages)} beside kickdrift")

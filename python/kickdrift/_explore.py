@@ -56,7 +56,7 @@ def explore(
     >>> told["kind"], told["tongue"]["m"], told["command"]
     ('hyperbolic', 1, 'kickdrift verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 49/50')
     """
-    required("anywidget", "explore")
+    required("anywidget")
     if system is not None:
         _alone(lambda1=lambda1, lambda2=lambda2, h1=h1, h2=h2, unit=unit)
         page = _page(system)

@@ -16,7 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _plot
+from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
+from kickdrift._numbers import frozen
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -163,6 +165,73 @@ def _firm(matrix: Doubles) -> Doubles:
     return np.asarray(vectors[:, np.abs(values) > _SOFT * np.abs(values).max()])
 
 
+def rigid_motions(positions: Doubles, masses: Doubles, rotations: bool = True) -> Doubles:
+    """Translations, and rotations unless a periodic cell forbids them: orthonormal mass-weighted columns."""
+    root = np.sqrt(masses)
+    centred = positions - (masses @ positions) / masses.sum()
+    moves = [np.tile(axis, (len(masses), 1)) for axis in np.eye(3)]
+    moves += [np.cross(axis, centred) for axis in np.eye(3)] if rotations else []
+    columns = np.array([(root[:, None] * move).ravel() for move in moves]).T
+    left, sizes, _ = np.linalg.svd(columns / np.linalg.norm(columns, axis=0).clip(1e-300), full_matrices=False)
+    # A rotation about the line of a linear molecule moves nothing: what is left of it is rounding.
+    return np.asarray(left[:, sizes > 1e-8])
+
+
+def is_held(total: Doubles, translations: Doubles, error: float) -> bool:
+    """Whether a field holds the atoms: of a translation, forces that know no place leave what differences leave."""
+    return norm(total @ translations) > max(10 * error, 1e-9 * norm(total))
+
+
+def complement(columns: Doubles) -> Doubles:
+    """An orthonormal basis of what is orthogonal to the columns."""
+    whole, sizes, _ = np.linalg.svd(columns)
+    rank = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum())
+    return np.asarray(whole[:, rank:])
+
+
+def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:
+    """How well a measured Hessian is known, relative to its norm: at least rounding.
+
+    Raises
+    ------
+    KickdriftError
+        Where a tenth of it is unknown: no verdict holds for so uncertain a Hessian.
+    """
+    accuracy = max(error / max(norm(matrix), 1e-300), 1e-12)
+    if accuracy >= _UNKNOWN:
+        remedy = (
+            "is too uncertain for any verdict: its forces jump or bend within the differences, as where pairs cross a "
+            f"cutoff; use a switching function or a longer cutoff, or another difference than {difference}"
+        )
+        raise KickdriftError("system", f"the Hessian of {name}, known to {accuracy:.0%} of its norm", remedy)
+    return accuracy
+
+
+#: The library takes Hessians that are known better than this.
+_UNKNOWN = 0.1
+
+
+def unbalanced(forces: Mapping[str, Doubles], total: Doubles, masses: Doubles, unit: str, follow: str) -> list[str]:
+    """What to know where a group's own force does not vanish at the positions: they are no rest of the integrator.
+
+    A force is rounding where it would displace no atom by more than 1e-9, as :func:`arrived` has it.
+    """
+    rounding = 1e-9 * norm(total) * float(np.sqrt(masses.max()))
+    root = np.sqrt(masses)[:, None]
+    notes = []
+    if np.linalg.norm(np.sum(list(forces.values()), axis=0) / root) > rounding:
+        notes.append("the positions are no minimum of all forces together: nothing stays about them")
+    pulled = {name: own for name, own in forces.items() if np.linalg.norm(own / root) > rounding}
+    if pulled and len(forces) > 1:
+        most = max(float(np.linalg.norm(own, axis=1).max()) for own in pulled.values())
+        notes.append(
+            f"the forces of {' and of '.join(pulled)} do not vanish at the positions (up to {most:.3g} {unit}): a run "
+            "swings about an orbit of its own, where the Hessians are others; verdicts hold for those at the positions "
+            f"alone. {follow}"
+        )
+    return notes
+
+
 @dataclass(frozen=True)
 class Kick:
     """One strike of the clocks: its time, and how long each group acts; at the ends of a period half as long."""
@@ -193,7 +262,7 @@ def _common(steps: Sequence[Fraction]) -> Fraction:
 
 
 @dataclass(frozen=True, eq=False)
-class Monodromy:
+class Monodromy(Frozen):
     """What small deviations from a state do over one period of the clocks, in doubles: measured, not proven.
 
     Attributes
@@ -222,20 +291,21 @@ class Monodromy:
 
     @cached_property
     def matrix(self) -> Doubles:
-        """The propagator of mass-weighted deviations over a period: half of it, and the same backwards."""
+        """The propagator of mass-weighted deviations (x, v) over a period, shape (2n', 2n'): half of it, and the same
+        backwards."""
         n = len(self.half) // 2
         a, b, c, d = self.half[:n, :n], self.half[:n, n:], self.half[n:, :n], self.half[n:, n:]
         back = np.block([[d.T, b.T], [c.T, a.T]])
-        return np.asarray(back @ self.half)
+        return frozen(np.asarray(back @ self.half))
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
-        """The eigenvalues of the period, from those of half of it: lambda + 1/lambda = 2 + 4 mu."""
+        """The eigenvalues of the period, shape (2n',), from those of half of it: lambda + 1/lambda = 2 + 4 mu."""
         n = len(self.half) // 2
         mu = np.linalg.eigvals(self.half[:n, n:].T @ self.half[n:, :n]).astype(np.complex128)
         trace = 2 + 4 * mu
         root = np.sqrt(mu * (mu + 1)) * 4
-        return np.concatenate([(trace + root) / 2, (trace - root) / 2])
+        return frozen(np.concatenate([(trace + root) / 2, (trace - root) / 2]))
 
     @property
     def growth_rate(self) -> float:
@@ -376,7 +446,7 @@ def monodromy(
     period = _common(steps)
     if about == "minimum":
         half, _ = compose(own, steps, at, masses, difference, still=True)
-        return Monodromy(about, at, 0.0, period, half, 0.0)
+        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half), 0.0)
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
     balances = [force(at) for force in own]
@@ -394,4 +464,4 @@ def monodromy(
         else:
             part /= 2
     away = float(np.linalg.norm(start - at, axis=1).max())
-    return Monodromy(about, start, away, period, half, residual)
+    return Monodromy(about, frozen(start.copy()), away, period, frozen(half), residual)

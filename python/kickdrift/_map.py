@@ -13,9 +13,9 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native, _plot
-from kickdrift._document import Document, ask, given
+from kickdrift._document import Document, Frozen, ask, given
 from kickdrift._errors import KickdriftError, required
-from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._numbers import Exact, Range, frozen, range_text, text
 from kickdrift._verdict import _STABLE, TIERS, VERDICTS
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ _FEW = 4_000_000
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Map:
+class Map(Frozen):
     """The verdicts of a grid as arrays (columns of h1, rows of h2), every one proven.
 
     Examples
@@ -42,22 +42,25 @@ class Map:
     (dtype('uint8'), (15, 87), 'hyperbolic+')
     """
 
-    _map: _native.Map
     _arguments: tuple[str, ...]
+    _texts: tuple[str, str]
     arrays: Mapping[str, npt.NDArray[Any]]
-    """All arrays by name, as in the program's ``map.npz``."""
+    """All arrays by name, as in the program's ``map.npz``, read only."""
+
+    _map: _native.Map | None = None
+    """What draws them again at once; left out where the map is pickled."""
 
     names = VERDICTS
     tier_names = TIERS
 
     @property
     def h1(self) -> npt.NDArray[np.float64]:
-        """The steps of the columns, rounded."""
+        """The steps of the columns, rounded, shape (columns,)."""
         return self.arrays["h1"]
 
     @property
     def h2(self) -> npt.NDArray[np.float64]:
-        """The steps of the rows, rounded."""
+        """The steps of the rows, rounded, shape (rows,)."""
         return self.arrays["h2"]
 
     @property
@@ -67,23 +70,27 @@ class Map:
 
     @property
     def tier(self) -> npt.NDArray[np.uint8]:
-        """The deciding tiers, positions in ``Map.tier_names``."""
+        """The deciding tiers, positions in ``Map.tier_names``, shape (len(h1), len(h2))."""
         return self.arrays["tier"]
 
     @property
     def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether each pair is stable."""
-        return _STABLE[self.verdict]
+        """Whether each pair is stable, shape (len(h1), len(h2))."""
+        return frozen(_STABLE[self.verdict])
 
     @property
     def growth_rate(self) -> npt.NDArray[np.float64]:
-        """Growth rates per unit time, NaN where nothing grows exponentially; asked for by ``growth=True``."""
+        """Growth rates per unit time, shape (len(h1), len(h2)), NaN where nothing grows exponentially; asked for by
+        ``growth=True``."""
         return self._asked("growth_rate", "growth")
 
     @property
     def m(self) -> npt.NDArray[np.int64]:
-        """Labels, -1 where nothing grows exponentially; of a map asked for with ``label=True``."""
+        """Labels, shape (len(h1), len(h2)), -1 where nothing grows exponentially; asked for by ``label=True``."""
         return self._asked("m", "label")
+
+    def __getstate__(self) -> dict[str, Any]:
+        return super().__getstate__() | {"_map": None}
 
     def _asked(self, name: str, product: str) -> npt.NDArray[Any]:
         if name not in self.arrays:
@@ -93,7 +100,7 @@ class Map:
     @cached_property
     def document(self) -> Document:
         """The document ``kickdrift/map/1``: the counts."""
-        return Document(self._map.render("json"))
+        return Document(self._texts[0])
 
     def to_json(self) -> str:
         """The document of ``kickdrift map``, byte for byte: the counts."""
@@ -120,14 +127,14 @@ class Map:
         """
         planes = {name: (("h1", "h2"), values) for name, values in self.arrays.items() if values.ndim == 2}
         attributes = {"verdict_names": list(VERDICTS), "tier_names": list(TIERS), **self.document.data["input"]}
-        made: xarray.Dataset = required("xarray", "dask").Dataset(
+        made: xarray.Dataset = required("xarray").Dataset(
             planes, coords={"h1": self.h1, "h2": self.h2}, attrs=attributes
         )
         return made
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a pair, by h1, then h2; the kind by name."""
-        pd = required("pandas", "pandas")
+        pd = required("pandas")
         h1, h2 = (axis.ravel() for axis in np.meshgrid(self.h1, self.h2, indexing="ij"))
         kinds = pd.Categorical.from_codes(self.verdict.ravel().astype(np.int8), categories=pd.Index(VERDICTS))
         more = {name: values.ravel() for name, values in self.arrays.items() if name in _MORE}
@@ -137,7 +144,7 @@ class Map:
         return made
 
     def plot(self, ax: Axes | None = None, colour: Literal["verdict", "growth"] = "verdict") -> Axes:
-        """Draw the map: unstable pairs dark, or their growth rates.
+        """Draw the map in the program's colours: the kinds of unstable pairs, or their growth rates.
 
         Examples
         --------
@@ -147,18 +154,18 @@ class Map:
         '$h_1$'
         """
         if colour == "growth":
-            return _plot.grid(self.h1, self.h2, self.growth_rate, "growth rate", ax)
-        return _plot.grid(self.h1, self.h2, ~self.stable, None, ax)
+            return _plot.growth(self.h1, self.h2, self.growth_rate, ax)
+        return _plot.verdicts(self.h1, self.h2, self.verdict, VERDICTS, ax)
 
     def to_svg(self) -> str:
         """The program's figure of the verdicts as SVG."""
-        return self._map.svg(self.verdict, self.tier)
+        return ask(self._arguments, "svg") if self._map is None else self._map.svg(self.verdict, self.tier)
 
     def _repr_svg_(self) -> str | None:
         return self.to_svg() if self.verdict.size <= _FEW else None
 
     def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(self._map.render('text').rstrip())}</pre>"
+        return f"<pre>{html.escape(self._texts[1].rstrip())}</pre>"
 
     def __repr__(self) -> str:
         columns, rows = self.verdict.shape
@@ -233,7 +240,8 @@ def map(
         budget=budget,
     )
     arguments += [flag for flag, asked in (("--label", label), ("--growth", growth)) if asked]
-    return Map(made, tuple(arguments), MappingProxyType(arrays))
+    own = {name: frozen(array) for name, array in arrays.items()}
+    return Map(tuple(arguments), (made.render("json"), made.render("text")), MappingProxyType(own), made)
 
 
 def _ends(field: str, value: Range) -> list[Exact]:

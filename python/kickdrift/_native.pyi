@@ -18,6 +18,7 @@ __all__ = [
     "multipliers",
     "names",
     "number",
+    "palette",
     "recheck",
     "verdicts",
 ]
@@ -55,6 +56,7 @@ class Pair:
     def terms(self) -> tuple[int, int]: ...
     @property
     def quantities(self) -> list[Number]: ...
+    def question(self) -> tuple[list[Number], bool, Number | None, int | None]: ...
     def render(self, format: str) -> str: ...
 
 @final
@@ -105,6 +107,7 @@ def answer(
     text: str | None = None,
     arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
 ) -> bytes: ...
+def palette() -> tuple[dict[str, str], list[str], list[str]]: ...
 def main(arguments: Sequence[str]) -> int: ...
 def recheck(
     text: str, all: bool, budget: int | None, folder: str

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias, TypeGuard, TypeVar
+
+import numpy as np
+import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._errors import KickdriftError
@@ -13,7 +16,14 @@ from kickdrift._native import Number
 
 Exact: TypeAlias = int | float | Fraction | Decimal | str | Number | Any
 """An exact number: an int, a Fraction, a Decimal, a text such as ``"pi^2/25"`` (``**`` is ``^``), a SymPy number
-without rounded parts, a NumPy scalar, a Number. A float means exactly that double."""
+without rounded parts, a NumPy scalar, a Number. A float means what it prints, its shortest decimal: 0.02 is 1/50."""
+
+
+class SupportsRatio(Protocol):
+    """A number that knows its numerator and denominator."""
+
+    def as_integer_ratio(self) -> tuple[int, int]: ...
+
 
 Range: TypeAlias = tuple[Exact, Exact] | str
 """A closed range: a pair of exact numbers, or a text ``"LO..HI"``."""
@@ -28,7 +38,8 @@ def number(value: Exact) -> Number:
     Parameters
     ----------
     value : Exact
-        A float is the number that the double is to its last bit: ``0.1`` is not 1/10, ``"0.1"`` is.
+        A float is the number that it prints: ``0.1`` is 1/10, and so is ``numpy.float32(0.1)``. :func:`exact` gives the
+        double itself.
 
     Returns
     -------
@@ -45,14 +56,41 @@ def number(value: Exact) -> Number:
     --------
     >>> from decimal import Decimal
     >>> import kickdrift as kd
-    >>> kd.number("0.1") == kd.number(Decimal("0.1")), kd.number(0.1) == kd.number("0.1")
-    (True, False)
+    >>> kd.number("0.1") == kd.number(Decimal("0.1")) == kd.number(0.1)
+    True
     >>> kd.number("pi**2/25")
     Number('pi^2/25')
-    >>> kd.number(0.1).fraction
-    Fraction(3602879701896397, 36028797018963968)
+    >>> kd.number(0.02).fraction
+    Fraction(1, 50)
     """
     return _native.number("number", value)
+
+
+def exact(value: SupportsRatio) -> Number:
+    """Return the number that a float is to its last bit.
+
+    Parameters
+    ----------
+    value : float, or a float of NumPy's
+
+    Raises
+    ------
+    KickdriftError
+        Where it is no number, as infinities and NaN are none.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.exact(0.1).fraction
+    Fraction(3602879701896397, 36028797018963968)
+    >>> kd.exact(0.5) == kd.number(0.5)
+    True
+    """
+    try:
+        above, below = value.as_integer_ratio()
+    except (AttributeError, OverflowError, ValueError):
+        raise KickdriftError("number", repr(value), "give a finite float") from None
+    return _native.number("number", Fraction(int(above), int(below)))
 
 
 def text(field: str, value: Exact) -> str:
@@ -76,3 +114,106 @@ def labels_text(value: Labels) -> str:
     if isinstance(value, str):
         return value
     return ",".join(str(m) for m in ([value] if isinstance(value, int) else value))
+
+
+#: Units of time by name, in fs.
+_UNITS = {"as": Fraction(1, 1000), "fs": Fraction(1), "ps": Fraction(1000), "ns": Fraction(10**6)}
+
+#: The longest step of a molecule that is believed without a unit, fs: bonds to hydrogen have periods of 9 to 11 fs, and
+#: no atomistic integrator takes so long a step.
+_BELIEVED = 100
+
+
+def duration(field: str, value: Exact, unit: str, molecular: bool = True) -> Fraction:
+    """A positive length of time in a unit, from a text with a unit of its own as ``"0.5fs"`` or a number in that unit.
+
+    Raises
+    ------
+    KickdriftError
+        What is no positive rational; of a molecule a number without a unit that is longer than any of its steps.
+    """
+    words = value.rstrip() if isinstance(value, str) else ""
+    named = words[-2:] in _UNITS
+    own = words[-2:] if named else unit
+    if named and unit not in _UNITS:
+        raise KickdriftError(field, words, f"the system's steps are in {unit or 'no unit'}: give time_unit='fs' or so")
+    step = rational(field, words[:-2] if named else value)
+    if step <= 0:
+        raise KickdriftError(field, str(value), "a step must be positive")
+    if molecular and not named and step * _UNITS[unit] > _BELIEVED:
+        remedy = f"is {_decimal(step)} {unit}, which no molecule bears: name the unit, as '{_decimal(step)}fs'"
+        raise KickdriftError(field, str(value), remedy)
+    return step if own == unit else step * _UNITS[own] / _UNITS[unit]
+
+
+def rational(field: str, value: Exact) -> Fraction:
+    """A rational number; an error names the field."""
+    found = _native.number(field, value)
+    if not found.is_rational:
+        raise KickdriftError(field, str(found), "must be rational")
+    return found.fraction
+
+
+def _decimal(value: Fraction) -> str:
+    return f"{float(value):.6g}"
+
+
+def simplest(value: float) -> Fraction:
+    """The simplest rational within two units in the last place of a positive double.
+
+    So far off is a short decimal that was multiplied by a rounded factor: half a unit of each, and one of the product.
+    """
+    width = 2 * Fraction(float(np.spacing(value)))
+    return _between(Fraction(value) - width, Fraction(value) + width)
+
+
+def _between(lo: Fraction, hi: Fraction) -> Fraction:
+    """The rational of least denominator in a closed interval of positive numbers, by continued fractions."""
+    whole = -(-lo.numerator // lo.denominator)
+    if whole <= hi:
+        return Fraction(whole)
+    below = Fraction(lo.numerator // lo.denominator)
+    return below + 1 / _between(1 / (hi - below), 1 / (lo - below))
+
+
+def doubles(field: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """A read-only copy of finite real doubles.
+
+    Raises
+    ------
+    KickdriftError
+        Complex or masked entries, text, NaN, infinities: none is dropped in silence.
+    """
+    if np.ma.is_masked(value):
+        raise KickdriftError(field, "masked entries", "fill them or leave them out: every entry counts")
+    if _is_frozen(value):
+        return value
+    try:
+        own = np.asarray(value)
+        if own.dtype.kind == "c" or (own.dtype.kind == "O" and any(isinstance(x, complex) for x in own.flat)):
+            raise KickdriftError(field, "complex entries", "give real numbers")
+        own = np.array(own, dtype=np.float64, order="C")
+    except (TypeError, ValueError) as cause:
+        if isinstance(cause, KickdriftError):
+            raise
+        raise KickdriftError(field, repr(value), "give an array of numbers") from None
+    if not np.isfinite(own).all():
+        where = ", ".join(str(int(n)) for n in np.argwhere(~np.isfinite(own))[0])
+        raise KickdriftError(field, f"an entry that is not finite, at [{where}]", "give finite numbers")
+    return frozen(own)
+
+
+def _is_frozen(value: object) -> TypeGuard[npt.NDArray[np.float64]]:
+    """Whether :func:`doubles` gave it, as far as can be seen."""
+    if not isinstance(value, np.ndarray) or type(value) is not np.ndarray or value.dtype != np.float64:
+        return False
+    return value.base is None and not value.flags.writeable and bool(np.isfinite(value).all())
+
+
+_T = TypeVar("_T", bound=np.generic)
+
+
+def frozen(array: npt.NDArray[_T]) -> npt.NDArray[_T]:
+    """The same array, read only."""
+    array.setflags(write=False)
+    return array

@@ -1,14 +1,16 @@
-"""Drawings on matplotlib's axes, in the colours of the program's figures where these have some."""
+"""Drawings on matplotlib's axes, in the colours of the program's figures."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
+from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from kickdrift import _native
 from kickdrift._errors import required
 from kickdrift._native import Number
 
@@ -16,26 +18,30 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
+COLOURS, FAMILIES, GROWTH = _native.palette()
+"""Colours by what they stand for, those of families, and those of growth from weak to strong."""
+
+#: Not to be recommended: the program hatches white paper.
+_BEYOND = "0.92"
+
+
 def axes(ax: Axes | None) -> Axes:
     """The axes given, or those of a new figure."""
     if ax is not None:
         return ax
-    made: Axes = required("matplotlib.pyplot", "plot").figure(layout="constrained").add_subplot()
+    made: Axes = required("matplotlib.pyplot").figure(layout="constrained").add_subplot()
     return made
 
 
 def tongues(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """Bars from edge to edge in s, up to 4 unless all begin beyond."""
     own = axes(ax)
-    from matplotlib import colormaps
-
-    colours = colormaps["tab10"]
     end = 1.15 * max(row["lower"]["hi"] for row in rows) if rows else 4.0
     for place, row in enumerate(rows):
         lo = row["lower"]["lo"]
         hi = end if row["upper"] is None else row["upper"]["hi"]
         # A line about each bar: a tongue thinner than a pixel shows all the same.
-        colour = colours((row["a"] or 0) % 10)
+        colour = FAMILIES[(row["a"] or 0) % len(FAMILIES)]
         own.barh(place, hi - lo, left=lo, color=colour, edgecolor=colour, linewidth=1.2)
     # Beyond s = 4 the fast clock alone is unstable.
     if any(row["lower"]["lo"] < 4 for row in rows):
@@ -52,7 +58,7 @@ def closings(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
 
     for row in rows:
         at = tuple((row[name]["lo"] + row[name]["hi"]) / 2 for name in ("rho", "s"))
-        own.plot(*at, "o", markersize=4, color="#1b7837")
+        own.plot(*at, "o", markersize=4, color=COLOURS["coexistence"])
         words = f"{row['p']}/{row['q']}, m = {row['m']}"
         own.annotate(words, at, xytext=(4, 3), textcoords="offset points", fontsize=7)
     own.set_xscale("log")
@@ -72,8 +78,8 @@ def comparison(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     for row in rows:
         at = (row["h1"], row["h2"]) if on_grid else (row["s"], f"{row['p']}/{row['q']}")
         points.setdefault(row["offence"] or "tan criterion", []).append((rounded(at[0]), rounded(at[1])))
-    for offence, where in sorted(points.items()):
-        own.plot(*zip(*where, strict=True), ".", markersize=4, label=offence)
+    for colour, (offence, where) in zip(cycle(FAMILIES), sorted(points.items()), strict=False):
+        own.plot(*zip(*where, strict=True), ".", markersize=4, color=colour, label=offence)
     if points:
         own.legend()
     own.set_xlabel("$h_1$" if on_grid else r"$s = h_1^2 \lambda_1$")
@@ -89,13 +95,13 @@ def rounded(exact: str) -> float:
 def intervals(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """Stretches of the outer step: stable, unstable, not told."""
     own = axes(ax)
-    colours = {"stable": _SAFE, "unstable": _UNSTABLE}
+    colours = {"stable": COLOURS["safe"], "unstable": COLOURS["unstable"]}
     for verdict in dict.fromkeys(row["verdict"] for row in rows):
         parts = [(row["lo"], row["hi"] - row["lo"]) for row in rows if row["verdict"] == verdict]
-        own.broken_barh(parts, (0, 1), color=colours.get(verdict, _BEYOND), label=verdict)
+        own.broken_barh(parts, (0, 1), color=colours.get(verdict, COLOURS["grey"]), label=verdict)
     own.set_yticks([])
     own.set_xlabel("outer step")
-    own.legend()
+    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
     return own
 
 
@@ -104,11 +110,11 @@ def run(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     own, series = axes(ax), document["series"]
     time = np.array([sample["time"] for sample in series])
     amplitude = np.array([sample["amplitude"] for sample in series])
-    own.plot(time, amplitude, color="0.1", linewidth=0.8, label="amplitude")
+    own.plot(time, amplitude, color=FAMILIES[0], linewidth=0.8, label="amplitude")
     rate = document["growth_rate_predicted"]
     if rate:
         predicted = amplitude[-1] * np.exp(rate * (time - time[-1]))
-        own.plot(time, predicted, "--", color="#b2182b", linewidth=0.8, label="predicted growth")
+        own.plot(time, predicted, "--", color=COLOURS["grey"], linewidth=1.2, label="predicted growth")
         own.set_yscale("log")
         own.legend()
     own.set_xlabel("time")
@@ -119,11 +125,8 @@ def run(document: Mapping[str, Any], ax: Axes | None) -> Axes:
 def curves(rows: Sequence[Mapping[str, Any]], ax: Axes | None) -> Axes:
     """One line a family."""
     own = axes(ax)
-    from matplotlib import colormaps
-
-    colours = colormaps["tab10"]
     for (a, _), (h1, h2) in _families(rows).items():
-        own.plot(h1, h2, color=colours(a % 10), linewidth=0.8)
+        own.plot(h1, h2, color=FAMILIES[a % len(FAMILIES)], linewidth=0.8)
     own.set_xlabel("$h_1$")
     own.set_ylabel("$h_2$")
     return own
@@ -139,36 +142,64 @@ def _families(rows: Sequence[Mapping[str, Any]]) -> dict[tuple[int, int], tuple[
     return found
 
 
-def grid(
+def verdicts(
     h1: npt.NDArray[np.float64],
     h2: npt.NDArray[np.float64],
-    values: npt.NDArray[Any],
-    label: str | None,
+    codes: npt.NDArray[np.uint8],
+    names: Sequence[str],
     ax: Axes | None,
 ) -> Axes:
-    """An image of values over the (h1, h2) plane: grey where they are of verdicts, else with a bar of colours."""
+    """An image of verdicts over the (h1, h2) plane: what grows, edges and closings in their colours on white."""
     own = axes(ax)
-    halves = [(x[-1] - x[0]) / max(len(x) - 1, 1) / 2 or 0.5 for x in (h1, h2)]
-    extent = (h1[0] - halves[0], h1[-1] + halves[0], h2[0] - halves[1], h2[-1] + halves[1])
-    colours = "Greys" if label is None else "viridis"
-    image = own.imshow(
-        values.T,
-        origin="lower",
-        extent=extent,
-        aspect="auto",
-        cmap=colours,
-        interpolation="nearest",
-        norm=None if label is None else "log",
-    )
-    own.set_xlabel("$h_1$")
-    own.set_ylabel("$h_2$")
-    if label is not None and own.figure is not None:
-        own.figure.colorbar(image, ax=own, label=label)
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    shown = {"hyperbolic": "exponential growth", "parabolic": "linear growth", "coexistence": "closed tongue"}
+    kinds = ["elliptic", *shown]
+    kind = np.array([kinds.index(name.rstrip("+-")) for name in names])[codes]
+    colours = ListedColormap(["white", *(COLOURS[name] for name in shown)])
+    _image(own, h1, h2, kind, cmap=colours, vmin=-0.5, vmax=3.5)
+    there = {name for number, name in enumerate(kinds) if (kind == number).any()}
+    found = [Patch(color=COLOURS[name], label=words) for name, words in shown.items() if name in there]
+    if found:
+        own.legend(handles=found, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(found), frameon=False)
     return own
 
 
-#: Safe, caution, unstable: from light to dark, as in the program's figures.
-_SAFE, _CAUTION, _UNSTABLE, _BEYOND = "#cfecdf", "#f3b47a", "#b2182b", "0.85"
+def growth(
+    h1: npt.NDArray[np.float64], h2: npt.NDArray[np.float64], rates: npt.NDArray[np.float64], ax: Axes | None
+) -> Axes:
+    """An image of growth rates over the (h1, h2) plane, with a bar of colours."""
+    own = axes(ax)
+    from matplotlib.colors import ListedColormap
+
+    image = _image(own, h1, h2, rates, cmap=ListedColormap(GROWTH), norm="log")
+    if own.figure is not None:
+        own.figure.colorbar(image, ax=own, label="growth rate")
+    return own
+
+
+def _image(
+    own: Axes, h1: npt.NDArray[np.float64], h2: npt.NDArray[np.float64], values: npt.NDArray[Any], **how: Any
+) -> Any:
+    halves = [(x[-1] - x[0]) / max(len(x) - 1, 1) / 2 or 0.5 for x in (h1, h2)]
+    extent = (h1[0] - halves[0], h1[-1] + halves[0], h2[0] - halves[1], h2[-1] + halves[1])
+    own.set_xlabel("$h_1$")
+    own.set_ylabel("$h_2$")
+    return own.imshow(values.T, origin="lower", extent=extent, aspect="auto", interpolation="nearest", **how)
+
+
+_PUBLISHED, _NOT, _PROVEN = "the same, beyond T/3: published drift", "not to be recommended", "unstable, proven"
+
+
+def _bars(own: Axes, place: int, parts: Sequence[tuple[float, float, str]]) -> None:
+    """A row of bars, each kind once in the legend."""
+    colours = {_PUBLISHED: COLOURS["caution"], _NOT: _BEYOND, _PROVEN: COLOURS["unstable"]}
+    for lo, hi, kind in parts:
+        if lo < hi:
+            seen = kind in own.get_legend_handles_labels()[1]
+            colour = colours.get(kind, COLOURS["safe"])
+            own.barh(place, hi - lo, left=lo, color=colour, height=0.68, label="" if seen else kind)
 
 
 def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
@@ -186,16 +217,17 @@ def advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
         third = edge if alone else min(edge, thirds[row["mode"]])
         unstable = {(row[f"{which}_lower"]["lo"], (row[f"{which}_upper"] or {"hi": right})["hi"])
                     for which in _INTERVALS if row[f"{which}_lower"] and (alone or row[f"{which}_upper"])}  # fmt: skip
-        parts = [(0.0, third, _SAFE), (third, edge, _CAUTION), (edge, right, _BEYOND)]
-        for lo, hi, colour in parts + [(*ends, _UNSTABLE) for ends in sorted(unstable)]:
-            own.barh(place, hi - lo, left=lo, color=colour, height=0.68)
-    for step in outer:
-        own.axvline(step, color="0.1", linewidth=0.9)
+        parts = [(0.0, third, "proven stable, all periods in the band"), (third, edge, _PUBLISHED), (edge, right, _NOT)]
+        _bars(own, place, parts + [(*ends, _PROVEN) for ends in sorted(unstable)])
+    for number, step in enumerate(outer):
+        own.axvline(step, color=COLOURS["ink"], linewidth=0.9, label="" if number else "the schemes' steps")
     if schemes[0]["safe"] is not None:
-        own.axvline(float(Fraction(schemes[0]["safe"])), color="#1b7837", linestyle="--", linewidth=0.9)
+        safe = float(Fraction(schemes[0]["safe"]))
+        own.axvline(safe, color=COLOURS["ink"], linestyle="--", linewidth=0.9, label="recommended")
     own.set_yticks(range(len(rows)), [row["mode"] for row in rows])
     own.set_xlim(0, right)
     own.set_xlabel("outer step (fs)")
+    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
     return own
 
 
@@ -205,15 +237,16 @@ def system_advice(document: Mapping[str, Any], ax: Axes | None) -> Axes:
     right = 1.12 * max(max(float(Fraction(row["outer"])), row["first_upper"] or 0.0) for row in rows)
     for place, row in enumerate(rows):
         edge = row["band_edge"] or 0.0
-        parts = [(0.0, edge, _SAFE), (edge, right, _BEYOND)]
-        parts += [] if row["first"] is None else [(row["first"]["lo"], row["first_upper"] or right, _UNSTABLE)]
-        for lo, hi, colour in parts:
-            own.barh(place, hi - lo, left=lo, color=colour, height=0.68)
+        parts = [(0.0, edge, "proven stable, all periods in the band"), (edge, right, _NOT)]
+        parts += [] if row["first"] is None else [(row["first"]["lo"], row["first_upper"] or right, _PROVEN)]
+        _bars(own, place, parts)
         step = float(Fraction(row["outer"]))
-        own.plot([step, step], [place - 0.4, place + 0.4], color="0.1", linewidth=1.2)
+        name = "" if place else "the schemes' steps"
+        own.plot([step, step], [place - 0.4, place + 0.4], color=COLOURS["ink"], linewidth=1.2, label=name)
     own.set_yticks(range(len(rows)), [f"{float(Fraction(row['outer'])):g} fs, {row['status']}" for row in rows])
     own.set_xlim(0, right)
     own.set_xlabel("outer step (fs)")
+    own.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
     return own
 
 
@@ -224,10 +257,10 @@ def multipliers(values: npt.NDArray[np.complex128], ax: Axes | None) -> Axes:
     """Multipliers in the complex plane with the unit circle."""
     own = axes(ax)
     turn = np.linspace(0, 2 * np.pi, 361)
-    own.plot(np.cos(turn), np.sin(turn), color="0.7", linewidth=0.8)
+    own.plot(np.cos(turn), np.sin(turn), color=COLOURS["grey"], linewidth=0.8)
     outside = np.abs(values) > 1 + 1e-9
-    own.plot(values.real[~outside], values.imag[~outside], "o", markersize=3, color="#1b7837")
-    own.plot(values.real[outside], values.imag[outside], "o", markersize=4, color="#b2182b")
+    own.plot(values.real[~outside], values.imag[~outside], "o", markersize=3, color=COLOURS["ink"])
+    own.plot(values.real[outside], values.imag[outside], "o", markersize=4, color=FAMILIES[3])
     own.set_aspect("equal")
     own.set_xlabel("Re")
     own.set_ylabel("Im")

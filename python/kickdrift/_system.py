@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -18,10 +19,11 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked, common
-from kickdrift._document import Document, Table, ask, frame, given
+from kickdrift._document import Document, Frozen, Table, ask, frame, given
 from kickdrift._errors import KickdriftError
+from kickdrift._hessians import Doubles, complement, norm, rigid_motions
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, range_text, text
+from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
 
 if TYPE_CHECKING:
     import pandas
@@ -32,16 +34,16 @@ _FILE, _ARRAYS = "system.json", "arrays.npz"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class System:
+class System(Frozen):
     """Masses and potentials, each with a clock of its own: M x'' + sum of K_k x = 0.
 
     Parameters
     ----------
     document : mapping
-        As in a system file, without ``schema``: ``masses``, ``potentials`` and so on; numbers are exact, a float is
-        that double. Arrays of doubles stand by reference, ``{"npz": "arrays.npz", "array": NAME}``.
+        As in a system file, without ``schema``: ``masses``, ``potentials`` and so on; numbers are exact, a float means
+        what it prints. Arrays of doubles stand by reference, ``{"npz": "arrays.npz", "array": NAME}``.
     arrays : mapping of str to array, optional
-        The arrays referred to.
+        The arrays referred to; read-only copies are kept.
     notes : sequence of str, optional
         What was left out or estimated while the system was made.
 
@@ -60,6 +62,18 @@ class System:
     arrays: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
     notes: Sequence[str] = ()
     _path: Path | None = None
+
+    def __post_init__(self) -> None:
+        own = {name: doubles(name, array) for name, array in self.arrays.items()}
+        object.__setattr__(self, "arrays", MappingProxyType(own))
+
+    @property
+    def accuracy(self) -> float | None:
+        """How well measured Hessians are known, relative to their norms; ``None`` of exact stiffnesses."""
+        potentials = self.document.get("potentials", ())
+        if not any(isinstance(own.get("stiffness"), Mapping) for own in potentials):
+            return None
+        return float(number(self.document.get("accuracy", "1e-6")))
 
     @staticmethod
     def read(path: str | PathLike[str]) -> System:
@@ -97,6 +111,7 @@ class System:
         time_unit: str = "",
         labels: Sequence[str] = (),
         notes: Sequence[str] = (),
+        keep_rigid: bool = False,
     ) -> System:
         """Make a system of measured Hessians.
 
@@ -105,7 +120,8 @@ class System:
         masses : array of doubles, shape (n,) or (n/3,)
             One for each degree of freedom, or for each particle of three.
         potentials : mapping of str to (step, Hessian)
-            A step (Exact, time) and a symmetric matrix of doubles, shape (n, n), energy/length², by name.
+            A step (Exact, or with its unit as ``"0.5fs"``) and a symmetric matrix of doubles, shape (n, n),
+            energy/length², by name.
         positions : array of doubles, shape (n/3, 3), optional
             By which rigid motions are projected out; else the null space of the total is.
         accuracy : float
@@ -114,11 +130,16 @@ class System:
             What the steps are in, as ``"ps"``; answers name it.
         labels : sequence of str, optional
             One for each degree of freedom, or for each particle of three.
+        notes : sequence of str, optional
+            What was left out or estimated: the first warnings of every answer.
+        keep_rigid : bool
+            Project no rigid motions out: there are none, as of atoms among others that stand still.
 
         Raises
         ------
         KickdriftError
-            Shapes that do not fit together, when the system is decided.
+            Masked, complex or infinite entries, a step that is no positive rational; shapes that do not fit together,
+            when the system is decided.
 
         Examples
         --------
@@ -129,18 +150,25 @@ class System:
         >>> system.decide().stable
         True
         """
-        arrays = {"masses": np.asarray(masses, dtype=np.float64)}
-        entries = []
-        for number, (name, (step, hessian)) in enumerate(potentials.items()):
-            arrays[f"hessian{number}"] = np.asarray(hessian, dtype=np.float64)
-            entries.append({"name": name, "step": text("step", step), "stiffness": _at(f"hessian{number}")})
-        named = {"title": title, "time_unit": time_unit, "labels": list(labels)}
-        document: dict[str, Any] = {key: value for key, value in named.items() if value}
-        document |= {"masses": _at("masses"), "accuracy": float(accuracy), "potentials": entries}
+        steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
+        matrices = {name: doubles(name, hessian) for name, (_, hessian) in potentials.items()}
+        arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
-            arrays["positions"] = np.asarray(positions, dtype=np.float64)
-            document["positions"] = _at("positions")
-        return System(MappingProxyType(document), MappingProxyType(arrays), tuple(notes))
+            arrays["positions"] = doubles("positions", positions)
+        document: dict[str, Any] = {"accuracy": float(accuracy)}
+        if not keep_rigid and not _is_of_two_levels(list(steps.values())) and _fit(arrays, matrices):
+            matrices, note = _without_rigid(arrays, matrices, accuracy)
+            arrays, labels, notes, keep_rigid = {}, (), (*notes, note), True
+            document["mass_weighted"] = True
+        document |= {name: _at(name) for name in arrays}
+        named = {"title": title, "time_unit": time_unit, "labels": list(labels), "keep_rigid": keep_rigid}
+        document |= {key: value for key, value in named.items() if value}
+        document["potentials"] = [
+            {"name": name, "step": str(step), "stiffness": _at(f"hessian{place}")}
+            for place, (name, step) in enumerate(steps.items())
+        ]
+        arrays |= {f"hessian{place}": matrix for place, matrix in enumerate(matrices.values())}
+        return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
         """Write ``system.json`` and ``arrays.npz`` to a folder; return the path of the former."""
@@ -167,8 +195,7 @@ class System:
     def _ask(self, command: str, options: Sequence[str], form: str = "json") -> str:
         if self._path is not None:
             return ask([command, str(self._path), *options], form)
-        arrays = {name: np.asarray(own, dtype=np.float64) for name, own in self.arrays.items()}
-        return ask([command, _FILE, *options], form, self._text(), arrays)
+        return ask([command, _FILE, *options], form, self._text(), dict(self.arrays))
 
     def decide(
         self,
@@ -264,12 +291,64 @@ class System:
         """
         with asked(steps, engine) as more:
             options = [*common(band, length), *more]
-            return SystemAdvice(*(self._ask("advise", options, form) for form in ("json", "text")))
+            asked_for = self._ask("advise", options), self._ask("advise", options, "text")
+        warnings = self.decide().warnings
+        return SystemAdvice(asked_for[0], _warned(warnings) + asked_for[1], warnings)
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
         steps = ", ".join(f"{p.get('name', k)}: step {p['step']}" for k, p in enumerate(potentials))
         return f"System({self.document.get('title') or 'untitled'}; {steps or 'built'})"
+
+
+def _warned(warnings: Sequence[str]) -> str:
+    """What comes before an answer's text."""
+    return "".join(f"warning: {note}\n" for note in warnings)
+
+
+def _step(name: str, value: Exact, unit: str) -> Fraction:
+    """A step in the system's unit of time, where it has one."""
+    return duration(f"potentials[{name}]", value, unit, molecular=False)
+
+
+def _is_of_two_levels(steps: Sequence[Fraction]) -> bool:
+    """Whether the library projects rigid motions out itself: one step, or two whose ratio is an integer."""
+    different = sorted(set(steps))
+    return len(different) < 2 or (len(different) == 2 and (different[1] / different[0]).denominator == 1)
+
+
+def _fit(arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles]) -> bool:
+    """Whether the shapes are those of one system; what does not fit is refused where it is decided."""
+    n = len(next(iter(matrices.values()))) if matrices else 0
+    where = arrays.get("positions")
+    square = all(own.shape == (n, n) for own in matrices.values())
+    return square and n > 0 and arrays["masses"].size in (n, n / 3) and (where is None or where.size == n)
+
+
+def _without_rigid(
+    arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles], accuracy: float
+) -> tuple[dict[str, Doubles], str]:
+    """Mass-weighted Hessians without rigid motions: by the positions, else the null space of the total within the
+    accuracy, as the library does for two levels."""
+    n = len(next(iter(matrices.values())))
+    masses = arrays["masses"].ravel()
+    masses = masses if masses.size == n else np.repeat(masses, 3)
+    weighted = {name: own / np.sqrt(np.outer(masses, masses)) for name, own in matrices.items()}
+    where = arrays.get("positions")
+    if where is not None:
+        rigid, by = rigid_motions(where.reshape(-1, 3), masses[::3]), "positions"
+    else:
+        values, vectors = np.linalg.eigh(np.sum(list(weighted.values()), axis=0))
+        least = accuracy * sum(norm(own) for own in weighted.values())
+        rigid, by = vectors[:, np.abs(values) <= least], "null space of the total"
+    kept = complement(rigid)
+    if not rigid.size or not kept.size:
+        return weighted, f"no rigid motions projected out ({by})"
+    projected = {name: kept.T @ own @ kept for name, own in weighted.items()}
+    return (
+        {name: (own + own.T) / 2 for name, own in projected.items()},
+        f"{rigid.shape[1]} rigid motions projected out ({by})",
+    )
 
 
 def _at(name: str) -> dict[str, str]:
@@ -344,7 +423,8 @@ class SystemVerdict(Document):
 
     @property
     def proven(self) -> bool:
-        """False where some part rests on doubles without a bound; a warning says so."""
+        """Whether it is proven for the Hessians given; False where some part rests on doubles without a bound. Warnings
+        say where these are not the Hessians that a run meets."""
         return bool(self.data["proven"])
 
     @property
@@ -377,13 +457,14 @@ class SystemVerdict(Document):
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
-        """The multipliers of one period as far as the document has them, rounded; each beside its inverse."""
+        """The multipliers of one period as far as the document has them, rounded, shape (2k,): k of them, then their
+        inverses."""
         every = [own["lambda"] for part in self.data["parts"] for own in part["multipliers"] or ()]
         values = np.array([complex(own["re"], own["im"]) for own in every], dtype=np.complex128)
-        return np.concatenate([values, 1 / values])
+        return frozen(np.concatenate([values, 1 / values]))
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the multipliers in the complex plane, those off the unit circle red."""
+        """Draw the multipliers in the complex plane, those off the unit circle in another colour."""
         return _plot.multipliers(self.multipliers, ax)
 
     def to_svg(self) -> str:
@@ -398,10 +479,11 @@ class SystemVerdict(Document):
 
     def __repr__(self) -> str:
         words = "stable" if self.stable else f"unstable, growth rate {self.growth_rate:.6g}"
-        return f"SystemVerdict({words}, {self.kind}{'' if self.proven else ', an estimate'})"
+        told = f"; warnings: {len(self.warnings)}" if self.warnings else ""
+        return f"SystemVerdict({words}, {self.kind}{'' if self.proven else ', an estimate'}{told})"
 
     def __str__(self) -> str:
-        return self.system._ask("system", self._options, "text").rstrip()
+        return _warned(self.system.notes) + self.system._ask("system", self._options, "text").rstrip()
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -6,16 +6,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native
-from kickdrift._document import Document
+from kickdrift._document import Document, Frozen
 from kickdrift._errors import KickdriftError, required
 from kickdrift._native import Number
-from kickdrift._numbers import Exact
+from kickdrift._numbers import Exact, frozen
+from kickdrift._plot import COLOURS
 
 if TYPE_CHECKING:
     import pandas
@@ -24,14 +25,15 @@ VERDICTS, TIERS = (tuple(names) for names in _native.names())
 """The seven verdicts by their codes, a kind and the sign of the trace where it is 2 or -2 or beyond; and the three
 tiers of the ladder: doubles with a proven bound, more bits, exact arithmetic."""
 
-_STABLE = np.array([name.startswith(("elliptic", "coexistence")) for name in VERDICTS])
+_STABLE = frozen(np.array([name.startswith(("elliptic", "coexistence")) for name in VERDICTS]))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Verdict:
     """A proven answer about one pair of steps.
 
-    Trace, growth rate and label cost hundreds of verdicts, so they are computed when they are first asked for.
+    Trace, growth rate and label cost hundreds of verdicts, so they are computed when they are first asked for. What is
+    unpickled is decided again.
 
     Examples
     --------
@@ -158,6 +160,15 @@ class Verdict:
     def __hash__(self) -> int:
         return hash(tuple(self._pair.quantities))
 
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Self:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, self._pair.question()
+
     def __repr__(self) -> str:
         words = "stable" if self.stable else "unstable"
         given = ", ".join(f"{name}={getattr(self, name)}" for name in ("lambda1", "lambda2", "h1", "h2"))
@@ -167,8 +178,13 @@ class Verdict:
         return self._pair.render("text").rstrip()
 
     def _repr_html_(self) -> str:
-        colour = "#1b7837" if self.stable else "#b2182b"
+        colour = COLOURS["coexistence" if self.stable else "unstable"]
         return f"<pre style='border-left: 4px solid {colour}; padding-left: 1em'>{self}</pre>"
+
+
+def _again(quantities: list[Number], exact: bool, friction: Number | None, budget: int | None) -> Verdict:
+    lambda1, lambda2, h1, h2 = quantities
+    return Verdict(_native.decide(lambda1, lambda2, h1, h2, exact, friction, budget))
 
 
 def _ends(enclosure: Any) -> tuple[float, float]:
@@ -226,7 +242,7 @@ def decide(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Verdicts:
+class Verdicts(Frozen):
     """The verdicts of many pairs.
 
     Attributes
@@ -252,13 +268,13 @@ class Verdicts:
 
     @property
     def stable(self) -> npt.NDArray[np.bool_]:
-        """Whether each pair is stable."""
-        return _STABLE[self.code]
+        """Whether each pair is stable, shape that of ``code``."""
+        return frozen(np.asarray(_STABLE[self.code]))
 
     @property
     def kind(self) -> npt.NDArray[np.str_]:
-        """The kind of each: elliptic, parabolic, coexistence or hyperbolic."""
-        return np.array([name.rstrip("+-") for name in VERDICTS])[self.code]
+        """The kind of each, shape that of ``code``: elliptic, parabolic, coexistence or hyperbolic."""
+        return frozen(np.asarray(np.array([name.rstrip("+-") for name in VERDICTS])[self.code]))
 
     def to_pandas(self) -> pandas.DataFrame:
         """One row a pair, in the order of the flattened arrays: stable, kind, decided_by."""
@@ -267,7 +283,7 @@ class Verdicts:
             "kind": self.kind.ravel(),
             "decided_by": np.array(TIERS)[self.tier.ravel()],
         }
-        made: pandas.DataFrame = required("pandas", "pandas").DataFrame(columns)
+        made: pandas.DataFrame = required("pandas").DataFrame(columns)
         return made
 
     def __len__(self) -> int:
@@ -287,8 +303,8 @@ def verdicts(
     ----------
     lambda1, lambda2, h1, h2 : Exact, or arrays or nested lists of such
         As for :func:`decide`; arrays broadcast as NumPy's do. Each value is read once, however often it is broadcast.
-        Arrays of doubles mean exactly these doubles: their quotients rarely have short periods, so give integers,
-        Fractions or texts.
+        Floats mean what they print, alone or in arrays of any precision; :func:`exact` gives the doubles themselves,
+        whose quotients rarely have short periods.
     budget : int, optional
         The most kicks that one pair may compose; 10^8 unless given.
     threads : int, optional
@@ -317,13 +333,17 @@ def verdicts(
     except ValueError as error:
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise KickdriftError("lambda1, lambda2, h1, h2", shapes, f"give shapes that broadcast: {error}") from None
-    values = [array.ravel().tolist() for array in arrays]
+    # Floats that are no doubles stay themselves, for as doubles they print other digits.
+    short = [own.dtype.kind == "f" and own.dtype != np.float64 for own in arrays]
+    values = [list(own.ravel()) if odd else own.ravel().tolist() for own, odd in zip(arrays, short, strict=True)]
     positions = [_positions(array, shape) for array in arrays]
     code, tier = _native.verdicts(values, positions, budget, threads or 0)
-    return Verdicts(code.reshape(shape), tier.reshape(shape))
+    return Verdicts(frozen(code.reshape(shape)), frozen(tier.reshape(shape)))
 
 
 def _array(field: str, value: Any) -> npt.NDArray[Any]:
+    if np.ma.is_masked(value):
+        raise KickdriftError(field, "masked entries", "fill them or leave them out: every entry counts")
     if isinstance(value, np.ndarray):
         return value
     # Texts and Fractions stay what they are.

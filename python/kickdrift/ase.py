@@ -1,6 +1,6 @@
 """Systems of ASE: one calculator for each group of forces.
 
-Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, exact.
+Units: lengths in Å, energies in eV, masses in u as ASE has them; steps in fs, exact, or with their unit, ``"0.004ps"``.
 """
 
 from __future__ import annotations
@@ -12,14 +12,28 @@ from typing import Any
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
-from kickdrift._hessians import Doubles, Force, Monodromy, Progress, hessian, minimum, monodromy, norm, shown
-from kickdrift._numbers import Exact, number
+from kickdrift._hessians import (
+    Doubles,
+    Force,
+    Monodromy,
+    Progress,
+    complement,
+    hessian,
+    is_held,
+    minimum,
+    monodromy,
+    rigid_motions,
+    seen,
+    shown,
+    unbalanced,
+)
+from kickdrift._numbers import Exact, doubles, duration
 from kickdrift._system import System
 
 try:
     from ase import Atoms, units
 except ImportError:
-    raise needs("ase", "ase") from None
+    raise needs("ase") from None
 
 #: The difference of positions, Å.
 DIFFERENCE = 1e-3
@@ -40,7 +54,7 @@ def system(
     atoms : ase.Atoms
         Not changed; constraints of ASE's are an error.
     groups : mapping of str to (calculator, step)
-        The forces, and how often each is integrated, in fs exactly.
+        The forces, and how often each is integrated: a number of fs, exactly, or a text with its unit.
     minimize : bool
         Go to the minimum beside the positions first, by Newton's method.
     difference : float
@@ -51,12 +65,15 @@ def system(
     Returns
     -------
     System
-        In fs; its ``accuracy`` is the largest estimated error of a Hessian over its norm.
+        In fs; its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` say whether the
+        groups' own forces vanish at the positions: where they do not, a run is not about them. Rigid motions are
+        projected out, in a periodic cell translations alone.
 
     Raises
     ------
     KickdriftError
-        No group, a step that is not positive, constraints, positions that are near no minimum.
+        No group, a step that is not positive, constraints, positions that are near no minimum, Hessians known too badly
+        for any verdict.
 
     Examples
     --------
@@ -69,24 +86,36 @@ def system(
     """
     forces, steps, masses = _forces(atoms, groups)
     where = _start(atoms, forces, masses, minimize, difference)
+    seen_by = shown(progress)
+    measured = {name: hessian(force, where, masses, difference, None, seen_by) for name, force in forces.items()}
+    accuracy = max(seen(*own, name, f"{difference:g} Å") for name, own in measured.items())
+    pulls = {name: force(where) / units.fs**2 for name, force in forces.items()}
+    total = np.sum([matrix for matrix, _ in measured.values()], axis=0) / units.fs**2
+    follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
+    notes = unbalanced(pulls, total, masses, "eV/Å", follow)
+    # A periodic cell has no rotations: its translations are projected out here, rigid motions in the open by positions.
+    moved = rigid_motions(where, masses, rotations=False)
+    held = is_held(total * units.fs**2, moved, sum(error for _, error in measured.values()))
+    periodic = bool(atoms.pbc.any()) and not held
+    kept = complement(moved) if periodic else np.eye(where.size)
+    weights = np.ones(kept.shape[1]) if periodic else masses
+    root = np.sqrt(weights if periodic else np.repeat(masses, 3))
+    if periodic:
+        notes.append("3 rigid motions projected out (box)")
     potentials: dict[str, tuple[Exact, Doubles]] = {}
-    accuracy, root = 0.0, np.sqrt(np.repeat(masses, 3))
-    for (name, force), step in zip(forces.items(), steps, strict=True):
-        matrix, error = hessian(force, where, masses, difference, None, shown(progress))
-        accuracy = max(accuracy, error / max(norm(matrix), 1e-300))
-        potentials[name] = (step, matrix * np.outer(root, root))
-    # A periodic cell has no rotations: there the null space of the total tells what is rigid.
-    free = None if atoms.pbc.any() else where
-    accuracy = min(max(accuracy, 1e-12), 0.09)
-    title = f"{len(atoms)} atoms, fs and Å"
+    for (name, (matrix, _)), step in zip(measured.items(), steps, strict=True):
+        own = kept.T @ matrix @ kept
+        potentials[name] = (step, (own + own.T) / 2 * np.outer(root, root))
     return System.from_hessians(
-        masses,
+        weights,
         potentials,
-        positions=free,
+        positions=None if periodic or held else where,
         accuracy=accuracy,
-        title=title,
+        title=f"{len(atoms)} atoms, fs and Å",
         time_unit="fs",
-        labels=[f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
+        labels=() if periodic else [f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
+        notes=notes,
+        keep_rigid=periodic or held,
     )
 
 
@@ -127,11 +156,8 @@ def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[s
         raise KickdriftError("atoms", f"{len(atoms.constraints)} constraints", "constraints are not handled here")
     forces, steps = {}, []
     for name, (calculator, step) in groups.items():
-        own = number(step).fraction
-        if own <= 0:
-            raise KickdriftError(f"groups[{name}]", str(step), "a step must be positive")
         forces[name] = _force(atoms, calculator)
-        steps.append(own)
+        steps.append(duration(f"groups[{name}]", step, "fs"))
     # From eV to u Å²/fs².
     return forces, steps, np.asarray(atoms.get_masses(), dtype=np.float64)
 
@@ -150,7 +176,7 @@ def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
 
 
 def _start(atoms: Any, forces: Mapping[str, Force], masses: Doubles, minimize: bool, difference: float) -> Doubles:
-    where = np.array(atoms.positions, dtype=np.float64)
+    where = doubles("atoms", atoms.positions)
     if not minimize:
         return where
     every = list(forces.values())

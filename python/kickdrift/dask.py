@@ -36,7 +36,7 @@ try:
     import xarray
     import zarr
 except ImportError:
-    raise needs("zarr and xarray", "dask") from None
+    raise needs("dask", "xarray", "zarr") from None
 
 #: About as many pairs make a task: some tenths of a second.
 PAIRS = 1 << 18

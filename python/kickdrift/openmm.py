@@ -1,7 +1,8 @@
 """Systems of OpenMM: its force groups, masses and integrators, as they are run.
 
-Units: lengths in nm, times in ps, energies in kJ/mol, so stiffness over mass is 1/ps². A step is exact: a number of ps,
-or a quantity of OpenMM, which is read as it is printed (4.4 fs is 22/5 fs, whatever the double).
+Units: lengths in nm, times in ps, energies in kJ/mol, so stiffness over mass is 1/ps². A step is exact: a text with its
+unit as ``"0.5fs"``, a quantity of OpenMM, which is read as it is printed (4.4 fs is 22/5 fs, whatever the double), or a
+number of ps. Of an integrator's step, a double, the simplest rational is taken that rounding makes it of.
 
 What decides is the dynamics of small deviations. Friction and noise of Langevin integrators, barostats and thermostats
 are left out, and ``notes`` say so.
@@ -12,7 +13,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
@@ -25,25 +25,32 @@ from kickdrift._hessians import (
     Monodromy,
     Progress,
     arrived,
+    complement,
     descend,
     hessian,
+    is_held,
     minimum,
     monodromy,
-    norm,
+    rigid_motions,
+    seen,
     shown,
     soft_solve,
+    unbalanced,
 )
-from kickdrift._numbers import Exact, number
+from kickdrift._numbers import Exact, doubles, duration, rational, simplest
 from kickdrift._system import System
 
 try:
     import openmm as mm
     from openmm import unit
 except ImportError:
-    raise needs("openmm", "openmm") from None
+    raise needs("openmm") from None
 
 #: The difference of positions, nm: force fields are smooth on this length.
 DIFFERENCE = 1e-4
+
+
+_Constraint = tuple[int, int, float]
 
 
 @dataclass(frozen=True)
@@ -86,7 +93,8 @@ def system(
     integrator : openmm.Integrator, optional
         Verlet, MTSIntegrator or their Langevin kin; or instead
     steps : mapping of int to step, optional
-        The step of each force group: ps exactly, or a quantity.
+        The step of each force group: ``"0.5fs"``, a quantity, or a number of ps. The reciprocal space of a
+        NonbondedForce has a group of its own where its ``setReciprocalSpaceForceGroup`` says so.
     atoms : sequence of int, optional
         Only the Hessians of these atoms; all others stand still.
     minimize : bool
@@ -99,13 +107,17 @@ def system(
     Returns
     -------
     System
-        Its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` say what is left out.
-        Constraints are met by RATTLE: deviations along them are projected out, the curvature they bring is kept.
+        Its ``accuracy`` is the largest estimated error of a Hessian over its norm, its ``notes`` say what is left out,
+        and whether the groups' own forces vanish at the positions: where they do not, a run is not about them.
+        Constraints are met by RATTLE: deviations along them are projected out, the curvature they bring is kept. Rigid
+        motions are projected out: translations and rotations, in a periodic box translations alone, none among atoms
+        that stand still or in an outer field.
 
     Raises
     ------
     KickdriftError
-        Groups that are never integrated, massless particles, positions that are near no minimum.
+        Groups that are never integrated, steps of groups without a force, numbers of ps that no molecule bears,
+        massless particles, positions that are near no minimum, Hessians known too badly for any verdict.
 
     Examples
     --------
@@ -125,42 +137,108 @@ def system(
     """
     clocks = _clocks(system, integrator, steps)
     engine = _engine(system)
-    notes = _notes(system, integrator)
     where = _positions(positions, engine.count)
     constraints = _constraints(system)
     if minimize:
-        where = _minimized(system, engine, where, constraints, difference)
+        where = _minimized(engine, where, constraints, difference)
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
     frame = _frame(where, engine.masses, constraints, chosen)
-    potentials: dict[str, tuple[Exact, Doubles]] = {}
-    accuracy = 0.0
-    for step, groups in _levels(clocks).items():
-        force = engine.force(sum(1 << group for group in groups))
-        matrix, error = hessian(force, where, engine.masses, difference, chosen, shown(progress))
-        if constraints:
-            matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
-        matrix = frame.T @ matrix @ frame
-        accuracy = max(accuracy, error / max(norm(matrix), 1e-300))
-        potentials[", ".join(f"group {group}" for group in groups)] = (step, (matrix + matrix.T) / 2)
-    free = not constraints and chosen is None and not system.usesPeriodicBoundaryConditions()
+    measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
+    notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
+    accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
+    moved = _rigid(system, where, engine.masses, frame, measured) if chosen is None else np.empty((len(frame.T), 0))
     if chosen is not None:
         notes.append(f"only {len(atoms or ())} of {engine.count} atoms move")
-    masses = engine.masses if free else np.ones(frame.shape[1])
-    if free:
-        root = np.sqrt(np.repeat(masses, 3))
-        potentials = {name: (step, own * np.outer(root, root)) for name, (step, own) in potentials.items()}
+    # In their own coordinates where nothing is projected out here: answers name the atoms then.
+    plain = not constraints and chosen is None and moved.shape[1] != _TRANSLATIONS
+    kept = np.eye(len(moved)) if plain else complement(moved)
+    if not plain and moved.size:
+        notes.append(f"{moved.shape[1]} rigid motions projected out ({'box' if moved.shape[1] == 3 else 'positions'})")
+    masses = engine.masses if plain else np.ones(kept.shape[1])
+    root = np.sqrt(np.repeat(masses, 3) if plain else masses)
+    potentials: dict[str, tuple[Exact, Doubles]] = {}
+    for own in measured:
+        matrix = kept.T @ own.matrix @ kept
+        potentials[own.name] = (own.step, (matrix + matrix.T) / 2 * np.outer(root, root))
     return System.from_hessians(
         masses,
         potentials,
-        positions=where if free else None,
-        accuracy=min(max(accuracy, 1e-12), 0.09),
+        positions=where if plain and moved.size else None,
+        accuracy=accuracy,
         title=f"{engine.count} particles, ps and nm",
         time_unit="ps",
-        labels=[f"atom {n}" for n in range(engine.count)] if free else (),
+        labels=[f"atom {n}" for n in range(engine.count)] if plain else (),
         notes=notes,
+        keep_rigid=not (plain and moved.size),
     )
+
+
+#: The rigid motions of a periodic box.
+_TRANSLATIONS = 3
+
+
+@dataclass(frozen=True)
+class _Level:
+    """The groups of one step: their mass-weighted Hessian on what the constraints allow, its error, and their force."""
+
+    name: str
+    step: Fraction
+    matrix: Doubles
+    error: float
+    force: Doubles
+
+
+def _measured(
+    engine: _Engine,
+    clocks: Mapping[int, Fraction],
+    at: tuple[Doubles, Sequence[_Constraint], Sequence[int] | None],
+    frame: Doubles,
+    difference: float,
+    progress: Progress | None,
+) -> list[_Level]:
+    where, constraints, chosen = at
+    found = []
+    for step, groups in _levels(clocks).items():
+        force = engine.force(sum(1 << group for group in groups))
+        matrix, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        if constraints:
+            matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
+        matrix = frame.T @ matrix @ frame
+        name = ", ".join(f"group {group}" for group in groups)
+        found.append(_Level(name, step, (matrix + matrix.T) / 2, error, force(where)))
+    return found
+
+
+def _unbalanced(
+    masses: Doubles,
+    measured: Sequence[_Level],
+    frame: Doubles,
+    chosen: Sequence[int] | None,
+    constraints: Sequence[_Constraint],
+) -> list[str]:
+    kept = np.arange(3 * len(masses)) if chosen is None else np.asarray(chosen)
+    root = np.sqrt(np.repeat(masses, 3))[kept]
+    # What constraints take up moves nothing.
+    along = {own.name: (frame @ (frame.T @ (own.force.ravel()[kept] / root)) * root).reshape(-1, 3) for own in measured}
+    total = np.sum([own.matrix for own in measured], axis=0)
+    follow = "Its orbit is not known: those of constrained systems are not followed"
+    if not constraints:
+        follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
+    return unbalanced(along, total, masses[kept[::3] // 3], "kJ/mol/nm", follow)
+
+
+def _rigid(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> Doubles:
+    """The rigid motions along the frame: none in an outer field, translations alone in a periodic box."""
+    periodic = system.usesPeriodicBoundaryConditions()
+    moved = np.asarray(frame.T @ rigid_motions(where, masses, rotations=not periodic))
+    total = np.sum([own.matrix for own in measured], axis=0)
+    error = sum(own.error for own in measured)
+    field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
+    # The mesh of a box's Ewald sum knows places, a little.
+    held = field or (not periodic and is_held(total, moved[:, :_TRANSLATIONS], error))
+    return moved[:, :0] if held else moved
 
 
 def oscillations(
@@ -212,7 +290,7 @@ def oscillations(
     engine = _engine(system)
     where = _positions(positions, engine.count)
     if minimize:
-        where = _minimized(system, engine, where, [], difference)
+        where = _minimized(engine, where, [], difference)
     levels = _levels(clocks)
     forces = {str(groups): engine.force(sum(1 << group for group in groups)) for groups in levels.values()}
     return monodromy(forces, list(levels), where, engine.masses, difference, about)
@@ -230,14 +308,33 @@ def _clocks(system: Any, integrator: Any, steps: Mapping[int, Any] | None) -> di
     """The step of each force group, ps; all groups of the system are there."""
     if (steps is None) == (integrator is None):
         raise KickdriftError("steps", "both" if steps is not None else None, "give either steps or an integrator")
-    groups = {force.getForceGroup() for force in system.getForces() if not _moves_nothing(force)}
-    clocks = _of_integrator(integrator, groups) if steps is None else {g: _step(g, own) for g, own in steps.items()}
-    missing = sorted(groups - clocks.keys())
+    acting = _acting(system)
+    if steps is None:
+        clocks = _of_integrator(integrator, set(acting))
+    else:
+        clocks = {group: duration(f"steps[{group}]", _plain(own), "ps") for group, own in steps.items()}
+    missing = sorted(acting.keys() - clocks.keys())
     if missing:
-        names = [force.getName() for force in system.getForces() if force.getForceGroup() in missing]
-        remedy = f"is never integrated ({', '.join(names)}): give it a step"
+        remedy = f"is never integrated ({', '.join(acting[missing[0]])}): give it a step"
         raise KickdriftError("steps", f"group {missing[0]}", remedy)
-    return {group: step for group, step in clocks.items() if group in groups}
+    idle = sorted(clocks.keys() - acting.keys())
+    if idle and steps is not None:
+        there = ", ".join(str(group) for group in sorted(acting))
+        raise KickdriftError("steps", f"group {idle[0]}", f"has no force: forces are in {there}; leave its step out")
+    return {group: step for group, step in clocks.items() if group in acting}
+
+
+def _acting(system: Any) -> dict[int, list[str]]:
+    """The names of the forces by group; the reciprocal space of an Ewald sum has one of its own where it is set."""
+    acting: dict[int, list[str]] = {}
+    for force in system.getForces():
+        if _moves_nothing(force):
+            continue
+        acting.setdefault(force.getForceGroup(), []).append(force.getName())
+        own = getattr(force, "getReciprocalSpaceForceGroup", lambda: -1)()
+        if own >= 0 and force.getNonbondedMethod() in (force.Ewald, force.PME, force.LJPME):
+            acting.setdefault(own, []).append(f"reciprocal space of {force.getName()}")
+    return acting
 
 
 def _moves_nothing(force: Any) -> bool:
@@ -248,16 +345,12 @@ def _is_bath(force: Any) -> bool:
     return "Barostat" in type(force).__name__ or isinstance(force, mm.AndersenThermostat)
 
 
-def _step(group: int, value: Any) -> Fraction:
-    field = f"steps[{group}]"
-    if unit.is_quantity(value):
-        factor = value.unit.conversion_factor_to(unit.picosecond)
-        step = Fraction(repr(float(value._value))) * Fraction(repr(float(factor)))
-    else:
-        step = number(value).fraction
-    if step <= 0:
-        raise KickdriftError(field, str(value), "a step must be positive")
-    return step
+def _plain(value: Any) -> Exact:
+    """A quantity as a text in ps: its number as it prints, and the unit's factor, a power of ten or near one."""
+    if not unit.is_quantity(value):
+        return value
+    factor = simplest(value.unit.conversion_factor_to(unit.picosecond))
+    return f"{rational('steps', value._value) * factor}ps"
 
 
 #: How OpenMM's multiple-time-step integrators write a kick of group G, N times a step.
@@ -265,7 +358,7 @@ _KICK = re.compile(r"v\+(?P<half>0?\.5\*)?\(?dt(?:/(?P<parts>\d+))?\)?\*f(?P<gro
 
 
 def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
-    step = Fraction(Decimal(repr(float(integrator.getStepSize()._value))))
+    step = simplest(integrator.getStepSize()._value)
     plain = (mm.VerletIntegrator, mm.LangevinIntegrator, mm.LangevinMiddleIntegrator)
     if isinstance(integrator, plain):
         mask = integrator.getIntegrationForceGroups()
@@ -298,14 +391,17 @@ def _engine(system: Any) -> _Engine:
 
 def _positions(positions: Any, count: int) -> Doubles:
     own = positions.value_in_unit(unit.nanometer) if unit.is_quantity(positions) else positions
-    array = np.array([[float(x) for x in row] for row in own], dtype=np.float64)
+    array = doubles("positions", own if isinstance(own, np.ndarray) else [list(row) for row in own])
     if array.shape != (count, 3):
         raise KickdriftError("positions", f"shape {array.shape}", f"give shape ({count}, 3)")
     return array
 
 
-def _notes(system: Any, integrator: Any) -> list[str]:
+def _notes(system: Any, integrator: Any, clocks: Mapping[int, Fraction]) -> list[str]:
     notes = [f"{force.getName()} is left out" for force in system.getForces() if _is_bath(force)]
+    if integrator is not None:
+        idle = sorted(_of_integrator(integrator, set(clocks)).keys() - clocks.keys())
+        notes += [f"group {group} of the integrator has no force" for group in idle]
     if integrator is not None and "Langevin" in type(integrator).__name__:
         notes.append("friction and noise of the integrator are left out")
     if system.getNumConstraints():
@@ -315,16 +411,13 @@ def _notes(system: Any, integrator: Any) -> list[str]:
     return notes
 
 
-_Constraint = tuple[int, int, float]
-
-
 def _constraints(system: Any) -> list[_Constraint]:
     every = (system.getConstraintParameters(n) for n in range(system.getNumConstraints()))
     return [(i, j, float(distance._value)) for i, j, distance in every]
 
 
 def _minimized(
-    system: Any, engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float
+    engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float
 ) -> Doubles:
     """The minimum in the engine's own context: the system given and its contexts stay as they are."""
     engine.context.setPositions(where)
@@ -332,8 +425,7 @@ def _minimized(
     near = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
     if constraints:
         return _constrained_minimum(engine, near, constraints, difference)
-    groups = {force.getForceGroup() for force in system.getForces()}
-    return minimum(engine.force(sum(1 << group for group in groups)), near, engine.masses, difference)
+    return minimum(engine.force(-1), near, engine.masses, difference)
 
 
 def _constrained_minimum(

@@ -9,6 +9,7 @@ mod number;
 mod page;
 mod pair;
 mod pairs;
+mod palette;
 mod program;
 
 /// The native half of the package `kickdrift`.
@@ -24,6 +25,8 @@ mod _native {
     use crate::pair::{Pair, decide};
     #[pymodule_export]
     use crate::pairs::{names, verdicts};
+    #[pymodule_export]
+    use crate::palette::palette;
     #[pymodule_export]
     use crate::program::{answer, main, recheck};
 }

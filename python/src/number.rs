@@ -85,7 +85,7 @@ pub fn number(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Number> {
     quantity(field, value).map(Number)
 }
 
-/// What a value of Python denotes, exactly; a double is the number that it is to its last bit.
+/// What a value of Python denotes, exactly; a float is the number that it prints, its shortest decimal.
 pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
     let py = value.py();
     if let Ok(number) = value.cast::<Number>() {
@@ -98,8 +98,11 @@ pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
         return Err(unknown(field, value));
     }
     if let Ok(double) = value.cast::<PyFloat>() {
-        let finite = Laurent::try_from(double.value());
-        return finite.map_err(|_| refused(py, field, double.to_string(), "must be finite"));
+        // Of a double of Python's own: those of NumPy's print their type too. (Rust breaks ties the other way.)
+        return printed(field, value, &PyFloat::new(py, double.value()).str()?.to_string_lossy());
+    }
+    if is_rounded(value) {
+        return printed(field, value, &value.str()?.to_string_lossy());
     }
     if let Ok(integer) = value.cast::<PyInt>() {
         return bounded(field, value, Rational::from_integer(integer.extract()?));
@@ -126,6 +129,21 @@ pub fn quantity(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Laurent> {
 pub fn rational(field: &str, value: &Bound<'_, PyAny>) -> PyResult<Rational> {
     let exact = quantity(field, value)?;
     exact.as_rational().ok_or_else(|| refused(value.py(), field, exact.to_string(), "must be rational"))
+}
+
+/// The shortest decimal of a float, as it prints.
+fn printed(field: &str, value: &Bound<'_, PyAny>, digits: &str) -> PyResult<Laurent> {
+    if digits.contains(['n', 'N']) {
+        return Err(refused(value.py(), field, value.to_string(), "must be finite"));
+    }
+    read(field, digits)
+}
+
+/// A float of NumPy's that is no double: float16, float32, longdouble.
+fn is_rounded(value: &Bound<'_, PyAny>) -> bool {
+    let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind"));
+    let is_scalar = value.getattr("ndim").is_ok_and(|ndim| ndim.eq(0).unwrap_or(false));
+    is_scalar && kind.is_ok_and(|kind| kind.eq("f").unwrap_or(false))
 }
 
 /// Text; powers as Python writes them, too.
@@ -168,6 +186,6 @@ fn of_sympy(value: &Bound<'_, PyAny>) -> bool {
 fn unknown(field: &str, value: &Bound<'_, PyAny>) -> PyErr {
     let shown = value.repr().map_or_else(|_| "?".into(), |text| text.to_string());
     let remedy = "give an int, a Fraction, a Decimal, a text such as 'pi^2/25', a SymPy number, or a float, which means \
-                  exactly that double";
+                  what it prints";
     refused(value.py(), field, shown, remedy)
 }

@@ -42,6 +42,7 @@ pub struct Pair {
     found: Found,
     exact: bool,
     friction: Option<Rational>,
+    budget: Option<u64>,
 }
 
 /// Decides one pair of steps.
@@ -70,7 +71,7 @@ pub fn decide(
             Some(rational) => Found::Rational(decide_from(first, &rational, &limits)?),
             None => Found::Pi(decide_from(first, &clocks, &limits)?),
         };
-        Ok(Pair { oscillator, found, exact, friction })
+        Ok(Pair { oscillator, found, exact, friction, budget })
     })
 }
 
@@ -111,6 +112,12 @@ impl Pair {
     fn quantities(&self) -> [Number; 5] {
         let own = &self.oscillator;
         [own.lambda1(), own.lambda2(), own.h1(), own.h2(), &own.period()].map(|x| Number(x.clone()))
+    }
+
+    /// What `decide` is called with for the same pair: a copy is decided again.
+    fn question(&self) -> (Vec<Number>, bool, Option<Number>, Option<u64>) {
+        let friction = self.friction.clone().map(|rate| Number(Laurent::from_rational(rate)));
+        (self.quantities()[..4].to_vec(), self.exact, friction, self.budget)
     }
 
     /// The document in one of its forms: json, csv, latex or text.

@@ -54,7 +54,7 @@ def test_copper_is_stable_at_five_and_not_at_fifty() -> None:
 
 
 @pytest.mark.parametrize(
-    ("groups", "field"), [({}, "groups"), ({"all": (EMT(), 0)}, "groups[all]"), ({"all": (EMT(), "x")}, "number")]
+    ("groups", "field"), [({}, "groups"), ({"all": (EMT(), 0)}, "groups[all]"), ({"all": (EMT(), "x")}, "groups[all]")]
 )
 def test_bad_groups_are_refused(groups: dict, field: str) -> None:
     with pytest.raises(kd.KickdriftError) as caught:
@@ -70,3 +70,46 @@ def test_constraints_and_far_positions_are_refused() -> None:
     with pytest.raises(kd.KickdriftError, match="minimum"):
         ka.system(far, {"all": (EMT(), 5)})
     assert np.allclose(ka.system(far, {"all": (EMT(), 5)}, minimize=False).arrays["positions"], far.positions)
+
+
+class Pair(Calculator):
+    """Two atoms and the spring between them, eV/Å², of some length."""
+
+    implemented_properties = ("energy", "forces")
+
+    def __init__(self, stiffness: float, length: float) -> None:
+        super().__init__()
+        self.spring = stiffness, length
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes) -> None:
+        super().calculate(atoms, properties, system_changes)
+        stiffness, length = self.spring
+        apart = self.atoms.positions[1] - self.atoms.positions[0]
+        long = np.linalg.norm(apart)
+        pull = stiffness * (long - length) * apart / long
+        self.results = {"energy": stiffness / 2 * (long - length) ** 2, "forces": np.array([pull, -pull])}
+
+
+def test_groups_that_pull_against_each_other_are_told_of() -> None:
+    atoms = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]])
+    at_rest = ka.system(atoms, {"fast": (Pair(30, 1.0), "0.25fs"), "slow": (Pair(1, 1.0), "0.001ps")})
+    measured = at_rest.decide().measured
+    assert at_rest.notes == () and measured is not None and measured["rigid_motions"]["count"] == 5
+    against = ka.system(atoms, {"fast": (Pair(30, 1.0), 0.25), "slow": (Pair(1, 1.5), 1)})
+    assert "fast and of slow do not vanish" in against.notes[0] and "eV/Å" in against.notes[0]
+    assert against.document["potentials"][0]["step"] == "1/4"
+
+
+def test_a_cell_has_three_rigid_motions_and_a_field_none() -> None:
+    cell = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]], cell=[5, 5, 5], pbc=True)
+    found = ka.system(cell, {"fast": (Pair(30, 1.0), "1/4"), "slow": (Pair(1, 1.0), 1)})
+    assert found.notes == ("3 rigid motions projected out (box)",)
+    assert found.decide().data["degrees_of_freedom"] == 3
+    field = {"fast": (Springs(30), "1/4"), "slow": (Springs(1), 1)}
+    measured = ka.system(ase.Atoms("H2", np.eye(2, 3)), field).decide().measured
+    assert measured is not None and measured["rigid_motions"] is None
+
+
+def test_a_number_of_fs_that_no_molecule_bears_asks_for_a_unit() -> None:
+    with pytest.raises(kd.KickdriftError, match="name the unit"):
+        ka.system(ase.Atoms("Cu2", [[0, 0, 0], [2.2, 0, 0]]), {"all": (EMT(), 500)})

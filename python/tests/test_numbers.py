@@ -18,8 +18,29 @@ import kickdrift as kd
 def test_a_tenth_is_what_its_type_says() -> None:
     tenth = Fraction(1, 10)
     assert kd.number("0.1").fraction == kd.number(Decimal("0.1")).fraction == kd.number(tenth).fraction == tenth
-    assert kd.number(0.1).fraction == Fraction(0.1) != tenth
-    assert kd.number(np.float32(0.1)).fraction == Fraction(float(np.float32(0.1)))
+    for kind in (float, np.float64, np.float32, np.float16, np.longdouble):
+        assert kd.number(kind("0.1")).fraction == tenth
+    assert kd.number(np.array(0.1)).fraction == tenth and kd.number(1e22).fraction == 10**22
+    assert kd.number(5e-324).fraction == Fraction(5, 10**324) and kd.number(-0.0).fraction == 0
+
+
+def test_a_double_to_its_last_bit_is_asked_for() -> None:
+    assert kd.exact(0.1).fraction == Fraction(0.1) != Fraction(1, 10)
+    assert kd.exact(np.float32(0.1)).fraction == Fraction(float(np.float32(0.1)))
+    for value in (math.nan, math.inf, "0.1"):
+        with pytest.raises(kd.KickdriftError):
+            kd.exact(value)  # type: ignore[arg-type]
+
+
+def test_a_step_as_a_float_makes_the_grid_of_its_decimal() -> None:
+    question = {"lambda1": 1, "lambda2": 1, "h1": (0.02, 0.56), "h2": ("1/50", "1/25")}
+    floats, texts = kd.map(step=0.02, **question), kd.map(step="1/50", **question)
+    assert floats.verdict.shape == texts.verdict.shape == (28, 2)
+    assert floats.to_json() == texts.to_json()
+    steps = np.array([0.02, 0.3, 0.7])
+    for kind in (np.float64, np.float32):
+        found = kd.verdicts(lambda1=10, lambda2=1, h1=steps.astype(kind), h2=2, budget=10_000)
+        assert (found.code == kd.verdicts(lambda1=10, lambda2=1, h1=["1/50", "3/10", "7/10"], h2=2).code).all()
 
 
 def random_numbers(kind: str) -> list[object]:
@@ -47,8 +68,7 @@ def random_numbers(kind: str) -> list[object]:
 def test_a_thousand_random_values_of_each_kind_round_trip(kind: str) -> None:
     for value in random_numbers(kind):
         number = kd.number(value)
-        ratio = value.as_integer_ratio() if hasattr(value, "as_integer_ratio") else (value,)
-        exact = Fraction(*(int(part) for part in ratio)) if len(ratio) == 2 else Fraction(str(value))
+        exact = Fraction(str(value))
         assert number.fraction == exact
         assert kd.number(str(number)) == number == kd.number(number.fraction) == pickle.loads(pickle.dumps(number))
         if kind == "float":

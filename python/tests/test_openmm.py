@@ -48,7 +48,7 @@ def waters(rigid: bool = False) -> tuple[mm.System, np.ndarray]:
     if rigid:
         return system, positions
     engine = ko._engine(system)
-    return system, ko._minimized(system, engine, positions, [], ko.DIFFERENCE)
+    return system, ko._minimized(engine, positions, [], ko.DIFFERENCE)
 
 
 def levels(outer: Fraction) -> tuple[dict[int, Fraction], int]:
@@ -269,7 +269,7 @@ def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
     # The measured map on the constraint manifold: a deviation along a mode comes back with cos(angle) of itself.
     engine = ko._engine(system)
     constraints = ko._constraints(system)
-    rest = ko._minimized(system, engine, positions, constraints, ko.DIFFERENCE)
+    rest = ko._minimized(engine, positions, constraints, ko.DIFFERENCE)
     frame = ko._frame(rest, engine.masses, constraints, None)
     root = np.sqrt(np.repeat(engine.masses, 3))
     force = engine.force(-1)
@@ -310,3 +310,141 @@ def test_some_atoms_of_many(capsys: pytest.CaptureFixture[str]) -> None:
     assert found.decide().data["degrees_of_freedom"] == 9
     ko.system(*bonds(1), steps={0: "1/2000", 1: "1/500"}, atoms=[0], progress=True)
     assert capsys.readouterr().err.count("3 of 3 columns\n") == 2
+
+
+@cache
+def box(side: int = 3) -> tuple[mm.System, np.ndarray]:
+    """Flexible waters on a grid in a periodic box with PME: bonds and angles, the rest, reciprocal space."""
+    pdb = app.PDBFile(str(Path(app.__file__).parent / "data" / "tip3p.pdb"))
+    field = app.ForceField("tip3p.xml")
+    topology = app.Topology()
+    topology.setUnitCellDimensions(mm.Vec3(0.31, 0.31, 0.31) * side)
+    every = np.array(pdb.positions.value_in_unit(unit.nanometer)).reshape(-1, 3, 3)[: side**3]
+    places = 0.31 * np.indices((side, side, side)).reshape(3, -1).T
+    chain = topology.addChain()
+    for _ in places:
+        residue = topology.addResidue("HOH", chain)
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1])
+        topology.addBond(atoms[0], atoms[2])
+    system = field.createSystem(
+        topology, nonbondedMethod=app.PME, nonbondedCutoff=0.15 * side, rigidWater=False, removeCMMotion=False
+    )
+    groups(system)
+    for force in system.getForces():
+        if isinstance(force, mm.NonbondedForce):
+            force.setReciprocalSpaceForceGroup(2)
+    positions = every - every[:, :1] + places[:, None]
+    return system, positions.reshape(-1, 3)
+
+
+def test_reciprocal_space_has_a_group_and_needs_a_step() -> None:
+    system, positions = box(2)
+    with pytest.raises(kd.KickdriftError, match="never integrated") as caught:
+        ko.system(system, positions, steps={0: "0.5fs", 1: "2fs"})
+    assert caught.value.value == "group 2" and "reciprocal space" in caught.value.remedy
+    found = ko.system(system, positions, steps={0: "0.5fs", 1: "2fs", 2: "4fs"}, minimize=False)
+    assert [own["name"] for own in found.document["potentials"]] == ["group 0", "group 1", "group 2"]
+    integrator = mm.MTSIntegrator(4 * unit.femtoseconds, [(2, 1), (1, 2), (0, 8)])
+    same = ko.system(system, positions, integrator=integrator, minimize=False)
+    assert same.document["potentials"] == found.document["potentials"]
+    with pytest.raises(kd.KickdriftError, match="never integrated"):
+        ko.system(system, positions, integrator=mm.MTSIntegrator(0.004, [(1, 1), (0, 8)]))
+
+
+def test_a_step_without_a_force_is_an_error_or_a_note() -> None:
+    system, positions = bonds(1)
+    with pytest.raises(kd.KickdriftError, match="has no force") as caught:
+        ko.system(system, positions, steps={0: "0.5fs", 1: "1fs", 2: "2fs"})
+    assert caught.value.value == "group 2"
+    integrator = mm.MTSIntegrator(0.002, [(2, 1), (1, 2), (0, 4)])
+    assert "group 2 of the integrator has no force" in ko.system(system, positions, integrator=integrator).notes
+
+
+def test_a_box_has_three_rigid_motions_and_what_is_too_uncertain_is_refused() -> None:
+    system, positions = box(2)
+    steps = {0: "0.5fs", 1: "2fs", 2: "2fs"}
+    found = ko.system(system, positions, steps=steps, minimize=False)
+    assert any(note.startswith("3 rigid motions projected out") for note in found.notes)
+    assert found.decide().data["degrees_of_freedom"] == positions.size - 3
+    assert found.accuracy is not None and found.accuracy < 0.1
+    # 27 waters have pairs that cross the cutoff within the differences: forces jump there.
+    with pytest.raises(kd.KickdriftError, match="cutoff") as caught:
+        ko.system(*box(3), steps=steps, minimize=False)
+    assert "group 1, group 2, known to" in str(caught.value.value) and "%" in str(caught.value.value)
+
+
+def test_an_outer_field_holds_what_else_were_rigid() -> None:
+    system, walls = mm.System(), mm.CustomExternalForce("5*(x^2+y^2+z^2)")
+    for atom in range(3):
+        system.addParticle(1.0)
+        walls.addParticle(atom)
+    system.addForce(walls)
+    found = ko.system(system, np.eye(3) * 1e-3, steps={0: "2fs"})
+    measured = found.decide().measured
+    assert measured is not None and measured["rigid_motions"] is None
+
+
+def test_forces_that_do_not_vanish_at_the_minimum_are_told_first() -> None:
+    system, positions = waters()
+    found = ko.system(system, positions, steps={0: "0.5fs", 1: "4fs"})
+    for told in (found.decide().warnings[0], found.advise().warnings[0]):
+        assert "do not vanish" in told and "oscillations(...)" in told and "group 0" in told
+    assert str(found.decide()).startswith("warning: the forces of") and "warnings: " in repr(found.decide())
+    assert str(found.advise()).startswith("warning: the forces of")
+    alone = ko.system(system, positions, steps={0: "0.5fs", 1: "0.5fs"})
+    assert not any("do not vanish" in note for note in alone.notes)
+    moved = ko.system(system, positions * 1.02, steps={0: "0.5fs", 1: "4fs"}, minimize=False)
+    assert any("no minimum" in note for note in moved.notes)
+    assert set(moved.decide().warnings) <= set(moved.advise().warnings)
+    rigid, where = waters(rigid=True)
+    notes = ko.system(rigid, where, steps={0: "0.5fs", 1: "4fs"}).notes
+    assert not any("oscillations(" in note for note in notes)
+
+
+def test_three_clocks_leave_no_rigid_motion_in() -> None:
+    system, positions = bonds(1)
+    nothing = mm.HarmonicBondForce()
+    nothing.addBond(0, 1, float(np.linalg.norm(positions[0] - positions[1])), 100.0)
+    nothing.setForceGroup(2)
+    system.addForce(nothing)
+    found = ko.system(system, positions, steps={0: "0.25fs", 1: "0.5fs", 2: "1fs"})
+    verdict = found.decide()
+    assert verdict.stable and verdict.proven and verdict.data["degrees_of_freedom"] == 12
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ("0.5fs", Fraction(1, 2000)),
+        ("0.0005 ps", Fraction(1, 2000)),
+        (0.0005, Fraction(1, 2000)),
+        (np.float32(0.0005), Fraction(1, 2000)),
+        ("1/2000", Fraction(1, 2000)),
+        (4.4 * unit.femtoseconds, Fraction(44, 10000)),
+        (Fraction(1, 2000) * unit.picoseconds, Fraction(1, 2000)),
+        (0.3 * unit.nanoseconds, 300),
+    ],
+)
+def test_steps_are_taken_exactly_with_their_units(given: Any, expected: Fraction) -> None:
+    system, _ = bonds(1)
+    assert ko._clocks(system, None, {0: given, 1: given}) == {0: expected, 1: expected}
+
+
+@pytest.mark.parametrize(("outer", "inner"), [("2.5", 36), ("4.4", 9), ("0.7", 3), ("5", 7)])
+def test_steps_of_integrators_are_the_simplest_numbers(outer: str, inner: int) -> None:
+    system, _ = bonds(1)
+    whole = float(Fraction(outer)) * inner
+    for step in (whole * unit.femtoseconds, whole * 0.001):
+        found = ko._clocks(system, mm.MTSIntegrator(step, [(1, 1), (0, inner)]), None)
+        assert found == {1: Fraction(outer) * inner / 1000, 0: Fraction(outer) / 1000}
+
+
+def test_numbers_of_ps_that_no_molecule_bears_ask_for_a_unit() -> None:
+    system, positions = bonds(1)
+    with pytest.raises(kd.KickdriftError, match=r"name the unit, as '0\.5fs'") as caught:
+        ko.system(system, positions, steps={0: 0.5, 1: 4})
+    assert caught.value.field == "steps[0]"
+    with pytest.raises(kd.KickdriftError, match="not finite") as caught:
+        ko.system(system, np.where(positions == positions.max(), np.nan, positions), steps={0: "1fs", 1: "1fs"})
+    assert caught.value.field == "positions"

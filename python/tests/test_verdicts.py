@@ -74,11 +74,11 @@ def test_many_verdicts_are_those_of_one_at_a_time() -> None:
     assert "120 pairs of shape (2, 60)" in repr(found)
 
 
-def test_arrays_of_doubles_mean_these_doubles() -> None:
-    steps = np.array([0.5, 0.25, 0.125])
+def test_arrays_of_doubles_mean_what_they_print() -> None:
+    steps = np.array([0.5, 0.2, 0.1])
     found = kd.verdicts(lambda1=np.float64(10.0), lambda2=np.int64(1), h1=steps, h2=steps[::-1] * 4)
     for code, one, other in zip(found.code, steps, steps[::-1] * 4, strict=True):
-        alone = kd.decide(lambda1=10, lambda2=1, h1=Fraction(one), h2=Fraction(other))
+        alone = kd.decide(lambda1=10, lambda2=1, h1=str(one), h2=str(other))
         assert found.names[code].startswith(alone.kind)
     assert kd.verdicts(lambda1=1, lambda2=1, h1=1, h2=1).code.shape == ()
     assert kd.verdicts(lambda1=1, lambda2=1, h1=[], h2=1).code.shape == (0,)
@@ -94,7 +94,7 @@ def test_what_does_not_fit_is_refused_by_name() -> None:
         kd.verdicts(lambda1=1, lambda2=1, h1=["1", "-1"], h2=1)
     assert caught.value.field == "h1"
     with pytest.raises(kd.BudgetError):
-        kd.verdicts(lambda1=1, lambda2=1, h1=0.1, h2=0.3, budget=1000)
+        kd.verdicts(lambda1=1, lambda2=1, h1=kd.exact(0.1), h2=kd.exact(0.3), budget=1000)
     with pytest.raises(kd.KickdriftError):
         kd.verdicts(lambda1=1, lambda2=1, h1=[[1], [1, 2]], h2=1)
 

@@ -1,0 +1,228 @@
+"""Results are frozen, copied as themselves and pickled; inputs that would be dropped in silence are refused."""
+
+from __future__ import annotations
+
+import copy
+import pickle
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import kickdrift as kd
+from kickdrift._hessians import Monodromy, monodromy
+from kickdrift._native import palette
+
+PAIR = {"lambda1": "pi^2", "lambda2": "pi^2/25"}
+GRID: dict[str, Any] = PAIR | {"step": "1/25", "h1": ("1/25", "2/pi"), "h2": (1, "7/2")}
+FAST, SLOW = np.diag([0.39, 0.41]), np.array([[0.02, 0.01], [0.01, 0.02]])
+
+
+def molecule() -> kd.System:
+    levels = {"fast": ("1/2", FAST), "slow": (4, SLOW)}
+    return kd.System.from_hessians([1.0, 1.0], levels, time_unit="fs", notes=["a note"])
+
+
+def springs() -> kd.System:
+    return kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
+
+
+def orbit() -> Monodromy:
+    def force(positions: np.ndarray) -> np.ndarray:
+        return np.asarray(-2.0 * positions)
+
+    return monodromy({"all": force}, [Fraction(1, 10)], np.zeros((1, 3)), np.ones(1), 1e-3, "minimum")
+
+
+RESULTS: dict[str, Callable[[], Any]] = {
+    "Advice": lambda: kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"]),
+    "Closings": lambda: kd.closings(max_sum=5),
+    "Comparison": lambda: kd.compare(max_sum=5, rho="1/25", samples=3),
+    "Curves": lambda: kd.curves(a="0..1", b="0..1"),
+    "Intervals": lambda: molecule().intervals(("1/2", 5), resolution=1e-2),
+    "Map": lambda: kd.map(**GRID, label=True, growth=True),
+    "Monodromy": orbit,
+    "Number": lambda: kd.number("pi^2/25"),
+    "Proposition": lambda: kd.proposition(max=3),
+    "Recheck": lambda: kd.recheck(kd.proposition(max=3)),
+    "Run": lambda: kd.simulate(springs(), periods=3),
+    "System": molecule,
+    "SystemAdvice": lambda: molecule().advise(),
+    "SystemVerdict": lambda: molecule().decide(),
+    "Tongues": lambda: kd.tongues("5/3", rho="1/25"),
+    "Verdict": lambda: kd.decide(lambda1="pi^2", lambda2=0.04, h1="1/100", h2=0.98, friction="1/10", budget=10**6),
+    "Verdicts": lambda: kd.verdicts(lambda1=1, lambda2=1, h1=[0.1, 0.2], h2=1),
+}
+
+
+def told(result: Any) -> list[Any]:
+    """All that a result tells: its text, its document, its arrays."""
+    arrays = getattr(result, "arrays", {})
+    arrays = {**arrays, **{name: getattr(result, name) for name in ARRAYS if hasattr(type(result), name)}}
+    document = result.to_json() if hasattr(result, "to_json") else None
+    return [repr(result), str(result), document, {name: own.tobytes() for name, own in arrays.items()}]
+
+
+ARRAYS = ("verdict", "tier", "stable_pairs", "h1_steps", "multipliers", "matrix", "growth_rates")
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_is_copied_and_pickled(name: str) -> None:
+    result = RESULTS[name]()
+    assert type(result).__name__ == name
+    # All that is computed when it is asked for is asked for: it must not stand in the way.
+    before = told(result)
+    for other in (copy.copy(result), copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
+        assert type(other) is type(result) and told(other) == before
+    again = pickle.loads(pickle.dumps(pickle.loads(pickle.dumps(result))))
+    assert told(again) == before
+
+
+def test_a_copied_map_is_drawn_and_answers_as_before() -> None:
+    found = kd.map(**GRID, growth=True)
+    again = pickle.loads(pickle.dumps(found))
+    assert again.to_svg() == found.to_svg() and again.to_csv() == found.to_csv()
+    assert not again.verdict.flags.writeable and again.document == found.document
+
+
+def arrays_of(name: str) -> dict[str, np.ndarray]:
+    result = RESULTS[name]()
+    fields = [own for own in dir(type(result)) if isinstance(getattr(type(result), own), property)]
+    fields += ["multipliers", "matrix", "code", "tier", "half", "positions"]
+    found = {own: getattr(result, own, None) for own in fields} | dict(getattr(result, "arrays", {}))
+    return {own: value for own, value in found.items() if isinstance(value, np.ndarray)}
+
+
+@pytest.mark.parametrize("name", ["Map", "Monodromy", "System", "SystemVerdict", "Verdicts"])
+def test_arrays_of_results_cannot_be_written_to(name: str) -> None:
+    found = arrays_of(name)
+    assert found
+    for own, array in found.items():
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 0
+        assert not array.flags.writeable, own
+
+
+def test_a_system_keeps_what_it_was_given() -> None:
+    given = FAST.copy()
+    system = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", given), "slow": (4, SLOW)}, time_unit="fs")
+    before = system.decide()
+    given[0, 0] = 100.0
+    assert system.decide() == before
+
+
+HESSIANS: dict[str, Any] = {
+    "complex": FAST + 1e-3j,
+    "complex objects": (FAST + 1e-3j).astype(object),
+    "masked": np.ma.masked_array(FAST, mask=np.eye(2, dtype=bool)),
+    "text": "x",
+    "ragged": [[1.0], [1.0, 2.0]],
+    "nan": FAST * np.nan,
+    "infinite": FAST + np.inf,
+}
+
+
+@pytest.mark.parametrize("kind", HESSIANS)
+def test_hessians_that_would_lose_something_are_refused_by_name(kind: str) -> None:
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.System.from_hessians([1.0, 1.0], {"f": ("1/2", HESSIANS[kind]), "slow": (4, SLOW)})
+    assert caught.value.field == "f" and caught.value.value and caught.value.remedy
+
+
+def test_positions_and_masses_are_finite_and_masked_steps_refused() -> None:
+    for field, given in {"positions": {"positions": [[0, 0, np.nan]]}, "masses": {"masses": [np.inf]}}.items():
+        with pytest.raises(kd.KickdriftError, match="not finite") as caught:
+            kd.System.from_hessians(**({"masses": [1.0], "potentials": {"f": (1, np.eye(3))}} | given))
+        assert caught.value.field == field
+    with pytest.raises(kd.KickdriftError, match="masked") as caught:
+        kd.verdicts(lambda1=1, lambda2=1, h1=np.ma.masked_array([0.1, 0.2], mask=[True, False]), h2=1)
+    assert caught.value.field == "h1"
+    with pytest.raises(kd.KickdriftError, match="not finite"):
+        kd.System(dict(molecule().document), {"masses": [np.nan, 1.0]})
+
+
+def test_accuracy_is_that_of_the_document() -> None:
+    assert molecule().accuracy == 1e-6 and springs().accuracy is None
+    assert kd.System.from_hessians([1.0], {"f": (1, [[1.0]])}, accuracy=1e-3).accuracy == 1e-3
+
+
+def test_advice_is_asked_of_a_system_and_carries_its_warnings(tmp_path: Path) -> None:
+    system = molecule()
+    advice = kd.advise(system, steps=[("0.5fs", "5fs")])
+    assert advice == system.advise(steps=[("0.5fs", "5fs")])
+    assert advice.warnings[0] == "a note" and str(advice).startswith("warning: a note\n")
+    assert str(system.decide()).startswith("warning: a note\n") and "warnings: 1" in repr(system.decide())
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(system, hmr=3)  # type: ignore[call-overload]
+    assert caught.value.field == "hmr"
+    # A total that is not positive definite is warned of by the verdict, and so by the advice.
+    bent = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", FAST), "slow": (4, -SLOW * 30)}, time_unit="fs")
+    assert any("positive definite" in own for own in bent.decide().warnings)
+    assert bent.advise().warnings == bent.decide().warnings and "positive definite" in str(bent.advise())
+
+
+def test_steps_with_units_are_taken_in_the_systems_unit() -> None:
+    given = {"fs": ("0.5fs", "0.004 ps"), "ps": ("0.5fs", "4000as"), "ns": (Fraction(1, 2 * 10**6), "4fs")}
+    for unit, steps in given.items():
+        levels = {"fast": (steps[0], FAST), "slow": (steps[1], SLOW)}
+        system = kd.System.from_hessians([1.0, 1.0], levels, time_unit=unit)
+        inner, outer = (kd.number(own["step"]).fraction for own in system.document["potentials"])
+        scale = {"fs": 1, "ps": 1000, "ns": 10**6}[unit]
+        assert (inner * scale, outer * scale) == (Fraction(1, 2), 4)
+    with pytest.raises(kd.KickdriftError, match="time_unit"):
+        kd.System.from_hessians([1.0], {"fast": ("0.5fs", [[1.0]])})
+    with pytest.raises(kd.KickdriftError, match="positive"):
+        kd.System.from_hessians([1.0], {"fast": (0, [[1.0]])})
+    with pytest.raises(kd.KickdriftError, match="rational"):
+        kd.System.from_hessians([1.0], {"fast": ("pi", [[1.0]])})
+
+
+@pytest.mark.parametrize("where", [True, False])
+@pytest.mark.parametrize("linear", [True, False])
+def test_rigid_motions_are_projected_out_of_three_clocks_as_of_two(where: bool, linear: bool) -> None:
+    """A free molecule whose Hessians know their rigid motions to rounding only is stable on three clocks too."""
+    rng = np.random.default_rng(5)
+    positions = rng.normal(size=(4, 3)) * ([1, 0, 0] if linear else [1, 1, 1])
+    masses = rng.uniform(1, 20, size=4)
+
+    def bonds(strength: float) -> np.ndarray:
+        matrix = np.zeros((12, 12))
+        for i in range(4):
+            for j in range(i):
+                along = (positions[i] - positions[j]) / np.linalg.norm(positions[i] - positions[j])
+                row = np.zeros(12)
+                row[3 * i : 3 * i + 3], row[3 * j : 3 * j + 3] = along, -along
+                matrix += strength * np.outer(row, row)
+        noise = rng.normal(size=(12, 12)) * 1e-9 * strength
+        return matrix + noise + noise.T
+
+    levels = {"a": ("1/100", bonds(100.0)), "b": ("1/50", bonds(10.0)), "c": ("1/25", bonds(1.0))}
+    system = kd.System.from_hessians(masses, levels, positions=positions if where else None, accuracy=1e-7)
+    verdict = system.decide()
+    # Bonds along a line leave bends and rotations alone: the null space has them all, the positions five rigid motions.
+    removed = 5 if linear and where else 9 if linear else 6
+    assert verdict.data["degrees_of_freedom"] == 12 - removed
+    assert verdict.warnings[0].startswith(f"{removed} rigid motions projected out")
+    assert (verdict.stable and verdict.proven) or (linear and where)
+    for clocks in ("abc", "ab"):
+        own = {name: levels[name] for name in clocks}
+        kept = kd.System.from_hessians(masses, own, positions=positions if where else None, keep_rigid=True)
+        verdict = kept.decide()
+        assert verdict.data["degrees_of_freedom"] == 12 and not (verdict.measured or {}).get("rigid_motions")
+
+
+def test_drawings_have_the_programs_colours_and_legends() -> None:
+    colours, families, growth = palette()
+    assert len(families) == 8 and len(growth) == 256 and colours["unstable"] == colours["hyperbolic"]
+    axes = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=[("0.5fs", "4fs"), ("0.5fs", "5fs")]).plot()
+    drawn = [text.get_text() for text in axes.get_legend().get_texts()]
+    assert len(drawn) == len(set(drawn)) and {"unstable, proven", "recommended"} <= set(drawn)
+    assert molecule().advise().plot().get_legend() is not None
+    assert len(kd.map(**GRID).plot().get_legend().get_texts()) >= 1
+    import matplotlib.colors
+
+    shown = {matplotlib.colors.to_hex(patch.get_facecolor()) for patch in axes.patches}
+    assert shown <= {colours["safe"], colours["caution"], colours["unstable"], matplotlib.colors.to_hex("0.92")}
