@@ -7,7 +7,7 @@ use kickdrift::format::Format;
 use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
 use kickdrift::number::Laurent;
 use kickdrift::report::map::{Rows, Tally, document, marked};
-use kickdrift::report::plane::{Chart, Colouring, parameters};
+use kickdrift::report::plane::{Chart, Colouring, command, parameters};
 use kickdrift::scene::GridRange;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -186,6 +186,7 @@ impl Map {
         }
         let foot = parameters(self.grid.lambdas(), self.range.ranges(), self.range.steps());
         let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&foot);
+        let figure = figure.made_by(&command(self.grid.lambdas(), self.range.given()));
         let bytes = figure.file(Format::Svg, 300.0).map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }

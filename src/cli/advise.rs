@@ -13,7 +13,6 @@ use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::advise as report;
-use crate::report::file::write_output;
 use crate::scene::{SystemScene, of_archive};
 
 /// Fastest periods of molecules, in fs.
@@ -74,16 +73,15 @@ impl Args {
             return self.molecule(path, reading.as_ref(), common);
         }
         let advice = self.question(reading.as_ref())?.answer()?;
+        let document = |format| report::document(&advice, reading.as_ref(), format == Format::Csv);
         match common.output.as_deref().filter(|_| format.is_figure()) {
             Some(path) => {
-                self.paper.draw("output", path, report::figure(&advice, "Which outer steps are safe"))
+                let figure = report::figure(&advice, "Which outer steps are safe");
+                self.paper.draw("output", path, figure, common)?;
             }
-            None => {
-                let text =
-                    report::document(&advice, reading.as_ref(), format == Format::Csv).render(format)?;
-                write_output(common.output.as_deref(), text.as_bytes())
-            }
+            None => common.write(&document(format), format)?,
         }
+        common.tell_beside_output(&document(Format::Text))
     }
 
     fn molecule(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<()> {
@@ -103,11 +101,6 @@ impl Args {
                 "an archive is read as mass-weighted, in 1/ps^2: write a system file that says what it is";
             return Err(Error::input("fast", given, remedy));
         }
-        let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
-        if let Some(path) = common.output.as_deref().filter(|_| format.is_figure()) {
-            let figure = report::figure_of_molecule(&findings, "Which outer steps are safe");
-            return self.paper.draw("output", path, figure);
-        }
         let read =
             archive.then(|| "fast and slow as mass-weighted, in 1/ps^2, known to 1e-6 of their norms".into());
         let heavy =
@@ -116,7 +109,15 @@ impl Args {
         let document = report::of_molecule(&findings, reading, &notes);
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let document = document.input("file", name).input_json("system", scene.source().clone());
-        common.write(&document, Format::Text)
+        let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
+        match common.output.as_deref().filter(|_| format.is_figure()) {
+            Some(path) => {
+                let figure = report::figure_of_molecule(&findings, "Which outer steps are safe");
+                self.paper.draw("output", path, figure, common)?;
+            }
+            None => common.write(&document, format)?,
+        }
+        common.tell_beside_output(&document)
     }
 
     /// The arrays of an archive, with the steps given.

@@ -1,6 +1,7 @@
 //! Flags that several commands share.
 
-use std::io::IsTerminal;
+use std::fmt::Display;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -9,10 +10,13 @@ use clap::builder::PossibleValue;
 
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::map::Products;
 use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::document::{Document, Layout};
-use crate::report::file::write_output;
+use crate::report::file::{is_captured, write_output};
+use crate::report::latex::Float;
+use crate::report::map::needed;
 use crate::scene::{Arrays, GridRange, StepRange};
 use crate::verdict::Limits;
 
@@ -29,12 +33,18 @@ pub struct Common {
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>)]
     pub threads: Option<usize>,
-    /// No progress on standard error.
+    /// The environment of LaTeX tables [default: table where a column of two takes it, else table*; longtable beyond a page].
+    #[arg(long, global = true, value_name = "ENV", value_enum)]
+    pub float: Option<Float>,
+    /// Neither progress nor what was written where on standard error.
     #[arg(long, global = true)]
     pub quiet: bool,
     /// The most kicks that one tier may compose for one pair [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = whole::<u64>)]
     pub budget: Option<u64>,
+    /// The command as figures carry it.
+    #[arg(skip)]
+    pub command: String,
     /// What a host holds in place of the file of a system.
     #[arg(skip)]
     pub held: Option<Held>,
@@ -85,15 +95,49 @@ const MOST_THREADS: usize = 1024;
 impl Common {
     /// Writes a document where and how the flags say, in `default` format if they do not.
     pub fn write(&self, document: &Document, default: Format) -> Result<()> {
-        let text = document.render_with(self.format(&Format::DOCUMENT, default)?, TO_SEE_ROWS)?;
-        write_output(self.output.as_deref(), text.as_bytes())
+        let format = self.format(&Format::DOCUMENT, default)?;
+        let text = document.clone().floated(self.float).render_with(format, TO_SEE_ROWS)?;
+        write_output(self.output.as_deref(), text.as_bytes())?;
+        self.wrote_output();
+        Ok(())
+    }
+
+    /// Says on standard error that a file, or a number of them in a folder, is written.
+    pub fn wrote(&self, what: impl Display) {
+        if !self.quiet && !is_captured() {
+            // Where standard error is closed, nobody wants to know.
+            let _ = writeln!(std::io::stderr(), "kickdrift: wrote {what}");
+        }
+    }
+
+    /// An answer in words on standard output where `--output` has taken it in another form.
+    pub fn tell_beside_output(&self, document: &Document) -> Result<()> {
+        if self.output.is_none() || self.quiet || is_captured() {
+            return Ok(());
+        }
+        write_output(None, document.render(Format::Text)?.as_bytes())
+    }
+
+    /// The same of `--output`, where it is given.
+    pub fn wrote_output(&self) {
+        self.output.iter().for_each(|path| self.wrote(path.display()));
     }
 
     /// `--format`, else what the extension of `--output` says, else `default`.
     ///
     /// # Errors
-    /// Where the extension is not that of one of the `forms` that the result has.
+    /// Where the extension is not that of one of the `forms` that the result has, and `--float` without a LaTeX table.
     pub fn format(&self, forms: &[Format], default: Format) -> Result<Format> {
+        let format = self.form(forms, default)?;
+        match self.float {
+            Some(_) if format != Format::Latex => {
+                Err(Error::input("--float", "given", "is for LaTeX tables: add --format latex"))
+            }
+            _ => Ok(format),
+        }
+    }
+
+    fn form(&self, forms: &[Format], default: Format) -> Result<Format> {
         let extension = self.output.as_ref().and_then(|path| path.extension());
         let (Some(path), Some(extension), None) = (&self.output, extension, self.format) else {
             return Ok(self.format.unwrap_or(default));
@@ -154,6 +198,26 @@ pub struct Columns {
 }
 
 impl Columns {
+    /// The columns asked for.
+    pub fn names(&self) -> Option<&[String]> {
+        self.columns.as_deref()
+    }
+
+    /// What a map has to compute for the columns asked for.
+    ///
+    /// # Errors
+    /// Where columns or digits are given and no rows are written.
+    pub fn products(&self, format: Format) -> Result<Products> {
+        let given = [("--columns", self.columns.is_some()), ("--digits", self.digits.is_some())];
+        let has_rows = matches!(format, Format::Csv | Format::Latex | Format::Text);
+        match given.into_iter().find(|(_, given)| *given && !has_rows) {
+            Some((flag, _)) => {
+                Err(Error::input(flag, "given", "is for rows: add --format csv, latex or text"))
+            }
+            None => Ok(needed(self.names().unwrap_or_default())),
+        }
+    }
+
     /// As the document takes it.
     pub fn layout(&self) -> Layout {
         Layout { columns: self.columns.clone(), digits: self.digits }

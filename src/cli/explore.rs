@@ -49,7 +49,8 @@ impl Args {
     /// Says how to get a program that can.
     #[cfg(not(feature = "explore"))]
     pub fn run(&self, _common: &Common) -> Result<()> {
-        let remedy = "this program was built without it; run cargo install --path . --features explore";
+        let remedy = "this program was built without the page; released programs have it, and so has what \
+                      cargo install --locked --path . --features explore builds";
         Err(crate::error::Error::missing("feature explore", remedy))
     }
 }

@@ -36,9 +36,11 @@ impl Args {
         };
         let default = || PathBuf::from("out").join(default);
         let folder = Folder::make(&common.output.clone().unwrap_or_else(default))?;
+        let count = files.len();
         for (name, bytes) in files {
             write_output(Some(&folder.path().join(name)), &bytes)?;
         }
+        common.wrote(format_args!("{count} files to {}", folder.path().display()));
         folder.keep();
         Ok(())
     }

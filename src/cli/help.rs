@@ -19,7 +19,7 @@ const USAGES: [(&str, &str); 6] = [
     ("proposition", "[--max <N>]"),
 ];
 
-const EXAMPLES: [(&str, &[&str]); 16] = [
+const EXAMPLES: [(&str, &[&str]); 17] = [
     (
         "verdict",
         &[
@@ -80,6 +80,7 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
     ),
     ("run", &["run data/scenes/small.json --output small"]),
     ("verify", &["verify data/published/map-100.json"]),
+    ("cite", &["cite", "cite cff --output CITATION.cff"]),
     ("generate", &["generate man --output man", "generate completions --output completions"]),
 ];
 

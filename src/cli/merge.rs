@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::args::Common;
+use super::args::{Columns, Common};
 use super::map::{Drawing, Map, Output, Part, Source};
 use crate::error::{Error, Result};
 use crate::format::Format;
@@ -14,6 +14,8 @@ pub struct Args {
     #[arg(value_name = "PARTS", required = true)]
     parts: Vec<PathBuf>,
     #[command(flatten)]
+    columns: Columns,
+    #[command(flatten)]
     drawing: Drawing,
 }
 
@@ -24,19 +26,22 @@ impl Args {
         let map = Part::common_map(&parts)?;
         self.check(format, &map)?;
         let source = Source::Joined(parts.into_iter().map(Part::into_store).collect());
-        let output = Output { map: &map, format, drawing: &self.drawing, part: None };
-        output.write(&source, common.output.as_deref())
+        let Args { columns, drawing, .. } = self;
+        Output { map: &map, format, columns, drawing, part: None, common }.write(&source)
     }
 
-    /// The parts hold what the colours show.
+    /// The parts hold what the colours and the columns show.
     fn check(&self, format: Format, map: &Map) -> Result<()> {
-        let (needs, held) = (self.drawing.products(format)?, map.products);
-        for (flag, missing) in
-            [("--label", needs.label && !held.label), ("--growth", needs.growth && !held.growth)]
-        {
-            if missing {
+        let asked =
+            [("--colour", self.drawing.products(format)?), ("--columns", self.columns.products(format)?)];
+        for (asking, needs) in asked {
+            let missing = [
+                ("--label", needs.label && !map.products.label),
+                ("--growth", needs.growth && !map.products.growth),
+            ];
+            if let Some((flag, _)) = missing.iter().find(|(_, missing)| *missing) {
                 let remedy = format!("the parts were computed without {flag}: compute them with it");
-                return Err(Error::input("--colour", "given", remedy));
+                return Err(Error::input(asking, "given", remedy));
             }
         }
         Ok(())

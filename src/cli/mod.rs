@@ -4,7 +4,9 @@
 
 mod advise;
 mod args;
+mod cite;
 mod closings;
+mod command;
 mod compare;
 mod curves;
 mod explore;
@@ -86,17 +88,27 @@ enum Command {
     Run(run::Args),
     /// Rechecks every row of a JSON document that kickdrift wrote, by another route.
     Verify(verify::Args),
+    /// How to cite kickdrift, and the paper whose method it decides: BibTeX, or CITATION.cff.
+    Cite(cite::Args),
     /// Manual pages and completions for shells: what packagers need.
     Generate(generate::Args),
 }
 
 impl Command {
-    /// Whether its output may be a figure or arrays.
+    /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Closings, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Cite, Closings, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
-            Advise(_) | Map(_) | Merge(_) | Tongues(_) | Closings(_) | System(_) | Run(_) | Generate(_)
+            Advise(_)
+                | Cite(_)
+                | Map(_)
+                | Merge(_)
+                | Tongues(_)
+                | Closings(_)
+                | System(_)
+                | Run(_)
+                | Generate(_)
         )
     }
 }
@@ -107,7 +119,11 @@ fn whole() -> Program {
 }
 
 fn parsed(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Cli> {
-    Cli::from_arg_matches(&whole().try_get_matches_from(arguments)?)
+    let mut program = whole();
+    let matches = program.try_get_matches_from_mut(arguments)?;
+    let mut cli = Cli::from_arg_matches(&matches)?;
+    cli.common.command = command::text(&program, &matches);
+    Ok(cli)
 }
 
 /// Runs the program with the process's arguments.
@@ -201,6 +217,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Advise(args) => args.run(common)?,
         Command::Simulate(args) => args.run(common)?,
         Command::Explore(args) => args.run(common)?,
+        Command::Cite(args) => args.run(common)?,
         Command::Generate(args) => args.run(whole(), common)?,
     }
     Ok(0)

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::of;
+use super::args::{Common, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::figure::Figure;
@@ -21,6 +21,9 @@ pub struct Paper {
     /// A heading, as "Run 7 of *h*_1 = 2 fs": italics between stars, an index after _, a power after ^.
     #[arg(long, value_name = "TEXT")]
     title: Option<String>,
+    /// No heading and nothing below the axes, for papers whose caption says it; several panels keep their titles.
+    #[arg(long, conflicts_with = "title")]
+    bare: bool,
     /// The unit of times and rates at the axes, as fs [default: the system's, else the word time].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
@@ -43,6 +46,7 @@ impl Paper {
         let given = [
             ("--width", self.width.is_some()),
             ("--title", self.title.is_some()),
+            ("--bare", self.bare),
             ("--time-unit", self.time_unit.is_some()),
             ("--outlines", self.outlines),
         ];
@@ -52,12 +56,12 @@ impl Paper {
         }
     }
 
-    /// The figure as the flags want it, as the bytes of a file.
+    /// The figure as the flags want it, as the bytes of a file that carries its command.
     ///
     /// # Errors
     /// A unit of time for a figure without time, and as [`Figure::file`].
-    pub fn bytes(&self, figure: Figure, format: Format) -> Result<Vec<u8>> {
-        let mut figure = figure;
+    pub fn bytes(&self, figure: Figure, format: Format, command: &str) -> Result<Vec<u8>> {
+        let mut figure = figure.made_by(command);
         if let Some(unit) = &self.time_unit {
             if !figure.has_time() {
                 return Err(Error::input(
@@ -74,6 +78,9 @@ impl Paper {
         if let Some(title) = &self.title {
             figure = figure.headed(title);
         }
+        if self.bare {
+            figure = figure.bare();
+        }
         if self.outlines { figure.outlined() } else { figure }.file(format, DPI)
     }
 
@@ -81,20 +88,36 @@ impl Paper {
     ///
     /// # Errors
     /// As [`Paper::bytes`], and an unwritable place.
-    pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>) -> Result<()> {
-        write_output(path, &self.bytes(figure, format)?)
+    pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>, common: &Common) -> Result<()> {
+        self.write_as(figure, format, path, (&common.command, common))
+    }
+
+    /// The same, with a command of its own.
+    ///
+    /// # Errors
+    /// As [`Paper::write`].
+    pub fn write_as(
+        &self,
+        figure: Figure,
+        format: Format,
+        path: Option<&Path>,
+        (command, common): (&str, &Common),
+    ) -> Result<()> {
+        write_output(path, &self.bytes(figure, format, command)?)?;
+        path.into_iter().for_each(|path| common.wrote(path.display()));
+        Ok(())
     }
 
     /// The same written to FILE.svg, FILE.pdf or FILE.png, which a flag names.
     ///
     /// # Errors
     /// Another name, and as [`Paper::write`].
-    pub fn draw(&self, field: &str, path: &Path, figure: Figure) -> Result<()> {
+    pub fn draw(&self, field: &str, path: &Path, figure: Figure, common: &Common) -> Result<()> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
         let remedy = || format!("name a file that ends in {}", Format::extensions(&Format::FIGURE));
         let format = format.ok_or_else(|| Error::input(field, path.display(), remedy()))?;
-        self.write(figure, format, Some(path))
+        self.write(figure, format, Some(path), common)
     }
 }
 

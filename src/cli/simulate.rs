@@ -52,7 +52,12 @@ impl Args {
                 .value("displaced by", &request.displacement)
                 .words(form);
             let figure = report::figure(&run, scene.title()).footed(&foot);
-            self.paper.draw("figure", path, figure.in_units_of(scene.time_unit().unwrap_or("time")))?;
+            self.paper.draw(
+                "figure",
+                path,
+                figure.in_units_of(scene.time_unit().unwrap_or("time")),
+                common,
+            )?;
         }
         let document = report::document(&run)
             .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())

@@ -115,7 +115,9 @@ impl Args {
         if let Some(path) = drawing(common)? {
             let rates = scene.growth_rates(span, &report::sampled(&found.stretches), &limits)?;
             let foot = Foot::default().words(&span.to_string());
-            return self.draw(scene, path, report::intervals_figure(&found, &rates, scene.title()), foot);
+            let figure =
+                report::intervals_figure(&found, &rates, scene.title(), &scene.number(&found.number));
+            return self.draw(scene, path, figure, foot, common);
         }
         let document = report::intervals(&found).input("intervals", span).input("width", width);
         common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
@@ -145,7 +147,7 @@ impl Args {
         waiting.finish_and_clear();
         match drawing(common)? {
             Some(path) => {
-                self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default())?
+                self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default(), common)?
             }
             None => {
                 let limits = limits(common);
@@ -179,13 +181,15 @@ impl Args {
         let time_unit = scene.time_unit().map(String::from);
         let map = SystemMap { names: axes.names(), xs, ys, points: points?, time_unit };
         if let Some(path) = drawing(common)? {
+            let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
             let ranges = Foot::default().words(&axes.x.to_string());
             let ranges = axes.y.iter().fold(ranges, |foot, axis| foot.words(&axis.to_string()));
             return self.draw(
                 scene,
                 path,
-                map.figure(self.colour.unwrap_or_default(), scene.title()),
+                map.figure(self.colour.unwrap_or_default(), scene.title(), &numbers),
                 ranges,
+                common,
             );
         }
         let document = self.echo(map.document(), scene).input("scan_x", &axes.x);
@@ -197,10 +201,17 @@ impl Args {
     }
 
     /// In the system's unit of time, and with its title and what was varied below.
-    fn draw(&self, scene: &SystemScene, path: &Path, figure: Figure, varied: Foot) -> Result<()> {
+    fn draw(
+        &self,
+        scene: &SystemScene,
+        path: &Path,
+        figure: Figure,
+        varied: Foot,
+        common: &Common,
+    ) -> Result<()> {
         let foot = Foot::default().words(scene.title()).part(varied.to_string());
         let figure = figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot);
-        self.paper.draw("output", path, figure)
+        self.paper.draw("output", path, figure, common)
     }
 
     fn echo(&self, document: Document, scene: &SystemScene) -> Document {

@@ -15,7 +15,7 @@ pub fn explained(error: &clap::Error, program: &clap::Command) -> Error {
             invalid().map(|flags| Error::missing(&names(&flags), format!("add {flags}")))
         }
         ErrorKind::InvalidSubcommand => shown(error, ContextKind::InvalidSubcommand)
-            .map(|name| Error::input("command", name, format!("choose {}", commands(program)))),
+            .map(|name| Error::input("command", &name, likely(&name, program))),
         ErrorKind::InvalidValue | ErrorKind::ValueValidation => bad_value(error),
         ErrorKind::ArgumentConflict => invalid().map(|flag| match shown(error, ContextKind::PriorArg) {
             Some(other) if other != flag => {
@@ -53,6 +53,15 @@ fn bad_value(error: &clap::Error) -> Option<Error> {
     Some(if absent { Error::missing(&flag, remedy) } else { Error::input(&flag, value, remedy) })
 }
 
+/// The command that a name may be a slip of the fingers for, else all of them.
+fn likely(given: &str, program: &clap::Command) -> String {
+    let names = program.get_subcommands().map(clap::Command::get_name).filter(|name| is_like(given, name));
+    match names.min_by_key(|name| strsim::damerau_levenshtein(given, name)) {
+        Some(name) => format!("unknown; did you mean {name}?"),
+        None => format!("choose {}", commands(program)),
+    }
+}
+
 fn suggestion(error: &clap::Error) -> String {
     let [given, known] = [ContextKind::InvalidArg, ContextKind::SuggestedArg].map(|kind| shown(error, kind));
     match given.zip(known) {
@@ -61,9 +70,9 @@ fn suggestion(error: &clap::Error) -> String {
     }
 }
 
-/// Whether a flag may be a slip of the fingers for another: one letter in three is wrong, missing or too much.
+/// Whether a word may be a slip of the fingers for another: one letter in three is wrong, missing or too much.
 fn is_like(given: &str, known: &str) -> bool {
-    let letters = |flag: &str| flag.trim_start_matches('-').to_string();
+    let letters = |word: &str| word.trim_start_matches('-').to_string();
     let (given, known) = (letters(given), letters(known));
     3 * strsim::damerau_levenshtein(&given, &known) <= given.len().max(known.len())
 }

@@ -66,6 +66,7 @@ impl Args {
         let document = document.transpose()?;
         if let Some(path) = &self.certificate {
             certify(oscillator, answer.verdict, path, common.budget)?;
+            common.wrote(path.display());
         }
         document.map_or(Ok(()), |document| common.write(&self.columns.of(document)?, Format::Text))?;
         Ok(answer.verdict.is_stable())

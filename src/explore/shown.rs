@@ -10,7 +10,7 @@ use crate::format::Format;
 use crate::map::{Grid, Map, Resources};
 use crate::number::Laurent;
 use crate::report::map::Counts;
-use crate::report::plane::{Chart, Colouring, parameters, window};
+use crate::report::plane::{Chart, Colouring, command, parameters, window};
 use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
 
 /// Pairs and kicks of a picture.
@@ -68,6 +68,7 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let bytes = drawn(&grid, colouring, |chart, counts| {
         let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
         let figure = chart.figure(&grid, counts, &curves).footed(&foot);
+        let figure = figure.made_by(&command(grid.lambdas(), range.given()));
         figure.file(format, DPI)
     })?;
     let (name, media) = match format {

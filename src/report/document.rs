@@ -6,7 +6,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::latex::{self, Equation};
+use super::latex::{self, Equation, Float};
 use super::table::Table;
 use super::{csv, text};
 use crate::error::{Error, Result};
@@ -26,6 +26,8 @@ pub struct Document {
     equations: Vec<Equation>,
     /// Significant digits of tables that people read, where a number is asked for.
     digits: Option<u32>,
+    /// The environment of tables in LaTeX, where one is asked for.
+    float: Option<Float>,
     summary: String,
     summary_only: bool,
 }
@@ -53,6 +55,7 @@ impl Document {
             more: Vec::new(),
             equations: Vec::new(),
             digits: None,
+            float: None,
             summary: String::new(),
             summary_only: false,
         }
@@ -131,6 +134,12 @@ impl Document {
         Ok(self)
     }
 
+    /// The same document, its LaTeX tables in this environment [default: by their width].
+    #[must_use]
+    pub fn floated(self, float: Option<Float>) -> Self {
+        Document { float, ..self }
+    }
+
     /// The summary for people: whole lines, the last one without a newline.
     #[must_use]
     pub fn summary(mut self, lines: &[String]) -> Self {
@@ -174,7 +183,7 @@ impl Document {
             Format::Latex => {
                 let all = std::iter::once(table("latex")?).chain(&self.more);
                 let all: Result<Vec<String>> =
-                    all.map(|table| latex::document(table, &self.input, self.digits)).collect();
+                    all.map(|table| latex::document(table, &self.input, self.digits, self.float)).collect();
                 Ok(all?.join("\n"))
             }
             Format::Text => Ok(self.text(to_see)),

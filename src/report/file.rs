@@ -34,7 +34,7 @@ pub fn write_output(path: Option<&Path>, bytes: &[u8]) -> Result<()> {
 /// Those of the content as they are, and those of the sink, which the content hands on by [`Error::stream`], as
 /// [`write_output`].
 pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
-    if CAPTURED.with_borrow(Option::is_some) {
+    if is_captured() {
         let mut bytes = Vec::new();
         content(&mut bytes)?;
         CAPTURED.with_borrow_mut(|all| all.as_mut().expect("captured").extend(bytes));
@@ -49,6 +49,11 @@ pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> R
 thread_local! {
     /// What this thread would have written, while it is captured.
     static CAPTURED: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
+}
+
+/// Whether this thread's output is [`captured`].
+pub fn is_captured() -> bool {
+    CAPTURED.with_borrow(Option::is_some)
 }
 
 /// Runs `work` and returns what [`write_output`] and [`write_with`] would have written on this thread, wherever to;

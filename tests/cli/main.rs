@@ -5,6 +5,7 @@ mod answers;
 mod files;
 mod golden;
 mod help;
+mod manners;
 mod refusals;
 mod scenes;
 mod support;

@@ -109,7 +109,7 @@ fn flags_that_are_missing_unknown_or_given_twice() {
     refused(&desk, &[&verdict("10", "1", "1", "1")[..], &["--budget", "-1"]].concat(), &["budget = -1"]);
     refused(&desk, &["curves", "--quiet=1"], &["quiet = 1", "takes no value"]);
     refused(&desk, &["tongues", "--digits", "99999999999"], &["digits = 99999999999", "smaller number"]);
-    refused(&desk, &["verdicts"], &["command = verdicts", "verdict, curves"]);
+    refused(&desk, &["gadget"], &["command = gadget", "verdict, curves"]);
     refused(&desk, &[], &["command missing", "verdict, curves"]);
     refused(&desk, &["compare"], &["--max-sum"]);
     refused(&desk, &["compare", "--max-sum", "5", "--rho", "1", "--lambda1", "1"], &["--max-sum"]);
@@ -171,7 +171,7 @@ fn tongues_that_are_none() {
     tongues("tongues --ratio 7/3 --rho 1e40", &["rho = 1", "1e16"]);
     tongues("tongues --ratio 99999999/1 --rho 1 --m 1", &["99999999/1", "kicks"]);
     tongues("tongues --max-sum 1 --rho 1", &["max-sum = 1", "2 to"]);
-    tongues("tongues --max-sum 9 --rho 1 --columns width", &["columns = width", "growth"]);
+    tongues("tongues --max-sum 9 --rho 1 --columns widths", &["columns = widths", "width, growth_s"]);
     tongues("tongues --max-sum 9 --rho 1 --colour growth", &["--colour = given", ".svg"]);
     tongues("tongues --max-sum 9 --rho 1 --survey --m 3", &["--m = given", "all tongues"]);
     tongues("tongues --ratio 7/3 --rho 1 --survey", &["max-sum missing"]);

@@ -61,10 +61,10 @@ fn a_table_is_a_booktabs_float() {
   \end{tabular}
 \end{table}
 ";
-    assert_eq!(form_left_out(&document(&table, &input(), None).unwrap()), expected);
-    let short = document(&table, &input(), Some(3)).unwrap();
+    assert_eq!(form_left_out(&document(&table, &input(), None, None).unwrap()), expected);
+    let short = document(&table, &input(), Some(3), None).unwrap();
     assert!(short.contains("$2$ & $.32(1)$ &"), "{short}");
-    assert_ne!(label(&short), label(&document(&table, &input(), None).unwrap()));
+    assert_ne!(label(&short), label(&document(&table, &input(), None, None).unwrap()));
 }
 
 fn input() -> serde_json::Map<String, serde_json::Value> {
@@ -95,7 +95,7 @@ fn many(rows: i64, columns: usize) -> Table {
 
 #[test]
 fn wide_tables_take_both_columns_then_smaller_letters_then_more_tables() {
-    let of = |columns| document(&many(2, columns), &input(), Some(10)).unwrap();
+    let of = |columns| document(&many(2, columns), &input(), Some(10), None).unwrap();
     assert!(of(2).contains("\\begin{table}\n  \\centering\n"));
     assert!(of(4).contains("\\begin{table*}"));
     assert!(of(6).contains("\\scriptsize") || of(6).contains("\\footnotesize"));
@@ -108,7 +108,7 @@ fn wide_tables_take_both_columns_then_smaller_letters_then_more_tables() {
 
 #[test]
 fn more_rows_than_a_page_holds_go_over_pages() {
-    let of = |rows| document(&many(rows, 2), &input(), None).unwrap();
+    let of = |rows| document(&many(rows, 2), &input(), None, None).unwrap();
     assert!(of(40).contains("\\begin{tabular}"));
     assert!(of(41).contains("\\begin{longtable}") && of(41).contains("\\endhead"));
 }

@@ -7,7 +7,7 @@ mod source;
 
 use std::path::PathBuf;
 
-use super::args::{self, Common, Stiffness, from_str};
+use super::args::{self, Columns, Common, Stiffness, from_str};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Products, Shard};
@@ -30,6 +30,8 @@ pub struct Args {
     #[arg(long)]
     growth: bool,
     #[command(flatten)]
+    columns: Columns,
+    #[command(flatten)]
     drawing: Drawing,
     /// Keep finished bands in this directory and take from it those it already holds.
     #[arg(long, value_name = "DIR")]
@@ -44,13 +46,17 @@ impl Args {
         let format = common.format_of_table(&Format::ALL)?;
         let shard = self.shard(format)?;
         let coloured = self.drawing.products(format)?;
-        let products =
-            Products { label: self.label || coloured.label, growth: self.growth || coloured.growth };
+        let shown = self.columns.products(format)?;
+        let any = |of: fn(&Products) -> bool| of(&coloured) || of(&shown);
+        let products = Products {
+            label: self.label || any(|own| own.label),
+            growth: self.growth || any(|own| own.growth),
+        };
         let map = Map::new(self.stiffness.clone(), self.grid.range()?, products)?;
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
         let source = Source::compute(common, shard, store.map(Part::into_store));
-        let output = Output { map: &map, format, drawing: &self.drawing, part: self.shard };
-        output.write(&source, common.output.as_deref())
+        let Args { columns, drawing, shard: part, .. } = self;
+        Output { map: &map, format, columns, drawing, part: *part, common }.write(&source)
     }
 
     /// The part of the map to compute.

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::{Drawing, Map, Source};
+use crate::cli::args::{Columns, Common};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Band, Grid, Products, Shard};
 use crate::report::csv;
-use crate::report::document::Document;
+use crate::report::document::{Document, Layout};
 use crate::report::file::{write_output, write_with};
 use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
 use crate::report::plane::{Chart, parameters};
@@ -18,9 +19,11 @@ use crate::scene::GridRange;
 pub struct Output<'a> {
     pub map: &'a Map,
     pub format: Format,
+    pub columns: &'a Columns,
     pub drawing: &'a Drawing,
     /// K/N where the map is not whole.
     pub part: Option<Shard>,
+    pub common: &'a Common,
 }
 
 /// Rows that a document holds in memory at most; text shows them up to a number that fits a terminal.
@@ -28,15 +31,26 @@ const MOST_ROWS: u64 = 1_000_000;
 const ROWS_FOR_PEOPLE: u64 = 60;
 
 impl Output<'_> {
-    /// Computes the map and writes the result to the path, or to standard output.
-    pub fn write(&self, source: &Source, path: Option<&Path>) -> Result<()> {
+    /// Computes the map and writes the result to `--output`, or to standard output.
+    pub fn write(&self, source: &Source) -> Result<()> {
+        let path = self.common.output.as_deref();
         match (self.format, path) {
-            (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path),
-            (Format::Csv, _) => self.csv(source, path),
-            (Format::Npz, Some(path)) => self.npz(source, path),
-            (Format::Svg | Format::Pdf | Format::Png, _) => self.figure(source, path),
+            (Format::Json | Format::Text | Format::Latex, _) => self.document(source, path)?,
+            (Format::Csv, _) => self.csv(source, path)?,
+            (Format::Npz, Some(path)) => self.npz(source, path)?,
+            (Format::Svg | Format::Pdf | Format::Png, _) => return self.figure(source, path),
             (Format::Npz, None) => unreachable!("an extension is that of a path"),
         }
+        self.common.wrote_output();
+        Ok(())
+    }
+
+    /// The rows, in the columns asked for.
+    fn rows(&self) -> Result<Rows<'_>> {
+        let rows = Rows::new(&self.map.grid, self.map.products);
+        self.columns
+            .names()
+            .map_or(Ok(rows), |names| Rows::new(&self.map.grid, self.map.products).choosing(names))
     }
 
     fn document(&self, source: &Source, path: Option<&Path>) -> Result<()> {
@@ -45,6 +59,7 @@ impl Output<'_> {
             Format::Text => ROWS_FOR_PEOPLE,
             _ => MOST_ROWS,
         };
+        let rows = self.rows()?;
         let (mut tally, mut pairs) = (Tally::default(), Vec::<Marked>::new());
         source.each(self.map, &mut |band| {
             tally.add(&self.map.grid, band);
@@ -58,9 +73,11 @@ impl Output<'_> {
             let cost = format!("{count} rows are too many for a LaTeX table");
             return Err(Error::too_much(cost, "write csv or npz"));
         }
-        let Map { grid, products, .. } = self.map;
-        let rows = (count <= most).then(|| Rows::new(grid, *products).table(&pairs));
-        let mut text = self.echo(report::document(&tally, rows)).render(self.format)?;
+        let rows = (count <= most).then(|| rows.table(&pairs));
+        // The columns are chosen already.
+        let layout = Layout { columns: None, ..self.columns.layout() };
+        let document = self.echo(report::document(&tally, rows)).laid_out(&layout)?;
+        let mut text = document.floated(self.common.float).render(self.format)?;
         if self.format == Format::Text && count > most {
             text += &format!("\n{count} rows: use --format csv or latex to see them\n");
         }
@@ -77,7 +94,7 @@ impl Output<'_> {
     }
 
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {
-        let mut rows = Rows::new(&self.map.grid, self.map.products);
+        let mut rows = self.rows()?;
         let columns = rows.columns();
         write_with(path, |sink| {
             csv::write_header(sink, &columns)?;
@@ -107,7 +124,8 @@ impl Output<'_> {
         let range = &self.map.range;
         let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
         let figure = chart.figure(grid, &counts, &curves).footed(&foot);
-        self.drawing.paper.write(figure, self.format, path)
+        let command = self.common.command.replacen("kickdrift map", &self.map.command(), 1);
+        self.drawing.paper.write_as(figure, self.format, path, (&command, self.common))
     }
 }
 

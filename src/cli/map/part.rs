@@ -11,6 +11,7 @@ use crate::map::{Grid, Products, Store};
 use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::file::write_output;
+use crate::report::plane::command;
 use crate::scene::{GridRange, shown_range};
 
 /// A grid, as it was asked for, and what is asked of it.
@@ -29,6 +30,11 @@ impl Map {
         products: Products,
     ) -> Result<Map> {
         Ok(Map { grid: range.of(lambda1, lambda2)?, range, products })
+    }
+
+    /// The command that asks for its pairs.
+    pub fn command(&self) -> String {
+        command(self.grid.lambdas(), self.range.given())
     }
 }
 

@@ -88,7 +88,7 @@ impl<'a> Work<'a> {
         }
         match want.format {
             drawn if drawn.is_figure() => {
-                self.paper.bytes(self.figure(want.product)?.as_ref().clone(), drawn)
+                self.paper.bytes(self.figure(want.product)?.as_ref().clone(), drawn, &self.common.command)
             }
             Format::Npz => unreachable!("arrays are streamed"),
             of_document => text(of_document),

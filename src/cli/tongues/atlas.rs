@@ -74,7 +74,7 @@ impl<'a> Atlas<'a> {
     /// # Errors
     /// As [`Question::each`], and an unwritable place.
     pub fn write(&self, common: &Common, format: Format, paper: &Paper) -> Result<()> {
-        paper.write(self.figure(common)?, format, common.output.as_deref())
+        paper.write(self.figure(common)?, format, common.output.as_deref(), common)
     }
 
     /// The figure.

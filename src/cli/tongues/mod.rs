@@ -23,6 +23,7 @@ use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
+use crate::report::tongues::needed;
 use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::put;
@@ -60,9 +61,10 @@ pub struct Args {
     /// Give the edges to so many significant digits, more or fewer than doubles have.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: Option<u32>,
-    /// What to compute beside the edges [default: all; with --max-sum all but growth, the dearest; in LaTeX edges].
+    /// What to compute beside the edges (edges, exact, growth, predicted, first-order), or columns by the names that csv has
+    /// [default: all; with --max-sum all but growth, the dearest; in LaTeX edges].
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    columns: Option<Vec<Columns>>,
+    columns: Option<Vec<String>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
     #[arg(long)]
     survey: bool,
@@ -123,7 +125,7 @@ impl Args {
         let forms = if self.survey { &Format::DOCUMENT[..] } else { &Format::DOCUMENT_OR_FIGURE };
         let format = common.format_of_table(forms)?;
         self.check(format)?;
-        let put = |figure| self.paper.write(figure, format, common.output.as_deref());
+        let put = |figure| self.paper.write(figure, format, common.output.as_deref(), common);
         match (format, self.figure) {
             _ if self.survey => common.write(&self.all_tongues()?.perform(common, true)?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
@@ -147,7 +149,11 @@ impl Args {
                 let question = self.question(colour.needs())?;
                 Atlas::new(&question, colour, None)?.write(common, format, &self.paper)
             }
-            _ => output::write(&self.question(self.wanted(format))?, common, format),
+            _ => {
+                let names = self.columns.clone().filter(|_| self.groups().is_none());
+                let question = self.question(self.wanted(format)?)?.in_columns(names);
+                output::write(&question, common, format)
+            }
         }
     }
 
@@ -162,7 +168,9 @@ impl Args {
             Tongues::new(ratio, &rho)?.select(&Selection { m: self.m.clone(), ..Selection::default() })?;
         let [gap] = &gaps[..] else { return Err(one("is for one tongue: choose it with --m")) };
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        write_output(Some(path), coq_of_tongue(ratio, &rho, gap, &name)?.as_bytes())
+        write_output(Some(path), coq_of_tongue(ratio, &rho, gap, &name)?.as_bytes())?;
+        common.wrote(path.display());
+        Ok(())
     }
 
     /// Flags that say nothing together.
@@ -243,11 +251,24 @@ impl Args {
         Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
     }
 
-    fn wanted(&self, format: Format) -> Wanted {
-        match &self.columns {
-            None if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
-            None => Wanted { growth: !self.which.many(), ..Wanted::all() },
-            Some(list) => {
+    /// What to compute, where `--columns` says it by groups and not by the names of columns.
+    fn groups(&self) -> Option<Vec<Columns>> {
+        let names = self.columns.iter().flatten();
+        names.map(|name| Columns::from_str(name.trim(), false).ok()).collect()
+    }
+
+    fn wanted(&self, format: Format) -> Result<Wanted> {
+        Ok(match (&self.columns, self.groups()) {
+            (None, _) if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
+            (None, _) => Wanted { growth: !self.which.many(), ..Wanted::all() },
+            (Some(names), None) => {
+                let lambda1 = self.lambda1.clone();
+                needed(
+                    names,
+                    &tongue::Request { lambda1, digits: self.digits, ..tongue::Request::default() },
+                )?
+            }
+            (Some(_), Some(list)) => {
                 let has = |column| list.contains(&column);
                 Wanted {
                     family: true,
@@ -257,6 +278,6 @@ impl Args {
                     first_order: has(Columns::FirstOrder),
                 }
             }
-        }
+        })
     }
 }

@@ -12,6 +12,7 @@ use crate::report::csv;
 use crate::report::document::{Document, Layout};
 use crate::report::file::write_with;
 use crate::report::stream::JsonRows;
+use crate::report::table::Choice;
 use crate::report::tongues::{CAPTION, CAPTION_LATEX, Tally, record};
 use crate::tongue::Tongue;
 
@@ -24,7 +25,9 @@ const ROWS_FOR_PEOPLE: u64 = 60;
 /// # Errors
 /// As [`put`], and an unwritable place.
 pub fn write(question: &Question, common: &Common, format: Format) -> Result<()> {
-    write_with(common.output.as_deref(), |sink| put(question, common, format, sink).map(drop))
+    write_with(common.output.as_deref(), |sink| put(question, common, format, sink).map(drop))?;
+    common.wrote_output();
+    Ok(())
 }
 
 /// Computes the tongues and writes them to a sink, row by row where they may be many: what stands out in them.
@@ -58,10 +61,13 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
     let record = record(&question.asked.request, false);
     let columns = record.columns();
-    csv::write_header(sink, &columns)?;
+    let choice = question.columns.as_ref().map(|names| Choice::new(&columns, names)).transpose()?;
+    let columns = choice.as_ref().map_or(&columns[..], Choice::columns);
+    csv::write_header(sink, columns)?;
     let row = |tongue: &Tongue| {
-        let mut line = Vec::new();
-        csv::write_rows(&mut line, &columns, [record.row(tongue)]).expect("memory takes all");
+        let (mut line, all) = (Vec::new(), record.row(tongue));
+        let row = choice.as_ref().map_or_else(|| all.clone(), |choice| choice.row(&all));
+        csv::write_rows(&mut line, columns, [row]).expect("memory takes all");
         line
     };
     each_row(question, common, row, |line| sink.write_all(line).map_err(Error::stream))
@@ -107,7 +113,8 @@ fn latex(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<T
 
 /// The summary, and the rows up to a number.
 fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
-    let record = record(&question.asked.request, true);
+    // What is asked for by name is shown in full.
+    let record = record(&question.asked.request, question.columns.is_none());
     let (mut tally, mut table) =
         (Tally::default(), record.table("tongues", CAPTION, []).captioned(CAPTION_LATEX));
     question.each(common, |part| {
@@ -125,5 +132,8 @@ fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, 
     }
     // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
     let digits = question.asked.request.digits;
-    Ok((tally, document.laid_out(&Layout { columns: None, digits })?))
+    Ok((
+        tally,
+        document.laid_out(&Layout { columns: question.columns.clone(), digits })?.floated(common.float),
+    ))
 }

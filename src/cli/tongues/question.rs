@@ -15,6 +15,8 @@ use crate::tongue::{self, Progress, Range, Request, Selection, Stiffness, Tongue
 pub struct Question {
     pub ratios: Ratios,
     pub asked: tongue::Question,
+    /// The columns of tables, by the names that CSV has; those that fit the form where none are given.
+    pub columns: Option<Vec<String>>,
 }
 
 /// The largest p + q of all ratios: there are 1.2 million of them below 2000.
@@ -43,7 +45,13 @@ impl Question {
         request: Request,
     ) -> Result<Self> {
         let asked = tongue::Question::new(ratios.list(), stiffness, window, selection, request)?;
-        Ok(Question { ratios, asked })
+        Ok(Question { ratios, asked, columns: None })
+    }
+
+    /// The same, its tables in these columns.
+    #[must_use]
+    pub fn in_columns(self, columns: Option<Vec<String>>) -> Self {
+        Question { columns, ..self }
     }
 
     /// Hands on the tongues in the order of p + q, p, m.

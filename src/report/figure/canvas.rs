@@ -241,6 +241,8 @@ pub(super) struct Canvas {
     pub width: f64,
     pub height: f64,
     pub title: String,
+    /// The command that made it; empty where none is known.
+    pub made_by: String,
     /// Whether letters are drawn as shapes, for readers that know no embedded fonts.
     pub outlined: bool,
     pub elements: Vec<Element>,
@@ -249,7 +251,14 @@ pub(super) struct Canvas {
 impl Canvas {
     /// An empty sheet.
     pub(super) fn new(width: f64, height: f64, title: &str) -> Canvas {
-        Canvas { width, height, title: title.into(), outlined: false, elements: Vec::new() }
+        let (title, made_by) = (title.into(), String::new());
+        Canvas { width, height, title, made_by, outlined: false, elements: Vec::new() }
+    }
+
+    /// The program and the command that made it, where one is known.
+    pub(super) fn maker(&self) -> Option<(&'static str, &str)> {
+        let program = concat!("kickdrift ", env!("CARGO_PKG_VERSION"));
+        (!self.made_by.is_empty()).then_some((program, self.made_by.as_str()))
     }
 
     /// Adds a path; an empty one is left out.

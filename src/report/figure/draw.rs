@@ -2,7 +2,7 @@
 
 use super::axis::Tick;
 use super::canvas::{Anchor, Canvas, Element, Path, Pen, Set};
-use super::clip;
+use super::clip::{self, Rect};
 use super::font::Face;
 use super::key;
 use super::label::{Label, wrapped};
@@ -132,6 +132,23 @@ fn words(canvas: &mut Canvas, plane: &Plane, note: &Note) {
         // Centred on the point: half the height of a small letter lies below it.
         let at = [x + note.shift[0], y - note.shift[1] + NUMBER * 0.23];
         let set = Set { turn: note.turn, colour: note.colour, halo: true, ..set(NUMBER, note.anchor) };
-        canvas.text(Label::new(&note.text), at, set);
+        let label = Label::new(&note.text);
+        let at =
+            if note.is_turned() { at } else { within(plane.frame, at, NUMBER * label.width, note.anchor) };
+        canvas.text(label, at, set);
     }
+}
+
+/// The nearest place at which a line of words so wide lies in the frame; where it is wider, as it was.
+fn within([left, top, right, bottom]: Rect, [x, y]: [f64; 2], width: f64, anchor: Anchor) -> [f64; 2] {
+    let before = match anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => width / 2.0,
+        Anchor::End => width,
+    };
+    let (first, last) = (left + 1.0 + before, right - 1.0 + before - width);
+    // Between the top of its capitals and the foot of its letters.
+    let (high, low) = (top + 1.0 + NUMBER * CAPITAL, bottom - 1.0 - NUMBER * 0.23);
+    let put = |at: f64, lo: f64, hi: f64| if lo <= hi { at.clamp(lo, hi) } else { at };
+    [put(x, first, last), put(y, high, low)]
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::{self, Display};
 
-use super::label::typeset;
+use super::label::{literal, typeset};
 
 /// Parameters in the notation of labels, in the order in which they were given.
 ///
@@ -45,8 +45,7 @@ impl Foot {
     /// Words that others wrote: their stars and bars are letters.
     #[must_use]
     pub fn words(self, words: &str) -> Self {
-        let letter = |c: char| if "*_^\\".contains(c) { format!("\\{c}") } else { c.to_string() };
-        self.part(words.chars().map(letter).collect())
+        self.part(literal(words))
     }
 }
 

@@ -100,6 +100,12 @@ pub(super) fn wrapped(markup: &str, face: Face, room: f64) -> Vec<Label> {
     lines.into_iter().map(|(_, label)| label).filter(|label| !label.glyphs.is_empty()).collect()
 }
 
+/// Words that others wrote, in the notation of labels: their stars and bars are letters.
+pub fn literal(words: &str) -> String {
+    let letter = |c: char| if "*_^\\".contains(c) { format!("\\{c}") } else { c.to_string() };
+    words.chars().map(letter).collect()
+}
+
 /// An exact number in the notation of labels: `2/5*pi^2` as 2/5 π².
 pub fn typeset(number: impl std::fmt::Display) -> String {
     number.to_string().replace("*pi", " π").replace("pi", "π").replace('*', "").replace('-', "−")

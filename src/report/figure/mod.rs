@@ -70,8 +70,8 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use canvas::Canvas;
 use font::Face;
-pub use label::typeset;
 use label::{Label, wrapped};
+pub use label::{literal, typeset};
 use measure::TITLE;
 
 /// The least height of a row of panels in a figure that is made narrower, in mm.
@@ -93,6 +93,7 @@ pub struct Figure {
     heading: String,
     foot: String,
     time_unit: String,
+    made_by: String,
     outlined: bool,
     panels: Vec<Panel>,
 }
@@ -111,6 +112,7 @@ impl Figure {
             heading,
             foot,
             time_unit: "time".into(),
+            made_by: String::new(),
             outlined,
             panels,
         }
@@ -156,11 +158,34 @@ impl Figure {
         self
     }
 
-    /// The same figure with a heading above all panels, in the notation of labels; it becomes the name, too.
+    /// The same figure with a heading above all panels, in the notation of labels; it becomes the name, too, and takes the place of
+    /// the title of a single panel.
     #[must_use]
     pub fn headed(mut self, heading: &str) -> Self {
         self.heading = heading.into();
-        self.named(&Label::new(heading).words)
+        self.untitled().named(&Label::new(heading).words)
+    }
+
+    /// The same figure without heading and foot, for papers whose caption says both; several panels keep their titles.
+    #[must_use]
+    pub fn bare(self) -> Self {
+        let [heading, foot] = [const { String::new() }; 2];
+        Figure { heading, foot, ..self.untitled() }
+    }
+
+    /// A single panel without its title.
+    fn untitled(mut self) -> Self {
+        if let [panel] = &mut self.panels[..] {
+            panel.title.clear();
+        }
+        self
+    }
+
+    /// The same figure, its files carrying the program's version and the command that made them.
+    #[must_use]
+    pub fn made_by(mut self, command: &str) -> Self {
+        self.made_by = command.into();
+        self
     }
 
     /// The same figure with small words below all panels: what it was made from.
@@ -280,6 +305,7 @@ impl Figure {
         let (above, below) = (rows(&head, TITLE), rows(&foot, FOOT));
         let mut canvas = Canvas::new(width, above + height + below, &self.title);
         canvas.outlined = self.outlined;
+        canvas.made_by.clone_from(&self.made_by);
         draw::lines(&mut canvas, head, [left, layout::RIM], TITLE);
         for (panel, site) in panels.iter().zip(sites) {
             draw::panel(&mut canvas, panel, site.lowered(above));

@@ -21,7 +21,12 @@ pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
     let [catalog, pages, page, stream, info] = std::array::from_fn(|_| fresh());
     let mut pdf = Pdf::new();
     pdf.catalog(catalog).pages(pages);
-    pdf.document_info(info).title(TextStr(&canvas.title));
+    let mut about = pdf.document_info(info);
+    about.title(TextStr(&canvas.title));
+    if let Some((program, command)) = canvas.maker() {
+        about.creator(TextStr(program)).subject(TextStr(command));
+    }
+    about.finish();
     pdf.pages(pages).kids([page]).count(1);
     let fonts = if canvas.outlined { Fonts::default() } else { Fonts::new(canvas) };
     let mut drawing = Drawing::new(&fonts, canvas);

@@ -33,11 +33,16 @@ pub(super) fn raster(canvas: &Canvas, dpi: f64) -> Result<Vec<u8>> {
     canvas.elements.iter().for_each(|element| brush.draw(element));
     // White below makes every pixel opaque, so premultiplied and plain colours agree.
     let colours = brush.pixels.pixels().iter().map(|p| Colour(p.red(), p.green(), p.blue()));
-    Ok(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi)))
+    Ok(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi), canvas.maker()))
 }
 
-/// Pixels in rows of `width` as a PNG file.
-pub(super) fn encode(width: u32, pixels: &[Colour], dpi: Option<f64>) -> Vec<u8> {
+/// Pixels in rows of `width` as a PNG file, with the program and the command that made it where they are known.
+pub(super) fn encode(
+    width: u32,
+    pixels: &[Colour],
+    dpi: Option<f64>,
+    maker: Option<(&str, &str)>,
+) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, (pixels.len() / width as usize) as u32);
     encoder.set_color(ColorType::Rgb);
@@ -46,6 +51,16 @@ pub(super) fn encode(width: u32, pixels: &[Colour], dpi: Option<f64>) -> Vec<u8>
     if let Some(dpi) = dpi {
         let per_metre = (dpi / 0.0254).round() as u32;
         encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    }
+    if let Some((program, command)) = maker {
+        let text = "a keyword of the format and words without null";
+        encoder.add_text_chunk("Software".into(), program.into()).expect(text);
+        // `tEXt` has Latin letters alone.
+        let command = command.replace('\0', " ");
+        match command.is_ascii() {
+            true => encoder.add_text_chunk("Comment".into(), command).expect(text),
+            false => encoder.add_itxt_chunk("Comment".into(), command).expect(text),
+        }
     }
     let data: Vec<u8> = pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b]).collect();
     let mut writer = encoder.write_header().expect("a positive size and eight bits a channel are valid");

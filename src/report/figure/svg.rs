@@ -20,9 +20,13 @@ pub(super) fn document(canvas: &Canvas) -> String {
     let letters = if canvas.outlined { "" } else { SERIF };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\"{letters}>\n<title>{}</title>\n<defs>\n",
+         width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\"{letters}>\n<title>{}</title>\n",
         escaped(&canvas.title)
     );
+    if let Some((program, command)) = canvas.maker() {
+        out.push_str(&format!("<metadata>{program}: {}</metadata>\n", escaped(command)));
+    }
+    out.push_str("<defs>\n");
     if canvas.outlined {
         for (face, glyph) in canvas.glyphs() {
             let (name, data) = (glyph_name(face, glyph), outline(face, glyph));
@@ -160,7 +164,7 @@ fn picture(image: &Image) -> String {
         "<image {} preserveAspectRatio=\"none\" image-rendering=\"{rendering}\" \
          xlink:href=\"data:image/png;base64,{}\"/>",
         place(left, top, right - left, bottom - top),
-        STANDARD.encode(png::encode(image.width, &image.pixels, None))
+        STANDARD.encode(png::encode(image.width, &image.pixels, None, None))
     )
 }
 

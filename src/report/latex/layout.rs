@@ -17,6 +17,27 @@ const SIZES: [(&str, f64, f64); 4] = [
     ("\\scriptsize\\setlength{\\tabcolsep}{4pt}", 0.8, 4.0),
 ];
 
+/// The environment of a table that is not longer than a page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Float {
+    /// As wide as the column it stands in; in an article of two columns a wide one runs over.
+    #[cfg_attr(feature = "cli", value(name = "table"))]
+    Column,
+    /// Across both columns of an article of two.
+    #[cfg_attr(feature = "cli", value(name = "table*"))]
+    Page,
+}
+
+impl Float {
+    fn name(self) -> &'static str {
+        match self {
+            Float::Column => "table",
+            Float::Page => "table*",
+        }
+    }
+}
+
 /// Where a table stands and in what size.
 pub enum Place {
     /// A float, `table` or `table*`.
@@ -51,8 +72,9 @@ impl Body {
         }
     }
 
-    /// The largest letters in which the table fits, in one column of two if it can be; `None` where it does not fit.
-    fn place(&self, is_long: bool) -> Option<Place> {
+    /// The largest letters in which the table fits, in one column of two if it can be and no environment is asked for; `None`
+    /// where it does not fit.
+    fn place(&self, is_long: bool, float: Option<Float>) -> Option<Place> {
         let fits = |limit: f64, sizes: usize| {
             let fits = |(_, scale, space): &&(&str, f64, f64)| self.width(*scale, *space) <= limit;
             SIZES[..sizes].iter().find(fits).map(|(size, ..)| *size)
@@ -60,15 +82,19 @@ impl Body {
         if is_long {
             return fits(TEXT, 4).map(Place::Long);
         }
-        let float = |name, size| Place::Float { name, size };
-        fits(COLUMN, 3)
-            .map(|size| float("table", size))
-            .or_else(|| fits(TEXT, 4).map(|size| float("table*", size)))
+        let place = |float: Float, size| Place::Float { name: float.name(), size };
+        let in_column = || fits(COLUMN, 3).map(|size| place(Float::Column, size));
+        let across = |float| fits(TEXT, 4).map(|size| place(float, size));
+        match float {
+            Some(Float::Page) => across(Float::Page),
+            Some(Float::Column) => in_column().or_else(|| across(Float::Column)),
+            None => in_column().or_else(|| across(Float::Page)),
+        }
     }
 
     /// The same with its place, where it fits.
-    pub fn placed(self, is_long: bool) -> Option<(Place, Body)> {
-        Some((self.place(is_long)?, self))
+    pub fn placed(self, is_long: bool, float: Option<Float>) -> Option<(Place, Body)> {
+        Some((self.place(is_long, float)?, self))
     }
 
     fn width(&self, scale: f64, space: f64) -> f64 {

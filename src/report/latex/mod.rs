@@ -12,6 +12,7 @@ use super::table::{Cell, Column, Table};
 use crate::error::{Error, Result};
 pub use equations::{Equation, equations};
 use label::{checksum, label};
+pub use layout::Float;
 use layout::{Body, Place};
 pub use typeset::{enclosure, escaped, exact, float, shown};
 
@@ -25,19 +26,24 @@ const DIGITS: [u32; 4] = [10, 8, 6, 4];
 /// shown as fit, ten at most.
 ///
 /// It fits an article of one column and one of two: in a column of two where it can, across both where it must, in
-/// smaller letters where that is not enough; what is too wide even so goes on in further tables, the first columns of
+/// smaller letters where that is not enough, unless `float` chooses; what is too wide even so goes on in further tables, the first columns of
 /// numbers repeated. More rows than a page holds are a `longtable`, for which an article of two columns is interrupted.
 ///
 /// # Errors
 /// A column wider than a page.
-pub fn document(table: &Table, input: &Map<String, Value>, digits: Option<u32>) -> Result<String> {
+pub fn document(
+    table: &Table,
+    input: &Map<String, Value>,
+    digits: Option<u32>,
+    float: Option<Float>,
+) -> Result<String> {
     let table = &kept(table);
     let tries = digits.map_or(DIGITS.to_vec(), |digits| vec![digits]);
     let is_long = table.rows().len() > ROWS_OF_A_PAGE;
-    let fitting = tries.iter().find_map(|&digits| Body::new(&table.shortened(digits)).placed(is_long));
+    let fitting = tries.iter().find_map(|&digits| Body::new(&table.shortened(digits)).placed(is_long, float));
     let parts = match fitting {
         Some(whole) => vec![whole],
-        None => split(&table.shortened(tries[0]), is_long)?,
+        None => split(&table.shortened(tries[0]), is_long, float)?,
     };
     let caption = table.typeset().map_or_else(|| escaped(table.caption()), Into::into);
     let parameters = parameters(input, table.columns());
@@ -55,7 +61,7 @@ pub fn document(table: &Table, input: &Map<String, Value>, digits: Option<u32>) 
 }
 
 /// The first columns of integers, three at most, and as many others as fit, again and again.
-fn split(table: &Table, is_long: bool) -> Result<Vec<(Place, Body)>> {
+fn split(table: &Table, is_long: bool, float: Option<Float>) -> Result<Vec<(Place, Body)>> {
     let keys: Vec<String> = table.columns().iter().map(|column| column.key.clone()).collect();
     let is_integer = |i: &usize| table.rows().iter().all(|row| matches!(row[*i], Cell::Integer(_)));
     let repeated = (0..keys.len().min(3)).take_while(is_integer).count();
@@ -64,7 +70,7 @@ fn split(table: &Table, is_long: bool) -> Result<Vec<(Place, Body)>> {
     while !rest.is_empty() {
         let part = |n: usize| {
             let keys = [first, &rest[..n]].concat();
-            Some((Body::new(&table.choose(&keys).ok()?).placed(is_long)?, n))
+            Some((Body::new(&table.choose(&keys).ok()?).placed(is_long, float)?, n))
         };
         let (placed, n) = (1..=rest.len()).rev().find_map(part).ok_or_else(|| {
             Error::input("column", &rest[0], "is wider than a page: choose fewer digits, or write csv")

@@ -10,7 +10,7 @@ use serde_json::json;
 
 #[cfg(feature = "cli")]
 pub use arrays::MapArrays;
-pub use rows::{Found, Marked, Rows, marked};
+pub use rows::{Found, Marked, Rows, marked, needed};
 pub use tally::{Counts, Tally};
 
 use super::document::Document;

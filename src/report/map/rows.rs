@@ -1,9 +1,10 @@
 //! The pairs that are not plainly stable, as rows.
 
+use crate::error::Result;
 use crate::map::{Band, Enclosure, Grid, Growing, Products};
 use crate::number::Ratio;
 use crate::report::record::Record;
-use crate::report::table::{Cell, Column, Table};
+use crate::report::table::{Cell, Choice, Column, Table};
 use crate::verdict::Decision;
 
 /// A pair whose verdict is not "elliptic": (i, j) names h1 = i D1 and h2 = j D2.
@@ -63,6 +64,7 @@ impl Marked {
 pub struct Rows<'a> {
     grid: &'a Grid,
     record: Record<'static, Written>,
+    choice: Option<Choice>,
     /// The last h1 in writing.
     h1: (u64, String),
     /// The h2 in writing, as far as they were needed; too many rows are written anew each time.
@@ -109,22 +111,46 @@ fn record(products: Products) -> Record<'static, Written> {
     record
 }
 
+/// What a map has to compute for columns of these names.
+pub fn needed(names: &[String]) -> Products {
+    let has = |products: Products| {
+        let more = record(products).columns().split_off(record(Products::default()).columns().len());
+        names.iter().any(|name| Choice::new(&more, std::slice::from_ref(name)).is_ok())
+    };
+    let none = Products::default();
+    Products { label: has(Products { label: true, ..none }), growth: has(Products { growth: true, ..none }) }
+}
+
 impl<'a> Rows<'a> {
     /// The rows of a grid.
     pub fn new(grid: &'a Grid, products: Products) -> Self {
         let kept = if grid.shape().1 <= MOST_TEXTS { grid.shape().1 } else { 0 };
-        Rows { grid, record: record(products), h1: (0, String::new()), h2: vec![None; kept] }
+        let (record, h1) = (record(products), (0, String::new()));
+        Rows { grid, record, choice: None, h1, h2: vec![None; kept] }
+    }
+
+    /// These columns alone, by the names that CSV has.
+    ///
+    /// # Errors
+    /// A name that no column of a map has.
+    pub fn choosing(self, names: &[String]) -> Result<Self> {
+        let choice = Choice::new(&self.record.columns(), names)?;
+        Ok(Rows { choice: Some(choice), ..self })
     }
 
     /// The columns that were asked for.
     pub fn columns(&self) -> Vec<Column> {
-        self.record.columns()
+        self.choice.as_ref().map_or_else(|| self.record.columns(), |choice| choice.columns().to_vec())
     }
 
     /// The cells of one pair.
     pub fn cells(&mut self, pair: &Marked) -> Vec<Cell> {
         let steps = [self.h1(pair.i), self.h2(pair.j)];
-        self.record.row(&Written { steps, pair: *pair, found: pair.found() })
+        let row = self.record.row(&Written { steps, pair: *pair, found: pair.found() });
+        match &self.choice {
+            Some(choice) => choice.row(&row),
+            None => row,
+        }
     }
 
     /// The rows as a table in memory.

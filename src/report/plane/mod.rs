@@ -11,6 +11,7 @@ use lines::{lines, lines_in};
 
 use super::figure::palette::{Colour, GREY};
 use super::figure::{Axis, Cells, Figure, Foot, Layer, Panel};
+use super::text::quoted;
 use crate::number::Laurent;
 use crate::resonance::{Curve, Window};
 
@@ -45,6 +46,14 @@ pub fn parameters(
         foot.value(&format!("*Λ*_{n}"), stiffness).grid(&format!("*h*_{n}"), [lo, hi, step])
     };
     [(1, lambda1), (2, lambda2)].into_iter().fold(Foot::default(), of_clock)
+}
+
+/// The command that asks for the pairs of a grid, the same whether they are computed or joined from parts.
+pub fn command((lambda1, lambda2): (&Laurent, &Laurent), given: [(&str, String); 4]) -> String {
+    let stiffness = [("lambda1", lambda1.to_string()), ("lambda2", lambda2.to_string())];
+    let flag = |(key, value): (&str, String)| format!(" --{} {}", key.replace('_', "-"), quoted(&value));
+    let flags: String = stiffness.into_iter().chain(given).map(flag).collect();
+    format!("kickdrift map{flags}")
 }
 
 /// The curves over the unstable pairs.

@@ -15,9 +15,10 @@ pub fn figure(run: &Run, title: &str) -> Figure {
     let energy = panel(run, "energy", |s| s.energy, 0);
     let momentum = panel(run, "momentum Σ *p*", |s| s.momentum, 4);
     let amplitude = panel(run, "amplitude max |Δ*x*|", |s| s.amplitude, 1);
-    let figure = Figure::double_column(165.0).columns(1).named(title);
-    let title = if title.chars().count() <= LONGEST_TITLE { title } else { "" };
-    figure.with(energy.titled(title)).with(momentum).with(with_prediction(run, amplitude))
+    let figure = Figure::double_column(165.0).columns(1);
+    let figure =
+        if title.chars().count() <= LONGEST_TITLE { figure.headed(title) } else { figure.named(title) };
+    figure.with(energy).with(momentum).with(with_prediction(run, amplitude))
 }
 
 fn panel(run: &Run, label: &str, value: fn(&Sample) -> f64, colour: usize) -> Panel {

@@ -4,7 +4,7 @@ use super::SystemMap;
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::figure::palette::{COEXISTENCE, Colour, Gradient, HYPERBOLIC, INK, PARABOLIC};
-use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
+use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke, literal};
 use crate::system::scan::Point;
 use crate::verdict::Kind;
 
@@ -24,15 +24,15 @@ const LEAST_SIZE: f64 = 0.35;
 const EDGE_SIZE: f64 = 3.4;
 
 impl SystemMap {
-    /// The unstable points in colour, the edges marked.
-    pub fn figure(&self, colouring: Colouring, title: &str) -> Figure {
+    /// The unstable points in colour, the edges marked; `numbers` are those along the axes.
+    pub fn figure(&self, colouring: Colouring, title: &str, numbers: &[(String, i8)]) -> Figure {
         if self.names.len() == 1 {
-            return self.profile(title);
+            return self.profile(title, &numbers[0]);
         }
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
-        let [x, y] = [(&self.names[0], &self.xs), (&self.names[1], &self.ys)].map(|(name, values)| {
+        let [x, y] = [(&numbers[0], &self.xs), (&numbers[1], &self.ys)].map(|(number, values)| {
             let (first, step) = pitch(values);
-            Axis::linear(name, first - step / 2.0, first + step * (values.len() as f64 - 0.5))
+            axis(number, first - step / 2.0, first + step * (values.len() as f64 - 0.5))
         });
         let panel = Panel::new(x, y).titled(&format!("{unstable} of {} points unstable", self.points.len()));
         let panel = match colouring {
@@ -49,7 +49,7 @@ impl SystemMap {
     }
 
     /// Of one number: growth over it.
-    fn profile(&self, title: &str) -> Figure {
+    fn profile(&self, title: &str, number: &(String, i8)) -> Figure {
         let (first, step) = pitch(&self.xs);
         let last = first + step * self.xs.len().saturating_sub(1) as f64;
         let line: Vec<[f64; 2]> =
@@ -58,7 +58,7 @@ impl SystemMap {
         let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
         let panel = Panel::new(
-            Axis::linear(&self.names[0], first, last.max(first + step)),
+            axis(number, first, last.max(first + step)),
             Axis::linear("growth rate", 0.0, top).per_time(),
         )
         .titled(&format!("{unstable} of {} points unstable", self.points.len()))
@@ -108,6 +108,16 @@ impl SystemMap {
             cells.push(i as u32, j as u32, class(point));
         }
         cells
+    }
+}
+
+/// The values of a number of the file: its name in words, and the power of time in its unit.
+pub(super) fn axis((words, time): &(String, i8), lo: f64, hi: f64) -> Axis {
+    let axis = Axis::linear(&literal(words), lo, hi);
+    match time {
+        0 => axis,
+        1 => axis.of_time(),
+        _ => axis.per_time(),
     }
 }
 

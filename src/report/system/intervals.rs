@@ -1,5 +1,7 @@
 //! Stretches of one number of a system: rows, and the unstable ones in words.
 
+#[cfg(feature = "figure")]
+use super::chart::axis;
 use crate::report::decimal;
 use crate::report::document::{Document, enclosure};
 #[cfg(feature = "figure")]
@@ -16,6 +18,9 @@ use crate::system::vary::Intervals;
 /// Growth rates drawn over the whole range, and at least of a stretch.
 const SAMPLES: f64 = 400.0;
 const FEWEST: f64 = 24.0;
+/// Of the range: a line on paper.
+#[cfg(feature = "figure")]
+const THIN: f64 = 1.0 / 500.0;
 
 /// The steps at which growth is drawn: all over the stretches that are not proven stable.
 pub fn sampled(stretches: &[Stretch]) -> Vec<f64> {
@@ -33,7 +38,7 @@ fn inside(own: &Stretch, all: &[Stretch]) -> impl Iterator<Item = f64> {
 
 /// The number across, growth rate up, unstable stretches shaded; `rates` are those at [`sampled`].
 #[cfg(feature = "figure")]
-pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str) -> Figure {
+pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str, number: &(String, i8)) -> Figure {
     let stretches = own.stretches.as_slice();
     let (lo, hi) = (stretches.first().map_or(0.0, |own| own.lo), stretches.last().map_or(1.0, |own| own.hi));
     let fastest = rates.iter().flatten().fold(0.0, |a: f64, &x| a.max(x));
@@ -56,9 +61,14 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str) -> Figure {
     let unstable = counted(shade(Holds::Unstable).len(), "unstable interval", "unstable intervals");
     let inner =
         |steps| counted(steps as usize, "inner step in each outer one", "inner steps in each outer one");
-    let mut panel = Panel::new(across(own, lo, hi), Axis::linear("growth rate", 0.0, top).per_time()).titled(
-        &[Some(unstable), own.inner_steps.map(inner)].into_iter().flatten().collect::<Vec<_>>().join(", "),
-    );
+    let mut panel = Panel::new(axis(number, lo, hi), Axis::linear("growth rate", 0.0, top).per_time())
+        .titled(
+            &[Some(unstable), own.inner_steps.map(inner)]
+                .into_iter()
+                .flatten()
+                .collect::<Vec<_>>()
+                .join(", "),
+        );
     for (verdict, colour, hatch, name) in [
         (Holds::Unstable, HYPERBOLIC, None, "proven unstable"),
         (Holds::NotTold, GREY, Some(Hatch::Falling), "nothing proven"),
@@ -68,16 +78,15 @@ pub fn figure(own: &Intervals, rates: &[Option<f64>], title: &str) -> Figure {
             panel = panel.with(Layer::areas(outlines, colour, 0.25).hatched(hatch).labelled(name));
         }
     }
+    // One that is thinner than a line would be lost.
+    let thin =
+        stretches.iter().filter(|own| own.verdict == Holds::Unstable && own.hi - own.lo < (hi - lo) * THIN);
+    let thin: Vec<_> = thin.map(|own| 0.5 * (own.lo + own.hi)).map(|at| vec![[at, 0.0], [at, top]]).collect();
+    if !thin.is_empty() {
+        panel = panel.with(Layer::lines(thin, Stroke::LINE.in_colour(HYPERBOLIC).wide(0.8)));
+    }
     let line = Layer::lines(vec![line], Stroke::LINE.in_colour(INK)).labelled("growth rate");
     Figure::double_column(80.0).named(title).with(panel.with(line).legend(Place::Above))
-}
-
-/// What stands across: the outer step, or the number's path.
-#[cfg(feature = "figure")]
-fn across(own: &Intervals, lo: f64, hi: f64) -> Axis {
-    let name = if own.number == "outer" { "outer step" } else { &own.number };
-    let axis = Axis::linear(name, lo, hi);
-    if own.is_step { axis.of_time() } else { axis }
 }
 
 /// The document `kickdrift/system-intervals/1`; the caller adds the input.

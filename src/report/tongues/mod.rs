@@ -17,5 +17,5 @@ mod tally;
 #[cfg(feature = "figure")]
 pub mod trace;
 
-pub use rows::{CAPTION, CAPTION_LATEX, record};
+pub use rows::{CAPTION, CAPTION_LATEX, needed, record};
 pub use tally::Tally;

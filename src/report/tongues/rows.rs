@@ -1,9 +1,10 @@
 //! What is written of a tongue.
 
+use crate::error::Result;
 use crate::report::decimal::{concise, outward, rounded};
 use crate::report::record::Record;
-use crate::report::table::{Cell, Column};
-use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge};
+use crate::report::table::{Cell, Choice, Column};
+use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge, Wanted};
 
 /// The caption of a table of tongues.
 pub const CAPTION: &str =
@@ -34,6 +35,23 @@ pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
         None => Cell::Missing,
     });
     wanted(record, request, short)
+}
+
+/// What has to be computed for columns of these names, by which CSV calls them.
+///
+/// # Errors
+/// A name that no column has, whatever is computed.
+pub fn needed(names: &[String], request: &Request) -> Result<Wanted> {
+    let columns = |wanted: Wanted| record(&Request { wanted, ..request.clone() }, false).columns();
+    Choice::new(&columns(Wanted::all()), names)?;
+    let without = |wanted: Wanted| Choice::new(&columns(wanted), names).is_err();
+    Ok(Wanted {
+        family: true,
+        exact: without(Wanted { exact: false, ..Wanted::all() }),
+        growth: without(Wanted { growth: false, ..Wanted::all() }),
+        predicted: without(Wanted { predicted: false, ..Wanted::all() }),
+        first_order: without(Wanted { first_order: false, ..Wanted::all() }),
+    })
 }
 
 /// An edge: what it is called, its sign in formulas, and where it is.

@@ -131,13 +131,7 @@ impl SystemScene {
                 (None, cover(span.ends(), width, cell)?)
             }
         };
-        Ok(Intervals {
-            number: span.path.clone(),
-            is_step: role != Role::Linear,
-            is_discrete: role == Role::Step,
-            inner_steps,
-            stretches,
-        })
+        Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
     }
 
     /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not told.

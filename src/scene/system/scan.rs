@@ -125,6 +125,49 @@ impl Scan {
 }
 
 impl SystemScene {
+    /// The number at a path in words, and the power of time in its unit: `potentials.soft.step` is the step of soft, a time.
+    pub fn number(&self, path: &str) -> (String, i8) {
+        let keys: Vec<&str> = path.split('.').collect();
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), String::from);
+        let ends = |own: &Value, keys: [&str; 2]| {
+            let ends = keys.map(|key| match key.parse::<usize>() {
+                Ok(i) => own.get(i).map_or(Value::Null, Value::clone),
+                Err(_) => own.get(key).map_or(Value::Null, Value::clone),
+            });
+            let shown = ends.iter().filter(|end| !end.is_null()).map(text).collect::<Vec<_>>();
+            if shown.len() < 2 { format!("{} to its place", shown.concat()) } else { shown.join("–") }
+        };
+        let words = match keys[..] {
+            ["outer"] => "outer step".into(),
+            ["masses", i] => format!("mass of particle {i}"),
+            ["potentials", own, ref rest @ ..] => {
+                let potential = found(&self.source["potentials"], own);
+                let name =
+                    potential["name"].as_str().map_or_else(|| format!("potential {own}"), String::from);
+                match *rest {
+                    ["springs", k, "2"] => {
+                        format!("spring {} of {name}", ends(found(&potential["springs"], k), ["0", "1"]))
+                    }
+                    ["bonds", k, key] => {
+                        format!("{key} of bond {} of {name}", ends(found(&potential["bonds"], k), ["i", "j"]))
+                    }
+                    [key] => format!("{key} of {name}"),
+                    ref keys => format!("{} of {name}", keys.join(" ")),
+                }
+            }
+            ["build" | "mesh", "steps", i] => format!("step {i}"),
+            ["build" | "mesh", ref rest @ ..] => rest.join(" "),
+            ref keys => keys.join(" "),
+        };
+        let last = keys.iter().rfind(|key| key.parse::<usize>().is_err());
+        let time = match last {
+            Some(&("outer" | "step" | "steps" | "phase")) => 1,
+            Some(&"friction") => -1,
+            _ => 0,
+        };
+        (words.replace('_', " "), time)
+    }
+
     /// The same file with other numbers at some of its paths; `field` is what errors name.
     pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();
@@ -137,6 +180,13 @@ impl SystemScene {
         }
         Ok(scene)
     }
+}
+
+/// An item by its place or its name; nothing where there is none.
+fn found<'a>(items: &'a Value, key: &str) -> &'a Value {
+    let all = items.as_array().map_or(&[][..], Vec::as_slice);
+    let named = || all.iter().position(|item| item["name"].as_str() == Some(key));
+    key.parse().ok().or_else(named).and_then(|i: usize| all.get(i)).unwrap_or(&Value::Null)
 }
 
 /// The place that a path names.
@@ -159,7 +209,7 @@ pub(super) fn place<'a>(file: &'a mut Value, path: &str, field: &str) -> Result<
                 }
             }
             Value::Array(items) => {
-                let named = |item: &Value| item.get("name").and_then(Value::as_str) == Some(key);
+                let named = |item: &Value| item["name"].as_str() == Some(key);
                 let index = key.parse().ok().or_else(|| items.iter().position(named));
                 index.and_then(|i: usize| items.get_mut(i)).ok_or_else(|| nowhere(key))?
             }

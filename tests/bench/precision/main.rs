@@ -17,6 +17,7 @@ mod verdicts;
 
 use std::path::PathBuf;
 
+use kickdrift::report::figure::Figure;
 use serde_json::json;
 
 fn main() {
@@ -31,11 +32,12 @@ fn main() {
         println!("{}", path.display());
     };
     let picture = neighbours::picture();
-    write("neighbours.svg", picture.figure.svg());
+    let drawn = |figure: Figure| figure.made_by("cargo bench --bench precision").svg();
+    write("neighbours.svg", drawn(picture.figure.clone()));
     if std::env::args().any(|argument| argument == "--redraw") {
         let kept = std::fs::read_to_string(directory.join("precision.json")).expect("what was measured");
         let document = serde_json::from_str(&kept).expect("JSON");
-        return write("precision.svg", figure::precision(&document).svg());
+        return write("precision.svg", drawn(figure::precision(&document)));
     }
     let traces = traces::measure();
     traces::print(&traces);
@@ -55,6 +57,6 @@ fn main() {
         "systems": others::json(&systems),
         "neighbours": { "pairs": picture.pairs, "wrong": picture.wrong },
     });
-    write("precision.svg", figure::precision(&document).svg());
+    write("precision.svg", drawn(figure::precision(&document)));
     write("precision.json", serde_json::to_string_pretty(&document).expect("JSON") + "\n");
 }

@@ -1,0 +1,55 @@
+//! The command that made a figure, as the figure carries it: the same text wherever and however often it is given.
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Command, ValueHint};
+
+use crate::report::text::quoted;
+
+/// Flags that change no byte of a figure: where it goes, how it is computed.
+const ELSEWHERE: [&str; 7] = ["output", "threads", "quiet", "budget", "resume", "certificate", "format"];
+
+/// What a map is of.
+const OF_MAPS: [&str; 11] = [
+    "lambda1", "lambda2", "step", "step1", "step2", "h1_range", "h2_range", "label", "growth", "shard",
+    "parts",
+];
+
+/// `kickdrift NAME` with the flags that were given, in the order of the help; of paths only the file's name.
+///
+/// Of a map only how it is drawn, whether it is computed or joined: what it is of, the map says itself.
+pub fn text(program: &Command, matches: &ArgMatches) -> String {
+    let Some((name, given)) = matches.subcommand() else { return program.get_name().into() };
+    let arguments = program.find_subcommand(name).into_iter().flat_map(Command::get_arguments);
+    let is_map = ["map", "merge"].contains(&name);
+    let asked = arguments.filter(|own| !is_map || !OF_MAPS.contains(&own.get_id().as_str()));
+    let shown = asked.filter(|own| is_shown(own, given)).flat_map(|own| words(own, given));
+    let name = if is_map { "map" } else { name };
+    [program.get_name().to_string(), name.to_string()].into_iter().chain(shown).collect::<Vec<_>>().join(" ")
+}
+
+fn is_shown(own: &Arg, given: &ArgMatches) -> bool {
+    let id = own.get_id().as_str();
+    let is_file = own.get_value_hint() == ValueHint::AnyPath && id == "figure";
+    given.value_source(id) == Some(ValueSource::CommandLine) && !ELSEWHERE.contains(&id) && !is_file
+}
+
+/// The flag and its values as a shell reads them; a flag that is given again comes again.
+fn words(own: &Arg, given: &ArgMatches) -> Vec<String> {
+    let is_path = own.get_value_hint() == ValueHint::AnyPath;
+    let shown = |value: &std::ffi::OsStr| {
+        let path = std::path::Path::new(value);
+        let name = path.file_name().filter(|_| is_path).unwrap_or(value);
+        quoted(&name.to_string_lossy())
+    };
+    let values = given.get_raw_occurrences(own.get_id().as_str()).into_iter().flatten();
+    let separator = own.get_value_delimiter().map_or(" ".into(), String::from);
+    let one = |values: Vec<String>| {
+        let joined = values.join(&separator);
+        match own.get_long() {
+            Some(flag) if joined.is_empty() || !own.get_action().takes_values() => format!("--{flag}"),
+            Some(flag) => format!("--{flag} {joined}"),
+            None => joined,
+        }
+    };
+    values.map(|values| one(values.map(shown).collect())).collect()
+}
