@@ -68,7 +68,7 @@ struct Question {
     answer: Answer,
 }
 
-const QUESTIONS: [Question; 13] = [
+const QUESTIONS: [Question; 14] = [
     question("start", true, 0, start::answer),
     question("tile", false, tile::MOST_KICKS, tile::answer),
     question("tongues", false, tongues::MOST_KICKS, tongues::answer),
@@ -79,6 +79,7 @@ const QUESTIONS: [Question; 13] = [
     question("cut", false, cut::MOST_KICKS, cut::answer),
     question("strip", false, strip::MOST_KICKS, strip::answer),
     question("system", false, outer::MOST_PRODUCTS, outer::answer),
+    question("stretches", false, outer::MOST_PRODUCTS, outer::stretches),
     question("modes", false, outer::MOST_PRODUCTS, outer::modes),
     question("scene", true, 0, shown::scene),
     question("picture", false, shown::MOST_KICKS, shown::picture),

@@ -10,6 +10,7 @@ use crate::number::parse::parse_rational_range;
 use crate::number::{Rational, rational};
 use crate::report::system::{Beside, document};
 use crate::scene::{Span, SystemScene};
+use crate::system::stretches::Stretch;
 use crate::system::{Analysis, Limits, Route};
 
 /// Products that all samples together may cost, some 10 s of a core.
@@ -39,11 +40,8 @@ fn verdict(scene: &SystemScene, analysis: &Analysis) -> Value {
     document(analysis, &beside).value()
 }
 
-/// `outer` and `rate` (null where it is not told) at evenly spaced outer steps, `stretches` {`lo`, `hi`, `verdict`} that cover the range
-/// (null of systems that have none proven), `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time,
-/// `title`.
-pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
-    let scene = system(session)?;
+/// The file's outer step, and the range asked for: from a quarter of it to twice it, where none is.
+fn range(scene: &SystemScene, query: &Query) -> Result<(Rational, (Rational, Rational))> {
     let own =
         scene.system().clocks().iter().map(|clock| clock.step.clone()).max().expect("a system has clocks");
     let (lo, hi) = match query.read("outer", parse_rational_range)? {
@@ -53,30 +51,45 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     if lo <= Rational::default() || hi == lo {
         return Err(Error::input("outer", format!("{lo}..{hi}"), "write a range of positive steps"));
     }
-    let samples = query.read("samples", count(2, 1000))?.unwrap_or(200);
-    let cost = scene.cost().saturating_mul(samples);
-    if cost > MOST_PRODUCTS {
-        return Err(
-            Error::budget(format!("{samples} verdicts on this system"), cost).or("ask for fewer samples")
-        );
+    Ok((own, (lo, hi)))
+}
+
+/// `stretches` {`lo`, `hi`, `verdict`} that cover the range; null of systems that have none proven. They may cost far more than
+/// growth does.
+pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
+    let scene = system(session)?;
+    let (_, (lo, hi)) = range(scene, query)?;
+    let span: Span = format!("outer={lo}..{hi}").parse()?;
+    let stretches = match scene.intervals(&span, WIDTH, &Limits::default()) {
+        Ok(found) => {
+            let one = |own: &Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
+            found.stretches.iter().map(one).collect()
+        }
+        Err(error) if error.kind() != Kind::Input => return Err(error),
+        // Of systems with nonlinear bonds, irrational numbers or friction.
+        Err(_) => Value::Null,
+    };
+    Ok(Reply::json(&json!({ "stretches": stretches })))
+}
+
+/// `outer` and `rate` (null where it is not told) at evenly spaced outer steps, as many as asked for or fewer where these would cost
+/// too much; `own` the file's outer step, `verdict` the document of the file's own steps, `unit` of time, `title`.
+pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
+    let scene = system(session)?;
+    let (own, (lo, hi)) = range(scene, query)?;
+    let affordable = MOST_PRODUCTS / scene.cost().max(1);
+    if affordable < 2 {
+        return Err(Error::budget("two verdicts on this system", 2 * scene.cost()));
     }
+    let samples = query.read("samples", count(2, 1000))?.unwrap_or(200).min(affordable);
     let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
     let steps = (0..samples).map(|k| rational::to_f64(&(&lo + &part * Rational::from_integer(k.into()))));
     let (steps, limits) = (steps.collect::<Vec<f64>>(), Limits::default());
     let span: Span = format!("outer={lo}..{hi}").parse()?;
     let rates = scene.growth_rates(&span, &steps, &limits)?;
-    let stretches = match scene.intervals(&span, WIDTH, &limits) {
-        Ok(found) => {
-            let one = |own: &crate::system::stretches::Stretch| json!({"lo": own.lo, "hi": own.hi, "verdict": own.verdict.name()});
-            found.stretches.iter().map(one).collect()
-        }
-        Err(error) if error.kind() == Kind::Stopped => return Err(error),
-        // Of systems with nonlinear bonds, irrational numbers or friction.
-        Err(_) => Value::Null,
-    };
     let analysis = scene.decide(Route::Cheapest, &limits)?;
     Ok(Reply::json(&json!({
-        "outer": steps, "rate": rates, "stretches": stretches, "own": rational::to_f64(&own),
-        "verdict": verdict(scene, &analysis), "unit": scene.time_unit(), "title": scene.title(),
+        "outer": steps, "rate": rates, "own": rational::to_f64(&own), "verdict": verdict(scene, &analysis),
+        "unit": scene.time_unit(), "title": scene.title(),
     })))
 }

@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { SPRINGS, kickdrift, picture, serve, settled, spot, stage } from "./harness.mjs";
+import { SPRINGS, kickdrift, picture, serve, settled, shot, spot, stage } from "./harness.mjs";
 
 const { opened } = stage();
 
@@ -70,18 +70,34 @@ test("a new rho is read exactly, a bad one is told", async () => {
   await page.waitForFunction(() => document.querySelector(".error[role=alert]").textContent.length > 0);
 });
 
+test("a system of many degrees of freedom shows growth, whatever its unstable intervals cost", async () => {
+  for (const name of ["flexible-water.json", "bar-resonant.json"]) {
+    const own = await serve(process.env.KICKDRIFT_SYSTEM.replace("two-bars.json", name));
+    const page = await opened({ address: own.address });
+    await page.waitForSelector(".plot polyline", { timeout: 60_000 });
+    assert.match(await page.textContent(".below"), /outer step, \S+ [a-z]+: (un)?stable/);
+    await shot(page, name.replace(".json", ""));
+    await page.close();
+    own.stop();
+  }
+});
+
 test("a system's growth is the program's, at its own step and where it is proven unstable", async () => {
   const path = process.env.KICKDRIFT_SYSTEM;
   const own = await serve(path);
   const told = JSON.parse(kickdrift("system", path, "--format", "json"));
   const page = await opened({ address: own.address, hash: "#y=1" });
   await page.waitForSelector(".plot svg", { timeout: 30_000 });
-  const words = await page.textContent(".below");
-  assert.match(words, new RegExp(`outer step, [\\d.]+ [a-z]+: ${told.stable ? "stable" : "unstable"}`));
+  assert.match(await page.textContent(".below"), new RegExp(`outer step, [\\d.]+ [a-z]+: ${told.stable ? "stable" : "unstable"}`));
+  await page.waitForFunction(() => window.kickdrift.drawer.data.reply.stretches, null, { timeout: 60_000 });
   const { reply, shades } = await page.evaluate(() => ({ reply: window.kickdrift.drawer.data.reply, shades: document.querySelectorAll(".plot svg svg rect").length }));
   const kept = (name) => reply.stretches.filter(({ verdict }) => verdict === name).length;
   assert.ok(kept("unstable") > 0 && shades === kept("unstable") + kept("the data do not tell"), `${shades} shades`);
+  const words = await page.textContent(".below");
   assert.ok(words.includes(`proven unstable on ${kept("unstable")} `), words);
+  // One that is thinner than a pixel is to be seen, too.
+  const widths = await page.evaluate(() => [...document.querySelectorAll(".plot svg svg rect")].map((rect) => Number(rect.getAttribute("width"))));
+  assert.ok(widths.every((width) => width >= 3), widths.join(" "));
   // A sample in a stretch that is proven unstable grows, one where it is proven stable does not.
   const at = (x) => reply.stretches.find(({ lo, hi }) => lo < x && x < hi)?.verdict;
   const wrong = reply.outer.filter((x, k) => (at(x) === "unstable" && !(reply.rate[k] > 0)) || (at(x) === "stable" && reply.rate[k] > 0));

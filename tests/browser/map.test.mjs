@@ -120,6 +120,21 @@ test("what nobody looks at any more is no longer asked for", async () => {
   await settled(page);
 });
 
+test("what is not decided yet is hatched, not of the colour of stable", async () => {
+  const page = await opened();
+  const colours = async () => new Set((await pixels(page, Array.from({ length: 24 }, (_, k) => [200 + k, 200]))).map(String));
+  await page.evaluate(() => {
+    const { map } = window.kickdrift;
+    map.tiles.want = () => {};
+    map.tiles.layers.clear();
+    map.stale = null;
+    map.redraw();
+  });
+  await page.waitForFunction(() => !window.kickdrift.map.due);
+  const shown = await colours();
+  assert.ok(shown.size > 1, [...shown].join(" "));
+});
+
 test("the theme is the system's until one is chosen", async () => {
   const page = await opened({ hash: "#x=ratio,7/3,1/10,63/100", scheme: "dark" });
   await page.waitForSelector(".plot svg");

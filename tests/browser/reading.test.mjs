@@ -100,6 +100,16 @@ test("the grid that is sampled is said, and where it would cost too much, what i
   assert.ok(words.includes(`p + q ≤ ${String(sum).replace(/\B(?=(\d{3})+$)/g, ",")}.`));
 });
 
+test("labels can be ticked where there is a line that they stand at, and say so where there is none", async () => {
+  const page = await opened();
+  const labels = page.getByLabel("Labels", { exact: true });
+  assert.deepEqual([await labels.isDisabled(), await labels.isChecked()], [true, false]);
+  assert.match(await page.locator("label", { hasText: /^Labels$/ }).getAttribute("title"), /curves/);
+  await page.locator("label", { hasText: "Curves" }).click();
+  await settled(page);
+  assert.deepEqual([await labels.isDisabled(), await labels.isChecked()], [false, true]);
+});
+
 test("curves, tongues and labels come on request and go again", async () => {
   const page = await opened({ hash: "#b=0" });
   const plain = await picture(page);

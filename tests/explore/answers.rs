@@ -355,7 +355,9 @@ fn a_system_grows_where_its_own_verdict_says() {
         (told["rate"][1].as_f64().unwrap(), told["verdict"]["growth_rate"].as_f64().unwrap());
     // The sample is the double nearest to the step.
     assert!((sampled - own).abs() <= 1e-9 * own.abs(), "{sampled} {own}");
-    let stretches = told["stretches"].as_array().unwrap();
+    let proven = ask(&session, "stretches", "outer=3/100..9/100", &stop).unwrap();
+    let proven: Value = serde_json::from_slice(&proven.bytes).unwrap();
+    let stretches = proven["stretches"].as_array().unwrap();
     let holds = stretches
         .iter()
         .find(|of| of["lo"].as_f64() <= Some(0.06) && Some(0.06) <= of["hi"].as_f64())
@@ -373,6 +375,20 @@ fn a_system_grows_where_its_own_verdict_says() {
     assert_eq!(ask(&session, "modes", "at=0", &stop).unwrap().status, 400);
     let start: Value = serde_json::from_slice(&ask(&session, "start", "", &stop).unwrap().bytes).unwrap();
     assert!(start["lambda1"].is_null() && start["system"].is_object());
+}
+
+#[test]
+fn a_large_system_shows_the_growth_that_its_cost_allows() {
+    let scenes = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+    for name in ["flexible-water.json", "bar-resonant.json"] {
+        let text = std::fs::read_to_string(scenes.join(name)).unwrap();
+        let scene = kickdrift::scene::SystemScene::read_in(scenes, &text).unwrap();
+        let reply = ask(&Session::of_system(scene), "system", "samples=201", &Arc::default()).unwrap();
+        let told: Value = serde_json::from_slice(&reply.bytes).unwrap();
+        let (steps, rates) = (told["outer"].as_array().unwrap(), told["rate"].as_array().unwrap());
+        assert!(steps.len() >= 20 && steps.len() == rates.len(), "{name}: {told}");
+        assert!(rates.iter().any(|rate| rate.as_f64() > Some(0.0)), "{name}: {rates:?}");
+    }
 }
 
 /// Some 20 s of an optimized program for the trace of an elliptic pair: two solutions of 10^6 kicks in bits.

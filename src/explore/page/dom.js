@@ -76,9 +76,16 @@ export function segmented(legend, name, choices, chosen, act) {
   return set;
 }
 
+/** `set(value, idle)`: `idle` says why it has nothing to do, and it cannot be ticked. */
 export function checkbox(label, checked, act) {
   const input = h("input", { type: "checkbox", checked, onchange: () => act(input.checked) });
-  return Object.assign(h("label.check", {}, input, h("span", {}, label)), { set: (value) => (input.checked = value) });
+  const element = h("label.check", {}, input, h("span", {}, label));
+  const set = (value, idle = "") => {
+    input.checked = value && !idle;
+    input.disabled = Boolean(idle);
+    element.title = idle;
+  };
+  return Object.assign(element, { set });
 }
 
 /** Hands a file to the browser. */

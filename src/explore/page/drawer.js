@@ -16,6 +16,9 @@ const upward = (rates) => {
   return { lo: 0, hi: most > 0 ? 1.2 * most : 1 };
 };
 
+/** Outer steps at which a system is decided. */
+const SAMPLES = 201;
+
 /** Samples are evenly spaced in rho: a decade at a time they are so in its logarithm, nearly. */
 const DECADES = ["1/1000..1/300", "1/300..1/100", "1/100..3/100", "3/100..1/10", "1/10..3/10", "3/10..1", "1..3", "3..10"];
 
@@ -57,7 +60,15 @@ export class Drawer {
       const replies = await Promise.all(asked.map(([path, params]) => questions.json(path, params, signal)));
       this.data = { of: kind, reply: kind === "strip" ? joined(replies) : replies[0] };
       this.paint();
+      if (kind === "system") this.loadStretches(this.data.reply, asked[0][1]);
     }, 30);
+    // Growth is shown before it is known where it is proven: that may take long, or too long.
+    this.loadStretches = latest(async (reply, { outer }, signal) => {
+      const found = await this.questions.json("stretches", outer ? { outer } : {}, signal).catch((error) => ({ stretches: null, lost: error.message }));
+      if (signal.aborted) return;
+      Object.assign(reply, found);
+      this.paint();
+    });
     this.loadModes = latest(async (at, signal) => {
       this.modes = await questions.json("modes", { at }, signal).catch((error) => ({ at: Number(at), error: error.message }));
       this.paint();
@@ -99,7 +110,7 @@ export class Drawer {
       return this.load("cut", [["cut", { ...springs, kind: along, value, lo, hi, samples: 401 }]]);
     }
     if (what.kind === "strip") return this.load("strip", DECADES.map((rho) => ["strip", { ratio: what.ratio, rho, samples: 31 }]));
-    return this.load("system", [["system", what.outer ? { outer: what.outer, samples: 201 } : { samples: 201 }]]);
+    return this.load("system", [["system", what.outer ? { outer: what.outer, samples: SAMPLES } : { samples: SAMPLES }]]);
   }
 
   #head(what) {
@@ -173,7 +184,7 @@ export class Drawer {
     this.below.replaceChildren(said, ...(closings.length ? [table(closings.length === 1 ? "1 closing" : `${closings.length} closings`, [h("i", {}, "m"), h("i", {}, "s"), h("i", {}, "ρ")], cells)] : []));
   }
 
-  _system({ outer, rate, stretches, own, verdict, unit: named }) {
+  _system({ outer, rate, stretches, lost, own, verdict, unit: named }) {
     const { palette } = this.shared();
     const unit = named ?? "time";
     this.range.placeholder = `${number(outer[0])}..${number(outer.at(-1))}`;
@@ -200,8 +211,16 @@ export class Drawer {
     const chosen = modes && (modes.error ? [h("p.quiet", { role: "status" }, modes.error)] : told("At the outer step that was chosen", modes.verdict, modes.at, unit));
     this.below.replaceChildren(
       pointed, ...told("The dashed line is the file's own outer step", verdict, own, unit), ...(chosen ?? []),
-      ...(stretches ? [h("p.quiet", {}, `Of the intervals of outer steps it is ${says.join(" (red), ")} (grey); on the others it is proven stable.`)] : []));
+      ...(rate.length < SAMPLES ? [h("p.quiet", {}, `${rate.length} steps were decided, evenly spaced: more would cost too much at once. A narrower range shows more of it.`)] : []),
+      h("p.quiet", { "data-said": "stretches" }, proven(stretches, lost, says)));
   }
+}
+
+/** Where growth is proven, as far as that is known. */
+function proven(stretches, lost, says) {
+  if (lost) return `Unstable intervals between these steps are not known: ${lost}. A narrower range costs less.`;
+  if (stretches === undefined) return "Looking for unstable intervals between these steps …";
+  return stretches ? `Of the intervals of outer steps it is ${says.join(" (red), ")} (grey); on the others it is proven stable.` : "";
 }
 
 /** What holds at an outer step: stable, or which modes grow. */

@@ -135,7 +135,7 @@ class Explorer {
     const { page, state } = this;
     page.colours.choice.choose(state.what);
     legend(page.colours.host, now);
-    page.over.set(state, this.map.view);
+    page.over.set(state, this.map.view, this.status?.vectors);
     page.springs.set(state);
     const [a, b] = [state.lambda1, state.lambda2].map((x) => mathematics(x ?? ""));
     page.subject(this.begun.title, a, b, mathematics(state.rho), this.begun.unit);
@@ -162,7 +162,7 @@ class Explorer {
   #fit() {
     this.map.home();
     this.fitted = this.map.view.save();
-    this.page.over.set(this.state, this.map.view);
+    this.page.over.set(this.state, this.map.view, this.status?.vectors);
   }
 
   /** Takes the frame's size; a view that shows the whole window goes on doing so. */
@@ -177,8 +177,9 @@ class Explorer {
   }
 
   #told(status) {
+    const { page, state } = this;
+    if (status.vectors !== this.status?.vectors) page.over?.set(state, this.map.view, status.vectors);
     this.status = status;
-    const { page } = this;
     page.note(told(status, this.map.view));
     page.where(`zoom ${status.level}`.replace("-", "−"));
     page.offsets(status.offsets);

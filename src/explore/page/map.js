@@ -7,6 +7,24 @@ import { layerKey, Tiles } from "./tiles.js";
 import { drawLabels, Vectors } from "./vectors.js";
 import { View } from "./view.js";
 
+/** Rising strokes, a pattern that joins at its edges. */
+function hatch(context, { paper, faint }) {
+  const side = 8;
+  const square = Object.assign(document.createElement("canvas"), { width: side, height: side });
+  const pen = square.getContext("2d");
+  pen.fillStyle = css(paper);
+  pen.fillRect(0, 0, side, side);
+  pen.strokeStyle = css(faint, 0.7);
+  pen.lineWidth = 1;
+  pen.beginPath();
+  for (const at of [-side, 0, side]) {
+    pen.moveTo(at - 1, side + 1);
+    pen.lineTo(at + side + 1, -1);
+  }
+  pen.stroke();
+  return context.createPattern(square, "repeat");
+}
+
 export class StabilityMap {
   /** `settings()`: {layer, palette, tongues, maxSum, curves, labels, unit, pin, cut}; `report(status)` after each picture. */
   constructor(canvas, questions, step, settings, report) {
@@ -95,6 +113,7 @@ export class StabilityMap {
     const lacking = here.filter((tile) => !tile).length;
     const costly = costs.find(Boolean) ?? null;
     const key = layerKey(now.layer);
+    here.forEach((tile, k) => tile || this.#pending(view.tileBox(shown[k]), now.palette));
     if (lacking && this.stale && this.stale.key !== key) this.#under(this.stale.layer, now.palette, false);
     else if (!lacking) this.stale = { key, layer: now.layer };
     // Where cells would cost too much, coarser ones would be taken for them: they stay, but pale.
@@ -119,6 +138,14 @@ export class StabilityMap {
   /** Is a pixel in none of the tiles that are here? */
   #isBare([x, y]) {
     return this.bare.some(([l, t, r, b]) => x >= l && x < r && y >= t && y < b);
+  }
+
+  /** Hatched: no verdict is here, where the colour of paper would say that all is stable. */
+  #pending([left, top, right, bottom], palette) {
+    const { context } = this;
+    if (this.hatched !== palette) Object.assign(this, { hatched: palette, hatch: hatch(context, palette) });
+    context.fillStyle = this.hatch;
+    context.fillRect(left, top, right - left, bottom - top);
   }
 
   /** Tiles of neighbouring levels, while those of this one are on their way. */

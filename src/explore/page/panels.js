@@ -66,13 +66,13 @@ export function over(state, act) {
     h("div.entry", {}, h("label", { for: sum.id }, "ratios up to ", h("i", {}, "p"), " + ", h("i", {}, "q"), " ="), sum),
     curves, labels,
     h("div.entry", {}, h("label", { for: stretch.id }, "Scale of ", step(1), " : ", step(2)), stretch));
-  const set = (now, view) => {
+  const set = (now, view, lines) => {
     tongues.value = now.tongues;
     sum.value = String(now.maxSum);
     // Where cells end, lines are chosen by their width.
     sum.disabled = now.tongues !== "on";
     curves.set(now.curves);
-    labels.set(now.labels);
+    labels.set(now.labels, now.curves || lines ? "" : "Labels stand at lines: show the curves, or tongues as lines");
     stretch.value = String(view.stretch);
   };
   return { element, set };

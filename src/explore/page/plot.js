@@ -3,6 +3,9 @@
 import { h } from "./dom.js";
 import { number, raised } from "./writing.js";
 
+/** The least width of an interval, in pixels: one that is thinner is still to be seen. */
+const LEAST = 3;
+
 const MARGIN = { left: 74, right: 18, top: 12, bottom: 50 };
 
 /** Round numbers over [lo, hi]: at most about `most`. */
@@ -123,12 +126,14 @@ const DRAW = {
   upright(svg, { at, colour }, [fx], box) {
     svg.append(h("line", { x1: fx(at), x2: fx(at), y1: box.top, y2: box.bottom, stroke: colour, "stroke-width": 1.2, "stroke-dasharray": "4 3" }));
   },
-  /** Intervals of x as shaded columns. */
+  /** Intervals of x as shaded columns; what is thinner than `LEAST` is as wide as that, and darker. */
   spans(svg, { spans, colour }, [fx], box) {
     for (const { lo, hi, label } of spans) {
       const [a, b] = [Math.max(box.left, fx(lo)), Math.min(box.right, hi === null ? box.right : fx(hi))];
       if (b < box.left || a > box.right) continue;
-      svg.append(h("rect", { x: a, y: box.top, width: Math.max(1, b - a), height: box.bottom - box.top, fill: colour, "fill-opacity": 0.16 }, h("title", {}, label)));
+      const thin = b - a < LEAST;
+      const from = thin ? Math.min(box.right - LEAST, Math.max(box.left, (a + b - LEAST) / 2)) : a;
+      svg.append(h("rect", { x: from, y: box.top, width: thin ? LEAST : b - a, height: box.bottom - box.top, fill: colour, "fill-opacity": thin ? 0.55 : 0.16 }, h("title", {}, label)));
       if (b - a > 7.5 * label.length) svg.append(h("text", { x: (a + b) / 2, y: box.top + 16, "text-anchor": "middle" }, label));
     }
   },
