@@ -33,7 +33,7 @@ fn every_action_is_named_by_the_hash_of_its_commit() {
 #[test]
 fn no_workflow_may_write_more_than_it_has_to() {
     for (name, text) in workflows() {
-        let above = text.split("\njobs:").next().unwrap();
+        let above = text.split("jobs:").next().unwrap();
         assert!(above.contains("\npermissions:\n  contents: read\n"), "{name}");
     }
 }

@@ -73,7 +73,7 @@ test("a new rho is read exactly, a bad one is told", async () => {
 test("a system of many degrees of freedom shows growth, whatever its unstable intervals cost", async () => {
   for (const name of ["flexible-water.json", "bar-resonant.json"]) {
     const own = await serve(process.env.KICKDRIFT_SYSTEM.replace("two-bars.json", name));
-    const page = await opened({ address: own.address });
+    const page = await opened({ address: own.address, ready: false });
     await page.waitForSelector(".plot polyline", { timeout: 60_000 });
     assert.match(await page.textContent(".below"), /outer step, \S+ [a-z]+: (un)?stable/);
     await shot(page, name.replace(".json", ""));

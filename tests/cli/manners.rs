@@ -93,17 +93,14 @@ fn a_citation_has_the_authors_and_the_version_of_the_citation_file() {
 fn a_figure_carries_the_version_and_the_command_that_made_it() {
     let desk = Desk::new();
     let version = concat!("kickdrift ", env!("CARGO_PKG_VERSION"));
-    let asked = "kickdrift map --lambda1 'pi^2' --lambda2 '1/25*pi^2' --step1 1/20 --step2 1/20 --h1-range '1/20..2*pi^-1' --h2-range 1/20..7/2 --curves";
+    let asked = "kickdrift map --lambda1 pi^2 --lambda2 pi^2/25 --step1 1/20 --step2 1/20 --h1-range 1/20..2/pi \
+                 --h2-range 1/20..7/2 --curves";
     for name in ["m.svg", "m.png", "m.pdf"] {
         let ended = desk.run(&words(MAP, &["--threads", "2", "--quiet", "--curves", "--output", name]));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-        let text = String::from_utf8_lossy(&desk.read(name)).replace("&#39;", "'");
-        let plain = text.replace('\'', "");
-        assert!(
-            text.contains(version) && plain.contains(&asked.replace('\'', "")),
-            "{name}: {}",
-            &plain[..600]
-        );
+        let bytes = desk.read(name);
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains(version) && text.contains(asked), "{name}");
     }
     // Neither where it lies nor how it was computed.
     let bytes = desk.read("m.svg");
@@ -136,19 +133,19 @@ fn a_figure_for_a_paper_has_no_words_around_it_or_one_heading() {
 
 #[test]
 fn a_table_stands_in_the_environment_that_is_asked_for() {
-    for (flags, begins) in [
-        (&[][..], "\\begin{table}\n"),
-        (&["--float", "table"], "\\begin{table}\n"),
-        (&["--float", "table*"], "\\begin{table*}\n"),
+    let narrow = "closings --max-sum 8 --format latex";
+    let wide = "tongues --ratio 5/3 --rho 1/25 --m 3 --format latex";
+    let map = "map --lambda1 pi^2 --lambda2 pi^2/25 --step 1/20 --h1-range 1/20..1/10 --h2-range 1/20..7/2 --format latex";
+    for (line, flags, begins) in [
+        (narrow, &[][..], "\\begin{table}\n"),
+        (narrow, &["--float", "table*"], "\\begin{table*}\n"),
+        (wide, &[], "\\begin{table*}\n"),
+        (wide, &["--float", "table"], "\\begin{table}\n"),
+        (map, &["--float", "table*"], "\\begin{table*}\n"),
+        (map, &["--float", "table", "--columns", "h1,h2"], "\\begin{table}\n"),
     ] {
-        for line in ["closings --max-sum 8", "tongues --ratio 5/3 --rho 1/25 --m 3", MAP] {
-            let flags = [&["--format", "latex"], flags].concat();
-            let narrow = if line == MAP { &["--columns", "h1,h2"][..] } else { &[] };
-            let range = if line == MAP { &["--h1-range", "1/20..1/10"][..] } else { &[] };
-            let line = if range.is_empty() { line.into() } else { line.replace("--h1-range 1/20..2/pi", "") };
-            let text = stdout(&words(&line, &[&flags, narrow, range].concat()));
-            assert!(text.contains(begins), "{line} {flags:?}: {text}");
-        }
+        let text = stdout(&words(line, flags));
+        assert!(text.contains(begins), "{line} {flags:?}: {text}");
     }
     let refused = run(&words("closings --max-sum 8 --format json --float table", &[]));
     assert!(refused.code == Some(2) && refused.stderr.contains("--float = given"), "{}", refused.stderr);

@@ -36,7 +36,7 @@ const DOCUMENTS: [&str; 26] = [
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {
-    let ended = desk.run(&words(line, &["--format", "json", "--output", name]));
+    let ended = desk.run(&words(line, &["--format", "json", "--quiet", "--output", name]));
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""), "{line}");
     serde_json::from_slice(&desk.read(name)).unwrap()
 }

@@ -61,8 +61,9 @@ pub struct Args {
     /// Give the edges to so many significant digits, more or fewer than doubles have.
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
     digits: Option<u32>,
-    /// What to compute beside the edges (edges, exact, growth, predicted, first-order), or columns by the names that csv has
-    /// [default: all; with --max-sum all but growth, the dearest; in LaTeX edges].
+    /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
+    ///
+    /// Groups: edges alone, exact, growth (the dearest), predicted, first-order.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
