@@ -129,11 +129,9 @@ impl Levels<'_> {
         let rounded = System::new(mass, heard.iter().map(potential).collect())?;
         let analysis = decide_oscillator(&clocks, &rounded, &unit, limits)?;
         let clocked = analysis.parts[0].oscillator.as_ref().expect("one oscillator");
-        let rate = match analysis.kind {
-            Kind::Hyperbolic => rate(&clocked.trace, &analysis.period.enclosure(BITS)),
-            _ => (0.0, 0.0),
-        };
-        Ok(Found { kind: analysis.kind, trace: clocked.trace.to_f64_enclosure(), label: clocked.label, rate })
+        let kind = analysis.kind.expect("one oscillator is decided");
+        let rate = analysis.growth_rate().expect("and its multiplier enclosed");
+        Ok(Found { kind, trace: clocked.trace.to_f64_enclosure(), label: clocked.label, rate })
     }
 
     /// Clocks that kick with strength 0 are silent, and a system has none such.
@@ -226,13 +224,6 @@ impl Levels<'_> {
         }
         Ok((lo, hi))
     }
-}
-
-/// ln μ/T, ln μ = acosh(|Tr|/2) = 2 asinh √((|Tr| − 2)/4), in 1/fs.
-fn rate(trace: &Ball, period: &Ball) -> (f64, f64) {
-    let excess = trace.abs().sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
-    let ln = excess.sqrt_clipped(BITS).map(|root| root.asinh(BITS).scale2(1));
-    ln.and_then(|ln| ln.div(period, BITS)).map_or((0.0, f64::INFINITY), |rate| rate.to_f64_enclosure())
 }
 
 /// The even and the odd orbit, (x, v) each.

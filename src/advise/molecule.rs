@@ -12,7 +12,7 @@ use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Damping;
 use crate::system::levels::{Growing, Kernel, Outer};
-use crate::system::{Analysis, Holds, Removed};
+use crate::system::{Analysis, Holds, Removed, middle};
 
 /// Measured stiffnesses of two levels, and what their coordinates are called.
 #[derive(Clone, Debug)]
@@ -309,9 +309,9 @@ impl Molecule {
 /// Beyond this many the inner step is so short that nobody means it.
 const MOST_INNER_STEPS: u64 = 1000;
 
-/// The largest growth rate, per unit of time.
+/// The largest growth rate, per unit of time, rounded; 0 where none is proven.
 fn growth(analysis: &Analysis) -> f64 {
-    instabilities(analysis).map(|own| own.growth_rate).fold(0.0, f64::max)
+    analysis.growth_rate().filter(|_| analysis.is_unstable()).map_or(0.0, middle)
 }
 
 fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::Instability> {
@@ -319,7 +319,7 @@ fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::In
 }
 
 fn fastest_shape(analysis: &Analysis) -> Option<Vec<f64>> {
-    let fastest = instabilities(analysis).max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate))?;
+    let fastest = instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))?;
     Some(fastest.shape.iter().zip(&fastest.quadrature).map(|(re, im)| re.hypot(*im)).collect())
 }
 

@@ -9,14 +9,12 @@ use super::analysis::{Analysis, Evidence, Instability, Part};
 use super::explain::explained;
 use super::limits::{Limits, degrees_of_freedom};
 use super::period::{Drifts, Stiff, follow};
-use super::piece::estimate;
 use super::signs::{self, Forms};
 use super::spectrum::Spectrum;
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational, U};
 use crate::schedule::Schedule;
-use crate::verdict::Kind;
 
 /// The integrator's own orbit beside an equilibrium, and the verdict about it.
 #[derive(Clone, Debug)]
@@ -88,21 +86,22 @@ pub fn decide_along(
         .and_then(|mut forms| signs::judge(&mut forms))
         .map(|kind| (kind, Evidence::Signs));
     let discs = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
-    let guess = || spectrum.as_ref().map(|own| (estimate(own), Evidence::Estimate));
-    let (kind, evidence) = signed.or_else(discs).or_else(guess).ok_or_else(|| {
+    let open = || spectrum.as_ref().map(|_| (None, Evidence::Estimate));
+    let decided = signed.or_else(discs).map(|(kind, evidence)| (Some(kind), evidence));
+    let (kind, evidence) = decided.or_else(open).ok_or_else(|| {
         Error::input("hessians", "too long a period for doubles", "choose steps with a simpler ratio")
     })?;
-    let time = schedule.tick() * Rational::from_integer(schedule.period().into());
+    let period = Laurent::from_rational(schedule.tick() * Rational::from_integer(schedule.period().into()));
     let explained = spectrum.map(|own| {
         let shape = |i| own.shape(i, &blocks.scales);
-        explained((&own.mu, own.radius), shape, kind, to_f64(&time), |_, _, _| None)
+        explained(own.multipliers(), shape, kind, &period, |_, _, _| None)
     });
     let (multipliers, mut instabilities) = explained.unwrap_or_default();
     instabilities.iter_mut().for_each(Instability::normalize);
     let part = Part {
         dofs: (0..n).collect(),
         size: n,
-        period: Laurent::from_rational(time),
+        period,
         kind,
         evidence,
         multipliers,
@@ -110,12 +109,11 @@ pub fn decide_along(
         roots: None,
         oscillator: None,
     };
-    let silent = kind == Kind::Elliptic || evidence.is_proof();
-    let warnings = if silent { Vec::new() } else { vec![NOT_PROVEN.into()] };
+    let warnings = if kind.is_some() { Vec::new() } else { vec![NOT_DECIDED.into()] };
     Ok(Analysis::of_part(part, schedule.clocks().len(), warnings))
 }
 
-const NOT_PROVEN: &str = "doubles do not prove the verdict along the orbit: it is an estimate";
+const NOT_DECIDED: &str = "doubles do not decide along the orbit";
 
 /// For each degree of freedom a power of two near √(m ω), ω the mean frequency a tick, so that positions and momenta are of one
 /// size.

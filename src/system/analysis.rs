@@ -5,6 +5,7 @@ use num_complex::Complex64;
 use super::exact::MuCount;
 use super::measured::{Holds, Measured};
 use super::modes::{Origin, Resonance};
+use super::rate;
 use crate::number::{Ball, Laurent, Rational};
 use crate::verdict::{Kind, Tier};
 
@@ -48,14 +49,23 @@ pub struct Multiplier {
     pub mu: Complex64,
     /// The true μ is within this of it (as many true ones as discs, where discs meet); `None`: not bounded.
     pub radius: Option<f64>,
+    /// An enclosure of ln |λ| for the one with |λ| ≥ 1 (of each of those whose discs meet); `None`: not bounded.
+    pub growth: Option<(f64, f64)>,
     /// The one with |λ| ≥ 1, rounded.
     pub lambda: Complex64,
 }
 
 impl Multiplier {
     /// λ = exp(2 asinh √μ).
-    pub(super) fn new(mu: Complex64, radius: Option<f64>) -> Self {
-        Multiplier { mu, radius, lambda: exponent(mu).exp() }
+    pub(super) fn new(mu: Complex64, radius: Option<f64>, growth: Option<(f64, f64)>) -> Self {
+        Multiplier { mu, radius, growth, lambda: exponent(mu).exp() }
+    }
+}
+
+impl Multiplier {
+    /// |λ|, rounded.
+    pub fn size(&self) -> f64 {
+        self.lambda.norm()
     }
 }
 
@@ -72,8 +82,8 @@ pub struct Instability {
     pub multiplier: Multiplier,
     /// How it came there.
     pub origin: Origin,
-    /// ln |λ|/T, per unit time, rounded.
-    pub growth_rate: f64,
+    /// An enclosure of ln |λ|/T, per unit time; `None`: not bounded.
+    pub growth_rate: Option<(f64, f64)>,
     /// The positions of the growing solution at t = 0 in the system's coordinates, rounded: of the complex shape,
     /// scaled so that its longest entry is 1, the real part,
     pub shape: Vec<f64>,
@@ -109,7 +119,8 @@ pub struct Part {
     pub period: Laurent,
     /// Over that period. Coexistence: stable with a multiplier ±1 of its own. Over a multiple of its period, the system's say, a
     /// multiplier that is a root of 1 may become ±1, too: that is a property of the other parts' clocks, and not counted.
-    pub kind: Kind,
+    /// `None`: not decided.
+    pub kind: Option<Kind>,
     pub evidence: Evidence,
     /// One for each pair of multipliers, by increasing real part of μ.
     pub multipliers: Vec<Multiplier>,
@@ -118,6 +129,31 @@ pub struct Part {
     pub roots: Option<MuCount>,
     /// What is known of one oscillator beside its multiplier.
     pub oscillator: Option<Clocked>,
+}
+
+impl Part {
+    /// The name of the kind in documents.
+    pub fn kind_name(&self) -> &'static str {
+        name(self.kind)
+    }
+
+    /// An enclosure of the largest ln |λ|/T, per unit time, (0, 0) where nothing grows exponentially; `None`: not bounded.
+    pub fn growth_rate(&self) -> Option<(f64, f64)> {
+        if !matches!(self.kind, Some(Kind::Hyperbolic) | None) {
+            return Some((0.0, 0.0));
+        }
+        let growth = self.multipliers.iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
+        let complete = (growth.len() >= self.size).then(|| rate::largest(growth.into_iter()))?;
+        Some(rate::per_time(complete, &self.period))
+    }
+
+    /// That of one of its multipliers.
+    pub fn growth_rate_of(&self, multiplier: &Multiplier) -> Option<(f64, f64)> {
+        match self.kind {
+            Some(Kind::Hyperbolic) | None => Some(rate::per_time(multiplier.growth?, &self.period)),
+            _ => Some((0.0, 0.0)),
+        }
+    }
 }
 
 /// One oscillator under its clocks: what the paper tells of two of them.
@@ -142,8 +178,9 @@ pub struct Analysis {
     pub clocks: usize,
     /// T, the synchronization period.
     pub period: Laurent,
-    /// Hyperbolic if any part is, else parabolic, else coexistence, else elliptic; each over its own period, by every route.
-    pub kind: Kind,
+    /// Hyperbolic if any part is, else not decided (`None`) if any part is not, else parabolic, else coexistence, else elliptic; each
+    /// over its own period, by every route.
+    pub kind: Option<Kind>,
     /// The common null vectors of all potentials: they drift freely and are set apart.
     pub rigid_modes: Vec<Vec<Rational>>,
     pub parts: Vec<Part>,
@@ -168,28 +205,43 @@ impl Analysis {
         }
     }
 
-    /// Whether powers of the propagator stay bounded, rigid modes apart.
+    /// Whether powers of the propagator are proven to stay bounded, rigid modes apart.
     pub fn is_stable(&self) -> bool {
-        matches!(self.kind, Kind::Elliptic | Kind::Coexistence)
+        matches!(self.kind, Some(Kind::Elliptic | Kind::Coexistence))
     }
 
-    /// Whether every part's verdict is proven.
+    /// Whether they are proven not to.
+    pub fn is_unstable(&self) -> bool {
+        self.kind.is_some() && !self.is_stable()
+    }
+
+    /// Whether it is decided: nothing is told that is not proven.
     pub fn is_proof(&self) -> bool {
-        self.parts.iter().all(|part| part.evidence.is_proof())
+        self.kind.is_some()
     }
 
     /// What is proven.
     pub fn holds(&self) -> Holds {
-        match (self.is_proof(), self.is_stable()) {
-            (false, _) => Holds::NotTold,
-            (true, true) => Holds::Stable,
-            (true, false) => Holds::Unstable,
+        match (self.is_stable(), self.is_unstable()) {
+            (true, _) => Holds::Stable,
+            (_, true) => Holds::Unstable,
+            _ => Holds::NotTold,
         }
     }
 
-    /// The largest growth rate, 0 if stable.
-    pub fn growth_rate(&self) -> f64 {
-        let rates = self.parts.iter().flat_map(|part| &part.instabilities).map(|i| i.growth_rate);
-        rates.fold(0.0, f64::max)
+    /// The name of the kind in documents.
+    pub fn kind_name(&self) -> &'static str {
+        name(self.kind)
     }
+
+    /// An enclosure of the largest growth rate per unit time, (0, 0) where nothing grows exponentially; `None`: not bounded.
+    pub fn growth_rate(&self) -> Option<(f64, f64)> {
+        let rates = self.parts.iter().map(Part::growth_rate).collect::<Option<Vec<_>>>()?;
+        Some(rate::largest(rates.into_iter()))
+    }
+}
+
+/// The name of a kind in documents.
+pub(super) fn name(kind: Option<Kind>) -> &'static str {
+    kind.map_or("not decided", Kind::name)
 }

@@ -6,7 +6,7 @@
 //!    [`verdict`](crate::verdict), more of them to doubles, balls and exact signs.
 //! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these do not tell,
 //!    in exact arithmetic.
-//! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the answer is an estimate and says so.
+//! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the kind is not decided.
 //!
 //! The cost for n degrees of freedom: the half period ([`compose`](super::compose)) and some twenty products of n x n
 //! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
@@ -27,9 +27,7 @@ use crate::verdict::Kind;
 ///
 /// # Errors
 /// A budget error of the scalar kernels. (A large part that only exact arithmetic could decide, beyond the
-/// budget, is no error but an [`Evidence::Estimate`] with a warning.)
-///
-/// [`Evidence::Estimate`]: super::Evidence::Estimate
+/// budget, is no error but not decided, with a warning.)
 pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
     decide_by(Route::Cheapest, system, limits)
 }
@@ -79,7 +77,7 @@ pub(super) fn decided(
             parts.push(prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)?);
         }
     }
-    let kind = parts.iter().map(|part| part.kind).max_by_key(severity).unwrap_or(Kind::Elliptic);
+    let kind = severest(parts.iter().map(|part| part.kind));
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
     Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
@@ -114,6 +112,13 @@ pub fn verdict_cost(system: &System) -> u64 {
     let n = system.size() as u64;
     let per_cube = if system.size() < large::LARGE { 60 } else { 2 };
     compose::cost(system).saturating_add(n.saturating_pow(3).saturating_mul(per_cube))
+}
+
+/// That of a system of these parts: exponential growth is one whatever the others do.
+fn severest(kinds: impl Iterator<Item = Option<Kind>>) -> Option<Kind> {
+    // One that is not decided may grow.
+    let place = |kind: &Option<Kind>| kind.as_ref().map_or(2 * severity(&Kind::Hyperbolic) - 1, |kind| 2 * severity(kind));
+    kinds.max_by_key(place).unwrap_or(Some(Kind::Elliptic))
 }
 
 pub(super) fn severity(kind: &Kind) -> u8 {

@@ -61,9 +61,9 @@ impl Enclosed {
         PartialSigns { a, b, c, d }.verdict()
     }
 
-    /// μ = BC = (Tr Q − 2)/4.
-    pub fn mu(&self, bits: u32) -> Ball {
-        self.b.mul(&self.c, bits)
+    /// BC = μ = (Tr Q − 2)/4, and AD = (Tr Q + 2)/4.
+    pub fn products(&self, bits: u32) -> [Ball; 2] {
+        [self.b.mul(&self.c, bits), self.a.mul(&self.d, bits)]
     }
 
     /// m of a hyperbolic verdict, from the nodes as in [`ManyClocks::label`].

@@ -12,14 +12,17 @@
 
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
+use num_complex::Complex64;
 use num_traits::{One, Signed, Zero};
 
+use super::analysis::Multiplier;
 use super::frame::Frame;
 use super::inertia::Inertia;
 use super::integers::{IntegerBlocks, IntegerProgram, product};
 use super::limits::{Limits, degrees_of_freedom};
 use super::model::System;
 use super::modular;
+use super::refined;
 use super::roots::{self, RootCount};
 use super::signs::{self, Inertias};
 use crate::error::Result;
@@ -70,6 +73,32 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
         format!("exact arithmetic on {} with {kicks} kicks in half a period", degrees_of_freedom(size))
     })?;
     Ok(judge(&program.half_period(system, &frame)))
+}
+
+/// More roots are not refined: that costs some n⁴ products of long integers.
+const MOST_REFINED: usize = 24;
+
+/// All μ by increasing real part with their growth, the largest to a double's digits, from the roots of the characteristic polynomial;
+/// `None` where that costs more than the limits allow.
+pub(super) fn multipliers(system: &System, frame: &Frame, limits: &Limits) -> Option<Vec<Multiplier>> {
+    let program = IntegerProgram::new(system);
+    let is_cheap = limits.allow(estimate(system, frame, &program), || "the roots of a polynomial".into()).is_ok();
+    if !is_cheap || frame.kept.len() > MOST_REFINED {
+        return None;
+    }
+    let blocks = program.half_period(system, frame);
+    let (at_zero, rest) = roots::divided_out(roots::characteristic(&blocks.product()), &BigInt::zero());
+    let (at_minus_one, mut rest) = roots::divided_out(rest, &-&blocks.scale);
+    let edge = |mu: f64| Multiplier::new(Complex64::new(mu, 0.0), Some(0.0), Some((0.0, 0.0)));
+    let mut found = vec![edge(-1.0); at_minus_one];
+    found.extend(vec![edge(0.0); at_zero]);
+    // Each round finds the roots that are left as often as that.
+    while rest.len() > 1 {
+        let simple = squarefree(&rest);
+        found.extend(refined::multipliers(&simple, &blocks.scale)?);
+        rest = refined::quotient(rest, &simple);
+    }
+    Some(found)
 }
 
 /// The kind, where one of the half period's forms is definite: a few eliminations in integers, no polynomial; `None` where

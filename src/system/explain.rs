@@ -1,52 +1,70 @@
 //! The multipliers of a piece, and what the unstable ones are.
 
 use std::cell::OnceCell;
+use std::cmp::Ordering;
 
 use faer::c64;
 
 use super::analysis::{Instability, Multiplier, exponent};
+use super::exact;
 use super::float::FloatBlocks;
+use super::limits::Limits;
 use super::modes::{NormalModes, Origin, Resonance};
 use super::piece::{Piece, ROUGH};
+use super::rate;
 use super::spectrum::{Spectrum, from_segment};
+use crate::number::Laurent;
 use crate::number::rational::to_f64;
 use crate::verdict::Kind;
 
-/// All multipliers over a period by increasing real part of μ (within a radius where one is proven), and if hyperbolic the
-/// unstable ones with the shapes of their solutions.
+/// The order of multipliers: by increasing real part of μ, then by the imaginary one.
+pub(super) fn by_place(a: &c64, b: &c64) -> Ordering {
+    a.re.total_cmp(&b.re).then(a.im.total_cmp(&b.im))
+}
+
+/// All multipliers over a period in order, and if hyperbolic the unstable ones with the shapes of their solutions; `shape` takes the place
+/// among those given.
 pub(super) fn explained(
-    (mu, radius): (&[c64], Option<f64>),
+    found: Vec<Multiplier>,
     shape: impl Fn(usize) -> Vec<c64>,
-    kind: Kind,
-    period: f64,
+    kind: Option<Kind>,
+    period: &Laurent,
     resonance: impl Fn(&[c64], Origin, c64) -> Option<Resonance>,
 ) -> (Vec<Multiplier>, Vec<Instability>) {
-    let mut order: Vec<usize> = (0..mu.len()).collect();
-    order.sort_by(|&i, &j| mu[i].re.total_cmp(&mu[j].re));
-    let multiplier = |&i: &usize| Multiplier::new(mu[i], radius);
-    let multipliers = order.iter().map(multiplier).collect();
-    if kind != Kind::Hyperbolic {
+    let mut order: Vec<usize> = (0..found.len()).collect();
+    order.sort_by(|&i, &j| by_place(&found[i].mu, &found[j].mu));
+    let multipliers = order.iter().map(|&i| found[i]).collect();
+    if kind != Some(Kind::Hyperbolic) {
         return (multipliers, Vec::new());
     }
-    // Conjugates tell the same; the farthest one from stability is there even if no disc is clear of it.
-    let upper = |i: &&usize| mu[**i].im >= 0.0;
-    let distance = |i: &usize| from_segment(mu[*i]);
-    let farthest = order.iter().filter(upper).max_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let clear = |i: &&usize| distance(i) > radius.unwrap_or(ROUGH);
-    let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == farthest);
+    // Conjugates tell the same; the one that grows fastest is there even if no disc is clear of stability.
+    let upper = |i: &&usize| found[**i].mu.im >= 0.0;
+    let (distance, growth) = (|i: &usize| from_segment(found[*i].mu), |i: &usize| found[*i].size());
+    let fastest = order.iter().filter(upper).max_by(|a, b| growth(a).total_cmp(&growth(b)));
+    let clear = |i: &&usize| distance(i) > found[**i].radius.unwrap_or(ROUGH);
+    let unstable = order.iter().filter(upper).filter(|i| clear(i) || Some(*i) == fastest);
     let instability = |&i: &usize| {
-        let (z, shape) = (exponent(mu[i]), shape(i));
-        let origin = if mu[i].im == 0.0 { Origin::RealPair } else { Origin::Collision };
+        let (multiplier, shape) = (found[i], shape(i));
+        let origin = if multiplier.mu.im == 0.0 { Origin::RealPair } else { Origin::Collision };
         Instability {
-            multiplier: multiplier(&i),
+            multiplier,
             origin,
-            growth_rate: z.re / period,
-            resonance: resonance(&shape, origin, z),
+            growth_rate: multiplier.growth.map(|own| rate::per_time(own, period)),
+            resonance: resonance(&shape, origin, exponent(multiplier.mu)),
             shape: shape.iter().map(|c| c.re).collect(),
             quadrature: shape.iter().map(|c| c.im).collect(),
         }
     };
     (multipliers, unstable.map(instability).collect())
+}
+
+/// Whether an enclosure of the largest growth shows fewer digits than documents do.
+fn is_rough(found: &[Multiplier]) -> bool {
+    let growth = found.iter().map(|own| own.growth).collect::<Option<Vec<_>>>();
+    growth.is_none_or(|all| {
+        let (lo, hi) = rate::largest(all.into_iter());
+        hi - lo > 1e-9 * hi
+    })
 }
 
 impl Piece {
@@ -56,7 +74,8 @@ impl Piece {
         &self,
         spectrum: &Spectrum,
         blocks: &FloatBlocks,
-        kind: Kind,
+        kind: Option<Kind>,
+        limits: &Limits,
     ) -> (Vec<Multiplier>, Vec<Instability>) {
         let modes = OnceCell::new();
         let resonance = |shape: &[c64], origin, z| {
@@ -64,7 +83,23 @@ impl Piece {
             modes.as_ref().map(|modes| modes.resonance(&self.system, shape, origin, z))
         };
         let shape = |i| spectrum.shape(i, &blocks.scales);
-        explained((&spectrum.mu, spectrum.radius), shape, kind, to_f64(&self.system.period()), resonance)
+        let period = Laurent::from_rational(self.system.period());
+        let mut found = spectrum.multipliers();
+        if kind == Some(Kind::Hyperbolic) && is_rough(&found) && self.coefficients.is_none() {
+            found = self.refined(&found, limits).unwrap_or(found);
+        }
+        explained(found, shape, kind, &period, resonance)
+    }
+
+    /// The multipliers from the characteristic polynomial, each in the place of the computed one that it stands for.
+    fn refined(&self, found: &[Multiplier], limits: &Limits) -> Option<Vec<Multiplier>> {
+        let mut exact = exact::multipliers(&self.system, &self.frame, limits).filter(|own| own.len() == found.len())?;
+        let mut order: Vec<usize> = (0..found.len()).collect();
+        order.sort_by(|&i, &j| by_place(&found[i].mu, &found[j].mu));
+        exact.sort_by(|a, b| by_place(&a.mu, &b.mu));
+        let mut placed = exact.clone();
+        order.iter().zip(exact).for_each(|(&i, own)| placed[i] = own);
+        Some(placed)
     }
 
     /// Brings a shape from the piece's coordinates to those of the whole system of `n`, its longest entry 1.

@@ -15,7 +15,6 @@ use super::frame::Frame;
 use super::model::System;
 use super::modes::Origin;
 use crate::number::Laurent;
-use crate::number::rational::to_f64;
 use crate::schedule::Weight;
 use crate::verdict::Kind;
 
@@ -24,7 +23,7 @@ pub(super) const LARGE: usize = 600;
 
 /// What is left out of the answer.
 pub(super) const NOTE: &str =
-    "of so many degrees of freedom only the multiplier that grows fastest is computed, if any does";
+    "of so many degrees of freedom only the multiplier that grows fastest is computed, if any does, rounded: no growth rate is enclosed";
 
 /// Periods of one power iteration, dimensions of a Krylov space, rounds of both.
 const POWER: usize = 400;
@@ -44,7 +43,7 @@ pub(super) fn decide(system: &System, frame: &Frame) -> Option<Part> {
         dofs: Vec::new(),
         size: frame.kept.len(),
         period: Laurent::from_rational(system.period()),
-        kind,
+        kind: Some(kind),
         evidence: Evidence::Signs,
         multipliers,
         instabilities,
@@ -56,11 +55,11 @@ pub(super) fn decide(system: &System, frame: &Frame) -> Option<Part> {
     }
     let (lambda, v) = dominant(system, frame)?;
     let mu = c64::new((lambda + 1.0 / lambda - 2.0) / 4.0, 0.0);
-    let multiplier = Multiplier::new(mu, None);
+    let multiplier = Multiplier::new(mu, None, None);
     let mut mode = Instability {
         multiplier,
         origin: Origin::RealPair,
-        growth_rate: lambda.abs().ln() / to_f64(&system.period()),
+        growth_rate: None,
         quadrature: vec![0.0; v.len()],
         shape: v,
         resonance: None,

@@ -19,7 +19,8 @@
 //! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
 //! | `large`, `action`, `envelope` | thousands of degrees of freedom: signs of the sparse action, and the mode that grows fastest |
 //! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
-//! | `integers`, `modular`, `roots`, `exact` | exact arithmetic |
+//! | `integers`, `modular`, `roots`, `exact`, `refined` | exact arithmetic |
+//! | `rate` | growth rates, enclosed |
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
 //! | `decide`, `piece` | the verdict, part by part |
 //! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
@@ -74,6 +75,8 @@ mod numbers;
 mod period;
 mod pi;
 mod piece;
+mod rate;
+mod refined;
 mod roots;
 mod scalar;
 pub mod scan;
@@ -95,6 +98,7 @@ pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
 pub use modes::{Origin, Resonance};
 pub use pi::{PiPotential, PiSystem};
+pub use rate::middle;
 pub use scalar::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide_oscillator;
 pub use sparse::Symmetric;

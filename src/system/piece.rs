@@ -12,7 +12,7 @@ use super::pi::Coefficients;
 use super::signs::{self, Forms};
 use super::single;
 use super::sparse::{Symmetric, dot};
-use super::spectrum::{Spectrum, from_segment};
+use super::spectrum::Spectrum;
 use super::split::{Subspace, invariant_subspaces, may_split};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Laurent, Rational};
@@ -111,14 +111,14 @@ impl Piece {
         let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
         let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
-            Some((kind, roots)) => (kind, Evidence::Exact, Some(roots)),
+            Some((kind, roots)) => (Some(kind), Evidence::Exact, Some(roots)),
             None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
-                Some((kind, evidence)) => (kind, evidence, None),
-                None => self.exact_or_estimate(how.1, spectrum.as_ref(), warnings)?,
+                Some((kind, evidence)) => (Some(kind), evidence, None),
+                None => self.exact_or_not(how.1, spectrum.as_ref(), warnings)?,
             },
         };
         let (multipliers, instabilities) = match &spectrum {
-            Some(spectrum) => self.explain(spectrum, &blocks, kind),
+            Some(spectrum) => self.explain(spectrum, &blocks, kind, how.1),
             None => Default::default(),
         };
         let (size, period) = (self.frame.kept.len(), Laurent::from_rational(self.system.period()));
@@ -142,34 +142,28 @@ impl Piece {
         }
     }
 
-    fn exact_or_estimate(
+    fn exact_or_not(
         &self,
         limits: &Limits,
         spectrum: Option<&Spectrum>,
         warnings: &mut Vec<String>,
-    ) -> Result<(Kind, Evidence, Option<MuCount>)> {
+    ) -> Result<(Option<Kind>, Evidence, Option<MuCount>)> {
         if let Ok(Some(kind)) = self.exact_by_signs(limits) {
-            return Ok((kind, Evidence::Exact, None));
+            return Ok((Some(kind), Evidence::Exact, None));
         }
         let error = match (self.exact(limits), spectrum) {
-            (Ok((kind, roots)), _) => return Ok((kind, Evidence::Exact, Some(roots))),
+            (Ok((kind, roots)), _) => return Ok((Some(kind), Evidence::Exact, Some(roots))),
             (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,
             (Err(error), _) => return Err(error),
         };
         warnings.push(format!(
-            "doubles do not prove the verdict on {} (eigenvalues too close together or to the edge \
-             of stability): it is an estimate; {error}",
+            "doubles do not decide {} (eigenvalues too close together or to the edge of stability); {error}",
             degrees_of_freedom(self.frame.kept.len())
         ));
-        Ok((estimate(spectrum.expect("just seen")), Evidence::Estimate, None))
+        Ok((None, Evidence::Estimate, None))
     }
 }
 
 /// Where nothing is proven: eigenvalues of a matrix of norm 1 with a well-conditioned basis are good to some
 /// 10^-12; a double eigenvalue splits by the square root of that.
 pub(super) const ROUGH: f64 = 1e-6;
-
-pub(super) fn estimate(spectrum: &Spectrum) -> Kind {
-    let unstable = spectrum.mu.iter().any(|&mu| from_segment(mu) > ROUGH);
-    if unstable { Kind::Hyperbolic } else { Kind::Elliptic }
-}

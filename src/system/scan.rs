@@ -2,7 +2,8 @@
 
 use crate::parallel::try_map;
 
-use super::analysis::Analysis;
+use super::analysis::{Analysis, name};
+use super::rate::middle;
 use crate::error::Result;
 use crate::number::Rational;
 use crate::verdict::Kind;
@@ -12,11 +13,22 @@ use crate::verdict::Kind;
 pub struct Point {
     /// The two parameters.
     pub at: (Rational, Rational),
-    pub kind: Kind,
-    /// Whether every part is proven.
-    pub is_proof: bool,
-    /// The largest growth rate, per unit time; 0 if stable.
-    pub growth_rate: f64,
+    /// `None`: not decided.
+    pub kind: Option<Kind>,
+    /// An enclosure of the largest growth rate, per unit time; (0, 0) if nothing grows exponentially; `None`: not bounded.
+    pub growth_rate: Option<(f64, f64)>,
+}
+
+impl Point {
+    /// The name of the kind in documents.
+    pub fn kind_name(&self) -> &'static str {
+        name(self.kind)
+    }
+
+    /// The middle of that enclosure, 0 where there is none.
+    pub fn rounded_rate(&self) -> f64 {
+        self.growth_rate.map_or(0.0, middle)
+    }
 }
 
 /// Points that are handed to all threads at once.
@@ -39,7 +51,6 @@ pub fn scan(
         Ok(Point {
             at: (x.clone(), y.clone()),
             kind: analysis.kind,
-            is_proof: analysis.is_proof(),
             growth_rate: analysis.growth_rate(),
         })
     };

@@ -3,13 +3,14 @@
 use num_complex::Complex64;
 
 use super::ManyClocks;
-use super::analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part, exponent};
+use super::analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
 use super::compose::check_length;
 use super::enclose;
 use super::float;
 use super::frame::Frame;
 use super::limits::Limits;
 use super::model::System;
+use super::rate;
 use super::modes::{Origin, Resonance};
 use super::scalar::{shortest_families, shortest_family};
 use crate::error::Result;
@@ -23,6 +24,8 @@ struct Scalar {
     tier: Tier,
     /// μ = (Tr − 2)/4.
     mu: Ball,
+    /// ln |λ| where it grows.
+    growth: Option<Ball>,
     label: Option<u64>,
 }
 
@@ -117,7 +120,8 @@ fn decide_clocks<S: Decidable>(
     };
     let (lo, hi) = scalar.mu.to_f64_enclosure();
     let mu = scalar.mu.mid_f64();
-    let multiplier = Multiplier::new(Complex64::new(mu, 0.0), Some((hi - mu).max(mu - lo)));
+    let growth = scalar.growth.as_ref().map_or((0.0, 0.0), Ball::to_f64_enclosure);
+    let multiplier = Multiplier::new(Complex64::new(mu, 0.0), Some((hi - mu).max(mu - lo)), Some(growth));
     let kind = scalar.verdict.kind();
     let strikes = clocks.strikes();
     let trace = scalar.mu.scale2(2).add(&Ball::from_integer(&2.into()), BITS);
@@ -130,7 +134,7 @@ fn decide_clocks<S: Decidable>(
         dofs: vec![0],
         size: 1,
         period,
-        kind,
+        kind: Some(kind),
         evidence: Evidence::Scalar(scalar.tier),
         multipliers: vec![multiplier],
         instabilities,
@@ -145,7 +149,8 @@ fn by_ladder<S: Decidable>(clocks: &ManyClocks<S>, limits: &Limits) -> Result<Op
     let limits = limits.of_ladder();
     let answer = verdict::decide(&two, &limits)?;
     let mu = answer.trace()?.sub(&Ball::from_integer(&2.into()), BITS).scale2(-2);
-    Ok(Some(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, label: answer.label()? }))
+    let growth = answer.growth()?.ln_multiplier.clone();
+    Ok(Some(Scalar { verdict: answer.verdict, tier: answer.decided_by, mu, growth, label: answer.label()? }))
 }
 
 /// Any clocks: the signs that doubles prove. The bound of [`float`] has room for one more rounding of each stiffness.
@@ -158,9 +163,25 @@ fn by_doubles<S: Decidable>(rounded: &System, clocks: &ManyClocks<S>) -> Option<
     let verdict = signs.verdict()?;
     let exact = |x: f64| Some(Ball::from_rational(&Rational::from_float(x)?, BITS));
     let around = |x: f64| Some(exact((x - error).next_down())?.union(&exact((x + error).next_up())?, BITS));
-    let mu = around(y[1])?.mul(&around(p[0])?, BITS);
-    let label = labelled(clocks, verdict);
-    Some(Scalar { verdict, tier: Tier::Filter, mu, label })
+    let [a, b, c, d] = [around(y[0])?, around(y[1])?, around(p[0])?, around(p[1])?];
+    let (mu, label) = (b.mul(&c, BITS), labelled(clocks, verdict));
+    let growth = growth(verdict, &mu, &a.mul(&d, BITS));
+    // Beside an edge balls tell more digits.
+    let is_sharp = growth.as_ref().is_none_or(|own| own.relative_accuracy_bits() > SHARP);
+    is_sharp.then_some(Scalar { verdict, tier: Tier::Filter, mu, growth, label })
+}
+
+/// Bits of a growth rate below which more are looked for.
+const SHARP: i64 = 30;
+
+/// ln |λ| = 2 asinh √(BC) for Tr > 2, 2 asinh √(−AD) for Tr < −2.
+fn growth(verdict: Verdict, bc: &Ball, ad: &Ball) -> Option<Ball> {
+    let excess = match (verdict.kind(), verdict.side() > 0) {
+        (Kind::Hyperbolic, true) => bc.clone(),
+        (Kind::Hyperbolic, false) => ad.neg(),
+        _ => return None,
+    };
+    Some(excess.sqrt_clipped(BITS)?.asinh(BITS).scale2(1))
 }
 
 /// The precisions that balls are worth trying at.
@@ -175,7 +196,10 @@ fn by_balls<S: Decidable>(clocks: &ManyClocks<S>) -> Option<Scalar> {
         let half = enclose::run(clocks, bits);
         let verdict = half.verdict()?;
         let label = half.label(verdict).filter(|_| verdict.kind() == Kind::Hyperbolic);
-        Some(Scalar { verdict, tier: Tier::Refine, mu: half.mu(BITS), label })
+        let [bc, ad] = half.products(BITS);
+        let growth = growth(verdict, &bc, &ad);
+        let is_sharp = growth.as_ref().is_none_or(|own| own.relative_accuracy_bits() > SHARP);
+        is_sharp.then_some(Scalar { verdict, tier: Tier::Refine, mu: bc, growth, label })
     })
 }
 
@@ -197,7 +221,10 @@ fn by_signs<S: Decidable>(
     limits.allow(cost(kicks as f64) as u64, || format!("exact signs of {kicks} kicks"))?;
     let half = clocks.half_period();
     let mu = S::product(&half[(0, 1)], &half[(1, 0)]).enclosure(BITS);
-    Ok(Scalar { verdict: clocks.half_signs().verdict(), tier: Tier::Exact, mu, label: clocks.label() })
+    let ad = S::product(&half[(0, 0)], &half[(1, 1)]).enclosure(BITS);
+    let verdict = clocks.half_signs().verdict();
+    let growth = growth(verdict, &mu, &ad);
+    Ok(Scalar { verdict, tier: Tier::Exact, mu, growth, label: clocks.label() })
 }
 
 fn instability(rounded: &System, period: &Laurent, multiplier: Multiplier, scalar: &Scalar) -> Instability {
@@ -210,13 +237,12 @@ fn instability(rounded: &System, period: &Laurent, multiplier: Multiplier, scala
     let m = scalar.label.map_or((2.0 * ((turns - odd) / 2.0).round() + odd) as i64, |m| m as i64);
     let strikes: Vec<u64> = (0..rounded.clocks().len()).map(|k| rounded.strikes(k)).collect();
     let family = shortest_family(m, &strikes).unwrap_or_default();
-    let period = period.to_f64();
-    let w = turns * std::f64::consts::PI / period;
+    let w = turns * std::f64::consts::PI / period.to_f64();
     let resonance = Resonance { frequencies: (w, w), sign: 1, m, family, detuning: turns - m as f64 };
     Instability {
         multiplier,
         origin: Origin::RealPair,
-        growth_rate: exponent(multiplier.mu).re / period,
+        growth_rate: multiplier.growth.map(|own| rate::per_time(own, period)),
         shape: vec![1.0],
         quadrature: vec![0.0],
         resonance: Some(resonance),

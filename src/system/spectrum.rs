@@ -15,10 +15,12 @@
 
 use faer::{Mat, c64};
 
+use super::analysis::Multiplier;
 use super::bauer_fike::{Residual, bauer_fike};
 use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
+use super::rate;
 use crate::number::U;
 use crate::verdict::Kind;
 
@@ -54,9 +56,16 @@ impl Spectrum {
     /// That of S, which is within `s_error` (2-norm) of the true one; `None` as of [`Spectrum::new`].
     pub fn of(s: Mat<f64>, s_error: Option<f64>) -> Option<Spectrum> {
         let m = s.nrows();
+        if (0..m).any(|j| (0..m).any(|i| !s[(i, j)].is_finite())) {
+            return None;
+        }
         let eigen = s.eigen().ok()?;
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
-        let vectors = eigen.U().to_owned();
+        Spectrum::with(s, s_error, mu, eigen.U().to_owned())
+    }
+
+    /// The same where eigenvalues and vectors are known, rounded.
+    pub fn with(s: Mat<f64>, s_error: Option<f64>, mu: Vec<c64>, vectors: Mat<c64>) -> Option<Spectrum> {
         let finite = mu.iter().all(|z| z.re.is_finite() && z.im.is_finite());
         let residual = s_error.filter(|_| finite).and_then(|delta| residual(&s, delta, &mu, &vectors));
         let radius = residual.as_ref().map(|own| own.norm);
@@ -68,6 +77,30 @@ impl Spectrum {
     pub fn with_error(&self, s_error: f64) -> Option<Spectrum> {
         let own = residual(&self.s, s_error, &self.mu, &self.vectors)?;
         Some(Spectrum { radius: Some(own.norm), rows: own.rows, s_error: Some(s_error), ..self.clone() })
+    }
+
+    /// Every multiplier with an enclosure of its growth: that of all discs which meet its own, and of the largest one no more than the rows of F allow.
+    pub fn multipliers(&self) -> Vec<Multiplier> {
+        let Some(radius) = self.radius.map(|own| 1.01 * own) else {
+            return self.mu.iter().map(|&mu| Multiplier::new(mu, None, None)).collect();
+        };
+        let own: Vec<_> = self.mu.iter().map(|&mu| rate::about(mu, radius)).collect();
+        let above = self.largest_growth();
+        let mut growth = own.clone();
+        for component in components(&self.mu, radius) {
+            let lo = component.iter().map(|&i| own[i].0).fold(f64::INFINITY, f64::min);
+            let hi = component.iter().map(|&i| own[i].1).fold(0.0, f64::max);
+            component.iter().for_each(|&i| growth[i] = (lo, hi.min(above)));
+        }
+        let multiplier = |(&mu, growth)| Multiplier::new(mu, self.radius, Some(growth));
+        self.mu.iter().zip(growth).map(multiplier).collect()
+    }
+
+    /// No ln |λ| is larger: as (D − z) y = −F y has |d_j − z| |y_j| ≤ ρ_j, each eigenvalue z is within √m ρ_j of some d_j.
+    fn largest_growth(&self) -> f64 {
+        let root = (self.mu.len() as f64).sqrt();
+        let of = |(&mu, row): (&c64, &f64)| rate::about(mu, 1.01 * root * row).1;
+        self.mu.iter().zip(&self.rows).map(of).fold(0.0, f64::max)
     }
 
     /// What the discs of all S' with |S' − S| ≤ `off`, entry by entry, prove, if anything.

@@ -263,6 +263,6 @@ impl Simulated {
 }
 
 /// Kinds agree, a part that is at rest apart.
-fn same_kind(found: Kind, truth: Kind) -> Checked {
-    same("kind", found.name(), truth.name())
+fn same_kind(found: Option<Kind>, truth: Kind) -> Checked {
+    same("kind", found.map_or("not decided", Kind::name), truth.name())
 }

@@ -4,6 +4,7 @@
 mod chart;
 
 use crate::avi::{Run, Sample};
+use crate::report::decimal::few;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::Column;
@@ -20,12 +21,16 @@ pub fn document(run: &Run) -> Document {
         format!("{} samples up to t = {}", run.series.len(), last.map_or(0.0, |s| s.time)),
         format!("  relative change of energy    {}", drift.as_deref().unwrap_or("none: it begins at 0")),
         format!("  forward and back again       {:.3e} off the start", run.irreversibility),
-        format!("  growth rate, predicted       {:.6}{of}", run.predicted),
+        if run.predicted.is_finite() {
+            format!("  growth rate, predicted       {}{of}", few(run.predicted, 6))
+        } else {
+            "  growth rate, predicted       none: no verdict is proven".into()
+        },
         if run.measured.is_finite() && run.resolution().is_finite() {
             let off = run.resolution();
             format!(
-                "  growth rate, measured        {:.6}{of}, give or take {off:.1e}: run longer to see less",
-                run.measured
+                "  growth rate, measured        {}{of}, give or take {off:.1e}: run longer to see less",
+                few(run.measured, 6)
             )
         } else {
             "  growth rate, measured        none: the run overflows".into()

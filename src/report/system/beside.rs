@@ -2,11 +2,12 @@
 
 use serde_json::{Value, json};
 
-use super::nearest;
+use super::{nearest, rate};
+use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, OwnOrbit};
+use crate::system::{Analysis, Instability, OwnOrbit, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,8 +39,8 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
     let orbit = own.orbit.map(|own| {
         let about = &own.analysis;
         json!({
-            "displacement": own.displacement, "start": own.start, "kind": about.kind.name(), "stable": about.is_stable(),
-            "proven": about.is_proof(), "growth_rate": about.growth_rate(),
+            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": super::stable(about),
+            "proven": about.is_proof(), "growth_rate": about.growth_rate().map(enclosure),
         })
     });
     let all = [
@@ -76,7 +77,7 @@ const SHOWN_MODES: usize = 12;
 /// The fastest growing modes, each with its number in the document, in the document's order; and how many are left out.
 pub(super) fn fastest(analysis: &Analysis) -> (Vec<(usize, &Instability)>, usize) {
     let mut modes: Vec<_> = (1..).zip(analysis.parts.iter().flat_map(|part| &part.instabilities)).collect();
-    modes.sort_by(|a, b| b.1.growth_rate.total_cmp(&a.1.growth_rate));
+    modes.sort_by(|a, b| b.1.multiplier.size().total_cmp(&a.1.multiplier.size()));
     let left_out = modes.len().saturating_sub(SHOWN_MODES);
     modes.truncate(SHOWN_MODES);
     modes.sort_by_key(|(n, _)| *n);
@@ -93,20 +94,20 @@ fn moving(mode: &Instability) -> Vec<(usize, f64)> {
 }
 
 fn orbit_line(own: &OwnOrbit, analysis: &Analysis) -> String {
-    let (here, there) = (analysis.growth_rate(), own.analysis.growth_rate());
-    let growth = match (here > 0.0, there > 0.0) {
-        (true, true) => format!(
-            "growth rate {there:.6}, {:+.1} % of that at the equilibrium",
-            100.0 * (there / here - 1.0)
-        ),
-        (false, true) => format!("growth rate {there:.6}, though none at the equilibrium"),
-        (true, false) => "no growth, though some at the equilibrium".into(),
-        (false, false) => "no growth, as at the equilibrium".into(),
+    let [here, there] = [analysis, &own.analysis].map(|own| own.growth_rate().filter(|ends| ends.1 > 0.0));
+    let growth = match (here, there) {
+        (Some(here), Some(there)) => {
+            let more = 100.0 * (middle(there) / middle(here) - 1.0);
+            format!("growth rate {}, {more:+.1} % of that at the equilibrium", rate(Some(there)))
+        }
+        (None, Some(_)) => format!("growth rate {}, though none at the equilibrium", rate(there)),
+        (Some(_), None) => "no growth, though some at the equilibrium".into(),
+        (None, None) => "no growth, as at the equilibrium".into(),
     };
     let proven = if own.analysis.is_proof() { "proven for its Hessians" } else { "NOT proven" };
     format!(
         "  the above speaks about the equilibrium; about the integrator's own orbit, {:.3e} beside it, where a run stays: {} ({proven}), {growth}",
         own.displacement,
-        own.analysis.kind.name(),
+        own.analysis.kind_name(),
     )
 }

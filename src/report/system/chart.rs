@@ -53,7 +53,7 @@ impl SystemMap {
         let (first, step) = pitch(&self.xs);
         let last = first + step * self.xs.len().saturating_sub(1) as f64;
         let line: Vec<[f64; 2]> =
-            self.points.iter().map(|point| [to_f64(&point.at.0), point.growth_rate]).collect();
+            self.points.iter().map(|point| [to_f64(&point.at.0), point.rounded_rate()]).collect();
         let fastest = line.iter().fold(0.0, |a: f64, own| a.max(own[1]));
         let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
@@ -68,12 +68,12 @@ impl SystemMap {
     }
 
     fn by_growth(&self, panel: Panel) -> Panel {
-        let rates = self.points.iter().map(|point| point.growth_rate);
+        let rates = self.points.iter().map(Point::rounded_rate);
         let rates = rates.filter(|&rate| rate > 0.0);
         let (low, fastest) = ColourBar::range_of(rates.clone());
         let axis = Axis::log("growth rate", low, fastest).per_time();
         let bar = ColourBar::new(axis, Gradient::on_white()).over(rates);
-        let shade = |point: &Point| bar.class(point.growth_rate.max(f64::MIN_POSITIVE), ColourBar::SHADES);
+        let shade = |point: &Point| bar.class(point.rounded_rate().max(f64::MIN_POSITIVE), ColourBar::SHADES);
         let cells = self.cells(bar.steps(ColourBar::SHADES), Kind::Hyperbolic, shade);
         panel.with(Layer::cells(cells)).bar(bar)
     }
@@ -88,22 +88,22 @@ impl SystemMap {
             (Kind::Coexistence, Shape::Ring, COEXISTENCE, "multipliers ±1, stable (coexistence)"),
         ] {
             if self.count(kind) > 0 {
-                let dots = Layer::dots(places(&|point| point.kind == kind), shape, EDGE_SIZE, colour);
+                let dots = Layer::dots(places(&|point| point.kind == Some(kind)), shape, EDGE_SIZE, colour);
                 panel = panel.with(dots.labelled(name));
             }
         }
-        let open = places(&|point| !point.is_proof);
+        let open = places(&|point| point.kind.is_none());
         if open.is_empty() {
             return panel;
         }
-        panel.with(Layer::dots(open, Shape::Cross, 3.0, INK).labelled("not proven"))
+        panel.with(Layer::dots(open, Shape::Cross, 3.0, INK).labelled("not decided"))
     }
 
     /// The points of one kind as cells.
     fn cells(&self, colours: Vec<Colour>, kind: Kind, class: impl Fn(&Point) -> u16) -> Cells {
         let ((x, dx), (y, dy)) = (pitch(&self.xs), pitch(&self.ys));
         let mut cells = Cells::new([x, y], [dx, dy], colours).at_least(LEAST_SIZE);
-        for (n, point) in self.points.iter().enumerate().filter(|(_, point)| point.kind == kind) {
+        for (n, point) in self.points.iter().enumerate().filter(|(_, point)| point.kind == Some(kind)) {
             let (i, j) = (n % self.xs.len(), n / self.xs.len());
             cells.push(i as u32, j as u32, class(point));
         }

@@ -1,10 +1,13 @@
 //! A system's verdict over one or two of its numbers: counts and rows.
 
+use num_traits::Zero;
 use serde_json::json;
 
+use super::rate;
 use crate::number::Rational;
-use crate::report::decimal::rounded;
-use crate::report::document::Document;
+use crate::number::rational::from_f64_exact;
+use crate::report::decimal;
+use crate::report::document::{Document, enclosure};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use crate::system::scan::Point;
@@ -23,35 +26,46 @@ pub struct SystemMap {
 }
 
 /// Digits of a growth rate: eigenvalues in doubles agree in them on every machine.
-const DIGITS: usize = 6;
+const DIGITS: u32 = 6;
+
+/// An enclosure of a growth rate in so many digits.
+fn outward(rate: Option<(f64, f64)>) -> Option<(f64, f64)> {
+    let (lo, hi) = rate.filter(|own| own.1.is_finite())?;
+    let end = |x: f64, n: usize| match from_f64_exact(x).filter(|x| !x.is_zero()) {
+        // The double nearest to a decimal number is on the same side of every double.
+        Some(x) => decimal::outward(&x, &x, DIGITS)[n].parse().unwrap_or(0.0),
+        None => 0.0,
+    };
+    Some((end(lo, 0), end(hi, 1)))
+}
 
 impl SystemMap {
     pub(super) fn count(&self, kind: Kind) -> usize {
-        self.points.iter().filter(|point| point.kind == kind).count()
+        self.points.iter().filter(|point| point.kind == Some(kind)).count()
     }
 
     /// The document `kickdrift/system-map/1`; the caller adds the input.
     pub fn document(&self) -> Document {
-        let unproven = self.points.iter().filter(|point| !point.is_proof).count();
+        let unproven = self.points.iter().filter(|point| point.kind.is_none()).count();
         let [hyperbolic, parabolic, coexistence] =
             [Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence].map(|k| self.count(k));
-        let fastest = self.points.iter().max_by(|a, b| a.growth_rate.total_cmp(&b.growth_rate));
-        let fastest = fastest.filter(|point| point.growth_rate > 0.0);
+        let fastest = self.points.iter().max_by(|a, b| a.rounded_rate().total_cmp(&b.rounded_rate()));
+        let fastest = fastest.filter(|point| point.rounded_rate() > 0.0);
         let mut lines = vec![
             format!("{} of {} points unstable", hyperbolic + parabolic, self.points.len()),
             format!(
-                "  hyperbolic {hyperbolic}, parabolic {parabolic}, coexistence {coexistence}; not proven {unproven}"
+                "  hyperbolic {hyperbolic}, parabolic {parabolic}, coexistence {coexistence}; not decided {unproven}"
             ),
         ];
         if let Some(Point { at: (x, y), growth_rate, .. }) = fastest {
             let places = self.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
             let places = places.collect::<Vec<_>>().join(", ");
             let per = self.time_unit.as_deref().unwrap_or("unit time");
-            lines.push(format!("  fastest growth {growth_rate:.5e} per {per} at {places}"));
+            lines.push(format!("  fastest growth {} per {per} at {places}", rate(*growth_rate)));
         }
         let fastest = fastest.map(|point| {
             let (x, y) = (point.at.0.to_string(), point.at.1.to_string());
-            let growth_rate = rounded(point.growth_rate, DIGITS);
+            let growth_rate = outward(point.growth_rate).map(enclosure);
             match self.names.len() {
                 1 => json!({"x": x, "growth_rate": growth_rate}),
                 _ => json!({"x": x, "y": y, "growth_rate": growth_rate}),
@@ -59,7 +73,7 @@ impl SystemMap {
         });
         Document::new("system-map")
             .entry("points", self.points.len())
-            .entry("stable", self.points.len() - hyperbolic - parabolic)
+            .entry("stable", self.points.len() - hyperbolic - parabolic - unproven)
             .entry("hyperbolic", hyperbolic)
             .entry("parabolic", parabolic)
             .entry("coexistence", coexistence)
@@ -78,10 +92,10 @@ impl SystemMap {
         };
         let caption = ["Verdicts over a number of the system", "Verdicts over two numbers of the system"];
         record
-            .field(Column::new("kind").left(), |of| of.kind.name().into())
-            .field(Column::new("proven"), |of| of.is_proof.into())
-            .field(Column::new("growth_rate").titled("growth rate", "growth rate"), |of| {
-                rounded(of.growth_rate, DIGITS).into()
+            .field(Column::new("kind").left(), |of| of.kind_name().into())
+            .field(Column::new("proven"), |of| of.kind.is_some().into())
+            .field(Column::new("growth_rate").titled("growth rate", "growth rate").enclosure(), |of| {
+                outward(of.growth_rate).into()
             })
             .table("verdicts", caption[self.names.len() - 1], &self.points)
     }

@@ -17,7 +17,8 @@ use super::document::{Document, enclosure};
 use super::record::Record;
 use super::table::Column;
 use super::text::counted;
-use crate::system::{Analysis, Clocked, Instability, MuCount, Multiplier, Origin, Part};
+use crate::number::rational::from_f64_exact;
+use crate::system::{Analysis, Clocked, Holds, Instability, MuCount, Multiplier, Origin, Part};
 pub use beside::Beside;
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
@@ -41,10 +42,10 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
         .entry("degrees_of_freedom", analysis.size)
         .entry("clocks", analysis.clocks)
         .entry("period", analysis.period.to_string())
-        .entry("kind", analysis.kind.name())
-        .entry("stable", analysis.is_stable())
+        .entry("kind", analysis.kind_name())
+        .entry("stable", stable(analysis))
         .entry("proven", analysis.is_proof())
-        .entry("growth_rate", analysis.growth_rate())
+        .entry("growth_rate", analysis.growth_rate().map(enclosure))
         .entry("rigid_modes", analysis.rigid_modes.len())
         .entry("parts", parts().map(part).collect::<Vec<_>>())
         .entry("warnings", analysis.warnings.clone());
@@ -57,6 +58,27 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     document.long_rows(table).summary_alone(&lines(analysis, beside))
 }
 
+/// Whether it is stable, where that is decided.
+fn stable(analysis: &Analysis) -> Option<bool> {
+    analysis.is_proof().then(|| analysis.is_stable())
+}
+
+/// Digits of a growth rate in words.
+const DIGITS: u32 = 8;
+
+/// A growth rate in words.
+fn rate(own: Option<(f64, f64)>) -> String {
+    match own {
+        Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, DIGITS).to_string(),
+        Some((_, hi)) if hi == 0.0 => "0".into(),
+        Some((_, hi)) if hi.is_finite() => {
+            let hi = from_f64_exact(hi).expect("a finite double");
+            format!("at most {}", decimal::outward(&hi, &hi, 2)[1])
+        }
+        _ => "not enclosed".into(),
+    }
+}
+
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {
     part.multipliers.iter().map(move |own| (n, part, own))
 }
@@ -66,7 +88,7 @@ fn part((n, part): (u64, &Part)) -> Value {
         "dofs": part.dofs,
         "size": part.size,
         "period": part.period.to_string(),
-        "kind": part.kind.name(),
+        "kind": part.kind_name(),
         "decided_by": part.evidence.name(),
         "multipliers": multipliers(n, part).map(|own| record().entries(&own)).collect::<Vec<_>>(),
         "instabilities": part.instabilities.iter().map(instability).collect::<Vec<_>>(),
@@ -100,7 +122,7 @@ fn instability(unstable: &Instability) -> Value {
     json!({
         "lambda": {"re": lambda.re, "im": lambda.im},
         "origin": origin(unstable.origin),
-        "growth_rate": unstable.growth_rate,
+        "growth_rate": unstable.growth_rate.map(enclosure),
         "shape": unstable.shape,
         "quadrature": unstable.quadrature,
         "resonance": resonance,
@@ -116,10 +138,13 @@ fn origin(origin: Origin) -> &'static str {
 
 fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     let suffix = beside.unit.map_or(String::new(), |unit| format!(" {unit}"));
-    let stable = if analysis.is_stable() { "stable" } else { "unstable" };
-    let proven = if analysis.is_proof() { "proven" } else { "NOT proven: doubles alone" };
+    let headline = match analysis.holds() {
+        Holds::Stable => format!("stable: {} (proven)", analysis.kind_name()),
+        Holds::Unstable => format!("unstable: {} (proven)", analysis.kind_name()),
+        Holds::NotTold => "not decided: doubles do not prove a verdict".into(),
+    };
     let mut lines = vec![
-        format!("{stable}: {} ({proven})", analysis.kind.name()),
+        headline,
         format!(
             "  {}, {}, period T = {}{suffix}",
             counted(analysis.size, "degree of freedom", "degrees of freedom"),
@@ -136,7 +161,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
     }
     if !analysis.is_stable() {
         let per = beside.unit.unwrap_or("unit time");
-        lines.push(format!("  largest growth rate {:.6} per {per}", analysis.growth_rate()));
+        lines.push(format!("  largest growth rate {} per {per}", rate(analysis.growth_rate())));
     }
     lines
         .extend(analysis.parts.iter().filter_map(|part| part.oscillator.as_ref()).flat_map(oscillator_lines));
@@ -189,7 +214,7 @@ fn described(unstable: &Instability) -> String {
             format!("multipliers {:.6} ± {:.6}i: two modes collide, ", lambda.re, lambda.im.abs())
         }
     };
-    line += &format!("growth rate {:.6}", unstable.growth_rate);
+    line += &format!("growth rate {}", rate(unstable.growth_rate));
     if let Some(r) = &unstable.resonance {
         let sign = if r.sign > 0 { '+' } else { '-' };
         let (first, second) = r.frequencies;
@@ -206,7 +231,7 @@ fn record<'a>() -> Record<'a, Own<'a>> {
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
     Record::new()
         .column(Column::new("part").aside(), |&(n, ..): &Own| n.into())
-        .column(Column::new("kind").left(), |(_, part, _)| part.kind.name().into())
+        .column(Column::new("kind").left(), |(_, part, _)| part.kind_name().into())
         .column(titled("decided_by", "decided by").left().aside(), |(_, part, _)| part.evidence.name().into())
         .at("mu.re", Column::new("mu_re").titled("Re mu", "$\\operatorname{Re}\\mu$"), |(.., m)| {
             m.mu.re.into()
@@ -220,7 +245,7 @@ fn record<'a>() -> Record<'a, Own<'a>> {
         .column(Column::new("lambda_abs").titled("|lambda|", "$|\\lambda|$"), |(.., m)| {
             m.lambda.norm().into()
         })
-        .column(titled("growth_rate", "growth rate"), |(_, part, m)| {
-            (m.lambda.norm().ln() / part.period.to_f64()).into()
+        .column(titled("growth_rate", "growth rate").enclosure(), |(_, part, m)| {
+            part.growth_rate_of(m).into()
         })
 }

@@ -1,9 +1,10 @@
 //! The multipliers of a system, and the shapes of those that grow.
 
-use super::terms;
+use super::{rate, terms};
+use crate::report::decimal;
 use crate::report::figure::palette::{GREY, INK, family};
 use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
-use crate::system::{Analysis, Instability, Origin};
+use crate::system::{Analysis, Instability, Origin, middle};
 
 /// The most shapes on one page: the fastest.
 const MOST_SHAPES: usize = 4;
@@ -16,11 +17,16 @@ const STEMS: usize = 60;
 /// All multipliers by angle and growth, and below the shapes of the fastest growing ones.
 pub fn figure(analysis: &Analysis, title: &str) -> Figure {
     let mut growing: Vec<&Instability> = analysis.parts.iter().flat_map(|part| &part.instabilities).collect();
-    growing.sort_by(|a, b| b.growth_rate.total_cmp(&a.growth_rate));
+    growing.sort_by(|a, b| b.multiplier.size().total_cmp(&a.multiplier.size()));
     let shown = &growing[..growing.len().min(MOST_SHAPES)];
     let height = SPECTRUM + SHAPE * shown.len() as f64;
     let first = Figure::double_column(height).columns(1).named(title).with(spectrum(analysis, shown));
     (1..).zip(shown).fold(first, |figure, (n, unstable)| figure.with(shape(n, unstable)))
+}
+
+/// The growth rate as it is drawn: the middle of its enclosure.
+fn height(own: &Instability) -> f64 {
+    own.growth_rate.map_or(0.0, middle)
 }
 
 /// ln |λ|/T over arg λ/π.
@@ -32,9 +38,9 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
         let stable =
             part.multipliers.iter().filter(|m| !unstable.contains(&m.mu) && !unstable.contains(&m.mu.conj()));
         still.extend(stable.map(|m| [angle(m.lambda), 0.0]));
-        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), own.growth_rate]));
+        moving.extend(part.instabilities.iter().map(|own| [angle(own.multiplier.lambda), height(own)]));
     }
-    let fastest = analysis.growth_rate();
+    let fastest = moving.iter().fold(0.0, |a: f64, own| a.max(own[1]));
     let y = if fastest > 0.0 {
         Axis::linear("growth rate", -0.06 * fastest, 1.15 * fastest)
     } else {
@@ -54,7 +60,7 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
     (1..).zip(shown).fold(panel, |panel, (n, unstable)| {
         let angle = unstable.multiplier.lambda.arg().abs() / std::f64::consts::PI;
         let (anchor, shift) = if angle > 0.9 { (Anchor::End, -4.0) } else { (Anchor::Start, 4.0) };
-        panel.note(Note::new([angle, unstable.growth_rate], &n.to_string()).anchored(anchor, [shift, 1.0]))
+        panel.note(Note::new([angle, height(unstable)], &n.to_string()).anchored(anchor, [shift, 1.0]))
     })
 }
 
@@ -95,8 +101,10 @@ fn described(unstable: &Instability) -> String {
         Origin::RealPair => "real pair",
         Origin::Collision => "collision",
     };
-    let rate = unstable.growth_rate;
-    let rate = if rate < 1e-3 { format!("{rate:.2e}") } else { format!("{rate:.4}") };
+    let rate = match unstable.growth_rate {
+        Some((lo, hi)) if lo > 0.0 => decimal::shortened(lo, hi, 4).to_string(),
+        own => rate(own),
+    };
     let mut text = format!("{kind}, growth {rate}");
     if let Some(r) = &unstable.resonance {
         let sign = if r.sign > 0 { '+' } else { '−' };

@@ -17,7 +17,7 @@ use crate::system::nearest::Nearest;
 use crate::system::stretches::Stretch;
 use crate::system::stretches::{cover, merged};
 use crate::system::vary::{Intervals, verdict_between};
-use crate::system::{Analysis, Holds, Limits, Potential, Route, System};
+use crate::system::{Analysis, Holds, Limits, Potential, Route, System, middle};
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -151,7 +151,7 @@ impl SystemScene {
                     self.with("intervals", &[(&span.path, &exact(value))])?.decide(Route::Cheapest, limits)?
                 }
             };
-            Ok(Some(analysis.growth_rate()))
+            Ok(analysis.growth_rate().map(middle))
         };
         crate::parallel::try_map(values, rate)
     }

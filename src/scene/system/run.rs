@@ -8,7 +8,7 @@ use crate::error::{Error, Kind, Result};
 use crate::number::parse::parse_rational;
 use crate::number::rational::to_f64;
 use crate::parallel::go_on;
-use crate::system::{Limits, Route};
+use crate::system::{Limits, Route, middle};
 
 /// The starting displacement of each degree of freedom; one number alone moves the first.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +92,7 @@ impl SystemScene {
             Some(orbit) => orbit.analysis.growth_rate(),
             None => self.decide(Route::Cheapest, limits)?.growth_rate(),
         };
+        let predicted = predicted.map_or(f64::NAN, middle);
         let shift = request.displacement.of(self.system().size())?;
         let rest = vec![0.0; shift.len()];
         let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| self.equilibrium())

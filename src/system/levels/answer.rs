@@ -1,42 +1,37 @@
 //! The verdict on two levels at one outer step, with how far it stands.
 
-use faer::{Mat, Side};
+use faer::Side;
 use num_complex::Complex64;
 
-use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::number::{Laurent, Rational};
 use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part};
 use crate::system::explain::explained;
 use crate::system::measured::Measured;
-use crate::system::piece::estimate;
 use crate::system::spectrum::Spectrum;
 use crate::verdict::Kind;
 
 impl Kernel {
     /// The verdict at an outer step, for the matrices given and for all within `accuracy`.
     pub fn decide(&self, outer: &Outer, period: &Rational, accuracy: f64) -> Analysis {
-        let region = self.is_in_first_region(outer, 0.0);
-        let stable = region || self.is_stable_by_index(outer, 0.0);
+        let stable = self.is_stable(outer, 0.0);
         let counted = !stable && self.has_real_unstable_mode(outer, 0.0);
-        let beyond =
-            (!(region || counted && self.is_symmetric(outer))).then(|| self.beyond(outer, 0.0)).flatten();
-        let (kind, evidence) = match (&beyond, stable, counted) {
-            (_, true, _) => (Kind::Elliptic, Evidence::Signs),
-            (_, _, true) => (Kind::Hyperbolic, Evidence::Signs),
-            (Some((Some(kind), _)), ..) => (*kind, Evidence::Discs),
-            (Some((None, spectrum)), ..) => (estimate(spectrum), Evidence::Estimate),
-            (None, ..) => (Kind::Hyperbolic, Evidence::Estimate),
+        let (proven, spectrum) = self.spectrum(outer, !(stable || counted)).unzip();
+        let (kind, evidence) = match (stable, counted, proven.flatten()) {
+            (true, ..) => (Some(Kind::Elliptic), Evidence::Signs),
+            (_, true, _) => (Some(Kind::Hyperbolic), Evidence::Signs),
+            (.., Some(kind)) => (Some(kind), Evidence::Discs),
+            (.., None) => (None, Evidence::Estimate),
         };
-        let spectrum = beyond.map(|(_, spectrum)| spectrum);
-        let unstable = kind == Kind::Hyperbolic && evidence.is_proof();
+        let unstable = kind == Some(Kind::Hyperbolic);
         let margin =
             if unstable { self.unstable_margin(outer, spectrum.as_ref()) } else { self.margin(outer) };
-        let (multipliers, instabilities) = self.multipliers(outer, kind, spectrum);
+        let period = Laurent::from_rational(period.clone());
+        let (multipliers, instabilities) = spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
         let part = Part {
             dofs: (0..self.modes.nrows()).collect(),
             size: self.size(),
-            period: Laurent::from_rational(period.clone()),
+            period,
             kind,
             evidence,
             multipliers,
@@ -62,7 +57,7 @@ impl Kernel {
             ));
         }
         if evidence == Evidence::Estimate {
-            warnings.push("doubles do not prove the verdict (eigenvalues too close together or to the edge of stability): it is an estimate".into());
+            warnings.push("doubles do not decide (eigenvalues too close together or to the edge of stability)".into());
         }
         warnings
     }
@@ -90,54 +85,18 @@ impl Kernel {
     /// Every multiplier, and the shapes of those that grow.
     fn multipliers(
         &self,
-        outer: &Outer,
-        kind: Kind,
-        spectrum: Option<Spectrum>,
+        spectrum: &Spectrum,
+        kind: Option<Kind>,
+        period: &Laurent,
     ) -> (Vec<Multiplier>, Vec<Instability>) {
-        let Some((mu, radius, shapes)) = self.eigenvalues(outer, spectrum) else { return Default::default() };
-        let mut order: Vec<usize> = (0..mu.len()).collect();
-        order.sort_by(|&i, &j| mu[i].re.total_cmp(&mu[j].re).then(mu[i].im.total_cmp(&mu[j].im)));
-        let sorted: Vec<_> = order.iter().map(|&i| mu[i]).collect();
-        let shape = |i: usize| self.shape(&shapes(order[i]));
+        let shape = |i: usize| {
+            let amplitudes: Vec<_> = (0..self.size()).map(|k| spectrum.vectors[(k, i)]).collect();
+            self.shape(&amplitudes)
+        };
         let (multipliers, mut instabilities) =
-            explained((&sorted, radius), shape, kind, outer.step, |_, _, _| None);
+            explained(spectrum.multipliers(), shape, kind, period, |_, _, _| None);
         instabilities.iter_mut().for_each(Instability::normalize);
         (multipliers, instabilities)
-    }
-
-    /// Whether p θ < π for every mode, so that cos p θ − V^½ M V^½ tells all multipliers.
-    fn is_symmetric(&self, outer: &Outer) -> bool {
-        let highest = self.values.last().copied().unwrap_or(0.0);
-        Half::new(outer.inner_square * highest, outer.inner_steps).rises()
-    }
-
-    /// The μ, a radius where one is proven, and the eigenvectors in the basis of the modes: those of the spectrum, or, where
-    /// p θ < π for all modes, of the symmetric cos p θ − V^½ M V^½ = 1 + 2 μ, V = 2 b d.
-    #[allow(clippy::type_complexity)]
-    fn eigenvalues(
-        &self,
-        outer: &Outer,
-        spectrum: Option<Spectrum>,
-    ) -> Option<(Vec<Complex64>, Option<f64>, Box<dyn Fn(usize) -> Vec<Complex64>>)> {
-        if let Some(spectrum) = spectrum {
-            let (mu, radius) = (spectrum.mu.clone(), spectrum.radius);
-            let m = self.size();
-            return Some((mu, radius, Box::new(move |i| (0..m).map(|k| spectrum.vectors[(k, i)]).collect())));
-        }
-        let m = self.size();
-        let halves: Vec<Half> =
-            self.values.iter().map(|x| Half::new(outer.inner_square * x, outer.inner_steps)).collect();
-        let root: Vec<f64> = halves.iter().map(|h| (2.0 * h.b.mid() * h.d.mid()).max(0.0).sqrt()).collect();
-        let cosine = |h: &Half| h.a.mid() * h.d.mid() + h.b.mid() * h.c.mid();
-        let factor = outer.half_kick();
-        let symmetric = Mat::from_fn(m, m, |i, j| {
-            (if i == j { cosine(&halves[i]) } else { 0.0 }) - root[i] * factor * self.slow[(i, j)] * root[j]
-        });
-        let eigen = symmetric.self_adjoint_eigen(Side::Lower).ok()?;
-        let mu = (0..m).map(|i| Complex64::new((eigen.S()[i] - 1.0) / 2.0, 0.0)).collect();
-        let vectors = eigen.U().to_owned();
-        let shape = move |i: usize| (0..m).map(|k| Complex64::new(root[k] * vectors[(k, i)], 0.0)).collect();
-        Some((mu, None, Box::new(shape)))
     }
 
     /// Mass-weighted positions of a combination of the modes.

@@ -12,10 +12,9 @@ use crate::verdict::Kind;
 const WIDEST: f64 = 0.05;
 
 impl Kernel {
-    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, in doubles; `None` where the fast spectrum is beyond the
-    /// linear limit of the inner step.
+    /// The largest growth rate ln |λ|/H at an outer step H, per unit time, rounded; `None` where the period is beyond doubles.
     pub fn growth_rate(&self, outer: &Outer) -> Option<f64> {
-        let (_, spectrum) = self.beyond(outer, 0.0)?;
+        let (_, spectrum) = self.spectrum(outer, false)?;
         Some(spectrum.mu.iter().map(|&mu| exponent(mu).re).fold(0.0, f64::max) / outer.step)
     }
 
@@ -78,8 +77,8 @@ impl Kernel {
             return Holds::Stable;
         }
         match self.beyond(outer, epsilon) {
-            Some((Some(Kind::Elliptic), _)) => Holds::Stable,
-            Some((Some(Kind::Hyperbolic), _)) => Holds::Unstable,
+            Some(Kind::Elliptic) => Holds::Stable,
+            Some(Kind::Hyperbolic) => Holds::Unstable,
             _ => Holds::NotTold,
         }
     }
