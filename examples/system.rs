@@ -20,7 +20,7 @@ fn main() -> Result<()> {
     let analysis = decide_system(&System::new(mass, potentials)?, &Limits::default())?;
     println!("stable: {}, proven: {}", analysis.is_stable(), analysis.is_proof());
     for mode in analysis.parts.iter().flat_map(|part| &part.instabilities) {
-        println!("grows at a rate of {:.6}: {:?}", mode.growth_rate, mode.shape);
+        println!("grows at a rate in {:?}: {:?}", mode.growth_rate, mode.shape);
     }
 
     // The same as measured Hessians, known to 1e-6: how far the verdict stands.

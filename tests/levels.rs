@@ -3,7 +3,7 @@
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::system::levels::{Cells, Hessians, Kernel, Outer};
-use kickdrift::system::{Evidence, Holds, Limits, Potential, Symmetric, System, decide_system};
+use kickdrift::system::{Evidence, Holds, Limits, Origin, Potential, Symmetric, System, decide_system};
 use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
 
@@ -90,10 +90,10 @@ fn kernels_agree_with_the_rational_route() {
         let other = decide_system(&system, &Limits::default()).unwrap();
         assert!(other.is_proof());
         if analysis.is_proof() {
-            assert_eq!(analysis.kind, other.kind, "{trial}: {analysis:?}");
+            assert_eq!(analysis.kind.unwrap(), other.kind.unwrap(), "{trial}: {analysis:?}");
             seen[usize::from(analysis.is_stable())] += 1;
-            let rates = (analysis.growth_rate(), other.growth_rate());
-            assert!((rates.0 - rates.1).abs() < 1e-6 * (1.0 + rates.1), "{rates:?}");
+            let [(a, b), (c, d)] = [&analysis, &other].map(|own| own.growth_rate().unwrap());
+            assert!(a <= d && c <= b && b - a < 1e-6, "{trial}: {a} {b} {c} {d}");
         }
     }
     assert!(seen[0] > 10 && seen[1] > 10, "{seen:?}");
@@ -388,6 +388,126 @@ fn what_accuracy_does_not_tell_is_not_told() {
     assert_eq!(told(margin * 2.0).holds, Holds::NotTold);
     let beyond = Outer::new(1.0005 * hi, 4).unwrap();
     let analysis = kernel.decide(&beyond, &ratio(1, 1), 1e-9);
-    assert!(analysis.kind == Kind::Hyperbolic && analysis.parts[0].evidence != Evidence::Estimate);
+    assert!(analysis.kind.unwrap() == Kind::Hyperbolic && analysis.parts[0].evidence != Evidence::Estimate);
     assert_eq!(analysis.measured.unwrap().holds, Holds::Unstable);
+}
+
+/// Fast squares of frequency from −1 to 5.5, so that an inner step of 1 is beyond Verlet's limit or a fast mode falls where there are such.
+fn beyond(numbers: &mut Numbers, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
+    let basis = numbers.symmetric(n).symmetric_eigen().eigenvectors;
+    let reach = [(-0.02, 3.0), (-1.0, 1.5), (0.1, 5.5)][(numbers.next().abs() * 3.0) as usize % 3];
+    let squares = DMatrix::from_fn(n, n, |i, j| {
+        let x = reach.0 + (reach.1 - reach.0) * numbers.next().abs();
+        if i == j { x } else { 0.0 }
+    });
+    let fast = &basis * squares * basis.transpose();
+    let fast = (&fast + fast.transpose()) * 0.5;
+    (fast, numbers.symmetric(n) * (0.4 / n as f64))
+}
+
+/// How many are stable, unstable and not decided.
+fn agreed_beyond_verlet(count: usize, seed: u64) -> [usize; 3] {
+    let (mut numbers, mut seen) = (Numbers(seed), [0; 3]);
+    for trial in 0..count {
+        let n = 1 + trial % 12;
+        let (fast, slow) = beyond(&mut numbers, n);
+        let inner = 1 + (numbers.next().abs() * 9.0) as u64;
+        let step = inner as f64;
+        let analysis =
+            kernel(&fast, &slow).decide(&Outer::new(step, inner).unwrap(), &ratio(inner as i64, 1), 1e-9);
+        let found = largest_multiplier(&fast, &slow, step, inner).ln() / step;
+        // Where multipliers are double the dense period is good to the root of roundoff.
+        let off = 1e-5 / step + 1e-7 * found.abs();
+        if let Some((lo, hi)) = analysis.growth_rate() {
+            assert!(lo - off <= found && found <= hi + off, "{trial}: {lo} {hi} {found}");
+        }
+        match analysis.kind {
+            Some(Kind::Hyperbolic) => seen[1] += 1,
+            Some(_) => seen[0] += 1,
+            None => seen[2] += 1,
+        }
+        assert!(analysis.kind != Some(Kind::Elliptic) || found < off, "{trial}: {found}");
+        for own in &analysis.parts[0].instabilities {
+            // A rounded real μ is of a real pair, any other one of a quadruple.
+            assert_eq!(own.origin == Origin::RealPair, own.multiplier.mu.im == 0.0);
+            assert!(own.growth_rate.is_none_or(|(_, hi)| hi > 0.0));
+        }
+    }
+    seen
+}
+
+#[test]
+fn growth_beyond_the_inner_steps_limit_and_of_falling_fast_modes_is_that_of_the_dense_period() {
+    let seen = agreed_beyond_verlet(400, 31);
+    assert!(seen[0] > 20 && seen[1] > 200 && seen[2] < 20, "{seen:?}");
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn growth_beyond_the_inner_steps_limit_is_that_of_the_dense_period_for_20_000_systems() {
+    println!("stable, unstable, not decided: {:?}", agreed_beyond_verlet(20_000, 37));
+}
+
+#[test]
+fn one_mode_beyond_verlets_limit_has_its_own_multiplier() {
+    // Two fast steps of F = 5 between half kicks of S = 1 of 2: Tr Q/2 = 6.5.
+    let one = |x: f64| DMatrix::from_element(1, 1, x);
+    let analysis = kernel(&one(5.0), &one(1.0)).decide(&Outer::new(2.0, 2).unwrap(), &ratio(2, 1), 1e-6);
+    let (lo, hi) = analysis.growth_rate().unwrap();
+    let want = 6.5f64.acosh() / 2.0;
+    assert!(lo <= want && want <= hi && hi - lo < 1e-12, "{lo} {hi} {want}");
+    let lambda = analysis.parts[0].multipliers[0].lambda;
+    assert!((lambda.re - (6.5 + (6.5f64 * 6.5 - 1.0).sqrt())).abs() < 1e-9 && lambda.im == 0.0, "{lambda}");
+}
+
+#[test]
+fn potentials_that_cancel_on_one_clock_are_each_known_to_their_own_norm() {
+    let identity = DMatrix::<f64>::identity(2, 2);
+    let (fast, slow) = (&identity, &identity * -(1.0 - 1e-7));
+    let (sum, nothing) = (fast + &slow, DMatrix::zeros(2, 2));
+    let hessians = Hessians::new(&sum, &nothing, 1e-6).unwrap();
+    let outer = Outer::new(0.1, 1).unwrap();
+    let alone = Kernel::new(&hessians).unwrap().decide(&outer, &ratio(1, 10), 1e-6).measured.unwrap();
+    assert_eq!(alone.holds, Holds::Stable);
+    let shared = hessians.of_shares(0, &[fast.clone(), slow]);
+    let told = Kernel::new(&shared).unwrap().decide(&outer, &ratio(1, 10), 1e-6).measured.unwrap();
+    // Both may move by half of what is left of them.
+    assert_eq!(told.holds, Holds::NotTold);
+    let margin = told.margin.unwrap();
+    assert!(4.8e-8 < margin && margin < 5e-8, "{margin}");
+}
+
+/// A diagonal matrix as NumPy writes it.
+fn npy(diagonal: &[f64]) -> Vec<u8> {
+    let n = diagonal.len();
+    let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({n}, {n}), }}");
+    header.push_str(&" ".repeat((64 - (header.len() + 11) % 64) % 64));
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    let entry = |k: usize| if k / n == k % n { diagonal[k / n] } else { 0.0 };
+    bytes.extend((0..n * n).flat_map(|k| entry(k).to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn a_file_in_which_two_potentials_of_one_step_cancel_does_not_promise_what_moving_one_of_them_breaks() {
+    let folder = std::env::temp_dir().join(format!("kickdrift-cancel-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    for (name, x) in [("up", 1.0), ("down", -(1.0 - 1e-7))] {
+        std::fs::write(folder.join(format!("{name}.npy")), npy(&[x, x])).unwrap();
+    }
+    let potential =
+        |name: &str| serde_json::json!({"step": "1/10", "stiffness": {"npy": format!("{name}.npy")}});
+    let source = serde_json::json!({
+        "schema": "kickdrift/system/1", "mass_weighted": true, "accuracy": 1e-6,
+        "potentials": [potential("up"), potential("down")],
+    });
+    let scene = kickdrift::scene::SystemScene::from_json_in(&folder, source).unwrap();
+    let analysis = scene.decide(kickdrift::system::Route::Cheapest, &Limits::default()).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let told = analysis.measured.as_ref().unwrap();
+    assert!(analysis.is_stable() && told.holds == Holds::NotTold, "{told:?}");
+    assert!(told.margin.unwrap() < 5e-8, "{told:?}");
 }

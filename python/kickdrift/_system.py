@@ -413,24 +413,32 @@ class SystemVerdict(Document):
 
     @property
     def stable(self) -> bool:
-        """Whether all powers of the propagator stay bounded."""
+        """Whether all powers of the propagator are proven to stay bounded."""
         return bool(self.data["stable"])
 
     @property
     def kind(self) -> str:
-        """elliptic, hyperbolic, parabolic or coexistence."""
+        """elliptic, hyperbolic, parabolic or coexistence; ``not decided`` where nothing is proven."""
         return str(self.data["kind"])
 
     @property
     def proven(self) -> bool:
-        """Whether it is proven for the Hessians given; False where some part rests on doubles without a bound. Warnings
-        say where these are not the Hessians that a run meets."""
+        """Whether it is proven for the Hessians given; False where nothing is decided, a warning says why. Warnings
+        say, too, where these are not the Hessians that a run meets."""
         return bool(self.data["proven"])
 
     @property
     def growth_rate(self) -> float:
-        """The largest growth rate per unit time, rounded; 0 if stable."""
-        return float(self.data["growth_rate"])
+        """The middle of :attr:`growth_bounds`, NaN where there are none."""
+        bounds = self.growth_bounds
+        return float("nan") if bounds is None else sum(bounds) / 2
+
+    @property
+    def growth_bounds(self) -> tuple[float, float] | None:
+        """Doubles that enclose the largest growth rate per unit time: zeros where nothing grows exponentially, None
+        where no bound is proven."""
+        found = self.data["growth_rate"]
+        return None if found is None else (found["lo"], float("inf") if found["hi"] is None else found["hi"])
 
     @property
     def period(self) -> Number:
@@ -478,9 +486,11 @@ class SystemVerdict(Document):
         return self.stable
 
     def __repr__(self) -> str:
+        if not self.proven:
+            return f"SystemVerdict({self.kind})"
         words = "stable" if self.stable else f"unstable, growth rate {self.growth_rate:.6g}"
         told = f"; warnings: {len(self.warnings)}" if self.warnings else ""
-        return f"SystemVerdict({words}, {self.kind}{'' if self.proven else ', an estimate'}{told})"
+        return f"SystemVerdict({words}, {self.kind}{told})"
 
     def __str__(self) -> str:
         return _warned(self.system.notes) + self.system._ask("system", self._options, "text").rstrip()

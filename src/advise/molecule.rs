@@ -12,7 +12,7 @@ use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Damping;
 use crate::system::levels::{Growing, Kernel, Outer};
-use crate::system::{Analysis, Holds, Removed, middle};
+use crate::system::{Analysis, Holds, Removed};
 
 /// Measured stiffnesses of two levels, and what their coordinates are called.
 #[derive(Clone, Debug)]
@@ -51,8 +51,8 @@ pub struct Finding {
     pub first_upper: Option<f64>,
     /// Growth from there on, sampled, steps in fs and rates per fs; that a step is stable again is proven. None where no first one is.
     pub growing: Vec<Growing>,
-    /// Growth per fs, rounded; 0 where nothing grows.
-    pub rate: f64,
+    /// Growth per fs, rounded; 0 where nothing grows, `None` where that is not decided.
+    pub rate: Option<f64>,
     /// Who moves in what grows fastest.
     pub atoms: Option<String>,
     /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles do not tell.
@@ -244,8 +244,9 @@ impl Molecule {
             Holds::Stable if self.kernel.is_in_first_region(&outer, self.accuracy) => Status::Near,
             Holds::Stable => Status::Island,
         };
-        let rate = growth(&analysis) / unit;
-        let time = std::f64::consts::LN_10 / rate;
+        let rate = growth(&analysis).map(|rate| rate / unit);
+        let grows = rate.is_some_and(|rate| rate > 0.0);
+        let time = rate.map(|rate| std::f64::consts::LN_10 / rate);
         let AtRatio { first_upper, growing, band_edge } = at.clone();
         let largest = self.largest(inner, part)?;
         Ok(Finding {
@@ -261,14 +262,14 @@ impl Molecule {
                 .and_then(|rate| self.kernel.damping(&outer, to_f64(rate) * unit))
                 .map(|own| own == Damping::Damped),
             masking: friction
-                .filter(|_| rate > 0.0)
+                .filter(|_| grows)
                 .and_then(|_| self.kernel.masking_friction(&outer))
                 .map(|own| own / unit),
             atoms: fastest_shape(&analysis).map(|shape| self.atoms(&shape)),
             band_edge,
             safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
             largest,
-            within_run: length.filter(|_| rate > 0.0).map(|length| time <= to_f64(length)),
+            within_run: length.filter(|_| grows).zip(time).map(|(length, time)| time <= to_f64(length)),
         })
     }
 
@@ -309,9 +310,10 @@ impl Molecule {
 /// Beyond this many the inner step is so short that nobody means it.
 const MOST_INNER_STEPS: u64 = 1000;
 
-/// The largest growth rate, per unit of time, rounded; 0 where none is proven.
-fn growth(analysis: &Analysis) -> f64 {
-    analysis.growth_rate().filter(|_| analysis.is_unstable()).map_or(0.0, middle)
+/// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.
+fn growth(analysis: &Analysis) -> Option<f64> {
+    let largest = instabilities(analysis).map(|own| own.multiplier.size().ln()).fold(0.0, f64::max);
+    analysis.is_proof().then(|| largest / analysis.period.to_f64())
 }
 
 fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::Instability> {
@@ -319,7 +321,8 @@ fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::In
 }
 
 fn fastest_shape(analysis: &Analysis) -> Option<Vec<f64>> {
-    let fastest = instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))?;
+    let fastest =
+        instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))?;
     Some(fastest.shape.iter().zip(&fastest.quadrature).map(|(re, im)| re.hypot(*im)).collect())
 }
 
@@ -327,6 +330,6 @@ impl Finding {
     /// Outer steps until an amplitude is tenfold, rounded; `None` where nothing grows.
     pub fn tenfold_steps(&self) -> Option<f64> {
         let outer = self.scheme.outer().to_f64()?;
-        (self.rate > 0.0).then(|| std::f64::consts::LN_10 / (self.rate * outer))
+        self.rate.filter(|rate| *rate > 0.0).map(|rate| std::f64::consts::LN_10 / (rate * outer))
     }
 }

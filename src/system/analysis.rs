@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use super::exact::MuCount;
 use super::measured::{Holds, Measured};
 use super::modes::{Origin, Resonance};
-use super::rate;
+use super::rate::{self, Multiplier};
 use crate::number::{Ball, Laurent, Rational};
 use crate::verdict::{Kind, Tier};
 
@@ -40,39 +40,6 @@ impl Evidence {
     pub fn is_proof(self) -> bool {
         self != Evidence::Estimate
     }
-}
-
-/// A pair λ, 1/λ of multipliers of one period: λ + 1/λ = 2 + 4 μ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Multiplier {
-    /// Rounded.
-    pub mu: Complex64,
-    /// The true μ is within this of it (as many true ones as discs, where discs meet); `None`: not bounded.
-    pub radius: Option<f64>,
-    /// An enclosure of ln |λ| for the one with |λ| ≥ 1 (of each of those whose discs meet); `None`: not bounded.
-    pub growth: Option<(f64, f64)>,
-    /// The one with |λ| ≥ 1, rounded.
-    pub lambda: Complex64,
-}
-
-impl Multiplier {
-    /// λ = exp(2 asinh √μ).
-    pub(super) fn new(mu: Complex64, radius: Option<f64>, growth: Option<(f64, f64)>) -> Self {
-        Multiplier { mu, radius, growth, lambda: exponent(mu).exp() }
-    }
-}
-
-impl Multiplier {
-    /// |λ|, rounded.
-    pub fn size(&self) -> f64 {
-        self.lambda.norm()
-    }
-}
-
-/// ln λ = 2 asinh √μ, real part ≥ 0: λ + 1/λ = 2 + 4 sinh²(ln λ/2).
-pub(super) fn exponent(mu: Complex64) -> Complex64 {
-    let z = mu.sqrt().asinh() * 2.0;
-    if z.re < 0.0 { -z } else { z }
 }
 
 /// A multiplier off the unit circle.

@@ -117,7 +117,9 @@ pub fn verdict_cost(system: &System) -> u64 {
 /// That of a system of these parts: exponential growth is one whatever the others do.
 fn severest(kinds: impl Iterator<Item = Option<Kind>>) -> Option<Kind> {
     // One that is not decided may grow.
-    let place = |kind: &Option<Kind>| kind.as_ref().map_or(2 * severity(&Kind::Hyperbolic) - 1, |kind| 2 * severity(kind));
+    let place = |kind: &Option<Kind>| {
+        kind.as_ref().map_or(2 * severity(&Kind::Hyperbolic) - 1, |kind| 2 * severity(kind))
+    };
     kinds.max_by_key(place).unwrap_or(Some(Kind::Elliptic))
 }
 

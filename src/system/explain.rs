@@ -5,13 +5,14 @@ use std::cmp::Ordering;
 
 use faer::c64;
 
-use super::analysis::{Instability, Multiplier, exponent};
+use super::analysis::Instability;
 use super::exact;
 use super::float::FloatBlocks;
 use super::limits::Limits;
 use super::modes::{NormalModes, Origin, Resonance};
 use super::piece::{Piece, ROUGH};
 use super::rate;
+use super::rate::{Multiplier, exponent};
 use super::spectrum::{Spectrum, from_segment};
 use crate::number::Laurent;
 use crate::number::rational::to_f64;
@@ -93,7 +94,8 @@ impl Piece {
 
     /// The multipliers from the characteristic polynomial, each in the place of the computed one that it stands for.
     fn refined(&self, found: &[Multiplier], limits: &Limits) -> Option<Vec<Multiplier>> {
-        let mut exact = exact::multipliers(&self.system, &self.frame, limits).filter(|own| own.len() == found.len())?;
+        let mut exact =
+            exact::multipliers(&self.system, &self.frame, limits).filter(|own| own.len() == found.len())?;
         let mut order: Vec<usize> = (0..found.len()).collect();
         order.sort_by(|&i, &j| by_place(&found[i].mu, &found[j].mu));
         exact.sort_by(|a, b| by_place(&a.mu, &b.mu));

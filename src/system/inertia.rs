@@ -232,6 +232,25 @@ pub(super) fn orthogonality(v: &Mat<f64>) -> Option<f64> {
     (defect < 0.1).then_some(defect)
 }
 
+/// A proven upper bound of ‖m‖₂ of every symmetric matrix within `slack`, close to it: t I ± m are definite.
+pub(super) fn spectral_norm(m: &Mat<f64>, slack: f64) -> f64 {
+    let n = m.nrows();
+    let largest = m
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_or(f64::INFINITY, |values| values.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
+    let mut bound = largest * 1.0001 + 2.0 * slack;
+    let whole = norm::frobenius(m) + slack;
+    while bound < whole {
+        let shifted =
+            |sign: f64| Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) * bound + sign * m[(i, j)]);
+        if is_definite(shifted(1.0), slack) && is_definite(shifted(-1.0), slack) {
+            return bound;
+        }
+        bound *= 1.001;
+    }
+    whole
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

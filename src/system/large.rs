@@ -8,12 +8,13 @@ use faer::Mat;
 use faer::c64;
 
 use super::action;
-use super::analysis::{Evidence, Instability, Multiplier, Part};
+use super::analysis::{Evidence, Instability, Part};
 use super::compose::{Program, Row, State};
 use super::float::scaled_program;
 use super::frame::Frame;
 use super::model::System;
 use super::modes::Origin;
+use super::rate::Multiplier;
 use crate::number::Laurent;
 use crate::schedule::Weight;
 use crate::verdict::Kind;
@@ -22,8 +23,7 @@ use crate::verdict::Kind;
 pub(super) const LARGE: usize = 600;
 
 /// What is left out of the answer.
-pub(super) const NOTE: &str =
-    "of so many degrees of freedom only the multiplier that grows fastest is computed, if any does, rounded: no growth rate is enclosed";
+pub(super) const NOTE: &str = "of so many degrees of freedom only the multiplier that grows fastest is computed, if any does, rounded: no growth rate is enclosed";
 
 /// Periods of one power iteration, dimensions of a Krylov space, rounds of both.
 const POWER: usize = 400;

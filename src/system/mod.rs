@@ -89,7 +89,7 @@ pub mod stretches;
 pub mod vary;
 
 pub use along::{OwnOrbit, decide_along};
-pub use analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
+pub use analysis::{Analysis, Clocked, Evidence, Instability, Part};
 pub use compose::{full_period, half_period};
 pub use decide::{decide_by, decide_system, exact_kind, verdict_cost};
 pub use exact::{ExactVerdict, MuCount, decide_exact};
@@ -98,7 +98,7 @@ pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
 pub use modes::{Origin, Resonance};
 pub use pi::{PiPotential, PiSystem};
-pub use rate::middle;
+pub use rate::{Multiplier, middle};
 pub use scalar::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide_oscillator;
 pub use sparse::Symmetric;

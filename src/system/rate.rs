@@ -14,6 +14,39 @@ use num_complex::Complex64;
 use crate::number::rational::from_f64_exact;
 use crate::number::{Ball, Laurent, Rational, Real};
 
+/// A pair λ, 1/λ of multipliers of one period: λ + 1/λ = 2 + 4 μ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Multiplier {
+    /// Rounded.
+    pub mu: Complex64,
+    /// The true μ is within this of it (as many true ones as discs, where discs meet); `None`: not bounded.
+    pub radius: Option<f64>,
+    /// An enclosure of ln |λ| for the one with |λ| ≥ 1 (of each of those whose discs meet); `None`: not bounded.
+    pub growth: Option<(f64, f64)>,
+    /// The one with |λ| ≥ 1, rounded.
+    pub lambda: Complex64,
+}
+
+impl Multiplier {
+    /// λ = exp(2 asinh √μ).
+    pub(super) fn new(mu: Complex64, radius: Option<f64>, growth: Option<(f64, f64)>) -> Self {
+        Multiplier { mu, radius, growth, lambda: exponent(mu).exp() }
+    }
+}
+
+impl Multiplier {
+    /// |λ|, rounded.
+    pub fn size(&self) -> f64 {
+        self.lambda.norm()
+    }
+}
+
+/// ln λ = 2 asinh √μ, real part ≥ 0: λ + 1/λ = 2 + 4 sinh²(ln λ/2).
+pub(super) fn exponent(mu: Complex64) -> Complex64 {
+    let z = mu.sqrt().asinh() * 2.0;
+    if z.re < 0.0 { -z } else { z }
+}
+
 /// Of an excess of 2^-100, say of a pair 10^-15 beside the segment \[−1, 0\], these leave a double's digits.
 const BITS: u32 = 256;
 
@@ -93,7 +126,9 @@ mod tests {
     #[test]
     fn the_range_of_a_disc_holds_the_growth_of_its_points_and_little_more() {
         let growth = |mu: Complex64| (mu.sqrt().asinh() * 2.0).re.abs();
-        for (re, im) in [(2.0, 0.0), (-1.5, 0.0), (-0.3, 0.4), (-0.5, 1e-3), (0.2, -0.7), (-0.5, 0.0), (1e-9, 0.0)] {
+        for (re, im) in
+            [(2.0, 0.0), (-1.5, 0.0), (-0.3, 0.4), (-0.5, 1e-3), (0.2, -0.7), (-0.5, 0.0), (1e-9, 0.0)]
+        {
             let mu = Complex64::new(re, im);
             for radius in [0.0, 1e-12, 1e-5, 1e-2] {
                 let (lo, hi) = about(mu, radius);

@@ -1,21 +1,21 @@
 //! The eigenvalues μ of Bᵀ C over ℚ, to as many digits as the growth of the fastest asks for.
 //!
-//! Approximations z_i of the n simple roots of c Π (z − μ_i) = f(z) all move by their corrections (Weierstrass; Durand, Kerner)
+//! Approximations z_i of the n simple roots of f(z) = Π (z − μ_i) all move by their corrections (Weierstrass; Durand, Kerner)
 //!
 //! ```text
-//!     w_i = f(z_i)/(c Π (z_i − z_j)).
+//!     w_i = f(z_i)/Π (z_i − z_j).
 //! ```
 //!
-//! The matrix diag(z) − w (1, ..., 1) has the characteristic polynomial f/c, so by Gershgorin all roots lie in the discs of radius
-//! n |w_i| about z_i, and in a disc that meets no other there is one. The z_i are Gaussian integers over 2^bits, f(z_i) and the product are exact.
+//! The matrix diag(z) − w (1, ..., 1) has the characteristic polynomial f, so by Gershgorin all roots lie in the discs of radius
+//! n |w_i| about z_i, and in a disc that meets no other there is one. The z_i are Gaussian integers over 2^bits and the products exact; the
+//! coefficients of f are known to 2^-fraction, and so is each step of Horner's scheme: f(z) to 3 n max(1, |z|)^n of these.
 
 use num_bigint::BigInt;
 use num_complex::{Complex, Complex64};
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 
-use super::analysis::Multiplier;
-use super::rate;
+use super::rate::{self, Multiplier};
 use crate::number::rational::{scale2, to_f64};
 use crate::number::{Ball, Rational, U};
 
@@ -30,27 +30,26 @@ const MOST_ROUNDS: usize = 1_000;
 /// Relative bits of the largest excess that a double's digits of its growth need.
 const ACCURACY: u32 = 58;
 
-struct Roots {
-    /// Coefficients in μ, the lowest first.
-    f: Vec<BigInt>,
+struct Roots<'a> {
+    /// The coefficients of a monic polynomial in z = d μ, the lowest first.
+    f: &'a [BigInt],
+    d: &'a BigInt,
     bits: u32,
     points: Vec<Gaussian>,
     /// Of the discs, in units of 2^-bits.
     radii: Vec<BigInt>,
 }
 
-/// The roots μ = z/d of a squarefree polynomial in z, each with an enclosure of its growth; the largest to a double's digits.
+/// A correction in units of 2^-bits, and how far it can be off.
+struct Correction {
+    w: Gaussian,
+    off: BigInt,
+}
+
+/// The roots μ = z/d of a monic squarefree polynomial in z, each with an enclosure of its growth; the largest to a double's digits.
 /// `None` where that takes more than [`MOST_BITS`].
 pub(super) fn multipliers(f: &[BigInt], d: &BigInt) -> Option<Vec<Multiplier>> {
-    let mut power = BigInt::one();
-    let mut scaled = Vec::with_capacity(f.len());
-    for c in f {
-        scaled.push(c * &power);
-        power *= d;
-    }
-    let common = scaled.iter().fold(BigInt::zero(), |gcd, c| gcd.gcd(c));
-    scaled.iter_mut().for_each(|c| *c /= &common);
-    let mut roots = Roots::start(scaled);
+    let mut roots = Roots::start(f, d);
     loop {
         roots.settle()?;
         if let Some(found) = roots.are_apart().then(|| roots.accurate()).flatten() {
@@ -72,20 +71,36 @@ pub(super) fn quotient(mut f: Vec<BigInt>, g: &[BigInt]) -> Vec<BigInt> {
     quotient
 }
 
-impl Roots {
+impl<'a> Roots<'a> {
     /// On a circle that no root is outside of (Fujiwara's), with no symmetry.
-    fn start(f: Vec<BigInt>) -> Roots {
+    fn start(f: &'a [BigInt], d: &'a BigInt) -> Roots<'a> {
         let (n, bits) = (f.len() - 1, 128);
-        let leading = f[n].bits() as i64;
-        let size = |k: usize| (f[n - k].bits() as i64 + 1 - leading).div_euclid(k as i64) + 2;
-        let size = (1..=n).map(size).max().unwrap_or(0).clamp(-i64::from(bits) / 2, 1 << 20);
+        // log2 of |f_(n−k)|/d^k, over k, rounded up.
+        let size = |k: usize| (f[n - k].bits() as i64).div_euclid(k as i64) + 2 - d.bits() as i64;
+        let size = (1..=n).map(size).max().unwrap_or(0).max(-i64::from(bits) / 2) + 1;
         let point = |i: usize| {
             let angle = 0.4 + std::f64::consts::TAU * i as f64 / n as f64;
-            let unit = 2f64.powi(52);
-            let part = |x: f64| shifted(&BigInt::from((x * unit) as i64), i64::from(bits) - 52 + size);
+            let part =
+                |x: f64| shifted(&BigInt::from((x * 2f64.powi(52)) as i64), i64::from(bits) - 52 + size);
             Complex::new(part(angle.cos()), part(angle.sin()))
         };
-        Roots { points: (0..n).map(point).collect(), radii: vec![BigInt::zero(); n], f, bits }
+        Roots { points: (0..n).map(point).collect(), radii: vec![BigInt::zero(); n], f, d, bits }
+    }
+
+    /// The places of coefficients: a cluster of roots takes as many more as its product of distances is small.
+    fn fraction(&self) -> u32 {
+        2 * self.bits + 64
+    }
+
+    /// The coefficients in μ, rounded down.
+    fn coefficients(&self) -> Vec<BigInt> {
+        let (n, mut power) = (self.f.len() - 1, BigInt::one());
+        let mut all = vec![BigInt::zero(); n + 1];
+        for k in (0..=n).rev() {
+            all[k] = (&self.f[k] << self.fraction()).div_floor(&power);
+            power *= self.d;
+        }
+        all
     }
 
     /// Twice the bits.
@@ -96,39 +111,42 @@ impl Roots {
         Some(())
     }
 
-    /// Corrects until nothing moves any more; `None` where two approximations meet.
+    /// Corrects until only what is not known of the corrections moves; `None` where two approximations meet.
     fn settle(&mut self) -> Option<()> {
-        let n = BigInt::from(self.points.len());
+        let (n, coefficients) = (BigInt::from(self.points.len()), self.coefficients());
         for round in 0..=MOST_ROUNDS {
-            let moves = (0..self.points.len()).map(|i| self.correction(i)).collect::<Option<Vec<Gaussian>>>()?;
-            self.radii = moves.iter().map(|w| (w.re.abs() + w.im.abs() + 2) * &n).collect();
-            let is_still = moves.iter().all(|w| w.re.abs() <= BigInt::one() && w.im.abs() <= BigInt::one());
-            if is_still || round == MOST_ROUNDS {
+            let all = (0..self.points.len()).map(|i| self.correction(&coefficients, i));
+            let all = all.collect::<Option<Vec<Correction>>>()?;
+            let size = |own: &Correction| own.w.re.abs() + own.w.im.abs();
+            self.radii = all.iter().map(|own| (size(own) + &own.off) * &n).collect();
+            if round == MOST_ROUNDS || all.iter().all(|own| size(own) <= own.off) {
                 break;
             }
-            self.points.iter_mut().zip(moves).for_each(|(z, w)| *z = &*z - w);
+            self.points.iter_mut().zip(all).for_each(|(z, own)| *z = &*z - own.w);
         }
         Some(())
     }
 
-    /// w_i in units of 2^-bits, each part within one of them.
-    fn correction(&self, i: usize) -> Option<Gaussian> {
-        let (x, n) = (&self.points[i], self.f.len() - 1);
-        let mut value = Complex::new(self.f[n].clone(), BigInt::zero());
-        for k in (0..n).rev() {
+    fn correction(&self, coefficients: &[BigInt], i: usize) -> Option<Correction> {
+        let (x, n, bits, fraction) = (&self.points[i], self.f.len() - 1, self.bits as usize, self.fraction());
+        let mut value = Complex::new(coefficients[n].clone(), BigInt::zero());
+        for c in coefficients[..n].iter().rev() {
             value = value * x;
-            value.re += &self.f[k] << (self.bits as usize * (n - k));
+            value = Complex::new((value.re >> bits) + c, value.im >> bits);
         }
-        let mut product = Complex::new(self.f[n].clone(), BigInt::zero());
-        for (_, other) in self.points.iter().enumerate().filter(|(j, _)| *j != i) {
-            product = product * (x - other);
-        }
+        let others = self.points.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| x - other);
+        let product = others.fold(Complex::new(BigInt::one(), BigInt::zero()), |product, own| product * own);
         let size = product.norm_sqr();
         if size.is_zero() {
             return None;
         }
-        let whole = value * product.conj();
-        Some(Complex::new(whole.re.div_floor(&size), whole.im.div_floor(&size)))
+        // Both in units of 2^-(n bits).
+        let moved = |x: &BigInt| shifted(x, (n * bits) as i64 - i64::from(fraction));
+        let largest = ((x.re.abs() + x.im.abs()) >> bits) + 1u8;
+        let off = moved(&(num_traits::pow(largest, n) * (3 * n))) + 2u8;
+        let whole = Complex::new(moved(&value.re), moved(&value.im)) * product.conj();
+        let w = Complex::new(whole.re.div_floor(&size), whole.im.div_floor(&size));
+        Some(Correction { w, off: off / size.sqrt() + 3u8 })
     }
 
     fn meet(&self, i: usize, z: &Gaussian, j: usize) -> bool {
@@ -198,7 +216,7 @@ mod tests {
 
     #[test]
     fn roots_of_an_integer_polynomial_come_with_their_growth() {
-        // (z − 4)(z + 1)(z² + 2 z + 5) over 2: μ = 2, −1/2, −1/2 ± i.
+        // (z − 4)(z + 1)(z² + 2 z + 5), z = 2 μ: μ = 2, −1/2, −1/2 ± i.
         let found = of(&[-20, -23, -5, -1, 1], 2);
         let growth = |k: usize| found[k].growth.unwrap();
         let near = |(lo, hi): (f64, f64), x: f64| lo <= x + 1e-15 && x - 1e-15 <= hi && hi - lo < 1e-15;
@@ -212,15 +230,11 @@ mod tests {
 
     #[test]
     fn a_root_beside_the_edge_is_told_from_its_neighbours() {
-        // (10^15 μ − 1)(10^15 μ + 1), and a third one at −1/2 − 10^-15.
-        let e = BigInt::from(10u64.pow(15));
-        let quadratic = [-BigInt::one(), BigInt::zero(), &e * &e];
-        let linear = [&e + BigInt::from(2), &e * BigInt::from(2)];
-        let mut f = vec![BigInt::zero(); 4];
-        for (i, a) in quadratic.iter().enumerate() {
-            linear.iter().enumerate().for_each(|(j, b)| f[i + j] += a * b);
-        }
-        let found = multipliers(&f, &BigInt::one()).unwrap();
+        // z = 10^15 μ: μ = 10^-15, −10^-15, and −1/2 − 10^-15.
+        let d = BigInt::from(10u64.pow(15));
+        let third: BigInt = &d / 2u8 + 1u8;
+        let f = [-third.clone(), -BigInt::one(), third, BigInt::one()];
+        let found = multipliers(&f, &d).unwrap();
         let (lo, hi) = rate::largest(found.iter().filter_map(|own| own.growth));
         let want = 2.0 * 1e-15f64.sqrt().asinh();
         assert!(lo <= want * (1.0 + 1e-15) && want * (1.0 - 1e-15) <= hi && hi / lo - 1.0 < 1e-15);

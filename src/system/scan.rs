@@ -48,11 +48,7 @@ pub fn scan(
     let pairs: Vec<_> = ys.iter().flat_map(|y| xs.iter().map(move |x| (x, y))).collect();
     let point = |&(x, y): &(&Rational, &Rational)| {
         let analysis = decide(x, y)?;
-        Ok(Point {
-            at: (x.clone(), y.clone()),
-            kind: analysis.kind,
-            growth_rate: analysis.growth_rate(),
-        })
+        Ok(Point { at: (x.clone(), y.clone()), kind: analysis.kind, growth_rate: analysis.growth_rate() })
     };
     let mut points = Vec::with_capacity(pairs.len());
     for group in pairs.chunks(AHEAD) {

@@ -3,15 +3,16 @@
 use num_complex::Complex64;
 
 use super::ManyClocks;
-use super::analysis::{Analysis, Clocked, Evidence, Instability, Multiplier, Part};
+use super::analysis::{Analysis, Clocked, Evidence, Instability, Part};
 use super::compose::check_length;
 use super::enclose;
 use super::float;
 use super::frame::Frame;
 use super::limits::Limits;
 use super::model::System;
-use super::rate;
 use super::modes::{Origin, Resonance};
+use super::rate;
+use super::rate::Multiplier;
 use super::scalar::{shortest_families, shortest_family};
 use crate::error::Result;
 use crate::number::rational::to_f64;

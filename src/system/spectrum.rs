@@ -15,12 +15,12 @@
 
 use faer::{Mat, c64};
 
-use super::analysis::Multiplier;
 use super::bauer_fike::{Residual, bauer_fike};
 use super::clusters::{self, Pencil};
 use super::float::FloatBlocks;
 use super::norm;
 use super::rate;
+use super::rate::Multiplier;
 use crate::number::U;
 use crate::verdict::Kind;
 

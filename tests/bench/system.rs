@@ -13,7 +13,7 @@ use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::scene::{Axis, Scan, SystemScene};
 use kickdrift::system::levels::{Hessians, Kernel, Outer};
 use kickdrift::system::scan::scan;
-use kickdrift::system::{Holds, Limits, Route, System, builders, decide_system};
+use kickdrift::system::{Holds, Limits, Route, System, builders, decide_system, middle};
 use rayon::prelude::*;
 
 mod common;
@@ -35,11 +35,11 @@ fn compare(name: &str, system: &System, dense_runs: u32, promised: f64) {
     assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
     let (dense, largest) = least(dense_runs, 0.0, || multipliers(system).into_iter().fold(0.0, f64::max));
     let factor = dense / own;
-    let predicted = (analysis.growth_rate() * to_f64(&system.period())).exp();
+    let predicted = (middle(analysis.growth_rate().expect("enclosed")) * to_f64(&system.period())).exp();
     println!(
         "{name}: {} kicks a period, {} in {:.1} ms; dense {:.1} ms, {factor:.0} times; |lambda| {predicted:.9} and {largest:.9}",
         system.schedule().strikes(),
-        analysis.kind.name(),
+        analysis.kind_name(),
         1e3 * own,
         1e3 * dense,
     );
@@ -90,7 +90,7 @@ fn dense() {
             let (other, _) = least(3, 1.0, || multipliers(scene.system()));
             println!(
                 "dense {n}, outer step {outer}: {} by {} in {:.2} ms; alone {:.3} ms, dense way {:.3} ms",
-                analysis.kind.name(),
+                analysis.kind_name(),
                 analysis.parts[0].evidence.name(),
                 1e3 * own,
                 1e3 * alone,
@@ -125,7 +125,7 @@ fn levels() {
         let outer = Outer::new(4.0, 4).expect("a step");
         kernel.decide(&outer, &ratio(4, 1), 1e-6)
     });
-    println!("n = 1000: basis {making:.2} s, {} with its margin {first:.2} s", analysis.kind.name());
+    println!("n = 1000: basis {making:.2} s, {} with its margin {first:.2} s", analysis.kind_name());
     assert!(analysis.is_proof(), "{:?}", analysis.warnings);
     let (lo, hi) = analysis.measured.and_then(|own| own.first_unstable).expect("a first unstable step");
     let steps: Vec<f64> = (1..=50).map(|k| (0.8 + 0.005 * f64::from(k)) * lo).collect();

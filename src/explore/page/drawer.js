@@ -226,10 +226,11 @@ function proven(stretches, lost, says) {
 /** What holds at an outer step: stable, or which modes grow. */
 function told(place, verdict, at, unit) {
   const modes = (verdict?.parts ?? []).flatMap(({ instabilities }) => instabilities ?? []);
-  const said = h("p.quiet", {}, `${place}, ${at} ${unit}: ${verdict?.stable ? "stable" : "unstable"}${verdict?.kind ? `, ${verdict.kind}` : ""}.`);
+  const stable = verdict?.stable == null ? "" : verdict.stable ? "stable, " : "unstable, ";
+  const said = h("p.quiet", {}, `${place}, ${at} ${unit}: ${stable}${verdict?.kind ?? "not decided"}.`);
   if (!modes.length) return [said];
   const rows = modes.map(({ growth_rate: rate, origin, resonance, shape }) => [
-    number(rate, 6), origin ?? "–", resonance ? minus(`m = ${resonance.m}, (${resonance.family})`.replace(",", ", ")) : "–",
+    rate ? enclosure(rate) : "–", origin ?? "–", resonance ? minus(`m = ${resonance.m}, (${resonance.family})`.replace(",", ", ")) : "–",
     resonance?.frequencies?.map((w) => number(w, 5)).join(", ") ?? "–", shape?.slice(0, 6).map((x) => number(x, 3)).join(", ") ?? "–",
   ]);
   return [said, table(modes.length === 1 ? "1 mode grows" : `${modes.length} modes grow`, ["growth rate", "origin", "resonance", "frequencies", "shape"], rows)];

@@ -48,7 +48,8 @@ impl Other {
     fn row(&self, own: &Finding) -> Checked {
         let (p, outer) = (Other::inner_steps(own), to_f64(own.scheme.outer()));
         let growth = self.hessians.growth_of_period(outer / self.unit, p) * outer / self.unit;
-        holds((growth - own.rate * outer).abs() < GROWTH, || format!("growth is {growth} in a period"))?;
+        let right = own.rate.is_none_or(|rate| (growth - rate * outer).abs() < GROWTH);
+        holds(right, || format!("growth is {growth} in a period"))?;
         if !self.has_paths(own) {
             return Ok(());
         }

@@ -45,6 +45,20 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
     })
 }
 
+/// ln |λ| of a period below which roundings may have made it: a double eigenvalue moves by the square root of 10^-16 times its condition.
+const STILL: f64 = 1e-5;
+
+/// The largest growth rate of measured stiffnesses holds the one of the dense full period, kick by kick and without any basis of modes.
+pub fn growth(scene: &SystemScene, analysis: &Analysis) -> Checked {
+    let Some((found, (lo, hi))) = scene.growth_of_period()?.zip(analysis.growth_rate()) else {
+        return Ok(());
+    };
+    let off = STILL / analysis.period.to_f64() + ROUNDED * found;
+    // Beyond doubles the dense period tells nothing.
+    let right = !found.is_finite() || (lo - off <= found && found <= hi + off);
+    holds(right, || format!("the growth rate is {lo} to {hi}, that of the dense full period {found}"))
+}
+
 /// The series of a linear run by powers of the full period: z after k periods is Qᵏ z₀.
 pub fn linear_run(scene: &SystemScene, request: &RunRequest, run: &Run) -> Checked {
     let (system, centre) = (scene.system(), scene.equilibrium());
@@ -65,4 +79,29 @@ pub fn linear_run(scene: &SystemScene, request: &RunRequest, run: &Run) -> Check
         state = &q * state;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::{Limits, Route};
+
+    #[test]
+    fn the_dense_period_finds_a_growth_rate_that_is_wrong_from_the_start() {
+        let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let text = std::fs::read_to_string(folder.join("alanine-dipeptide.json")).unwrap();
+        for (step, unstable) in [("1/200", false), ("1/100", true)] {
+            let text = text.replace("\"1/200\"", &format!("\"{step}\""));
+            let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
+            let mut analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+            assert_eq!((analysis.is_proof(), analysis.is_unstable()), (true, unstable));
+            assert!(growth(&scene, &analysis).is_ok());
+            // A hundredth more, or any where there is none.
+            analysis.parts[0].kind = Some(crate::verdict::Kind::Hyperbolic);
+            for own in &mut analysis.parts[0].multipliers {
+                own.growth = own.growth.map(|(lo, hi)| (1.01 * lo.max(0.01), 1.01 * hi.max(0.01)));
+            }
+            assert!(matches!(growth(&scene, &analysis), Err(Fault::Wrong(_))), "{step}");
+        }
+    }
 }

@@ -158,12 +158,9 @@ impl Verdict {
         let beside = report::Beside { unit, friction, orbit, labels, nearest, ..report::Beside::default() };
         let again = report::document(&analysis, &beside).value();
         if analysis.measured.is_some() {
-            return self.outcome(
-                context,
-                "computed again, by the same route: stiffnesses were measured",
-                &again,
-                Ok(()),
-            );
+            let route = "computed again, by the same route: stiffnesses were measured; the growth rate by the eigenvalues of the dense \
+                         full period";
+            return self.outcome(context, route, &again, dense::growth(&scene, &analysis));
         }
         let traces = || dense::traces(&scene, &analysis);
         match within(scene.exact_kind(&limits))? {

@@ -133,7 +133,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
         }
         Status::NotTold => {
             format!(
-                "not told: within {:.0e} of their norms the Hessians are stable and unstable{}: do not use",
+                "not told: nothing is proven of all Hessians within {:.0e} of their norms{}: do not use",
                 findings.accuracy,
                 grows(own)
             )
@@ -150,7 +150,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
 
 /// ": tenfold in ...".
 fn grows(own: &Finding) -> String {
-    let Some(steps) = own.tenfold_steps() else { return String::new() };
+    let Some((steps, rate)) = own.tenfold_steps().zip(own.rate) else { return String::new() };
     let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
     let friction = match (own.is_damped, own.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
@@ -163,13 +163,13 @@ fn grows(own: &Finding) -> String {
                 rounded(1000.0 * mask, 3)
             )
         }
-        _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * own.rate, 2)),
+        _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * rate, 2)),
     };
     format!(
         ": tenfold in {} outer steps = {} ps, {}/ps{atoms} ({friction})",
         rounded(steps, 3),
         rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
-        rounded(1000.0 * own.rate, 3)
+        rounded(1000.0 * rate, 3)
     )
 }
 
@@ -249,7 +249,7 @@ fn rows(findings: &Findings, all: bool) -> Table {
             number(own.first_upper, all)
         })
         .field(Column::new("growth_rate").in_words("growth").in_unit("1/ps"), move |own| {
-            number(Some(1000.0 * own.rate), all)
+            number(own.rate.map(|rate| 1000.0 * rate), all)
         })
         .field(Column::new("tenfold_steps").in_words("tenfold in steps"), move |own| {
             number(own.tenfold_steps(), all)

@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::{nearest, rate};
+use super::nearest;
+use super::words::{rate, stable};
 use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
@@ -39,7 +40,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
     let orbit = own.orbit.map(|own| {
         let about = &own.analysis;
         json!({
-            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": super::stable(about),
+            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": stable(about),
             "proven": about.is_proof(), "growth_rate": about.growth_rate().map(enclosure),
         })
     });

@@ -3,7 +3,7 @@
 use num_traits::Zero;
 use serde_json::json;
 
-use super::rate;
+use super::words::rate;
 use crate::number::Rational;
 use crate::number::rational::from_f64_exact;
 use crate::report::decimal;

@@ -9,6 +9,7 @@ mod measured;
 #[cfg(feature = "figure")]
 mod modes;
 mod nearest;
+mod words;
 
 use serde_json::{Value, json};
 
@@ -17,7 +18,6 @@ use super::document::{Document, enclosure};
 use super::record::Record;
 use super::table::Column;
 use super::text::counted;
-use crate::number::rational::from_f64_exact;
 use crate::system::{Analysis, Clocked, Holds, Instability, MuCount, Multiplier, Origin, Part};
 pub use beside::Beside;
 #[cfg(feature = "figure")]
@@ -28,6 +28,7 @@ pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
+use words::{rate, stable};
 
 const CAPTION: &str =
     "Multipliers $\\lambda$ over one synchronization period, $\\lambda + 1/\\lambda = 2 + 4\\mu$";
@@ -56,27 +57,6 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
     let entries = beside::entries(beside, analysis).into_iter();
     let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
     document.long_rows(table).summary_alone(&lines(analysis, beside))
-}
-
-/// Whether it is stable, where that is decided.
-fn stable(analysis: &Analysis) -> Option<bool> {
-    analysis.is_proof().then(|| analysis.is_stable())
-}
-
-/// Digits of a growth rate in words.
-const DIGITS: u32 = 8;
-
-/// A growth rate in words.
-fn rate(own: Option<(f64, f64)>) -> String {
-    match own {
-        Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, DIGITS).to_string(),
-        Some((_, hi)) if hi == 0.0 => "0".into(),
-        Some((_, hi)) if hi.is_finite() => {
-            let hi = from_f64_exact(hi).expect("a finite double");
-            format!("at most {}", decimal::outward(&hi, &hi, 2)[1])
-        }
-        _ => "not enclosed".into(),
-    }
 }
 
 fn multipliers(n: u64, part: &Part) -> impl Iterator<Item = Own<'_>> {

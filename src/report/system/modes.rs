@@ -1,6 +1,7 @@
 //! The multipliers of a system, and the shapes of those that grow.
 
-use super::{rate, terms};
+use super::terms;
+use super::words::rate;
 use crate::report::decimal;
 use crate::report::figure::palette::{GREY, INK, family};
 use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};

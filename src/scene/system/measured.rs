@@ -84,6 +84,8 @@ pub(super) struct Measured {
     is_weighted: bool,
     accuracy: f64,
     keeps_rigid: bool,
+    /// The stiffnesses of steps that several potentials have: each is known to its own norm.
+    shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
     /// Particles whose distances are held; the stiffnesses are bent by them.
     held: Vec<[usize; 2]>,
     scales: Vec<Scale>,
@@ -153,13 +155,18 @@ impl Measured {
         let mut body = Body { masses, positions, is_weighted: document.mass_weighted };
         let held = body.transform(&document, &mut read, arrays)?;
         let Body { masses, positions, is_weighted } = body;
-        let mut potentials: Vec<(Rational, DMatrix<f64>)> = Vec::new();
+        let mut shares: Vec<(Rational, Vec<DMatrix<f64>>)> = Vec::new();
         for (step, _, stiffness) in read {
-            match potentials.iter_mut().find(|(other, _)| *other == step) {
-                Some((_, sum)) => *sum += stiffness,
-                None => potentials.push((step, stiffness)),
+            match shares.iter_mut().find(|(other, _)| *other == step) {
+                Some((_, own)) => own.push(stiffness),
+                None => shares.push((step, vec![stiffness])),
             }
         }
+        let sum = |(step, own): &(Rational, Vec<DMatrix<f64>>)| {
+            (step.clone(), own.iter().fold(DMatrix::zeros(n, n), |sum, k| sum + k))
+        };
+        let mut potentials: Vec<(Rational, DMatrix<f64>)> = shares.iter().map(sum).collect();
+        shares.retain(|(_, own)| own.len() > 1);
         potentials.sort_by(|a, b| a.0.cmp(&b.0));
         // The steps, checked as those of any system are: what is read can be decided.
         let clock = |step: &Rational| Potential {
@@ -182,6 +189,7 @@ impl Measured {
             is_weighted,
             accuracy: 0.0,
             keeps_rigid: document.keep_rigid,
+            shares,
             held,
             scales,
             kernel: Arc::default(),
@@ -350,6 +358,28 @@ impl Measured {
 
     /// Both stiffnesses, rigid motions and held distances projected out.
     pub fn hessians(&self) -> Result<Hessians> {
+        let whole = self.summed_hessians()?;
+        Ok(self.shares.iter().fold(whole, |whole, (step, own)| {
+            let level = usize::from(*step != self.potentials[0].0);
+            whole.of_shares(level, &own.iter().map(|k| self.weighted(k)).collect::<Vec<_>>())
+        }))
+    }
+
+    /// M^-½ K M^-½.
+    fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
+        match self.masses.as_ref().filter(|_| !self.is_weighted) {
+            Some(m) => DMatrix::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] / (m[i].sqrt() * m[j].sqrt())),
+            None => k.clone(),
+        }
+    }
+
+    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of two levels.
+    pub fn growth_of_period(&self) -> Result<Option<f64>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        Ok(Some(self.hessians()?.growth_of_period(outer.step(), outer.inner_steps())))
+    }
+
+    fn summed_hessians(&self) -> Result<Hessians> {
         let fast = &self.potentials[0].1;
         let nothing = DMatrix::zeros(fast.nrows(), fast.ncols());
         let slow = self.potentials.get(1).map_or(&nothing, |(_, k)| k);

@@ -414,6 +414,14 @@ impl SystemScene {
         self.measured.as_ref().ok_or_else(exact)?.two_levels()
     }
 
+    /// The largest ln |λ|/T of two levels of measured stiffnesses by the dense full period, rounded; `None` of any other system.
+    ///
+    /// # Errors
+    /// As [`SystemScene::decide`].
+    pub fn growth_of_period(&self) -> Result<Option<f64>> {
+        self.measured.as_ref().map_or(Ok(None), |own| own.growth_of_period())
+    }
+
     /// The matrices of [`SystemScene::two_levels`], rigid motions projected out.
     ///
     /// # Errors

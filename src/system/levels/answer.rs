@@ -5,9 +5,10 @@ use num_complex::Complex64;
 
 use super::kernel::{Kernel, Outer};
 use crate::number::{Laurent, Rational};
-use crate::system::analysis::{Analysis, Evidence, Instability, Multiplier, Part};
+use crate::system::analysis::{Analysis, Evidence, Instability, Part};
 use crate::system::explain::explained;
 use crate::system::measured::Measured;
+use crate::system::rate::Multiplier;
 use crate::system::spectrum::Spectrum;
 use crate::verdict::Kind;
 
@@ -27,7 +28,8 @@ impl Kernel {
         let margin =
             if unstable { self.unstable_margin(outer, spectrum.as_ref()) } else { self.margin(outer) };
         let period = Laurent::from_rational(period.clone());
-        let (multipliers, instabilities) = spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
+        let (multipliers, instabilities) =
+            spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
         let part = Part {
             dofs: (0..self.modes.nrows()).collect(),
             size: self.size(),
@@ -57,7 +59,9 @@ impl Kernel {
             ));
         }
         if evidence == Evidence::Estimate {
-            warnings.push("doubles do not decide (eigenvalues too close together or to the edge of stability)".into());
+            warnings.push(
+                "doubles do not decide (eigenvalues too close together or to the edge of stability)".into(),
+            );
         }
         warnings
     }

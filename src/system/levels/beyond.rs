@@ -57,7 +57,8 @@ impl Kernel {
         let (lowest, highest) = (*self.values.first()?, *self.values.last()?);
         let [shift, slow] = self.errors_within(epsilon);
         // |1 − s/2| − 1 at both ends.
-        let beyond = (outer.scaled_up(highest + shift) / 2.0 - 2.0).max(-outer.scaled_down(lowest - shift) / 2.0);
+        let beyond =
+            (outer.scaled_up(highest + shift) / 2.0 - 2.0).max(-outer.scaled_down(lowest - shift) / 2.0);
         let moved = self.moved(outer, shift);
         let halves: Vec<Half> = self.values.iter().map(|x| Half::new(outer.inner_square * x, p)).collect();
         let near = |pick: fn(&Half) -> Interval, lipschitz: f64| {
@@ -131,8 +132,7 @@ impl Kernel {
 
     /// Whether all matrices as in [`Kernel::is_in_first_region`] are proven unstable.
     pub fn is_unstable(&self, outer: &Outer, epsilon: f64) -> bool {
-        self.has_real_unstable_mode(outer, epsilon)
-            || self.beyond(outer, epsilon) == Some(Kind::Hyperbolic)
+        self.has_real_unstable_mode(outer, epsilon) || self.beyond(outer, epsilon) == Some(Kind::Hyperbolic)
     }
 }
 

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
-use crate::system::analysis::exponent;
+use crate::system::rate::exponent;
 
 /// A stretch of outer steps that grow.
 #[derive(Clone, Copy, Debug, PartialEq)]

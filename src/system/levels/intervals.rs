@@ -3,8 +3,8 @@
 use super::cell::Cells;
 use super::kernel::{Kernel, Outer};
 use crate::error::{Error, Result};
-use crate::system::analysis::exponent;
 use crate::system::measured::Holds;
+use crate::system::rate::exponent;
 use crate::system::stretches::{Stretch, cover, merged};
 use crate::verdict::Kind;
 

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
 use crate::parallel::both;
-use crate::system::inertia::is_definite;
+use crate::system::inertia::{is_definite, spectral_norm};
 use crate::system::limits::SIDE_BY_SIDE;
 use crate::system::measured::Removed;
 use crate::system::norm;
@@ -25,9 +25,10 @@ pub struct Kernel {
     /// S'.
     pub(super) slow: Mat<f64>,
     pub(super) slow_error: f64,
-    /// Upper bounds of ‖F‖₂ and, once it is asked for, ‖S‖₂.
+    /// Upper bounds of ‖F‖₂ and, once it is asked for, ‖S‖₂: of what these are known relative to.
     fast_norm: f64,
     slow_norm: OnceLock<f64>,
+    slow_size: f64,
     /// Whether F + S is proven positive definite, once it is asked for.
     is_total_definite: OnceLock<bool>,
     /// The modes as columns in the mass-weighted coordinates given, rounded.
@@ -120,6 +121,7 @@ impl Kernel {
         let rounding = 2.2 * (m as f64 + 4.0) * U * norm::frobenius(&vectors).powi(2) * size;
         let slow_error = hessians.errors[1] + rounding + 2.1 * defect * size;
         let fast_norm = values.iter().fold(0.0, |a: f64, x| a.max(x.abs())) + fast_error;
+        let [fast_size, slow_size] = hessians.sizes;
         let modes = match &hessians.basis {
             Some(basis) => basis * &vectors,
             None => vectors,
@@ -129,17 +131,20 @@ impl Kernel {
             fast_error,
             slow: turned,
             slow_error,
-            fast_norm,
+            fast_norm: fast_norm.max(fast_size),
             slow_norm: OnceLock::new(),
+            slow_size,
             is_total_definite: OnceLock::new(),
             modes,
             removed: hessians.removed.clone(),
         })
     }
 
-    /// Upper bounds of the 2-norms of both stiffnesses.
+    /// Upper bounds of the 2-norms of both stiffnesses, of sums of potentials that share a clock those of the sums of their norms: what all are
+    /// known relative to.
     pub fn norms(&self) -> [f64; 2] {
-        [self.fast_norm, *self.slow_norm.get_or_init(|| spectral_norm(&self.slow, self.slow_error))]
+        let slow = || spectral_norm(&self.slow, self.slow_error).max(self.slow_size);
+        [self.fast_norm, *self.slow_norm.get_or_init(slow)]
     }
 
     /// How far (2-norm) Λ and S' are from those of all stiffnesses within ε of their norms.
@@ -204,23 +209,4 @@ impl Kernel {
     pub fn highest_frequency(&self) -> f64 {
         self.values.last().copied().unwrap_or(0.0).max(0.0).sqrt()
     }
-}
-
-/// A proven upper bound of ‖m‖₂ of every symmetric matrix within `slack`, close to it: t I ± m are definite.
-fn spectral_norm(m: &Mat<f64>, slack: f64) -> f64 {
-    let n = m.nrows();
-    let largest = m
-        .self_adjoint_eigenvalues(Side::Lower)
-        .map_or(f64::INFINITY, |values| values.iter().fold(0.0, |a: f64, x| a.max(x.abs())));
-    let mut bound = largest * 1.0001 + 2.0 * slack;
-    let whole = norm::frobenius(m) + slack;
-    while bound < whole {
-        let shifted =
-            |sign: f64| Mat::from_fn(n, n, |i, j| f64::from(u8::from(i == j)) * bound + sign * m[(i, j)]);
-        if is_definite(shifted(1.0), slack) && is_definite(shifted(-1.0), slack) {
-            return bound;
-        }
-        bound *= 1.001;
-    }
-    whole
 }

@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 use crate::number::U;
-use crate::system::inertia::orthogonality;
+use crate::system::inertia::{orthogonality, spectral_norm};
 use crate::system::measured::Removed;
 use crate::system::norm;
 
@@ -16,6 +16,8 @@ pub struct Hessians {
     pub(super) slow: Mat<f64>,
     /// How far (2-norm) these are from the exact restrictions of the matrices given.
     pub(super) errors: [f64; 2],
+    /// No less than what each is known relative to: its norm, or the sum of those of potentials that share its clock; 0 where that is its norm.
+    pub(super) sizes: [f64; 2],
     /// The coordinates kept, as orthonormal columns in those given; `None`: all.
     pub(super) basis: Option<Mat<f64>>,
     pub(super) removed: Option<Removed>,
@@ -30,7 +32,14 @@ impl Hessians {
     pub fn new(fast: &DMatrix<f64>, slow: &DMatrix<f64>, accuracy: f64) -> Result<Hessians> {
         let n = fast.nrows();
         let [fast, slow] = [("fast", fast), ("slow", slow)].map(|(name, k)| symmetric(name, k, n, accuracy));
-        Ok(Hessians { fast: fast?, slow: slow?, errors: [0.0; 2], basis: None, removed: None })
+        Ok(Hessians {
+            fast: fast?,
+            slow: slow?,
+            errors: [0.0; 2],
+            sizes: [0.0; 2],
+            basis: None,
+            removed: None,
+        })
     }
 
     /// From stiffnesses K and the mass of each degree of freedom.
@@ -88,7 +97,25 @@ impl Hessians {
         let removed = Removed { count: r, found_by, fast: off(&self.fast), slow: off(&self.slow) };
         let ((fast, e), (slow, f)) = (project(&self.fast), project(&self.slow));
         let errors = [self.errors[0] + e, self.errors[1] + f];
-        Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed) }
+        Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed), ..self }
+    }
+
+    /// The same where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though
+    /// they may cancel.
+    #[must_use]
+    pub fn of_shares(mut self, level: usize, shares: &[DMatrix<f64>]) -> Hessians {
+        let size = |k: &DMatrix<f64>| {
+            let whole = halved(MatRef::from_column_major_slice(k.as_slice(), k.nrows(), k.ncols()));
+            let kept = match &self.basis {
+                Some(basis) => halved((basis.transpose() * &whole * basis).as_ref()),
+                None => whole,
+            };
+            // The roundings of two products, and of the basis.
+            let slack = 8.0 * (k.nrows() as f64 + 4.0) * U * norm::frobenius(&kept);
+            spectral_norm(&kept, slack)
+        };
+        self.sizes[level] = 1.01 * shares.iter().map(size).sum::<f64>();
+        self
     }
 
     /// The same without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most

@@ -62,7 +62,7 @@ pub struct PiPotential {
 /// let system = PiSystem::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), vec![potential])?;
 /// let analysis = system.decide(Route::Cheapest, &Limits::default())?;
 /// // h² (π² + 7/5) = 4.06 > 4.
-/// assert!(analysis.is_proof() && analysis.kind == Kind::Hyperbolic);
+/// assert!(analysis.is_proof() && analysis.kind.unwrap() == Kind::Hyperbolic);
 /// # Ok::<(), kickdrift::error::Error>(())
 /// ```
 #[derive(Clone, Debug)]

@@ -1,0 +1,41 @@
+//! A verdict and its growth rate in words.
+
+use crate::number::rational::from_f64_exact;
+use crate::report::decimal;
+use crate::system::Analysis;
+
+/// Whether it is stable, where that is decided.
+pub(super) fn stable(analysis: &Analysis) -> Option<bool> {
+    analysis.is_proof().then(|| analysis.is_stable())
+}
+
+/// Digits of a growth rate in words.
+const DIGITS: u32 = 8;
+
+/// A growth rate in words.
+pub(super) fn rate(own: Option<(f64, f64)>) -> String {
+    match own {
+        Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, DIGITS).to_string(),
+        Some((_, hi)) if hi == 0.0 => "0".into(),
+        Some((_, hi)) if hi.is_finite() => {
+            let hi = from_f64_exact(hi).expect("a finite double");
+            format!("at most {}", decimal::outward(&hi, &hi, 2)[1])
+        }
+        _ => "not enclosed".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_small_growth_rate_is_written_in_digits_that_it_has() {
+        assert_eq!(rate(Some((3.162_277_6e-8, 3.162_277_7e-8))), "3.16227765(5)e-8");
+        assert_eq!(rate(Some((0.0, 1.04e-9))), "at most 1.1e-9");
+        assert_eq!(
+            [rate(Some((0.0, 0.0))), rate(Some((0.0, f64::INFINITY))), rate(None)],
+            ["0", "not enclosed", "not enclosed"]
+        );
+    }
+}
