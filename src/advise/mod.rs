@@ -51,10 +51,8 @@ mod question;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
-pub(crate) use answer::{MOST_INTERVALS, reach};
 pub use caution::{Caution, PUBLISHED};
 pub use constraint::Constraints;
-pub(crate) use interval::Intervals;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
 pub use mode::{Mode, Origin};

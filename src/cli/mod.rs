@@ -86,7 +86,7 @@ enum Command {
     Explore(explore::Args),
     /// Reads a scene file and computes the products that it wants.
     Run(run::Args),
-    /// Rechecks every row of a JSON document that kickdrift wrote, by another route.
+    /// Computes a JSON document that kickdrift wrote again, value by value, and rechecks it by another route.
     Verify(verify::Args),
     /// How to cite kickdrift, and the paper whose method it decides: BibTeX, or CITATION.cff.
     Cite(cite::Args),

@@ -61,7 +61,9 @@ impl Args {
             let (decision, growth) = (answer.decision(), answer.growth()?.clone());
             let exact_trace = Answer::exact_trace(&clocks, self.exact);
             let friction = self.friction.as_ref().map(|rate| damped_pair(oscillator, rate)).transpose()?;
-            Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction }.document())
+            let answer = Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction };
+            let document = answer.document();
+            Ok(if self.exact { document.input("exact", "true") } else { document })
         });
         let document = document.transpose()?;
         if let Some(path) = &self.certificate {

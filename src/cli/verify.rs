@@ -1,4 +1,4 @@
-//! `kickdrift verify`: a document rechecked by another route than the one that made it.
+//! `kickdrift verify`: a document computed again, and rechecked by another route than the one that made it.
 
 use std::path::{Path, PathBuf};
 
@@ -72,8 +72,8 @@ fn document(outcome: &Outcome, file: &str, name: &str) -> Document {
     let Outcome { rows, route, sample, not_rechecked, .. } = outcome;
     let mut lines = vec![
         format!("{rows} of {rows} rows hold"),
-        format!("  document     {name}"),
-        format!("  route        {route}"),
+        format!("  document     {name}, every value computed again from its input"),
+        format!("  other route  {route}"),
     ];
     lines.extend(sample.map(|(drawn, of)| format!("  sample       {drawn} of {of}")));
     lines.extend(not_rechecked.iter().map(|field| format!("  not rechecked: {field}")));

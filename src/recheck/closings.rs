@@ -2,14 +2,19 @@
 //! rational, both entries vanish there. How many there are is counted for the mirror ratio q/p, whose tongues close at
 //! 1/ρ: by another resultant.
 
+use serde_json::Value;
+
+use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
 use super::written::{Decimal, Range, Written, exact, nullable, ratios};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, Sign};
+use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::tongue::{COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
+use crate::report::closings as report;
+use crate::tongue::{self, COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
 use crate::verdict::{Limits, decide, growth};
 use num_traits::Signed;
 
@@ -24,13 +29,13 @@ rows! {
         ratios: Vec<Searched>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         ratio: Option<Written<Ratio>>,
         max_sum: Option<Written<u64>>,
         m: Option<Written<Vec<(u64, u64)>>>,
         rho_range: Written<Range>,
-        #[serde(rename = "samples")]
-        _samples: Written<u64>,
+        samples: Written<u64>,
         digits: Written<u64>,
     }
 
@@ -64,20 +69,48 @@ impl Place for Closing {
     }
 }
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
+/// The most samples of a search, and the most digits of a box.
+const MOST_SAMPLES: u64 = 1_000_000;
+const MOST_DIGITS: u64 = 28;
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "closings";
+    type Found = ();
+
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        let Input { m, samples, digits, .. } = &self.input;
+        let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref()).map_err(Fault::refused)?;
+        for (field, told, most) in [("samples", samples.0, MOST_SAMPLES), ("digits", digits.0, MOST_DIGITS)] {
+            if !(1..=most).contains(&told) {
+                return Err(Error::input(field, told, format!("is not in 1..{most}")));
+            }
+        }
+        let rho = self.input.range().map_err(Fault::refused)?;
+        let search = Search { m: None, rho, samples: samples.0 as usize };
+        let found = try_map(&list, |ratio| {
+            check_ratio(ratio.p(), ratio.q(), context.limits()).map_err(Fault::refused)?;
+            match m {
+                None => tongue::closings(*ratio, &search),
+                Some(labels) => closings_of(*ratio, labels, &search),
+            }
+        })?;
+        Ok((report::document(&found, digits.0 as u32, "", true).value(), ()))
+    }
+
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
         let whole = self.complete(context.limits());
         let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, |row| {
             row.holds(&self.input, context.limits())
         })?;
-        outcome.not_rechecked.push("samples: they say how the search was made, and nothing of what it found");
         if self.ratios.iter().any(|ratio| !ratio.complete) {
             let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
-            outcome.not_rechecked.push(remark);
+            outcome.not_rechecked.push(remark.into());
         }
         Ok(outcome)
     }
+}
 
+impl Claim {
     /// The list of ratios is that of the input, the closings are in their order, each once, and none is missing.
     fn complete(&self, limits: &Limits) -> Checked {
         let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref())?;

@@ -1,5 +1,8 @@
 //! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
 
+use serde_json::Value;
+
+use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period};
 use super::written::{Ends, Range, Written, nullable, ratios};
@@ -8,7 +11,8 @@ use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::resonance::compare::Outcome as Rule;
+use crate::report::compare as report;
+use crate::resonance::compare::{Outcome as Rule, compare_ratios};
 use crate::verdict::{Kind, Tier, Verdict};
 
 const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
@@ -25,6 +29,7 @@ rows! {
         offenders: Vec<Offender>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         tolerance: Written<Rational>,
         lambda1: Option<Written<Laurent>>,
@@ -80,7 +85,7 @@ impl Place for Offender {
 }
 
 /// What is compared, line by line.
-enum Pairs {
+pub enum Pairs {
     Grid(Grid),
     /// All ratios at s = 4 k/(samples + 1).
     Ratios {
@@ -105,9 +110,26 @@ impl Place for Placed<'_> {
     }
 }
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let pairs = self.input.pairs()?;
+impl Recheck for Claim {
+    const TABLE: &'static str = "offenders";
+    type Found = Pairs;
+
+    fn again(&self, context: &Context) -> Result<(Value, Pairs)> {
+        let (pairs, tolerance, limits) = (self.input.pairs()?, &self.input.tolerance, context.limits());
+        let document = match (&pairs, &self.input.max_sum) {
+            (Pairs::Ratios { rho, samples, .. }, Some(max_sum)) => {
+                let all = compare_ratios(**max_sum, rho, *samples, tolerance, limits)?;
+                report::document(&all, tolerance, ["s", "rho"])
+            }
+            (Pairs::Ratios { .. }, None) => unreachable!("ratios are those up to a sum"),
+            (Pairs::Grid(grid), _) => {
+                report::document(&grid.compare(tolerance, limits)?, tolerance, ["h1", "h2"])
+            }
+        };
+        Ok((document.value(), pairs))
+    }
+
+    fn check(&self, pairs: Pairs, context: &Context) -> Result<Outcome> {
         let all: Vec<usize> = (0..pairs.lines()).collect();
         let lines = try_map(&all, |&line| self.line(&pairs, line, context))?;
         let mut places = lines.iter().flat_map(|(.., places)| places.iter().copied());
@@ -117,7 +139,9 @@ impl Claim {
         let whole = whole.and_then(|()| self.counts(&pairs, &lines));
         context.outcome(ROUTE, ("the counts", whole), &rows, |row| self.offender(&pairs, row, context))
     }
+}
 
+impl Claim {
     /// Line by line: unstable pairs, the rule's outcomes, offenders.
     fn line(&self, pairs: &Pairs, line: usize, context: &Context) -> Result<Line> {
         let (mut unstable, mut counts, mut offenders) = (0, Counts::default(), Vec::new());

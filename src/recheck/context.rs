@@ -29,14 +29,14 @@ pub type See<'a> = &'a (dyn Fn(u64, u64) + Sync);
 pub struct Outcome {
     /// The rows of the document; one where it has none.
     pub rows: u64,
-    /// In words, how they were rechecked.
+    /// In words, the other route.
     pub route: &'static str,
     /// Where the slower route took a sample: so many, of so many.
     pub sample: Option<(u64, u64)>,
     /// What does not hold, in the order of the rows; last what concerns the whole document.
     pub failures: Vec<Failure>,
     /// The fields that were not rechecked, each with the reason.
-    pub not_rechecked: Vec<&'static str>,
+    pub not_rechecked: Vec<String>,
 }
 
 /// A row that does not hold.
@@ -59,6 +59,16 @@ pub enum Fault {
 impl From<Error> for Fault {
     fn from(error: Error) -> Self {
         Fault::Error(error)
+    }
+}
+
+impl Fault {
+    /// What is wrong with an input.
+    pub fn refused(self) -> Error {
+        match self {
+            Fault::Wrong(why) => Error::input("input", "given", why),
+            Fault::Error(error) => error,
+        }
     }
 }
 

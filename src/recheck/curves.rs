@@ -3,11 +3,15 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use serde_json::Value;
+
+use super::again::{Left, Recheck};
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::written::{Range, Written};
 use crate::error::Result;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
-use crate::resonance::Angle;
+use crate::report::curves as report;
+use crate::resonance::{self, Angle, Families};
 
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which samples lie \
                      in the window, in doubles";
@@ -19,6 +23,7 @@ rows! {
         curves: Vec<Curve>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         lambda1: Written<Laurent>,
         #[serde(rename = "step1")]
@@ -59,20 +64,32 @@ const MOST: i128 = 20_000_000;
 /// Doubles of the samples are right to some units in the last place; a point this near the border may lie on either side.
 const NEAR: f64 = 1e-9;
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let window = Window::new(&self.input);
-        let whole = self.complete(&window);
-        let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.curves, |curve| {
-            window.samples(curve)?;
-            curve.points.iter().try_for_each(|point| point.holds(curve, &self.input.lambda1))
-        })?;
-        outcome
-            .not_rechecked
-            .extend(self.input._step1.as_ref().map(|_| "step1, step2: curves do not depend on them"));
-        Ok(outcome)
+impl Recheck for Claim {
+    const TABLE: &'static str = "curves";
+    const LEFT: &'static [Left] = &[
+        ("input.step1", "curves do not depend on the spacing of a grid"),
+        ("input.step2", "curves do not depend on the spacing of a grid"),
+    ];
+    type Found = ();
+
+    fn again(&self, _: &Context) -> Result<(Value, ())> {
+        let Input { lambda1, h1_range, h2_range, a, b, samples, .. } = &self.input;
+        let families = Families { a: a.0, b: b.0, samples: usize::try_from(samples.0).unwrap_or(usize::MAX) };
+        let curves = families.curves(lambda1, &resonance::Window::new(h1_range, h2_range))?;
+        Ok((report::document(&curves).value(), ()))
     }
 
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+        let window = Window::new(&self.input);
+        let whole = self.complete(&window);
+        context.outcome(ROUTE, ("the list", whole), &self.curves, |curve| {
+            window.samples(curve)?;
+            curve.points.iter().try_for_each(|point| point.holds(curve, &self.input.lambda1))
+        })
+    }
+}
+
+impl Claim {
     /// All curves with a sample in the window are there, by a, then b.
     fn complete(&self, window: &Window) -> Checked {
         let ((a0, a1), (b0, b1), samples) = (*self.input.a, *self.input.b, *self.input.samples);

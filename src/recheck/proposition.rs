@@ -1,8 +1,13 @@
 //! The Proposition's witnesses, in integers: no analysis.
 
+use serde_json::Value;
+
+use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::written::Written;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::report::proposition as report;
+use crate::resonance::proposition;
 use num_integer::Integer;
 
 const ROUTE: &str =
@@ -22,6 +27,7 @@ rows! {
         witnesses: Vec<Witness>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         max: Written<u64>,
     }
@@ -42,14 +48,28 @@ impl Place for Witness {
     }
 }
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
+impl Recheck for Claim {
+    const TABLE: &'static str = "witnesses";
+    type Found = ();
+
+    fn again(&self, _: &Context) -> Result<(Value, ())> {
+        let max = *self.input.max;
+        if !(1..=MOST).contains(&max) {
+            return Err(Error::input("input.max", max, format!("is not in 1..{MOST}")));
+        }
+        let mut witnesses = Vec::new();
+        let check = proposition::check(max, |witness| witnesses.push(*witness));
+        Ok((report::document(max, &check, &witnesses).value(), ()))
+    }
+
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
         let max = *self.input.max;
         context.outcome(ROUTE, (&format!("max = {max}"), self.whole(max)), &self.witnesses, Witness::holds)
     }
+}
 
+impl Claim {
     fn whole(&self, max: u64) -> Checked {
-        holds((1..=MOST).contains(&max), || format!("max is not in 1..{MOST}"))?;
         let sound = self.holds && self.failures.is_empty();
         holds(sound, || "every point has its witness: it holds".into())?;
         let ratios = || (1..=max).flat_map(|p| (1..=max).filter(move |q| p.gcd(q) == 1).map(move |q| (p, q)));

@@ -1,21 +1,25 @@
 //! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by exact signs.
 
 use num_traits::Zero;
-use serde::de::IgnoredAny;
+use serde_json::Value;
 
-use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
+use super::again::Recheck;
+use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::sample::sample;
 use super::tongues::{Input as Question, Tongue};
 use super::written::{Ends, Written, ratios};
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational, rational};
+use crate::report::survey as report;
 use crate::resonance::dominant_family;
-use crate::tongue::{Entry, Spread, Survey, Tongues, survey};
+use crate::tongue::{Entry, Tongues, survey};
 use crate::verdict::Limits;
 
-const ROUTE: &str = "thin tongues, and a random sample of the others, by exact signs about both edges; the counts by the \
-                     survey's own certified route again";
+const ROUTE: &str = "thin tongues, and a random sample of the others, by exact signs about both edges";
+
+/// The most thin tongues that a survey lists.
+const MOST_THIN: usize = 100_000;
 
 /// Ratios of which one tongue each is rechecked by exact signs.
 const SAMPLE: u64 = 200;
@@ -24,43 +28,14 @@ rows! {
     /// `kickdrift/survey/1`.
     pub struct Claim {
         input: Input,
-        ratios: u64,
-        tongues: u64,
-        open: u64,
-        closed: Vec<Label>,
-        #[serde(rename = "edges")]
-        _edges: IgnoredAny,
-        predicted: Predicted,
-        width_ratios: Vec<Widths>,
         thinnest: Vec<Thin>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         max_sum: Written<u64>,
         rho: Written<Rational>,
-    }
-
-    struct Label {
-        p: u64,
-        q: u64,
-        m: u64,
-    }
-
-    struct Predicted {
-        points: u64,
-        outside: u64,
-        on_edge: u64,
-        inside: u64,
-    }
-
-    struct Widths {
-        abs_a: u64,
-        count: u64,
-        least: f64,
-        lower_quartile: f64,
-        median: f64,
-        upper_quartile: f64,
-        largest: f64,
+        thinnest: Written<u64>,
     }
 
     struct Thin {
@@ -80,17 +55,24 @@ impl Place for Thin {
     }
 }
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let rho = &self.input.rho.0;
-        let list = ratios(None, Some(&self.input.max_sum)).map_err(|fault| match fault {
-            Fault::Wrong(why) => Error::input("max_sum", self.input.max_sum.0, why),
-            Fault::Error(error) => error,
+impl Recheck for Claim {
+    const TABLE: &'static str = "thinnest";
+    type Found = Vec<Ratio>;
+
+    fn again(&self, _: &Context) -> Result<(Value, Vec<Ratio>)> {
+        let Input { max_sum, rho, thinnest } = &self.input;
+        let list = ratios(None, Some(max_sum)).map_err(Fault::refused)?;
+        let thinnest = usize::try_from(thinnest.0).ok().filter(|&count| count <= MOST_THIN);
+        let thinnest = thinnest.ok_or_else(|| {
+            Error::input("input.thinnest", self.input.thinnest.0, format!("at most {MOST_THIN} are listed"))
         })?;
-        let whole = survey(*self.input.max_sum, rho, self.thinnest.len()).map_err(Fault::Error);
-        let whole = whole.and_then(|survey| self.holds(&survey));
-        let mut outcome = context
-            .outcome(ROUTE, ("the counts", whole), &self.thinnest, |row| row.holds(rho, context.limits()))?;
+        Ok((report::document(&survey(**max_sum, rho, thinnest)?).value(), list))
+    }
+
+    fn check(&self, list: Vec<Ratio>, context: &Context) -> Result<Outcome> {
+        let rho = &self.input.rho.0;
+        let holds = |row: &Thin| row.holds(rho, context.limits());
+        let mut outcome = context.outcome(ROUTE, ("", Ok(())), &self.thinnest, holds)?;
         // One tongue each of a sample of ratios, with all that the survey counts of it.
         let most = if context.options.all { list.len() as u64 } else { SAMPLE };
         let name = format!("{} {rho}", self.input.max_sum.0);
@@ -101,50 +83,7 @@ impl Claim {
             .failures
             .extend(failures.into_iter().map(|failure| super::context::Failure { row: 0, ..failure }));
         outcome.sample = Some((drawn.len() as u64, list.len() as u64));
-        outcome.not_rechecked.push("edges: how many needed more bits depends on the version of the program");
         Ok(outcome)
-    }
-
-    fn holds(&self, survey: &Survey) -> Checked {
-        same("ratios", self.ratios, survey.ratios)?;
-        same("tongues", self.tongues, survey.tongues)?;
-        same("open", self.open, survey.open)?;
-        let closed = self.closed.iter().map(|label| ((label.p, label.q), label.m));
-        holds(closed.eq(survey.closed.iter().map(|(ratio, m)| (ratio.terms(), *m))), || {
-            format!("the closed tongues are {:?}", survey.closed)
-        })?;
-        let Predicted { points, outside, on_edge, inside } = self.predicted;
-        same("the predicted points", points, survey.predicted)?;
-        same("those outside", outside, survey.predicted_outside)?;
-        same("those on an edge", on_edge, survey.predicted_on_edge)?;
-        same("those inside", inside, survey.predicted_inside)?;
-        let rows = survey.width_ratios.len() == self.width_ratios.len();
-        let spreads = || survey.width_ratios.iter().zip(&self.width_ratios);
-        let wrong = spreads().find(|(truth, told)| !told.holds(truth)).map(|(truth, _)| truth.abs_a);
-        holds(rows && wrong.is_none(), || {
-            format!("the quotients of widths at |a| = {wrong:?} are not these")
-        })?;
-        for (i, (told, truth)) in self.thinnest.iter().zip(&survey.thinnest).enumerate() {
-            let ties = told.width.lo <= truth.width.1 && truth.width.0 <= told.width.hi;
-            holds(ties, || {
-                format!("row {}: the next thin tongue is {}, m = {}", i + 1, truth.ratio, truth.m)
-            })?;
-        }
-        let label = |thin: &Thin| (thin.p, thin.q, thin.m);
-        let twice = (1..self.thinnest.len())
-            .any(|i| self.thinnest[..i].iter().any(|t| label(t) == label(&self.thinnest[i])));
-        holds(!twice, || "a thin tongue stands there twice".into())?;
-        same("the number of thin tongues", self.thinnest.len(), survey.thinnest.len())
-    }
-}
-
-impl Widths {
-    fn holds(&self, truth: &Spread) -> bool {
-        let told = [self.least, self.lower_quartile, self.median, self.upper_quartile, self.largest];
-        let truths = [truth.least, truth.lower_quartile, truth.median, truth.upper_quartile, truth.largest];
-        // Widths are sure to a thousandth.
-        let near = told.iter().zip(truths).all(|(x, y)| (x - y).abs() <= 1e-3 * y.abs());
-        (self.abs_a, self.count) == (truth.abs_a, truth.count) && near
     }
 }
 

@@ -1,15 +1,19 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
-use serde::de::IgnoredAny;
+use serde_json::Value;
 
-use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
+use super::again::Recheck;
+use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
-use super::written::{Ends, Written, nullable};
+use super::written::{Ends, Written, nullable, positive};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
+use crate::report::verdict::Answer;
 use crate::resonance::dominant_family;
-use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace, growth};
+#[cfg(feature = "system")]
+use crate::system::friction::damped_pair;
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth};
 
 const ROUTE: &str =
     "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
@@ -28,16 +32,16 @@ rows! {
         #[serde(deserialize_with = "nullable")]
         resonance: Option<Resonance>,
         decided_by: Written<Tier>,
-        friction: Option<IgnoredAny>,
     }
 
+    #[serde(deny_unknown_fields)]
     struct Input {
         lambda1: Written<Laurent>,
         lambda2: Written<Laurent>,
         h1: Written<Laurent>,
         h2: Written<Laurent>,
-        #[serde(rename = "friction")]
-        _friction: Option<Written<Rational>>,
+        exact: Option<Written<bool>>,
+        friction: Option<Written<Rational>>,
     }
 
     struct Trace {
@@ -71,27 +75,47 @@ struct Truth {
 
 const BITS: u32 = 192;
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
+impl Recheck for Claim {
+    const TABLE: &'static str = "";
+    type Found = Oscillator;
+
+    fn again(&self, context: &Context) -> Result<(Value, Oscillator)> {
+        let Input { lambda1, lambda2, h1, h2, exact, friction } = &self.input;
+        let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())?;
+        let friction = positive("input.friction", friction.as_ref())?;
+        let first = if exact.is_some() { Tier::Exact } else { Tier::Filter };
+        let clocks = oscillator.clocks();
+        let answer = decide_from(first, &clocks, context.limits())?;
+        let again = Answer {
+            oscillator: oscillator.clone(),
+            decision: answer.decision(),
+            growth: answer.growth()?.clone(),
+            exact_trace: Answer::exact_trace(&clocks, exact.is_some()),
+            #[cfg(feature = "system")]
+            friction: friction.map(|rate| damped_pair(&oscillator, rate)).transpose()?,
+        };
+        Ok((again.document().value(), oscillator))
+    }
+
+    fn check(&self, oscillator: Oscillator, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, |row| row.holds(context.limits()))?;
-        outcome.not_rechecked.push("decided_by: the tier depends on the version of the program");
-        if self.friction.is_some() {
-            outcome.not_rechecked.push("friction: its spectral radius and the masking friction");
+        let holds = |row: &Claim| row.holds(&oscillator, context.limits());
+        let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
+        if self.input.friction.is_some() {
+            outcome.not_rechecked.push("friction by another route: computed again only".into());
         }
         Ok(outcome)
     }
+}
 
-    fn holds(&self, limits: &Limits) -> Checked {
-        let Input { lambda1, lambda2, h1, h2, .. } = &self.input;
-        let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())
-            .map_err(|error| Fault::Wrong(error.to_string()))?;
+impl Claim {
+    fn holds(&self, oscillator: &Oscillator, limits: &Limits) -> Checked {
         let clocks = oscillator.clocks();
         let ratio = (self.p, self.q);
         holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
         let truth = self.truth(&clocks, limits)?;
         self.against(&truth)?;
-        self.numbers(&oscillator, &truth)?;
+        self.numbers(oscillator, &truth)?;
         self.label(&clocks, limits)
     }
 

@@ -102,6 +102,17 @@ fn labels(text: &str) -> Result<Vec<(u64, u64)>> {
     text.split(',').map(run).collect()
 }
 
+/// A rate or a length that an input may have.
+///
+/// # Errors
+/// One that is not positive.
+pub fn positive<'a>(field: &str, given: Option<&'a Written<Rational>>) -> Result<Option<&'a Rational>> {
+    match given.map(|given| &given.0) {
+        Some(value) if *value <= Rational::default() => Err(Error::input(field, value, "must be positive")),
+        value => Ok(value),
+    }
+}
+
 /// A column that a document may have or not, and in which a row may have a value or null.
 #[derive(Clone, Debug, Default)]
 pub enum Column<T> {

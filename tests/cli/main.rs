@@ -9,5 +9,6 @@ mod manners;
 mod refusals;
 mod scenes;
 mod support;
+mod tamper;
 mod tongues;
 mod verify;

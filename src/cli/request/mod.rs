@@ -98,7 +98,8 @@ impl Request {
                 if *thinnest > MOST_THIN {
                     return Err(Error::input("thinnest", thinnest, format!("choose at most {MOST_THIN}")));
                 }
-                Ok(survey::document(&tongue::survey(*max_sum, rho, *thinnest)?))
+                let document = survey::document(&tongue::survey(*max_sum, rho, *thinnest)?);
+                Ok(document.input("thinnest", thinnest))
             }
         }
     }

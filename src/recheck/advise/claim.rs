@@ -1,15 +1,17 @@
 //! The rows of the document `kickdrift/advise/1`, and what concerns it as a whole.
 
-use num_traits::{One, Zero};
-use serde_json::{Value, json};
+use num_traits::One;
+use serde_json::Value;
 
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
-use crate::advise::{Caution, PUBLISHED, Scheme};
-use crate::error::Result;
+use crate::advise::{self, Origin, Question, Scheme};
+use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
-use crate::number::{Ball, Laurent, Rational, Real, Sign};
-use crate::recheck::context::{Checked, Context, Outcome, Place, holds, same};
-use crate::recheck::written::{Ends, Written, nullable};
+use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
+use crate::recheck::again::{Left, Recheck};
+use crate::recheck::context::{Checked, Context, Outcome, Place, holds};
+use crate::recheck::written::{Ends, Notation, Written, nullable, positive};
+use crate::report::advise as report;
 use crate::verdict::Kind;
 
 const ROUTE: &str =
@@ -24,30 +26,28 @@ rows! {
         pub rows: Vec<Row>,
         pub intervals: Vec<Interval>,
         pub pairs: Vec<Pair>,
-        pub published: Vec<Value>,
-        pub engine: Option<Value>,
-        pub unknown: Vec<String>,
     }
 
+    #[serde(deny_unknown_fields)]
     pub struct Input {
         pub band: Written<Rational>,
         pub modes: Vec<Mode>,
         pub schemes: Vec<Vec<Written<Rational>>>,
         pub length: Option<Written<Rational>>,
         pub friction: Option<Written<Rational>>,
-        pub constrained: Option<Vec<Value>>,
+        pub constrained: Option<Vec<Mode>>,
     }
 
     pub struct Mode {
         pub name: String,
-        pub from: String,
-        pub clock: u64,
+        pub from: Written<Origin>,
+        #[serde(deserialize_with = "nullable")]
+        pub clock: Option<u64>,
         pub stiffness: Written<Laurent>,
     }
 
     pub struct ModeRow {
         pub name: String,
-        pub from: String,
         pub clock: u64,
         pub stiffness: Written<Laurent>,
         pub period: Ends,
@@ -139,21 +139,73 @@ impl Place for Row {
     }
 }
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let mut outcome =
-            context.outcome(ROUTE, ("the schemes", self.whole()), &self.rows, |row| self.row(row))?;
-        outcome.not_rechecked.extend([
-            "that no other unstable interval lies nearer to a scheme than those of below and above",
-            "unknown: words",
-            "before: the masses are not part of the document; held to be shorter",
-        ]);
-        if self.engine.is_some() {
-            outcome.not_rechecked.push("engine: its text is not part of the document");
+impl Notation for Origin {
+    fn read(text: &str) -> Result<Origin> {
+        let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
+        let found = all.into_iter().find(|origin| origin.name() == text);
+        found.ok_or_else(|| {
+            Error::input("from", text, format!("is none of {}", all.map(Origin::name).join(", ")))
+        })
+    }
+}
+
+impl Mode {
+    fn asked(&self) -> Result<advise::Mode> {
+        if self.stiffness.sign() != Sign::Positive {
+            return Err(Error::input("stiffness", &self.stiffness.0, "a mode vibrates: it must be positive"));
         }
-        Ok(outcome)
+        let clock = self.clock.map(|clock| {
+            let place = clock.checked_sub(1).and_then(|place| usize::try_from(place).ok());
+            place.ok_or_else(|| Error::input("clock", clock, "clocks are counted from 1"))
+        });
+        Ok(advise::Mode {
+            name: self.name.clone(),
+            origin: self.from.0,
+            stiffness: self.stiffness.0.clone(),
+            clock: clock.transpose()?,
+            is_bond_with_hydrogen: None,
+            before: None,
+        })
+    }
+}
+
+impl Input {
+    fn question(&self) -> Result<Question> {
+        let asked = |modes: &[Mode]| modes.iter().map(Mode::asked).collect::<Result<Vec<_>>>();
+        let scheme =
+            |own: &Vec<Written<Rational>>| Scheme::new(own.iter().map(|step| step.0.clone()).collect());
+        let schemes = self.schemes.iter().map(scheme).collect::<Result<_>>()?;
+        let held = asked(self.constrained.as_deref().unwrap_or_default())?;
+        let mut question = Question::new(asked(&self.modes)?, schemes, self.band.0.clone())?.holding(held);
+        if let Some(length) = positive("input.length", self.length.as_ref())? {
+            question = question.of_length(length.clone());
+        }
+        match positive("input.friction", self.friction.as_ref())? {
+            Some(rate) => question.with_friction(rate.clone()),
+            None => Ok(question),
+        }
+    }
+}
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "rows";
+    const LEFT: &'static [Left] = &[
+        ("modes.*.before", "the masses are not part of the document"),
+        ("engine", "the text that it was read from is not part of the document"),
+        ("input.constrained", "bonds that are held take no part in the answer"),
+    ];
+    type Found = ();
+
+    fn again(&self, _: &Context) -> Result<(Value, ())> {
+        Ok((report::document(&self.input.question()?.answer()?, None, true).value(), ()))
     }
 
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+        context.outcome(ROUTE, ("the schemes", self.whole()), &self.rows, |row| self.row(row))
+    }
+}
+
+impl Claim {
     /// The stiffest mode on each clock, or this one on its own.
     pub fn mass(&self, scheme: usize, mode: Option<&Mode>) -> Checked<Mass> {
         let steps: Vec<Rational> = match self.input.schemes.get(scheme) {
@@ -164,8 +216,8 @@ impl Claim {
             }
         };
         let of = |clock: usize| {
-            let own = mode.filter(|mode| mode.clock == clock as u64 + 1);
-            let on = self.input.modes.iter().filter(move |mode| mode.clock == clock as u64 + 1);
+            let own = mode.filter(|mode| mode.clock == Some(clock as u64 + 1));
+            let on = self.input.modes.iter().filter(move |mode| mode.clock == Some(clock as u64 + 1));
             let stiffest = own.or_else(|| on.max_by(|a, b| a.stiffness.cmp(&b.stiffness)));
             stiffest.map_or_else(Ball::zero, |mode| mode.stiffness.enclosure(BITS))
         };
@@ -185,23 +237,8 @@ impl Claim {
     }
 
     fn whole(&self) -> Checked {
-        let Input { band, modes, schemes, length, .. } = &self.input;
-        holds(band.0 >= Rational::zero() && band.0 < Rational::one(), || {
-            format!("the band {} is none", band.0)
-        })?;
-        holds(!self.unknown.is_empty(), || "something is always unknown".into())?;
-        same("the number of modes", self.modes.len(), modes.len())?;
-        same("the number of schemes", self.schemes.len(), schemes.len())?;
-        for steps in schemes {
-            Scheme::new(steps.iter().map(|step| step.0.clone()).collect())?;
-        }
-        for (row, mode) in self.modes.iter().zip(modes) {
-            let told = (&row.name, &row.from, row.clock, &row.stiffness.0);
-            holds(told == (&mode.name, &mode.from, mode.clock, &mode.stiffness.0), || {
-                format!("mode {} is not the input's", row.name)
-            })?;
-            row.holds()?;
-        }
+        let length = &self.input.length;
+        self.modes.iter().try_for_each(ModeRow::holds)?;
         for (n, scheme) in self.schemes.iter().enumerate() {
             self.scheme(n, scheme)?;
             let grows = self.of(n).any(|row| row.tenfold_steps.is_some());
@@ -210,10 +247,8 @@ impl Claim {
             let truth = length.as_ref().filter(|_| grows).map(|length| time <= to_f64(length));
             holds(scheme.within_run == truth, || "within_run is not what growth in the run says".into())?;
         }
-        self.whole_lists()?;
         self.pairs.iter().try_for_each(|pair| self.pair(pair))?;
-        self.intervals.iter().try_for_each(|interval| self.interval(interval))?;
-        self.published()
+        self.intervals.iter().try_for_each(|interval| self.interval(interval))
     }
 
     pub fn of(&self, scheme: usize) -> impl Iterator<Item = &Row> {
@@ -276,37 +311,6 @@ impl Claim {
         holds((sum / (2.0 * std::f64::consts::PI) - 1.0).abs() < 2e-3, || {
             format!("{} and {} do not meet there", pair.first, pair.second)
         })
-    }
-
-    fn published(&self) -> Checked {
-        let fastest = self.fastest()?;
-        let one = |of: &Caution| {
-            let limit = match of.parts {
-                3 => fastest.third,
-                4 => fastest.quarter,
-                5 => fastest.fifth,
-                _ => fastest.tenth,
-            };
-            json!({"mode": fastest.name, "parts": of.parts, "step": if of.inner { "inner" } else { "outer" },
-                "limit": {"lo": limit.lo, "hi": limit.hi}, "statement": of.statement, "source": of.source})
-        };
-        let all: Vec<Value> = PUBLISHED.iter().map(one).collect();
-        let told = same_json(&json!(self.published), &json!(all));
-        holds(told, || "a published limit is not that part of the fastest period".into())
-    }
-}
-
-/// Numbers by their value: 1 and 1.0 are the same.
-fn same_json(a: &Value, b: &Value) -> bool {
-    match (a, b) {
-        (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
-        (Value::Array(a), Value::Array(b)) => {
-            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| same_json(a, b))
-        }
-        (Value::Object(a), Value::Object(b)) => {
-            a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| same_json(a, b)))
-        }
-        _ => a == b,
     }
 }
 

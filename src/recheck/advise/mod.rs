@@ -6,13 +6,11 @@
 //! | file | what |
 //! |---|---|
 //! | `claim` | the rows of the document, and what concerns it as a whole |
-//! | `lists` | that no row, pair or interval is left out |
 //! | `mass` | one mass on its clocks: trace, friction, first region |
 //! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
 
 mod claim;
-mod lists;
 mod mass;
 mod molecule;
 mod row;

@@ -1,14 +1,14 @@
 //! Advice on Hessians: computed again, whole; what it proves, and growth, by another route.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
-use crate::advise::{Finding, Scheme};
-use crate::error::{Error, Result};
+use crate::advise::{Finding, Findings, Scheme};
+use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
-use crate::recheck::system::same_values;
-use crate::recheck::written::Written;
+use crate::recheck::again::{Left, Recheck};
+use crate::recheck::context::{Checked, Context, Outcome, holds};
+use crate::recheck::written::{Written, positive};
 use crate::report::advise::of_molecule;
 use crate::scene::SystemScene;
 use crate::system::levels::{Hessians, Near};
@@ -77,6 +77,7 @@ impl Other {
 }
 
 rows! {
+    #[serde(deny_unknown_fields)]
     struct Input {
         #[serde(rename = "file")]
         _file: String,
@@ -88,47 +89,51 @@ rows! {
     }
 }
 
-/// `kickdrift/advise-system/1`.
-#[derive(Clone, Debug, serde::Deserialize)]
-#[serde(transparent)]
-pub struct Claim(Map<String, Value>);
+rows! {
+    /// `kickdrift/advise-system/1`.
+    pub struct Claim {
+        input: Input,
+    }
+}
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let input = self.0.get("input").cloned().unwrap_or_default();
-        let input: Input = serde_json::from_value(input).map_err(|fault| {
-            Error::input("input", "not what the schema says", format!("{fault}; {REMEDY}"))
-        })?;
-        let scene = SystemScene::from_json_in(&context.options.folder, input.system.clone())?;
+const ROUTE: &str = "the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
+                     period kick by kick";
+
+impl Recheck for Claim {
+    const TABLE: &'static str = "rows";
+    const LEFT: &'static [Left] =
+        &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];
+    type Found = (SystemScene, Findings);
+
+    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
+        let Input { system, band, schemes, length, friction, .. } = &self.input;
+        let scene = SystemScene::from_json_in(&context.options.folder, system.clone())?;
         let steps =
             |own: &Vec<Written<Rational>>| Scheme::new(own.iter().map(|step| step.0.clone()).collect());
-        let schemes = input.schemes.iter().map(steps).collect::<Result<Vec<_>>>()?;
-        let length = input.length.as_ref().map(|length| &length.0);
-        let friction = input.friction.as_ref().map(|friction| &friction.0);
-        let findings = scene.molecule()?.0.advise(&schemes, &input.band, length, friction)?;
-        let mut told = self.0.clone();
-        let engine = told.remove("engine");
-        let again = of_molecule(&findings, None, &[]).value();
-        let mut failures: Vec<_> =
-            context.failure(0, || "the document".into(), same_values(&told, &again))?.into_iter().collect();
-        let mut not_rechecked = vec!["file: a name"];
-        let other = Other::new(&scene, to_f64(&input.band))?;
-        for (n, own) in findings.schemes.iter().enumerate() {
-            if !failures.is_empty() {
-                break;
-            }
+        let schemes = schemes.iter().map(steps).collect::<Result<Vec<_>>>()?;
+        let length = positive("input.length", length.as_ref())?;
+        let friction = positive("input.friction", friction.as_ref())?;
+        let findings = scene.molecule()?.0.advise(&schemes, band, length, friction)?;
+        Ok((of_molecule(&findings, None, &[]).value(), (scene, findings)))
+    }
+
+    fn check(&self, (scene, findings): Self::Found, context: &Context) -> Result<Outcome> {
+        let other = Other::new(&scene, to_f64(&self.input.band))?;
+        let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
+        for (row, own) in (1..).zip(&findings.schemes) {
             let place = || format!("outer step {} fs", own.scheme.outer());
-            failures.extend(context.failure(n as u64 + 1, place, other.row(own))?);
+            failures.extend(context.failure(row, place, other.row(own))?);
         }
         if !findings.schemes.iter().all(|own| other.has_paths(own)) {
-            not_rechecked
-                .push("first, band_edge by the action: too many steps for its matrix, computed again only");
+            let why = "first, band_edge by another route: too many steps for the action's matrix, computed again only";
+            not_rechecked.push(why.into());
         }
-        if engine.is_some() {
-            not_rechecked.push("engine: its text is not part of the document");
-        }
-        let route = "computed again; the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
-                     period kick by kick";
-        Ok(Outcome { rows: 1, route, sample: None, failures, not_rechecked })
+        Ok(Outcome {
+            rows: findings.schemes.len() as u64,
+            route: ROUTE,
+            sample: None,
+            failures,
+            not_rechecked,
+        })
     }
 }

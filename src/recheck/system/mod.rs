@@ -4,39 +4,34 @@
 //! changed afterwards; what would be wrong from the start is looked for by exact arithmetic (the kind) and by the dense full
 //! period in doubles (multipliers, runs of linear systems).
 
-mod again;
 mod dense;
 
-use std::ops::Deref;
+use serde_json::Value;
 
-use serde::de::IgnoredAny;
-use serde_json::{Map, Value};
-
+use super::again::{Left, Recheck};
 use super::context::{Checked, Context, Outcome, REMEDY, same};
 use super::sample::sample;
-use super::written::Written;
+use super::written::{Written, positive};
 use crate::avi::{Ends, Run};
 use crate::error::{Error, Kind as Reason, Result};
 use crate::number::Rational;
+use crate::report::document::Document;
 use crate::report::system::{self as report, SystemMap};
 use crate::scene::{Axis, Displacement, RunRequest, Scan, SystemScene};
 use crate::system::scan::scan;
 use crate::system::{Analysis, Limits, Route};
 use crate::verdict::Kind;
-pub use again::same_values;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
 const POINTS: u64 = 200;
 
-/// Every field is computed again; these are names.
-const NAMES: &str = "file, title: names";
-
 rows! {
+    #[serde(deny_unknown_fields)]
     struct Input {
         #[serde(rename = "file")]
-        _file: IgnoredAny,
+        _file: String,
         #[serde(rename = "title")]
-        _title: IgnoredAny,
+        _title: String,
         system: Value,
         exact: Option<Written<bool>>,
         keep_rigid: Option<Written<bool>>,
@@ -53,24 +48,12 @@ rows! {
     }
 }
 
-/// A document as it stands.
-#[derive(Clone, Debug, serde::Deserialize)]
-#[serde(transparent)]
-pub struct Document(Map<String, Value>);
-
 macro_rules! claims {
     ($($(#[$doc:meta])* $name:ident;)*) => {
         $($(#[$doc])*
         #[derive(Clone, Debug, serde::Deserialize)]
-        #[serde(transparent)]
-        pub struct $name(Document);
-
-        impl Deref for $name {
-            type Target = Document;
-
-            fn deref(&self) -> &Document {
-                &self.0
-            }
+        pub struct $name {
+            input: Input,
         })*
     };
 }
@@ -86,28 +69,17 @@ claims! {
     Simulated;
 }
 
-impl Document {
-    fn input(&self) -> Result<Input> {
-        let input = self.0.get("input").cloned().unwrap_or_default();
-        serde_json::from_value(input).map_err(|fault| {
-            let why = format!("{fault}; {REMEDY}");
-            Error::input("input", "not what the schema says", why)
-        })
-    }
+/// The file is a name.
+const LEFT: &[Left] = &[("input.file", "a name")];
 
-    /// What is found of the whole document: its values against those computed again, then what another route says.
-    fn outcome(
-        &self,
-        context: &Context,
-        route: &'static str,
-        again: &Value,
-        other: Checked,
-    ) -> Result<Outcome> {
-        let checked = same_values(&self.0, again).and(other);
-        let failures = context.failure(0, || "the document".into(), checked)?.into_iter().collect();
-        Ok(Outcome { rows: 1, route, sample: None, failures, not_rechecked: vec![NAMES] })
-    }
+/// What another route says of the whole document.
+fn outcome(context: &Context, route: &'static str, other: Checked) -> Result<Outcome> {
+    let failures = context.failure(0, || "the document".into(), other)?.into_iter().collect();
+    Ok(Outcome { rows: 1, route, sample: None, failures, not_rechecked: Vec::new() })
 }
+
+/// Where there is no other route.
+const ALONE: &str = "none: every value is computed again, by the same route";
 
 impl Input {
     fn scene(&self, context: &Context) -> Result<SystemScene> {
@@ -118,10 +90,15 @@ impl Input {
         if self.keep_rigid.is_some() {
             scene = scene.keeping_rigid()?;
         }
-        if let Some(rate) = &self.friction {
-            scene = scene.with_friction((**rate).clone())?;
+        if let Some(rate) = positive("input.friction", self.friction.as_ref())? {
+            scene = scene.with_friction(rate.clone())?;
         }
         Ok(scene)
+    }
+
+    /// The title is that of the system.
+    fn echo(&self, document: Document, scene: &SystemScene) -> Document {
+        document.input("title", scene.title())
     }
 
     fn route(&self) -> Route {
@@ -138,9 +115,13 @@ fn missing(field: &str) -> Error {
     Error::missing(field, REMEDY)
 }
 
-impl Verdict {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let (input, limits) = (self.input()?, limits(context));
+impl Recheck for Verdict {
+    const TABLE: &'static str = "rows";
+    const LEFT: &'static [Left] = LEFT;
+    type Found = (SystemScene, Analysis);
+
+    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
+        let (input, limits) = (&self.input, limits(context));
         let scene = input.scene(context)?;
         let analysis = scene.decide(input.route(), &limits)?;
         let friction = scene.friction(&limits)?;
@@ -156,24 +137,25 @@ impl Verdict {
         let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
         let (unit, labels) = (scene.time_unit(), scene.labels());
         let beside = report::Beside { unit, friction, orbit, labels, nearest, ..report::Beside::default() };
-        let again = report::document(&analysis, &beside).value();
+        let again = input.echo(report::document(&analysis, &beside), &scene);
+        Ok((again.value(), (scene, analysis)))
+    }
+
+    fn check(&self, (scene, analysis): Self::Found, context: &Context) -> Result<Outcome> {
         if analysis.measured.is_some() {
-            let route = "computed again, by the same route: stiffnesses were measured; the growth rate by the eigenvalues of the dense \
-                         full period";
-            return self.outcome(context, route, &again, dense::growth(&scene, &analysis));
+            let route = "the growth rate by the eigenvalues of the dense full period";
+            return outcome(context, route, dense::growth(&scene, &analysis));
         }
         let traces = || dense::traces(&scene, &analysis);
-        match within(scene.exact_kind(&limits))? {
+        match within(scene.exact_kind(&limits(context)))? {
             Some(truth) => {
-                let other = same_kind(analysis.kind, truth).and_then(|()| traces());
-                let route = "computed again; the kind in exact arithmetic, multipliers by the traces of the dense full period \
-                             and of its square";
-                self.outcome(context, route, &again, other)
+                let route = "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square";
+                outcome(context, route, same_kind(analysis.kind, truth).and_then(|()| traces()))
             }
             None => {
-                let route = "computed again; multipliers by the traces of the dense full period and of its square (exact \
-                             arithmetic would cost more than is allowed)";
-                self.outcome(context, route, &again, traces())
+                let route = "multipliers by the traces of the dense full period and of its square (exact arithmetic would cost \
+                             more than is allowed)";
+                outcome(context, route, traces())
             }
         }
     }
@@ -188,14 +170,18 @@ fn within<T>(found: Result<T>) -> Result<Option<T>> {
     }
 }
 
-impl Points {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let (input, limits) = (self.input()?, limits(context));
+impl Recheck for Points {
+    const TABLE: &'static str = "points";
+    const LEFT: &'static [Left] = LEFT;
+    type Found = (Scan, SystemMap);
+
+    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
+        let (input, limits) = (&self.input, limits(context));
         let x: Axis = input.scan_x.as_ref().ok_or_else(|| missing("input.scan_x"))?.parse()?;
         let y = input.scan_y.as_ref().map(|own| own.parse()).transpose()?;
         let scene = input.scene(context)?;
         let time_unit = scene.time_unit().map(String::from);
-        let scan_of = Scan::new(scene, x, y)?;
+        let scan_of = Scan::new(scene.clone(), x, y)?;
         let (xs, ys) = (scan_of.x.values(), scan_of.ys());
         let decide = |x: &_, y: &_| -> Result<Analysis> { scan_of.at(x, y)?.decide(input.route(), &limits) };
         let (of, mut done) = ((xs.len() * ys.len()) as u64, 0);
@@ -204,11 +190,16 @@ impl Points {
             context.see.inspect(|see| see(done, of));
         })?;
         let map = SystemMap { names: scan_of.names(), xs, ys, points, time_unit };
-        let route = "computed again; the kind of a random sample of points in exact arithmetic";
-        let mut outcome = self.outcome(context, route, &map.document().value(), Ok(()))?;
-        let drawn = sample(&input.system.to_string(), of, if context.options.all { of } else { POINTS });
+        Ok((input.echo(map.document(), &scene).value(), (scan_of, map)))
+    }
+
+    fn check(&self, (scan_of, map): Self::Found, context: &Context) -> Result<Outcome> {
+        let (of, limits) = (map.points.len() as u64, limits(context));
+        let mut outcome =
+            outcome(context, "the kind of a random sample of points in exact arithmetic", Ok(()))?;
+        let most = if context.options.all { of } else { POINTS };
         let mut decided = 0;
-        for &n in &drawn {
+        for n in sample(&self.input.system.to_string(), of, most) {
             let point = &map.points[n as usize];
             let (x, y) = &point.at;
             let Some(truth) = within(scan_of.at(x, y)?.exact_kind(&limits))? else { continue };
@@ -222,21 +213,33 @@ impl Points {
     }
 }
 
-impl Intervals {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let input = self.input()?;
+impl Recheck for Intervals {
+    const TABLE: &'static str = "rows";
+    const LEFT: &'static [Left] = LEFT;
+    type Found = ();
+
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        let input = &self.input;
         let (span, width) =
             input.intervals.as_deref().zip(input.width.as_ref()).ok_or_else(|| missing("input"))?;
         let (span, width) = (span.parse()?, crate::number::rational::to_f64(width));
-        let found = input.scene(context)?.intervals(&span, width, &limits(context))?;
-        let again = report::intervals(&found).value();
-        self.outcome(context, "computed again, by the same route", &again, Ok(()))
+        let scene = input.scene(context)?;
+        let found = scene.intervals(&span, width, &limits(context))?;
+        Ok((input.echo(report::intervals(&found), &scene).value(), ()))
+    }
+
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+        outcome(context, ALONE, Ok(()))
     }
 }
 
-impl Simulated {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let input = self.input()?;
+impl Recheck for Simulated {
+    const TABLE: &'static str = "series";
+    const LEFT: &'static [Left] = LEFT;
+    type Found = (SystemScene, RunRequest, Run);
+
+    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
+        let input = &self.input;
         let periods = input.periods.as_deref().ok_or_else(|| missing("input.periods"))?;
         let periods =
             u32::try_from(*periods).map_err(|_| Error::input("input.periods", periods, "too many"))?;
@@ -250,12 +253,16 @@ impl Simulated {
         let scene = input.scene(context)?;
         let request = RunRequest { periods, displacement, ends };
         let run: Run = scene.run(&request, &limits(context))?;
-        let again = crate::report::simulate::document(&run).value();
-        if run.linear && ends == Ends::Symmetric {
-            let route = "computed again; the amplitudes by powers of the dense full period";
-            return self.outcome(context, route, &again, dense::linear_run(&scene, &request, &run));
+        let again = input.echo(crate::report::simulate::document(&run), &scene);
+        Ok((again.value(), (scene, request, run)))
+    }
+
+    fn check(&self, (scene, request, run): Self::Found, context: &Context) -> Result<Outcome> {
+        if run.linear && request.ends == Ends::Symmetric {
+            let route = "the amplitudes by powers of the dense full period";
+            return outcome(context, route, dense::linear_run(&scene, &request, &run));
         }
-        self.outcome(context, "computed again, by the same route", &again, Ok(()))
+        outcome(context, ALONE, Ok(()))
     }
 }
 

@@ -1,13 +1,18 @@
 //! A tongue and a document of tongues against the mathematics.
 
+use serde_json::Value;
+
 use super::edge::Zero;
 use super::listing::last;
 use super::rows::{Claim, Input, Tongue};
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
+use crate::recheck::again::Recheck;
 use crate::recheck::context::{Checked, Context, Outcome, holds};
 use crate::recheck::exact::{check_ratio, fraction, part, signs};
 use crate::recheck::written::Ends;
+use crate::report::document::Document;
+use crate::report::tongues::{Tally, record};
 use crate::resonance::dominant_family;
 use crate::tongue::{Tongues, entries};
 use crate::verdict::{Kind, Limits, decide, growth};
@@ -15,9 +20,27 @@ use crate::verdict::{Kind, Limits, decide, growth};
 const ROUTE: &str = "the entries' exact signs at both ends of every enclosure, verdict and label inside, closed forms, \
                      growth, predicted points, the law of first order; that no tongue is left out";
 
-impl Claim {
-    pub fn check(&self, context: &Context) -> Result<Outcome> {
-        let whole = self.complete(context.limits()).and_then(|()| self.counted());
+impl Recheck for Claim {
+    const TABLE: &'static str = "tongues";
+    type Found = ();
+
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        let asked = self.input.question(self.wanted(), context.limits())?;
+        let (mut tally, mut rows) = (Tally::default(), Vec::new());
+        let record = record(&asked.request, false);
+        asked.each(&(), |part| {
+            part.iter().for_each(|tongue| tally.add(tongue));
+            rows.extend(part.iter().map(|tongue| record.entries(tongue)));
+            Ok(())
+        })?;
+        let document = Document::new("tongues").input("rho", &asked.stiffness.rho).entry("tongues", rows);
+        let entries = tally.entries().into_iter();
+        let document = entries.fold(document, |document, (key, value)| document.entry(key, value));
+        Ok((document.value(), ()))
+    }
+
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+        let whole = self.complete(context.limits());
         context.outcome(ROUTE, ("the list", whole), &self.tongues, |row| {
             row.holds(&self.input, context.limits())
         })

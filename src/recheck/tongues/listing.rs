@@ -1,13 +1,17 @@
 //! Tongues as a list: none left out, and counted as they are.
 
-use super::rows::{Claim, Input, Points, Tongue};
+use super::rows::{Claim, Input, Tongue};
+use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
-use crate::recheck::context::{Checked, Fault, Place, holds, same};
+use crate::recheck::context::{Checked, Fault, Place, holds};
 use crate::recheck::exact::check_ratio;
 use crate::recheck::written::{Range, ratios};
 use crate::resonance::dominant_family;
-use crate::tongue::{Selection, Tongues};
+use crate::tongue::{Labels, Question, Request, Selection, Stiffness, Tongues, Wanted, Window};
 use crate::verdict::Limits;
+
+/// The most digits of an edge.
+const MOST_DIGITS: u64 = 10_000;
 
 /// The label of the last tongue, which has no upper edge.
 pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
@@ -17,7 +21,6 @@ pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
 impl Claim {
     /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds one.
     pub(super) fn complete(&self, limits: &Limits) -> Checked {
-        self.input.sound()?;
         let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref())?;
         let mut rows = self.tongues.iter().zip(1..);
         for ratio in list {
@@ -37,47 +40,41 @@ impl Claim {
 }
 
 impl Claim {
-    /// The counts behind the rows are those of the rows, and all rows have the same columns.
-    pub(super) fn counted(&self) -> Checked {
-        let rows = &self.tongues;
-        let closed = rows.iter().filter(|row| row.closed).count() as u64;
-        same("count", self.count, rows.len() as u64)?;
-        same("closed", self.closed, closed)?;
-        same("open", self.open, rows.len() as u64 - closed)?;
-        let columns = |row: &Tongue| {
-            let edges = row.upper.iter().chain([&row.lower]);
-            let exact: Vec<bool> =
-                edges.flat_map(|edge| [edge.exact.is_absent(), edge.on.is_absent()]).collect();
-            let of_row = [row.growth.is_absent(), row.predicted.is_absent(), row.first_order.is_absent()];
-            (of_row, exact[0], exact.iter().all(|&absent| absent == exact[0]))
-        };
-        for (i, row) in rows.iter().enumerate() {
-            let uniform = columns(row) == columns(&rows[0]) && columns(row).2;
-            holds(uniform, || format!("row {} has other columns than row 1", i + 1))?;
+    /// The columns asked for: those that the first row has.
+    pub(super) fn wanted(&self) -> Wanted {
+        let has = |find: fn(&Tongue) -> bool| self.tongues.first().is_some_and(find);
+        Wanted {
+            family: true,
+            exact: has(|row| !row.lower.exact.is_absent()),
+            growth: has(|row| !row.growth.is_absent()),
+            predicted: has(|row| !row.predicted.is_absent()),
+            first_order: has(|row| !row.first_order.is_absent()),
         }
-        let side = |wanted: &str| {
-            rows.iter().filter_map(|row| row.predicted.value()).filter(|p| p.side == wanted).count()
-        };
-        let [inside, on_edge, outside] = ["inside", "on the edge", "outside"].map(|name| side(name) as u64);
-        let truth = Some(Points { inside, on_edge, outside }).filter(|_| inside + on_edge + outside > 0);
-        holds(self.predicted_points == truth, || format!("predicted_points are {truth:?}"))
     }
 }
 
 impl Input {
-    /// The stiffnesses are those of ρ, and a window has its unit.
-    fn sound(&self) -> Checked {
-        holds(self.rho >= Rational::default(), || "rho is negative".into())?;
-        let unit = self.lambda1.is_some()
-            || (self.lambda2.is_none() && self.h1_range.is_none() && self.h2_range.is_none());
-        holds(unit, || "lambda1 is missing".into())?;
-        if let Some(lambda1) = &self.lambda1 {
-            holds(lambda1.0 > Laurent::from_integer(0), || "lambda1 is not positive".into())?;
-            let ratio = self.lambda2.as_ref().map(|lambda2| Laurent::ratio(lambda2, lambda1));
-            let right = ratio.is_none_or(|ratio| ratio.as_ref() == Some(&self.rho));
-            holds(right, || "rho is not lambda2/lambda1".into())?;
+    /// The question, within the limits.
+    pub(super) fn question(&self, wanted: Wanted, limits: &Limits) -> Result<Question> {
+        let list = ratios(self.ratio.as_ref(), self.max_sum.as_ref()).map_err(Fault::refused)?;
+        if let Some(longest) = list.iter().max_by_key(|ratio| ratio.kicks()) {
+            check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
         }
-        Ok(())
+        let [lambda1, lambda2] =
+            [&self.lambda1, &self.lambda2].map(|own| own.as_ref().map(|own| own.0.clone()));
+        // rho is echoed, whether it was given or follows.
+        let rho = lambda2.is_none().then(|| self.rho.clone());
+        let stiffness = Stiffness::new(rho, lambda1, lambda2)?;
+        let [h1, h2] = [&self.h1_range, &self.h2_range].map(|own| own.as_ref().map(|own| own.0.clone()));
+        let m = self.m.as_ref().map(|m| Labels(m.0.clone()));
+        let [a, b] = [&self.a, &self.b].map(|own| own.as_ref().map(|own| own.0));
+        let digits = self.digits.as_ref().map(|digits| digits.0);
+        if let Some(digits) = digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
+            return Err(Error::input("input.digits", digits, format!("is not in 1..{MOST_DIGITS}")));
+        }
+        let request = Request { wanted, lambda1: None, digits: digits.map(|digits| digits as u32) };
+        let selection = Selection { m, a, b, s: None };
+        Question::new(list, stiffness, Window { h1, h2 }, selection, request)
     }
 
     /// The labels asked for; those in a window by the string's counts again.

@@ -13,13 +13,10 @@ rows! {
     pub struct Claim {
         pub input: Input,
         pub tongues: Vec<Tongue>,
-        pub count: u64,
-        pub open: u64,
-        pub closed: u64,
-        pub predicted_points: Option<Points>,
     }
 
     #[derive(Default)]
+    #[serde(deny_unknown_fields)]
     pub struct Input {
         pub ratio: Option<Written<Ratio>>,
         pub max_sum: Option<Written<u64>>,
@@ -41,13 +38,6 @@ fn given_rho<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::
 }
 
 rows! {
-    #[derive(PartialEq)]
-    pub struct Points {
-        pub inside: u64,
-        pub on_edge: u64,
-        pub outside: u64,
-    }
-
     /// A row.
     pub struct Tongue {
         pub p: u64,

@@ -1,0 +1,403 @@
+//! Every leaf of every kind of document changed: `verify` finds the change, or names the leaf as one that it does not recheck.
+
+use kickdrift::error::Error;
+use kickdrift::recheck::{Claim, Options};
+use serde_json::{Value, json};
+
+use super::support::Desk;
+
+/// Other runs and frictions with the same answer: whether growth is tenfold within the run, and whether friction masks it. Advice
+/// echoes what it was asked in other words than the arguments', so [`is_asked_for`] cannot ask again.
+const STILL_TRUE: [(&str, &str); 4] = [
+    ("advise", ".input.length a digit"),
+    ("advise", ".input.friction a digit"),
+    ("advise", ".input.length nudged"),
+    ("advise", ".input.friction nudged"),
+];
+
+/// Three masses; at a soft step of 3/4 in place of 1/8 something grows.
+const SYSTEM: &str = r#"{"schema": "kickdrift/system/1", "title": "three masses", "masses": ["1", "3/2", "2"], "potentials": [
+    {"step": "1/8", "springs": [[0, 1, "10"], [1, 2, "20"]]}, {"step": "1/4", "springs": [[0, null, "5"], [2, null, "7"]]}]}"#;
+
+/// Three clocks on one oscillator, a stiffness with pi.
+const ONE_MASS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "masses": ["1"], "potentials": [
+    {"step": "1/10", "stiffness": [["pi^2"]]}, {"step": "1/4", "stiffness": [["1/2"]]}, {"step": "1/6", "stiffness": [["2"]]}]}"#;
+
+/// A step longer than the other, about its own orbit.
+const BARS: &str = include_str!("../../data/scenes/two-bars.json");
+const TENSION: &str = include_str!("../../data/scenes/tension.json");
+const LENNARD_JONES: &str = include_str!("../../data/scenes/lennard-jones.json");
+
+const ENGINE: &str = "integrator = md-vv\ndt = 0.0005\nmts = yes\nmts-levels = 2\nmts-level2-forces = longrange-nonbonded\n\
+                      mts-level2-factor = 8\nconstraints = none\n";
+
+const SCENE: &str = r#"{"schema": "kickdrift/scene/1", "title": "small", "lambda1": "16", "lambda2": "16/25",
+    "grid": {"step": "1/10", "h1": "1/10..3/5", "h2": "1/10..1"}, "families": {"a": "0..1", "b": "-2..2", "samples": 9},
+    "ratio": "5/3", "max": 3, "max_sum": 5, "want": ["map", "curves", "compare", "proposition", "polynomial", "tongues", "closings",
+    "survey"]}"#;
+
+fn desk() -> Desk {
+    let desk = Desk::new();
+    desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
+    desk.write("system.json", SYSTEM);
+    desk.write("resonant.json", &SYSTEM.replace("\"1/8\"", "\"3/4\""));
+    desk.write("one-mass.json", ONE_MASS);
+    desk.write("bars.json", BARS);
+    desk.write("tension.json", TENSION);
+    desk.write("lennard-jones.json", LENNARD_JONES);
+    desk.write("run.mdp", ENGINE);
+    desk.write("scene.json", SCENE);
+    desk
+}
+
+/// The document that a line of arguments makes.
+fn document(desk: &Desk, line: &str) -> Result<Value, Error> {
+    let word = |word: &str| {
+        let path = desk.path().join(word);
+        if path.is_file() { path.display().to_string() } else { word.into() }
+    };
+    let words = std::iter::once("kickdrift".to_string()).chain(line.split_whitespace().map(word));
+    let words = words.chain(["--format", "json", "--quiet"].map(String::from));
+    let bytes = kickdrift::cli::answer(words.map(Into::into))?;
+    Ok(serde_json::from_slice(&bytes).unwrap())
+}
+
+/// Whether kickdrift writes these rows when it is asked what the input says: a question with another wording, or another
+/// question with the same answer, is no lie.
+fn is_asked_for(desk: &Desk, line: &str, tampered: &Value) -> bool {
+    let asked = arguments(desk, line, tampered).and_then(|line| document(desk, &line).ok());
+    let rows = |whole: &Value| {
+        let mut rows = whole.clone();
+        rows.as_object_mut().unwrap().shift_remove("input");
+        rows
+    };
+    asked.is_some_and(|asked| rows(&asked) == rows(tampered))
+}
+
+/// The line of arguments that asks what a document's input says.
+fn arguments(desk: &Desk, line: &str, tampered: &Value) -> Option<String> {
+    let input = tampered["input"].as_object()?;
+    let file = || {
+        desk.write("asked.json", &input["system"].to_string());
+        line.split_whitespace().map(|word| if word.ends_with(".json") { "asked.json" } else { word })
+    };
+    let schema = tampered["schema"].as_str()?;
+    if schema == "kickdrift/advise-system/1" {
+        return Some(file().collect::<Vec<_>>().join(" "));
+    }
+    let mut words = vec![tampered["kickdrift"]["command"].as_str()?.to_string()];
+    words.extend((schema == "kickdrift/survey/1").then(|| "--survey".to_string()));
+    for (key, value) in input {
+        let given = value.as_str().unwrap_or_default();
+        match key.as_str() {
+            "file" | "title" => {}
+            "rho" if input.contains_key("lambda2") => {}
+            "step1" | "step2" if schema == "kickdrift/curves/1" => {}
+            "form" if given == "symmetric" => {}
+            "form" => words.push("--staggered".into()),
+            "system" => words.push(file().find(|word| *word == "asked.json")?.into()),
+            "scan_x" | "scan_y" => words.push(format!("--scan {given}")),
+            "width" => words.push(format!("--resolution {given}")),
+            _ if given == "true" => words.push(format!("--{}", key.replace('_', "-"))),
+            _ => words.push(format!("--{} {given}", key.replace('_', "-"))),
+        }
+    }
+    let row = tampered["tongues"].get(0).filter(|_| schema == "kickdrift/tongues/1");
+    words.extend(row.map(|row| {
+        let columns = [("growth", "growth"), ("predicted", "predicted"), ("first_order", "first-order")];
+        let columns = columns.iter().filter(|(key, _)| row.get(key).is_some()).map(|(_, name)| *name);
+        let exact = row["lower"].get("exact").map(|_| "exact");
+        format!(
+            "--columns {}",
+            ["edges"].into_iter().chain(exact).chain(columns).collect::<Vec<_>>().join(",")
+        )
+    }));
+    Some(words.join(" "))
+}
+
+/// Everything that is done to a value. `see` is shown each tampered document, with the path and what was done there; `back`
+/// puts a value into the whole.
+fn tamper(value: &Value, path: &str, back: &dyn Fn(Value) -> Value, see: &mut dyn FnMut(Value, &str, &str)) {
+    let mut now = |what: &str, value: Value| see(back(value), path, what);
+    match value {
+        Value::Null => {
+            now("null -> 1", json!(1));
+            now("null -> word", json!("word"));
+        }
+        Value::Bool(truth) => now("flipped", json!(!truth)),
+        Value::Number(number) => {
+            now("-> null", json!(null));
+            if let Some(n) = number.as_i64() {
+                now("+ 1", json!(n + 1));
+                now("- 1", json!(n - 1));
+            } else {
+                let x = number.as_f64().unwrap();
+                // Enclosures may be as narrow as the last place of a double, which is 1e-16 of it.
+                now("+ 1e-9", json!(if x == 0.0 { 1e-9 } else { x * (1.0 + 1e-9) }));
+                now("* -1", json!(if x == 0.0 { -1e-9 } else { -x }));
+            }
+        }
+        Value::String(text) => {
+            now("-> null", json!(null));
+            now("-> empty", json!(""));
+            now("a letter more", json!(format!("{text}x")));
+            let letter = text.char_indices().find(|(_, c)| c.is_ascii_alphabetic());
+            if let Some((at, c)) = letter {
+                let other = if c == 'e' { "a" } else { "e" };
+                now("a letter", json!(format!("{}{other}{}", &text[..at], &text[at + 1..])));
+            }
+            // The first and the last digit.
+            let digits = [text.find(|c: char| c.is_ascii_digit()), text.rfind(|c: char| c.is_ascii_digit())];
+            for at in digits.into_iter().flatten() {
+                let mut bytes = text.clone().into_bytes();
+                bytes[at] = b'1' + (bytes[at] - b'0' + 1) % 9;
+                now("a digit", json!(String::from_utf8(bytes).unwrap()));
+            }
+        }
+        Value::Array(items) => {
+            now("-> null", json!(null));
+            for i in [0, items.len() / 2, items.len().saturating_sub(1)] {
+                if i < items.len() {
+                    let mut fewer = items.clone();
+                    fewer.remove(i);
+                    now(&format!("without {i}"), json!(fewer));
+                    let mut more = items.clone();
+                    more.insert(i, items[i].clone());
+                    now(&format!("twice {i}"), json!(more));
+                }
+            }
+            now("one more", json!(items.iter().cloned().chain([json!(1)]).collect::<Vec<_>>()));
+            if items.len() > 1 {
+                now("emptied", json!([]));
+            }
+            // 0 and -0 are one number.
+            if items.len() > 1 && (items[0].as_f64().is_none() || items[0].as_f64() != items[1].as_f64()) {
+                let mut other = items.clone();
+                other.swap(0, 1);
+                now("exchanged", json!(other));
+            }
+            for (i, item) in items.iter().enumerate() {
+                let back = |changed| {
+                    let mut whole = items.clone();
+                    whole[i] = changed;
+                    back(json!(whole))
+                };
+                // Of long lists the first two stand for all in everything but small numbers.
+                let path = format!("{path}.{i}");
+                if i < 2 { tamper(item, &path, &back, see) } else { nudge(item, &path, &back, see) }
+            }
+        }
+        Value::Object(map) => {
+            let with = |key: &str, value: Value| {
+                let mut whole = map.clone();
+                whole.insert(key.into(), value);
+                Value::Object(whole)
+            };
+            now("a key more", with("extra", json!(1)));
+            for (key, inner) in map {
+                let mut without = map.clone();
+                without.shift_remove(key);
+                let path = format!("{path}.{key}");
+                see(back(Value::Object(without)), &path, "gone");
+                tamper(inner, &path, &|changed| back(with(key, changed)), see);
+            }
+        }
+    }
+}
+
+/// Every leaf changed once, by as little as may be.
+fn nudge(value: &Value, path: &str, back: &dyn Fn(Value) -> Value, see: &mut dyn FnMut(Value, &str, &str)) {
+    match value {
+        Value::Null => see(back(json!(0)), path, "null -> 0"),
+        Value::Bool(truth) => see(back(json!(!truth)), path, "flipped"),
+        Value::Number(number) => {
+            let x = number.as_f64().unwrap();
+            let other = number
+                .as_i64()
+                .map_or(json!(if x == 0.0 { 1e-9 } else { x * (1.0 + 1e-9) }), |n| json!(n + 1));
+            see(back(other), path, "nudged");
+        }
+        Value::String(text) => {
+            let at = text.rfind(|c: char| c.is_ascii_alphanumeric()).unwrap_or(0);
+            let other = if text[at..].starts_with('7') { "3" } else { "7" };
+            let end = text.get(at + 1..).unwrap_or_default();
+            see(back(json!(format!("{}{other}{end}", &text[..at]))), path, "nudged");
+        }
+        Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                let back = |changed| {
+                    let mut whole = items.clone();
+                    whole[i] = changed;
+                    back(json!(whole))
+                };
+                nudge(item, &format!("{path}.{i}"), &back, see);
+            }
+        }
+        Value::Object(map) => {
+            for (key, inner) in map {
+                let back = |changed| {
+                    let mut whole = map.clone();
+                    whole.insert(key.clone(), changed);
+                    back(Value::Object(whole))
+                };
+                nudge(inner, &format!("{path}.{key}"), &back, see);
+            }
+        }
+    }
+}
+
+/// Whether `path` (`.modes.0.before`) lies at or below what is named as not rechecked (`modes.*.before: why`).
+fn is_below(path: &str, named: &str) -> bool {
+    let named: Vec<&str> = named.split(':').next().unwrap().split('.').collect();
+    let path: Vec<&str> = path.split('.').skip(1).collect();
+    path.len() >= named.len() && named.iter().zip(&path).all(|(name, own)| *name == "*" || name == own)
+}
+
+/// The number of changes made to a document, each of which is found; and what passes.
+fn passed(desk: &Desk, name: &str, whole: &Value) -> (usize, Vec<String>) {
+    let options = Options { folder: desk.path().into(), ..Options::default() };
+    let recheck = |value: &Value| Claim::read(&value.to_string())?.recheck(&options, None);
+    let sound = recheck(whole).unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(sound.failures, [], "{name}");
+    let (mut count, mut passed) = (0, Vec::new());
+    let mut see = |tampered: Value, path: &str, what: &str| {
+        let what = format!("{path} {what}");
+        let still_true = |(of, end): &(&str, &str)| name.starts_with(of) && what.ends_with(end);
+        let named = sound.not_rechecked.iter().any(|own| is_below(path, own));
+        if tampered != *whole && !named && !STILL_TRUE.iter().any(still_true) {
+            count += 1;
+            let passes = recheck(&tampered).is_ok_and(|outcome| outcome.failures.is_empty());
+            if passes && !(path.starts_with(".input") && is_asked_for(desk, name, &tampered)) {
+                passed.push(format!("{name}: {what}"));
+            }
+        }
+    };
+    tamper(whole, "", &|changed| changed, &mut see);
+    (count, passed)
+}
+
+/// No change to the documents of these lines passes; more than `least` are made.
+fn no_change_passes(lines: &[&str], least: usize) {
+    let desk = desk();
+    let (mut count, mut all) = (0, Vec::new());
+    for line in lines {
+        let begin = std::time::Instant::now();
+        let (made, passed) = passed(&desk, line, &document(&desk, line).unwrap());
+        eprintln!("{made} changes, {:.1} s: {line}", begin.elapsed().as_secs_f64());
+        (count, all) = (count + made, [all, passed].concat());
+    }
+    assert!(all.is_empty(), "{} of {count} pass:\n{}", all.len(), all.join("\n"));
+    assert!(count > least, "{count}");
+}
+
+#[test]
+fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
+    let lines = [
+        "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
+        "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
+        "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3 --exact",
+        "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/2 --h2 1 --friction 1/2",
+        "verdict --lambda1 3*pi^2-pi+1/2 --lambda2 1/pi --h1 1/9 --h2 1/7",
+        "map --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+        "map --label --growth --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+        "compare --max-sum 6 --rho 1/25 --samples 12",
+        "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+        "curves --samples 12 --a 0..2 --b -2..2",
+        "polynomial --ratio 5/4",
+        "proposition --max 5",
+    ];
+    no_change_passes(&lines, 1000);
+}
+
+#[test]
+fn no_change_to_tongues_surveys_or_closings_passes() {
+    let lines = [
+        "tongues --ratio 7/3 --rho 1/25",
+        "tongues --ratio 5/3 --rho 114/55 --lambda1 pi^2 --digits 20",
+        "tongues --max-sum 5 --rho 0",
+        "tongues --max-sum 6 --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/10..3/5 --h2-range 1/10..2 --columns growth",
+        "tongues --ratio 23/20 --rho 1/1000 --m 3..6,22 --columns exact,predicted,growth,first-order",
+        "tongues --ratio 9/4 --rho 2 --m 2..5 --a 0..2 --b -2..2 --columns edges",
+        "tongues --survey --max-sum 9 --rho 1/25 --thinnest 5",
+        "closings --max-sum 6",
+        "closings --ratio 9/5 --m 3..9 --samples 60 --digits 12",
+    ];
+    no_change_passes(&lines, 1000);
+}
+
+#[test]
+fn no_change_to_a_system_passes() {
+    let lines = [
+        "system system.json",
+        "system resonant.json --exact",
+        "system one-mass.json",
+        "system bars.json --friction 1/10",
+        "system tension.json --friction 1/2",
+        "system resonant.json --nearest --resolution 1/10",
+        "system system.json --intervals outer=1/8..1/2 --resolution 1e-2",
+        "system system.json --scan potentials.0.step=1/8..3/4:1/8 --scan potentials.1.scale=1..2:1/2",
+    ];
+    no_change_passes(&lines, 1000);
+}
+
+#[test]
+fn no_change_to_a_measured_system_passes() {
+    let lines = [
+        "system tiny.json",
+        "system tiny.json --friction 1 --accuracy 1e-7",
+        "system tiny.json --keep-rigid",
+        "system tiny.json --nearest --resolution 1e-2",
+        "system tiny.json --intervals outer=0.004..0.005 --resolution 1e-2",
+        "system tiny.json --scan potentials.1.scale=9/10..1:1/10",
+    ];
+    no_change_passes(&lines, 500);
+}
+
+#[test]
+fn no_change_to_a_simulation_passes() {
+    let lines = [
+        "simulate resonant.json --periods 4",
+        "simulate tension.json --periods 3",
+        "simulate lennard-jones.json --periods 3 --staggered",
+    ];
+    no_change_passes(&lines, 300);
+}
+
+#[test]
+fn no_change_to_advice_passes() {
+    let lines = [
+        "advise --period OH=10fs --period 40fs --steps 2fs,4fs --steps 2.2fs,4.4fs --length 10ns --friction 1/ps",
+        "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 \
+         --on 3000/cm=1 --steps 1fs,2fs",
+        "advise --period 19.45fs --steps 2fs,4fs",
+        "advise --period 10fs --period 40fs --period 100fs --steps 1fs,2fs,4fs",
+        "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --steps 1fs,2fs",
+        "advise --period OH=10fs --period 40fs --engine run.mdp",
+    ];
+    no_change_passes(&lines, 1000);
+}
+
+#[test]
+fn no_change_to_advice_on_hessians_passes() {
+    let lines = [
+        "advise tiny.json --steps 2.2fs,4.4fs --length 1ns --friction 1/ps",
+        "advise tiny.json --engine run.mdp",
+    ];
+    no_change_passes(&lines, 300);
+}
+
+#[test]
+fn no_change_to_a_product_of_a_scene_passes() {
+    let desk = desk();
+    let ended = desk.run(&["run", "scene.json", "--output", "out", "--quiet"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    let (mut count, mut all) = (0, Vec::new());
+    for product in ["map", "curves", "compare", "proposition", "polynomial", "tongues", "closings", "survey"]
+    {
+        let whole = serde_json::from_slice(&desk.read(&format!("out/{product}.json"))).unwrap();
+        let (made, passed) = passed(&desk, product, &whole);
+        (count, all) = (count + made, [all, passed].concat());
+    }
+    assert!(all.is_empty(), "{} of {count} pass:\n{}", all.len(), all.join("\n"));
+    assert!(count > 1000, "{count}");
+}
