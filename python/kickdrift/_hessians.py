@@ -19,11 +19,11 @@ from kickdrift import _plot
 from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
 from kickdrift._numbers import frozen
+from kickdrift._rigid import Doubles, norm
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-Doubles: TypeAlias = npt.NDArray[np.float64]
 Force: TypeAlias = Callable[[Doubles], Doubles]
 """The force of one group at positions: (n, 3) to (n, 3), energy/length."""
 
@@ -82,11 +82,6 @@ def hessian(
     symmetric = (fourth + fourth.T) / 2
     error = norm(fourth - second) + norm(fourth - symmetric)
     return symmetric, error
-
-
-def norm(matrix: Doubles) -> float:
-    """The 2-norm; of an empty matrix 0."""
-    return float(np.linalg.norm(matrix, 2)) if matrix.size else 0.0
 
 
 def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:
@@ -163,30 +158,6 @@ def _firm(matrix: Doubles) -> Doubles:
     """The eigenvectors of a symmetric matrix but for the soft ones, which are rigid motions."""
     values, vectors = np.linalg.eigh(matrix)
     return np.asarray(vectors[:, np.abs(values) > _SOFT * np.abs(values).max()])
-
-
-def rigid_motions(positions: Doubles, masses: Doubles, rotations: bool = True) -> Doubles:
-    """Translations, and rotations unless a periodic cell forbids them: orthonormal mass-weighted columns."""
-    root = np.sqrt(masses)
-    centred = positions - (masses @ positions) / masses.sum()
-    moves = [np.tile(axis, (len(masses), 1)) for axis in np.eye(3)]
-    moves += [np.cross(axis, centred) for axis in np.eye(3)] if rotations else []
-    columns = np.array([(root[:, None] * move).ravel() for move in moves]).T
-    left, sizes, _ = np.linalg.svd(columns / np.linalg.norm(columns, axis=0).clip(1e-300), full_matrices=False)
-    # A rotation about the line of a linear molecule moves nothing: what is left of it is rounding.
-    return np.asarray(left[:, sizes > 1e-8])
-
-
-def is_held(total: Doubles, translations: Doubles, error: float) -> bool:
-    """Whether a field holds the atoms: of a translation, forces that know no place leave what differences leave."""
-    return norm(total @ translations) > max(10 * error, 1e-9 * norm(total))
-
-
-def complement(columns: Doubles) -> Doubles:
-    """An orthonormal basis of what is orthogonal to the columns."""
-    whole, sizes, _ = np.linalg.svd(columns)
-    rank = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum())
-    return np.asarray(whole[:, rank:])
 
 
 def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:

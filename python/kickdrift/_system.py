@@ -21,9 +21,9 @@ from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked, common
 from kickdrift._document import Document, Frozen, Table, ask, frame, given
 from kickdrift._errors import KickdriftError
-from kickdrift._hessians import Doubles, complement, norm, rigid_motions
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
+from kickdrift._rigid import fit, is_of_two_levels, without_rigid
 
 if TYPE_CHECKING:
     import pandas
@@ -156,8 +156,8 @@ class System(Frozen):
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
         document: dict[str, Any] = {"accuracy": float(accuracy)}
-        if not keep_rigid and not _is_of_two_levels(list(steps.values())) and _fit(arrays, matrices):
-            matrices, note = _without_rigid(arrays, matrices, accuracy)
+        if not keep_rigid and not is_of_two_levels(list(steps.values())) and fit(arrays, matrices):
+            matrices, note = without_rigid(arrays, matrices, accuracy)
             arrays, labels, notes, keep_rigid = {}, (), (*notes, note), True
             document["mass_weighted"] = True
         document |= {name: _at(name) for name in arrays}
@@ -309,46 +309,6 @@ def _warned(warnings: Sequence[str]) -> str:
 def _step(name: str, value: Exact, unit: str) -> Fraction:
     """A step in the system's unit of time, where it has one."""
     return duration(f"potentials[{name}]", value, unit, molecular=False)
-
-
-def _is_of_two_levels(steps: Sequence[Fraction]) -> bool:
-    """Whether the library projects rigid motions out itself: one step, or two whose ratio is an integer."""
-    different = sorted(set(steps))
-    return len(different) < 2 or (len(different) == 2 and (different[1] / different[0]).denominator == 1)
-
-
-def _fit(arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles]) -> bool:
-    """Whether the shapes are those of one system; what does not fit is refused where it is decided."""
-    n = len(next(iter(matrices.values()))) if matrices else 0
-    where = arrays.get("positions")
-    square = all(own.shape == (n, n) for own in matrices.values())
-    return square and n > 0 and arrays["masses"].size in (n, n / 3) and (where is None or where.size == n)
-
-
-def _without_rigid(
-    arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles], accuracy: float
-) -> tuple[dict[str, Doubles], str]:
-    """Mass-weighted Hessians without rigid motions: by the positions, else the null space of the total within the
-    accuracy, as the library does for two levels."""
-    n = len(next(iter(matrices.values())))
-    masses = arrays["masses"].ravel()
-    masses = masses if masses.size == n else np.repeat(masses, 3)
-    weighted = {name: own / np.sqrt(np.outer(masses, masses)) for name, own in matrices.items()}
-    where = arrays.get("positions")
-    if where is not None:
-        rigid, by = rigid_motions(where.reshape(-1, 3), masses[::3]), "positions"
-    else:
-        values, vectors = np.linalg.eigh(np.sum(list(weighted.values()), axis=0))
-        least = accuracy * sum(norm(own) for own in weighted.values())
-        rigid, by = vectors[:, np.abs(values) <= least], "null space of the total"
-    kept = complement(rigid)
-    if not rigid.size or not kept.size:
-        return weighted, f"no rigid motions projected out ({by})"
-    projected = {name: kept.T @ own @ kept for name, own in weighted.items()}
-    return (
-        {name: (own + own.T) / 2 for name, own in projected.items()},
-        f"{rigid.shape[1]} rigid motions projected out ({by})",
-    )
 
 
 def _at(name: str) -> dict[str, str]:

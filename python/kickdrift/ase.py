@@ -13,21 +13,18 @@ import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._hessians import (
-    Doubles,
     Force,
     Monodromy,
     Progress,
-    complement,
     hessian,
-    is_held,
     minimum,
     monodromy,
-    rigid_motions,
     seen,
     shown,
     unbalanced,
 )
 from kickdrift._numbers import Exact, doubles, duration
+from kickdrift._rigid import Doubles, complement, is_held, rigid_motions
 from kickdrift._system import System
 
 try:

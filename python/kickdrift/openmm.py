@@ -20,24 +20,21 @@ import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._hessians import (
-    Doubles,
     Force,
     Monodromy,
     Progress,
     arrived,
-    complement,
     descend,
     hessian,
-    is_held,
     minimum,
     monodromy,
-    rigid_motions,
     seen,
     shown,
     soft_solve,
     unbalanced,
 )
 from kickdrift._numbers import Exact, doubles, duration, rational, simplest
+from kickdrift._rigid import Doubles, complement, is_held, rigid_motions
 from kickdrift._system import System
 
 try:
