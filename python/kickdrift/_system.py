@@ -448,7 +448,8 @@ class SystemVerdict(Document):
     def __repr__(self) -> str:
         if not self.proven:
             return f"SystemVerdict({self.kind})"
-        words = "stable" if self.stable else f"unstable, growth rate {self.growth_rate:.6g}"
+        rate = "" if self.growth_bounds is None else f", growth rate {self.growth_rate:.6g}"
+        words = "stable" if self.stable else f"unstable{rate}"
         told = f"; warnings: {len(self.warnings)}" if self.warnings else ""
         return f"SystemVerdict({words}, {self.kind}{told})"
 
