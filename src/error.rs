@@ -156,13 +156,13 @@ impl Error {
     /// `Display`, with the caller's own words for how to raise the limit to [`needed`](Error::needed).
     pub fn explain(&self, raise: impl FnOnce(u64) -> String) -> String {
         let Parts { kind, field, value, remedy, needed, .. } = &*self.0;
-        let remedy = one_line(remedy, LONGEST_TEXT);
+        let (field, remedy) = (one_line(field, LONGEST_TEXT), one_line(remedy, LONGEST_TEXT));
         match (needed, value) {
             (Some(needed), _) if remedy.is_empty() => format!("{field}: {}", raise(*needed)),
             (Some(needed), _) => format!("{field}: {}, or {remedy}", raise(*needed)),
             (None, Some(value)) => format!("{field} = {}: {remedy}", one_line(value, LONGEST_VALUE)),
             (None, None) if *kind == Kind::Input => format!("{field} missing: {remedy}"),
-            (None, None) => format!("{}: {remedy}", one_line(field, LONGEST_TEXT)),
+            (None, None) => format!("{field}: {remedy}"),
         }
     }
 }
@@ -179,9 +179,21 @@ impl std::error::Error for Error {
     }
 }
 
-/// `text` on one line, its middle left out where it has more than `most` characters.
+/// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a byte order mark.
+fn is_unseen(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
+        | '\u{fe00}'..='\u{fe0f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e01ef}')
+}
+
+/// `text` on one line, what is not seen escaped, its middle left out where it has more than `most` characters.
 fn one_line(text: &str, most: usize) -> String {
-    let line: Vec<char> = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let shown = |c: char| match c {
+        '\n' | '\r' | '\t' => " ".into(),
+        c if c.is_control() || is_unseen(c) => c.escape_unicode().to_string(),
+        c => c.to_string(),
+    };
+    let line: String = text.chars().map(shown).collect();
+    let line: Vec<char> = line.chars().collect();
     if line.len() <= most {
         return line.into_iter().collect();
     }
@@ -199,6 +211,15 @@ mod tests {
         let message = Error::input("h1", format!("1\n{}", "0".repeat(100_000)), "too long").to_string();
         assert!(message.len() < 200 && !message.contains('\n'), "{message}");
         assert!(message.contains("100002 characters"), "{message}");
+    }
+
+    #[test]
+    fn characters_that_are_not_seen_are_escaped() {
+        let text = "a\u{202e}b\u{1b}[31m\u{feff}\u{200b}\u{e9}";
+        for error in [Error::input(text, text, text), Error::missing(text, text), Error::io(text, text)] {
+            let message = error.to_string();
+            assert!(message.contains("a\\u{202e}b\\u{1b}[31m\\u{feff}\\u{200b}\u{e9}"), "{message}");
+        }
     }
 
     #[test]

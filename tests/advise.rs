@@ -237,6 +237,15 @@ mod molecules {
         assert_eq!(findings.removed.as_ref().map(|own| own.count), Some(18));
     }
 
+    /// Which are hydrogens is told by the masses as given.
+    #[test]
+    fn heavy_hydrogens_are_held_as_light_ones_are() {
+        let both = [("hydrogen_mass", "3.024"), ("constraints", "h-bonds")];
+        let own = findings_with("alanine-dipeptide.json", &["2,4"], &both);
+        let light = findings_with("alanine-dipeptide.json", &["2,4"], &both[1..]);
+        assert_eq!([&own, &light].map(|found| found.removed.as_ref().unwrap().count), [18, 18]);
+    }
+
     #[test]
     fn heavy_hydrogens_and_friction_are_answered_for_hessians() {
         let own = findings_with("water4.json", &["1/2,4.5"], &[("hydrogen_mass", "3.024")]);
@@ -376,7 +385,7 @@ fn growth_is_told_per_time_and_against_the_length_of_the_run() {
     let modes = TWO.map(|text| Mode::from_period(text).unwrap()).to_vec();
     let ask = |length: i64| {
         let question = Question::new(modes.clone(), vec![scheme("0.48,4.8")], ratio(1, 20)).unwrap();
-        question.of_length(ratio(length, 1)).answer().unwrap().schemes.remove(0)
+        question.of_length(ratio(length, 1)).unwrap().answer().unwrap().schemes.remove(0)
     };
     let answer = ask(1_000_000);
     let (lo, hi) = answer.rows[0].found.rate;
@@ -418,5 +427,37 @@ fn a_question_that_makes_no_sense_says_what_would() {
     }
     for steps in [vec![], vec![ratio(2, 1), ratio(1, 1)], vec![ratio(0, 1)], vec![ratio(1, 1), ratio(1, 1)]] {
         assert!(Scheme::new(steps).unwrap_err().field().contains("steps"));
+    }
+}
+
+/// With friction a clock that nothing is known to be on parts the drifts all the same.
+#[test]
+fn a_silent_clock_damps_as_one_that_is_hardly_heard() {
+    let damped = |slow: &str| {
+        let modes = ["OH=10fs", slow].into_iter().map(|text| Mode::from_period(text).unwrap());
+        let modes = modes.take(if slow.is_empty() { 1 } else { 2 }).collect();
+        // Above the limit of the inner step alone: growth that only friction stops.
+        let scheme = Scheme::new(vec![ratio(33, 10), ratio(66, 10)]).unwrap();
+        let question = Question::new(modes, vec![scheme], ratio(1, 20)).unwrap();
+        let answer = question.with_friction(ratio(1, 2)).unwrap().answer().unwrap();
+        let row = &answer.schemes[0].rows[0];
+        (row.is_damped, row.masking)
+    };
+    let ((alone, mask), (heard, near)) = (damped(""), damped("x=1000000000fs"));
+    assert_eq!(alone, heard);
+    if let (Some(a), Some(b)) = (mask, near) {
+        assert!((a.0 / b.0 - 1.0).abs() < 1e-6, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_length_that_is_not_positive_is_refused() {
+    let question = || {
+        let scheme = Scheme::new(vec![ratio(1, 2), ratio(4, 1)]).unwrap();
+        Question::new(vec![Mode::from_period("OH=10fs").unwrap()], vec![scheme], ratio(1, 20)).unwrap()
+    };
+    for bad in [ratio(0, 1), ratio(-7, 1)] {
+        assert!(question().of_length(bad.clone()).unwrap_err().to_string().starts_with("length = "));
+        assert!(question().with_friction(bad).is_err());
     }
 }

@@ -179,8 +179,8 @@ fn only_the_numbers_change() {
     let new = of(TEXTS[5].1).unwrap().rewritten(&ratio(3, 1)).unwrap();
     assert_eq!(new, TEXTS[5].1.replace("0.004", "0.003").replace("(1,8)", "(1,6)"));
     assert_eq!(
-        of(TEXTS[10].1).unwrap().rewritten(&ratio(3, 1)).unwrap(),
-        "dt=0.001\nmts=yes\nmts-level2-factor = 3\n"
+        of(TEXTS[10].1).unwrap().rewritten(&ratio(4, 1)).unwrap(),
+        "dt=0.001\nmts=yes\nmts-level2-factor = 4\n"
     );
 }
 
@@ -360,4 +360,40 @@ fn ten_thousand_damaged_texts_are_read_or_refused_in_one_line() {
         }
     }
     assert!(good > 1000 && bad > 1000, "{good} {bad}");
+}
+
+#[test]
+fn what_an_engine_wants_to_be_multiples_of_the_factor_is_rewritten_with_it() {
+    let text = "dt = 0.001\nmts = yes\nmts-level2-factor = 2\nnstcalcenergy = 10 ; energies\nnstenergy = 500\nnstlog = 35\nnstfout = 0\n";
+    let new = of(text).unwrap().rewritten(&ratio(3, 1)).unwrap();
+    let expected =
+        text.replace("= 2\n", "= 3\n").replace("= 10 ", "= 12 ").replace("500", "504").replace("35", "36");
+    assert_eq!(new, expected);
+    // By default 100, 1000 and 1000: those that are no multiples are added, energies still where they are computed.
+    let bare = of("dt = 0.001\nmts = yes\nmts-level2-factor = 2").unwrap();
+    assert_eq!(bare.rewritten(&ratio(4, 1)).unwrap(), "dt = 0.001\nmts = yes\nmts-level2-factor = 4");
+    let mut added = bare.changed_lines(&ratio(3, 1)).unwrap();
+    added.sort();
+    assert_eq!(added, ["mts-level2-factor = 3", "nstcalcenergy = 102", "nstenergy = 1020", "nstlog = 1020"]);
+    for factor in 2..30 {
+        let again = of(&bare.rewritten(&ratio(factor, 1)).unwrap()).unwrap();
+        assert_eq!(*again.scheme.outer(), ratio(factor, 1));
+    }
+    // NAMD: electrostatics every whole number of nonbonded evaluations, a cycle every whole number of both.
+    let both =
+        of("structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 2\nstepspercycle 20\n").unwrap();
+    let new = both.rewritten(&ratio(3, 1)).unwrap();
+    assert_eq!(new, "structure a.psf\ntimestep 1\nnonbondedFreq 3\nfullElectFrequency 3\nstepspercycle 21\n");
+}
+
+#[test]
+fn an_outer_step_that_no_engine_runs_is_answered_by_those_beside_it() {
+    use kickdrift::advise::Scheme;
+    use kickdrift::advise::engine::nested_beside;
+    let beside = |inner: Rational, outer: Rational| nested_beside(&Scheme::new(vec![inner, outer]).unwrap());
+    assert_eq!(
+        beside(ratio(1, 2), ratio(21, 5)).unwrap(),
+        "4.2 fs is no multiple of 0.5 fs, so no engine runs it; 4 fs (8) and 4.5 fs (9) are"
+    );
+    assert!(beside(ratio(1, 2), ratio(4, 1)).is_none());
 }

@@ -191,3 +191,69 @@ fn what_grows_too_slowly_to_be_told_is_not_said_not_to_grow() {
     assert_eq!(masking(ratio(1, 1)), (Holds::Stable, Mask::NotNeeded));
     assert_eq!(masking(ratio(-2, 1)), (Holds::Unstable, Mask::NotTold));
 }
+
+type Entries<'a> = &'a [(usize, usize, Rational)];
+
+fn system_of(masses: &[Rational], potentials: &[(Rational, Entries)]) -> System {
+    let potential = |(step, entries): &(Rational, Entries)| {
+        let mut own = Symmetric::zero(masses.len());
+        entries.iter().for_each(|(i, j, x)| own.add(*i, *j, x));
+        Potential::new(own, step.clone())
+    };
+    System::new(Symmetric::diagonal(masses), potentials.iter().map(potential).collect()).unwrap()
+}
+
+/// O stands in the middle of every drift of the whole schedule, also for what only one of the clocks acts on.
+#[test]
+fn a_decoupled_part_is_damped_as_a_part_that_is_hardly_coupled() {
+    let unit = [ratio(1, 1), ratio(1, 1)];
+    let growth = |coupling: Rational| {
+        let slow = [(0, 0, ratio(1, 100)), (1, 0, coupling), (1, 1, ratio(42, 90))];
+        let system = system_of(&unit, &[(ratio(1, 1), &[(0, 0, ratio(1, 10))]), (ratio(3, 1), &slow)]);
+        let found = damped_system(&system, &ratio(1, 2), &Limits::default()).unwrap();
+        (found.damping, found.growth.unwrap())
+    };
+    let (damping, apart) = growth(ratio(0, 1));
+    let (other, coupled) = growth(ratio(1, 1_000_000_000));
+    assert_eq!((damping, other), (Some(Damping::Damped), Some(Damping::Damped)));
+    // The eigenvalues of a matrix of norm 10 move by some 10^-9 · 10.
+    assert!(
+        (apart.0 - coupled.0).abs() < 1e-7 && (apart.1 - coupled.1).abs() < 1e-7,
+        "{apart:?} {coupled:?}"
+    );
+    // A rigid pair beside it, and a stiffness that is zero: the same clocks all the same.
+    let bond = [(0, 0, ratio(7, 30)), (1, 0, ratio(-7, 30)), (1, 1, ratio(7, 30))];
+    let pair = system_of(&unit, &[(ratio(1, 1), &[]), (ratio(3, 1), &bond)]);
+    let alone = system_of(&unit[..1], &[(ratio(1, 1), &[]), (ratio(3, 1), &[(0, 0, ratio(42, 90))])]);
+    for system in [pair, alone] {
+        let own = damped_system(&system, &ratio(1, 2), &Limits::default()).unwrap();
+        assert_eq!(own.damping, Some(Damping::Damped));
+        let growth = own.growth.unwrap();
+        assert!((growth.0 - apart.0).abs() < 1e-7, "{growth:?} {apart:?}");
+    }
+    // By one clock of 3 alone, one O a kick, it would grow.
+    let one = system_of(&unit[..1], &[(ratio(3, 1), &[(0, 0, ratio(42, 90))])]);
+    assert_eq!(
+        damped_system(&one, &ratio(1, 2), &Limits::default()).unwrap().damping,
+        Some(Damping::Growing)
+    );
+}
+
+/// exp(−γ t) is then enclosed by [0, tiny].
+#[test]
+fn a_friction_that_stops_all_velocities_is_answered() {
+    let clocks = two_clocks(ratio(7, 2), ratio(12, 5), ratio(12 * 7, 250));
+    for rate in [ratio(2, 1).pow(60), ratio(10, 1).pow(30), ratio(10, 1).pow(400)] {
+        let own = damped(&clocks, &rate).unwrap();
+        // In the limit the velocity is that of the last kick: x → (1 − t k/2) x.
+        assert_eq!(own.damping, Damping::Damped);
+        let (lo, hi) = own.radius.to_f64_enclosure();
+        assert!(lo >= 0.0 && hi < 1.0, "{lo} {hi}");
+        let apart = system_of(
+            &[ratio(1, 1), ratio(1, 1)],
+            &[(ratio(1, 1), &[(0, 0, ratio(1, 10)), (1, 0, ratio(1, 20)), (1, 1, ratio(1, 10))])],
+        );
+        let found = damped_system(&apart, &rate, &Limits::default()).unwrap();
+        assert_ne!(found.damping, Some(Damping::Growing));
+    }
+}

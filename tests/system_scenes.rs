@@ -3,7 +3,7 @@
 use kickdrift::avi::{self, Ends};
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Ball, Laurent, Real};
-use kickdrift::scene::{Axis, Scan, Span, SystemScene};
+use kickdrift::scene::{Array, Arrays, Axis, Scan, Span, SystemScene};
 use kickdrift::system::{Evidence, Holds, Limits, ManyClocks, Route, decide_system, middle};
 use kickdrift::verdict::{Kind, Tier};
 
@@ -556,4 +556,210 @@ fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_
         let error = asked.unwrap_err().to_string();
         assert!(error.starts_with(message), "{error}");
     }
+}
+
+/// Arrays in memory by their names, and a system of these with more fields.
+fn held(
+    arrays: &[(&str, &[usize], Vec<f64>)],
+    more: serde_json::Value,
+) -> kickdrift::error::Result<SystemScene> {
+    let array = |(name, shape, values): &(&str, &[usize], Vec<f64>)| {
+        (name.to_string(), Array::new(shape.to_vec(), values.clone()).unwrap())
+    };
+    let arrays = Arrays::Held(std::sync::Arc::new(arrays.iter().map(array).collect()));
+    let mut source = serde_json::json!({"schema": "kickdrift/system/1"});
+    more.as_object().unwrap().iter().for_each(|(key, value)| source[key] = value.clone());
+    SystemScene::from_json_in(arrays, source)
+}
+
+/// Four particles off all axes, and the stiffness of unit springs between these pairs, not mass-weighted.
+const CORNERS: [[f64; 3]; 4] = [[0.0, 0.1, 0.2], [1.1, 0.3, -0.1], [0.2, 0.9, 0.4], [0.3, 0.2, 1.3]];
+
+fn springs(pairs: &[(usize, usize)]) -> Vec<f64> {
+    let mut k = vec![0.0; 144];
+    for &(i, j) in pairs {
+        let apart = [0, 1, 2].map(|a| CORNERS[i][a] - CORNERS[j][a]);
+        let square: f64 = apart.iter().map(|x| x * x).sum();
+        for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+            let own = apart[a] * apart[b] / square;
+            k[(3 * i + a) * 12 + 3 * i + b] += own;
+            k[(3 * j + a) * 12 + 3 * j + b] += own;
+            k[(3 * i + a) * 12 + 3 * j + b] -= own;
+            k[(3 * j + a) * 12 + 3 * i + b] -= own;
+        }
+    }
+    k
+}
+
+/// The springs in three potentials, of these steps.
+fn tetrahedron(steps: [&str; 3], more: serde_json::Value) -> kickdrift::error::Result<SystemScene> {
+    let pairs: [&[(usize, usize)]; 3] = [&[(0, 1), (1, 2)], &[(0, 2), (2, 3)], &[(0, 3), (1, 3)]];
+    let names = ["a", "b", "c"];
+    let mut arrays: Vec<(&str, &[usize], Vec<f64>)> = vec![
+        ("masses", &[4], vec![1.0, 2.0, 3.0, 1.5]),
+        ("positions", &[4, 3], CORNERS.as_flattened().to_vec()),
+    ];
+    arrays.extend(names.iter().zip(pairs).map(|(name, pairs)| (*name, &[12, 12][..], springs(pairs))));
+    let potential =
+        |(name, step): (&&str, &str)| serde_json::json!({"step": step, "stiffness": {"npy": name}});
+    let potentials: Vec<_> = names.iter().zip(steps).map(potential).collect();
+    let mut fields = serde_json::json!({"masses": {"npy": "masses"}, "potentials": potentials});
+    more.as_object().unwrap().iter().for_each(|(key, value)| fields[key] = value.clone());
+    held(&arrays, fields)
+}
+
+#[test]
+fn three_clocks_have_their_rigid_motions_projected_out_as_two_have() {
+    let positions = serde_json::json!({"positions": {"npy": "positions"}});
+    let limits = Limits::default();
+    for (steps, stable) in [(["1/8", "1/4", "1/2"], true), (["1/2", "1", "2"], false)] {
+        let scene = tetrahedron(steps, positions.clone()).unwrap();
+        let analysis = scene.decide(Route::Cheapest, &limits).unwrap();
+        assert!(analysis.is_proof() && analysis.is_stable() == stable, "{steps:?} {:?}", analysis.kind);
+        assert!(
+            analysis.warnings[0].contains("with 6 motions projected out (positions)"),
+            "{:?}",
+            analysis.warnings
+        );
+        // Twelve coordinates, six multipliers; shapes without the centre of mass, in the coordinates given.
+        let count: usize = analysis.parts.iter().map(|part| part.multipliers.len()).sum();
+        assert_eq!((analysis.size, count), (12, 6));
+        for own in analysis.parts.iter().flat_map(|part| &part.instabilities) {
+            let momentum: f64 = (0..4).map(|i| own.shape[3 * i] * [1.0_f64, 2.0, 3.0, 1.5][i].sqrt()).sum();
+            assert!(own.shape.len() == 12 && momentum.abs() < 1e-12, "{momentum}");
+        }
+    }
+    // By the null space as well, and two clocks as before.
+    let bare = tetrahedron(["1/8", "1/4", "1/2"], serde_json::json!({})).unwrap();
+    let bare = bare.decide(Route::Cheapest, &limits).unwrap();
+    assert!(
+        bare.is_proof() && bare.is_stable() && bare.warnings[0].contains("null space"),
+        "{:?}",
+        bare.warnings
+    );
+    let two =
+        tetrahedron(["1/8", "1/8", "1/4"], positions).unwrap().decide(Route::Cheapest, &limits).unwrap();
+    assert_eq!(two.measured.unwrap().removed.unwrap().count, 6);
+}
+
+#[test]
+fn a_null_space_larger_than_that_of_rigid_motions_is_refused() {
+    // A chain of three springs: three directions of twelve are stiff.
+    let chain = |more: serde_json::Value| {
+        let arrays: [(&str, &[usize], Vec<f64>); 3] = [
+            ("masses", &[4], vec![1.0; 4]),
+            ("positions", &[4, 3], CORNERS.as_flattened().to_vec()),
+            ("k", &[12, 12], springs(&[(0, 1), (1, 2), (2, 3)])),
+        ];
+        let potentials = serde_json::json!([{"step": "1/4", "stiffness": {"npy": "k"}}]);
+        let mut fields = serde_json::json!({"masses": {"npy": "masses"}, "potentials": potentials});
+        more.as_object().unwrap().iter().for_each(|(key, value)| fields[key] = value.clone());
+        held(&arrays, fields)?.decide(Route::Cheapest, &Limits::default())
+    };
+    let error = chain(serde_json::json!({})).unwrap_err().to_string();
+    assert!(
+        error.starts_with("total stiffness = zero within 1.0e-6 of the norms in 9 directions: "),
+        "{error}"
+    );
+    assert!(error.contains("rigid motions are at most 6"), "{error}");
+    let by_positions = chain(serde_json::json!({"positions": {"npy": "positions"}})).unwrap();
+    assert_eq!(by_positions.measured.unwrap().removed.unwrap().count, 6);
+    // In a box three translations, which need no positions.
+    for more in [serde_json::json!({}), serde_json::json!({"positions": {"npy": "positions"}})] {
+        let mut more = more;
+        more["periodic"] = true.into();
+        let removed = chain(more).unwrap().measured.unwrap().removed.unwrap();
+        assert_eq!((removed.count, removed.found_by), (3, "periodic box"));
+        assert!(removed.fast < 1e-15, "{}", removed.fast);
+    }
+    // Springs to all corners and a coarse accuracy: soft is not rigid.
+    let coarse = serde_json::json!({"accuracy": 0.09});
+    let error =
+        tetrahedron(["1/8", "1/8", "1/4"], coarse).unwrap().decide(Route::Cheapest, &Limits::default());
+    let found = error.map(|own| own.measured.unwrap().removed.unwrap().count);
+    assert!(found.is_err() || found.unwrap() == 6);
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_refused_where_they_stand() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for (name, at, message) in [
+            ("positions", 7, "positions of atom 2 (from 0), y = "),
+            ("masses", 3, "masses[3] = "),
+            ("k", 14, "potentials[0].stiffness[1, 2] = "),
+            ("force", 5, "potentials[0].force[5] = "),
+        ] {
+            let mut arrays: [(&str, &[usize], Vec<f64>); 4] = [
+                ("masses", &[4], vec![1.0, 12.0, 12.0, 1.0]),
+                ("positions", &[4, 3], CORNERS.as_flattened().to_vec()),
+                ("k", &[12, 12], springs(&[(0, 1), (1, 2), (2, 3)])),
+                ("force", &[12], vec![0.0; 12]),
+            ];
+            arrays.iter_mut().find(|own| own.0 == name).unwrap().2[at] = bad;
+            let fields = serde_json::json!({
+                "masses": {"npy": "masses"}, "positions": {"npy": "positions"}, "constraints": "h-bonds",
+                "potentials": [{"step": "1/4", "stiffness": {"npy": "k"}, "force": {"npy": "force"}}]
+            });
+            let error = held(&arrays, fields).unwrap_err().to_string();
+            assert!(error.starts_with(message) && error.ends_with("every number must be finite"), "{error}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_reference_is_said_in_words_of_its_own() {
+    for (fields, message) in [
+        (
+            serde_json::json!({"masses": {"npz": "a"}, "potentials": [{"step": "1", "stiffness": {"npy": "k"}}]}),
+            "masses = this file: {\"npz\":\"a\"} names no array: write {\"npy\"",
+        ),
+        (
+            serde_json::json!({"potentials": [{"step": "1", "stiffness": {"npy": 3}}]}),
+            "potentials[0].stiffness = this file: {\"npy\":3} names no array",
+        ),
+        (
+            serde_json::json!({"constraints": 5, "potentials": [{"step": "1", "stiffness": {"npy": "k"}}]}),
+            "constraints = this file: 5 are no constraints: write \"h-bonds\"",
+        ),
+    ] {
+        let error = held(&[], fields).unwrap_err().to_string();
+        assert!(error.starts_with(message) && !error.contains("untagged"), "{error}");
+    }
+}
+
+#[test]
+fn a_key_that_stands_twice_in_a_file_is_an_error_and_a_byte_order_mark_is_none() {
+    let text = r#"{"schema": "kickdrift/system/1", "masses": ["1"],
+        "potentials": [{"step": "1", "step": "2", "springs": [[0, null, "1"]]}]}"#;
+    let error = SystemScene::read(text).unwrap_err().to_string();
+    assert!(error.contains("line 2") && error.contains("the key \"step\" stands twice"), "{error}");
+    let once = text.replace(r#""step": "2", "#, "");
+    assert!(SystemScene::read(&format!("\u{feff}{once}")).is_ok());
+    let error = SystemScene::read(&once.replace("\"step\"", "\"st\u{202e}ep\"")).unwrap_err().to_string();
+    assert!(error.contains("st\\u{202e}ep"), "{error}");
+    let scene = kickdrift::scene::Scene::read(r#"{"schema": "a", "schema": "b"}"#).unwrap_err().to_string();
+    assert!(scene.contains("the key \"schema\" stands twice"), "{scene}");
+}
+
+#[test]
+fn heavy_hydrogens_are_held_as_the_pairs_that_they_are() {
+    let with = |constraints: serde_json::Value| {
+        let arrays: [(&str, &[usize], Vec<f64>); 4] = [
+            ("masses", &[4], vec![1.0, 12.0, 14.0, 1.0]),
+            ("positions", &[4, 3], CORNERS.as_flattened().to_vec()),
+            ("k", &[12, 12], springs(&[(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])),
+            ("force", &[12], vec![0.0; 12]),
+        ];
+        let fields = serde_json::json!({
+            "masses": {"npy": "masses"}, "positions": {"npy": "positions"}, "constraints": constraints, "hydrogen_mass": "3.024",
+            "potentials": [{"step": "1/4", "stiffness": {"npy": "k"}, "force": {"npy": "force"}}]
+        });
+        let analysis = held(&arrays, fields)?.decide(Route::Cheapest, &Limits::default())?;
+        Ok::<_, kickdrift::error::Error>((analysis.parts[0].multipliers.clone(), analysis.measured))
+    };
+    // Both are nearest to particle 2.
+    let named = with(serde_json::json!("h-bonds")).unwrap();
+    assert_eq!(named, with(serde_json::json!([[0, 2], [3, 2]])).unwrap());
+    assert_eq!(named.1.unwrap().removed.unwrap().count, 8);
+    assert_ne!(named.0, with(serde_json::json!([[0, 1], [3, 2]])).unwrap().0);
 }

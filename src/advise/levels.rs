@@ -139,19 +139,22 @@ impl Levels<'_> {
         (0..self.stiffness.len()).filter(|&k| !self.stiffness[k].is_zero()).collect()
     }
 
+    /// With friction a kick of strength 0 parts a drift in two.
+    fn all(&self) -> Vec<usize> {
+        (0..self.stiffness.len()).collect()
+    }
+
     /// The friction per fs above which a resonance is masked, enclosed; `None` where nothing grows or the period is too long to tell.
     pub fn masking(&self) -> Option<(f64, f64)> {
-        let heard = self.heard();
-        let found = masking(&self.clocks(&heard).ok()?).ok()??;
-        let first = Ball::from_rational(&self.scheme.steps[*heard.first()?], BITS);
+        let found = masking(&self.clocks(&self.all()).ok()?).ok()??;
+        let first = Ball::from_rational(self.scheme.inner(), BITS);
         Some(found.rate.div(&first, BITS)?.to_f64_enclosure())
     }
 
     /// Whether this friction per fs keeps all bounded; `None` where that is not told.
     pub fn is_damped_by(&self, rate: &Rational) -> Option<bool> {
-        let heard = self.heard();
-        let rate = rate * &self.scheme.steps[*heard.first()?];
-        Some(damped(&self.clocks(&heard).ok()?, &rate).ok()?.damping == Damping::Damped)
+        let rate = rate * self.scheme.inner();
+        Some(damped(&self.clocks(&self.all()).ok()?, &rate).ok()?.damping == Damping::Damped)
     }
 
     fn clocks(&self, heard: &[usize]) -> Result<ManyClocks<Laurent>> {

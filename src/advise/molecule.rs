@@ -7,6 +7,7 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use super::answer::{Status, longest_below};
 use super::levels::Scheme;
+use super::question::check_length;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
@@ -140,6 +141,7 @@ impl Molecule {
         if let Some(rate) = friction.filter(|rate| **rate <= Rational::zero()) {
             return Err(Error::input("friction", rate, "a friction must be positive"));
         }
+        length.map_or(Ok(()), check_length)?;
         let mut known: Vec<(u64, AtRatio)> = Vec::new();
         let mut found = Vec::new();
         for scheme in schemes {

@@ -78,10 +78,13 @@ impl Question {
     }
 
     /// The same about a run of this length in fs.
-    #[must_use]
-    pub fn of_length(mut self, length: Rational) -> Question {
+    ///
+    /// # Errors
+    /// A length that is not positive.
+    pub fn of_length(mut self, length: Rational) -> Result<Question> {
+        check_length(&length)?;
         self.length = Some(length);
-        self
+        Ok(self)
     }
 
     /// The same with modes that constraints hold, to be told.
@@ -136,4 +139,13 @@ impl Question {
 /// Whether powers of the propagator stay bounded.
 pub(super) fn is_stable(kind: Kind) -> bool {
     matches!(kind, Kind::Elliptic | Kind::Coexistence)
+}
+
+/// # Errors
+/// A length of a run that is not positive.
+pub(super) fn check_length(length: &Rational) -> Result<()> {
+    if *length > Rational::zero() {
+        return Ok(());
+    }
+    Err(Error::input("length", length, "a run has a positive length, as 10ns"))
 }

@@ -197,7 +197,7 @@ impl Args {
         };
         let mut question = Question::new(modes, schemes, part("band", &self.band)?)?.holding(held);
         if let Some(length) = self.run_length()? {
-            question = question.of_length(length);
+            question = question.of_length(length)?;
         }
         match self.friction()? {
             Some(rate) => question.with_friction(rate),

@@ -32,7 +32,7 @@ pub struct Args {
     /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// Friction per unit time, v times exp(-G t) in the middle of every drift (BAOAB): is it enough?
+    /// Friction per unit time, v times exp(-G t) amid every drift between any two kicks (BAOAB): is it enough?
     #[arg(long, value_name = "G", value_parser = of(parse_rational))]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.

@@ -35,12 +35,12 @@ use magnitude::Magnitude;
 const RADIUS_BITS: i64 = 30;
 
 /// The largest |exp| of a ball.
-const MAX_EXPONENT: u64 = 1 << 60;
+const MAX_EXPONENT: i64 = 1 << 60;
 
 /// The set [mid − rad, mid + rad] · 2^exp.
 ///
-/// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (an operation
-/// that would leave this range **panics**); exp = 0 in the exact ball 0.
+/// Invariant: rad ≤ 2^30 + 1; |exp| ≤ 2^60, so that no sum of a few exponents overflows (what is smaller becomes a ball about 0, an
+/// operation on what is larger **panics**); exp = 0 in the exact ball 0.
 #[derive(Clone, Debug)]
 pub struct Ball {
     mid: BigInt,
@@ -104,8 +104,11 @@ impl Ball {
         if self.rad == 0 && self.mid.is_zero() {
             self.exp = 0;
         }
-        assert!(self.exp.unsigned_abs() <= MAX_EXPONENT, "exponent of a ball");
-        self
+        if self.exp >= -MAX_EXPONENT {
+            assert!(self.exp <= MAX_EXPONENT, "exponent of a ball");
+            return self;
+        }
+        Ball::rounded(BigInt::zero(), -MAX_EXPONENT, self.magnitude(), 64)
     }
 
     /// The same midpoint, the radius enlarged by `extra`.
@@ -264,8 +267,7 @@ impl Ball {
     }
 
     fn rad_at_least(&self, other: &Ball) -> bool {
-        let radius = |ball: &Ball| rational::scale2(&ball.rad.into(), ball.exp);
-        radius(self) >= radius(other)
+        self.radius().at_least(other.radius())
     }
 
     /// Is |mid| > 2^k?

@@ -67,7 +67,7 @@ fn take(value: &mut Value, path: &[&str]) -> bool {
     match (path, value) {
         ([last], Value::Object(own)) => own.shift_remove(*last).is_some(),
         (["*", rest @ ..], Value::Array(items)) => {
-            items.iter_mut().fold(false, |met, item| take(item, rest) || met)
+            items.iter_mut().filter_map(|item| take(item, rest).then_some(())).count() > 0
         }
         ([first, rest @ ..], Value::Object(own)) => own.get_mut(*first).is_some_and(|own| take(own, rest)),
         _ => false,

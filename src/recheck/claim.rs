@@ -13,6 +13,7 @@ use super::{
     closings, compare as comparison, curves, map, polynomial, proposition, survey, tongues, verdict,
 };
 use crate::error::{Error, Result};
+use crate::scene::json;
 
 macro_rules! claims {
     ($($(#[$condition:meta])? $name:literal $variant:ident $claim:path;)*) => {
@@ -91,7 +92,7 @@ impl Claim {
     /// A text that is no JSON, a schema that cannot be rechecked, a head that kickdrift does not write, a field that is
     /// missing or not what the schema says; named by its path.
     pub fn read(text: &str) -> Result<Claim> {
-        let document: Map<String, Value> = serde_json::from_str(text)
+        let document: Map<String, Value> = json::from_str(text)
             .map_err(|cause| Error::input("document", "no JSON", format!("{cause}; {REMEDY}")))?;
         let schema = document.get("schema").cloned().unwrap_or_default();
         let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));

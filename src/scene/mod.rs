@@ -19,6 +19,7 @@
 
 mod document;
 mod grid;
+pub(crate) mod json;
 #[cfg(feature = "system")]
 mod system;
 mod want;
@@ -110,7 +111,7 @@ impl Scene {
             let remedy = "a scene has at most 1 MiB; is this the right file?";
             return Err(Error::input("scene", format!("{} bytes", text.len()), remedy));
         }
-        let document: Document = serde_json::from_str(text).map_err(|cause| not_a_scene(text, &cause))?;
+        let document: Document = json::from_str(text).map_err(|cause| not_a_scene(text, &cause))?;
         Scene::new(&document)
     }
 

@@ -62,7 +62,7 @@ pub struct Instability {
 
 impl Instability {
     /// Turns and scales the shape so that its longest entry is 1.
-    pub(super) fn normalize(&mut self) {
+    pub(crate) fn normalize(&mut self) {
         let entries = || self.shape.iter().zip(&self.quadrature).map(|(&re, &im)| Complex64::new(re, im));
         let longer = |a: Complex64, b: Complex64| if b.norm_sqr() > a.norm_sqr() { b } else { a };
         let longest = entries().fold(Complex64::new(0.0, 0.0), longer);

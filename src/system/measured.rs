@@ -5,7 +5,7 @@
 pub struct Removed {
     /// How many.
     pub count: usize,
-    /// "positions" or "null space of the total".
+    /// "positions", "periodic box" or "null space of the total", with constraints.
     pub found_by: &'static str,
     /// ‖F r‖₂/‖F‖₂ for the orthonormal rigid motions r, rounded: what of the fast stiffness was removed.
     pub fast: f64,

@@ -70,7 +70,11 @@ impl System {
 
     /// From a mass matrix and potentials that were checked, at least one of these.
     fn of_checked(mass: Symmetric, potentials: Vec<Potential>) -> Result<Self> {
-        let clocks = merged(&potentials);
+        let clocks = heard(merged(&potentials));
+        System::on(clocks, mass, potentials)
+    }
+
+    fn on(clocks: Vec<Potential>, mass: Symmetric, potentials: Vec<Potential>) -> Result<Self> {
         let steps: Vec<_> = clocks.iter().map(|clock| clock.step.clone()).collect();
         let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
         let schedule = Schedule::new(&steps, &phases)?;
@@ -97,6 +101,12 @@ impl System {
     /// unless all do.
     pub fn clocks(&self) -> &[Potential] {
         &self.clocks
+    }
+
+    /// The same with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.
+    pub(super) fn with_silent_clocks(&self) -> System {
+        let (mass, potentials) = (self.mass.clone(), self.potentials.clone());
+        System::on(merged(&potentials), mass, potentials).expect("the clocks of a checked system")
     }
 
     /// When which clock kicks.
@@ -249,7 +259,7 @@ pub(super) fn check_potential(k: usize, potential: &Potential, n: usize) -> Resu
     Ok(())
 }
 
-/// One clock for each (step, phase), by increasing step; those whose stiffness vanishes are kept if nothing else is.
+/// One clock for each (step, phase), by increasing step.
 fn merged(potentials: &[Potential]) -> Vec<Potential> {
     let mut clocks: BTreeMap<(&Rational, &Rational), Potential> = BTreeMap::new();
     for potential in potentials {
@@ -258,6 +268,11 @@ fn merged(potentials: &[Potential]) -> Vec<Potential> {
             Entry::Occupied(mut place) => place.get_mut().stiffness.add_all(&potential.stiffness),
         }
     }
-    let (moving, still): (Vec<_>, Vec<_>) = clocks.into_values().partition(|c| !c.stiffness.is_zero());
+    clocks.into_values().collect()
+}
+
+/// Those whose stiffness does not vanish; all if there are none.
+fn heard(clocks: Vec<Potential>) -> Vec<Potential> {
+    let (moving, still): (Vec<_>, Vec<_>) = clocks.into_iter().partition(|c| !c.stiffness.is_zero());
     if moving.is_empty() { still } else { moving }
 }

@@ -131,7 +131,7 @@ impl<'a> Roots<'a> {
         let (x, n, bits, fraction) = (&self.points[i], self.f.len() - 1, self.bits as usize, self.fraction());
         let mut value = Complex::new(coefficients[n].clone(), BigInt::zero());
         for c in coefficients[..n].iter().rev() {
-            value = value * x;
+            value *= x;
             value = Complex::new((value.re >> bits) + c, value.im >> bits);
         }
         let others = self.points.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, other)| x - other);

@@ -107,6 +107,29 @@ fn what_is_missing_is_named_with_a_remedy() {
 }
 
 #[test]
+fn an_outer_step_that_is_no_multiple_is_named_with_those_that_are() {
+    let text = stdout(&words("advise --period OH=10fs --period 40fs --steps 0.5fs,4.2fs", &[]));
+    let said = "4.2 fs is no multiple of 0.5 fs, so no engine runs it; 4 fs (8) and 4.5 fs (9) are";
+    assert!(text.starts_with("4.2 fs") && text.lines().next().unwrap().contains(said), "{text}");
+    assert!(text.contains(&format!("advice: {said}")) && !text.contains("do not use"), "{text}");
+}
+
+#[test]
+fn a_friction_that_stops_all_velocities_does_not_panic() {
+    for line in [
+        "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98 --friction 2^60",
+        "system DATA/diatomic-tether.json --friction 2^60",
+        "system DATA/water4.json --friction 10^30",
+        "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --friction 1e30/ps",
+        "advise DATA/water4.json --friction 1e30/ps",
+    ] {
+        let line = line.replace("DATA", concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes"));
+        let ended = run(&words(&line, &[]));
+        assert_eq!(ended.code, Some(0), "{line}: {}", ended.stderr);
+    }
+}
+
+#[test]
 fn a_friction_that_masks_is_told_and_is_no_advice() {
     let line = "advise --period OH=10fs --period 40fs --steps 0.48fs,4.8fs --friction";
     let first =

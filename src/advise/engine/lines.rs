@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::reading::{
-    Engine, FS, MOST_COUNT, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times,
+    Engine, FS, Interval, MOST_COUNT, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times,
 };
 use crate::advise::constraint::Constraints;
 use crate::error::{Error, Result};
@@ -212,6 +212,31 @@ pub(super) fn lammps(text: &str) -> Result<Reading> {
     Ok(reading)
 }
 
+/// What grompp wants to be multiples of `mts-level2-factor` where it is not 0, with its default; and of the first one (0: of none).
+const GROMACS_INTERVALS: [(&str, u64); 4] =
+    [("nstcalcenergy", 100), ("nstenergy", 1000), ("nstlog", 1000), ("nstfout", 0)];
+
+/// Intervals where they stand in a text, and those to be added where their default may not do.
+fn intervals(lines: &[Line], end: usize, keys: &[(&'static str, u64)]) -> Result<Vec<(Range<usize>, Place)>> {
+    let mut places = Vec::new();
+    let mut first = 1;
+    for (k, &(key, default)) in keys.iter().enumerate() {
+        let given = last(lines, key).and_then(|line| line.words.get(1));
+        // Below 0 is the default, too.
+        let own = given.map_or(Some(default), |word| match word.0.parse::<i64>() {
+            Ok(n) => Some(u64::try_from(n).unwrap_or(default)),
+            Err(_) => None,
+        });
+        let Some(steps) = own.filter(|n| (1..=MOST_COUNT * MOST_COUNT).contains(n)) else { continue };
+        first = if k == 0 { steps } else { first };
+        let of = if k > 0 && steps % first == 0 { first } else { 1 };
+        let range = given.map_or(end..end, |word| word.1.clone());
+        let key = given.is_none().then_some(key);
+        places.push((range, Place::Interval(Interval { key, steps, of })));
+    }
+    Ok(places)
+}
+
 /// `dt` (ps) is the innermost step; with `mts` the second level kicks every `mts-level2-factor` of them.
 pub(super) fn gromacs(text: &str) -> Result<Reading> {
     let lines = lines(text, ';', true);
@@ -256,7 +281,8 @@ pub(super) fn gromacs(text: &str) -> Result<Reading> {
             (range, Place::LastRatio)
         });
     if n > 1 {
-        reading.places = vec![place];
+        reading.places = intervals(&lines, text.len(), &GROMACS_INTERVALS)?;
+        reading.places.push(place);
     }
     reading.forces = vec!["bonds and all other forces".into(), slow];
     reading.forces.truncate(reading.scheme.steps().len());
@@ -299,9 +325,12 @@ pub(super) fn namd(text: &str) -> Result<Reading> {
         (false, false) => {}
     }
     reading.forces = forces.into_iter().map(Into::into).collect();
-    let outermost = if m >= n && full.is_some() { full } else { nonbonded.filter(|_| n >= m) };
+    // Both where they are equal: the one is to stay a multiple of the other.
+    let outermost = full.filter(|_| m >= n).into_iter().chain(nonbonded.filter(|_| n >= m));
     if reading.scheme.steps().len() > 1 {
-        reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).into_iter().collect();
+        reading.places = outermost.map(|(_, range)| (range, Place::OuterOverInner)).collect();
+        // NAMD wants both to divide the steps of a cycle.
+        reading.places.extend(intervals(&lines, text.len(), &[("stepspercycle", 20)])?);
     } else {
         reading.places = step.map(|(_, range)| (range, Place::Outer(FS))).into_iter().collect();
     }

@@ -29,4 +29,4 @@ mod reading;
 mod xml;
 
 pub use read::read;
-pub use reading::{Engine, Reading, not_nested};
+pub use reading::{Engine, Reading, nested_beside, not_nested};

@@ -57,6 +57,8 @@ pub(super) enum Place {
     LastRatio,
     /// The outermost step over the innermost one.
     OuterOverInner,
+    /// An interval in innermost steps that has to be a multiple of the outermost one.
+    Interval(Interval),
     /// A whole line to add at the end, with the last ratio behind it.
     Append(&'static str),
     /// The innermost step in fs, of an engine that takes the next shorter one which divides the outermost: behind a key to add, if any.
@@ -91,6 +93,25 @@ impl Loop {
         }
         one += rest;
         vec![one; turns as usize].join(&self.gap)
+    }
+}
+
+/// How often something is done, in innermost steps.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Interval {
+    /// Where it stands nowhere: the key of its line, to be added unless its default does.
+    pub key: Option<&'static str>,
+    pub steps: u64,
+    /// Another interval of which it stays a multiple.
+    pub of: u64,
+}
+
+impl Interval {
+    /// The next one that is a multiple of so many innermost steps; `None` where a default is one.
+    fn written(&self, outer: u64) -> Option<u64> {
+        let unit = self.of.div_ceil(outer) * outer;
+        let steps = self.steps.div_ceil(unit) * unit;
+        (self.key.is_none() || steps != self.steps).then_some(steps)
     }
 }
 
@@ -138,6 +159,15 @@ const MOST_TURNS: u64 = 1000;
 pub fn not_nested(scheme: &Scheme) -> Option<String> {
     let pair = scheme.steps().windows(2).find(|pair| !(&pair[1] / &pair[0]).is_integer())?;
     Some(format!("{} fs is no multiple of {} fs", decimal(&pair[1]), decimal(&pair[0])))
+}
+
+/// Of two steps that are no multiples of each other, what they are and the outer steps beside that are.
+pub fn nested_beside(scheme: &Scheme) -> Option<String> {
+    let ([inner, outer], Some(why)) = (scheme.steps(), not_nested(scheme)) else { return None };
+    let one = Rational::from_integer(1.into());
+    let [below, above] = [(outer / inner).floor(), (outer / inner).floor() + one]
+        .map(|n| format!("{} fs ({n})", decimal(&(inner * &n))));
+    Some(format!("{why}, so no engine runs it; {below} and {above} are"))
 }
 
 impl Reading {
@@ -202,10 +232,16 @@ impl Reading {
                 }
                 Place::LastRatio => whole(before)?,
                 Place::OuterOverInner => whole(self.scheme.inner())?,
-                Place::Append(key) => {
-                    let gap = if self.text.ends_with('\n') || self.text.is_empty() { "" } else { "\n" };
-                    format!("{gap}{key} {}\n", whole(before)?)
+                Place::Interval(own) => {
+                    let outer = whole(self.scheme.inner())?.parse().ok().filter(|n| *n <= MOST_COUNT);
+                    let remedy = "that is too many inner steps: choose a shorter one";
+                    let steps = own.written(outer.ok_or_else(|| Error::input("outer step", &shown, remedy))?);
+                    let added = |key: &str| {
+                        steps.map_or_else(String::new, |n| at_end(&text, &range, &format!("{key} = {n}")))
+                    };
+                    own.key.map_or_else(|| steps.unwrap_or(own.steps).to_string(), added)
                 }
+                Place::Append(key) => at_end(&text, &range, &format!("{key} {}", whole(before)?)),
             };
             text.replace_range(range, &number);
         }
@@ -221,6 +257,15 @@ impl Reading {
         let old: Vec<&str> = self.text.lines().collect();
         let differs = |(i, line): &(usize, &str)| old.get(*i) != Some(line);
         Ok(new.lines().enumerate().filter(differs).map(|(_, line)| line.trim().to_string()).collect())
+    }
+}
+
+/// A line to insert where the text ended; lines inserted there before come behind it.
+fn at_end(text: &str, at: &Range<usize>, line: &str) -> String {
+    match (text[..at.start].ends_with('\n') || at.start == 0, text.len() > at.start) {
+        (true, _) => format!("{line}\n"),
+        (false, true) => format!("\n{line}"),
+        (false, false) => format!("\n{line}\n"),
     }
 }
 

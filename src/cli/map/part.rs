@@ -12,7 +12,7 @@ use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::file::write_output;
 use crate::report::plane::command;
-use crate::scene::{GridRange, shown_range};
+use crate::scene::{GridRange, json, shown_range};
 
 /// A grid, as it was asked for, and what is asked of it.
 pub struct Map {
@@ -108,7 +108,7 @@ impl Part {
             Error::io(directory.join(NAME).display(), format!("cannot read ({cause}): {remedy}"))
         };
         let text = fs::read_to_string(directory.join(NAME)).map_err(|cause| unreadable(&cause))?;
-        let written: Written = serde_json::from_str(&text).map_err(|cause| unreadable(&cause))?;
+        let written: Written = json::from_str(&text).map_err(|cause| unreadable(&cause))?;
         let map = written.clone().read()?;
         let store = Store::open(directory, &map.grid, map.products)?;
         Ok(Part { directory: directory.to_owned(), written, store })

@@ -12,12 +12,23 @@ use super::{Ball, Magnitude, series};
 pub(super) const SPARE: u32 = 16;
 
 impl Ball {
-    /// e^x, to about `bits` bits relatively.
+    /// e^x, to about `bits` bits relatively; of what may lie below −2^40 the enclosure \[0, 2^−2^40\].
     ///
-    /// **Panics** beyond |x| = 2^40, where the result is of no use to anyone.
+    /// **Panics** beyond x = 2^40, where the result is of no use to anyone.
     pub fn exp(&self, bits: u32) -> Ball {
-        assert!(self.top().is_none_or(|top| top <= 40), "exponential of a number beyond 2^40");
         let radius = self.radius();
+        if self.top().is_some_and(|top| top > 40) {
+            let (lower, upper) = self.ends();
+            let is_huge = |end: &Ball| end.top().is_some_and(|top| top > 40);
+            assert!(upper.mid.is_negative() || !is_huge(&upper), "exponential of a number beyond 2^40");
+            // e^x < 2^x for x < 0. Half of it about half of it.
+            let tiny = Ball { mid: BigInt::one(), rad: 1, exp: -(1 << 40) - 1 };
+            return match (is_huge(&upper), is_huge(&lower)) {
+                (true, _) => tiny,
+                (false, true) => tiny.union(&upper.exp(bits), bits),
+                (false, false) => lower.exp(bits).union(&upper.exp(bits), bits),
+            };
+        }
         if radius.top().is_some_and(|top| top > 0) {
             let (lower, upper) = self.ends();
             return lower.exp(bits).union(&upper.exp(bits), bits);

@@ -61,6 +61,12 @@ impl Magnitude {
         (self.mantissa != 0).then_some(self.exp + 32)
     }
 
+    /// Whether self ≥ other.
+    pub(super) fn at_least(self, other: Magnitude) -> bool {
+        let order = |own: Magnitude| (!own.is_zero()).then_some((own.exp, own.mantissa));
+        order(self) >= order(other)
+    }
+
     /// self + other, rounded up.
     pub(super) fn plus(self, other: Magnitude) -> Magnitude {
         if self.mantissa == 0 {

@@ -218,3 +218,25 @@ fn domains_end_where_they_should() {
     assert!(one.sub(&tiny, 6000).acos(64).unwrap().relative_accuracy_bits() > 58);
     assert!(one.asin(64).unwrap().sub(&Ball::pi(64).scale2(-1), 64).contains_zero());
 }
+
+#[test]
+fn an_exponential_beyond_all_exponents_is_enclosed_from_0_on() {
+    for exponent in [41, 60, 100, 4000] {
+        let huge = Ball::one().scale2(exponent).neg();
+        let tiny = huge.exp(64);
+        assert_eq!(tiny.compare(&Ball::zero().widened(Magnitude::power_of_two(-1000), 64)), None);
+        assert!(tiny.compare(&Ball::one().scale2(-1000)) == Some(Ordering::Less) && !tiny.mid.is_negative());
+    }
+    // From there up to e.
+    let wide = Ball::one().scale2(41).neg().union(&Ball::one(), 64).exp(64);
+    assert!(wide.contains(&Rational::default()) && wide.contains(&Rational::from_integer(2.into())));
+}
+
+#[test]
+fn what_is_below_the_least_exponent_becomes_a_ball_about_zero() {
+    let least = Ball::one().scale2(-MAX_EXPONENT);
+    let below = least.square(64);
+    assert!(below.contains_zero() && below.rad > 0 && below.top().unwrap() <= -MAX_EXPONENT + 1);
+    let long = Ball::from_integer(&((BigInt::one() << 200) - 1)).scale2(-MAX_EXPONENT - 100);
+    assert!(long.top().unwrap() >= -MAX_EXPONENT + 100);
+}

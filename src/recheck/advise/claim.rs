@@ -178,7 +178,7 @@ impl Input {
         let held = asked(self.constrained.as_deref().unwrap_or_default())?;
         let mut question = Question::new(asked(&self.modes)?, schemes, self.band.0.clone())?.holding(held);
         if let Some(length) = positive("input.length", self.length.as_ref())? {
-            question = question.of_length(length.clone());
+            question = question.of_length(length.clone())?;
         }
         match positive("input.friction", self.friction.as_ref())? {
             Some(rate) => question.with_friction(rate.clone()),

@@ -1,7 +1,7 @@
 //! What a person can act on: a line for each scheme, then what to do, then why.
 
 use super::words::{choice, down, fs, nearest, percent, time, told};
-use crate::advise::engine::{Reading, not_nested};
+use crate::advise::engine::{Reading, nested_beside, not_nested};
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Pair, Row, Scheme, Status, Unstable};
 use crate::number::Rational;
@@ -104,6 +104,14 @@ fn line(advice: &Advice, answer: &Answer) -> String {
         (Some(false), Some(length)) => format!("; not within the run of {}", time(length)),
         _ => String::new(),
     };
+    // What no engine runs is no resonance to be frightened of.
+    if let Some(beside) = nested_beside(&answer.scheme) {
+        let kind = if answer.rows.iter().any(|row| row.found.rate.1 > 0.0) { "unstable" } else { "stable" };
+        return format!(
+            "{:7} {beside} (asynchronous, as it stands, it is {kind}; `verdict` tells more)",
+            fs(answer.scheme.outer())
+        );
+    }
     format!("{:7} {what}{within}", fs(answer.scheme.outer()))
 }
 
@@ -178,6 +186,9 @@ fn action(advice: &Advice, answer: &Answer) -> String {
             fs(scheme.outer()),
             few(slow * 1.005, 3)
         );
+    }
+    if let Some(beside) = nested_beside(scheme) {
+        return format!("advice: {beside}: ask for one of these");
     }
     if let (None, Some(why)) = (&answer.largest, not_nested(scheme)) {
         return format!(

@@ -16,7 +16,7 @@ const DIGITS: u32 = 8;
 pub(super) fn rate(own: Option<(f64, f64)>) -> String {
     match own {
         Some((lo, hi)) if lo > 0.0 && hi.is_finite() => decimal::shortened(lo, hi, DIGITS).to_string(),
-        Some((_, hi)) if hi == 0.0 => "0".into(),
+        Some((_, 0.0)) => "0".into(),
         Some((_, hi)) if hi.is_finite() => {
             let hi = from_f64_exact(hi).expect("a finite double");
             format!("at most {}", decimal::outward(&hi, &hi, 2)[1])

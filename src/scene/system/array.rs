@@ -11,6 +11,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::DMatrix;
 use serde::Deserialize;
+use serde_json::{Map, Value};
 
 use super::market;
 use crate::error::{Error, Result};
@@ -20,11 +21,29 @@ const MOST_ELEMENTS: usize = 1 << 24;
 
 /// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}` or `{"mm": "k.mtx"}`; paths are relative to the file that holds them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
-#[serde(deny_unknown_fields, untagged)]
+#[serde(try_from = "Value")]
 pub(crate) enum Reference {
     Npy { npy: String },
     Npz { npz: String, array: String },
     Mm { mm: String },
+}
+
+impl TryFrom<Value> for Reference {
+    type Error = String;
+
+    fn try_from(value: Value) -> std::result::Result<Self, String> {
+        let text = |key: &str| value.get(key).and_then(Value::as_str).map(String::from);
+        let own = match value.as_object().map_or(0, Map::len) {
+            1 => text("npy").map(|npy| Reference::Npy { npy }).or(text("mm").map(|mm| Reference::Mm { mm })),
+            2 => text("npz").zip(text("array")).map(|(npz, array)| Reference::Npz { npz, array }),
+            _ => None,
+        };
+        own.ok_or_else(|| {
+            format!(
+                "{value} names no array: write {{\"npy\": \"h.npy\"}}, {{\"npz\": \"h.npz\", \"array\": \"fast\"}} or {{\"mm\": \"h.mtx\"}}"
+            )
+        })
+    }
 }
 
 /// The elements as doubles, in C order.
@@ -59,8 +78,18 @@ impl Reference {
     /// Reads the array.
     ///
     /// # Errors
-    /// An I/O error; bad input by `field` where the file is no such array, and where none of this name is held.
+    /// An I/O error; bad input by `field` where the file is no such array, where none of this name is held, and where a number is not finite.
     pub fn read(&self, field: &str, arrays: &Arrays) -> Result<Array> {
+        let array = self.read_unchecked(field, arrays)?;
+        match array.values.iter().position(|x| !x.is_finite()) {
+            Some(at) => {
+                Err(Error::input(&array.place(field, at), array.values[at], "every number must be finite"))
+            }
+            None => Ok(array),
+        }
+    }
+
+    fn read_unchecked(&self, field: &str, arrays: &Arrays) -> Result<Array> {
         match arrays {
             Arrays::Held(held) => self.held(field, held),
             Arrays::In(folder) => {
@@ -204,6 +233,15 @@ impl Array {
             ));
         }
         Ok(Array { shape, values })
+    }
+
+    /// The name of an element, `fast[3, 4]`; of three coordinates or one mass each the atom.
+    fn place(&self, field: &str, at: usize) -> String {
+        match (field, &*self.shape) {
+            ("positions", _) => format!("positions of atom {} (from 0), {}", at / 3, ["x", "y", "z"][at % 3]),
+            (_, [_, columns]) => format!("{field}[{}, {}]", at / columns, at % columns),
+            _ => format!("{field}[{at}]"),
+        }
     }
 
     /// As a matrix.

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
+use serde_json::Value;
 
 use crate::error::{Error, Result};
 
@@ -14,10 +15,24 @@ const HYDROGEN: f64 = 1.1;
 
 /// `"h-bonds"` or pairs of particles, counted from 0.
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(try_from = "Value")]
 pub(super) enum Constraints {
     Word(String),
     Pairs(Vec<[usize; 2]>),
+}
+
+impl TryFrom<Value> for Constraints {
+    type Error = String;
+
+    fn try_from(value: Value) -> std::result::Result<Self, String> {
+        if let Value::String(word) = value {
+            return Ok(Constraints::Word(word));
+        }
+        let pairs = Vec::deserialize(&value).map(Constraints::Pairs);
+        pairs.map_err(|_| {
+            format!("{value} are no constraints: write \"h-bonds\", or pairs of particles, as [[0, 1]]")
+        })
+    }
 }
 
 /// Point masses in space.
@@ -64,9 +79,11 @@ impl Particles<'_> {
                 format!("{pair:?}"),
                 format!("there are {n} particles, counted from 0"),
             )),
-            None if pairs.is_empty() => {
-                Err(Error::input("constraints", "none", "there is no hydrogen: give pairs, as [[0, 1]]"))
-            }
+            None if pairs.is_empty() => Err(Error::input(
+                "constraints",
+                "none",
+                "no mass is up to 1.1, a hydrogen's: give pairs, as [[0, 1]]",
+            )),
             None => Ok(pairs),
         }
     }

@@ -14,10 +14,14 @@
 //! }
 //! ```
 //!
+//! Rigid motions are projected out: by `positions` three translations and three rotations, with `"periodic": true` the translations alone,
+//! else the null space of the total, if it is no larger than that.
+//!
 //! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
 //! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
+use std::borrow::Cow;
 use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
@@ -29,13 +33,14 @@ use serde_json::Value;
 use super::array::{Arrays, Reference};
 use super::document::{LARGEST, Number, no_system};
 use super::held::{Constraints, Particles, reweigh};
+use super::projected::rational;
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::rational::to_f64;
 use crate::system::friction::Friction;
-use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions};
+use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions, translations};
 use crate::system::stretches::{Stretch, cover};
-use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System, decide_by};
+use crate::system::{Analysis, Holds, Limits, Potential, Route, Symmetric, System};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
@@ -53,6 +58,8 @@ struct Document {
     mass_weighted: bool,
     masses: Option<Reference>,
     positions: Option<Reference>,
+    #[serde(default)]
+    periodic: bool,
     accuracy: Option<Number>,
     constraints: Option<Constraints>,
     hydrogen_mass: Option<Number>,
@@ -77,11 +84,12 @@ struct PotentialDocument {
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     /// By increasing step.
-    potentials: Vec<(Rational, DMatrix<f64>)>,
+    pub(super) potentials: Vec<(Rational, DMatrix<f64>)>,
     /// Of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses were given.
     masses: Option<Vec<f64>>,
     positions: Option<Vec<[f64; 3]>>,
     is_weighted: bool,
+    is_periodic: bool,
     accuracy: f64,
     keeps_rigid: bool,
     /// The stiffnesses of steps that several potentials have: each is known to its own norm.
@@ -127,7 +135,11 @@ pub(super) fn is_by_reference(source: &Value) -> bool {
 impl Measured {
     /// From a file of such stiffnesses.
     pub fn read(source: &Value, arrays: &Arrays) -> Result<Measured> {
-        let document = Document::deserialize(source).map_err(no_system)?;
+        let document: Document = serde_path_to_error::deserialize(source).map_err(|fault| {
+            let field = fault.path().to_string();
+            let error = no_system(fault.into_inner());
+            if field == "." { error } else { error.at(field) }
+        })?;
         let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
         let mut read = read.collect::<Result<Vec<_>>>()?;
         let scale = |(index, (own, (step, scale, _))): (usize, (&PotentialDocument, &(_, _, _)))| Scale {
@@ -187,6 +199,7 @@ impl Measured {
             masses,
             positions,
             is_weighted,
+            is_periodic: document.periodic,
             accuracy: 0.0,
             keeps_rigid: document.keep_rigid,
             shares,
@@ -276,14 +289,7 @@ impl Measured {
     /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
-            self.refuse_constraints()?;
-            let mut analysis = decide_by(route, &self.system(), limits)?;
-            analysis.warnings.push(
-                "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the \
-                 doubles given, rigid motions left in"
-                    .into(),
-            );
-            return Ok(analysis);
+            return self.decide_projected(route, limits);
         };
         self.allow(limits)?;
         Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
@@ -356,7 +362,7 @@ impl Measured {
         Ok(self.kernel.get_or_init(|| kernel))
     }
 
-    /// Both stiffnesses, rigid motions and held distances projected out.
+    /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances projected out.
     pub fn hessians(&self) -> Result<Hessians> {
         let whole = self.summed_hessians()?;
         Ok(self.shares.iter().fold(whole, |whole, (step, own)| {
@@ -366,7 +372,7 @@ impl Measured {
     }
 
     /// M^-½ K M^-½.
-    fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
+    pub(super) fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
         match self.masses.as_ref().filter(|_| !self.is_weighted) {
             Some(m) => DMatrix::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] / (m[i].sqrt() * m[j].sqrt())),
             None => k.clone(),
@@ -380,9 +386,15 @@ impl Measured {
     }
 
     fn summed_hessians(&self) -> Result<Hessians> {
-        let fast = &self.potentials[0].1;
-        let nothing = DMatrix::zeros(fast.nrows(), fast.ncols());
-        let slow = self.potentials.get(1).map_or(&nothing, |(_, k)| k);
+        let (fast, others) =
+            self.potentials.split_first().map(|((_, fast), rest)| (fast, rest)).expect("checked");
+        let slow = match others {
+            [(_, slow)] => Cow::Borrowed(slow),
+            _ => Cow::Owned(
+                others.iter().fold(DMatrix::zeros(self.size(), self.size()), |sum, (_, k)| sum + k),
+            ),
+        };
+        let slow = slow.as_ref();
         let hessians = match &self.masses {
             Some(masses) if !self.is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
             _ => Hessians::new(fast, slow, self.accuracy)?,
@@ -390,7 +402,7 @@ impl Measured {
         Ok(match (&self.positions, &self.masses) {
             (Some(positions), Some(masses)) if !self.held.is_empty() => {
                 let held = Particles { masses, positions }.gradients(&self.held);
-                let rigid = if self.keeps_rigid { Mat::new() } else { self.rigid(positions, masses) };
+                let rigid = if self.keeps_rigid { Mat::new() } else { self.rigid(Some(positions), masses) };
                 let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
                     None => held[(i, j)],
                     Some(j) => rigid[(i, j)],
@@ -400,19 +412,27 @@ impl Measured {
                 hessians.without(&all.qr().compute_thin_Q(), by)
             }
             _ if self.keeps_rigid => hessians,
-            (Some(positions), Some(masses)) => hessians.without(&self.rigid(positions, masses), "positions"),
-            _ => hessians.without_null_space(self.accuracy),
+            (_, Some(masses)) if self.is_periodic && self.size().is_multiple_of(3) => {
+                hessians.without(&self.rigid(None, masses), "periodic box")
+            }
+            (Some(positions), Some(masses)) => {
+                hessians.without(&self.rigid(Some(positions), masses), "positions")
+            }
+            _ => hessians.without_null_space(self.accuracy, if self.is_periodic { 3 } else { 6 })?,
         })
     }
 
-    fn rigid(&self, positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
-        rigid_motions(positions, &masses.iter().step_by(3).copied().collect::<Vec<_>>())
+    fn rigid(&self, positions: Option<&[[f64; 3]]>, masses: &[f64]) -> Mat<f64> {
+        let masses: Vec<f64> = masses.iter().step_by(3).copied().collect();
+        match positions {
+            Some(positions) if !self.is_periodic => rigid_motions(positions, &masses),
+            _ => translations(&masses),
+        }
     }
 
     /// Where the matrices themselves would be taken, all distances free.
     pub fn refuse_constraints(&self) -> Result<()> {
-        let remedy =
-            "held distances are answered for two steps, the longer a multiple of the other, in doubles";
+        let remedy = "a run leaves all distances free: take the constraints out";
         let given = || Error::input("constraints", format!("{} pairs", self.held.len()), remedy);
         if self.held.is_empty() { Ok(()) } else { Err(given()) }
     }
@@ -428,22 +448,8 @@ impl Measured {
 
     /// The same doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
     pub fn system(&self) -> System {
-        let n = self.size();
-        let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
-        let one = vec![1.0; n];
-        let masses = self.masses.as_ref().filter(|_| !self.is_weighted).unwrap_or(&one);
-        let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
-        let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
-            let mut sum = Symmetric::zero(n);
-            for i in 0..n {
-                for j in 0..=i {
-                    sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
-                }
-            }
-            Potential { stiffness: sum, step: step.clone(), phase: Rational::default() }
-        };
-        let potentials = self.potentials.iter().map(potential).collect();
-        System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
+        let masses = self.masses.as_ref().filter(|_| !self.is_weighted);
+        rational(masses.map_or(&vec![1.0; self.size()], |own| own), &self.potentials)
     }
 
     /// The number of degrees of freedom.
@@ -477,15 +483,17 @@ impl Body {
                 "constraints and heavy hydrogens need masses and positions in the file",
             ));
         };
+        // By the masses as given: heavy hydrogens are hydrogens still.
+        let named = document.constraints.as_ref();
+        let pairs = named.map(|own| Particles { masses, positions }.pairs(own)).transpose()?;
         let old = self.is_weighted.then(|| masses.clone());
         if let Some(mass) = &document.hydrogen_mass {
             *masses = Particles { masses, positions }.heavier(to_f64(&mass.read("hydrogen_mass")?))?;
         }
         read.iter_mut().for_each(|(.., stiffness)| reweigh(stiffness, old.as_deref(), masses));
         self.is_weighted = true;
-        let Some(constraints) = &document.constraints else { return Ok(Vec::new()) };
+        let Some(pairs) = pairs else { return Ok(Vec::new()) };
         let particles = Particles { masses, positions };
-        let pairs = particles.pairs(constraints)?;
         for (k, (own, (_, scale, stiffness))) in document.potentials.iter().zip(read).enumerate() {
             let field = format!("potentials[{k}].force");
             let remedy = "give the force of each potential at the positions: its tension bends the bonds that are held";
@@ -518,8 +526,8 @@ fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
         let remedy = format!("there are {n} degrees of freedom: give a mass for each, or for each three");
         Error::input("masses", masses.len(), remedy)
     };
-    if let Some(mass) = masses.iter().find(|m| !(m.is_finite() && **m > 0.0)) {
-        return Err(Error::input("masses", mass, "a mass must be positive"));
+    if let Some((i, mass)) = masses.iter().enumerate().find(|(_, mass)| **mass <= 0.0) {
+        return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
     }
     match masses.len() {
         k if k == n => Ok(masses),

@@ -29,7 +29,7 @@
 //!   doubles: then all stiffnesses are references, `masses` and `positions` too; `mass_weighted` says that the matrices are,
 //!   `accuracy` how well they are known.
 //! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
-//!   in the middle of every drift.
+//!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
 //! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
@@ -43,6 +43,7 @@
 //! | `mesh` | finite elements |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `held` | their constraints, heavy hydrogens |
+//! | `projected` | them on any clocks, rigid motions projected out |
 //! | `molecule` | two measured levels, to be advised on |
 //! | `run` | Algorithm 1 run on it |
 //! | `scan`, `intervals` | one file, many systems: any number of it over a range; its unstable intervals |
@@ -60,6 +61,7 @@ mod mesh;
 mod molecule;
 mod oscillator;
 mod pi;
+mod projected;
 mod run;
 mod scan;
 
@@ -73,7 +75,8 @@ use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::propagator;
-use crate::system::friction::{Friction, damped_oscillator, damped_system};
+use crate::scene::json;
+use crate::system::friction::{Friction, damped_system};
 use crate::system::levels::Hessians;
 use crate::system::{
     Analysis, Holds, Limits, ManyClocks, OwnOrbit, PiSystem, Potential, Route, System, decide_by,
@@ -152,14 +155,14 @@ impl SystemScene {
             let remedy = "a system has at most 16 MiB; is this the right file?";
             return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
         }
-        let source: Value = serde_json::from_str(text).map_err(no_system)?;
+        let source: Value = json::from_str(text).map_err(no_system)?;
         if measured::is_by_reference(&source) {
             return SystemScene::from_json_in(arrays, source);
         }
         let document = match Document::deserialize(&source) {
             Ok(document) => document,
             // Once more from the text, for the error to name its line.
-            Err(_) => serde_json::from_str(text).map_err(no_system)?,
+            Err(_) => json::from_str(text).map_err(no_system)?,
         };
         SystemScene::new(document, source)
     }
@@ -312,7 +315,7 @@ impl SystemScene {
     pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
         let Some(rate) = &self.friction else { return Ok(None) };
         if let Some(own) = &self.oscillator {
-            return damped_oscillator(&own.clocks, &own.unit, rate).map(Some);
+            return own.friction(rate).map(Some);
         }
         if let Some(own) = &self.measured {
             return own.friction(rate, limits).map(Some);

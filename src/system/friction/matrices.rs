@@ -84,7 +84,9 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         return Err(Error::input("friction", rate, "a rate of friction must be positive"));
     }
     let parts = parts(system);
-    for part in &parts {
+    // With friction the drifts of a part end where those of the others do.
+    let ticking: Vec<_> = parts.iter().map(System::with_silent_clocks).collect();
+    for part in &ticking {
         let n = part.size() as u64;
         let kicks = part.schedule().strikes();
         // Some 60 eigenvalue problems of 2n rows to bisect, each 25 (2n)³.
@@ -95,8 +97,9 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         limits
             .allow(cost, || format!("the eigenvalues of a period of {}", degrees_of_freedom(part.size())))?;
     }
-    let all = parts.iter().map(|part| at(part, rate)).collect::<Result<Vec<_>>>()?;
-    let masks = parts.iter().map(|part| masked(part, limits)).collect::<Result<Vec<_>>>()?;
+    let all = ticking.iter().map(|part| at(part, rate)).collect::<Result<Vec<_>>>()?;
+    let masks = parts.iter().zip(&ticking).map(|(part, ticking)| masked(part, ticking, limits));
+    let masks = masks.collect::<Result<Vec<_>>>()?;
     let growth = all.iter().map(|(_, growth)| *growth).collect::<Option<Vec<_>>>();
     Ok(Friction {
         rate: rate.clone(),
@@ -257,16 +260,16 @@ impl Radius {
     }
 }
 
-/// The friction that masks what grows.
-fn masked(part: &System, limits: &Limits) -> Result<Mask> {
-    if let Some(clocks) = part.as_many_clocks() {
-        let unit = Laurent::from_rational(part.clocks()[0].step.clone());
+/// The friction that masks what grows in a part, which ticks with all clocks of the whole.
+fn masked(part: &System, ticking: &System, limits: &Limits) -> Result<Mask> {
+    if let Some(clocks) = ticking.as_many_clocks() {
+        let unit = Laurent::from_rational(ticking.clocks()[0].step.clone());
         return Ok(damped_oscillator(&clocks, &unit, &Rational::from_integer(1.into()))?.masking);
     }
     let side =
-        |rate: f64| -> Result<Option<Damping>> { Ok(at(part, &from_f64_exact(rate).expect("finite"))?.0) };
+        |rate: f64| -> Result<Option<Damping>> { Ok(at(ticking, &from_f64_exact(rate).expect("finite"))?.0) };
     // A friction that is next to none: does anything grow?
-    let period = to_f64(&part.period());
+    let period = to_f64(&ticking.period());
     let mut lo = 1e-6 / period;
     match side(lo)? {
         Some(Damping::Growing) => {}

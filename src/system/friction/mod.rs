@@ -1,6 +1,8 @@
 //! Friction: Ornstein and Uhlenbeck's step O in the middle of every drift, as BAOAB and its relatives do.
 //!
-//! Between two kick times a time t apart the state goes through D(t/2) O D(t/2), O: v → c v (+ noise), c = exp(−γ t).
+//! Between two kick times a time t apart the state goes through D(t/2) O D(t/2), O: v → c v (+ noise), c = exp(−γ t). The kick times are
+//! those of the whole schedule: a potential parts the drifts of what it does not act on, too, and of strength 0 it still does
+//! (D(t/2) O D(t/2) twice is not the same over 2t). So what moves apart from the rest is damped as if weakly coupled to it.
 //! With one level this is BAOAB, with r-RESPA its multiple-time-step form (the innermost step a BAOAB one). Means and
 //! covariances of the chain stay bounded iff the *spectral radius* ρ(Q) of the noiseless period is below 1. Friction is no
 //! longer reversible, so the whole period decides, not its half. For one oscillator

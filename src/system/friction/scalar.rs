@@ -61,7 +61,7 @@ fn jury(sum: &Ball, trace: &Ball, bits: u32) -> Option<Damping> {
 /// The larger |λ| of λ² − Tr λ + det: √det for a complex pair, else (|Tr| + √(Tr² − 4 det))/2.
 fn radius(trace: &Ball, det: &Ball, bits: u32) -> Ball {
     let discriminant = trace.square(bits).sub(&det.scale2(2), bits);
-    let root = || det.sqrt(bits).expect("a determinant > 0");
+    let root = || det.sqrt_clipped(bits).expect("a determinant >= 0");
     if discriminant.sign() == Some(Sign::Negative) {
         return root();
     }

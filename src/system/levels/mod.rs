@@ -68,4 +68,4 @@ pub use cell::Cells;
 pub use growth::Growing;
 pub use kernel::{Kernel, Outer};
 pub use paths::Near;
-pub use rigid::{Hessians, rigid_motions};
+pub use rigid::{Hessians, rigid_motions, translations};

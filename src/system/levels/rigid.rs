@@ -5,6 +5,7 @@ use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 use crate::number::U;
+use crate::system::compose::connected;
 use crate::system::inertia::{orthogonality, spectral_norm};
 use crate::system::measured::Removed;
 use crate::system::norm;
@@ -119,15 +120,41 @@ impl Hessians {
     }
 
     /// The same without the null space of F + S within `accuracy`: the eigenvectors whose eigenvalues are at most
-    /// `accuracy` (‖F‖ + ‖S‖).
-    #[must_use]
-    pub fn without_null_space(self, accuracy: f64) -> Hessians {
+    /// `accuracy` (‖F‖ + ‖S‖), at most `most` of them for each part that no entry joins to the others.
+    ///
+    /// # Errors
+    /// A larger null space: then it is not that of rigid motions alone.
+    pub fn without_null_space(self, accuracy: f64, most: usize) -> Result<Hessians> {
         let total = &self.fast + &self.slow;
-        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return self };
+        let Ok(eigen) = total.self_adjoint_eigen(Side::Lower) else { return Ok(self) };
         let least = accuracy * (norm::spectral(&self.fast) + norm::spectral(&self.slow));
         let null: Vec<usize> = (0..self.size()).filter(|&i| eigen.S()[i].abs() <= least).collect();
+        if null.len() > most {
+            let n = self.size();
+            let places = (0..n * n).map(|k| (k % n, k / n)).filter(|&(i, j)| total[(i, j)] != 0.0);
+            let parts = connected(n, places);
+            let bound = parts.iter().map(|part| part.len().min(most)).sum::<usize>();
+            if null.len() > bound {
+                let found = format!("zero within {accuracy:.1e} of the norms in {} directions", null.len());
+                let remedy = format!(
+                    "rigid motions are at most {bound}, and what else is soft may not be left out: give masses and positions, or better \
+                     stiffnesses with their accuracy, or keep the rigid motions in"
+                );
+                return Err(Error::input("total stiffness", found, remedy));
+            }
+        }
         let rigid = Mat::from_fn(self.size(), null.len(), |i, j| eigen.U()[(i, null[j])]);
-        self.without(&rigid, "null space of the total")
+        Ok(self.without(&rigid, "null space of the total"))
+    }
+
+    /// The coordinates kept, as orthonormal columns in those given; `None`: all.
+    pub fn basis(&self) -> Option<&Mat<f64>> {
+        self.basis.as_ref()
+    }
+
+    /// What was projected out.
+    pub fn removed(&self) -> Option<&Removed> {
+        self.removed.as_ref()
     }
 }
 
@@ -170,10 +197,20 @@ pub(super) fn halved(m: MatRef<'_, f64>) -> Mat<f64> {
 /// Translations and rotations of particles at `positions` (one triple each) with `masses` (one each), in mass-weighted
 /// coordinates x_1, y_1, z_1, x_2, ...: orthonormal columns, 6 of them, 5 for particles on a line, 3 for one.
 pub fn rigid_motions(positions: &[[f64; 3]], masses: &[f64]) -> Mat<f64> {
+    motions(positions, masses, 6)
+}
+
+/// The three translations alone, of particles in a periodic box.
+pub fn translations(masses: &[f64]) -> Mat<f64> {
+    motions(&vec![[0.0; 3]; masses.len()], masses, 3)
+}
+
+/// The first `count` of translations and rotations.
+fn motions(positions: &[[f64; 3]], masses: &[f64], count: usize) -> Mat<f64> {
     let total: f64 = masses.iter().sum();
     let centre = [0, 1, 2].map(|a| positions.iter().zip(masses).map(|(x, m)| x[a] * m).sum::<f64>() / total);
     let mut columns: Vec<Vec<f64>> = Vec::new();
-    for motion in 0..6 {
+    for motion in 0..count {
         let axis = motion % 3;
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut column = vec![0.0; 3 * positions.len()];

@@ -1,0 +1,82 @@
+//! Measured stiffnesses on any clocks: the doubles given, or what is left of them when rigid motions and held distances are projected out.
+
+use faer::{Mat, MatRef};
+use nalgebra::DMatrix;
+
+use super::measured::Measured;
+use crate::error::Result;
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::{Analysis, Limits, Potential, Route, Symmetric, System, decide_by};
+
+impl Measured {
+    /// The verdict on these doubles as a rational system, without margins.
+    pub fn decide_projected(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        let hessians = self.hessians()?;
+        let (Some(basis), Some(removed)) = (hessians.basis(), hessians.removed()) else {
+            self.refuse_constraints()?;
+            let mut analysis = decide_by(route, &self.system(), limits)?;
+            analysis.warnings.push(warning("as they are"));
+            return Ok(analysis);
+        };
+        let mut analysis = decide_by(route, &self.projected(basis), limits)?;
+        lift(&mut analysis, basis);
+        let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
+        analysis.warnings.push(warning(&what));
+        Ok(analysis)
+    }
+
+    /// Bᵀ M^-½ K M^-½ B of each stiffness, unit masses.
+    fn projected(&self, basis: &Mat<f64>) -> System {
+        let project = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+            let (own, n) = (self.weighted(stiffness), stiffness.nrows());
+            let image = basis.transpose() * MatRef::from_column_major_slice(own.as_slice(), n, n) * basis;
+            (step.clone(), DMatrix::from_fn(image.nrows(), image.ncols(), |i, j| image[(i, j)]))
+        };
+        let potentials: Vec<_> = self.potentials.iter().map(project).collect();
+        rational(&vec![1.0; basis.ncols()], &potentials)
+    }
+}
+
+fn warning(how: &str) -> String {
+    format!(
+        "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the doubles given, {how}"
+    )
+}
+
+/// Doubles as a rational system; what asymmetry there is is split evenly.
+pub(super) fn rational(masses: &[f64], potentials: &[(Rational, DMatrix<f64>)]) -> System {
+    let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
+    let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
+    let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+        let mut sum = Symmetric::zero(masses.len());
+        for i in 0..masses.len() {
+            for j in 0..=i {
+                sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
+            }
+        }
+        Potential { stiffness: sum, step: step.clone(), phase: Rational::default() }
+    };
+    let potentials = potentials.iter().map(potential).collect();
+    System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
+}
+
+/// Degrees of freedom and shapes in the mass-weighted coordinates given, of an analysis in those of the columns of `basis`.
+fn lift(analysis: &mut Analysis, basis: &Mat<f64>) {
+    let n = basis.nrows();
+    let up = |y: &[f64]| -> Vec<f64> {
+        (0..n).map(|i| y.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum()).collect()
+    };
+    for part in &mut analysis.parts {
+        part.dofs = (0..n).collect();
+        for own in &mut part.instabilities {
+            (own.shape, own.quadrature) = (up(&own.shape), up(&own.quadrature));
+            own.normalize();
+        }
+    }
+    for rigid in &mut analysis.rigid_modes {
+        let own = up(&rigid.iter().map(to_f64).collect::<Vec<_>>());
+        *rigid = own.into_iter().map(|x| from_f64_exact(x).expect("finite")).collect();
+    }
+    analysis.size = n;
+}
