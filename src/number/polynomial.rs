@@ -20,10 +20,12 @@ mod sturm;
 pub use display::Text;
 pub use divide::{ExactDivision, resultant};
 #[cfg(feature = "system")]
-pub(crate) use integer::in_unit_interval;
+pub(crate) use integer::{in_unit_interval, quotient};
 pub(crate) use integer::{residues, roots_within, squarefree};
 pub(crate) use sturm::RootInterval;
 pub use sturm::Sturm;
+#[cfg(feature = "system")]
+pub(crate) use sturm::{primitive, sign_at};
 
 use num_traits::{One, Zero};
 

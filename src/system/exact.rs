@@ -27,7 +27,7 @@ use super::roots::{self, RootCount};
 use super::signs::{self, Inertias};
 use crate::error::Result;
 use crate::number::polynomial::squarefree;
-use crate::number::{Domain, PrimeField, Rational};
+use crate::number::{Domain, Rational};
 use crate::verdict::Kind;
 
 /// What exact arithmetic says of a system without rigid modes.
@@ -195,17 +195,11 @@ fn rank_at(m: &DMatrix<BigInt>, f: &[BigInt]) -> usize {
     roots::rank(n, &bound, |field| {
         let m = modular::matrix(field, m);
         f.iter().rev().fold(DMatrix::from_element(n, n, 0), |value, c| {
-            let mut next = times(field, &value, &m);
+            let mut next = modular::times(field, &value, &m);
             let c = field.of_big(c);
             (0..n).for_each(|i| next[(i, i)] = field.add(next[(i, i)], c));
             next
         })
-    })
-}
-
-fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
-    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
-        (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
     })
 }
 

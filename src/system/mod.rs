@@ -28,6 +28,7 @@
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `along` | about a periodic orbit: a Hessian for each kick |
 //! | `scan`, `vary`, `stretches`, `nearest` | maps; all systems between two; a range covered; the unstable intervals next to a number |
+//! | `critical`, `edges` | where the verdict can change, exactly; what lies between |
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
 //! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
@@ -50,7 +51,9 @@ mod bauer_fike;
 pub mod builders;
 mod clusters;
 mod compose;
+mod critical;
 mod decide;
+pub mod edges;
 mod enclose;
 mod envelope;
 mod exact;

@@ -189,12 +189,16 @@ impl System {
 
     /// The degrees of freedom in `indices` alone; `None` where no potential acts on them.
     pub(super) fn component(&self, indices: &[usize]) -> Option<System> {
-        let part = if indices.len() == self.size() {
-            self.clone()
-        } else {
-            self.mapped(self.mass.restricted(indices), |k| k.restricted(indices))
-        };
+        let part = self.part(indices);
         part.potentials.iter().any(|own| !own.stiffness.is_zero()).then_some(part)
+    }
+
+    /// The degrees of freedom in `indices` alone, which nothing couples to others.
+    pub(super) fn part(&self, indices: &[usize]) -> System {
+        if indices.len() == self.size() {
+            return self.clone();
+        }
+        self.mapped(self.mass.restricted(indices), |k| k.restricted(indices))
     }
 
     fn mapped(&self, mass: Symmetric, map: impl Fn(&Symmetric) -> Symmetric) -> System {

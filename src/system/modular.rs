@@ -10,6 +10,13 @@ pub(super) fn matrix(field: &PrimeField, m: &DMatrix<BigInt>) -> DMatrix<u64> {
     m.map(|x| field.of_big(&x))
 }
 
+/// a b.
+pub(super) fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
+        (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
+    })
+}
+
 /// The rank, by elimination.
 pub(super) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize {
     let mut rank = 0;

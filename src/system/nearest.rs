@@ -32,12 +32,21 @@ pub struct Nearest {
 const FIRST: f64 = 1.0 / 32.0;
 
 impl Nearest {
-    /// Searched for from `number` > 0 outwards, down to half of it and up to twice, `stretches` covering a range.
+    /// Half of it and twice it.
+    pub fn reach(number: f64) -> (f64, f64) {
+        (number / 2.0, number * 2.0)
+    }
+
+    /// Searched for from `number` > 0 outwards, down to half of it and up to twice, `stretches` covering a range; `own` is what is proven at
+    /// the number itself, which parts what nothing is proven of on either side of it.
     ///
     /// # Errors
     /// The first error of `stretches`.
-    pub fn search(number: f64, stretches: impl Fn((f64, f64)) -> Result<Vec<Stretch>>) -> Result<Nearest> {
-        let mut covered: Vec<Stretch> = Vec::new();
+    pub fn search(
+        (number, own): (f64, Holds),
+        stretches: impl Fn((f64, f64)) -> Result<Vec<Stretch>>,
+    ) -> Result<Nearest> {
+        let mut covered = vec![Stretch { lo: number, hi: number, verdict: own }];
         for upwards in [false, true] {
             let (mut at, mut reach) = (number, FIRST);
             loop {
@@ -62,7 +71,7 @@ impl Nearest {
     }
 
     /// From stretches that cover a range about the number.
-    fn of(number: f64, all: &[Stretch]) -> Nearest {
+    pub fn of(number: f64, all: &[Stretch]) -> Nearest {
         let runs: Vec<&[Stretch]> =
             all.split(|own| own.verdict == Holds::Stable).filter(|run| !run.is_empty()).collect();
         let ends = |run: &[Stretch]| (run[0].lo, run[run.len() - 1].hi);
@@ -118,18 +127,21 @@ mod tests {
     fn the_next_intervals_are_found_whole_and_what_holds_the_number_is_no_neighbour() {
         let unstable = [(0.6, 0.7), (1.5, 1.6), (1.8, 1.85)];
         let untold = [(0.59, 0.6), (0.7, 0.71), (1.49, 1.5), (1.6, 1.61), (1.2, 1.21)];
-        let found = Nearest::search(1.0, |range| Ok(covered(&unstable, &untold, range))).unwrap();
+        let found =
+            Nearest::search((1.0, Holds::Stable), |range| Ok(covered(&unstable, &untold, range))).unwrap();
         let below = Unstable { proven: (0.6, 0.7), within: (Some(0.59), Some(0.71)) };
         let above = Unstable { proven: (1.5, 1.6), within: (Some(1.49), Some(1.61)) };
         assert_eq!((found.own, found.below, found.above), (None, Some(below), Some(above)));
         assert_eq!(found.untold, [(1.2, 1.21)]);
         assert!(found.searched.0 < 0.59 && found.searched.1 > 1.61 && found.searched.1 <= 2.0, "{found:?}");
-        let inside = Nearest::search(1.55, |range| Ok(covered(&unstable, &untold, range))).unwrap();
+        let inside =
+            Nearest::search((1.55, Holds::Unstable), |range| Ok(covered(&unstable, &untold, range))).unwrap();
         assert_eq!(inside.own, Some(above));
         assert_eq!(inside.above.unwrap().proven, (1.8, 1.85));
         // 0.6 is below half of it.
         assert!(inside.below.is_none() && inside.searched.0 == 1.55 / 2.0, "{inside:?}");
-        let alone = Nearest::search(1.0, |range| Ok(covered(&[(1.7, 3.0)], &[], range))).unwrap();
+        let alone =
+            Nearest::search((1.0, Holds::Stable), |range| Ok(covered(&[(1.7, 3.0)], &[], range))).unwrap();
         assert_eq!(alone.above, Some(Unstable { proven: (1.7, 2.0), within: (Some(1.7), None) }));
         assert_eq!((alone.below, alone.searched), (None, (0.5, 2.0)));
     }

@@ -37,7 +37,7 @@ pub struct Intervals {
     pub is_discrete: bool,
     /// The inner steps in an outer one, where these are two levels and the number is the outer step at that ratio.
     pub inner_steps: Option<u64>,
-    /// They cover the range, in order.
+    /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and begin the next.
     pub stretches: Vec<Stretch>,
 }
 
@@ -59,7 +59,26 @@ impl Intervals {
 ///
 /// # Errors
 /// Where it is not, or steps differ.
-pub fn verdict_between(systems: [&System; 3]) -> Result<Holds> {
+pub(super) fn verdict_between(systems: [&System; 3]) -> Result<Holds> {
+    verify_line(systems)?;
+    let [lo, middle, hi] = systems;
+    let rigid = middle.rigid_modes();
+    let varies_mass = lo.mass() != hi.mass();
+    if varies_mass && !middle.mass().is_diagonal() || lo.rigid_modes() != rigid || hi.rigid_modes() != rigid {
+        return Ok(Holds::NotTold);
+    }
+    let cell = Cell { systems, frame: Frame::new(middle) };
+    Ok(match cell.by_action()? {
+        Holds::NotTold => cell.by_half_period()?,
+        told => told,
+    })
+}
+
+/// That steps are the same and the second system is the mean of the others.
+///
+/// # Errors
+/// Where it is not.
+pub(super) fn verify_line(systems: [&System; 3]) -> Result<()> {
     let [lo, middle, hi] = systems;
     let steps = |own: &System| {
         own.potentials().iter().map(|own| (own.step.clone(), own.phase.clone())).collect::<Vec<_>>()
@@ -78,16 +97,7 @@ pub fn verdict_between(systems: [&System; 3]) -> Result<Holds> {
         let remedy = "choose a number on which masses or stiffnesses depend linearly, steps fixed: a mass, a scale, a stiffness";
         return Err(Error::input("intervals", "this number", remedy));
     }
-    let rigid = middle.rigid_modes();
-    let varies_mass = lo.mass() != hi.mass();
-    if varies_mass && !middle.mass().is_diagonal() || lo.rigid_modes() != rigid || hi.rigid_modes() != rigid {
-        return Ok(Holds::NotTold);
-    }
-    let cell = Cell { systems, frame: Frame::new(middle) };
-    Ok(match cell.by_action()? {
-        Holds::NotTold => cell.by_half_period()?,
-        told => told,
-    })
+    Ok(())
 }
 
 /// Three systems on a line.

@@ -57,7 +57,7 @@ pub(crate) fn residues(field: &PrimeField, f: &[BigInt]) -> Vec<u64> {
 }
 
 /// f / divisor for a primitive divisor; `None` where it is no polynomial with integer coefficients.
-fn quotient(f: &[BigInt], divisor: &[BigInt]) -> Option<Vec<BigInt>> {
+pub(crate) fn quotient(f: &[BigInt], divisor: &[BigInt]) -> Option<Vec<BigInt>> {
     let (mut rest, leading) = (f.to_vec(), divisor.last()?);
     let mut quotient = vec![BigInt::zero(); (f.len() + 1).saturating_sub(divisor.len())];
     for k in (0..quotient.len()).rev() {

@@ -153,7 +153,7 @@ pub(super) fn integers(f: &Polynomial<Rational>) -> Vec<BigInt> {
     primitive(f.coefficients.iter().map(|c| c.numer() * (&denominator / c.denom())).collect())
 }
 
-pub(super) fn primitive(mut f: Vec<BigInt>) -> Vec<BigInt> {
+pub(crate) fn primitive(mut f: Vec<BigInt>) -> Vec<BigInt> {
     while f.last().is_some_and(Zero::is_zero) {
         f.pop();
     }
@@ -185,7 +185,7 @@ pub(super) fn remainder(a: &[BigInt], b: &[BigInt]) -> Vec<BigInt> {
 }
 
 /// The sign of f(n/d) = sign of Σ c_k n^k d^(m − k), d > 0, in integers.
-pub(super) fn sign_at(f: &[BigInt], x: &Rational) -> Sign {
+pub(crate) fn sign_at(f: &[BigInt], x: &Rational) -> Sign {
     let (mut value, mut power) = (BigInt::zero(), BigInt::one());
     for c in f.iter().rev() {
         value = value * x.numer() + c * &power;

@@ -13,10 +13,11 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::edges::{Family, Linear};
 use crate::system::nearest::Nearest;
 use crate::system::stretches::Stretch;
-use crate::system::stretches::{cover, merged};
-use crate::system::vary::{Intervals, verdict_between};
+use crate::system::stretches::merged;
+use crate::system::vary::Intervals;
 use crate::system::{Analysis, Holds, Limits, Potential, Route, System, middle};
 
 /// One number of a file and its range.
@@ -105,7 +106,7 @@ impl SystemScene {
     ///
     /// # Errors
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
-    /// [`cover`] and [`verdict_between`].
+    /// [`Family::stretches`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
         self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
@@ -115,20 +116,16 @@ impl SystemScene {
         let levels = self.measured.as_ref().filter(|own| own.is_of_two_levels());
         let is_scale = span.path.ends_with(".scale");
         let (inner_steps, stretches) = match (role, levels) {
-            (Role::Outer, _) => self.outer_stretches(span.ends(), width)?,
+            (Role::Outer, _) => self.outer_stretches(span.ends(), width, limits)?,
             (Role::Step, _) => (None, self.multiples(span, limits)?),
             (Role::Linear, Some(own)) if is_scale => {
                 let (level, factor) = own.scaled_at(&span.path)?;
                 (None, own.stretches_of_scale(level, span.ends(), factor, width)?)
             }
             (Role::Linear, _) => {
-                let at = |x: f64| self.with("intervals", &[(&span.path, &exact(x))]);
-                at(span.ends().0)?;
-                let cell = |lo: f64, hi: f64| {
-                    let middle = self.with("intervals", &[(&span.path, &mean(lo, hi))])?;
-                    verdict_between([at(lo)?.system(), middle.system(), at(hi)?.system()])
-                };
-                (None, cover(span.ends(), width, cell)?)
+                let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.system().clone());
+                let family = Family { linear: Linear::Number, at: &at };
+                (None, family.stretches(span.ends(), width, limits)?)
             }
         };
         Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
@@ -178,8 +175,16 @@ impl SystemScene {
     /// As [`SystemScene::intervals`].
     pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
         self.allow_intervals("nearest", limits)?;
-        let step = self.steps().into_iter().max().unwrap_or_default();
-        Nearest::search(to_f64(&step), |range| Ok(self.outer_stretches(range, width)?.1))
+        let step = to_f64(&self.steps().into_iter().max().unwrap_or_default());
+        if !self.measured.as_ref().is_some_and(|own| own.is_of_two_levels()) {
+            let at = |square: &Rational| self.at_square(square);
+            let family = Family { linear: Linear::Square, at: &at };
+            if let Some(all) = family.exactly(Nearest::reach(step), limits)? {
+                return Ok(Nearest::of(step, &all));
+            }
+        }
+        let own = self.decide(Route::Cheapest, limits)?.holds();
+        Nearest::search((step, own), |range| Ok(self.outer_stretches(range, width, limits)?.1))
     }
 
     /// What has no intervals is refused, and what costs too much.
@@ -195,10 +200,19 @@ impl SystemScene {
     }
 
     /// The verdicts on a range of outer steps, all steps in their ratios, and the inner steps in each where these are two levels.
-    fn outer_stretches(&self, range: (f64, f64), width: f64) -> Result<(Option<u64>, Vec<Stretch>)> {
+    fn outer_stretches(
+        &self,
+        range: (f64, f64),
+        width: f64,
+        limits: &Limits,
+    ) -> Result<(Option<u64>, Vec<Stretch>)> {
         match self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
             Some(own) => own.stretches(range, width).map(|(inner_steps, found)| (Some(inner_steps), found)),
-            None => Ok((None, self.at_fixed_ratio(range, width)?)),
+            None => {
+                let at = |square: &Rational| self.at_square(square);
+                let family = Family { linear: Linear::Square, at: &at };
+                Ok((None, family.stretches(range, width, limits)?))
+            }
         }
     }
 
@@ -213,25 +227,13 @@ impl SystemScene {
         System::new(self.system().mass().clone(), self.system().potentials().iter().map(slowed).collect())
     }
 
-    /// All steps times t/outer: in the old steps all stiffnesses times its square.
-    fn at_fixed_ratio(&self, range: (f64, f64), width: f64) -> Result<Vec<Stretch>> {
+    /// The system with the outer step whose square is given, all steps in their ratios: in the old steps all stiffnesses by as much as the
+    /// square grows.
+    fn at_square(&self, square: &Rational) -> Result<System> {
         let own = self.outer_step();
-        let stiffened = |factor: &Rational| {
-            let stiffer =
-                |own: &Potential| Potential { stiffness: own.stiffness.scaled(factor), ..own.clone() };
-            System::new(
-                self.system().mass().clone(),
-                self.system().potentials().iter().map(stiffer).collect(),
-            )
-        };
-        cover(range, width, |lo, hi| {
-            let [lo, hi] = [lo, hi].map(|step| {
-                let ratio = exact(step) / &own;
-                &ratio * &ratio
-            });
-            let middle = (&lo + &hi) / Rational::from_integer(2.into());
-            verdict_between([&stiffened(&lo)?, &stiffened(&middle)?, &stiffened(&hi)?])
-        })
+        let factor = square / (&own * &own);
+        let stiffer = |own: &Potential| Potential { stiffness: own.stiffness.scaled(&factor), ..own.clone() };
+        System::new(self.system().mass().clone(), self.system().potentials().iter().map(stiffer).collect())
     }
 
     /// The multiples of the shortest of the other steps, each alone: stretches from one multiple to another.
@@ -275,8 +277,4 @@ impl SystemScene {
 
 fn exact(x: f64) -> Rational {
     from_f64_exact(x).expect("a finite end of a cell")
-}
-
-fn mean(lo: f64, hi: f64) -> Rational {
-    (exact(lo) + exact(hi)) / Rational::from_integer(2.into())
 }

@@ -90,14 +90,15 @@ impl<'a> Cells<'a> {
         if counts.as_ref().is_some_and(Counts::tell_instability) {
             return Holds::Unstable;
         }
-        let Some((spectrum, off)) = self.spectrum(cell) else { return Holds::NotTold };
-        if let Some(counts) = &counts
-            && let Some(twists) = self.twists(cell, &spectrum)
-            && counts.tell_stability(&twists)
-        {
-            return Holds::Stable;
+        let spectrum = self.spectrum(cell);
+        if let Some(counts) = &counts {
+            let twists = spectrum.as_ref().and_then(|(own, _)| self.twists(cell, own));
+            // Beyond the limits of the discs the modes of the fast level place the twists.
+            if twists.or_else(|| counts.twists()).is_some_and(|own| counts.tell_stability(&own)) {
+                return Holds::Stable;
+            }
         }
-        match spectrum.certified_around(&off) {
+        match spectrum.and_then(|(own, off)| own.certified_around(&off)) {
             Some(Kind::Hyperbolic) => Holds::Unstable,
             Some(Kind::Elliptic) => Holds::Stable,
             _ => Holds::NotTold,

@@ -89,7 +89,7 @@ impl Counts {
     }
 
     /// Values of s between modes p θ/2 of which turned back and others; cos²(p θ/2) alone places them.
-    fn twists(&self) -> Option<Vec<f64>> {
+    pub fn twists(&self) -> Option<Vec<f64>> {
         let mode = |half: &Half| Some((half.a.mid() * half.d.mid(), half.turns_back()?));
         let mut modes: Vec<(f64, bool)> = self.less.iter().map(mode).collect::<Option<_>>()?;
         modes.sort_by(|x, y| y.0.total_cmp(&x.0));

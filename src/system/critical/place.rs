@@ -1,0 +1,136 @@
+//! Roots of polynomials in s as gaps between neighbouring doubles of the number that s stands for.
+
+use num_bigint::BigInt;
+use num_traits::{One, Zero};
+
+use super::polynomials::Critical;
+use crate::error::Result;
+use crate::number::polynomial::{RootInterval, in_unit_interval, sign_at};
+use crate::number::{Ball, Rational, Sign};
+use crate::parallel::try_map;
+
+/// Between `lo` and `hi`, neither of them, lies a place where the verdict can change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::system) struct Gap {
+    pub lo: f64,
+    pub hi: f64,
+    /// That place, where it is a double and the only one.
+    pub exact: Option<f64>,
+    /// Whether there is but one, a simple root of one polynomial.
+    pub is_simple: bool,
+}
+
+/// Bits in which signs are sought before they are computed exactly.
+const BITS: u32 = 256;
+
+/// The roots of the polynomials in \[0, 1\], in no order.
+///
+/// # Errors
+/// Where the work is stopped.
+pub(super) fn gaps(
+    polynomials: &[Critical],
+    ends: (f64, f64),
+    place: &(impl Fn(f64) -> Rational + Sync),
+) -> Result<Vec<Gap>> {
+    let found = try_map(polynomials, |own| {
+        let multiple = roots(&own.multiple, ends, place);
+        let is_simple = |gap: &Gap| multiple.iter().all(|own| own.hi <= gap.lo || gap.hi <= own.lo);
+        let all = roots(&own.simple, ends, place);
+        Ok(all.into_iter().map(|gap| Gap { is_simple: is_simple(&gap), ..gap }).collect::<Vec<_>>())
+    })?;
+    Ok(found.concat())
+}
+
+/// Those of one that is squarefree.
+fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(f64) -> Rational) -> Vec<Gap> {
+    if f.len() < 2 {
+        return Vec::new();
+    }
+    let own = Own { f, balls: f.iter().map(|c| Ball::from_integer(c).round(BITS)).collect() };
+    let at_ends = [(ends.0, Rational::zero()), (ends.1, Rational::one())];
+    let at_ends = at_ends.into_iter().filter(|(_, s)| own.sign(s) == Sign::Zero).map(|(x, _)| Gap::at(x));
+    let inside = in_unit_interval(f.to_vec());
+    at_ends.chain(inside.iter().map(|root| own.gap(root, ends, place))).collect()
+}
+
+impl Gap {
+    fn at(x: f64) -> Gap {
+        Gap { lo: x.next_down(), hi: x.next_up(), exact: Some(x), is_simple: true }
+    }
+}
+
+/// Gaps without a double between them as one, increasing.
+pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
+    gaps.sort_by(|a, b| a.lo.total_cmp(&b.lo).then(a.hi.total_cmp(&b.hi)));
+    let mut all: Vec<Gap> = Vec::new();
+    for own in gaps {
+        match all.last_mut() {
+            Some(last) if own.lo < last.hi => {
+                // The same double twice is still alone.
+                let exact = last.exact.filter(|_| own.exact == last.exact);
+                *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, is_simple: false };
+            }
+            _ => all.push(own),
+        }
+    }
+    all
+}
+
+struct Own<'a> {
+    f: &'a [BigInt],
+    /// Its coefficients, rounded.
+    balls: Vec<Ball>,
+}
+
+impl Own<'_> {
+    fn sign(&self, s: &Rational) -> Sign {
+        let s_ball = Ball::from_rational(s, BITS);
+        let value = self.balls.iter().rev().fold(Ball::zero(), |sum, c| sum.mul(&s_ball, BITS).add(c, BITS));
+        value.sign().unwrap_or_else(|| sign_at(self.f, s))
+    }
+
+    /// The gap about a root, by bisection down to neighbours.
+    fn gap(
+        &self,
+        (a, b): &RootInterval,
+        (mut lo, mut hi): (f64, f64),
+        place: &impl Fn(f64) -> Rational,
+    ) -> Gap {
+        let above = self.sign(b);
+        loop {
+            let middle = lo / 2.0 + hi / 2.0;
+            if middle <= lo || middle >= hi {
+                return Gap { lo, hi, exact: None, is_simple: true };
+            }
+            let s = place(middle);
+            let is_root = if a == b { s == *a } else { *a < s && s < *b && self.sign(&s) == Sign::Zero };
+            if is_root {
+                return Gap::at(middle);
+            }
+            let is_below = s <= *a || s < *b && self.sign(&s) != above;
+            *(if is_below { &mut lo } else { &mut hi }) = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::from_f64_exact;
+
+    #[test]
+    fn roots_lie_between_neighbouring_doubles_or_are_one() {
+        let place = |x: f64| from_f64_exact(x).unwrap() / Rational::from_integer(2.into());
+        // (8 s² − 1) (4 s − 1) (s − 1), whose 1/4 is double: x = 2 s = 1/√2, 1/2 and 2.
+        let f: Vec<BigInt> = [-1, 5, 4, -40, 32].map(BigInt::from).into();
+        let f = Critical { simple: f, multiple: [-1, 4].map(BigInt::from).into() };
+        let [half, root, two] = united(gaps(&[f], (0.0, 2.0), &place).unwrap())[..] else { panic!("three") };
+        assert_eq!((half, two), (Gap { is_simple: false, ..Gap::at(0.5) }, Gap::at(2.0)));
+        assert!(root.lo.powi(2) < 0.5 && root.hi.powi(2) > 0.5 && root.hi == root.lo.next_up());
+        assert!(root.is_simple && root.exact.is_none());
+        let [a, b] = [0.7, 0.8].map(Gap::at);
+        assert_eq!(united(vec![b, a, b]), [a, Gap { is_simple: false, ..b }]);
+        let near = Gap { lo: 0.7, hi: 0.7f64.next_up(), exact: None, is_simple: true };
+        assert_eq!(united(vec![near, a]), [Gap { exact: None, is_simple: false, ..a }]);
+    }
+}

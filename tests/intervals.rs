@@ -1,0 +1,177 @@
+//! Intervals of numbers of exact systems leave nothing open, and the point itself parts its neighbourhood.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::scene::SystemScene;
+use kickdrift::system::levels::{Hessians, Kernel, Outer};
+use kickdrift::system::nearest::Nearest;
+use kickdrift::system::stretches::Stretch;
+use kickdrift::system::{Holds, Limits, exact_kind};
+use kickdrift::verdict::Kind;
+use nalgebra::DMatrix;
+use serde_json::{Value, json};
+
+/// Numbers that repeat.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: u64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n) as i64
+    }
+
+    /// One to four degrees of freedom under one to three clocks, some stiffnesses indefinite.
+    fn system(&mut self) -> Value {
+        let (n, clocks) = (1 + self.below(4) as usize, 1 + self.below(3));
+        let masses: Vec<String> = (0..n).map(|_| (1 + self.below(3)).to_string()).collect();
+        let step = |k: i64| ["1", "3/2", "2"][k as usize];
+        let potentials: Vec<Value> = (0..clocks)
+            .map(|k| {
+                let mut rows = vec![vec![String::new(); n]; n];
+                for i in 0..n {
+                    for j in 0..=i {
+                        let (size, off) = if k == 0 { (24, if i == j { 0 } else { 12 }) } else { (12, 5) };
+                        let entry = format!("{}/{}", self.below(size) - off, if i == j { 10 } else { 40 });
+                        (rows[i][j], rows[j][i]) = (entry.clone(), entry);
+                    }
+                }
+                json!({"step": step(k), "scale": "1", "stiffness": rows})
+            })
+            .collect();
+        json!({"schema": "kickdrift/system/1", "masses": masses, "potentials": potentials})
+    }
+}
+
+fn scene(source: &Value) -> SystemScene {
+    SystemScene::from_json(source.clone()).unwrap()
+}
+
+/// The file with one number replaced.
+fn with(source: &Value, path: &str, value: &Rational) -> SystemScene {
+    let mut file = source.clone();
+    if path != "outer" {
+        let pointer = format!("/{}", path.replace('.', "/"));
+        *file.pointer_mut(&pointer).unwrap() = value.to_string().into();
+        return scene(&file);
+    }
+    let steps: Vec<Rational> =
+        file["potentials"].as_array().unwrap().iter().map(|own| number(&own["step"])).collect();
+    let outer = steps.iter().max().unwrap().clone();
+    for (own, step) in file["potentials"].as_array_mut().unwrap().iter_mut().zip(steps) {
+        own["step"] = (step * value / &outer).to_string().into();
+    }
+    scene(&file)
+}
+
+fn number(value: &Value) -> Rational {
+    value.as_str().unwrap().parse().unwrap()
+}
+
+/// Stretches that are closed, in order, from lo to hi, with nothing but neighbouring doubles between them and nothing open.
+fn assert_whole(all: &[Stretch], (lo, hi): (f64, f64), what: &str) {
+    assert!(all[0].lo == lo && all[all.len() - 1].hi == hi, "{what}: {all:?}");
+    assert!(all.iter().all(|own| own.verdict != Holds::NotTold && own.lo <= own.hi), "{what}: {all:?}");
+    for pair in all.windows(2) {
+        let [a, b] = pair else { unreachable!("two") };
+        assert!(a.hi.next_up() == b.lo && a.verdict != b.verdict, "{what}: {pair:?}");
+    }
+}
+
+/// Each stretch holds at this many numbers in it, its ends among them, by characteristic polynomials.
+fn assert_true(source: &Value, path: &str, all: &[Stretch], count: i64, numbers: &mut Numbers) -> usize {
+    let mut seen = 0;
+    for own in all {
+        let (lo, hi) = (from_f64_exact(own.lo).unwrap(), from_f64_exact(own.hi).unwrap());
+        let inside = (0..count).map(|_| &lo + (&hi - &lo) * ratio(1 + numbers.below(998), 999));
+        for value in [lo.clone(), hi.clone()].into_iter().chain(inside) {
+            let kind = exact_kind(with(source, path, &value).system(), &Limits::default()).unwrap();
+            let stable = matches!(kind, Kind::Elliptic | Kind::Coexistence);
+            assert_eq!(stable, own.verdict == Holds::Stable, "{path} = {value}: {kind:?} {own:?} {source}");
+            seen += 1;
+        }
+    }
+    seen
+}
+
+/// Random systems: intervals of a mass, of a scale and of the outer step, whole and true.
+fn compared(count: usize, points: i64) -> usize {
+    let (mut numbers, mut seen) = (Numbers(11), 0);
+    for _ in 0..count {
+        let source = numbers.system();
+        for (path, range, ends) in [
+            ("masses.0", "1/2..3", (0.5, 3.0)),
+            ("potentials.0.scale", "1/4..2", (0.25, 2.0)),
+            ("outer", "1/2..4", (0.5, 4.0)),
+        ] {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
+            seen += assert_true(&source, path, &found.stretches, points, &mut numbers);
+        }
+    }
+    seen
+}
+
+#[test]
+fn intervals_of_random_exact_systems_leave_nothing_open_and_agree_with_exact_verdicts() {
+    assert!(compared(25, 2) > 300);
+}
+
+#[test]
+#[ignore = "some minutes"]
+fn intervals_of_a_thousand_random_exact_systems_agree_with_exact_verdicts() {
+    println!("{} numbers in the intervals of 1,000 systems, all equal", compared(1000, 4));
+}
+
+#[test]
+fn all_masses_of_the_tethered_molecule_are_decided() {
+    let text = std::fs::read_to_string("data/scenes/diatomic-tether.json").unwrap();
+    let source: Value = serde_json::from_str(&text).unwrap();
+    for (path, range, ends) in [("masses.0", "1/2..1", (0.5, 1.0)), ("outer", "3/10..9/20", (0.3, 0.45))] {
+        let found = scene(&source)
+            .intervals(&format!("{path}={range}").parse().unwrap(), 1e-2, &Limits::default())
+            .unwrap();
+        assert_whole(&found.stretches, ends, path);
+        assert_true(&source, path, &found.stretches, 20, &mut Numbers(3));
+    }
+}
+
+#[test]
+fn an_edge_that_is_a_double_belongs_to_the_stretch_whose_verdict_it_has() {
+    // Velocity Verlet: h² k = 4 at h = 2 is linear growth.
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["1"], "potentials": [{"step": "1", "stiffness": [["1"]]}],
+    });
+    let found = scene(&source).intervals(&"outer=1..3".parse().unwrap(), 1e-2, &Limits::default()).unwrap();
+    let [stable, unstable] = found.stretches[..] else { panic!("{found:?}") };
+    assert_eq!((stable.lo, stable.hi, stable.verdict), (1.0, 2f64.next_down(), Holds::Stable));
+    assert_eq!((unstable.lo, unstable.hi, unstable.verdict), (2.0, 3.0, Holds::Unstable));
+    // A tongue that closes: with both kicks alike nothing is unstable at the resonance.
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["1"], "potentials": [
+            {"step": "1", "stiffness": [["1"]]}, {"step": "2", "scale": "1", "stiffness": [["1"]]},
+        ],
+    });
+    let found =
+        scene(&source).intervals(&"potentials.1.scale=-1/4..1/4".parse().unwrap(), 1e-2, &Limits::default());
+    let found = found.unwrap().stretches;
+    assert_true(&source, "potentials.1.scale", &found, 10, &mut Numbers(5));
+}
+
+/// Fast frequencies of 1 and of √−0.001, both in the slow field: stable at seven and a half, unstable a little below.
+#[test]
+fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
+    let (fast, slow) =
+        (DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, -0.001]), DMatrix::from_diagonal_element(2, 2, 0.05));
+    let kernel = Kernel::new(&Hessians::new(&fast, &slow, 0.0).unwrap()).unwrap();
+    let (number, inner) = (7.5, 6);
+    let own = kernel.decide(&Outer::new(number, inner).unwrap(), &ratio(15, 2), 1e-9).holds();
+    assert_eq!(own, Holds::Stable);
+    let found = Nearest::search((number, own), |range| kernel.stretches(inner, range, 1e-4)).unwrap();
+    assert!(found.own.is_none(), "{found:?}");
+    let below = found.below.unwrap();
+    assert!(below.proven.0 < 5.73 && below.proven.1 > 5.99 && below.proven.1 < 7.5, "{below:?}");
+    assert!(below.within.1.unwrap() < 7.5, "{below:?}");
+    let open: f64 = found.untold.iter().map(|(lo, hi)| hi - lo).sum();
+    assert!(open < 1e-2, "{found:?}");
+}
