@@ -62,7 +62,7 @@ impl Family<'_> {
     pub fn exactly(&self, (lo, hi): (f64, f64), limits: &Limits) -> Result<Option<Vec<Stretch>>> {
         let [(a, first), middle, (b, last)] = self.three(lo, hi)?;
         verify_line([&first, &middle.1, &last])?;
-        let line = Line { ends: [first, last] };
+        let line = Line::new([first, last]);
         let fraction = |x: f64| (self.linear.of(&exact(x)) - &a) / (&b - &a);
         let Some(gaps) = gaps(&line, (lo, hi), &fraction, limits)? else { return Ok(None) };
         let verdict = |x: &Rational| Ok(decide_system(&(self.at)(&self.linear.of(x))?, limits)?.holds());

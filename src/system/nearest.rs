@@ -80,10 +80,10 @@ impl Nearest {
             let told = || run.iter().filter(|own| own.verdict == Holds::Unstable);
             let (lo, hi) = ends(run);
             let proven = (told().next()?.lo, told().next_back()?.hi);
-            Some(Unstable {
-                proven,
-                within: ((lo > searched.0).then_some(lo), (hi < searched.1).then_some(hi)),
-            })
+            let stable = || all.iter().filter(|own| own.verdict == Holds::Stable);
+            let below = stable().rfind(|own| own.hi <= lo).map(|own| own.hi);
+            let above = stable().find(|own| own.lo >= hi).map(|own| own.lo);
+            Some(Unstable { proven, within: (below, above) })
         };
         let found: Vec<Unstable> = runs.iter().filter_map(|run| unstable(run)).collect();
         let own = runs.iter().find(|run| ends(run).0 <= number && number <= ends(run).1);

@@ -45,6 +45,8 @@ pub(super) struct Half {
     ranks: Vec<usize>,
     /// Integer multiples: the eigenvalues of `scale` δ^E S are integral over ℤ\[s\].
     pub scale: BigInt,
+    /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
+    pub is_selfadjoint: bool,
 }
 
 impl Half {
@@ -75,7 +77,8 @@ impl Half {
             (0..lo.size()).map(|i| Mass::between(lo.get(i, i), hi.get(i, i))).collect::<Vec<_>>()
         });
         let scale = BigInt::one();
-        let mut half = Half { generic, frame, program, masses, ranks, scale };
+        let is_selfadjoint = line.commutes;
+        let mut half = Half { generic, frame, program, masses, ranks, scale, is_selfadjoint };
         half.scale = half.common();
         Ok(Some(half))
     }

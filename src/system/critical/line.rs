@@ -14,9 +14,15 @@ const SMALL: usize = 16;
 /// The systems between two whose potentials have the same steps, in order.
 pub(in crate::system) struct Line {
     pub ends: [System; 2],
+    /// Whether all potentials of all systems are known to commute.
+    pub commutes: bool,
 }
 
 impl Line {
+    pub fn new(ends: [System; 2]) -> Line {
+        Line { ends, commutes: false }
+    }
+
     /// Whether all systems are one.
     pub fn is_constant(&self) -> bool {
         let [lo, hi] = &self.ends;
@@ -61,7 +67,7 @@ impl Line {
         };
         let all = [matrices(lo), matrices(hi)].concat();
         let parts = connected(lo.size(), all.iter().flat_map(Symmetric::places));
-        let acted = parts.into_iter().map(|dofs| Line { ends: [lo, hi].map(|own| own.part(&dofs)) });
+        let acted = parts.into_iter().map(|dofs| Line::new([lo, hi].map(|own| own.part(&dofs))));
         let acts = |own: &Line| {
             own.ends.iter().any(|own| own.potentials().iter().any(|own| !own.stiffness.is_zero()))
         };
@@ -74,17 +80,16 @@ impl Line {
         }
         let Ok(frame) = self.frame() else { return vec![self] };
         let complement = frame.complement(&self.ends[0]);
-        let vibrating = Line { ends: self.ends.each_ref().map(|own| own.restricted(&complement)) };
+        let vibrating = Line::new(self.ends.each_ref().map(|own| own.restricted(&complement)));
         let stiffnesses: Vec<_> =
             vibrating.ends.iter().flat_map(|own| own.potentials().iter().map(|own| &own.stiffness)).collect();
-        match invariant_subspaces(&vibrating.ends[0], &stiffnesses) {
-            None => vec![vibrating],
-            Some(spaces) => {
-                let along = |space: &Subspace| Line {
-                    ends: vibrating.ends.each_ref().map(|own| own.restricted(space)),
-                };
-                spaces.iter().map(along).collect()
-            }
-        }
+        let Some(spaces) = invariant_subspaces(&vibrating.ends[0], &stiffnesses) else {
+            return vec![vibrating];
+        };
+        let along = |space: &Subspace| {
+            let ends = vibrating.ends.each_ref().map(|own| own.restricted(space));
+            Line { ends, commutes: true }
+        };
+        spaces.iter().map(along).collect()
     }
 }

@@ -12,6 +12,9 @@
 //! diagonalizable for all s, and Q with it, as no μ is 0 or −1. So the verdict at one point is that of the whole interval
 //! between two roots (THEORY sections 10 and 11).
 //!
+//! Where all potentials commute, S is self-adjoint in the metric of M: μ are real and S is diagonalizable for all s, so f is χ and the
+//! discriminant is left out.
+//!
 //! | file | what |
 //! |---|---|
 //! | `line` | systems on a line, decoupled |

@@ -39,7 +39,8 @@ pub(super) fn critical(half: &Half, limits: &Limits) -> Result<Option<Vec<Critic
     let first = PrimeField::LARGEST;
     let Some(m) = half.residues(&first).and_then(|program| {
         // Any three places: one has the most distinct μ, if not all.
-        let at = |k| half.product(&first, &program, first.of(k)).map(|(s, _)| simple(&first, s).0.len() - 1);
+        let at =
+            |k| half.product(&first, &program, first.of(k)).map(|(s, _)| own(half, &first, s).0.len() - 1);
         [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b].into_iter().filter_map(at).max()
     }) else {
         return Ok(None);
@@ -80,13 +81,16 @@ impl Shape {
         let of = |k: usize| if m < n { whole } else { half.degree(k) };
         // Homogeneous of degree 2m − 2 in the coefficients, of weight m (m − 1): at most with all weights m/2.
         let mut pair = m.saturating_sub(1) * (of(m / 2) + of(m.div_ceil(2)));
-        if m < n {
+        if half.is_selfadjoint {
+            pair = 0;
+        } else if m < n {
             // f(S) = 0 is seen at as many places as its entries' degree asks for.
             pair = pair.max(m * half.degree(1) + whole);
         }
         let (m_bits, size) = (m as f64, eigenvalue.max(scale));
         // Divisors by powers of δ have coefficients up to 2^degree times as long (Mignotte).
-        let bits = (m_bits * (size + 1.0)).max(m_bits * (m_bits - 1.0) * (eigenvalue + 1.0));
+        let met = if half.is_selfadjoint { 0.0 } else { m_bits * (m_bits - 1.0) * (eigenvalue + 1.0) };
+        let bits = (m_bits * (size + 1.0)).max(met);
         Shape { m, degrees: [whole, whole, pair], bits: bits + pair.max(whole) as f64 + 2.0 }
     }
 
@@ -106,7 +110,7 @@ impl Shape {
         for place in 1..=2 * count as u64 + 64 {
             let s = field.of(place);
             let Some((matrix, delta)) = half.product(field, &program, s) else { continue };
-            let (f, semisimple) = simple(field, matrix);
+            let (f, semisimple) = own(half, field, matrix);
             if f.len() != self.m + 1 {
                 continue;
             }
@@ -118,7 +122,10 @@ impl Shape {
             let own = [
                 field.mul(delta, f[0]),
                 field.mul(delta, at_end),
-                field.mul(field.power(delta, 2 * (self.m as u64 - 1)), discriminant(field, &f)),
+                match half.is_selfadjoint {
+                    true => field.of(1),
+                    false => field.mul(field.power(delta, 2 * (self.m as u64 - 1)), discriminant(field, &f)),
+                },
             ];
             places.push(s);
             values.iter_mut().zip(own).for_each(|(all, own)| all.push(own));
@@ -135,6 +142,14 @@ impl Shape {
             interpolated(field, &places[..=degree], values[..=degree].to_vec(), &inverses)
         });
         Some(std::array::from_fn(|_| own.next().expect("three")))
+    }
+}
+
+/// f and whether f(S) = 0; the characteristic polynomial itself where S is diagonalizable with real μ for all s.
+fn own(half: &Half, field: &PrimeField, matrix: DMatrix) -> (Vec<u64>, bool) {
+    match half.is_selfadjoint {
+        true => (modular::characteristic(field, matrix), true),
+        false => simple(field, matrix),
     }
 }
 
