@@ -135,7 +135,7 @@ impl Ball {
     }
 
     /// The midpoint, as an exact ball.
-    fn midpoint(&self) -> Ball {
+    pub(crate) fn midpoint(&self) -> Ball {
         Ball { mid: self.mid.clone(), rad: 0, exp: self.exp }.normalized()
     }
 

@@ -46,7 +46,7 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, schedule: &Schedule, bits: u32) -> En
 }
 
 /// [[a, b], [c, d]]
-type Matrix = [Ball; 4];
+pub(super) type Matrix = [Ball; 4];
 
 /// How the base alone moves.
 enum Turn {
@@ -202,7 +202,7 @@ fn turn(s: &Ball, bits: u32) -> Option<Turn> {
     }
 }
 
-fn product(m: &Matrix, n: &Matrix, bits: u32) -> Matrix {
+pub(super) fn product(m: &Matrix, n: &Matrix, bits: u32) -> Matrix {
     let [a, b, c, d] = m;
     let row = |x: &Ball, y: &Ball, i: usize| x.mul(&n[i], bits).add(&y.mul(&n[i + 2], bits), bits);
     [row(a, b, 0), row(a, b, 1), row(c, d, 0), row(c, d, 1)]

@@ -17,5 +17,6 @@ mod leap;
 pub mod plain;
 pub mod refine;
 pub mod residue;
+pub mod returns;
 pub mod strengths;
 mod winding;

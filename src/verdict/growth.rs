@@ -16,7 +16,7 @@ use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
-use crate::orbit::{filter, plain, refine};
+use crate::orbit::{filter, plain, refine, returns};
 use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -74,6 +74,10 @@ impl Runs {
             let trace = Ball::from_integer(&(2 * i64::from(side.sign())).into());
             return Ok(Growth { trace, ln_multiplier: None, label: None });
         }
+        if let Some((products, nodes)) = self.returned(clocks, verdict) {
+            go_on()?;
+            return Ok(from_products(products, verdict, nodes));
+        }
         let schedule = Schedule::two_clocks(clocks.ratio())?;
         let filtered = self.filtered.unwrap_or_else(|| first_tier(clocks, &schedule));
         let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
@@ -83,6 +87,24 @@ impl Runs {
         limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
         let (products, nodes) = self.refined(clocks, &schedule, verdict)?;
         Ok(from_products(products, verdict, label.or(nodes)))
+    }
+
+    /// By return maps where these decided, in so many bits as it takes: as near as they get.
+    fn returned<S: Decidable>(
+        &self,
+        clocks: &TwoClocks<S>,
+        verdict: Verdict,
+    ) -> Option<(Products, Option<u64>)> {
+        let (ends, known) = self.refined.as_ref().filter(|_| returns::is_worth(clocks.ratio()))?;
+        let more = returns::PRECISIONS.into_iter().filter(|bits| bits > known);
+        let more = more.filter_map(|bits| Some((returns::run(clocks, bits)?, bits)));
+        let found = |ends: &refine::Ends, bits| {
+            accurate(ends, bits, verdict).filter(|(_, label)| label.is_some() || verdict.side() == 0)
+        };
+        let as_known = || Some((ends.products(2 * known), from_nodes(ends, verdict)));
+        found(ends, *known)
+            .or_else(|| more.into_iter().find_map(|(ends, bits)| found(&ends, bits)))
+            .or_else(as_known)
     }
 
     /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes give it.

@@ -10,7 +10,7 @@ use super::lone;
 use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::orbit::floquet::Floquet;
-use crate::orbit::{filter, plain, refine};
+use crate::orbit::{filter, plain, refine, returns};
 use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -33,6 +33,9 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<An
 /// As [`decide`].
 pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     let mut runs = Runs::default();
+    if let Some((verdict, decided_by)) = by_returns(first, clocks, &mut runs)? {
+        return Ok(answer(verdict, decided_by, clocks, limits, runs));
+    }
     for decided_by in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
         let verdict = match decided_by {
             Tier::Filter => by_filter(clocks, limits, &mut runs)?,
@@ -40,17 +43,45 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
             Tier::Exact => Some(by_exact(clocks, limits)?),
         };
         if let Some(verdict) = verdict {
-            return Ok(Answer {
-                verdict,
-                decided_by,
-                clocks: clocks.clone(),
-                limits: *limits,
-                runs,
-                growth: OnceLock::new(),
-            });
+            return Ok(answer(verdict, decided_by, clocks, limits, runs));
         }
     }
     unreachable!("the exact tier decides every pair")
+}
+
+fn answer<S: Decidable>(
+    verdict: Verdict,
+    decided_by: Tier,
+    clocks: &TwoClocks<S>,
+    limits: &Limits,
+    runs: Runs,
+) -> Answer<S> {
+    Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() }
+}
+
+/// Long periods by their return maps: in doubles, then in more bits. `None` where the period is short, and where no precision
+/// decides: an entry may be zero, or a partial quotient too large.
+fn by_returns<S: Decidable>(
+    first: Tier,
+    clocks: &TwoClocks<S>,
+    runs: &mut Runs,
+) -> Result<Option<(Verdict, Tier)>> {
+    if first == Tier::Exact || !returns::is_worth(clocks.ratio()) {
+        return Ok(None);
+    }
+    for bits in returns::PRECISIONS {
+        let tier = if bits == returns::PRECISIONS[0] { Tier::Filter } else { Tier::Refine };
+        if tier < first {
+            continue;
+        }
+        go_on()?;
+        let Some(ends) = returns::run(clocks, bits) else { continue };
+        if let Some(verdict) = ends.signs().verdict() {
+            runs.refined = Some((ends, bits));
+            return Ok(Some((verdict, tier)));
+        }
+    }
+    go_on().map(|()| None)
 }
 
 fn by_filter<S: Decidable>(
@@ -128,8 +159,9 @@ mod tests {
     /// Before it begins and on the way; the kicks that are left would take many times as long.
     #[test]
     fn a_long_verdict_hears_that_it_was_stopped() {
+        // Both clocks beyond their own limits.
         let clocks =
-            TwoClocks::with_rho(Ratio::new(10_000_001, 10_000_003).unwrap(), ratio(1, 3), ratio(1, 25));
+            TwoClocks::with_rho(Ratio::new(10_000_001, 10_000_003).unwrap(), ratio(5, 1), ratio(1, 1));
         let flag = Arc::new(AtomicBool::new(true));
         let decided = || stoppable(&flag, || decide_from(Tier::Refine, &clocks, &Limits::default()));
         assert_eq!(decided().unwrap_err().kind(), Kind::Stopped);

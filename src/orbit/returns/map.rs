@@ -1,0 +1,210 @@
+//! A 2 × 2 matrix as a function on an interval: Taylor coefficients and a bound on all that they lack.
+//!
+//! M(t) = 2^e (Σ M_j t^j + E(t)), −1 ≤ t ≤ 1, |E(t)| ≤ ε in the spectral norm. With |M|₁ = Σ |M_j| the product has
+//!
+//! ```text
+//!     ε_{BA} = |B|₁ ε_A + |A|₁ ε_B + ε_A ε_B + Σ_{i + j ≥ n} |B_i| |A_j| + rounding.
+//! ```
+//!
+//! *Rounding*, u the unit of the numbers, in the norm of Frobenius, which is at most √2 times the spectral one. An entry of
+//! B_i A_j passes through at most 2 (i + j) + 3 operations on its way into the coefficient i + j, so the product's is at most
+//! 2 u Σ (2 i + 2 j + 4) |B_i| |A_j|, the room left covering u² terms. For a part of the interval, t = α + β t' with
+//! |α| + |β| ≤ 1, the coefficient M_j passes through j + 1 sums at most and through products with α and β, j of them, each
+//! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
+//! [`FLOOR`] what is lost where numbers underflow.
+
+use super::number::Coefficient;
+use super::turn::{Turn, direction, principal};
+use crate::number::Ball;
+
+/// Some hundreds of roundings of positive numbers.
+const UP: f64 = 1.0 + 1e-12;
+
+/// More than any number of underflows adds to a function whose largest entry is near 1.
+const FLOOR: f64 = 1e-250;
+
+/// [[a, b], [c, d]] in a row.
+pub type Entries<T> = [T; 4];
+
+#[derive(Clone)]
+pub struct Map<T> {
+    terms: Vec<Entries<T>>,
+    /// ε.
+    error: f64,
+    /// e.
+    pub exponent: i64,
+    /// Of (1, 0) at t = 0.
+    pub turn: Option<Turn>,
+}
+
+/// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
+fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
+    let [a, b, c, d] = m.each_ref().map(T::near);
+    0.5 * ((a + d).hypot(b - c) + (a - d).hypot(b + c)) * UP
+}
+
+/// The image of (1, 0).
+fn image<T: Coefficient>(m: &Entries<T>) -> [f64; 2] {
+    [m[0].near(), m[2].near()]
+}
+
+impl<T: Coefficient> Map<T> {
+    /// From balls.
+    pub fn new(terms: &[Entries<Ball>], turn: Option<Turn>) -> Self {
+        let mut error = FLOOR;
+        let mut taken = |ball: &Ball| {
+            let near = T::of_ball(ball);
+            let (lo, hi) = ball.sub(&near.ball(), T::BITS).to_f64_enclosure();
+            error += lo.abs().max(hi.abs());
+            near
+        };
+        let terms = terms.iter().map(|m| m.each_ref().map(&mut taken)).collect();
+        let mut map = Map { terms, error: error * UP, exponent: 0, turn };
+        map.balance();
+        map
+    }
+
+    /// The identity.
+    pub fn identity() -> Self {
+        let one = [Ball::one(), Ball::zero(), Ball::zero(), Ball::one()];
+        Map::new(&[one], Some(Turn::NONE))
+    }
+
+    /// Whether the bound still leaves something.
+    pub fn is_useful(&self) -> bool {
+        self.error < 0.1 * norm(&self.terms[0])
+    }
+
+    fn norms(&self) -> Vec<f64> {
+        self.terms.iter().map(norm).collect()
+    }
+
+    /// `self` after `earlier`, on the same interval.
+    pub fn after(&self, earlier: &Self) -> Self {
+        let (b, a) = (self.norms(), earlier.norms());
+        let n = (b.len() + a.len() - 1).min(T::TERMS);
+        let mut terms: Vec<Entries<T>> = vec![std::array::from_fn(|_| T::zero()); n];
+        for (i, later) in self.terms.iter().enumerate() {
+            for (term, first) in terms[i.min(n)..].iter_mut().zip(&earlier.terms) {
+                for (k, entry) in term.iter_mut().enumerate() {
+                    let (row, column) = (k & 2, k & 1);
+                    let product = later[row].times(&first[column]);
+                    let product = product.plus(&later[row + 1].times(&first[column + 2]));
+                    *entry = entry.plus(&product);
+                }
+            }
+        }
+        let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
+        let dropped: f64 =
+            b.iter().enumerate().map(|(i, b)| b * a.iter().skip(n.saturating_sub(i)).sum::<f64>()).sum();
+        let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
+        let carried = sum_b * earlier.error + sum_a * self.error + self.error * earlier.error;
+        let error = (carried + dropped + rounding) * UP + FLOOR;
+        let exponent = self.exponent + earlier.exponent;
+        let mut product = Map { terms, error, exponent, turn: None };
+        product.turn = self.turn_after(earlier, &product);
+        product.balance();
+        product
+    }
+
+    fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
+        direction(image(&self.terms[0]), self.error)?;
+        earlier.turn?.then(self.turn?, direction(image(&product.terms[0]), product.error)?)
+    }
+
+    /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
+    pub fn part(&self, alpha: &T, beta: &T) -> Self {
+        let mut terms = self.terms.clone();
+        for i in 0..terms.len() {
+            for j in (i..terms.len() - 1).rev() {
+                let (low, high) = terms.split_at_mut(j + 1);
+                for (own, next) in low[j].iter_mut().zip(&high[0]) {
+                    *own = own.plus(&alpha.times(next));
+                }
+            }
+        }
+        let mut power = beta.clone();
+        for term in &mut terms[1..] {
+            term.iter_mut().for_each(|x| *x = x.times(&power));
+            power = power.times(beta);
+        }
+        self.moved(alpha, terms)
+    }
+
+    /// At the point t = α.
+    pub fn at(&self, alpha: &T) -> Self {
+        let (last, rest) = self.terms.split_last().expect("at least one term");
+        let horner = |sum: Entries<T>, term: &Entries<T>| {
+            let mut sum = sum;
+            sum.iter_mut().zip(term).for_each(|(x, c)| *x = x.times(alpha).plus(c));
+            sum
+        };
+        let value = rest.iter().rev().fold(last.clone(), horner);
+        self.moved(alpha, vec![value])
+    }
+
+    fn moved(&self, alpha: &T, terms: Vec<Entries<T>>) -> Self {
+        let [sum, rank] = sums(&self.norms());
+        let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank);
+        let mut part =
+            Map { terms, error: (self.error + rounding) * UP + FLOOR, exponent: self.exponent, turn: None };
+        part.turn = self.turn_moved(alpha.near(), &part);
+        part.balance();
+        part
+    }
+
+    /// The turn, followed along t from 0 to α in so small steps that the image's direction changes by less than a right angle
+    /// in each.
+    fn turn_moved(&self, alpha: f64, part: &Self) -> Option<Turn> {
+        let mut turn = self.turn?;
+        let images: Vec<[f64; 2]> = self.terms.iter().map(image).collect();
+        let at = |t: f64| images.iter().rev().fold([0.0; 2], |[x, y], [a, b]| [x * t + a, y * t + b]);
+        // |d/dt of the image| at most; what doubles round is far below the half that is left.
+        let slope: f64 = images.iter().enumerate().map(|(j, [x, y])| j as f64 * x.hypot(*y)).sum();
+        for steps in [1u32, 8, 64] {
+            let change = slope * alpha.abs() / f64::from(steps);
+            let moved = (0..steps).try_fold(turn, |turn, k| {
+                let [x, y] = at(alpha * f64::from(k) / f64::from(steps));
+                (x.hypot(y) > 2.0 * (change + self.error) + 1e-12 * self.sum_of_images(&images))
+                    .then_some(())?;
+                let [x, y] = at(alpha * f64::from(k + 1) / f64::from(steps));
+                let angle = y.atan2(x);
+                Some(turn.on(principal(angle - turn.angle), angle))
+            });
+            if let Some(moved) = moved {
+                turn = moved;
+                let angle = direction(image(&part.terms[0]), part.error)?;
+                return Some(turn.on(principal(angle - turn.angle), angle));
+            }
+        }
+        None
+    }
+
+    fn sum_of_images(&self, images: &[[f64; 2]]) -> f64 {
+        images.iter().map(|[x, y]| x.hypot(*y)).sum()
+    }
+
+    /// Keeps the constant term's norm near 1; exact.
+    fn balance(&mut self) {
+        let size = norm(&self.terms[0]);
+        if !(1.0 / 16.0..=16.0).contains(&size) && size > 1e-200 && size < 1e200 {
+            let k = -size.log2().round() as i32;
+            self.terms.iter_mut().flatten().for_each(|x| *x = x.scale2(k));
+            self.error = self.error * 2f64.powi(k) * UP + FLOOR;
+            self.exponent -= i64::from(k);
+        }
+    }
+
+    /// The entries at t = 0 without the power of two.
+    pub fn balls(&self) -> Entries<Ball> {
+        let unit = Ball::one().neg().union(&Ball::one(), 64);
+        let range = super::number::exact(self.error).mul(&unit, 64);
+        self.terms[0].each_ref().map(|x| x.ball().add(&range, T::BITS))
+    }
+}
+
+/// Σ m_j and Σ j m_j.
+fn sums(norms: &[f64]) -> [f64; 2] {
+    let each = norms.iter().enumerate();
+    each.fold([0.0; 2], |[sum, rank], (j, m)| [sum + m, rank + j as f64 * m])
+}

@@ -1,0 +1,163 @@
+//! The numbers that coefficients are made of: doubles, two doubles, long numbers.
+
+use crate::number::{Ball, Rational, Twofold, U};
+
+/// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
+/// UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
+pub trait Coefficient: Clone {
+    const UNIT: f64;
+    /// The precision at which balls serve it.
+    const BITS: u32;
+    /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as small as UNIT.
+    const TERMS: usize;
+    /// The most products of functions that one run may cost: a second or a few.
+    const PRODUCTS: u64;
+
+    fn zero() -> Self;
+    fn plus(&self, other: &Self) -> Self;
+    fn times(&self, other: &Self) -> Self;
+    /// x 2^k, exactly.
+    fn scale2(&self, k: i32) -> Self;
+    /// Within 2^-50 relatively.
+    fn near(&self) -> f64;
+    /// Near the ball's midpoint.
+    fn of_ball(ball: &Ball) -> Self;
+    /// The number, exactly.
+    fn ball(&self) -> Ball;
+
+    /// n/d within 3 UNIT relatively.
+    fn quotient(n: i64, d: u64) -> Self {
+        let exact = Rational::new(n.into(), d.into());
+        Self::of_ball(&Ball::from_rational(&exact, Self::BITS))
+    }
+}
+
+impl Coefficient for f64 {
+    const UNIT: f64 = U;
+    const BITS: u32 = 80;
+    const TERMS: usize = 13;
+    const PRODUCTS: u64 = 400_000;
+
+    fn zero() -> Self {
+        0.0
+    }
+
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        self + other
+    }
+
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        self * other
+    }
+
+    fn scale2(&self, k: i32) -> Self {
+        self * 2f64.powi(k)
+    }
+
+    fn near(&self) -> f64 {
+        *self
+    }
+
+    fn of_ball(ball: &Ball) -> Self {
+        ball.mid_f64()
+    }
+
+    fn ball(&self) -> Ball {
+        exact(*self)
+    }
+
+    fn quotient(n: i64, d: u64) -> Self {
+        n as f64 / d as f64
+    }
+}
+
+impl Coefficient for Twofold {
+    const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
+    const BITS: u32 = 130;
+    const TERMS: usize = 22;
+    const PRODUCTS: u64 = 100_000;
+
+    fn zero() -> Self {
+        Twofold::ZERO
+    }
+
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        Twofold::plus(*self, *other)
+    }
+
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        Twofold::times(*self, *other)
+    }
+
+    fn scale2(&self, k: i32) -> Self {
+        let unit = 2f64.powi(k);
+        Twofold { hi: self.hi * unit, lo: self.lo * unit }
+    }
+
+    fn near(&self) -> f64 {
+        self.hi
+    }
+
+    fn of_ball(ball: &Ball) -> Self {
+        let hi = ball.mid_f64();
+        Twofold::sum(hi, ball.sub(&exact(hi), Self::BITS).mid_f64())
+    }
+
+    fn ball(&self) -> Ball {
+        // Two doubles may lie far apart: a sum of exact balls within 2^-2000 of the larger is exact for those above 2^-900.
+        exact(self.hi).add(&exact(self.lo), 2200)
+    }
+}
+
+/// A number of `LENGTH` bits: a ball without a radius. The sum of two exact balls is within 2^-LENGTH+2 of the sum of their
+/// magnitudes, the product within 2^-LENGTH+1.
+#[derive(Clone)]
+pub struct Long<const LENGTH: u32>(Ball);
+
+impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
+    const UNIT: f64 = f64::from_bits((1023 + 2 - LENGTH as u64) << 52);
+    const BITS: u32 = LENGTH + 32;
+    const TERMS: usize = 8 + LENGTH as usize / 7;
+    const PRODUCTS: u64 = 600;
+
+    fn zero() -> Self {
+        Long(Ball::zero())
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        Long(self.0.add(&other.0, LENGTH).midpoint())
+    }
+
+    fn times(&self, other: &Self) -> Self {
+        Long(self.0.mul(&other.0, LENGTH).midpoint())
+    }
+
+    fn scale2(&self, k: i32) -> Self {
+        Long(self.0.scale2(k.into()))
+    }
+
+    fn near(&self) -> f64 {
+        self.0.mid_f64()
+    }
+
+    fn of_ball(ball: &Ball) -> Self {
+        Long(ball.round(LENGTH).midpoint())
+    }
+
+    fn ball(&self) -> Ball {
+        self.0.clone()
+    }
+}
+
+/// A double, exactly.
+pub fn exact(x: f64) -> Ball {
+    let (mantissa, exponent) = (x.to_bits() & ((1 << 52) - 1), (x.to_bits() >> 52 & 0x7ff) as i64);
+    let (mantissa, exponent) =
+        if exponent == 0 { (mantissa, -1074) } else { (mantissa | 1 << 52, exponent - 1075) };
+    let ball = Ball::from_integer(&mantissa.into()).scale2(exponent);
+    if x < 0.0 { ball.neg() } else { ball }
+}

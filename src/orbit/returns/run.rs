@@ -1,0 +1,152 @@
+//! One branch many times: products of a slowly varying matrix function along an arithmetic progression.
+//!
+//! P_n(x) = F(x + (n − 1) d) … F(x + d) F(x), so P_2n(x) = P_n(x + n d) P_n(x). F varies by so much over its interval of length
+//! L, and P_n by as much over a piece of length L/n. So there are about 2 n pieces on which P_n is known, each as long as two
+//! of the next kind, and k/n places where it is asked for: a product of k factors costs about √k products of functions. Its
+//! error grows by a factor per doubling, like a power of k.
+
+use std::collections::HashMap;
+
+use super::map::Map;
+use super::number::Coefficient;
+use crate::parallel::go_on;
+
+/// A matrix function on the integers `start..start + length`, which are units of 1/q, and where it leads: x to x + stride.
+#[derive(Clone)]
+pub struct Branch<T> {
+    pub map: Map<T>,
+    pub start: i64,
+    pub length: i64,
+    pub stride: i64,
+    /// The slow kicks that it holds.
+    pub height: u64,
+}
+
+impl<T: Coefficient> Branch<T> {
+    /// On a part of the interval.
+    pub fn on(&self, start: i64, length: i64) -> Map<T> {
+        if (start, length) == (self.start, self.length) {
+            return self.map.clone();
+        }
+        // The difference of the middles is less than half the length.
+        let alpha = 2 * (start - self.start) - (self.length - length);
+        let divisor = self.length as u64;
+        self.map.part(&T::quotient(alpha, divisor), &T::quotient(length, divisor))
+    }
+
+    /// At a point.
+    pub fn at(&self, x: i64) -> Map<T> {
+        self.map.at(&T::quotient(2 * (x - self.start) - self.length, self.length as u64))
+    }
+
+    /// With the same function on a part of its interval.
+    pub fn restricted(&self, start: i64, length: i64) -> Self {
+        Branch { map: self.on(start, length), start, length, ..self.clone() }
+    }
+}
+
+/// A branch and what is known of its products.
+pub struct Run<T> {
+    pub branch: Branch<T>,
+    /// By the logarithm of n and the place.
+    pieces: HashMap<(u32, i64), Branch<T>>,
+}
+
+/// Products of functions that may still be made; `None` from whatever needs more.
+pub struct Budget(pub u64);
+
+impl Budget {
+    /// A giant partial quotient is given up before the work.
+    fn allows(&self, factors: u64) -> Option<()> {
+        (2 * factors.isqrt() <= self.0).then_some(())
+    }
+
+    /// `later` after `earlier`.
+    pub fn product<T: Coefficient>(&mut self, later: &Map<T>, earlier: &Map<T>) -> Option<Map<T>> {
+        self.0 = self.0.checked_sub(1)?;
+        if self.0.is_multiple_of(64) {
+            go_on().ok()?;
+        }
+        Some(later.after(earlier)).filter(Map::is_useful)
+    }
+}
+
+impl<T: Coefficient> Run<T> {
+    pub fn new(branch: Branch<T>) -> Self {
+        Run { branch, pieces: HashMap::new() }
+    }
+
+    /// P_n on start..start + length; `None` where the budget or the bound does not last.
+    pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+        budget.allows(n)?;
+        let (mut product, mut from) = (None, start);
+        for log2 in (0..64 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
+            let next = self.power(log2, from, length, budget)?;
+            product = Some(match product {
+                Some(product) => budget.product(&next, &product)?,
+                None => next,
+            });
+            from += self.branch.stride << log2;
+        }
+        product
+    }
+
+    /// P_n at a point.
+    pub fn at(&mut self, n: u64, x: i64, budget: &mut Budget) -> Option<Map<T>> {
+        budget.allows(n)?;
+        let (mut product, mut from) = (Map::identity(), x);
+        for log2 in (0..64 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
+            let value = self.power_at(log2, from, budget)?;
+            product = budget.product(&value, &product)?;
+            from += self.branch.stride << log2;
+        }
+        Some(product)
+    }
+
+    /// P_n for n = 2^log2.
+    fn power(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+        if log2 == 0 {
+            return Some(self.branch.on(start, length));
+        }
+        if 2 * length <= self.branch.length >> log2 {
+            return Some(self.piece(log2, start, budget)?.on(start, length));
+        }
+        self.twice(log2, start, length, budget)
+    }
+
+    fn power_at(&mut self, log2: u32, x: i64, budget: &mut Budget) -> Option<Map<T>> {
+        if log2 == 0 {
+            return Some(self.branch.at(x));
+        }
+        if 2 <= self.branch.length >> log2 {
+            return Some(self.piece(log2, x, budget)?.at(x));
+        }
+        let first = self.power_at(log2 - 1, x, budget)?;
+        let second = self.power_at(log2 - 1, x + (self.branch.stride << (log2 - 1)), budget)?;
+        budget.product(&second, &first)
+    }
+
+    fn twice(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+        let first = self.power(log2 - 1, start, length, budget)?;
+        let second = self.power(log2 - 1, start + (self.branch.stride << (log2 - 1)), length, budget)?;
+        budget.product(&second, &first)
+    }
+
+    /// The piece of length L/n that holds x and half a piece beyond it, as far as P_n is defined.
+    fn piece(&mut self, log2: u32, x: i64, budget: &mut Budget) -> Option<&Branch<T>> {
+        let Branch { start, length, stride, .. } = self.branch;
+        let long = length >> log2;
+        let place = (x - start) / (long / 2);
+        if !self.pieces.contains_key(&(log2, place)) {
+            // All of x, x + d, ..., x + (n − 1) d lie in the branch's interval.
+            let reach = stride * ((1 << log2) - 1);
+            let (least, end) = (start.max(start - reach), (start + length).min(start + length - reach));
+            let from = (start + place * (long / 2)).min(end - long).max(least);
+            let long = long.min(end - from);
+            let map = self.twice(log2, from, long, budget)?;
+            let piece = Branch { map, start: from, length: long, stride: 0, height: 0 };
+            self.pieces.insert((log2, place), piece);
+        }
+        self.pieces.get(&(log2, place))
+    }
+}
