@@ -31,7 +31,7 @@ mod tests {
 
     #[test]
     fn a_small_growth_rate_is_written_in_digits_that_it_has() {
-        assert_eq!(rate(Some((3.162_277_6e-8, 3.162_277_7e-8))), "3.16227765(5)e-8");
+        assert_eq!(rate(Some((3.162_277_6e-8, 3.162_277_7e-8))), "3.1622777(2)e-8");
         assert_eq!(rate(Some((0.0, 1.04e-9))), "at most 1.1e-9");
         assert_eq!(
             [rate(Some((0.0, 0.0))), rate(Some((0.0, f64::INFINITY))), rate(None)],
