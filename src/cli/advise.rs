@@ -13,7 +13,7 @@ use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::advise as report;
-use crate::scene::{SystemScene, of_archive};
+use crate::scene::{SystemScene, file, of_archive};
 
 /// Fastest periods of molecules, in fs.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
@@ -207,7 +207,10 @@ impl Args {
 }
 
 fn text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|cause| Error::io(path.display(), &cause).caused_by(cause))
+    file::text(path, file::LONGEST).map_err(|cause| {
+        Error::io(path.display(), format!("cannot read it ({cause}): name an engine's input"))
+            .caused_by(cause)
+    })
 }
 
 fn heavy_hydrogen(text: &str) -> Result<Rational> {

@@ -63,7 +63,7 @@ mod ways {
     use crate::error::{Error, Result};
     use crate::explore::Session;
     use crate::number::{ExactSign, Laurent, Rational, Sign};
-    use crate::scene::{Scene, SystemScene};
+    use crate::scene::{Scene, SystemScene, file};
 
     impl Args {
         /// What the page starts on.
@@ -98,7 +98,7 @@ mod ways {
 
     /// A scene, or a system, whose schema says that it is one.
     fn of_file(path: &std::path::Path) -> Result<Session> {
-        let text = std::fs::read_to_string(path).map_err(|cause| {
+        let text = file::text(path, file::LONGEST).map_err(|cause| {
             let text =
                 format!("cannot read it ({cause}): name a scene or a system, as data/scenes/figure1.json");
             Error::io(path.display(), text).caused_by(cause)

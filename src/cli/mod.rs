@@ -40,7 +40,7 @@ use crate::error::Result;
 use crate::format::Format;
 #[cfg(unix)]
 use crate::report::file::abandon;
-use crate::report::file::captured;
+use crate::report::file::{captured, replaceable, write_output};
 use args::Common;
 pub use args::Held;
 
@@ -138,9 +138,9 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let cli = match parsed(arguments) {
         Ok(cli) => cli,
         Err(error) if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) => {
-            // A closed pipe is the reader's choice.
-            let _ = writeln!(std::io::stdout(), "{}", error.to_string().trim_end());
-            return 0;
+            let text = format!("{}\n", error.to_string().trim_end());
+            return write_output(None, text.as_bytes())
+                .map_or_else(|error| failure(&error.to_string()), |()| 0);
         }
         Err(error) => return failure(&usage::explained(&error, &whole()).to_string()),
     };
@@ -175,18 +175,31 @@ pub fn answer_about(arguments: impl IntoIterator<Item = OsString>, held: Option<
     captured(|| run(&cli).map(drop))
 }
 
-/// An interrupted or terminated process leaves no unfinished file behind, and ends as one without this would.
+/// A process that a signal ends leaves no unfinished file behind, and ends as one without this would; a file that grows too large is an
+/// error of the stream.
 #[cfg(unix)]
 fn tidy_up_when_stopped() -> std::io::Result<()> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU, SIGXFSZ};
     use signal_hook::low_level::emulate_default_handler;
-    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
+    signal_hook::flag::register(SIGXFSZ, std::sync::Arc::default())?;
+    // What is ignored, as nohup and background jobs have it, stays so.
+    let heard = [SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXCPU].into_iter().filter(|&signal| !is_ignored(signal));
+    let mut signals = signal_hook::iterator::Signals::new(heard)?;
     std::thread::spawn(move || {
         for signal in signals.forever() {
             abandon(|| drop(emulate_default_handler(signal)));
         }
     });
     Ok(())
+}
+
+/// Whether this process was started with the signal ignored; where the system does not say (there is no /proc), only that a hangup may be.
+#[cfg(unix)]
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask =
+        status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigIgn:")?.trim(), 16).ok());
+    mask.map_or(signal == signal_hook::consts::SIGHUP, |mask| mask >> (signal - 1) & 1 == 1)
 }
 
 #[cfg(not(unix))]
@@ -197,8 +210,9 @@ fn tidy_up_when_stopped() -> std::io::Result<()> {
 fn run(cli: &Cli) -> Result<u8> {
     let common = &cli.common;
     common.set_threads()?;
+    // Refused before the work, not after it.
+    common.output.as_deref().map_or(Ok(()), replaceable)?;
     if !cli.command.draws() {
-        // Refused before the work, not after it.
         common.format(&Format::DOCUMENT, Format::Text)?;
     }
     match &cli.command {

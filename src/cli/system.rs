@@ -14,7 +14,7 @@ use crate::number::parse::parse_rational;
 use crate::report::document::Document;
 use crate::report::figure::{Figure, Foot};
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
-use crate::scene::{Arrays, Axis, Scan, Span, SystemScene};
+use crate::scene::{Arrays, Axis, Scan, Span, SystemScene, file};
 use crate::system::scan::scan;
 use crate::system::{Analysis, Holds, Limits, Route};
 
@@ -243,7 +243,7 @@ fn drawing(common: &Common) -> Result<Option<&Path>> {
 }
 
 fn text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|cause| {
+    file::text(path, file::LONGEST).map_err(|cause| {
         let remedy = "name a system file, such as data/scenes/diatomic-tether.json";
         Error::io(path.display(), format!("cannot read the system ({cause}): {remedy}")).caused_by(cause)
     })

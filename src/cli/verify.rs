@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::recheck::{Claim, Options, Outcome};
 use crate::report::document::Document;
+use crate::scene::file;
 
 /// Flags of `verify`.
 #[derive(Debug, clap::Args)]
@@ -32,7 +33,7 @@ const KICKS_A_SECOND: u64 = 400_000;
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let file = self.file.display();
-        let text = std::fs::read_to_string(&self.file).map_err(|cause| {
+        let text = file::text(&self.file, file::LONGEST).map_err(|cause| {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
         let claim = Claim::read(&text)?;

@@ -94,6 +94,7 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
         let mut sink = BufWriter::new(file);
         return content(&mut sink).and_then(|()| sink.flush().map_err(Error::stream));
     }
+    replaceable(&target)?;
     let (temporary, file) = Temporary::beside(&target).map_err(Error::stream)?;
     let mut sink = BufWriter::new(file);
     content(&mut sink)?;
@@ -107,6 +108,26 @@ fn to_path(path: &Path, content: impl FnOnce(&mut dyn Write) -> Result<()>) -> R
         temporary.take_name(&target)
     };
     finish().map_err(Error::stream)
+}
+
+/// That a file may be replaced, if there is one: a rename would pass over what keeps it from being written to. For whoever asks before the
+/// work, too.
+///
+/// # Errors
+/// [`Kind::Io`](crate::error::Kind::Io) naming a file that is read-only, for all or for this process.
+pub fn replaceable(path: &Path) -> Result<()> {
+    let old = fs::metadata(path).ok().filter(|old| old.is_file() && !CAPTURED.with_borrow(Option::is_some));
+    let Some(old) = old else { return Ok(()) };
+    let opened = if old.permissions().readonly() {
+        Err(ErrorKind::PermissionDenied.into())
+    } else {
+        OpenOptions::new().write(true).open(path).map(drop)
+    };
+    opened.map_err(|cause| {
+        let text =
+            format!("is not replaced, being read-only ({cause}): name another file, or make it writable");
+        Error::io(path.display(), text).caused_by(cause)
+    })
 }
 
 /// The files and folders of this process that are not finished, those within others behind them.

@@ -18,6 +18,7 @@
 //! ```
 
 mod document;
+pub mod file;
 mod grid;
 pub(crate) mod json;
 #[cfg(feature = "system")]

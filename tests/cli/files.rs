@@ -84,10 +84,77 @@ fn stopped(desk: &Desk, signal: &str) -> std::process::ExitStatus {
 #[test]
 fn a_process_that_is_interrupted_or_terminated_leaves_nothing_behind() {
     use std::os::unix::process::ExitStatusExt;
-    for (signal, number) in [("-INT", 2), ("-TERM", 15)] {
+    for (signal, number) in [("-HUP", 1), ("-INT", 2), ("-TERM", 15), ("-XCPU", 24)] {
         let desk = Desk::new();
         assert_eq!(stopped(&desk, signal).signal(), Some(number));
         assert!(desk.is_empty(), "{signal}: {:?}", desk.files());
+    }
+}
+
+/// The program under `sh`, which first does what `before` says.
+#[cfg(target_os = "linux")]
+fn under_shell(desk: &Desk, before: &str, line: &str) -> std::process::Command {
+    let mut command = std::process::Command::new("sh");
+    let script = format!("{before}; exec {} {line}", env!("CARGO_BIN_EXE_kickdrift"));
+    command.args(["-c", &script]).current_dir(desk.path()).stdin(Stdio::null());
+    command
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hangup_that_is_ignored_as_nohup_has_it_stays_so() {
+    use std::os::unix::process::ExitStatusExt;
+    let desk = Desk::new();
+    let mut child = under_shell(&desk, "trap '' HUP", LONG).spawn().unwrap();
+    while desk.files().is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    // Signals come one after the other: were the first heard, it would be the end.
+    for signal in ["-HUP", "-TERM"] {
+        std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    assert_eq!(child.wait().unwrap().signal(), Some(15));
+    assert!(desk.is_empty());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_may_not_grow_so_large_is_an_error_and_nothing_is_left() {
+    let desk = Desk::new();
+    let output = under_shell(&desk, "ulimit -f 8", LONG).output().unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("map.npz") && desk.is_empty(), "{message} {:?}", desk.files());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_input_without_an_end_is_refused() {
+    let desk = Desk::new();
+    for command in ["system", "verify", "advise", "advise --engine", "run", "explore --no-open"] {
+        let output =
+            under_shell(&desk, "ulimit -v 8000000", &format!("{command} /dev/zero")).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{command}: {message}");
+        assert!(message.contains("/dev/zero") && message.contains("it is no text"), "{command}: {message}");
+    }
+}
+
+#[test]
+fn a_read_only_file_is_not_replaced() {
+    let desk = Desk::new();
+    desk.write("kept.json", "old");
+    let path = desk.path().join("kept.json");
+    let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).unwrap();
+    for line in [VERDICT, MAP, "verdict --lambda1 10 --lambda2 2/5 --h1 1/10 --h2 1 --certificate kept.json"]
+    {
+        let ended =
+            desk.run(&words(line, if line.ends_with("json") { &[] } else { &["--output", "kept.json"] }));
+        assert!(ended.code == Some(2) && ended.stderr.contains("read-only"), "{line}: {}", ended.stderr);
+        assert_eq!((desk.read("kept.json"), desk.files()), (b"old".to_vec(), vec!["kept.json".to_string()]));
     }
 }
 
@@ -144,6 +211,9 @@ fn a_full_disk_is_an_error() {
     let output = desk.command(&words(VERDICT, &[])).stdout(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("standard output"));
+    for line in [&["--help"][..], &["--version"], &["map", "--help"]] {
+        assert_eq!(desk.command(line).stdout(full()).output().unwrap().status.code(), Some(2), "{line:?}");
+    }
     // Where even the message cannot be written, the code still tells.
     let status = desk.command(&["verdict"]).stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(2));

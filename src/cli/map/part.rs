@@ -1,6 +1,5 @@
 //! A map's exact input, and the directories that hold parts of maps and say of which.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +11,7 @@ use crate::number::Laurent;
 use crate::number::parse::{parse, parse_range};
 use crate::report::file::write_output;
 use crate::report::plane::command;
-use crate::scene::{GridRange, json, shown_range};
+use crate::scene::{GridRange, file, json, shown_range};
 
 /// A grid, as it was asked for, and what is asked of it.
 pub struct Map {
@@ -107,7 +106,7 @@ impl Part {
         let unreadable = |cause: &dyn std::fmt::Display| {
             Error::io(directory.join(NAME).display(), format!("cannot read ({cause}): {remedy}"))
         };
-        let text = fs::read_to_string(directory.join(NAME)).map_err(|cause| unreadable(&cause))?;
+        let text = file::text(&directory.join(NAME), file::LONGEST).map_err(|cause| unreadable(&cause))?;
         let written: Written = json::from_str(&text).map_err(|cause| unreadable(&cause))?;
         let map = written.clone().read()?;
         let store = Store::open(directory, &map.grid, map.products)?;

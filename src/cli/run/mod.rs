@@ -4,7 +4,6 @@ mod summary;
 mod tongues;
 mod work;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::args::Common;
@@ -12,7 +11,7 @@ use super::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::file::{Folder, write_output};
-use crate::scene::{self, Scene};
+use crate::scene::{self, Scene, file};
 use summary::Summary;
 use work::Work;
 
@@ -52,13 +51,7 @@ impl Args {
 
     /// The text of the scene file; no more of it than a scene may have.
     fn text(&self) -> Result<String> {
-        let read = || {
-            let mut text = String::new();
-            let file = std::fs::File::open(&self.scene)?;
-            file.take(scene::LONGEST as u64 + 1).read_to_string(&mut text)?;
-            Ok(text)
-        };
-        read().map_err(|cause: std::io::Error| {
+        file::text(&self.scene, scene::LONGEST as u64).map_err(|cause| {
             let remedy = "name a scene file, such as data/scenes/figure1.json";
             Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
                 .caused_by(cause)

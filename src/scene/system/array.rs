@@ -15,9 +15,13 @@ use serde_json::{Map, Value};
 
 use super::market;
 use crate::error::{Error, Result};
+use crate::scene::file;
 
 /// The most elements read: 4096 x 4096.
 const MOST_ELEMENTS: usize = 1 << 24;
+
+/// The most bytes of a `.npy` file: its elements and its header.
+const MOST_BYTES: u64 = 8 * MOST_ELEMENTS as u64 + 65_536;
 
 /// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}` or `{"mm": "k.mtx"}`; paths are relative to the file that holds them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
@@ -109,13 +113,13 @@ impl Reference {
         let (path, bytes) = match self {
             Reference::Mm { mm } => {
                 let path = folder.join(mm);
-                let text = std::fs::read_to_string(&path).map_err(|cause| io(&path, cause))?;
+                let text = file::text(&path, file::LONGEST).map_err(|cause| io(&path, cause))?;
                 let read = market::parse(&text).map_err(|why| Error::input(field, mm, why));
                 return read.map(|(shape, values)| Array { shape, values });
             }
             Reference::Npy { npy } => {
                 let path = folder.join(npy);
-                let bytes = std::fs::read(&path).map_err(|cause| io(&path, cause))?;
+                let bytes = file::bytes(&path, MOST_BYTES).map_err(|cause| io(&path, cause))?;
                 (npy.clone(), bytes)
             }
             Reference::Npz { npz, array } => {
@@ -147,10 +151,9 @@ fn member(file: File, name: &str) -> std::result::Result<Vec<u8>, String> {
     let missing = |_| format!("holds no array {name}: it has {}", names.join(", "));
     let mut entry = archive.by_name(&format!("{name}.npy")).map_err(missing)?;
     let mut bytes = Vec::new();
-    let most = 8 * MOST_ELEMENTS as u64 + 65_536;
     entry
         .by_ref()
-        .take(most)
+        .take(MOST_BYTES)
         .read_to_end(&mut bytes)
         .map_err(|cause| format!("cannot be unpacked ({cause})"))?;
     Ok(bytes)

@@ -1,0 +1,44 @@
+//! Files read up to a size: a device without an end is no input.
+
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// The longest document or engine's input, in bytes: the reader of XML takes 4 GiB, and JSON takes ten times its size in memory.
+pub const LONGEST: u64 = 1 << 30;
+
+/// Bytes that are read before they are looked at.
+const AT_ONCE: u64 = 1 << 16;
+
+/// The text of a file of at most so many bytes.
+///
+/// # Errors
+/// Those of the file; more bytes; a zero byte, which no text holds but devices and binary files do; bytes that are not UTF-8.
+pub fn text(path: &Path, most: u64) -> io::Result<String> {
+    let (mut file, mut bytes) = (File::open(path)?.take(most + 1), Vec::new());
+    while file.by_ref().take(AT_ONCE).read_to_end(&mut bytes)? > 0 {
+        if bytes[bytes.len().saturating_sub(AT_ONCE as usize)..].contains(&0) {
+            return Err(io::Error::new(ErrorKind::InvalidData, "it holds a zero byte: it is no text"));
+        }
+    }
+    bounded(bytes.len(), most)?;
+    String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8"))
+}
+
+/// The bytes of a file of at most so many.
+///
+/// # Errors
+/// Those of the file; more bytes.
+pub fn bytes(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    bounded(bytes.len(), most)?;
+    Ok(bytes)
+}
+
+fn bounded(length: usize, most: u64) -> io::Result<()> {
+    if length as u64 <= most {
+        return Ok(());
+    }
+    Err(io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {most} bytes")))
+}
