@@ -68,7 +68,9 @@ impl Query {
             Some(rho) => &Laurent::from_rational(rho) * &lambda1,
             None => known(self.read("lambda2", parse)?, own.map(|own| &own.1), "lambda2")?,
         };
-        Ok((lambda1, lambda2))
+        let both = (lambda1, lambda2);
+        Session::shows(&both)?;
+        Ok(both)
     }
 
     /// λ1 and ρ ≥ 0, for tongues.
@@ -81,6 +83,10 @@ impl Query {
     pub fn window(&self, session: &Session) -> Result<[StepRange; 2]> {
         let [h1, h2] = [("h1", 0), ("h2", 1)].map(|(key, n)| {
             let given = self.read(key, parse_range)?.unwrap_or_else(|| session.window()[n].clone());
+            if !(given.0.to_f64().is_finite() && given.1.to_f64().is_finite()) {
+                let range = format!("{}..{}", given.0, given.1);
+                return Err(Error::input(key, range, "is beyond doubles: choose another unit of time"));
+            }
             if given.0 < given.1 {
                 return Ok(given);
             }

@@ -15,7 +15,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
-use axum::extract::{Request, State};
+use axum::extract::{ConnectInfo, Request, State};
 use axum::http::header::{self, HeaderName};
 use axum::http::request::Parts;
 use axum::http::{HeaderValue, Method, Response, StatusCode};
@@ -24,7 +24,7 @@ use tokio::runtime::{self, Runtime};
 use tokio::sync::Semaphore;
 use tokio::time::timeout;
 
-use super::listen::Bounded;
+use super::listen::{Bounded, Caller, OPEN};
 use super::reply::Reply;
 use super::session::Session;
 use super::{LONGEST, Question, ask, asset, assets, named, overdue};
@@ -72,6 +72,8 @@ struct Shared {
     token: String,
     /// What `Host` may be.
     hosts: [String; 3],
+    /// Places of connections that have shown the token.
+    places: Arc<Semaphore>,
     /// Places to wait in, for all questions.
     queue: Semaphore,
     /// Places to work in: for questions that take long, and for those that are answered at once.
@@ -109,6 +111,7 @@ impl Server {
             session: Arc::new(session),
             token: token()?,
             hosts: ["127.0.0.1", "localhost", "[::1]"].map(|host| format!("{host}:{port}")),
+            places: Arc::new(Semaphore::new(OPEN)),
             queue: Semaphore::new(WAITING),
             lanes: [threads, AT_ONCE].map(|places| Arc::new(Semaphore::new(places))),
             longest: LONGEST,
@@ -129,7 +132,8 @@ impl Server {
         let failed = |cause: std::io::Error| Error::io("the port", &cause).caused_by(cause);
         self.runtime.block_on(async {
             let router = Router::new().fallback(handle).with_state(Arc::new(self.shared));
-            axum::serve(Bounded::new(self.listener), router).await.map_err(failed)?;
+            let service = router.into_make_service_with_connect_info::<Caller>();
+            axum::serve(Bounded::new(self.listener), service).await.map_err(failed)?;
             unreachable!("axum serves for ever")
         })
     }
@@ -142,8 +146,12 @@ fn token() -> Result<String> {
     Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-async fn handle(State(shared): State<Arc<Shared>>, request: Request) -> Response<Body> {
-    match shared.answer(&request.into_parts().0).await {
+async fn handle(
+    State(shared): State<Arc<Shared>>,
+    ConnectInfo(caller): ConnectInfo<Caller>,
+    request: Request,
+) -> Response<Body> {
+    match shared.answer(&request.into_parts().0, &caller).await {
         Ok(reply) => respond(reply),
         Err((status, words)) => refuse(status, words),
     }
@@ -153,7 +161,7 @@ async fn handle(State(shared): State<Arc<Shared>>, request: Request) -> Response
 type Refused = (StatusCode, &'static str);
 
 impl Shared {
-    async fn answer(&self, head: &Parts) -> std::result::Result<Reply, Refused> {
+    async fn answer(&self, head: &Parts, caller: &Caller) -> std::result::Result<Reply, Refused> {
         if !self.is_own_host(head) {
             return Err((StatusCode::FORBIDDEN, "this host is not served here"));
         }
@@ -167,6 +175,9 @@ impl Shared {
         let (token, path) = path.trim_start_matches('/').split_once('/').unwrap_or_default();
         if !self.is_own_token(token) {
             return Err((StatusCode::FORBIDDEN, "open the address that the program printed"));
+        }
+        if !caller.admit(&self.places) {
+            return Err((StatusCode::SERVICE_UNAVAILABLE, "too many connections are open: ask again"));
         }
         if path.is_empty() {
             return Ok(self.index.clone());
@@ -268,7 +279,7 @@ mod tests {
         let uri = format!("/{token}/picture?h1=1/2..3/5&h2=1/2..3/5&step=1/19000");
         let head = Request::get(uri).header(header::HOST, host).body(Body::empty()).unwrap().into_parts().0;
         server.runtime.block_on(async {
-            let reply = server.shared.answer(&head).await.unwrap();
+            let reply = server.shared.answer(&head, &Caller::default()).await.unwrap();
             let body: serde_json::Value = serde_json::from_slice(&reply.bytes).unwrap();
             let message = body["too_costly"]["message"].as_str();
             assert_eq!((reply.status, message), (422, Some("this takes longer than half a minute")));

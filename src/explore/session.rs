@@ -2,7 +2,7 @@
 
 use num_traits::Pow;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::parse::parse;
 use crate::number::{ExactSign, Laurent, Rational, Sign, rational};
 use crate::propagator::Oscillator;
@@ -28,7 +28,7 @@ impl Session {
     /// Two stiffnesses, the window reaching to where either clock alone is unstable.
     ///
     /// # Errors
-    /// λ1 ≤ 0.
+    /// λ1 ≤ 0, and stiffnesses beyond doubles.
     pub fn new(lambda1: Laurent, lambda2: Laurent) -> Result<Session> {
         // It is checked where it is used by others.
         Oscillator::new(
@@ -37,9 +37,9 @@ impl Session {
             Laurent::from_integer(1),
             Laurent::from_integer(1),
         )?;
-        let window = natural(&lambda1, &lambda2);
+        let window = natural(&lambda1, &lambda2)?;
         Ok(Session {
-            step: spacing(&window),
+            step: spacing(&window).ok_or_else(|| beyond("lambda1", &lambda1))?,
             window,
             stiffnesses: Some((lambda1, lambda2)),
             unit: None,
@@ -85,16 +85,27 @@ impl Session {
         session
     }
 
-    /// The same with another window.
+    /// The same with another window; one without width, or beyond doubles, cannot be shown: then it keeps its own.
     #[must_use]
     pub fn within(self, window: [StepRange; 2]) -> Session {
-        Session { step: spacing(&window), window, ..self }
+        match spacing(&window) {
+            Some(step) => Session { step, window, ..self },
+            None => self,
+        }
     }
 
     /// The same with a unit of time.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Session {
         Session { unit: Some(unit.into()), ..self }
+    }
+
+    /// That a plane of these stiffnesses can be shown.
+    ///
+    /// # Errors
+    /// As [`Session::new`], but for the sign of λ1.
+    pub(super) fn shows((lambda1, lambda2): &(Laurent, Laurent)) -> Result<()> {
+        if lambda1.sign() == Sign::Positive { natural(lambda1, lambda2).map(drop) } else { Ok(()) }
     }
 
     pub(super) fn stiffnesses(&self) -> Option<&(Laurent, Laurent)> {
@@ -123,26 +134,39 @@ impl Session {
 }
 
 /// 0 to the Verlet limit 2/√λ of either clock; where the slow one has none, as far as Figure 1 goes: to 3.5 half periods of the fast one.
-fn natural(lambda1: &Laurent, lambda2: &Laurent) -> [StepRange; 2] {
+///
+/// # Errors
+/// Stiffnesses beyond doubles.
+fn natural(lambda1: &Laurent, lambda2: &Laurent) -> Result<[StepRange; 2]> {
     let limit = |lambda: &Laurent| 2.0 / lambda.to_f64().sqrt();
     let own = if lambda2.sign() == Sign::Positive { 1.1 * limit(lambda2) } else { f64::INFINITY };
     let most = 3.5 * std::f64::consts::FRAC_PI_2 * limit(lambda1);
-    let to = |x: f64| (Laurent::from_integer(0), Laurent::from_rational(short(x, 2)));
-    [to(limit(lambda1)), to(own.min(most.max(limit(lambda1))))]
+    let to = |x: f64| Some((Laurent::from_integer(0), Laurent::from_rational(short(x, 2)?)));
+    let h1 = to(limit(lambda1)).ok_or_else(|| beyond("lambda1", lambda1))?;
+    let h2 = to(own.min(most.max(limit(lambda1)))).ok_or_else(|| beyond("lambda2", lambda2))?;
+    if lambda2.to_f64().is_finite() { Ok([h1, h2]) } else { Err(beyond("lambda2", lambda2)) }
 }
 
-/// A thousandth of the window's smaller side, to one digit.
-fn spacing([h1, h2]: &[StepRange; 2]) -> Rational {
+fn beyond(field: &str, lambda: &Laurent) -> Error {
+    Error::input(field, lambda, "is too large or too small to be drawn: choose another unit of time")
+}
+
+/// A thousandth of the window's smaller side, to one digit; `None` for windows without width, and beyond doubles.
+fn spacing([h1, h2]: &[StepRange; 2]) -> Option<Rational> {
     let width = |(lo, hi): &StepRange| hi.to_f64() - lo.to_f64();
-    short(width(h1).min(width(h2)) / ACROSS, 1)
+    // The larger one as it is: NaN and infinity are no widths.
+    let (smaller, larger) = (width(h1).min(width(h2)), width(h1).max(width(h2)));
+    short(larger, 1).and_then(|_| short(smaller / ACROSS, 1))
 }
 
-/// x > 0 to so many significant digits, rounded up in the last one.
-pub(super) fn short(x: f64, digits: i32) -> Rational {
+/// x to so many significant digits, rounded up in the last one; `None` unless it is a positive number.
+fn short(x: f64, digits: i32) -> Option<Rational> {
+    if !(x > 0.0 && x.is_finite()) {
+        return None;
+    }
     let exponent = (x.log10().floor() as i32).saturating_sub(digits - 1);
     let ten = Rational::from_integer(10.into());
     let power = |n: i32| Pow::pow(&ten, n.unsigned_abs());
     let unit = if exponent < 0 { power(exponent).recip() } else { power(exponent) };
-    let digits = rational::from_f64_exact(x).map_or_else(|| ten.clone(), |x| (x / &unit).ceil());
-    digits * unit
+    Some((rational::from_f64_exact(x)? / &unit).ceil() * unit)
 }

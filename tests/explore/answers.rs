@@ -258,6 +258,26 @@ fn tongues_lie_on_unstable_pixels_and_on_no_others() {
 }
 
 #[test]
+fn stiffnesses_and_windows_beyond_doubles_are_refused() {
+    let x = |text| kickdrift::number::parse::parse("x", text).unwrap();
+    for (lambda1, lambda2) in [("1e-700", "1"), ("1e700", "1"), ("1", "1e700"), ("1", "-1e700")] {
+        let error = Session::new(x(lambda1), x(lambda2)).unwrap_err();
+        assert!(error.to_string().contains("another unit of time"), "{error}");
+        for path in ["start", "point", "tile", "curves", "tongues", "picture", "scene", "cut", "strip"] {
+            let query = format!("lambda1={lambda1}&lambda2={lambda2}&h1=1/2..3/5&h2=1/2..3/5");
+            let reply = reply(path, &query);
+            assert!(reply.status >= 400 && reply.status < 500, "{path}?{query}: {}", reply.status);
+        }
+    }
+    for path in ["tile", "curves", "tongues", "picture", "scene"] {
+        assert_eq!(reply(path, "h1=1/2..pi*1e400&h2=1/2..3/5").status, 400, "{path}");
+    }
+    // A scene of one column has no width to show.
+    let narrow = Session::figure1().within([(x("1"), x("1")), (x("1"), x("2"))]);
+    assert_eq!(ask(&narrow, "start", "", &Arc::default()).unwrap().status, 200);
+}
+
+#[test]
 fn curves_deep_down_continue_those_above() {
     // The same curve in a window and in one 2^-40 as wide about one of its points.
     let shallow = told("curves", "a=0..0&b=1..1&h1=1/4..1/2&h2=1/2..3/2");

@@ -245,6 +245,30 @@ fn a_thousand_at_once_are_served_or_told_to_come_again() {
     assert_eq!(page.end(), "");
 }
 
+/// Whether a connection is still open, on which nothing is sent.
+fn is_open(stream: &mut TcpStream) -> bool {
+    stream.set_nonblocking(true).unwrap();
+    stream.read(&mut [0]).is_err_and(|cause| cause.kind() == std::io::ErrorKind::WouldBlock)
+}
+
+#[test]
+fn strangers_that_drip_or_idle_leave_for_those_who_come_later() {
+    let page = Page::start("");
+    let mut strangers: Vec<_> = (0..300).map(|_| page.connect()).collect();
+    strangers.iter_mut().step_by(2).for_each(|stream| stream.write_all(b"GET /").unwrap());
+    assert_eq!(page.get("start").status, 200);
+    // It was answered while they were there, not when all had been silent for too long.
+    assert!(is_open(&mut strangers[290]) && !is_open(&mut strangers[0]));
+    // Nor does the head of a request take for ever, however it drips: who has not shown the token is sent away.
+    let mut one = page.connect();
+    let request = page.request("start");
+    let sent = request.bytes().cycle().take(100).take_while(|byte| {
+        std::thread::sleep(Duration::from_millis(500));
+        one.write_all(&[*byte]).is_ok()
+    });
+    assert!(sent.filter(|byte| *byte != b'\n').count() < 100);
+}
+
 /// Whether no answer comes for a while: nobody has refused the question.
 fn is_worked_on(stream: &mut TcpStream) -> bool {
     stream.set_read_timeout(Some(Duration::from_millis(400))).unwrap();
