@@ -179,6 +179,24 @@ impl std::error::Error for Error {
     }
 }
 
+/// So many copies of a value, where memory has room for them: for lengths that the input decides.
+///
+/// # Errors
+/// [`Kind::Budget`] where it has not.
+pub fn filled<T: Clone>(value: T, n: u64) -> Result<Vec<T>> {
+    let mut all = Vec::new();
+    let length = usize::try_from(n).ok().filter(|&n| all.try_reserve_exact(n).is_ok());
+    let bytes = u128::from(n) * size_of::<T>() as u128;
+    let refused = || {
+        Error::too_much(
+            format!("{n} results of {bytes} bytes"),
+            "there is no memory for them: ask for fewer at once",
+        )
+    };
+    all.resize(length.ok_or_else(refused)?, value);
+    Ok(all)
+}
+
 /// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a byte order mark.
 fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'
@@ -228,6 +246,15 @@ mod tests {
         let error = Error::input("h1", &long, "too long").caused_by(std::fmt::Error);
         assert_eq!((error.value(), error.remedy(), error.needed()), (Some(&*long), "too long", None));
         assert!(std::error::Error::source(&error).is_some_and(|source| source.is::<std::fmt::Error>()));
+    }
+
+    #[test]
+    fn memory_that_is_not_there_is_an_error() {
+        assert_eq!(filled(7, 3).unwrap(), [7, 7, 7]);
+        for n in [u64::MAX, u64::MAX / 8, 1 << 60] {
+            let error = filled(0.0, n).unwrap_err();
+            assert_eq!((error.kind(), error.needed()), (Kind::Budget, None), "{error}");
+        }
     }
 
     #[test]

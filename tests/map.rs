@@ -26,6 +26,13 @@ fn figure_1(d: &str) -> Grid {
     grid("pi^2", "pi^2/25", d, ((d, "2/pi"), (d, "7/2")))
 }
 
+#[test]
+fn a_map_beyond_the_budget_is_refused_before_room_is_made_for_it() {
+    let error = Map::of(&figure_1("1/400000")).verdicts().unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Budget);
+    assert!(error.to_string().contains("days of one core"), "{error}");
+}
+
 fn bands(grid: &Grid, products: Products, shard: Shard, threads: usize) -> (Vec<(u64, Band)>, Counters) {
     let mut bands = Vec::new();
     let resources = Resources { threads, ..Resources::default() };

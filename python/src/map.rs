@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use kickdrift::error::Result;
+use kickdrift::error::{Result, filled};
 use kickdrift::format::Format;
 use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
 use kickdrift::number::Laurent;
@@ -89,16 +89,20 @@ impl Map {
     fn compute(&mut self, threads: usize, budget: Option<u64>, stopped: &AtomicBool) -> Result<Arrays> {
         let Map { grid, products, tally, .. } = self;
         let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped) };
-        let pairs = grid.pairs() as usize;
-        let mut arrays = Arrays {
-            verdict: Vec::with_capacity(pairs),
-            tier: Vec::with_capacity(pairs),
-            labels: products.label.then(|| [-1, 0, 0].map(|none| vec![none; pairs])),
-            rates: products.growth.then(|| [(); 2].map(|()| vec![f64::NAN; pairs])),
-        };
-        Task::of(grid).with(*products).within(resources).for_each_band(|_, band| {
+        let (pairs, task) = (grid.pairs(), Task::of(grid).with(*products).within(resources));
+        task.allow()?;
+        let mut arrays = Arrays { verdict: filled(0, pairs)?, tier: filled(0, pairs)?, ..Arrays::default() };
+        if products.label {
+            arrays.labels = Some([filled(-1, pairs)?, filled(0, pairs)?, filled(0, pairs)?]);
+        }
+        if products.growth {
+            arrays.rates = Some([filled(f64::NAN, pairs)?, filled(f64::NAN, pairs)?]);
+        }
+        let mut first = 0;
+        task.for_each_band(|_, band| {
             tally.add(grid, &band);
-            arrays.add(grid, &band);
+            arrays.put(grid, first, &band);
+            first += band.verdicts.len();
             Ok(())
         })?;
         Ok(arrays)
@@ -106,10 +110,11 @@ impl Map {
 }
 
 impl Arrays {
-    fn add(&mut self, grid: &Grid, band: &Band) {
-        let first = self.verdict.len();
-        self.verdict.extend(&band.verdicts);
-        self.tier.extend(&band.tiers);
+    /// A band whose first pair is the one of this number.
+    fn put(&mut self, grid: &Grid, first: usize, band: &Band) {
+        let places = first..first + band.verdicts.len();
+        self.verdict[places.clone()].copy_from_slice(&band.verdicts);
+        self.tier[places].copy_from_slice(&band.tiers);
         if band.growing.is_empty() {
             return;
         }

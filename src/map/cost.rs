@@ -44,6 +44,14 @@ fn scattered(n: u64, pairs: u64) -> u64 {
     ((u128::from(x ^ (x >> 31)) * u128::from(pairs)) >> 64) as u64
 }
 
+/// The time that so many kicks take a core: a nanosecond each, or less.
+fn time(kicks: f64) -> String {
+    let seconds = kicks * 1e-9;
+    let units = [("days", 86_400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0)];
+    let unit = units.into_iter().find(|(_, unit)| seconds >= 2.0 * unit);
+    unit.map_or("a second or two".into(), |(name, unit)| format!("some {:.0} {name}", seconds / unit))
+}
+
 /// # Errors
 /// A budget error that states the cost where this part of the map exceeds the limit.
 pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
@@ -56,10 +64,20 @@ pub(super) fn allow(grid: &Grid, shard: Shard, limits: &Limits) -> Result<()> {
     if kicks <= most {
         return Ok(());
     }
-    // A kick takes a core a nanosecond or less.
-    let hours = (kicks * 1e-9 / 3600.0).ceil();
     let cost =
-        format!("a map of {pairs} pairs composes about {kicks:.1e} kicks, some {hours} hours of one core");
+        format!("a map of {pairs} pairs composes about {kicks:.1e} kicks, {} of one core", time(kicks));
     let needed = (kicks / TIMES_A_PAIR as f64).ceil() as u64;
     Err(Error::budget(cost, needed).or("choose a larger step, a smaller window, or a part of the map"))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn a_cost_is_stated_in_the_unit_that_fits_it() {
+        let times = [2.6e5, 4e9, 1e12, 1e13, 1e15].map(super::time);
+        assert_eq!(
+            times,
+            ["a second or two", "some 4 seconds", "some 17 minutes", "some 3 hours", "some 12 days"]
+        );
+    }
 }

@@ -9,7 +9,7 @@ use super::resources::Resources;
 use super::shard::{Numbered, Shard, bands};
 use super::store::Store;
 use super::work::Work;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, filled};
 use crate::parallel::{map, try_map};
 use crate::verdict::Verdict;
 
@@ -68,14 +68,22 @@ impl<'a> Map<'a> {
         Map { store: Some(store), ..self }
     }
 
+    /// That the map as a whole is within the budget: for whoever makes room for its pairs before the work.
+    ///
+    /// # Errors
+    /// A budget error that states the cost.
+    pub fn allow(&self) -> Result<()> {
+        allow(self.grid, self.shard, &self.resources.limits)
+    }
+
     /// Computes the bands and hands them on in order with their numbers: the same bands whatever the threads.
     ///
     /// # Errors
     /// A budget error, before the work begins where the map as a whole exceeds it; `Stopped`; an I/O error where a band
     /// cannot be stored; or what `see` returns: then the map ends there.
     pub fn for_each_band(&self, mut see: impl FnMut(u64, Band) -> Result<()>) -> Result<Counters> {
+        self.allow()?;
         let Map { grid, products, shard, resources, store } = self;
-        allow(grid, *shard, &resources.limits)?;
         let (pool, bases) = (resources.pool()?, Bases::new(grid));
         let compute = |columns| {
             resources.go_on()?;
@@ -110,7 +118,8 @@ impl<'a> Map<'a> {
     /// # Errors
     /// As [`Map::for_each_band`].
     pub fn verdicts(&self) -> Result<Vec<Verdict>> {
-        let mut verdicts = vec![Verdict::ALL[0]; self.shard.pairs(self.grid) as usize];
+        self.allow()?;
+        let mut verdicts = filled(Verdict::ALL[0], self.shard.pairs(self.grid))?;
         self.fill(&mut verdicts, |_| {})?;
         Ok(verdicts)
     }
