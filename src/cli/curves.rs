@@ -27,7 +27,7 @@ pub struct Args {
     /// The range of b.
     #[arg(long, value_name = "LO..HI", default_value = "-12..12", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
     b: (i64, i64),
-    /// Points a curve, evenly spaced in theta.
+    /// Points a curve, evenly spaced in theta over its pieces in the window.
     #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
     samples: usize,
     #[command(flatten)]

@@ -35,11 +35,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
             (families.a.0..=families.a.1).flat_map(|a| (families.b.0..=families.b.1).map(move |b| (a, b)));
         all.filter_map(|(a, b)| deep(a, b, &lambda1, &frame)).collect()
     } else {
-        families
-            .curves_within(&lambda1, &Window::new(h1, h2))?
-            .iter()
-            .map(|curve| shallow(curve, &frame))
-            .collect()
+        families.curves(&lambda1, &Window::new(h1, h2))?.iter().map(|curve| shallow(curve, &frame)).collect()
     };
     Ok(Reply::json(&json!({ "curves": curves })))
 }

@@ -62,7 +62,7 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
         return Ok(Reply::too_costly(Some(kicks), MOST_KICKS, &message));
     }
     let curves = match query.text("curves") {
-        Some("1") => FAMILIES.curves_within(grid.lambdas().0, &window(&grid))?,
+        Some("1") => FAMILIES.curves(grid.lambdas().0, &window(&grid))?,
         _ => Vec::new(),
     };
     let bytes = drawn(&grid, colouring, |chart, counts| {

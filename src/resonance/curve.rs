@@ -1,7 +1,9 @@
 //! The curves (a, b) of eq. (10), sampled for tables and figures.
 
+use std::cmp::Ordering;
+
 use crate::error::{Error, Result};
-use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, rational};
+use crate::number::{Ball, ExactSign, Laurent, Real, Sign, rational};
 
 /// The part of the (h1, h2) plane in which curves are wanted; closed ranges.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,109 +37,180 @@ pub struct CurvePoint {
     pub theta_over_pi: f64,
 }
 
-/// Working precision of a point; what it loses (a few bits to each function, the cancellation in θ/π − a) is
-/// far less than the 43 bits above a double's.
-const BITS: u32 = 96;
+/// Working precisions of a point, from the first that leaves [`ENOUGH`] bits of h2: beside the fast clock's limit the arcsine
+/// loses half of them.
+const BITS: [u32; 3] = [96, 192, 384];
 
-/// The curve (a, b), with `samples` points evenly spaced in θ over all of 0 < θ < π, those outside the window
-/// left out and the crossings of its border added. Empty where no point lies in the window: for 0 < θ/π < 1
-/// that includes all curves with a = 0, b ≤ 0, with a ≥ 1, b ≥ 0, and with a ≤ −1, b ≤ 0.
+/// Relative accuracy of h2 and θ/π before they are rounded to doubles, in bits.
+const ENOUGH: i64 = 80;
+
+/// Steps begin here: below, h2 would leave the doubles of full precision.
+const LEAST: f64 = f64::from_bits(64 << 52);
+
+/// The curve (a, b) in the window, with some `samples` points evenly spaced in θ over its pieces there, their ends among them. Empty where it
+/// does not pass through the window: for 0 < θ/π < 1 that includes all curves with a = 0, b ≤ 0, with a ≥ 1, b ≥ 0, and with a ≤ −1, b ≤ 0.
+///
+/// No curve through the window is missing, however small that is. Along h1, h2 = b h1/(θ/π − a) rises where a ≥ 1, falls where a = 0, and
+/// where a ≤ −1 rises until g = (π/2) cos(θ/2) (θ/π − a) − sin(θ/2) falls through 0, and falls from there: on each of these branches the part
+/// in the window is one interval, whose ends are found by bisection over the doubles h1. Rounding is monotone and the window's ends are doubles,
+/// so an exact h2 in the window is also in it when rounded. Where the curve passes the window between two neighbouring doubles, the
+/// lower one of them is its point there.
 ///
 /// # Errors
 /// Where L1 ≤ 0, or fewer than 2 samples are asked for.
 pub fn curve(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize) -> Result<Curve> {
-    curve_over((0.0, 1.0), (a, b), lambda1, window, samples)
-}
-
-/// The same curve with all its samples in the window's range of h1: for windows that show a small part of it.
-///
-/// # Errors
-/// As [`curve`].
-pub fn curve_within(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize) -> Result<Curve> {
-    // θ = 2 asin(h1 √L1/2); from the limit h1 √L1 = 2 on there is none.
-    let half_root = lambda1.to_f64().max(0.0).sqrt() / 2.0;
-    let x = |h1: f64| (h1 * half_root).clamp(0.0, 1.0).asin() / std::f64::consts::FRAC_PI_2;
-    let (lo, hi) = (x(window.h1.0), x(window.h1.1));
-    // A sample beyond either side, so that the border is crossed.
-    let beyond = 2.0 * (hi - lo) / samples.max(1) as f64;
-    curve_over(((lo - beyond).max(0.0), (hi + beyond).min(1.0)), (a, b), lambda1, window, samples)
-}
-
-fn curve_over(
-    (lo, hi): (f64, f64),
-    (a, b): (i64, i64),
-    lambda1: &Laurent,
-    window: &Window,
-    samples: usize,
-) -> Result<Curve> {
     if lambda1.sign() != Sign::Positive {
         return Err(Error::input("lambda1", lambda1, "the fast stiffness must be positive"));
     }
     if samples < 2 {
         return Err(Error::input("samples", samples, "a curve needs at least 2"));
     }
-    let root = lambda1.enclosure(BITS).sqrt(BITS).expect("lambda1 > 0");
-    let on_curve = |x: f64| point(a, b, &root, x);
-    let mut pieces = Vec::new();
-    let mut piece: Vec<CurvePoint> = Vec::new();
-    let mut before: Option<f64> = None;
-    for i in 1..samples {
-        let x = lo + (hi - lo) * (i as f64 / samples as f64);
-        let now = on_curve(x).filter(|p| window.contains(p));
-        if now.is_some() == piece.is_empty()
-            && let Some(border) = before.and_then(|before| crossing(&on_curve, window, before, x))
-        {
-            piece.push(border);
-        }
-        match now {
-            Some(inside) => piece.push(inside),
-            None if !piece.is_empty() => pieces.push(std::mem::take(&mut piece)),
-            None => {}
-        }
-        before = Some(x);
-    }
-    if !piece.is_empty() {
-        pieces.push(piece);
-    }
+    let roots = BITS.map(|bits| lambda1.enclosure(bits).sqrt(bits).expect("lambda1 > 0"));
+    let path = Path { a, b, roots };
+    let spans = path.spans(window);
+    let share = |h1: f64| path.at(h1).map_or(1.0, |point| point.theta_over_pi);
+    let ends: Vec<_> = spans.iter().map(|&(first, last)| (share(first), share(last))).collect();
+    let length: f64 = ends.iter().map(|(from, to)| to - from).sum();
+    let piece = |(span, (from, to)): (&(f64, f64), &(f64, f64))| {
+        let part = if length > 0.0 { (to - from) / length } else { 0.0 };
+        path.piece(*span, (*from, *to), (part * samples as f64).round().max(2.0) as usize)
+    };
+    let pieces = spans.iter().zip(&ends).map(piece).filter(|piece| !piece.is_empty()).collect();
     Ok(Curve { a, b, pieces })
 }
 
-impl Window {
-    fn contains(&self, point: &CurvePoint) -> bool {
-        let within = |(lo, hi): (f64, f64), x: f64| lo <= x && x <= hi;
-        within(self.h1, point.h1) && within(self.h2, point.h2)
-    }
+/// A curve along h1, and √L1.
+struct Path {
+    a: i64,
+    b: i64,
+    roots: [Ball; 3],
 }
 
-/// The last point inside the window between x0 and x1, one of which is inside: by bisection to neighbouring
-/// doubles.
-fn crossing(
-    at: &impl Fn(f64) -> Option<CurvePoint>,
-    window: &Window,
-    x0: f64,
-    x1: f64,
-) -> Option<CurvePoint> {
-    let inside = |x: f64| at(x).is_some_and(|p| window.contains(&p));
-    let (mut within, mut outside) = if inside(x1) { (x1, x0) } else { (x0, x1) };
-    loop {
-        let middle = (within + outside) / 2.0;
-        if middle == within || middle == outside {
-            return at(within);
+impl Path {
+    /// The point at h1; `None` beyond the fast clock's limit, and where h2 is no positive double.
+    fn at(&self, h1: f64) -> Option<CurvePoint> {
+        let exact = rational::from_f64_exact(h1)?;
+        let within = |bits: u32, root: &Ball| {
+            let h1 = Ball::from_rational(&exact, bits);
+            let sine = h1.mul(root, bits).scale2(-1);
+            let over_pi = sine.asin(bits)?.scale2(1).div(&Ball::pi(bits), bits)?;
+            let is_before_limit = over_pi.compare(&Ball::one()) == Some(Ordering::Less);
+            let h2 = h1.mul(&integer(self.b), bits).div(&over_pi.sub(&integer(self.a), bits), bits)?;
+            is_before_limit.then_some((h2, over_pi))
+        };
+        let all = BITS.iter().zip(&self.roots).filter_map(|(&bits, root)| within(bits, root));
+        let mut best = None;
+        for (h2, over_pi) in all {
+            let enough = h2.relative_accuracy_bits().min(over_pi.relative_accuracy_bits()) >= ENOUGH;
+            best = Some((h2.mid_f64(), over_pi.mid_f64()));
+            if enough {
+                break;
+            }
         }
-        if inside(middle) { within = middle } else { outside = middle }
+        let (h2, theta_over_pi) = best?;
+        (h2 > 0.0 && h2.is_finite()).then_some(CurvePoint { h1, h2, theta_over_pi })
+    }
+
+    /// Whether h2 rises with h1, for a ≤ −1: the sign of g. Where 96 bits leave it open, the curve is level to far below a double.
+    fn rises(&self, h1: f64) -> bool {
+        let bits = BITS[0];
+        let sign = || {
+            let h1 = Ball::from_rational(&rational::from_f64_exact(h1)?, bits);
+            let sine = h1.mul(&self.roots[0], bits).scale2(-1);
+            let over_pi = sine.asin(bits)?.scale2(1).div(&Ball::pi(bits), bits)?;
+            let cosine = Ball::one().sub(&sine.square(bits), bits).sqrt_clipped(bits)?;
+            let slope = Ball::pi(bits).scale2(-1).mul(&cosine, bits);
+            slope.mul(&over_pi.sub(&integer(self.a), bits), bits).sub(&sine, bits).sign()
+        };
+        sign() == Some(Sign::Positive)
+    }
+
+    /// The branches of the curve from `lo` to `hi`: their ends, and whether h2 rises.
+    fn branches(&self, lo: f64, hi: f64) -> Vec<(f64, f64, bool)> {
+        match (self.a, self.b) {
+            (1.., ..0) => vec![(lo, hi, true)],
+            (0, 1..) => vec![(lo, hi, false)],
+            (..0, 1..) => match last(lo, hi, |h1| self.rises(h1)) {
+                None => vec![(lo, hi, false)],
+                Some(peak) if peak == hi => vec![(lo, hi, true)],
+                Some(peak) => vec![(lo, peak, true), (peak.next_up(), hi, false)],
+            },
+            _ => Vec::new(),
+        }
+    }
+
+    /// The intervals of h1 in which the curve lies in the window.
+    fn spans(&self, window: &Window) -> Vec<(f64, f64)> {
+        let lo = window.h1.0.max(LEAST);
+        // The limit 2/√L1 in doubles is right to a unit or two.
+        let limit = 2.0 / self.roots[0].mid_f64();
+        let hi = last(lo, window.h1.1.min(limit.next_up().next_up()), |h1| self.is_before_limit(h1));
+        let mut spans: Vec<(f64, f64)> = Vec::new();
+        for branch in hi.map_or_else(Vec::new, |hi| self.branches(lo, hi)) {
+            let Some((from, to)) = self.span(branch, window.h2) else { continue };
+            match spans.last_mut() {
+                Some(before) if before.1.next_up() >= from => before.1 = to,
+                _ => spans.push((from, to)),
+            }
+        }
+        spans
+    }
+
+    fn is_before_limit(&self, h1: f64) -> bool {
+        let (bits, one) = (BITS[2], Ball::one());
+        let sine = rational::from_f64_exact(h1)
+            .map(|h1| Ball::from_rational(&h1, bits).mul(&self.roots[2], bits).scale2(-1));
+        sine.and_then(|sine| sine.compare(&one)) == Some(Ordering::Less)
+    }
+
+    /// The part of a branch with h2 in a closed range.
+    fn span(&self, (lo, hi, rises): (f64, f64, bool), (low, high): (f64, f64)) -> Option<(f64, f64)> {
+        // Without a point h2 is too large for a double, beside the limit of a = 1.
+        let h2 = |h1: f64| self.at(h1).map_or(f64::INFINITY, |point| point.h2);
+        let (above, below) = (|h1: f64| h2(h1) >= low, |h1: f64| h2(h1) <= high);
+        let (outside, inside): (&dyn Fn(f64) -> bool, &dyn Fn(f64) -> bool) =
+            if rises { (&|h1| !above(h1), &below) } else { (&|h1| !below(h1), &above) };
+        if outside(hi) {
+            return None;
+        }
+        let end = last(lo, hi, inside)?;
+        let begin = last(lo, hi, outside).map_or(lo, f64::next_up);
+        // Between two neighbours it may come from below the window and be above it.
+        Some((begin.min(end), end))
+    }
+
+    /// So many points, evenly spaced in θ between the ends, or as many as there are doubles.
+    fn piece(&self, (first, last): (f64, f64), (from, to): (f64, f64), count: usize) -> Vec<CurvePoint> {
+        let root = self.roots[0].mid_f64();
+        let step = |k: usize| match k {
+            0 => first,
+            _ if k + 1 == count => last,
+            _ => {
+                let x = from + (to - from) * (k as f64 / (count - 1) as f64);
+                (2.0 * (std::f64::consts::FRAC_PI_2 * x).sin() / root).clamp(first, last)
+            }
+        };
+        let mut steps: Vec<f64> = (0..count).map(step).collect();
+        steps.sort_by(f64::total_cmp);
+        steps.dedup();
+        steps.into_iter().filter_map(|h1| self.at(h1)).collect()
     }
 }
 
-/// The point near θ/π = x. h1 = 2 sin(θ/2)/√L1 is rounded to a double first; θ and h2 belong to that double.
-fn point(a: i64, b: i64, root: &Ball, x: f64) -> Option<CurvePoint> {
-    let h1 = 2.0 * (std::f64::consts::FRAC_PI_2 * x).sin() / root.mid_f64();
-    let exact = Ball::from_rational(&rational::from_f64_exact(h1)?, BITS);
-    let sine = exact.mul(root, BITS).scale2(-1);
-    let over_pi = sine.asin(BITS)?.scale2(1).div(&Ball::pi(BITS), BITS)?;
-    let b = Rational::from_integer(b.into());
-    let h2 = exact.mul(&Ball::from_rational(&b, BITS), BITS).div(&over_pi.sub(&integer(a), BITS), BITS)?;
-    let (h2, theta_over_pi) = (h2.mid_f64(), over_pi.mid_f64());
-    (h2 > 0.0 && h2.is_finite()).then_some(CurvePoint { h1, h2, theta_over_pi })
+/// The last double from `lo` to `hi`, both positive, of those at the beginning that are so; by bisection.
+fn last(lo: f64, hi: f64, is_so: impl Fn(f64) -> bool) -> Option<f64> {
+    if !(lo <= hi && is_so(lo)) {
+        return None;
+    }
+    if is_so(hi) {
+        return Some(hi);
+    }
+    let (mut yes, mut no) = (lo.to_bits(), hi.to_bits());
+    while no - yes > 1 {
+        let middle = yes + (no - yes) / 2;
+        if is_so(f64::from_bits(middle)) { yes = middle } else { no = middle }
+    }
+    Some(f64::from_bits(yes))
 }
 
 fn integer(n: i64) -> Ball {
@@ -160,7 +233,8 @@ mod tests {
             let curve = curve(a, b, &lambda1, &window, 200).unwrap();
             assert!(!curve.pieces.is_empty(), "({a}, {b})");
             for point in curve.pieces.iter().flatten() {
-                assert!(window.contains(point));
+                let within = |(lo, hi): (f64, f64), x: f64| lo <= x && x <= hi;
+                assert!(within(window.h1, point.h1) && within(window.h2, point.h2));
                 let theta = 2.0 * (point.h1 * std::f64::consts::PI / 2.0).asin() / std::f64::consts::PI;
                 // θ from h1 in doubles is good to 1e-15/cos(θ/2).
                 let tip = (1.0 - (point.h1 * std::f64::consts::PI / 2.0).powi(2)).sqrt();
@@ -180,5 +254,35 @@ mod tests {
         let curve = curve(1, -1, &lambda1, &window, 50).unwrap();
         let top = curve.pieces.iter().flatten().map(|p| p.h2).fold(0.0, f64::max);
         assert!((top - 3.5).abs() < 1e-9, "{top}");
+    }
+
+    #[test]
+    fn a_window_however_small_has_every_curve_through_it() {
+        let (lambda1, window) = paper();
+        for (a, b) in [(0, 1), (1, -1), (2, -3), (-1, 2), (-2, 3)] {
+            let whole = curve(a, b, &lambda1, &window, 200).unwrap();
+            for point in whole.pieces.iter().flatten().step_by(9) {
+                for width in [1e-3, 1e-9, 1e-15] {
+                    let about = |h: f64| (h * (1.0 - width), h * (1.0 + width));
+                    let window = Window { h1: about(point.h1), h2: about(point.h2) };
+                    let found = curve(a, b, &lambda1, &window, 5).unwrap();
+                    assert!(!found.pieces.is_empty(), "({a}, {b}) at {point:?}, {width}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_curve_that_turns_in_the_window_is_there_once_and_one_above_it_twice() {
+        let lambda1 = parse("lambda1", "4").unwrap();
+        let pieces = |low, high| {
+            curve(-1, 1, &lambda1, &Window { h1: (0.1, 1.0), h2: (low, high) }, 400).unwrap().pieces
+        };
+        // h2 = sin(πx/2)/(x + 1) is greatest where tan(πx/2) = (π/2)(x + 1): 0.5286 at x = 0.78.
+        let peak = pieces(0.1, 0.6).iter().flatten().map(|point| point.h2).fold(0.0, f64::max);
+        assert_eq!(pieces(0.1, 0.6).len(), 1);
+        assert_eq!(pieces(0.51, peak - 1e-4).len(), 2);
+        assert_eq!(pieces(peak - 1e-6, 0.6).len(), 1);
+        assert_eq!(pieces(peak + 1e-4, 0.6).len(), 0);
     }
 }

@@ -9,12 +9,12 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
-use super::curve::{Curve, Window, curve, curve_within};
+use super::curve::{Curve, Window, curve};
 use crate::error::{Error, Result};
 use crate::number::Laurent;
 use crate::parallel::try_map;
 
-/// Curves (a, b): closed ranges of a and b, and the number of samples of each in 0 < θ < π.
+/// Curves (a, b): closed ranges of a and b, and the number of samples of each in the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Families {
     pub a: (i64, i64),
@@ -34,18 +34,6 @@ impl Families {
     /// # Errors
     /// Too many curves or points, and as [`curve`].
     pub fn curves(&self, lambda1: &Laurent, window: &Window) -> Result<Vec<Curve>> {
-        self.each(|a, b| curve(a, b, lambda1, window, self.samples))
-    }
-
-    /// The same, all samples in the window, as [`curve_within`].
-    ///
-    /// # Errors
-    /// As [`Families::curves`].
-    pub fn curves_within(&self, lambda1: &Laurent, window: &Window) -> Result<Vec<Curve>> {
-        self.each(|a, b| curve_within(a, b, lambda1, window, self.samples))
-    }
-
-    fn each(&self, sample: impl Fn(i64, i64) -> Result<Curve> + Sync) -> Result<Vec<Curve>> {
         let count = |(lo, hi): (i64, i64)| (i128::from(hi) - i128::from(lo) + 1).max(0);
         let curves = count(self.a) * count(self.b);
         if curves > MOST_CURVES {
@@ -60,7 +48,7 @@ impl Families {
         }
         let pairs: Vec<(i64, i64)> =
             (self.a.0..=self.a.1).flat_map(|a| (self.b.0..=self.b.1).map(move |b| (a, b))).collect();
-        let curves = try_map(&pairs, |&(a, b)| sample(a, b))?;
+        let curves = try_map(&pairs, |&(a, b)| curve(a, b, lambda1, window, self.samples))?;
         Ok(curves.into_iter().filter(|curve| !curve.pieces.is_empty()).collect())
     }
 }

@@ -25,7 +25,7 @@ mod strength;
 pub mod tan;
 
 pub use angle::{Angle, Nearest};
-pub use curve::{Curve, CurvePoint, Window, curve, curve_within};
+pub use curve::{Curve, CurvePoint, Window, curve};
 pub use families::Families;
 pub use family::{dominant_family, families};
 pub use strength::{FirstOrder, first_order, strength};

@@ -177,6 +177,24 @@ fn csv_is_a_header_and_one_line_a_row() {
 }
 
 #[test]
+fn a_small_window_shows_every_curve_through_it_and_verify_agrees() {
+    let count = |flags: &str| {
+        let desk = Desk::new();
+        let ended = desk.run(&words("curves --output c.json --samples 20", &words(flags, &[])));
+        assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+        let curves: serde_json::Value = serde_json::from_slice(&desk.read("c.json")).unwrap();
+        let checked = desk.run(&["verify", "c.json"]);
+        assert_eq!(checked.code, Some(0), "{flags}: {}", checked.stderr);
+        curves["curves"].as_array().unwrap().len()
+    };
+    // (1, b) has h2 = -b h1/(1 - x), x = 0.315 here: 0.438 for b = -1, and so on; (0, b), (2, b), (3, b) likewise.
+    assert_eq!(count("--h1-range 0.3..0.301"), 35);
+    assert_eq!(count("--h1-range 0.301..0.302"), 35);
+    assert_eq!(count("--h1-range 0.301..0.301000001"), 35);
+    assert_eq!(count("--h2-range 1..1.001"), count("--h2-range 1..1.1"));
+}
+
+#[test]
 fn latex_is_a_booktabs_table() {
     for line in [
         UNSTABLE,

@@ -75,6 +75,6 @@ impl Drawing {
         }
         let default = FAMILIES;
         let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
-        families.curves_within(map.grid.lambdas().0, &window(&map.grid))
+        families.curves(map.grid.lambdas().0, &window(&map.grid))
     }
 }

@@ -65,7 +65,7 @@ impl<'a> Atlas<'a> {
             b: question.asked.selection.b.unwrap_or((-12, 12)),
             samples: SAMPLES,
         });
-        let curves = families.curves_within(lambda1, &window)?;
+        let curves = families.curves(lambda1, &window)?;
         Ok(Atlas { question, colour, window, curves })
     }
 
