@@ -84,6 +84,11 @@ def test_arrays_of_doubles_mean_what_they_print() -> None:
     assert kd.verdicts(lambda1=1, lambda2=1, h1=[], h2=1).code.shape == (0,)
 
 
+def test_a_map_beyond_the_budget_is_refused_before_its_arrays_are_made() -> None:
+    with pytest.raises(kd.BudgetError, match="days of one core"):
+        kd.map(lambda1="pi^2", lambda2="pi^2/25", step="1/400000", h1=("1/400000", "2/pi"), h2=("1/400000", "7/2"))
+
+
 def test_what_does_not_fit_is_refused_by_name() -> None:
     with pytest.raises(kd.KickdriftError, match="broadcast"):
         kd.verdicts(lambda1=[1, 2], lambda2=1, h1=[1, 2, 3], h2=1)

@@ -132,6 +132,7 @@ impl Question {
     /// # Errors
     /// A budget error where a ratio of steps makes too long a period.
     pub fn answer(self) -> Result<Advice> {
+        self.allow()?;
         let schemes = self.schemes.iter().map(|scheme| self.of_scheme(scheme)).collect::<Result<_>>()?;
         let faster = self.faster();
         let stiffness = |&i: &usize| &self.modes[i].stiffness;

@@ -6,7 +6,8 @@ use super::levels::Scheme;
 use super::mode::Mode;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
-use crate::verdict::Kind;
+use crate::schedule::Schedule;
+use crate::verdict::{Kind, Limits};
 
 /// Modes, the schemes that they are asked about, and how well the periods are known.
 #[derive(Clone, Debug)]
@@ -23,7 +24,12 @@ pub struct Question {
     pub(super) held: Vec<Mode>,
     /// Of the thermostat, per fs.
     pub(super) friction: Option<Rational>,
+    /// What the advice may cost.
+    limits: Limits,
 }
+
+/// Periods that are followed for a scheme: verdicts, edges of intervals, multiples of the inner step.
+const PERIODS: u64 = 1000;
 
 /// Schemes and modes beyond these numbers are a slip of the keyboard.
 const MOST_SCHEMES: usize = 1000;
@@ -74,7 +80,41 @@ impl Question {
                 ));
             }
         }
-        Ok(Question { modes, schemes, band, length: None, held: Vec::new(), friction: None })
+        Ok(Question {
+            modes,
+            schemes,
+            band,
+            length: None,
+            held: Vec::new(),
+            friction: None,
+            limits: Limits::default(),
+        })
+    }
+
+    /// The same within these limits.
+    #[must_use]
+    pub fn within(self, limits: Limits) -> Question {
+        Question { limits, ..self }
+    }
+
+    /// The kicks that the advice follows, about.
+    pub fn cost(&self) -> u64 {
+        let strikes = |scheme: &Scheme| {
+            Schedule::new(scheme.steps(), &vec![Rational::zero(); scheme.steps().len()])
+                .map_or(u64::MAX, |all| all.strikes())
+        };
+        self.schemes.iter().map(|scheme| strikes(scheme).saturating_mul(PERIODS)).max().unwrap_or(0)
+    }
+
+    /// # Errors
+    /// A budget error where a ratio of steps makes too long a period.
+    pub(super) fn allow(&self) -> Result<()> {
+        let (cost, most) = (self.cost(), self.limits.kicks);
+        if cost <= most {
+            return Ok(());
+        }
+        let work = format!("advice on these steps follows about {cost} kicks, the budget is {most}");
+        Err(Error::budget(work, cost).or("choose steps with a simpler ratio"))
     }
 
     /// The same about a run of this length in fs.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::Common;
 use super::paper::Paper;
+use super::progress::announce;
 use super::system;
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
@@ -72,7 +73,9 @@ impl Args {
         if let Some(path) = &self.file {
             return self.molecule(path, reading.as_ref(), common);
         }
-        let advice = self.question(reading.as_ref())?.answer()?;
+        let question = self.question(reading.as_ref())?.within(common.limits());
+        announce(common.quiet, "advice on these steps", question.cost() as f64 * 3e-7);
+        let advice = question.answer()?;
         let document = |format| report::document(&advice, reading.as_ref(), format == Format::Csv);
         match common.output.as_deref().filter(|_| format.is_figure()) {
             Some(path) => {

@@ -1,6 +1,7 @@
 //! Progress on standard error.
 
 use std::fmt::Write;
+use std::io::IsTerminal;
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
@@ -13,6 +14,13 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
     let template = format!("{{bar:30}} {{human_pos}} of {{human_len}} {things}, {{rate}}/s, {{eta}} left");
     let style = ProgressStyle::with_template(&template).expect("the template is sound");
     bar.with_style(style.with_key("rate", rate))
+}
+
+/// Says on a terminal what is about to take more than a second, and about how long: for work that no bar counts.
+pub fn announce(quiet: bool, work: &str, seconds: f64) {
+    if seconds > 1.0 && !quiet && std::io::stderr().is_terminal() {
+        eprintln!("kickdrift: {work}: some {seconds:.0} s of one core");
+    }
 }
 
 /// Whole things a second.

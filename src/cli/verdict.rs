@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{Columns, Common, Stiffness, of};
+use super::progress::announce;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_rational};
@@ -12,7 +13,7 @@ use crate::report::certificate;
 use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::verdict::Answer;
-use crate::system::friction::damped_pair;
+use crate::system::friction::{Friction, damped_pair};
 use crate::verdict::{Tier, Verdict, decide_from};
 
 /// Flags of `verdict`.
@@ -60,7 +61,7 @@ impl Args {
         let document = (!silent).then(|| -> Result<Document> {
             let (decision, growth) = (answer.decision(), answer.growth()?.clone());
             let exact_trace = Answer::exact_trace(&clocks, self.exact);
-            let friction = self.friction.as_ref().map(|rate| damped_pair(oscillator, rate)).transpose()?;
+            let friction = self.friction.as_ref().map(|rate| damped(oscillator, rate, common)).transpose()?;
             let answer = Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction };
             let document = answer.document();
             Ok(if self.exact { document.input("exact", "true") } else { document })
@@ -73,6 +74,13 @@ impl Args {
         document.map_or(Ok(()), |document| common.write(&self.columns.of(document)?, Format::Text))?;
         Ok(answer.verdict.is_stable())
     }
+}
+
+/// About a microsecond a kick at each of some ten precisions.
+fn damped(oscillator: &Oscillator, rate: &Rational, common: &Common) -> Result<Friction> {
+    let kicks = oscillator.ratio().kicks();
+    announce(common.quiet, &format!("friction over {kicks} kicks"), kicks as f64 * 1e-5);
+    damped_pair(oscillator, rate, &common.limits())
 }
 
 /// Checking a certificate costs Coq some 2 s at 400 kicks, in exact numbers; by intervals, where 128 bits do, 20 s at 5,000.

@@ -92,7 +92,7 @@ impl Recheck for Claim {
             growth: answer.growth()?.clone(),
             exact_trace: Answer::exact_trace(&clocks, exact.is_some()),
             #[cfg(feature = "system")]
-            friction: friction.map(|rate| damped_pair(&oscillator, rate)).transpose()?,
+            friction: friction.map(|rate| damped_pair(&oscillator, rate, context.limits())).transpose()?,
         };
         Ok((again.document().value(), oscillator))
     }

@@ -27,13 +27,16 @@
 //! The four signs are first enclosed, in balls of 128 bits and more; what stays undecided there, the edges above
 //! all, is computed exactly.
 
+use std::cmp::Ordering;
+
 use nalgebra::Matrix2;
 use num_traits::{One, Signed, Zero};
 
-use crate::number::{Enclosed, ExactSign, Rational, Real, Ring, Sign};
+use crate::error::Result;
+use crate::number::{Ball, Enclosed, ExactSign, Rational, Real, Ring, Sign};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::respa::power;
-use crate::verdict::{HalfSigns, Kind, PartialSigns, Verdict};
+use crate::verdict::{Decidable, HalfSigns, Kind, Limits, PartialSigns, Tier, Verdict};
 
 /// What the tan criterion says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,15 +55,32 @@ impl Criterion {
 }
 
 /// The tan criterion for any q: the four forms enclosed, else computed exactly. q/2 slow kicks, whatever p.
-pub fn criterion<S: Real>(clocks: &TwoClocks<S>) -> Criterion {
-    // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them.
+///
+/// # Errors
+/// A budget error where only exact arithmetic would decide, and it costs more than the limits allow.
+pub fn criterion<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<Criterion> {
     let kicks = clocks.q();
+    // A kick and the turn before it lose some two bits in balls, so long periods are worth more of them. For s > 4 the turns grow
+    // like e^(γ n), cosh γ = s/2 − 1, and each of q/2 kicks at n up to p/2 loses 2 γ n/ln 2 of them.
+    let grows =
+        clocks.fast().enclosure(64).compare(&Ball::from_integer(&4.into())) == Some(Ordering::Greater);
+    let pays = |bits: u64| grows && kicks.saturating_mul(bits) < MOST_BITS;
     let enclosed = enclosed_forms::<S, 128>(clocks)
         .or_else(|| enclosed_forms::<S, 512>(clocks))
-        .or_else(|| (kicks > 200).then(|| enclosed_forms::<S, 2048>(clocks))?)
-        .or_else(|| (kicks > 800).then(|| enclosed_forms::<S, 8192>(clocks))?);
-    Criterion(enclosed.unwrap_or_else(|| exact_forms(clocks).verdict()))
+        .or_else(|| (kicks > 200 || pays(2048)).then(|| enclosed_forms::<S, 2048>(clocks))?)
+        .or_else(|| (kicks > 800 || pays(8192)).then(|| enclosed_forms::<S, 8192>(clocks))?)
+        .or_else(|| pays(32_768).then(|| enclosed_forms::<S, 32_768>(clocks))?)
+        .or_else(|| pays(131_072).then(|| enclosed_forms::<S, 131_072>(clocks))?);
+    if let Some(verdict) = enclosed {
+        return Ok(Criterion(verdict));
+    }
+    // Turns and kicks apart make numbers twice as long as the half period's.
+    limits.allow(S::exact_cost(clocks, clocks.ratio().kicks()), Tier::Exact)?;
+    Ok(exact_criterion(clocks))
 }
+
+/// Bits of all kicks of one attempt in balls: seconds.
+const MOST_BITS: u64 = 1 << 26;
 
 /// The tan criterion for any q by exact arithmetic in the ring of s and the slow kick.
 pub fn exact_criterion<S: ExactSign>(clocks: &TwoClocks<S>) -> Criterion {

@@ -40,5 +40,5 @@ fn bounded(length: usize, most: u64) -> io::Result<()> {
     if length as u64 <= most {
         return Ok(());
     }
-    Err(io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {most} bytes")))
+    Err(io::Error::new(ErrorKind::FileTooLarge, format!("it has more than {} MiB", most >> 20)))
 }

@@ -48,7 +48,7 @@ impl Default for Limits {
 impl Limits {
     /// # Errors
     /// A budget error that states the cost where `kicks` exceeds the limit.
-    pub(super) fn allow(&self, kicks: u64, tier: Tier) -> Result<()> {
+    pub(crate) fn allow(&self, kicks: u64, tier: Tier) -> Result<()> {
         if kicks <= self.kicks {
             return Ok(());
         }

@@ -143,18 +143,20 @@ fn an_input_without_an_end_is_refused() {
 
 #[test]
 fn a_read_only_file_is_not_replaced() {
-    let desk = Desk::new();
-    desk.write("kept.json", "old");
-    let path = desk.path().join("kept.json");
-    let mut permissions = std::fs::metadata(&path).unwrap().permissions();
-    permissions.set_readonly(true);
-    std::fs::set_permissions(&path, permissions).unwrap();
-    for line in [VERDICT, MAP, "verdict --lambda1 10 --lambda2 2/5 --h1 1/10 --h2 1 --certificate kept.json"]
-    {
-        let ended =
-            desk.run(&words(line, if line.ends_with("json") { &[] } else { &["--output", "kept.json"] }));
-        assert!(ended.code == Some(2) && ended.stderr.contains("read-only"), "{line}: {}", ended.stderr);
-        assert_eq!((desk.read("kept.json"), desk.files()), (b"old".to_vec(), vec!["kept.json".to_string()]));
+    for (line, flag, name) in [
+        (VERDICT, "--output", "kept.json"),
+        (MAP, "--output", "kept.npz"),
+        (VERDICT, "--certificate", "kept.v"),
+    ] {
+        let desk = Desk::new();
+        desk.write(name, "old");
+        let path = desk.path().join(name);
+        let mut permissions = std::fs::metadata(&path).unwrap().permissions();
+        permissions.set_readonly(true);
+        std::fs::set_permissions(&path, permissions).unwrap();
+        let ended = desk.run(&words(line, &[flag, name]));
+        assert!(ended.code == Some(2) && ended.stderr.contains("read-only"), "{name}: {}", ended.stderr);
+        assert_eq!((desk.read(name), desk.files()), (b"old".to_vec(), vec![name.to_string()]));
     }
 }
 

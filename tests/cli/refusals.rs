@@ -316,3 +316,20 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
 }
 
 const SYSTEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json");
+
+#[test]
+fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
+    let desk = Desk::new();
+    desk.write("n2.namd", "structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 99999\n");
+    for line in [
+        "verdict --lambda1 pi^2 --lambda2 1 --h1 1 --h2 1000001/1000000 --friction 1 --budget 1500000",
+        "proposition --max 30 --budget 1000",
+        "closings --ratio 501/499 --budget 1000000",
+        "advise --period 10fs --period 40fs --steps 3fs,3.0001fs --budget 1000000",
+        "advise --period 10fs --period 20fs --period 40fs --engine n2.namd",
+    ] {
+        let ended = desk.run(&words(line));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line}");
+        assert!(ended.stderr.contains("allow it with --budget"), "{line}: {}", ended.stderr);
+    }
+}

@@ -1,7 +1,7 @@
 //! Where tongues close, as it is asked for.
 
 use crate::cli::args::Common;
-use crate::cli::progress::progress;
+use crate::cli::progress::{announce, progress};
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
@@ -23,6 +23,9 @@ pub struct Question {
 
 /// Searches cost p + q squared for each of the samples.
 const MOST_SUM: u64 = 200;
+/// Steps of a search unless a budget says otherwise: all ratios up to the largest sum at ten times the usual samples. And the seconds of one.
+const MOST_COST: u64 = 1_000_000_000_000;
+const STEP: f64 = 1e-7;
 const MOST_SAMPLES: usize = 1_000_000;
 /// The boxes are known to 2^-100 of their centres.
 const MOST_DIGITS: u32 = 28;
@@ -58,6 +61,12 @@ impl Question {
     /// As [`tongue::closings`].
     pub fn document(&self, common: &Common, all_columns: bool) -> Result<Document> {
         let list = self.ratios.list();
+        let cost = list.iter().map(|ratio| self.cost(*ratio)).fold(0, u64::saturating_add);
+        if cost > common.budget.unwrap_or(MOST_COST) {
+            let work = format!("the closings of {} cost about {cost} steps of a search", self.ratios.words());
+            return Err(Error::budget(work, cost).or("choose fewer samples, or ratios of smaller numbers"));
+        }
+        announce(common.quiet, &format!("the closings of {}", self.ratios.words()), cost as f64 * STEP);
         let bar = progress(common.quiet, list.len() as u64, "ratios");
         let one = |&ratio: &Ratio| {
             let found = self.of_ratio(ratio);
@@ -69,6 +78,11 @@ impl Question {
         let (lo, hi) = &self.rho;
         let what = format!("{}, rho in {lo}..{hi}", self.ratios.words());
         Ok(self.echo(closings::document(&found, self.digits, &what, all_columns)))
+    }
+
+    /// (p + q)² for each of the samples.
+    fn cost(&self, ratio: Ratio) -> u64 {
+        ratio.kicks().saturating_pow(2).saturating_mul(self.samples as u64)
     }
 
     fn of_ratio(&self, ratio: Ratio) -> Result<Found> {

@@ -3,6 +3,7 @@
 mod closings;
 
 use super::args::Common;
+use super::progress::announce;
 use crate::error::{Error, Result};
 use crate::map::Grid;
 use crate::number::{Laurent, Ratio, Rational};
@@ -80,6 +81,13 @@ impl Request {
                         format!("choose 1 to {LARGEST_MAX}; the number of witnesses grows like its cube");
                     return Err(Error::input("max", max, remedy));
                 }
+                let work = format!("the Proposition up to {max}");
+                if max.pow(3) > limits.kicks {
+                    let cost = format!("{work} has about {} points and curves", max.pow(3));
+                    return Err(Error::budget(cost, max.pow(3)).or("choose a smaller --max"));
+                }
+                // Some microseconds for each of max³ (1 + ln max) points and curves.
+                announce(common.quiet, &work, (*max as f64).powi(3) * (1.0 + (*max as f64).ln()) * 1e-6);
                 let mut witnesses = Vec::new();
                 let check = check(*max, |witness| witnesses.push(*witness));
                 Ok(proposition::document(*max, &check, &witnesses))

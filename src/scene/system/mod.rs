@@ -315,6 +315,9 @@ impl SystemScene {
     pub fn friction(&self, limits: &Limits) -> Result<Option<Friction>> {
         let Some(rate) = &self.friction else { return Ok(None) };
         if let Some(own) = &self.oscillator {
+            limits.allow(own.clocks.schedule().strikes().saturating_mul(1000), || {
+                "friction on one oscillator".into()
+            })?;
             return own.friction(rate).map(Some);
         }
         if let Some(own) = &self.measured {

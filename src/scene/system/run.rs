@@ -63,8 +63,8 @@ pub struct RunRequest {
 }
 
 impl RunRequest {
-    /// The most periods: the series is kept in memory.
-    pub const MOST_PERIODS: u32 = 10_000_000;
+    /// The most periods: the series is kept in memory, and is written as some 50 MB.
+    pub const MOST_PERIODS: u32 = 1_000_000;
 }
 
 /// The size of the deviations whose growth is measured: their squares are lost in it, and it is far above roundoff.

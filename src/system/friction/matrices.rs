@@ -21,6 +21,7 @@ use crate::system::model::System;
 use crate::system::norm;
 use crate::system::period::{Drifts, Stiff, follow};
 use crate::system::spectrum::{components, residual};
+use crate::verdict::{self, Tier};
 
 /// What friction does to a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,9 +113,10 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
 /// The same for a pair of steps.
 ///
 /// # Errors
-/// As [`damped`].
-pub fn damped_pair(oscillator: &Oscillator, rate: &Rational) -> Result<Friction> {
+/// As [`damped`]; a period of more kicks than the limits allow.
+pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::Limits) -> Result<Friction> {
     let two = oscillator.clocks();
+    limits.allow(two.ratio().kicks(), Tier::Refine)?;
     let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
     let strengths = vec![two.fast().clone(), two.slow().clone()];
     let clocks = ManyClocks::new(&steps, &[Rational::default(), Rational::default()], strengths)?;
