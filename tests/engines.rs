@@ -397,3 +397,11 @@ fn an_outer_step_that_no_engine_runs_is_answered_by_those_beside_it() {
     );
     assert!(beside(ratio(1, 2), ratio(4, 1)).is_none());
 }
+
+#[test]
+fn a_serialized_step_that_was_computed_is_the_short_one_that_was_meant() {
+    for (size, expected) in [(".009000000000000001", "9"), (".0030000000000000005", "3"), (".004", "4")] {
+        let text = format!("<Integrator stepSize=\"{size}\" type=\"VerletIntegrator\" version=\"1\"/>");
+        assert_eq!(steps(&of(&text).unwrap()), expected, "{size}");
+    }
+}

@@ -45,6 +45,37 @@ pub fn from_f64_exact(x: f64) -> Option<Rational> {
     Rational::from_float(x)
 }
 
+/// What the writer of a double most likely meant that came by a few roundings (a change of units, a quotient of steps): within 2^-51 |x| of it
+/// the decimal of at most twelve digits, or p/q with p q below 2^40, else the shortest decimal that rounds to x. `None` for infinities and NaN.
+///
+/// ```
+/// use kickdrift::number::rational::{from_f64_meant, ratio};
+/// assert_eq!(from_f64_meant(0.1 + 0.2), Some(ratio(3, 10)));
+/// assert_eq!(from_f64_meant(0.004 / 9.0 * 1000.0), Some(ratio(4, 9)));
+/// ```
+pub fn from_f64_meant(x: f64) -> Option<Rational> {
+    let (exact, sign) = (from_f64_exact(x.abs())?, if x < 0.0 { -1 } else { 1 });
+    let off = &exact / Rational::from_integer(BigInt::one() << 51);
+    let (lo, hi) = (&exact - &off, &exact + &off);
+    let short =
+        (0..12).map(|digits| decimal(&format!("{:.digits$e}", x.abs()))).find(|own| lo <= *own && *own <= hi);
+    let fraction = || {
+        let own = simplest(&lo, &hi);
+        (own.numer().bits() + own.denom().bits() <= 40).then_some(own)
+    };
+    let own = short.or_else(fraction).unwrap_or_else(|| decimal(&format!("{:e}", x.abs())));
+    Some(own * Rational::from_integer(sign.into()))
+}
+
+/// `1.25e-3`, as Rust writes doubles.
+fn decimal(text: &str) -> Rational {
+    let (digits, power) = text.split_once('e').expect("an exponent");
+    let places = digits.split_once('.').map_or(0, |(_, behind)| behind.len());
+    let whole: BigInt = digits.replace('.', "").parse().expect("digits");
+    let power = power.parse::<i32>().expect("an exponent") - places as i32;
+    Rational::from_integer(whole) * Rational::from_integer(10.into()).pow(power)
+}
+
 /// x 2^k, exactly.
 pub fn scale2(x: &BigInt, k: i64) -> Rational {
     if k >= 0 {

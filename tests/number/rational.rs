@@ -66,3 +66,20 @@ proptest! {
         prop_assert!(is_enclosure(&tie, enclose_f64(&tie)));
     }
 }
+
+#[test]
+fn a_double_that_came_by_a_few_roundings_is_what_was_meant() {
+    for (x, meant) in [
+        (0.02, ratio(1, 50)),
+        (0.009000000000000001, ratio(9, 1000)),
+        (-0.1 - 0.2, ratio(-3, 10)),
+        (4.0 / 3.0, ratio(4, 3)),
+        (0.0005 * 1000.0 / 7.0, ratio(1, 14)),
+        (5e-16, ratio(1, 2_000_000_000_000_000)),
+        (0.0, ratio(0, 1)),
+        (0.731_058_578_630_004_9, ratio(7_310_585_786_300_049, 10_000_000_000_000_000)),
+    ] {
+        assert_eq!(from_f64_meant(x), Some(meant), "{x}");
+    }
+    assert!(from_f64_meant(f64::NAN).is_none() && from_f64_meant(f64::INFINITY).is_none());
+}

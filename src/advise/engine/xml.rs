@@ -8,6 +8,7 @@ use roxmltree::{Document, Node};
 use super::reading::{Engine, FS, Loop, MOST_LEVELS, PS, Place, Reading, Unit, count, number, scheme, times};
 use crate::error::{Error, Result};
 use crate::number::Rational;
+use crate::number::rational::{from_f64_meant, to_f64};
 
 /// Elements nested more deeply than this are none of an engine's.
 const DEEPEST: usize = 200;
@@ -157,7 +158,9 @@ pub(super) fn openmm(text: &str) -> Result<Option<Reading>> {
     let attribute = node.attributes().find(|attribute| attribute.name() == "stepSize");
     let size =
         attribute.ok_or_else(|| Error::missing("stepSize", "a serialized integrator has it, in ps"))?;
-    let outer = number("stepSize", size.value())? * PS.size();
+    // The double of a step that was computed: 0.009000000000000001 is 0.009.
+    let stated = number("stepSize", size.value())?;
+    let outer = from_f64_meant(to_f64(&stated)).unwrap_or(stated) * PS.size();
     let kind = node.attribute("type").unwrap_or("Integrator");
     let mut counts: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
     for computation in node.descendants().filter_map(|node| node.attribute(EXPRESSION)) {
