@@ -65,10 +65,14 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
         Some("1") => FAMILIES.curves(grid.lambdas().0, &window(&grid))?,
         _ => Vec::new(),
     };
+    let coloured = query.text("what").filter(|_| colouring != Colouring::default());
+    let coloured = coloured.map(|what| format!(" --colour {what}"));
+    let flags =
+        coloured.unwrap_or_default() + if query.text("curves") == Some("1") { " --curves" } else { "" };
     let bytes = drawn(&grid, colouring, |chart, counts| {
         let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
         let figure = chart.figure(&grid, counts, &curves).footed(&foot);
-        let figure = figure.made_by(&command(grid.lambdas(), range.given()));
+        let figure = figure.made_by(&(command(grid.lambdas(), range.given()) + &flags));
         figure.file(format, DPI)
     })?;
     let (name, media) = match format {
