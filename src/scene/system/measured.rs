@@ -33,10 +33,9 @@ use serde_json::Value;
 use super::array::{Arrays, Reference};
 use super::document::{LARGEST, Number, no_system};
 use super::held::{Constraints, Particles, reweigh};
-use super::projected::rational;
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::number::rational::to_f64;
+use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Friction;
 use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions, translations};
 use crate::system::stretches::{Stretch, cover};
@@ -456,6 +455,23 @@ impl Measured {
     pub fn size(&self) -> usize {
         self.potentials[0].1.nrows()
     }
+}
+
+/// Doubles as a rational system; what asymmetry there is is split evenly.
+pub(super) fn rational(masses: &[f64], potentials: &[(Rational, DMatrix<f64>)]) -> System {
+    let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
+    let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
+    let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+        let mut sum = Symmetric::zero(masses.len());
+        for i in 0..masses.len() {
+            for j in 0..=i {
+                sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
+            }
+        }
+        Potential { stiffness: sum, step: step.clone(), phase: Rational::default() }
+    };
+    let potentials = potentials.iter().map(potential).collect();
+    System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
 }
 
 /// What moves.

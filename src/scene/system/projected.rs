@@ -3,11 +3,11 @@
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
-use super::measured::Measured;
+use super::measured::{Measured, rational};
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::{Analysis, Limits, Potential, Route, Symmetric, System, decide_by};
+use crate::system::{Analysis, Limits, Route, System, decide_by};
 
 impl Measured {
     /// The verdict on these doubles as a rational system, without margins.
@@ -42,23 +42,6 @@ fn warning(how: &str) -> String {
     format!(
         "margins are computed for two levels, the outer step a multiple of the inner one: this verdict is on the doubles given, {how}"
     )
-}
-
-/// Doubles as a rational system; what asymmetry there is is split evenly.
-pub(super) fn rational(masses: &[f64], potentials: &[(Rational, DMatrix<f64>)]) -> System {
-    let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
-    let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
-    let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
-        let mut sum = Symmetric::zero(masses.len());
-        for i in 0..masses.len() {
-            for j in 0..=i {
-                sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
-            }
-        }
-        Potential { stiffness: sum, step: step.clone(), phase: Rational::default() }
-    };
-    let potentials = potentials.iter().map(potential).collect();
-    System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
 }
 
 /// Degrees of freedom and shapes in the mass-weighted coordinates given, of an analysis in those of the columns of `basis`.
