@@ -28,12 +28,10 @@ impl Numbers {
         let potentials: Vec<Value> = (0..clocks)
             .map(|k| {
                 let mut rows = vec![vec![String::new(); n]; n];
-                for i in 0..n {
-                    for j in 0..=i {
-                        let (size, off) = if k == 0 { (24, if i == j { 0 } else { 12 }) } else { (12, 5) };
-                        let entry = format!("{}/{}", self.below(size) - off, if i == j { 10 } else { 40 });
-                        (rows[i][j], rows[j][i]) = (entry.clone(), entry);
-                    }
+                for (i, j) in (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+                    let (size, off) = if k == 0 { (24, if i == j { 0 } else { 12 }) } else { (12, 5) };
+                    let entry = format!("{}/{}", self.below(size) - off, if i == j { 10 } else { 40 });
+                    (rows[i][j], rows[j][i]) = (entry.clone(), entry);
                 }
                 json!({"step": step(k), "scale": "1", "stiffness": rows})
             })

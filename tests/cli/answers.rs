@@ -180,7 +180,7 @@ fn csv_is_a_header_and_one_line_a_row() {
 fn a_small_window_shows_every_curve_through_it_and_verify_agrees() {
     let count = |flags: &str| {
         let desk = Desk::new();
-        let ended = desk.run(&words("curves --output c.json --samples 20", &words(flags, &[])));
+        let ended = desk.run(&words("curves --output c.json --quiet --samples 20", &words(flags, &[])));
         assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
         let curves: serde_json::Value = serde_json::from_slice(&desk.read("c.json")).unwrap();
         let checked = desk.run(&["verify", "c.json"]);
