@@ -105,7 +105,8 @@ def test_what_does_not_fit_is_refused_by_name() -> None:
 
 
 LONG = {
-    "decide": "kd.decide(lambda1='pi^2', lambda2='pi^2/25', h1='1/1000000007', h2='1/999999937', budget=10**12)",
+    # Both clocks beyond their own limits: followed kick by kick.
+    "decide": "kd.decide(lambda1='5*10^18', lambda2='5*10^18', h1='1/1000000007', h2='1/999999937', budget=10**12)",
     "map": "kd.map(lambda1='pi^2', lambda2='pi^2/25', step='1/9000', h1=('1/9000', '2/pi'), h2=('1/9000', '7/2'))",
     "tongues": "kd.tongues(max_sum=400, rho='1/25')",
     "closings": "kd.closings(max_sum=60)",

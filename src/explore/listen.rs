@@ -113,8 +113,9 @@ pub(super) struct Connection {
 impl Connection {
     /// What the stream says, until it was silent too long, or a stranger for too long.
     fn in_time<T>(&mut self, context: &mut Context, moved: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
-        if self.caller.is_known() {
-            self.bidden = None;
+        // From here on the question's own time counts: the first one may wait longer than a stranger may.
+        if self.caller.is_known() && self.bidden.take().is_some() {
+            self.deadline.as_mut().reset(Instant::now() + SILENT);
         }
         if self.bidden.as_mut().is_some_and(|bidden| Pin::new(bidden).poll(context).is_ready()) {
             return Poll::Ready(Err(io::ErrorKind::TimedOut.into()));

@@ -82,7 +82,7 @@ impl Recheck for Claim {
     fn again(&self, context: &Context) -> Result<(Value, Oscillator)> {
         let Input { lambda1, lambda2, h1, h2, exact, friction } = &self.input;
         let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())?;
-        let friction = positive("input.friction", friction.as_ref())?;
+        positive("input.friction", friction.as_ref())?;
         let first = if exact.is_some() { Tier::Exact } else { Tier::Filter };
         let clocks = oscillator.clocks();
         let answer = decide_from(first, &clocks, context.limits())?;
@@ -92,7 +92,10 @@ impl Recheck for Claim {
             growth: answer.growth()?.clone(),
             exact_trace: Answer::exact_trace(&clocks, exact.is_some()),
             #[cfg(feature = "system")]
-            friction: friction.map(|rate| damped_pair(&oscillator, rate, context.limits())).transpose()?,
+            friction: friction
+                .as_ref()
+                .map(|rate| damped_pair(&oscillator, &rate.0, context.limits()))
+                .transpose()?,
         };
         Ok((again.document().value(), oscillator))
     }
