@@ -442,7 +442,7 @@ fn double_eigenvalues_of_one_sign_are_proven_in_doubles() {
         let analysis = decide_system(
             &ring(n, [&ratio(4, 1), &ratio(1, 1)], steps(), ratio(0, 1)),
             // Enough to compose, and not for exact arithmetic.
-            &Limits { products: 30_000_000 },
+            &Limits { products: 30_000_000, ..Limits::default() },
         );
         let analysis = analysis.unwrap();
         let part = &analysis.parts[0];
@@ -484,7 +484,7 @@ fn the_exact_route_counts_every_root_or_tells_its_cost() {
     let part = &analysis.parts[0];
     assert_eq!((part.evidence, part.roots.unwrap().inside), (Evidence::Exact, 7));
     assert_eq!(decide_system(&system, &Limits::default()).unwrap().kind.unwrap(), analysis.kind.unwrap());
-    let error = decide_by(Route::Exact, &system, &Limits { products: 10 }).unwrap_err();
+    let error = decide_by(Route::Exact, &system, &Limits { products: 10, ..Limits::default() }).unwrap_err();
     assert_eq!(error.kind(), kickdrift::error::Kind::Budget);
     assert!(error.to_string().contains("products of machine words"), "{error}");
 }
@@ -523,7 +523,7 @@ fn exact_arithmetic_reaches_twelve_degrees_of_freedom() {
     }
     let chain =
         builders::periodic_chain(12, &stiffness, &[ratio(1, 4), ratio(1, 997), ratio(7, 20)]).unwrap();
-    let error = decide_exact(&chain, &Limits { products: 1000 }).unwrap_err();
+    let error = decide_exact(&chain, &Limits { products: 1000, ..Limits::default() }).unwrap_err();
     assert_eq!(error.kind(), kickdrift::error::Kind::Budget);
     assert!(error.needed().is_some(), "{error}");
 }

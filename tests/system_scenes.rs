@@ -154,7 +154,7 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
     let exact = of_unit_masses(3, chain).unwrap().decide(Route::Exact, &Limits::default()).unwrap();
     assert_eq!(exact.kind, Some(Kind::Elliptic));
     // Its cost is told before it begins.
-    let (coupled, few) = (of_unit_masses(2, edge).unwrap(), Limits { products: 10 });
+    let (coupled, few) = (of_unit_masses(2, edge).unwrap(), Limits { products: 10, ..Limits::default() });
     let error = coupled.decide(Route::Exact, &few).unwrap_err().to_string();
     assert!(error.contains("exact arithmetic over Q[pi] on 2 degrees of freedom would cost"), "{error}");
     let rational = chain.replace("pi^2", "9.8696044").replace("1/pi", "0.31830989");

@@ -133,7 +133,9 @@ impl Pair {
     fn document(&self) -> Result<Document> {
         let (decision, growth) = (self.found.decision(), self.found.growth()?.clone());
         let exact_trace = Report::exact_trace(&self.oscillator.clocks(), self.exact);
-        let friction = self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate)).transpose()?;
+        let limits = limits(self.budget);
+        let friction =
+            self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate, &limits)).transpose()?;
         let oscillator = self.oscillator.clone();
         Ok(Report { oscillator, decision, growth, exact_trace, friction }.document())
     }

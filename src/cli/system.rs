@@ -230,7 +230,7 @@ impl Args {
 }
 
 pub fn limits(common: &Common) -> Limits {
-    common.budget.map_or_else(Limits::default, |products| Limits { products })
+    common.budget.map_or_else(Limits::default, |products| Limits { products, ..Limits::default() })
 }
 
 /// The file to draw, where the output is one.

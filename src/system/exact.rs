@@ -75,14 +75,13 @@ pub fn decide_exact(system: &System, limits: &Limits) -> Result<ExactVerdict> {
     Ok(judge(&program.half_period(system, &frame)))
 }
 
-/// Roots are refined where their polynomial costs no more than this, some tenths of a second, and there are no more of them.
-const REFINING: u64 = 1 << 28;
+/// Roots are refined where there are no more of them.
 const MOST_REFINED: usize = 24;
 
 /// All μ with their growth, the largest to a double's digits, from the roots of the characteristic polynomial; `None` where that costs much.
 pub(super) fn multipliers(system: &System, frame: &Frame, limits: &Limits) -> Option<Vec<Multiplier>> {
     let program = IntegerProgram::new(system);
-    let most = REFINING.min(limits.products);
+    let most = limits.refining.min(limits.products);
     if frame.kept.len() > MOST_REFINED || estimate(system, frame, &program) > most {
         return None;
     }

@@ -17,15 +17,17 @@ pub enum Route {
 pub struct Limits {
     /// Products of doubles or of 64-bit words.
     pub products: u64,
+    /// Of these, for the digits of a growth rate that doubles do not give.
+    pub refining: u64,
 }
 
 /// From so many degrees of freedom on pieces of work with their matrices are worth threads of their own.
 pub(super) const SIDE_BY_SIDE: usize = 64;
 
 impl Default for Limits {
-    /// 5·10^10 products: a minute or two at worst.
+    /// 5·10^10 products: a minute or two at worst; some tenths of a second for the digits of a rate.
     fn default() -> Self {
-        Limits { products: 50_000_000_000 }
+        Limits { products: 50_000_000_000, refining: 1 << 28 }
     }
 }
 

@@ -33,4 +33,5 @@ trap 'rm -rf "$scratch"' EXIT
 cp ./*.mjs package.json package-lock.json "$scratch"
 cd "$scratch"
 npm ci --silent --no-audit --no-fund
-node --test --test-concurrency=1
+# A browser that a failed test leaves open must not hold the rest.
+timeout 1200 node --test --test-concurrency=1

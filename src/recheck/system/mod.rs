@@ -108,7 +108,8 @@ impl Input {
 
 /// A kick of the scalar ladder is some hundred products.
 fn limits(context: &Context) -> Limits {
-    Limits { products: context.limits().kicks.saturating_mul(100).max(Limits::default().products) }
+    let products = context.limits().kicks.saturating_mul(100).max(Limits::default().products);
+    Limits { products, ..Limits::default() }
 }
 
 fn missing(field: &str) -> Error {

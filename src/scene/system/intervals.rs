@@ -141,6 +141,8 @@ impl SystemScene {
         {
             return own.growth_rates(values);
         }
+        // Some milliseconds a rate, whose last digits nobody sees.
+        let limits = &Limits { refining: 1 << 20, ..*limits };
         let rate = |&value: &f64| {
             let analysis = match role {
                 Role::Outer => self.decide_at(&exact(value), limits)?,
