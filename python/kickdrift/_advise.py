@@ -242,7 +242,7 @@ def advise(
     4 fs    stable; next unstable interval 4.6768-4.9679 fs, margin 0.677 fs; caution: not below T/3 = 3.33 fs
     >>> gromacs = "dt = 0.0005 ; ps\\nmts = yes\\nmts-level2-factor = 8\\n"
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
-    ['mts-level2-factor = 6']
+    ['mts-level2-factor = 6', 'nstlog = 1020', 'nstenergy = 1020', 'nstcalcenergy = 102']
     """
     if isinstance(periods, Advisable):
         for field, value in {"bonds": bonds, "on": on, "hmr": hmr}.items():

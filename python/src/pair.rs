@@ -137,7 +137,8 @@ impl Pair {
         let friction =
             self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate, &limits)).transpose()?;
         let oscillator = self.oscillator.clone();
-        Ok(Report { oscillator, decision, growth, exact_trace, friction }.document())
+        let document = Report { oscillator, decision, growth, exact_trace, friction }.document();
+        Ok(if self.exact { document.input("exact", "true") } else { document })
     }
 }
 
