@@ -18,7 +18,7 @@ impl Format {
     /// The forms of a [`Document`](crate::report::document::Document).
     pub const DOCUMENT: [Format; 4] = [Format::Json, Format::Csv, Format::Latex, Format::Text];
 
-    /// The forms of a [`Figure`](crate::report::figure::Figure).
+    /// The forms of a [`Figure`](plot::Figure).
     pub const FIGURE: [Format; 3] = [Format::Svg, Format::Pdf, Format::Png];
 
     /// The forms of a result that is a document or drawn.

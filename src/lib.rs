@@ -69,6 +69,7 @@
 //! | floor | module | what is there |
 //! |---|---|---|
 //! | – | [`error`], [`format`](mod@format) | one error with a kind; the forms of results |
+//! | 0 | [`plot`] | figures as pictures, without physics: a crate of its own, crates/plot |
 //! | 0 | `vector` | doubles side by side in the processor's registers |
 //! | 0 | [`parallel`] | work on all threads, or without them; work that can be stopped |
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
@@ -101,7 +102,7 @@
 //! | `advise` | `advise`: which steps are safe for these periods (roxmltree) |
 //! | `parallel` | maps, surveys and scans on all cores (rayon); without it the same results on one |
 //! | `serde` | `scene`, `report` and `recheck`: input documents, output tables, documents rechecked |
-//! | `figure` | `report::figure` and the drawings of results |
+//! | `figure` | the drawings of results, by the crate `plot` |
 //! | `cli` | the program (default) |
 //! | `page` | `explore` without a network: what the page asks |
 //! | `explore` | the page served on this machine (axum, tokio) |
@@ -119,6 +120,9 @@ pub mod map;
 pub mod number;
 mod orbit;
 pub mod parallel;
+/// Figures as pictures: what `report` draws with.
+#[cfg(feature = "figure")]
+pub use plot;
 pub mod propagator;
 #[cfg(feature = "serde")]
 pub mod recheck;

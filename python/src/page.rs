@@ -80,13 +80,7 @@ impl Page {
     }
 
     /// The status, the type and the bytes of the answer to a question, or of a file of the page; other threads of Python run meanwhile.
-    fn ask<'py>(
-        &self,
-        py: Python<'py>,
-        path: &str,
-        query: &str,
-        stop: &Stop,
-    ) -> Answer<'py> {
+    fn ask<'py>(&self, py: Python<'py>, path: &str, query: &str, stop: &Stop) -> Answer<'py> {
         let answer = || explore::ask(&self.0, path, query, &stop.0).or_else(|| explore::asset(path));
         match py.detach(answer) {
             Some(reply) => shared(py, &reply),

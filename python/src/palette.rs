@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use kickdrift::report::figure::palette::{
+use kickdrift::plot::palette::{
     CAUTION, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, INK, PARABOLIC, SAFE, UNSTABLE, family,
 };
 use pyo3::prelude::*;

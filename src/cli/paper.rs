@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
+use plot::Figure;
+
 use super::args::{Common, of};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::report::figure::Figure;
+use crate::report::figure::file;
 use crate::report::file::write_output;
-
-/// Pixels per inch of PNG figures: print quality.
-const DPI: f64 = 300.0;
 
 /// Flags of every command that draws.
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -59,9 +58,8 @@ impl Paper {
     /// The figure as the flags want it, as the bytes of a file that carries its command.
     ///
     /// # Errors
-    /// A unit of time for a figure without time, and as [`Figure::file`].
-    pub fn bytes(&self, figure: Figure, format: Format, command: &str) -> Result<Vec<u8>> {
-        let mut figure = figure.made_by(command);
+    /// A unit of time for a figure without time, and as [`file`].
+    pub fn bytes(&self, mut figure: Figure, format: Format, command: &str) -> Result<Vec<u8>> {
         if let Some(unit) = &self.time_unit {
             if !figure.has_time() {
                 return Err(Error::input(
@@ -81,7 +79,7 @@ impl Paper {
         if self.bare {
             figure = figure.bare();
         }
-        if self.outlines { figure.outlined() } else { figure }.file(format, DPI)
+        file(if self.outlines { figure.outlined() } else { figure }, command, format)
     }
 
     /// The same written to a place, or to standard output.

@@ -1,11 +1,12 @@
 //! One ratio of steps, or all up to a sum: what `tongues` and `closings` range over.
 
+use plot::Foot;
+
 use super::args::{of, whole};
 use crate::error::{Error, Result};
 use crate::number::Ratio;
 use crate::number::parse::parse_ratio;
 use crate::report::document::Document;
-use crate::report::figure::Foot;
 
 /// The flags that say which.
 #[derive(Debug, clap::Args)]

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
+use plot::Foot;
+
 use super::args::{Columns, Common, whole};
 use super::paper::Paper;
 use super::system::{limits, read};
 use crate::avi::Ends;
 use crate::error::Result;
 use crate::format::Format;
-use crate::report::figure::Foot;
 use crate::report::simulate as report;
 use crate::scene::{Displacement, RunRequest};
 

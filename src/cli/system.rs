@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use indicatif::ProgressBar;
+use plot::{Figure, Foot};
 
 use super::args::{Columns, Common, from_str, of};
 use super::paper::Paper;
@@ -12,7 +13,6 @@ use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
 use crate::report::document::Document;
-use crate::report::figure::{Figure, Foot};
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Arrays, Axis, Scan, Span, SystemScene, file};
 use crate::system::scan::scan;

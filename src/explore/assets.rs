@@ -11,26 +11,12 @@ macro_rules! page {
     };
 }
 
-/// A face that the figures are set in.
-macro_rules! font {
-    ($name:literal) => {
-        (concat!("fonts/", $name), include_bytes!(concat!("../report/figure/fonts/", $name)))
-    };
-}
-
 /// Scripts, each after those that it imports.
 macro_rules! scripts {
     ($($name:literal)*) => { &[$(($name, include_str!(concat!("page/", $name)))),*] };
 }
 
-const FILES: &[(&str, &[u8])] = &[
-    page!("index.html"),
-    page!("icon.svg"),
-    page!("page.css"),
-    font!("LibertinusSerif-Regular.otf"),
-    font!("LibertinusSerif-Italic.otf"),
-    font!("LibertinusSerif-Semibold.otf"),
-];
+const FILES: &[(&str, &[u8])] = &[page!("index.html"), page!("icon.svg"), page!("page.css")];
 
 const SCRIPTS: &[(&str, &str)] = scripts!(
     "address.js" "ask.js" "exact.js" "colours.js" "dom.js" "writing.js" "picking.js" "state.js" "grid.js" "view.js" "tiles.js"
@@ -57,7 +43,10 @@ pub fn asset(path: &str) -> Option<Reply> {
         "page.js" => return Some(Reply::new(media, PAGE.as_bytes())),
         _ => {}
     }
-    FILES.iter().find(|(name, _)| *name == path).map(|&(_, bytes)| Reply::new(media, bytes))
+    let page = || FILES.iter().find(|(name, _)| *name == path).map(|&(_, bytes)| bytes);
+    // Fonts are those of the figures.
+    let bytes = path.strip_prefix("fonts/").map_or_else(page, plot::font_file);
+    bytes.map(|bytes| Reply::new(media, bytes))
 }
 
 /// The page with what it starts on inside, so that it need not ask for it.
@@ -154,7 +143,7 @@ mod tests {
 
     #[test]
     fn families_have_the_colours_of_the_figures() {
-        let rows = crate::report::figure::palette::FAMILIES.map(|[l, c, h]| format!("[{l:.2}, {c}, {h}]"));
+        let rows = plot::palette::FAMILIES.map(|[l, c, h]| format!("[{l:.2}, {c}, {h}]"));
         let script = SCRIPTS.iter().find(|(name, _)| *name == "colours.js").unwrap().1;
         let mut rest = script.split_once("const FAMILIES = ").unwrap().1;
         for row in rows {

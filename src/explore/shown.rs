@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Grid, Map, Resources};
 use crate::number::Laurent;
+use crate::report::figure::file;
 use crate::report::map::Counts;
 use crate::report::plane::{Chart, Colouring, command, parameters, window};
 use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
@@ -16,9 +17,6 @@ use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
 /// Pairs and kicks of a picture.
 const MOST_PAIRS: u64 = 4_000_000;
 pub(super) const MOST_KICKS: u64 = 20_000_000_000;
-
-/// Pixels an inch: print quality.
-const DPI: f64 = 300.0;
 
 /// The spacings, and the ranges of what is shown.
 fn range(session: &Session, query: &Query) -> Result<GridRange> {
@@ -72,8 +70,7 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let bytes = drawn(&grid, colouring, |chart, counts| {
         let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
         let figure = chart.figure(&grid, counts, &curves).footed(&foot);
-        let figure = figure.made_by(&(command(grid.lambdas(), range.given()) + &flags));
-        figure.file(format, DPI)
+        file(figure, &(command(grid.lambdas(), range.given()) + &flags), format)
     })?;
     let (name, media) = match format {
         Format::Png => ("map.png", "image/png"),

@@ -1,10 +1,9 @@
 //! Floor 5: results on their way out, as tables and as figures.
 //!
 //! The lower half knows no physics. A [`table::Table`] holds typed cells and each format is one file
-//! ([`csv`], [`latex`], [`text`], and JSON through `serde`), [`npz`] holds arrays too large for memory; a [`figure::Figure`] holds panels of layers and
-//! is drawn as SVG, from which the PNG is rasterized; [`file`](mod@file) puts the bytes where they belong, whole or
-//! not at all. On it stand a [`document::Document`] for every kind of result, one file or folder each, and the drawings
-//! of the (h1, h2) [`plane`].
+//! ([`csv`], [`latex`], [`text`], and JSON through `serde`), [`npz`] holds arrays too large for memory; a [`plot::Figure`] holds
+//! panels of layers; [`file`](mod@file) puts the bytes where they belong, whole or not at all. On it stand a
+//! [`document::Document`] for every kind of result, one file or folder each, and the drawings of the (h1, h2) [`plane`].
 
 #[cfg(feature = "advise")]
 pub mod advise;

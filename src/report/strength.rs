@@ -3,8 +3,9 @@
 //! To first order a tongue is 2 s ρ |S| wide in s, and for long periods |S| is |S_a(θ)| (see
 //! [`crate::resonance::strength`]). So near one angle θ all tongues of a family whose q is large lie on one value.
 
-use super::figure::palette::{GREY, Gradient, INK, family};
-use super::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
+use plot::palette::{GREY, Gradient, INK, family};
+use plot::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
+
 use crate::resonance::strength;
 use crate::tongue::sampled::Measured;
 

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use sources::Sources;
 
-/// The floor of each module; `error` lies below them all.
-const FLOORS: [(&str, u32); 19] = [
+/// The floor of each module and of each crate in crates/; `error` lies below them all.
+const FLOORS: [(&str, u32); 20] = [
+    ("plot", 0),
     ("format", 0),
     ("vector", 0),
     ("number", 0),
@@ -35,7 +36,7 @@ fn floor(module: &str) -> u32 {
 }
 
 fn sources() -> Sources {
-    Sources::read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"))
+    Sources::read(Path::new(env!("CARGO_MANIFEST_DIR")))
 }
 
 #[test]
@@ -79,11 +80,16 @@ fn every_way_of_naming_a_module_is_seen() {
             "use crate::{b::{self as d, X}, a::*}; use super::super::b::Y; use std::fmt;
              mod tests { use super::Z; fn f(s: &str) -> crate::b::W { self::g(\"crate::no\") } }",
         ),
-        ("b.rs", ""),
+        ("b.rs", "use e::F; fn f() { e::g::h() }"),
+        ("crates/e/src/lib.rs", "mod g; pub use g::F; use crate::b; fn f() { a::c() }"),
+        ("crates/e/src/g.rs", "use super::F; use crate::H;"),
     ]);
     let paths = |at: usize| -> Vec<String> {
         sources.all[at].imports.iter().map(|import| import.path.join("::")).collect()
     };
+    assert_eq!(paths(3), ["e::F", "e::g::h"]);
+    assert_eq!(paths(4), ["e::g::F", "e::b"]);
+    assert_eq!(paths(5), ["e::F", "e::H"]);
     assert_eq!(paths(1), ["a::c::g"]);
     assert_eq!(paths(2), ["b", "b::X", "a", "b::Y", "a::c::Z", "b::W", "a::c::tests::g"]);
 }

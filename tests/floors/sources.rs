@@ -1,4 +1,5 @@
-//! What the sources import, read from their tokens: `use` trees and paths in the code, in the module they stand in.
+//! What the sources import, read from their tokens: `use` trees and paths in the code, in the module they stand in. A crate in
+//! crates/ counts as a module, named as its folder is.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{TokenStream, TokenTree};
 
-/// A path that a source names, from the crate's root on.
+/// A path that a source names, from the library's root on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
     pub path: Vec<String>,
@@ -21,16 +22,16 @@ pub struct Import {
 /// One source.
 #[derive(Debug, Default)]
 pub struct Source {
-    /// Its path below src/.
+    /// Its path below src/; below the repository for the sources of other crates.
     pub file: String,
-    /// Its module's path: `tongue`, `string` for src/tongue/string.rs.
+    /// Its module's path: `tongue`, `string` for src/tongue/string.rs, `plot`, `axis` for crates/plot/src/axis.rs.
     pub module: Vec<String>,
     pub imports: Vec<Import>,
     /// All names in its code, `use` items and tests apart.
     names: BTreeSet<String>,
 }
 
-/// All sources below a folder.
+/// The sources of all crates.
 pub struct Sources {
     pub all: Vec<Source>,
     of_module: BTreeMap<Vec<String>, usize>,
@@ -43,10 +44,16 @@ fn files(folder: &Path) -> Vec<PathBuf> {
 }
 
 impl Sources {
+    /// Those in src/ and crates/ below `root`.
     pub fn read(root: &Path) -> Sources {
-        let inside = |path: &PathBuf| path.strip_prefix(root).unwrap().to_str().unwrap().to_string();
-        let mut texts: Vec<_> =
-            files(root).iter().map(|path| (inside(path), fs::read_to_string(path).unwrap())).collect();
+        let below = |folder: &Path, base: &Path| -> Vec<(String, String)> {
+            let inside = |path: &PathBuf| path.strip_prefix(base).unwrap().to_str().unwrap().to_string();
+            files(folder).iter().map(|path| (inside(path), fs::read_to_string(path).unwrap())).collect()
+        };
+        let mut texts = below(&root.join("src"), &root.join("src"));
+        let crates =
+            fs::read_dir(root.join("crates")).unwrap().map(|entry| entry.unwrap().path().join("src"));
+        texts.extend(crates.flat_map(|folder| below(&folder, root)));
         texts.sort();
         Sources::of(&texts)
     }
@@ -55,9 +62,16 @@ impl Sources {
     pub fn of(texts: &[(String, String)]) -> Sources {
         let modules: Vec<Vec<String>> = texts.iter().map(|(file, _)| module(file)).collect();
         let of_module: BTreeMap<_, _> = modules.iter().cloned().zip(0..).collect();
+        let apart = |(text, module): (&(String, String), &Vec<String>)| {
+            text.0.starts_with(CRATES).then(|| module[0].clone())
+        };
+        let crates: BTreeSet<String> = texts.iter().zip(&modules).filter_map(apart).collect();
         let read = |((file, text), module): (&(String, String), &Vec<String>)| {
             let mut source = Source { file: file.clone(), module: module.clone(), ..Source::default() };
-            let scope = Scope { module: module.clone(), in_tests: false, modules: &of_module };
+            let of_library = !file.starts_with(CRATES);
+            let root = if of_library { &[][..] } else { &module[..1] };
+            let module = module.clone();
+            let scope = Scope { root, module, in_tests: false, modules: &of_module, crates: &crates };
             scope.read(text.parse().expect("Rust"), &mut source);
             source
         };
@@ -108,17 +122,25 @@ impl Sources {
     }
 }
 
-/// The module of a file: lib.rs and main.rs are the root.
+const CRATES: &str = "crates/";
+
+/// The module of a file: lib.rs and main.rs are the root of their crate.
 fn module(file: &str) -> Vec<String> {
-    let names = file.strip_suffix(".rs").expect("a Rust source").split('/').map(str::to_string);
+    let file = file.strip_suffix(".rs").expect("a Rust source");
+    let file = file.strip_prefix(CRATES).map_or(file.into(), |file| file.replacen("/src/", "/", 1));
+    let names = file.split('/').map(str::to_string);
     names.filter(|name| !["mod", "lib", "main"].contains(&name.as_str())).collect()
 }
 
 /// The module in which tokens stand.
 struct Scope<'a> {
+    /// The root of its crate.
+    root: &'a [String],
     module: Vec<String>,
     in_tests: bool,
     modules: &'a BTreeMap<Vec<String>, usize>,
+    /// The names of all crates but the library.
+    crates: &'a BTreeSet<String>,
 }
 
 fn is(token: Option<&TokenTree>, text: &str) -> bool {
@@ -156,7 +178,7 @@ impl Scope<'_> {
         let attribute = at.checked_sub(1).map_or(String::new(), |before| tokens[before].to_string());
         let in_tests = self.in_tests || attribute.replace(' ', "") == "[cfg(test)]";
         let module = [&self.module[..], &[inner]].concat();
-        Scope { module, in_tests, modules: self.modules }.read(body.stream(), source);
+        Scope { module, in_tests, ..*self }.read(body.stream(), source);
         3
     }
 
@@ -207,14 +229,15 @@ impl Scope<'_> {
         at
     }
 
-    /// Notes the path, if it leads to a module of this crate.
+    /// Notes the path, if it leads to a module of ours.
     fn add(&self, path: &[String], binds: Option<String>, handed_on: bool, source: &mut Source) {
         let child = [&self.module[..], &path[..1]].concat();
         let mut absolute = match path[0].as_str() {
-            "crate" => Vec::new(),
+            "crate" => self.root.to_vec(),
             "self" => self.module.clone(),
             "super" => self.module[..self.module.len() - 1].to_vec(),
             _ if self.modules.contains_key(&child) => child,
+            _ if self.crates.contains(&path[0]) => path[..1].to_vec(),
             _ => return,
         };
         for step in &path[1..] {

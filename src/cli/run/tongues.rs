@@ -1,10 +1,11 @@
 //! What a scene asks of tongues.
 
+use plot::Figure;
+
 use crate::cli::args::Common;
 use crate::cli::ratios::Ratios;
 use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question};
 use crate::error::Result;
-use crate::report::figure::Figure;
 use crate::scene::{FAMILIES, Scene};
 use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 

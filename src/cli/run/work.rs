@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
+use plot::Figure;
+
 use super::tongues;
 use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::map;
@@ -18,7 +20,6 @@ use crate::map::Products;
 use crate::number::rational::ratio;
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
-use crate::report::figure::Figure;
 use crate::report::file::write_output;
 use crate::report::map::MapArrays;
 use crate::report::plane;

@@ -1,6 +1,7 @@
 //! The atlas of tongues in the (h1, h2) plane.
 
 use clap::ValueEnum;
+use plot::{Figure, Foot};
 
 use super::Question;
 use crate::cli::args::Common;
@@ -9,7 +10,6 @@ use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::report::figure::{Figure, Foot};
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
 use crate::tongue::{Quantity, Range, Tongue, TongueEdge, Wanted};

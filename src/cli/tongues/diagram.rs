@@ -1,11 +1,11 @@
 //! Diagrams of tongues: s across, ρ from 0 up.
 
 use num_traits::Zero;
+use plot::{Figure, Foot};
 
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Ratio, Rational};
-use crate::report::figure::{Figure, Foot};
 use crate::report::tongues::diagram::figure;
 use crate::tongue::sampled::{Diagram, LARGEST_S};
 

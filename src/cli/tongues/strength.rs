@@ -1,10 +1,11 @@
 //! The figures of measured widths against the first-order law.
 
+use plot::{Figure, Foot, typeset};
+
 use super::atlas::share_of_pi;
 use crate::cli::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, rational};
-use crate::report::figure::{Figure, Foot, typeset};
 use crate::report::strength::{self as report, figure};
 use crate::tongue::Stiffness;
 use crate::tongue::sampled::{self, Measured};

@@ -1,8 +1,9 @@
 //! Traces through the tongues of one ratio.
 
+use plot::{Figure, Foot};
+
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
-use crate::report::figure::{Figure, Foot};
 use crate::report::tongues::trace::figure;
 use crate::tongue::Labels;
 use crate::tongue::sampled::Trace;

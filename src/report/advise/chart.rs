@@ -2,14 +2,13 @@
 
 use std::f64::consts::PI;
 
+use plot::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
+use plot::{Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick};
+
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Finding, Findings, Group, Pair, Row, Scheme, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::report::figure::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
-use crate::report::figure::{
-    Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick,
-};
 use crate::system::levels::Growing;
 
 use super::words::{nearest, percent, told};

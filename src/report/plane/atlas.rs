@@ -3,10 +3,11 @@
 //! Along the ray h2 = h1 p/q a tongue is the segment between its two edges; nothing is sampled, so what is thinner
 //! than any grid is there too: as a dot as wide as the lines.
 
+use plot::palette::{self, COEXISTENCE, Colour, Gradient};
+use plot::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
+
 use super::chart::{FAMILIES, axis, family_name, grouped, rank};
 use super::lines::lines_in;
-use crate::report::figure::palette::{self, COEXISTENCE, Colour, Gradient};
-use crate::report::figure::{Axis, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::resonance::{Curve, Window};
 
 /// A tongue in the plane.

@@ -1,12 +1,11 @@
 //! A map drawn: its unstable pairs in colour, the edges marked, the curves over them on request.
 
+use plot::palette::{self, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, PARABOLIC};
+use plot::{Anchor, Axis, Cells, ColourBar, Figure, Hatch, Layer, Note, Panel, Place, Shape};
+
 use super::lines::{lines_in, stroke};
 use super::raster::Raster;
 use crate::map::{Band, Enclosure, Grid, Products};
-use crate::report::figure::palette::{self, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, PARABOLIC};
-use crate::report::figure::{
-    Anchor, Axis, Cells, ColourBar, Figure, Hatch, Layer, Note, Panel, Place, Shape,
-};
 use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;

@@ -1,7 +1,8 @@
 //! The curves (a, b) in the paper's line styles.
 
-use crate::report::figure::palette::{Colour, INK};
-use crate::report::figure::{Dash, Layer, Panel, Place, Stroke};
+use plot::palette::{Colour, INK};
+use plot::{Dash, Layer, Panel, Place, Stroke};
+
 use crate::resonance::Curve;
 
 /// One layer for each a, in the paper's line styles, and the legend.

@@ -8,9 +8,9 @@ mod raster;
 pub use atlas::{Atlas, Segment};
 pub use chart::{Chart, Colouring, window};
 use lines::{lines, lines_in};
+use plot::palette::{Colour, GREY};
+use plot::{Axis, Cells, Figure, Foot, Layer, Panel};
 
-use super::figure::palette::{Colour, GREY};
-use super::figure::{Axis, Cells, Figure, Foot, Layer, Panel};
 use super::text::quoted;
 use crate::number::Laurent;
 use crate::resonance::{Curve, Window};

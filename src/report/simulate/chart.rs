@@ -1,8 +1,9 @@
 //! A run of Algorithm 1 drawn.
 
+use plot::palette::{GREY, family};
+use plot::{Axis, Figure, Layer, Panel, Place, Stroke};
+
 use crate::avi::{Run, Sample};
-use crate::report::figure::palette::{GREY, family};
-use crate::report::figure::{Axis, Figure, Layer, Panel, Place, Stroke};
 
 /// A quantity that grows by more than this is drawn on a logarithmic scale.
 const LINEAR_RANGE: f64 = 100.0;

@@ -1,10 +1,11 @@
 //! A system's verdict over one or two of its numbers, drawn.
 
+use plot::palette::{COEXISTENCE, Colour, Gradient, HYPERBOLIC, INK, PARABOLIC};
+use plot::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke, literal};
+
 use super::SystemMap;
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::report::figure::palette::{COEXISTENCE, Colour, Gradient, HYPERBOLIC, INK, PARABOLIC};
-use crate::report::figure::{Axis, Cells, ColourBar, Figure, Layer, Panel, Place, Shape, Stroke, literal};
 use crate::system::scan::Point;
 use crate::verdict::Kind;
 

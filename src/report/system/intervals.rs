@@ -1,13 +1,14 @@
 //! Stretches of one number of a system: rows, and the unstable ones in words.
 
 #[cfg(feature = "figure")]
+use plot::palette::{GREY, HYPERBOLIC, INK};
+#[cfg(feature = "figure")]
+use plot::{Axis, Figure, Hatch, Layer, Panel, Place, Stroke};
+
+#[cfg(feature = "figure")]
 use super::chart::axis;
 use crate::report::decimal;
 use crate::report::document::{Document, enclosure};
-#[cfg(feature = "figure")]
-use crate::report::figure::palette::{GREY, HYPERBOLIC, INK};
-#[cfg(feature = "figure")]
-use crate::report::figure::{Axis, Figure, Hatch, Layer, Panel, Place, Stroke};
 use crate::report::record::Record;
 use crate::report::table::Column;
 use crate::report::text::counted;

@@ -1,10 +1,11 @@
 //! The multipliers of a system, and the shapes of those that grow.
 
+use plot::palette::{GREY, INK, family};
+use plot::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
+
 use super::terms;
 use super::words::rate;
 use crate::report::decimal;
-use crate::report::figure::palette::{GREY, INK, family};
-use crate::report::figure::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
 use crate::system::{Analysis, Instability, Origin, middle};
 
 /// The most shapes on one page: the fastest.
@@ -45,7 +46,7 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
     let y = if fastest > 0.0 {
         Axis::linear("growth rate", -0.06 * fastest, 1.15 * fastest)
     } else {
-        let zero = crate::report::figure::Tick { at: 0.0, label: Some("0".into()) };
+        let zero = plot::Tick { at: 0.0, label: Some("0".into()) };
         Axis::linear("growth rate", -0.5, 0.5).ticks(vec![zero])
     };
     let y = y.per_time();

@@ -1,8 +1,9 @@
 //! The tongues of a ratio drawn: s across, ρ up, each an area between its edges.
 
+use plot::palette::{self, COEXISTENCE, GREY, INK};
+use plot::{Axis, Dash, Figure, Layer, Panel, Place, Shape, Stroke};
+
 use super::labels;
-use crate::report::figure::palette::{self, COEXISTENCE, GREY, INK};
-use crate::report::figure::{Axis, Dash, Figure, Layer, Panel, Place, Shape, Stroke};
 use crate::tongue::sampled::{Diagram, LARGEST_S};
 
 /// The height of the paper for each ratio in any width, and of what is beside them, in mm.

@@ -1,7 +1,8 @@
 //! Where the labels of a diagram stand: m (a, b) inside its tongue or beside it, on nothing else; upright where it is narrow, and
 //! m alone where neither fits.
 
-use crate::report::figure::{Anchor, Note};
+use plot::{Anchor, Note};
+
 use crate::tongue::sampled::{Band, Diagram, LARGEST_S};
 
 /// Heights that are tried, from the bottom to the top, and where a tongue's edges are looked at along a label.

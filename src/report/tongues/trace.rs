@@ -1,8 +1,9 @@
 //! Traces through a resonance: Tr Q over s between the lines ±2, one tongue close by, and what of the half period vanishes
 //! at its edges.
 
-use crate::report::figure::palette::{GREY, INK, family};
-use crate::report::figure::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke, typeset};
+use plot::palette::{GREY, INK, family};
+use plot::{Anchor, Axis, Dash, Figure, Layer, Note, Panel, Place, Stroke, typeset};
+
 use crate::tongue::sampled::{Near, Trace};
 
 /// Beyond this Tr Q is cut.

@@ -1,7 +1,7 @@
 //! Work and precision, drawn.
 
-use kickdrift::report::figure::palette::{GREY, INK, family};
-use kickdrift::report::figure::{Axis, Dash, Figure, Layer, Panel, Place, Shape, Stroke};
+use kickdrift::plot::palette::{GREY, INK, family};
+use kickdrift::plot::{Axis, Dash, Figure, Layer, Panel, Place, Shape, Stroke};
 
 use serde_json::Value;
 

@@ -17,7 +17,7 @@ mod verdicts;
 
 use std::path::PathBuf;
 
-use kickdrift::report::figure::Figure;
+use kickdrift::plot::Figure;
 use serde_json::json;
 
 fn main() {
@@ -32,7 +32,11 @@ fn main() {
         println!("{}", path.display());
     };
     let picture = neighbours::picture();
-    let drawn = |figure: Figure| figure.made_by("cargo bench --bench precision").svg();
+    let drawn = |figure: Figure| {
+        figure
+            .made_by(concat!("kickdrift ", env!("CARGO_PKG_VERSION")), "cargo bench --bench precision")
+            .svg()
+    };
     write("neighbours.svg", drawn(picture.figure.clone()));
     if std::env::args().any(|argument| argument == "--redraw") {
         let kept = std::fs::read_to_string(directory.join("precision.json")).expect("what was measured");

@@ -2,9 +2,9 @@
 
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::number::{Ratio, Rational};
+use kickdrift::plot::palette::{Colour, GREY};
+use kickdrift::plot::{Axis, Cells, Figure, Layer, Panel};
 use kickdrift::propagator::TwoClocks;
-use kickdrift::report::figure::palette::{Colour, GREY};
-use kickdrift::report::figure::{Axis, Cells, Figure, Layer, Panel};
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Limits, decide};
 use num_traits::Signed;

@@ -15,7 +15,7 @@ const ITALIC_CORRECTION: f64 = 0.03;
 
 /// A glyph in its place, in em of the label, y down from the baseline.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placed {
+pub(crate) struct Placed {
     pub face: Face,
     pub glyph: u16,
     pub x: f64,
@@ -25,7 +25,7 @@ pub(super) struct Placed {
 
 /// A line of text, laid out.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Label {
+pub(crate) struct Label {
     /// The letters alone, for those who listen or search.
     pub words: String,
     pub glyphs: Vec<Placed>,
@@ -54,12 +54,12 @@ impl Level {
 
 impl Label {
     /// Lays out `markup` in the roman face.
-    pub(super) fn new(markup: &str) -> Self {
+    pub(crate) fn new(markup: &str) -> Self {
         Self::in_face(markup, Face::Roman)
     }
 
     /// Lays out `markup` in `base` and its italic.
-    pub(super) fn in_face(markup: &str, base: Face) -> Self {
+    pub(crate) fn in_face(markup: &str, base: Face) -> Self {
         let mut line = Line::default();
         let (mut level, mut italic, mut braced) = (Level::Line, false, false);
         let mut letters = markup.chars().peekable();
@@ -86,7 +86,7 @@ impl Label {
 }
 
 /// The words in lines no longer than `room`, in em; a word that is longer has a line of its own.
-pub(super) fn wrapped(markup: &str, face: Face, room: f64) -> Vec<Label> {
+pub(crate) fn wrapped(markup: &str, face: Face, room: f64) -> Vec<Label> {
     let mut lines: Vec<(String, Label)> = Vec::new();
     for word in markup.split(' ') {
         let longer = lines.last().map(|(line, _)| format!("{line} {word}"));

@@ -7,7 +7,7 @@ use super::label::{literal, typeset};
 /// Parameters in the notation of labels, in the order in which they were given.
 ///
 /// ```
-/// use kickdrift::report::figure::Foot;
+/// use kickdrift_plot::Foot;
 /// let foot = Foot::default().value("*ρ*", "1/25").range("*h*_1", "0", "2/pi").words("16_waters");
 /// assert_eq!(foot.to_string(), "*ρ* = 1/25; *h*_1 from 0 to 2/π; 16\\_waters");
 /// ```

@@ -10,19 +10,19 @@ use super::layer::Dash;
 use super::palette::Colour;
 
 /// Points a millimetre.
-pub(super) const MM: f64 = 72.0 / 25.4;
+pub(crate) const MM: f64 = 72.0 / 25.4;
 
 /// A rim of paper around letters, in 1/1000 em.
-pub(super) const HALO: f64 = 280.0;
+pub(crate) const HALO: f64 = 280.0;
 
 /// A coordinate in hundredths of a point. Far outside it saturates: nobody sees the difference.
-pub(super) fn hundredths(value: f64) -> i64 {
+pub(crate) fn hundredths(value: f64) -> i64 {
     (value * 100.0).round().clamp(-1e12, 1e12) as i64
 }
 
 /// One move of the pen, in hundredths of a point on the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Step {
+pub(crate) enum Step {
     Move(i64, i64),
     Line(i64, i64),
     /// A horizontal line to this x.
@@ -37,20 +37,20 @@ pub(super) enum Step {
 
 /// A path under construction.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Path {
+pub(crate) struct Path {
     pub steps: Vec<Step>,
     at: (i64, i64),
 }
 
 impl Path {
     /// Lifts the pen to a point.
-    pub(super) fn move_to(&mut self, [x, y]: [f64; 2]) {
+    pub(crate) fn move_to(&mut self, [x, y]: [f64; 2]) {
         self.at = (hundredths(x), hundredths(y));
         self.steps.push(Step::Move(self.at.0, self.at.1));
     }
 
     /// Draws to a point; nothing where it rounds to the one before.
-    pub(super) fn line_to(&mut self, [x, y]: [f64; 2]) {
+    pub(crate) fn line_to(&mut self, [x, y]: [f64; 2]) {
         let to = (hundredths(x), hundredths(y));
         if to != self.at {
             self.at = to;
@@ -59,34 +59,34 @@ impl Path {
     }
 
     /// A dot under a round line cap.
-    pub(super) fn dot(&mut self, point: [f64; 2]) {
+    pub(crate) fn dot(&mut self, point: [f64; 2]) {
         self.move_to(point);
         self.steps.push(Step::Dot);
     }
 
     /// A horizontal stroke from `from` to `x`.
-    pub(super) fn horizontal(&mut self, from: [f64; 2], x: f64) {
+    pub(crate) fn horizontal(&mut self, from: [f64; 2], x: f64) {
         self.move_to(from);
         self.at.0 = hundredths(x);
         self.steps.push(Step::Across(self.at.0));
     }
 
     /// A vertical stroke from `from` to `y`.
-    pub(super) fn vertical(&mut self, from: [f64; 2], y: f64) {
+    pub(crate) fn vertical(&mut self, from: [f64; 2], y: f64) {
         self.move_to(from);
         self.at.1 = hundredths(y);
         self.steps.push(Step::Along(self.at.1));
     }
 
     /// A closed rectangle, given by its sides.
-    pub(super) fn rectangle(&mut self, [left, top, right, bottom]: Rect) {
+    pub(crate) fn rectangle(&mut self, [left, top, right, bottom]: Rect) {
         self.horizontal([left, top], right);
         self.steps.extend([Step::Along(hundredths(bottom)), Step::Across(hundredths(left))]);
         self.close([left, top]);
     }
 
     /// The rectangles of a path that consists of nothing else, in points.
-    pub(super) fn rectangles(&self) -> impl Iterator<Item = Rect> + '_ {
+    pub(crate) fn rectangles(&self) -> impl Iterator<Item = Rect> + '_ {
         self.steps.chunks_exact(5).filter_map(|steps| match *steps {
             [Step::Move(left, top), Step::Across(right), Step::Along(bottom), ..] => {
                 Some([left, top, right, bottom].map(|side| side as f64 / 100.0))
@@ -96,7 +96,7 @@ impl Path {
     }
 
     /// Closes the outline; the pen is back where it began.
-    pub(super) fn close(&mut self, [x, y]: [f64; 2]) {
+    pub(crate) fn close(&mut self, [x, y]: [f64; 2]) {
         self.at = (hundredths(x), hundredths(y));
         self.steps.push(Step::Close(self.at.0, self.at.1));
     }
@@ -104,7 +104,7 @@ impl Path {
 
 /// How a path is drawn.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Paint {
+pub(crate) enum Paint {
     Fill {
         colour: Colour,
         opacity: Option<f64>,
@@ -116,7 +116,7 @@ pub(super) enum Paint {
 
 /// A line's look. Joins and caps are plain unless rounded.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pen {
+pub(crate) struct Pen {
     pub colour: Colour,
     pub width: f64,
     pub round_joins: bool,
@@ -127,12 +127,12 @@ pub(super) struct Pen {
 
 impl Pen {
     /// An unbroken line.
-    pub(super) fn new(colour: Colour, width: f64) -> Pen {
+    pub(crate) fn new(colour: Colour, width: f64) -> Pen {
         Pen { colour, width, round_joins: false, round_caps: false, dashes: Vec::new() }
     }
 
     /// The same line in a pattern.
-    pub(super) fn dashed(mut self, dash: Dash) -> Pen {
+    pub(crate) fn dashed(mut self, dash: Dash) -> Pen {
         let width = self.width;
         match dash {
             Dash::Solid => self.round_joins = true,
@@ -145,7 +145,7 @@ impl Pen {
     }
 
     /// The same line with round ends.
-    pub(super) fn capped(mut self) -> Pen {
+    pub(crate) fn capped(mut self) -> Pen {
         self.round_caps = true;
         self
     }
@@ -164,7 +164,7 @@ pub enum Anchor {
 
 /// How a text is set.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Set {
+pub(crate) struct Set {
     pub size: f64,
     pub anchor: Anchor,
     /// Degrees, counterclockwise.
@@ -176,7 +176,7 @@ pub(super) struct Set {
 
 /// A label in its place.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Words {
+pub(crate) struct Words {
     pub words: String,
     pub glyphs: Vec<Placed>,
     /// Where the baseline begins, is centred, or ends.
@@ -188,12 +188,12 @@ pub(super) struct Words {
 
 impl Words {
     /// The place of a glyph in 1/1000 em from the point of the label, y pointing down.
-    pub(super) fn offset(&self, placed: &Placed) -> [f64; 2] {
+    pub(crate) fn offset(&self, placed: &Placed) -> [f64; 2] {
         [1000.0 * (placed.x - self.before), 1000.0 * placed.y]
     }
 
     /// The label in pieces of one face, size and baseline, each with its letters: a letter is a glyph.
-    pub(super) fn runs(&self) -> impl Iterator<Item = (String, &[Placed])> {
+    pub(crate) fn runs(&self) -> impl Iterator<Item = (String, &[Placed])> {
         let mut letters = self.words.chars();
         let alike = |a: &Placed, b: &Placed| (a.face, a.scale, a.y) == (b.face, b.scale, b.y);
         self.glyphs.chunk_by(alike).map(move |run| (letters.by_ref().take(run.len()).collect(), run))
@@ -202,7 +202,7 @@ impl Words {
 
 /// Pixels that fill a rectangle, first row at the top.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Image {
+pub(crate) struct Image {
     pub place: Rect,
     pub width: u32,
     pub pixels: Vec<Colour>,
@@ -212,7 +212,7 @@ pub(super) struct Image {
 
 /// A rectangle with its left upper corner at (x, y).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Patch {
+pub(crate) struct Patch {
     pub x: f64,
     pub y: f64,
     pub width: f64,
@@ -225,7 +225,7 @@ pub(super) struct Patch {
 
 /// A piece of a drawing; later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Element {
+pub(crate) enum Element {
     Path(Path, Paint),
     Patch(Patch),
     Image(Image),
@@ -237,12 +237,12 @@ pub(super) enum Element {
 
 /// A sheet of paper with a drawing.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     pub width: f64,
     pub height: f64,
     pub title: String,
-    /// The command that made it; empty where none is known.
-    pub made_by: String,
+    /// The program that made it with its version, and its command, where they are known.
+    pub maker: Option<[String; 2]>,
     /// Whether letters are drawn as shapes, for readers that know no embedded fonts.
     pub outlined: bool,
     pub elements: Vec<Element>,
@@ -250,41 +250,34 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// An empty sheet.
-    pub(super) fn new(width: f64, height: f64, title: &str) -> Canvas {
-        let (title, made_by) = (title.into(), String::new());
-        Canvas { width, height, title, made_by, outlined: false, elements: Vec::new() }
-    }
-
-    /// The program and the command that made it, where one is known.
-    pub(super) fn maker(&self) -> Option<(&'static str, &str)> {
-        let program = concat!("kickdrift ", env!("CARGO_PKG_VERSION"));
-        (!self.made_by.is_empty()).then_some((program, self.made_by.as_str()))
+    pub(crate) fn new(width: f64, height: f64, title: &str) -> Canvas {
+        Canvas { width, height, title: title.into(), maker: None, outlined: false, elements: Vec::new() }
     }
 
     /// Adds a path; an empty one is left out.
-    pub(super) fn path(&mut self, path: Path, paint: Paint) {
+    pub(crate) fn path(&mut self, path: Path, paint: Paint) {
         if !path.steps.is_empty() {
             self.elements.push(Element::Path(path, paint));
         }
     }
 
     /// Adds a filled path.
-    pub(super) fn fill(&mut self, path: Path, colour: Colour, opacity: Option<f64>) {
+    pub(crate) fn fill(&mut self, path: Path, colour: Colour, opacity: Option<f64>) {
         self.path(path, Paint::Fill { colour, opacity });
     }
 
     /// Adds a path of rectangles beside each other.
-    pub(super) fn cells(&mut self, path: Path, colour: Colour) {
+    pub(crate) fn cells(&mut self, path: Path, colour: Colour) {
         self.path(path, Paint::Cells(colour));
     }
 
     /// Adds a drawn line.
-    pub(super) fn stroke(&mut self, path: Path, pen: Pen) {
+    pub(crate) fn stroke(&mut self, path: Path, pen: Pen) {
         self.path(path, Paint::Stroke(pen));
     }
 
     /// Sets a label with its baseline at a point.
-    pub(super) fn text(&mut self, label: Label, at: [f64; 2], set: Set) {
+    pub(crate) fn text(&mut self, label: Label, at: [f64; 2], set: Set) {
         let share = match set.anchor {
             Anchor::Start => 0.0,
             Anchor::Middle => 0.5,
@@ -298,7 +291,7 @@ impl Canvas {
     }
 
     /// The glyphs in use, in the order of faces and numbers.
-    pub(super) fn glyphs(&self) -> std::collections::BTreeSet<(Face, u16)> {
+    pub(crate) fn glyphs(&self) -> std::collections::BTreeSet<(Face, u16)> {
         let words = self.elements.iter().filter_map(|element| match element {
             Element::Words(words) => Some(&words.glyphs),
             _ => None,

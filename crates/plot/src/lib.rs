@@ -1,19 +1,18 @@
-//! Figures for papers: panels of layers, drawn as SVG, rasterized to PNG.
+//! Figures for papers: panels of layers, as SVG, PDF and PNG. Nothing here knows what is drawn.
 //!
 //! A figure is measured in millimetres of paper; lines and letters are in points and do not grow with it. Words are words
 //! in a built-in face that the file carries, so the same figure gives the same bytes wherever it is made, and every format
 //! draws the same primitives.
 //!
 //! ```
-//! use kickdrift::report::figure::{Axis, Figure, Layer, Panel, Stroke};
+//! use kickdrift_plot::{Axis, Figure, Layer, Panel, Stroke};
 //! let wave = (0..=100).map(|i| f64::from(i) / 100.0).map(|t| [t, (6.0 * t).sin()]).collect();
 //! let panel = Panel::new(Axis::linear("*t* (s)", 0.0, 1.0), Axis::linear("*x*", -1.1, 1.1))
 //!     .titled("One oscillation")
 //!     .with(Layer::lines(vec![wave], Stroke::LINE));
 //! let figure = Figure::single_column(60.0).with(panel);
 //! assert!(figure.svg().starts_with("<svg"));
-//! assert_eq!(&figure.png(300.0)?[1..4], b"PNG");
-//! # Ok::<(), kickdrift::error::Error>(())
+//! assert_eq!(&figure.png(300.0).unwrap()[1..4], b"PNG");
 //! ```
 //!
 //! | file | what is in it |
@@ -62,12 +61,11 @@ mod svg;
 
 pub use axis::{Axis, Scale, Tick};
 pub use canvas::Anchor;
+pub use font::font_file;
 pub use foot::Foot;
 pub use layer::{Cells, Dash, Hatch, Layer, Picture, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
-use crate::error::{Error, Result};
-use crate::format::Format;
 use canvas::Canvas;
 use font::Face;
 use label::{Label, wrapped};
@@ -93,7 +91,7 @@ pub struct Figure {
     heading: String,
     foot: String,
     time_unit: String,
-    made_by: String,
+    maker: Option<[String; 2]>,
     outlined: bool,
     panels: Vec<Panel>,
 }
@@ -112,7 +110,7 @@ impl Figure {
             heading,
             foot,
             time_unit: "time".into(),
-            made_by: String::new(),
+            maker: None,
             outlined,
             panels,
         }
@@ -181,10 +179,10 @@ impl Figure {
         self
     }
 
-    /// The same figure, its files carrying the program's version and the command that made them.
+    /// The same figure, its files carrying the program that made them with its version, and the command.
     #[must_use]
-    pub fn made_by(mut self, command: &str) -> Self {
-        self.made_by = command.into();
+    pub fn made_by(mut self, program: &str, command: &str) -> Self {
+        self.maker = Some([program.into(), command.into()]);
         self
     }
 
@@ -260,33 +258,15 @@ impl Figure {
         svg::document(&self.drawn())
     }
 
-    /// The figure as a PNG file on white, with `dpi` pixels an inch.
-    ///
-    /// # Errors
-    /// [`Kind::Input`](crate::error::Kind::Input) if `dpi` is not a positive number or makes more than 2^28 pixels.
-    pub fn png(&self, dpi: f64) -> Result<Vec<u8>> {
+    /// The figure as a PNG file on white, with `dpi` pixels an inch; `None` if `dpi` is not a positive number or makes more than
+    /// 2^28 pixels.
+    pub fn png(&self, dpi: f64) -> Option<Vec<u8>> {
         png::raster(&self.drawn(), dpi)
     }
 
     /// The figure as a PDF file of one page, its words searchable: same figure, same bytes.
     pub fn pdf(&self) -> Vec<u8> {
         pdf::document(&self.drawn())
-    }
-
-    /// The figure as the bytes of a file; `dpi` is for PNG alone.
-    ///
-    /// # Errors
-    /// A format that is none of figures, and as [`Figure::png`].
-    pub fn file(&self, format: Format, dpi: f64) -> Result<Vec<u8>> {
-        match format {
-            Format::Svg => Ok(self.svg().into_bytes()),
-            Format::Pdf => Ok(self.pdf()),
-            Format::Png => self.png(dpi),
-            other => {
-                let remedy = format!("a figure is written as {}", Format::extensions(&Format::FIGURE));
-                Err(Error::input("format", other.name(), remedy))
-            }
-        }
     }
 
     fn drawn(&self) -> Canvas {
@@ -305,7 +285,7 @@ impl Figure {
         let (above, below) = (rows(&head, TITLE), rows(&foot, FOOT));
         let mut canvas = Canvas::new(width, above + height + below, &self.title);
         canvas.outlined = self.outlined;
-        canvas.made_by.clone_from(&self.made_by);
+        canvas.maker.clone_from(&self.maker);
         draw::lines(&mut canvas, head, [left, layout::RIM], TITLE);
         for (panel, site) in panels.iter().zip(sites) {
             draw::panel(&mut canvas, panel, site.lowered(above));

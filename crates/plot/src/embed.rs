@@ -18,14 +18,14 @@ use super::opentype;
 const ORDER: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
 /// Bytes as the filter `FlateDecode` of a PDF reads them.
-pub(super) fn deflated(bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn deflated(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(bytes).and_then(|()| encoder.finish()).expect("writing to memory does not fail")
 }
 
 /// The faces in use.
 #[derive(Default)]
-pub(super) struct Fonts(BTreeMap<Face, Font>);
+pub(crate) struct Fonts(BTreeMap<Face, Font>);
 
 #[derive(Default)]
 struct Font {
@@ -37,7 +37,7 @@ struct Font {
 
 impl Fonts {
     /// What the words of a drawing need.
-    pub(super) fn new(canvas: &Canvas) -> Fonts {
+    pub(crate) fn new(canvas: &Canvas) -> Fonts {
         let mut fonts: BTreeMap<Face, Font> = BTreeMap::new();
         for element in &canvas.elements {
             let Element::Words(words) = element else { continue };
@@ -52,19 +52,19 @@ impl Fonts {
     }
 
     /// The name of a face's font on the page and the number of a glyph in it.
-    pub(super) fn find(&self, face: Face, glyph: u16) -> (&str, u16) {
+    pub(crate) fn find(&self, face: Face, glyph: u16) -> (&str, u16) {
         let font = &self.0[&face];
         // A glyph that is not there is the empty box.
         (&font.name, font.numbers.get(glyph).unwrap_or(0))
     }
 
     /// Each face as a font file of its own, for SVG.
-    pub(super) fn files(&self) -> impl Iterator<Item = (Face, Vec<u8>)> {
+    pub(crate) fn files(&self) -> impl Iterator<Item = (Face, Vec<u8>)> {
         self.0.iter().map(|(&face, font)| (face, opentype::font(face, &font.numbers, &font.letters)))
     }
 
     /// Puts the fonts into the document; their names on the page, and where they are.
-    pub(super) fn write(&self, pdf: &mut Pdf, fresh: &mut impl FnMut() -> Ref) -> Vec<(String, Ref)> {
+    pub(crate) fn write(&self, pdf: &mut Pdf, fresh: &mut impl FnMut() -> Ref) -> Vec<(String, Ref)> {
         let one = |(face, font): (&Face, &Font)| (font.name.clone(), font.write(*face, pdf, fresh));
         self.0.iter().map(one).collect()
     }

@@ -109,7 +109,7 @@ impl Hatch {
 
 /// A layer's content, in data units.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Mark {
+pub(crate) enum Mark {
     Lines { lines: Vec<Vec<[f64; 2]>>, stroke: Stroke, marks: Option<(Shape, f64)> },
     Dots { points: Vec<[f64; 2]>, shape: Shape, size: f64, colour: Colour },
     Area { outlines: Vec<Vec<[f64; 2]>>, colour: Colour, opacity: f64 },
@@ -120,9 +120,9 @@ pub(super) enum Mark {
 /// One layer of a panel; later layers cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    pub(super) mark: Mark,
-    pub(super) label: Option<String>,
-    pub(super) hatch: Option<Hatch>,
+    pub(crate) mark: Mark,
+    pub(crate) label: Option<String>,
+    pub(crate) hatch: Option<Hatch>,
 }
 
 impl Layer {
@@ -187,17 +187,17 @@ impl From<Mark> for Layer {
 /// other share a run, and a run is all that is kept. Where two colours meet, the edge is that of the later one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cells {
-    pub(super) origin: [f64; 2],
-    pub(super) step: [f64; 2],
-    pub(super) colours: Vec<Colour>,
+    pub(crate) origin: [f64; 2],
+    pub(crate) step: [f64; 2],
+    pub(crate) colours: Vec<Colour>,
     /// In points: no cell is drawn smaller, or the lonely ones would vanish in print.
-    pub(super) least: f64,
-    pub(super) runs: Vec<Run>,
+    pub(crate) least: f64,
+    pub(crate) runs: Vec<Run>,
 }
 
 /// `across` by `up` cells from (i, j) on; one of the two is 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Run {
+pub(crate) struct Run {
     pub i: u32,
     pub j: u32,
     pub across: u32,
@@ -241,10 +241,10 @@ impl Cells {
 /// A picture of coloured pixels, its first row at the top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    pub(super) x: [f64; 2],
-    pub(super) y: [f64; 2],
-    pub(super) width: u32,
-    pub(super) pixels: Vec<Colour>,
+    pub(crate) x: [f64; 2],
+    pub(crate) y: [f64; 2],
+    pub(crate) width: u32,
+    pub(crate) pixels: Vec<Colour>,
 }
 
 impl Picture {

@@ -7,7 +7,7 @@ use super::font::Curve;
 const QUARTER: f64 = 0.552_285;
 
 /// What takes lines and curves.
-pub(super) trait Outline {
+pub(crate) trait Outline {
     fn begin(&mut self, at: [f64; 2]);
     fn line(&mut self, to: [f64; 2]);
     fn cubic(&mut self, first: [f64; 2], second: [f64; 2], to: [f64; 2]);
@@ -15,7 +15,7 @@ pub(super) trait Outline {
 }
 
 /// A path, in points.
-pub(super) fn path(path: &Path, outline: &mut impl Outline) {
+pub(crate) fn path(path: &Path, outline: &mut impl Outline) {
     let mut at = (0, 0);
     let points = |(x, y): (i64, i64)| [x as f64 / 100.0, y as f64 / 100.0];
     for &step in &path.steps {
@@ -34,7 +34,7 @@ pub(super) fn path(path: &Path, outline: &mut impl Outline) {
 }
 
 /// A rectangle, in points; its corners are quarters of a circle where it has a radius.
-pub(super) fn patch(patch: &Patch, outline: &mut impl Outline) {
+pub(crate) fn patch(patch: &Patch, outline: &mut impl Outline) {
     let ([left, top], radius) = ([patch.x, patch.y], patch.radius.unwrap_or(0.0));
     let (right, bottom) = (left + patch.width, top + patch.height);
     // Each corner with the direction in which the outline, clockwise, comes to it, and goes from it.
@@ -58,7 +58,7 @@ pub(super) fn patch(patch: &Patch, outline: &mut impl Outline) {
 }
 
 /// A glyph, in 1/1000 em.
-pub(super) fn glyph(curves: &[Curve], outline: &mut impl Outline) {
+pub(crate) fn glyph(curves: &[Curve], outline: &mut impl Outline) {
     let mut at = [0.0; 2];
     for &curve in curves {
         let points = |point: [i32; 2]| point.map(f64::from);

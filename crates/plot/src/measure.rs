@@ -8,51 +8,51 @@ use super::label::Label;
 use super::palette::INK;
 
 /// Sizes of letters.
-pub(super) const NUMBER: f64 = 8.0;
-pub(super) const WORDS: f64 = 9.0;
-pub(super) const TITLE: f64 = 9.5;
+pub(crate) const NUMBER: f64 = 8.0;
+pub(crate) const WORDS: f64 = 9.0;
+pub(crate) const TITLE: f64 = 9.5;
 /// Ticks point outward, away from the data.
-pub(super) const TICK: f64 = 2.8;
-pub(super) const MINOR_TICK: f64 = 1.6;
+pub(crate) const TICK: f64 = 2.8;
+pub(crate) const MINOR_TICK: f64 = 1.6;
 /// Between a tick and its number, a number and the label, the frame and the edge of the paper.
-pub(super) const GAP: f64 = 2.2;
+pub(crate) const GAP: f64 = 2.2;
 /// The least distance between two labelled ticks.
 const APART: [f64; 2] = [34.0, 24.0];
 /// Height of a capital relative to the size of the letters.
-pub(super) const CAPITAL: f64 = 0.72;
+pub(crate) const CAPITAL: f64 = 0.72;
 /// Height of a digit, and of a line of labels with its indices, relative to the size of the letters.
-pub(super) const DIGIT: f64 = 0.66;
-pub(super) const LINE: f64 = 1.15;
+pub(crate) const DIGIT: f64 = 0.66;
+pub(crate) const LINE: f64 = 1.15;
 
 /// From data to the page.
 #[derive(Clone, Copy)]
-pub(super) struct Plane<'a> {
+pub(crate) struct Plane<'a> {
     pub x: &'a Axis,
     pub y: &'a Axis,
     pub frame: Rect,
 }
 
 impl Plane<'_> {
-    pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         [self.across(self.x.unit(x)), self.down(self.y.unit(y))]
     }
 
-    pub(super) fn across(&self, unit: f64) -> f64 {
+    pub(crate) fn across(&self, unit: f64) -> f64 {
         self.frame[0] + unit * (self.frame[2] - self.frame[0])
     }
 
-    pub(super) fn down(&self, unit: f64) -> f64 {
+    pub(crate) fn down(&self, unit: f64) -> f64 {
         self.frame[3] - unit * (self.frame[3] - self.frame[1])
     }
 }
 
 /// A plain setting; the fields not given here are the common ones.
-pub(super) fn set(size: f64, anchor: Anchor) -> Set {
+pub(crate) fn set(size: f64, anchor: Anchor) -> Set {
     Set { size, anchor, turn: 0.0, colour: INK, halo: false }
 }
 
 /// The ticks of a horizontal (0) or vertical (1) axis of the given length: as many as fit without crowding.
-pub(super) fn ticks(axis: &Axis, direction: usize, length: f64) -> Vec<Tick> {
+pub(crate) fn ticks(axis: &Axis, direction: usize, length: f64) -> Vec<Tick> {
     let mut most = (length / APART[direction]) as usize + 1;
     loop {
         let ticks = axis.marks(most);
@@ -76,18 +76,18 @@ fn number_width(tick: &Tick) -> f64 {
 }
 
 /// By how much the numbers of a horizontal axis reach beyond its right end.
-pub(super) fn overhang(axis: &Axis, length: f64) -> f64 {
+pub(crate) fn overhang(axis: &Axis, length: f64) -> f64 {
     let beyond = |tick: &Tick| number_width(tick) / 2.0 - (1.0 - axis.unit(tick.at)) * length;
     ticks(axis, 0, length).iter().map(beyond).fold(0.0, f64::max)
 }
 
 /// The width of the widest number on a vertical axis.
-pub(super) fn widest_number(axis: &Axis, length: f64) -> f64 {
+pub(crate) fn widest_number(axis: &Axis, length: f64) -> f64 {
     ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)
 }
 
 /// What an upright axis so long takes to its left: ticks, numbers and its label.
-pub(super) fn beside(axis: &Axis, length: f64) -> f64 {
+pub(crate) fn beside(axis: &Axis, length: f64) -> f64 {
     if !axis.numbered {
         return TICK;
     }

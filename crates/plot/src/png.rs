@@ -10,38 +10,34 @@ use super::canvas::{Canvas, Element, HALO, Image, Paint, Path, Pen, Words};
 use super::clip::Rect;
 use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
-use crate::error::{Error, Result};
 
 /// The most pixels of one image; at four bytes each this is 1 GiB.
 const MOST_PIXELS: f64 = (1u64 << 28) as f64;
 
-/// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file.
-///
-/// # Errors
-/// [`Kind::Input`](crate::error::Kind::Input) if `dpi` is not a positive number or makes more than 2^28 pixels.
-pub(super) fn raster(canvas: &Canvas, dpi: f64) -> Result<Vec<u8>> {
+/// Rasterizes a drawing on white at `dpi` pixels an inch, and notes that resolution in the file; `None` if `dpi` is not a
+/// positive number or makes more than 2^28 pixels.
+pub(crate) fn raster(canvas: &Canvas, dpi: f64) -> Option<Vec<u8>> {
     let scale = dpi / 72.0;
     let size = [canvas.width, canvas.height].map(|side| (side * scale).round().max(1.0));
-    let refused = || Error::input("dpi", dpi, "between 1 and what makes 268 million pixels; 300 suits print");
     if !(dpi > 0.0 && size[0] * size[1] <= MOST_PIXELS) {
-        return Err(refused());
+        return None;
     }
-    let mut pixels = Pixmap::new(size[0] as u32, size[1] as u32).ok_or_else(refused)?;
+    let mut pixels = Pixmap::new(size[0] as u32, size[1] as u32)?;
     pixels.fill(Color::WHITE);
     let page = Transform::from_scale(scale as f32, scale as f32);
     let mut brush = Brush { pixels, page, clip: None };
     canvas.elements.iter().for_each(|element| brush.draw(element));
     // White below makes every pixel opaque, so premultiplied and plain colours agree.
     let colours = brush.pixels.pixels().iter().map(|p| Colour(p.red(), p.green(), p.blue()));
-    Ok(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi), canvas.maker()))
+    Some(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi), canvas.maker.as_ref()))
 }
 
 /// Pixels in rows of `width` as a PNG file, with the program and the command that made it where they are known.
-pub(super) fn encode(
+pub(crate) fn encode(
     width: u32,
     pixels: &[Colour],
     dpi: Option<f64>,
-    maker: Option<(&str, &str)>,
+    maker: Option<&[String; 2]>,
 ) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, width, (pixels.len() / width as usize) as u32);
@@ -52,9 +48,9 @@ pub(super) fn encode(
         let per_metre = (dpi / 0.0254).round() as u32;
         encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
     }
-    if let Some((program, command)) = maker {
+    if let Some([program, command]) = maker {
         let text = "a keyword of the format and words without null";
-        encoder.add_text_chunk("Software".into(), program.into()).expect(text);
+        encoder.add_text_chunk("Software".into(), program.clone()).expect(text);
         // `tEXt` has Latin letters alone.
         let command = command.replace('\0', " ");
         match command.is_ascii() {

@@ -1,19 +1,19 @@
 //! What of a line or an outline lies in a box: nothing outside costs a byte, however far away it runs.
 
 /// A point on the page.
-pub(super) type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// Left, top, right, bottom on the page.
-pub(super) type Rect = [f64; 4];
+pub(crate) type Rect = [f64; 4];
 
 /// Whether a point lies in the box, rim included; a NaN never does.
-pub(super) fn holds(rect: Rect, [x, y]: Point) -> bool {
+pub(crate) fn holds(rect: Rect, [x, y]: Point) -> bool {
     rect[0] <= x && x <= rect[2] && rect[1] <= y && y <= rect[3]
 }
 
 /// The part of the segment from `a` to `b` in the box (Liang and Barsky): the segment is a + t (b - a), and each side
 /// of the box bounds t from one side.
-pub(super) fn segment(rect: Rect, a: Point, b: Point) -> Option<(Point, Point)> {
+pub(crate) fn segment(rect: Rect, a: Point, b: Point) -> Option<(Point, Point)> {
     let (mut first, mut last) = (0.0f64, 1.0f64);
     for axis in 0..2 {
         let run = b[axis] - a[axis];
@@ -38,7 +38,7 @@ pub(super) fn segment(rect: Rect, a: Point, b: Point) -> Option<(Point, Point)> 
 }
 
 /// The pieces of a polyline in the box. A point that is not finite breaks the line.
-pub(super) fn polyline(rect: Rect, points: impl IntoIterator<Item = Point>) -> Vec<Vec<Point>> {
+pub(crate) fn polyline(rect: Rect, points: impl IntoIterator<Item = Point>) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut before = None;
     for point in points {
@@ -56,7 +56,7 @@ pub(super) fn polyline(rect: Rect, points: impl IntoIterator<Item = Point>) -> V
 }
 
 /// The part of a filled outline in the box (Sutherland and Hodgman): cut along each side in turn.
-pub(super) fn polygon(rect: Rect, outline: impl IntoIterator<Item = Point>) -> Vec<Point> {
+pub(crate) fn polygon(rect: Rect, outline: impl IntoIterator<Item = Point>) -> Vec<Point> {
     let outline: Vec<Point> = outline.into_iter().filter(|p| p.iter().all(|c| c.is_finite())).collect();
     (0..4).fold(outline, |outline, side| cut(rect, &outline, side))
 }

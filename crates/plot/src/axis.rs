@@ -14,12 +14,12 @@ pub enum Scale {
 /// Labels use the notation `*h*_1` for an italic h with index 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    pub(super) label: String,
-    pub(super) lo: f64,
-    pub(super) hi: f64,
-    pub(super) scale: Scale,
-    pub(super) numbered: bool,
-    pub(super) chosen: Option<Vec<Tick>>,
+    pub(crate) label: String,
+    pub(crate) lo: f64,
+    pub(crate) hi: f64,
+    pub(crate) scale: Scale,
+    pub(crate) numbered: bool,
+    pub(crate) chosen: Option<Vec<Tick>>,
     /// The power of time that its values have.
     time: i8,
 }
@@ -66,12 +66,12 @@ impl Axis {
         Axis { time: -1, ..self }
     }
 
-    pub(super) fn has_time(&self) -> bool {
+    pub(crate) fn has_time(&self) -> bool {
         self.time != 0
     }
 
     /// The same axis with the unit in its label.
-    pub(super) fn in_units_of(&self, unit: &str) -> Self {
+    pub(crate) fn in_units_of(&self, unit: &str) -> Self {
         let label = match self.time {
             0 => self.label.clone(),
             1 => format!("{} ({unit})", self.label),
@@ -107,7 +107,7 @@ impl Axis {
     }
 
     /// Ticks with at most `most` of them labelled (at least two are allowed).
-    pub(super) fn marks(&self, most: usize) -> Vec<Tick> {
+    pub(crate) fn marks(&self, most: usize) -> Vec<Tick> {
         let most = most.max(2);
         let all = match (&self.chosen, self.scale) {
             (Some(chosen), _) => chosen.clone(),

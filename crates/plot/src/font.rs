@@ -9,9 +9,28 @@ use subsetter::GlyphRemapper;
 use ttf_parser::gpos::{PairAdjustment, PositioningSubtable};
 use ttf_parser::{GlyphId, OutlineBuilder};
 
+macro_rules! file {
+    ($name:literal) => {
+        ($name, include_bytes!(concat!("../fonts/", $name)))
+    };
+}
+
+/// The font files with their names, in the order of faces.
+const FILES: [(&str, &[u8]); 4] = [
+    file!("LibertinusSerif-Regular.otf"),
+    file!("LibertinusSerif-Italic.otf"),
+    file!("LibertinusSerif-Semibold.otf"),
+    file!("LibertinusSerif-SemiboldItalic.otf"),
+];
+
+/// A built-in font file by its name, for pages that write in the same letters.
+pub fn font_file(name: &str) -> Option<&'static [u8]> {
+    FILES.iter().find(|file| file.0 == name).map(|file| file.1)
+}
+
 /// The four faces in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Face {
+pub(crate) enum Face {
     Roman,
     Italic,
     Semibold,
@@ -19,10 +38,10 @@ pub(super) enum Face {
 }
 
 impl Face {
-    pub(super) const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
+    pub(crate) const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
 
     /// The same weight, leaning.
-    pub(super) fn italic(self) -> Face {
+    pub(crate) fn italic(self) -> Face {
         match self {
             Face::Roman | Face::Italic => Face::Italic,
             Face::Semibold | Face::SemiboldItalic => Face::SemiboldItalic,
@@ -31,16 +50,11 @@ impl Face {
 
     /// The font file.
     fn file(self) -> &'static [u8] {
-        match self {
-            Face::Roman => include_bytes!("fonts/LibertinusSerif-Regular.otf"),
-            Face::Italic => include_bytes!("fonts/LibertinusSerif-Italic.otf"),
-            Face::Semibold => include_bytes!("fonts/LibertinusSerif-Semibold.otf"),
-            Face::SemiboldItalic => include_bytes!("fonts/LibertinusSerif-SemiboldItalic.otf"),
-        }
+        FILES[self as usize].1
     }
 
     /// A letter that starts the names of its glyphs in the SVG.
-    pub(super) fn prefix(self) -> char {
+    pub(crate) fn prefix(self) -> char {
         match self {
             Face::Roman => 'r',
             Face::Italic => 'i',
@@ -57,17 +71,17 @@ impl Face {
     }
 
     /// The glyph of a letter; of one that the face lacks, the empty box.
-    pub(super) fn glyph(self, letter: char) -> u16 {
+    pub(crate) fn glyph(self, letter: char) -> u16 {
         self.font().glyph_index(letter).map_or(0, |id| id.0)
     }
 
     /// How far the pen moves on after a glyph.
-    pub(super) fn advance(self, glyph: u16) -> f64 {
+    pub(crate) fn advance(self, glyph: u16) -> f64 {
         f64::from(self.font().glyph_hor_advance(GlyphId(glyph)).unwrap_or(0)) / self.em()
     }
 
     /// How much closer (negative) or farther two neighbours stand than their advances say.
-    pub(super) fn kerning(self, left: u16, right: u16) -> f64 {
+    pub(crate) fn kerning(self, left: u16, right: u16) -> f64 {
         let (left, right) = (GlyphId(left), GlyphId(right));
         let Some(gpos) = self.font().tables().gpos else { return 0.0 };
         let shift = gpos.lookups.into_iter().find_map(|lookup| {
@@ -81,27 +95,27 @@ impl Face {
     }
 
     /// The outline in units of 1/1000 em, y pointing down.
-    pub(super) fn outline(self, glyph: u16) -> Vec<Curve> {
+    pub(crate) fn outline(self, glyph: u16) -> Vec<Curve> {
         curves(self.font(), glyph)
     }
 
     /// The glyphs numbered by `numbers` as a font without a table of letters.
-    pub(super) fn part(self, numbers: &GlyphRemapper) -> Vec<u8> {
+    pub(crate) fn part(self, numbers: &GlyphRemapper) -> Vec<u8> {
         subsetter::subset(self.file(), 0, numbers).expect("a built-in font is sound")
     }
 
     /// The glyphs numbered by `numbers` as a font program for PDF (CFF).
-    pub(super) fn outlines(self, numbers: &GlyphRemapper) -> Vec<u8> {
+    pub(crate) fn outlines(self, numbers: &GlyphRemapper) -> Vec<u8> {
         table(&self.part(numbers), b"CFF ")
     }
 
     /// One of the tables of the font file.
-    pub(super) fn table(self, tag: &[u8; 4]) -> Vec<u8> {
+    pub(crate) fn table(self, tag: &[u8; 4]) -> Vec<u8> {
         table(self.file(), tag)
     }
 
     /// How large its glyphs are.
-    pub(super) fn shape(self) -> Shape {
+    pub(crate) fn shape(self) -> Shape {
         let (font, em) = (self.font(), self.em());
         let length = |units: i16| 1000.0 * f64::from(units) / em;
         let bounds = font.global_bounding_box();
@@ -120,20 +134,20 @@ impl Face {
 }
 
 /// A table of a font; empty where there is none.
-pub(super) fn table(font: &[u8], tag: &[u8; 4]) -> Vec<u8> {
+pub(crate) fn table(font: &[u8], tag: &[u8; 4]) -> Vec<u8> {
     let face = ttf_parser::RawFace::parse(font, 0).expect("a built-in font and its parts are sound");
     face.table(ttf_parser::Tag::from_bytes(tag)).unwrap_or_default().to_vec()
 }
 
 /// The outline of a font's glyph in units of 1/1000 em, y pointing down.
-pub(super) fn curves(font: &ttf_parser::Face, glyph: u16) -> Vec<Curve> {
+pub(crate) fn curves(font: &ttf_parser::Face, glyph: u16) -> Vec<Curve> {
     let mut pen = Pen { curves: Vec::new(), scale: (1000.0 / f64::from(font.units_per_em())) as f32 };
     font.outline_glyph(GlyphId(glyph), &mut pen);
     pen.curves
 }
 
 /// The measures of a face in 1/1000 em, y pointing up; the slant in degrees, counterclockwise.
-pub(super) struct Shape {
+pub(crate) struct Shape {
     /// Left, bottom, right, top of all glyphs put on one another.
     pub bounds: [f64; 4],
     pub slant: f64,
@@ -156,7 +170,7 @@ fn pair_shift(pairs: &PairAdjustment, left: GlyphId, right: GlyphId) -> Option<i
 
 /// A piece of an outline: control points, and the point where it ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Curve {
+pub(crate) enum Curve {
     Move([i32; 2]),
     Line([i32; 2]),
     Quad([i32; 2], [i32; 2]),

@@ -13,7 +13,7 @@ use super::palette::{Colour, WHITE};
 const SQUARE: f64 = 0.5;
 
 /// Draws a layer.
-pub(super) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
+pub(crate) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
     match &layer.mark {
         Mark::Lines { lines: all, stroke, marks } => {
             lines(canvas, plane, all, stroke);

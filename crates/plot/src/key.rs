@@ -10,7 +10,7 @@ use super::measure::{
 };
 use super::palette::{INK, WHITE};
 use super::panel::{ColourBar, Panel, Place};
-use crate::report::figure::Axis;
+use crate::Axis;
 
 /// A sample of a line, the space to its words, the space to the next entry, the height of a line of entries.
 const SAMPLE: f64 = 17.0;
@@ -61,7 +61,7 @@ fn indent(entries: &[Entry], wide: f64, left: f64) -> f64 {
 }
 
 /// The height of a legend above a frame of the given width, with what stands left of that.
-pub(super) fn rows_height(panel: &Panel, wide: f64, left: f64) -> f64 {
+pub(crate) fn rows_height(panel: &Panel, wide: f64, left: f64) -> f64 {
     let entries = entries(panel);
     let room = wide + indent(&entries, wide, left);
     let count = rows(entries, room).len();
@@ -69,7 +69,7 @@ pub(super) fn rows_height(panel: &Panel, wide: f64, left: f64) -> f64 {
 }
 
 /// Draws the legend where the panel wants it.
-pub(super) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
+pub(crate) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
     let entries = entries(panel);
     match panel.legend {
         None => {}
@@ -141,14 +141,14 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
 }
 
 /// What a colour bar takes at the right of a frame of the given height.
-pub(super) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
+pub(crate) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
     let label = if bar.axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     let high = height - bar.beyond.iter().filter(|beyond| **beyond).count() as f64 * ARROW;
     BAR_GAP + BAR + TICK + GAP + widest_number(&bar.axis, high) + label
 }
 
 /// Draws a colour bar at the right of a frame.
-pub(super) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
+pub(crate) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
     let [_, top, right, bottom] = frame;
     let (left, edge) = (right + BAR_GAP, right + BAR_GAP + BAR);
     let arrow = bar.beyond.map(|beyond| if beyond { ARROW } else { 0.0 });

@@ -96,8 +96,8 @@ impl Gradient {
     }
 }
 
-/// Hue and lightness step differently, so that neighbours differ in both.
-pub(crate) const FAMILIES: [Lch; 8] = [
+/// The lightness, chroma and hue of each [`family`]: hue and lightness step differently, so that neighbours differ in both.
+pub const FAMILIES: [Lch; 8] = [
     [0.40, 0.17, 0.715],
     [0.68, 0.17, 0.13],
     [0.56, 0.13, 0.45],

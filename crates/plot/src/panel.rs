@@ -25,10 +25,10 @@ pub enum Place {
 /// The key to a gradient, at the right of a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
-    pub(super) axis: Axis,
-    pub(super) gradient: Gradient,
+    pub(crate) axis: Axis,
+    pub(crate) gradient: Gradient,
     /// Whether there are values below and above: an arrow each.
-    pub(super) beyond: [bool; 2],
+    pub(crate) beyond: [bool; 2],
 }
 
 /// From the strongest to the weakest of what a bar of rates resolves.
@@ -85,12 +85,12 @@ impl ColourBar {
 /// Words at a point of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
-    pub(super) at: [f64; 2],
-    pub(super) text: String,
-    pub(super) anchor: Anchor,
-    pub(super) shift: [f64; 2],
-    pub(super) turn: f64,
-    pub(super) colour: Colour,
+    pub(crate) at: [f64; 2],
+    pub(crate) text: String,
+    pub(crate) anchor: Anchor,
+    pub(crate) shift: [f64; 2],
+    pub(crate) turn: f64,
+    pub(crate) colour: Colour,
 }
 
 impl Note {
@@ -139,14 +139,14 @@ impl Note {
 /// Two axes and what stands between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Panel {
-    pub(super) title: String,
-    pub(super) x: Axis,
-    pub(super) y: Axis,
-    pub(super) layers: Vec<Layer>,
-    pub(super) notes: Vec<Note>,
-    pub(super) legend: Option<Place>,
-    pub(super) bar: Option<ColourBar>,
-    pub(super) grid: bool,
+    pub(crate) title: String,
+    pub(crate) x: Axis,
+    pub(crate) y: Axis,
+    pub(crate) layers: Vec<Layer>,
+    pub(crate) notes: Vec<Note>,
+    pub(crate) legend: Option<Place>,
+    pub(crate) bar: Option<ColourBar>,
+    pub(crate) grid: bool,
 }
 
 impl Panel {
@@ -191,12 +191,12 @@ impl Panel {
         self
     }
 
-    pub(super) fn has_time(&self) -> bool {
+    pub(crate) fn has_time(&self) -> bool {
         [&self.x, &self.y].into_iter().chain(self.bar.as_ref().map(|bar| &bar.axis)).any(Axis::has_time)
     }
 
     /// The same panel with the unit of time at its axes.
-    pub(super) fn in_units_of(&self, unit: &str) -> Self {
+    pub(crate) fn in_units_of(&self, unit: &str) -> Self {
         let bar = self.bar.clone().map(|bar| ColourBar { axis: bar.axis.in_units_of(unit), ..bar });
         Panel { x: self.x.in_units_of(unit), y: self.y.in_units_of(unit), bar, ..self.clone() }
     }

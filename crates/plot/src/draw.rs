@@ -22,7 +22,7 @@ const LEAST: f64 = 6.0;
 const FAINT: Colour = Colour(0xe4, 0xe5, 0xe8);
 
 /// Draws the whole panel around and in its frame.
-pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Site) {
+pub(crate) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Site) {
     let plane = Plane { x: &panel.x, y: &panel.y, frame };
     let (across, up) = (frame[2] - frame[0], frame[3] - frame[1]);
     let (x_ticks, y_ticks) = (ticks(&panel.x, 0, across), ticks(&panel.y, 1, up));
@@ -48,7 +48,7 @@ pub(super) fn panel(canvas: &mut Canvas, panel: &Panel, Site { frame, top }: Sit
 }
 
 /// Lines of words that hang from a point.
-pub(super) fn lines(canvas: &mut Canvas, lines: Vec<Label>, [x, y]: [f64; 2], size: f64) {
+pub(crate) fn lines(canvas: &mut Canvas, lines: Vec<Label>, [x, y]: [f64; 2], size: f64) {
     for (n, line) in (0..).zip(lines) {
         let base = y + size * (CAPITAL + LINE * f64::from(n));
         canvas.text(line, [x, base], set(size, Anchor::Start));

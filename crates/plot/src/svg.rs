@@ -14,7 +14,7 @@ use super::palette::WHITE;
 use super::png;
 
 /// The whole document, on white paper.
-pub(super) fn document(canvas: &Canvas) -> String {
+pub(crate) fn document(canvas: &Canvas) -> String {
     let (w, h) = (number(canvas.width), number(canvas.height));
     let (w_mm, h_mm) = (number(canvas.width / MM), number(canvas.height / MM));
     let letters = if canvas.outlined { "" } else { SERIF };
@@ -23,7 +23,7 @@ pub(super) fn document(canvas: &Canvas) -> String {
          width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\"{letters}>\n<title>{}</title>\n",
         escaped(&canvas.title)
     );
-    if let Some((program, command)) = canvas.maker() {
+    if let Some([program, command]) = &canvas.maker {
         out.push_str(&format!("<metadata>{program}: {}</metadata>\n", escaped(command)));
     }
     out.push_str("<defs>\n");

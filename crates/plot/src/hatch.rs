@@ -7,7 +7,7 @@ use super::layer::Hatch;
 
 /// Between two strokes, in points, and their width.
 const PITCH: f64 = 3.0;
-pub(super) const WIDTH: f64 = 0.45;
+pub(crate) const WIDTH: f64 = 0.45;
 /// Pieces of a stroke that are no further apart than this are one, in points: coordinates are hundredths.
 const TOUCHING: f64 = 0.02;
 /// Shorter pieces are left out: on a lonely cell, as small as print takes, a stroke would be all that is seen.
@@ -33,7 +33,7 @@ impl Hatch {
     }
 
     /// The strokes over closed outlines on the page that do not overlap.
-    pub(super) fn over<'a>(self, outlines: impl Iterator<Item = &'a [[f64; 2]]> + Clone) -> Path {
+    pub(crate) fn over<'a>(self, outlines: impl Iterator<Item = &'a [[f64; 2]]> + Clone) -> Path {
         let mut path = Path::default();
         for (way, pitch) in self.directions() {
             // Stroke n is where the coordinate across is n pitches: on the whole page the same strokes.
@@ -92,7 +92,7 @@ fn joined(mut pieces: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::figure::canvas::Step;
+    use crate::canvas::Step;
 
     fn square(x: f64, y: f64, side: f64) -> Vec<[f64; 2]> {
         vec![[x, y], [x + side, y], [x + side, y + side], [x, y + side]]

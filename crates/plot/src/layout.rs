@@ -11,14 +11,14 @@ use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, besi
 use super::panel::{Panel, Place};
 
 /// The paper's rim.
-pub(super) const RIM: f64 = 3.0;
+pub(crate) const RIM: f64 = 3.0;
 /// Between two panels side by side, and one above the other.
 const BESIDE: f64 = 11.0;
 const BELOW: f64 = 18.0;
 
 /// Where a panel stands on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Site {
+pub(crate) struct Site {
     /// What the axes enclose.
     pub frame: Rect,
     /// Where the row begins: all its titles hang from here.
@@ -27,14 +27,14 @@ pub(super) struct Site {
 
 impl Site {
     /// The same place so much further down.
-    pub(super) fn lowered(self, by: f64) -> Site {
+    pub(crate) fn lowered(self, by: f64) -> Site {
         let [left, top, right, bottom] = self.frame;
         Site { frame: [left, top + by, right, bottom + by], top: self.top + by }
     }
 }
 
 /// The place of each panel on a page of the given size.
-pub(super) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -> Vec<Site> {
+pub(crate) fn sites(panels: &[Panel], columns: usize, width: f64, height: f64) -> Vec<Site> {
     let rows = panels.len().div_ceil(columns).max(1);
     let (row, column) = (|i: usize| i / columns, |i: usize| i % columns);
     let (width, height) =
@@ -124,7 +124,7 @@ fn right(panel: &Panel, width: f64, height: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::figure::Axis;
+    use crate::Axis;
 
     fn panel(label: &str) -> Panel {
         Panel::new(Axis::linear("x", 0.0, 1.0), Axis::linear(label, 0.0, 1.0))

@@ -12,7 +12,7 @@ use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
 
 /// The whole document.
-pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
+pub(crate) fn document(canvas: &Canvas) -> Vec<u8> {
     let mut next = 1;
     let mut fresh = || {
         next += 1;
@@ -23,7 +23,7 @@ pub(super) fn document(canvas: &Canvas) -> Vec<u8> {
     pdf.catalog(catalog).pages(pages);
     let mut about = pdf.document_info(info);
     about.title(TextStr(&canvas.title));
-    if let Some((program, command)) = canvas.maker() {
+    if let Some([program, command]) = &canvas.maker {
         about.creator(TextStr(program)).subject(TextStr(command));
     }
     about.finish();

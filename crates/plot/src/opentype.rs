@@ -8,7 +8,7 @@ use subsetter::GlyphRemapper;
 use super::font::{Face, table};
 
 /// The font of the numbered glyphs; `letters` tells the letter of each glyph by its number in the face.
-pub(super) fn font(face: Face, numbers: &GlyphRemapper, letters: &BTreeMap<u16, char>) -> Vec<u8> {
+pub(crate) fn font(face: Face, numbers: &GlyphRemapper, letters: &BTreeMap<u16, char>) -> Vec<u8> {
     let part = face.part(numbers);
     // The empty box stands for what the face lacks: another font of the reader's shows that better.
     let known = letters.iter().filter(|&(&glyph, _)| glyph != 0);
