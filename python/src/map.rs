@@ -6,6 +6,7 @@ use kickdrift::error::{Result, filled};
 use kickdrift::format::Format;
 use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
 use kickdrift::number::Laurent;
+use kickdrift::report::figure::file;
 use kickdrift::report::map::{Rows, Tally, document, marked};
 use kickdrift::report::plane::{Chart, Colouring, command, parameters};
 use kickdrift::scene::GridRange;
@@ -191,8 +192,8 @@ impl Map {
         }
         let foot = parameters(self.grid.lambdas(), self.range.ranges(), self.range.steps());
         let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&foot);
-        let figure = figure.made_by(&command(self.grid.lambdas(), self.range.given()));
-        let bytes = figure.file(Format::Svg, 300.0).map_err(|error| raised(&error))?;
+        let command = command(self.grid.lambdas(), self.range.given());
+        let bytes = file(figure, &command, Format::Svg).map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }

@@ -2,7 +2,6 @@
 
 use kickdrift::plot::palette::{GREY, INK, family};
 use kickdrift::plot::{Axis, Dash, Figure, Layer, Panel, Place, Shape, Stroke};
-
 use serde_json::Value;
 
 use crate::methods::Method;
