@@ -85,9 +85,10 @@
 //! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
 //! | 8 | [`scene`] | input documents → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
-//! | 9 | [`recheck`] | every document's claims found again by another route |
-//! | 9 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
-//! | 10 | [`cli`] | arguments → a scene → the library → a report |
+//! | 9 | [`question`] | what is asked, typed; each question with its answer and its document |
+//! | 10 | [`recheck`] | every document's claims found again by another route |
+//! | 10 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
+//! | 11 | [`cli`] | arguments → a question → the library → a report |
 //!
 //! A new number type goes to `number` and implements [`number::Real`]; a new integrator to
 //! [`propagator::methods`]; a new table format to [`report`]; a new command to [`cli`].
@@ -124,6 +125,8 @@ pub mod parallel;
 #[cfg(feature = "figure")]
 pub use plot;
 pub mod propagator;
+#[cfg(feature = "serde")]
+pub mod question;
 #[cfg(feature = "serde")]
 pub mod recheck;
 #[cfg(feature = "serde")]

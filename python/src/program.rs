@@ -14,7 +14,6 @@ use pyo3::types::PyBytes;
 
 use crate::error::raised;
 use crate::job;
-use crate::pair::limits;
 
 /// Runs the program with the arguments, its own name first; its exit code.
 #[pyfunction]
@@ -63,7 +62,7 @@ pub fn recheck(
     folder: PathBuf,
 ) -> PyResult<Outcome> {
     job::run(py, move |_| {
-        let options = Options { limits: limits(budget), all, folder };
+        let options = Options { budget, all, folder };
         let outcome = Claim::read(&text)?.recheck(&options, None)?;
         let not_rechecked = outcome.not_rechecked.iter().map(ToString::to_string).collect();
         let failures = outcome.failures.iter();

@@ -2,11 +2,11 @@
 
 use super::args::{Common, from_str, of, whole};
 use super::ratios::Flags;
-use super::request::{Question, Request};
 use crate::error::Result;
 use crate::format::Format;
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;
+use crate::question::{Closings, Question};
 use crate::report::closings::DIGITS;
 use crate::tongue::Labels;
 
@@ -32,12 +32,10 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format_of_table(&Format::DOCUMENT)?;
-        let request = Request::Closings(self.question()?);
-        common.write(&request.perform(common, format == Format::Csv)?, format)
-    }
-
-    fn question(&self) -> Result<Question> {
-        let Args { which, m, rho_range, samples, digits } = self;
-        Question::new(which.ratios()?, m.clone(), rho_range.clone(), *samples, *digits)
+        let (ratio, max_sum) = self.which.ratios()?.fields();
+        let (m, rho_range, samples, digits) =
+            (self.m.clone(), self.rho_range.clone(), self.samples, self.digits);
+        let question = Closings { ratio, max_sum, m, rho_range, samples, digits };
+        common.write(&question.ask(&common.work())?, format)
     }
 }

@@ -1,12 +1,12 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
 use super::args::{self, Columns, Common, of, whole};
-use super::request::Request;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::Rational;
 use crate::number::parse::{parse, parse_rational};
+use crate::question::{Compare, Question};
 
 /// Flags of `compare`: either a grid with both stiffnesses, or --max-sum with --rho.
 #[derive(Debug, clap::Args)]
@@ -37,20 +37,20 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        let document = self.question()?.ask(&common.work())?;
+        common.write(&self.columns.of(document)?, Format::Text)
+    }
+
+    fn question(&self) -> Result<Compare> {
         let tolerance = self.tolerance.clone();
-        let request = match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
+        match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
             (Some(lambda1), Some(lambda2), None, None) => {
-                let range = self.grid.range()?;
-                Request::CompareGrid { grid: range.of(lambda1.clone(), lambda2.clone())?, range, tolerance }
+                Ok(Compare::over_grid([lambda1, lambda2], &self.grid.range()?, tolerance))
             }
             (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
-                Request::CompareRatios { max_sum, rho: rho.clone(), samples: self.samples, tolerance }
+                Ok(Compare::over_ratios(max_sum, rho.clone(), self.samples, tolerance))
             }
-            _ => {
-                let remedy = "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
-                return Err(Error::input("flags", "incomplete or mixed", remedy));
-            }
-        };
-        common.write(&self.columns.of(request.perform(common, true)?)?, Format::Text)
+            _ => Err(Compare::mixed()),
+        }
     }
 }

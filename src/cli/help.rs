@@ -19,7 +19,8 @@ const USAGES: [(&str, &str); 6] = [
     ("proposition", "[--max <N>]"),
 ];
 
-const EXAMPLES: [(&str, &[&str]); 17] = [
+/// Those of commands that are no question of their own.
+const EXAMPLES: [(&str, &[&str]); 14] = [
     (
         "verdict",
         &[
@@ -28,7 +29,6 @@ const EXAMPLES: [(&str, &[&str]); 17] = [
             "verdict --lambda1 10 --lambda2 2/5 --h1 0.631 --h2 3.499 --format latex --digits 6",
         ],
     ),
-    ("curves", &["curves --lambda1 pi^2 --a 0..1 --b 1..3 --samples 20 --format csv"]),
     (
         "compare",
         &[
@@ -36,8 +36,6 @@ const EXAMPLES: [(&str, &[&str]); 17] = [
             "compare --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
         ],
     ),
-    ("proposition", &["proposition --max 12"]),
-    ("polynomial", &["polynomial --ratio 5/3", "polynomial --ratio 5/3 --format latex"]),
     (
         "map",
         &[
@@ -96,7 +94,8 @@ pub fn explained(program: Command) -> Command {
     })
 }
 
-fn below(name: &str, examples: &[&str]) -> String {
+/// Examples, and what the exit codes mean.
+pub fn below(name: &str, examples: &[&str]) -> String {
     let lines = examples.iter().map(|example| format!("\n  kickdrift {example}"));
     let examples: String = std::iter::once("Examples:".to_string()).chain(lines).collect();
     let examples = match name {

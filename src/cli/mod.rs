@@ -4,11 +4,11 @@
 
 mod advise;
 mod args;
+mod asked;
 mod cite;
 mod closings;
 mod command;
 mod compare;
-mod curves;
 mod explore;
 mod generate;
 mod help;
@@ -16,11 +16,8 @@ mod map;
 mod merge;
 mod paper;
 mod plane;
-mod polynomial;
 mod progress;
-mod proposition;
 mod ratios;
-mod request;
 mod run;
 mod simulate;
 mod system;
@@ -38,11 +35,13 @@ use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcomman
 
 use crate::error::Result;
 use crate::format::Format;
+use crate::question::{Curves, Half, Polynomial, Proposition};
 #[cfg(unix)]
 use crate::report::file::abandon;
 use crate::report::file::{captured, replaceable, write_output};
 use args::Common;
 pub use args::Held;
+use asked::{Asked, Default};
 
 /// Exact, certified linear stability of multiple-time-step integrators.
 ///
@@ -61,13 +60,15 @@ enum Command {
     /// Is this pair of steps stable?
     Verdict(verdict::Args),
     /// The (a, b) families of resonance curves, as tables.
-    Curves(curves::Args),
+    Curves(Asked<Curves>),
     /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
     Compare(compare::Args),
     /// Checks the Proposition exhaustively and exactly, with witnesses.
-    Proposition(proposition::Args),
+    Proposition(Asked<Proposition>),
     /// A, B, C, D and the trace of one ratio as polynomials in s and rho.
-    Polynomial(polynomial::Args),
+    Polynomial(Asked<Polynomial>),
+    /// The half period of one ratio in numbers: its four entries, exact and enclosed.
+    Half(Asked<Half>),
     /// The verdicts of a grid of step pairs: counts, and the unstable pairs as a table.
     Map(map::Args),
     /// Joins the parts of a map that map --shard K/N --resume DIR has computed.
@@ -217,10 +218,11 @@ fn run(cli: &Cli) -> Result<u8> {
     }
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
-        Command::Curves(args) => args.run(common)?,
+        Command::Curves(args) => args.run(common, Default::Table)?,
         Command::Compare(args) => args.run(common)?,
-        Command::Proposition(args) => args.run(common)?,
-        Command::Polynomial(args) => args.run(common)?,
+        Command::Proposition(args) => args.run(common, Default::Text)?,
+        Command::Half(args) => args.run(common, Default::Text)?,
+        Command::Polynomial(args) => args.run(common, Default::Text)?,
         Command::Map(args) => args.run(common)?,
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,

@@ -3,18 +3,15 @@
 use std::path::{Path, PathBuf};
 
 use super::args::{Columns, Common, Stiffness, of};
-use super::progress::announce;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
 use crate::propagator::Oscillator;
+use crate::question::{self, Question};
 use crate::report::certificate;
-use crate::report::document::Document;
 use crate::report::file::write_output;
-use crate::report::verdict::Answer;
-use crate::system::friction::{Friction, damped_pair};
-use crate::verdict::{Tier, Verdict, decide_from};
+use crate::verdict::{Verdict, decide_from};
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]
@@ -46,41 +43,34 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
         self.certificate.as_ref().map_or(Ok(()), |path| common.apart_from_output("certificate", path))?;
-        let Stiffness { lambda1, lambda2 } = self.stiffness.clone();
-        let oscillator = Oscillator::new(lambda1, lambda2, self.h1.clone(), self.h2.clone())?;
-        let stable = self.answer(&oscillator, common)?;
-        Ok(u8::from(self.exit_code && !stable))
+        let verdict = self.answer(common)?;
+        Ok(u8::from(self.exit_code && !verdict.is_stable()))
     }
 
-    /// Whether the pair is stable; the rest of the answer is computed only where it is shown.
-    fn answer(&self, oscillator: &Oscillator, common: &Common) -> Result<bool> {
-        let first = if self.exact { Tier::Exact } else { Tier::Filter };
-        let clocks = oscillator.clocks();
-        let answer = decide_from(first, &clocks, &common.limits())?;
-        let silent = self.exit_code && common.quiet && common.output.is_none();
-        let document = (!silent).then(|| -> Result<Document> {
-            let (decision, growth) = (answer.decision(), answer.growth()?.clone());
-            let exact_trace = Answer::exact_trace(&clocks, self.exact);
-            let friction = self.friction.as_ref().map(|rate| damped(oscillator, rate, common)).transpose()?;
-            let answer = Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction };
-            let document = answer.document();
-            Ok(if self.exact { document.input("exact", "true") } else { document })
-        });
-        let document = document.transpose()?;
+    /// The verdict; the rest of the answer is computed only where it is shown.
+    fn answer(&self, common: &Common) -> Result<Verdict> {
+        let Args { stiffness: Stiffness { lambda1, lambda2 }, h1, h2, friction, exact, .. } = self;
+        let [lambda1, lambda2, h1, h2] = [lambda1, lambda2, h1, h2].map(Clone::clone);
+        let asked = question::Verdict { lambda1, lambda2, h1, h2, friction: friction.clone(), exact: *exact };
+        let oscillator = asked.oscillator()?;
+        if self.exit_code && common.quiet && common.output.is_none() {
+            let verdict = decide_from(asked.first_tier(), &oscillator.clocks(), &common.limits())?.verdict;
+            return self.certified(&oscillator, verdict, common);
+        }
+        let answer = asked.answer(&common.work())?;
+        let verdict = self.certified(&oscillator, answer.decision.verdict, common)?;
+        common.write(&self.columns.of(asked.document(&answer))?, Format::Text)?;
+        Ok(verdict)
+    }
+
+    /// The verdict, its proof written where that is asked for.
+    fn certified(&self, oscillator: &Oscillator, verdict: Verdict, common: &Common) -> Result<Verdict> {
         if let Some(path) = &self.certificate {
-            certify(oscillator, answer.verdict, path, common.budget)?;
+            certify(oscillator, verdict, path, common.budget)?;
             common.wrote(path.display());
         }
-        document.map_or(Ok(()), |document| common.write(&self.columns.of(document)?, Format::Text))?;
-        Ok(answer.verdict.is_stable())
+        Ok(verdict)
     }
-}
-
-/// About a microsecond a kick at each of some ten precisions.
-fn damped(oscillator: &Oscillator, rate: &Rational, common: &Common) -> Result<Friction> {
-    let kicks = oscillator.ratio().kicks();
-    announce(common.quiet, &format!("friction over {kicks} kicks"), kicks as f64 * 1e-5);
-    damped_pair(oscillator, rate, &common.limits())
 }
 
 /// Checking a certificate costs Coq some 2 s at 400 kicks, in exact numbers; by intervals, where 128 bits do, 20 s at 5,000.

@@ -37,7 +37,7 @@ impl Args {
             Error::io(&file, format!("cannot read it ({cause}): name a JSON document that kickdrift wrote"))
         })?;
         let claim = Claim::read(&text)?;
-        let options = Options { limits: common.limits(), all: self.all, folder: self.folder() };
+        let options = Options { budget: common.budget, all: self.all, folder: self.folder() };
         let work = claim.work(&options)?;
         if work > ANNOUNCED_KICKS && !common.quiet {
             let seconds = work / KICKS_A_SECOND;

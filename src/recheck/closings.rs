@@ -8,13 +8,12 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
-use super::written::{Decimal, Range, Written, exact, nullable, ratios};
-use crate::error::{Error, Result};
+use super::written::{Decimal, Written, exact, nullable};
+use crate::error::Result;
 use crate::number::{Ratio, Rational, Sign};
-use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::report::closings as report;
-use crate::tongue::{self, COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
+use crate::question::{Closings, Question};
+use crate::tongue::{COMPLETE_UP_TO, Entry, Search, Tongues, closings_of, count_closings};
 use crate::verdict::{Limits, decide, growth};
 use num_traits::Signed;
 
@@ -24,19 +23,9 @@ const ROUTE: &str = "exact signs at both ends of the range of rho: the edges exc
 rows! {
     /// `kickdrift/closings/1`.
     pub struct Claim {
-        input: Input,
+        input: Closings,
         closings: Vec<Closing>,
         ratios: Vec<Searched>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        ratio: Option<Written<Ratio>>,
-        max_sum: Option<Written<u64>>,
-        m: Option<Written<Vec<(u64, u64)>>>,
-        rho_range: Written<Range>,
-        samples: Written<u64>,
-        digits: Written<u64>,
     }
 
     struct Closing {
@@ -69,38 +58,22 @@ impl Place for Closing {
     }
 }
 
-/// The most samples of a search, and the most digits of a box.
-const MOST_SAMPLES: u64 = 1_000_000;
-const MOST_DIGITS: u64 = 28;
-
 impl Recheck for Claim {
     const TABLE: &'static str = "closings";
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let Input { m, samples, digits, .. } = &self.input;
-        let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref()).map_err(Fault::refused)?;
-        for (field, told, most) in [("samples", samples.0, MOST_SAMPLES), ("digits", digits.0, MOST_DIGITS)] {
-            if !(1..=most).contains(&told) {
-                return Err(Error::input(field, told, format!("is not in 1..{most}")));
-            }
-        }
-        let rho = self.input.range().map_err(Fault::refused)?;
-        let search = Search { m: None, rho, samples: samples.0 as usize };
-        let found = try_map(&list, |ratio| {
-            check_ratio(ratio.p(), ratio.q(), context.limits()).map_err(Fault::refused)?;
-            match m {
-                None => tongue::closings(*ratio, &search),
-                Some(labels) => closings_of(*ratio, labels, &search),
-            }
-        })?;
-        Ok((report::document(&found, digits.0 as u32, "", true).value(), ()))
+        let list = self.input.ratios()?.list();
+        list.iter()
+            .try_for_each(|ratio| check_ratio(ratio.p(), ratio.q(), &context.limits()).map(drop))
+            .map_err(Fault::refused)?;
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
-        let whole = self.complete(context.limits());
+        let whole = self.complete(&context.limits());
         let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, |row| {
-            row.holds(&self.input, context.limits())
+            row.holds(&self.input, &context.limits())
         })?;
         if self.ratios.iter().any(|ratio| !ratio.complete) {
             let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
@@ -113,7 +86,7 @@ impl Recheck for Claim {
 impl Claim {
     /// The list of ratios is that of the input, the closings are in their order, each once, and none is missing.
     fn complete(&self, limits: &Limits) -> Checked {
-        let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref())?;
+        let list = self.input.ratios()?.list();
         let told = self.ratios.iter().map(|ratio| (ratio.p, ratio.q));
         holds(told.eq(list.iter().map(|ratio| ratio.terms())), || {
             "the ratios searched are not those of the input".into()
@@ -121,7 +94,7 @@ impl Claim {
         holds(self.input.m.is_none() || self.input.ratio.is_some(), || {
             "labels are those of one ratio".into()
         })?;
-        let (lo, hi) = self.input.range()?;
+        let (lo, hi) = self.input.rho_range.clone();
         let key = |row: &Closing| {
             Ok::<_, Fault>((row.p.saturating_add(row.q), row.p, row.m, row.rho.both(&self.input)?))
         };
@@ -138,17 +111,9 @@ impl Claim {
         for (ratio, searched) in list.into_iter().zip(&self.ratios) {
             let rows: Vec<&Closing> =
                 self.closings.iter().filter(|row| (row.p, row.q) == ratio.terms()).collect();
-            self.input.counted(ratio, searched.complete, &rows, (&lo, &hi), limits)?;
+            self.counted(ratio, searched.complete, &rows, (&lo, &hi), limits)?;
         }
         Ok(())
-    }
-}
-
-impl Input {
-    fn range(&self) -> Checked<(Rational, Rational)> {
-        let (lo, hi) = &self.rho_range.0;
-        let ends = lo.as_rational().zip(hi.as_rational()).filter(|(lo, _)| lo.is_positive());
-        ends.ok_or_else(|| Fault::Wrong("rho_range is no range of positive rationals".into()))
     }
 
     /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for pairs, as the
@@ -164,7 +129,9 @@ impl Input {
         check_ratio(ratio.p(), ratio.q(), limits)?;
         let finite = ratio.kicks() - 2;
         let labels: Vec<u64> = (1..=finite)
-            .filter(|m| self.m.as_ref().is_none_or(|list| list.iter().any(|&(a, b)| (a..=b).contains(m))))
+            .filter(|m| {
+                self.input.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| (a..=b).contains(m)))
+            })
             .collect();
         let asked = rows.iter().all(|row| labels.contains(&row.m));
         holds(asked, || format!("{ratio} has a closing of a label that was not asked for"))?;
@@ -184,9 +151,9 @@ impl Input {
         })?;
         // The clocks exchanged: s' = s ρ (p/q)², ρ' = 1/ρ, and the same half period, so the same labels.
         let mirrored = (hi.recip(), lo.recip());
-        if let Some(asked) = &self.m {
+        if let Some(asked) = &self.input.m {
             let search = Search { rho: mirrored, ..Search::default() };
-            let truth = closings_of(ratio.inverse(), asked, &search)?;
+            let truth = closings_of(ratio.inverse(), &asked.0, &search)?;
             let all = truth.complete && truth.closings.len() == rows.len();
             return holds(all, || {
                 format!("{ratio} has {} closings of these labels, not {}", truth.closings.len(), rows.len())
@@ -204,8 +171,8 @@ impl Input {
 
 impl Side {
     /// The doubles and the decimals both hold the value: what they have in common.
-    fn both(&self, input: &Input) -> Checked<(Rational, Rational)> {
-        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends(Some(&input.digits))?);
+    fn both(&self, input: &Closings) -> Checked<(Rational, Rational)> {
+        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends(Some(input.digits.into()))?);
         let (lo, hi) = (a.max(c), b.min(d));
         holds(lo <= hi && lo.is_positive(), || {
             "doubles and decimals have nothing positive in common".into()
@@ -222,7 +189,7 @@ struct Interval {
 }
 
 impl Interval {
-    fn new(side: &Side, name: &str, input: &Input) -> Checked<Self> {
+    fn new(side: &Side, name: &str, input: &Closings) -> Checked<Self> {
         let (lo, hi) = side.both(input)?;
         let exact = side.exact.as_ref().map(|x| x.0.clone());
         let inside = exact.as_ref().is_none_or(|x| lo <= *x && *x <= hi);
@@ -237,7 +204,7 @@ impl Interval {
 }
 
 impl Closing {
-    fn holds(&self, input: &Input, limits: &Limits) -> Checked {
+    fn holds(&self, input: &Closings, limits: &Limits) -> Checked {
         let (p, q, m) = (self.p, self.q, self.m);
         let ratio = check_ratio(p, q, limits)?;
         holds((1..p + q - 1).contains(&m), || format!("{ratio} has the finite tongues 1 to {}", p + q - 2))?;

@@ -5,14 +5,14 @@ use serde_json::Value;
 use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period};
-use super::written::{Ends, Range, Written, nullable, ratios};
-use crate::error::{Error, Result};
+use super::written::{Ends, Written, nullable};
+use crate::error::Result;
 use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::report::compare as report;
-use crate::resonance::compare::{Outcome as Rule, compare_ratios};
+use crate::question::{Compare, Over, Question};
+use crate::resonance::compare::Outcome as Rule;
 use crate::verdict::{Kind, Tier, Verdict};
 
 const ROUTE: &str = "every pair by the certified filter, every offender by the full period in exact arithmetic; theta \
@@ -21,26 +21,12 @@ const ROUTE: &str = "every pair by the certified filter, every offender by the f
 rows! {
     /// `kickdrift/compare/1`.
     pub struct Claim {
-        input: Input,
+        input: Compare,
         pairs: u64,
         unstable: u64,
         tan: Tan,
         resonance: Counts,
         offenders: Vec<Offender>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        tolerance: Written<Rational>,
-        lambda1: Option<Written<Laurent>>,
-        lambda2: Option<Written<Laurent>>,
-        step1: Option<Written<Laurent>>,
-        step2: Option<Written<Laurent>>,
-        h1_range: Option<Written<Range>>,
-        h2_range: Option<Written<Range>>,
-        max_sum: Option<Written<u64>>,
-        rho: Option<Written<Rational>>,
-        samples: Option<Written<u64>>,
     }
 
     struct Tan {
@@ -115,18 +101,13 @@ impl Recheck for Claim {
     type Found = Pairs;
 
     fn again(&self, context: &Context) -> Result<(Value, Pairs)> {
-        let (pairs, tolerance, limits) = (self.input.pairs()?, &self.input.tolerance, context.limits());
-        let document = match (&pairs, &self.input.max_sum) {
-            (Pairs::Ratios { rho, samples, .. }, Some(max_sum)) => {
-                let all = compare_ratios(**max_sum, rho, *samples, tolerance, limits)?;
-                report::document(&all, tolerance, ["s", "rho"])
-            }
-            (Pairs::Ratios { .. }, None) => unreachable!("ratios are those up to a sum"),
-            (Pairs::Grid(grid), _) => {
-                report::document(&grid.compare(tolerance, limits)?, tolerance, ["h1", "h2"])
+        let pairs = match self.input.pairs()? {
+            Over::Grid(grid) => Pairs::Grid(grid),
+            Over::Ratios { max_sum, rho, samples } => {
+                Pairs::Ratios { list: Ratio::up_to(max_sum).collect(), rho, samples }
             }
         };
-        Ok((document.value(), pairs))
+        Ok((self.input.ask(&context.work())?.value(), pairs))
     }
 
     fn check(&self, pairs: Pairs, context: &Context) -> Result<Outcome> {
@@ -147,7 +128,7 @@ impl Claim {
         let (mut unstable, mut counts, mut offenders) = (0, Counts::default(), Vec::new());
         for k in 0..pairs.length() {
             let clocks = pairs.clocks(line, k)?;
-            let verdict = again(Tier::Filter, &clocks, context.limits())?.verdict;
+            let verdict = again(Tier::Filter, &clocks, &context.limits())?.verdict;
             unstable += u64::from(!verdict.is_stable());
             let rule = self.rule(&clocks, verdict);
             *match rule {
@@ -193,7 +174,7 @@ impl Claim {
         let verdict = if affordable(&clocks) {
             full_period(&clocks).verdict
         } else {
-            again(Tier::Refine, &clocks, context.limits())?.verdict
+            again(Tier::Refine, &clocks, &context.limits())?.verdict
         };
         let kind = verdict.kind();
         same("its kind", row.kind.name(), kind.name())?;
@@ -213,37 +194,6 @@ impl Claim {
         let nearest = distance.lower() <= half && (distance.upper() >= -half || m == 1) && m > 0;
         holds(nearest, || format!("m = {m} is not the nearest to {}", turns.mid_f64()))?;
         holds(told.holds(&distance), || format!("its distance is {}", distance.mid_f64()))
-    }
-}
-
-impl Input {
-    fn pairs(&self) -> Result<Pairs> {
-        let Input { lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples, .. } = self;
-        let mixed = || {
-            Error::input("input", "incomplete or mixed", "a grid with both stiffnesses, or ratios with rho")
-        };
-        if self.tolerance.0 < Rational::default() {
-            return Err(Error::input("tolerance", &self.tolerance.0, "must not be negative"));
-        }
-        match (max_sum, rho, samples) {
-            (None, None, None) => {
-                let all = (|| {
-                    let steps = [step1.as_ref()?.0.clone(), step2.as_ref()?.0.clone()];
-                    let ranges = (h1_range.as_ref()?.0.clone(), h2_range.as_ref()?.0.clone());
-                    Some((lambda1.as_ref()?.0.clone(), lambda2.as_ref()?.0.clone(), steps, ranges))
-                })();
-                let (lambda1, lambda2, steps, (h1, h2)) = all.ok_or_else(mixed)?;
-                Grid::new(lambda1, lambda2, steps, h1, h2).map(Pairs::Grid)
-            }
-            (Some(_), Some(rho), Some(samples)) if lambda1.is_none() && step1.is_none() => {
-                let list = ratios(None, max_sum.as_ref()).map_err(|_| mixed())?;
-                if !(1..=1_000_000).contains(&samples.0) {
-                    return Err(Error::input("samples", samples.0, "must be 1 to 1000000"));
-                }
-                Ok(Pairs::Ratios { list, rho: rho.0.clone(), samples: samples.0 })
-            }
-            _ => Err(mixed()),
-        }
     }
 }
 

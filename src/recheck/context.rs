@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
 use crate::parallel::try_map;
+use crate::question::Work;
 use crate::verdict::Limits;
 
 /// What to do with a document that cannot be read.
@@ -13,8 +14,8 @@ pub const REMEDY: &str = "whole documents, as kickdrift wrote them, can be reche
 /// How much is rechecked, and what one row may cost.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The kicks that one verdict may compose.
-    pub limits: Limits,
+    /// What an answer may cost, as when it is asked for.
+    pub budget: Option<u64>,
     /// Whether the slower route takes every pair or tongue of a map or a survey, and not a sample of them.
     pub all: bool,
     /// Where the files are that a system of measured stiffnesses refers to.
@@ -96,8 +97,14 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    pub fn limits(&self) -> &Limits {
-        &self.options.limits
+    /// What computing an answer again may cost.
+    pub fn work(&self) -> Work<'_> {
+        Work { budget: self.options.budget, watch: None }
+    }
+
+    /// The kicks that one verdict may compose.
+    pub fn limits(&self) -> Limits {
+        self.work().limits()
     }
 
     /// Checks all rows, side by side: what does not hold, in their order.

@@ -7,11 +7,10 @@ use serde_json::Value;
 
 use super::again::{Left, Recheck};
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
-use super::written::{Range, Written};
 use crate::error::Result;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
-use crate::report::curves as report;
-use crate::resonance::{self, Angle, Families};
+use crate::question::{Curves, Question};
+use crate::resonance::Angle;
 
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which pieces lie \
                      in the window, from the heights of the branches' ends, in doubles";
@@ -19,22 +18,8 @@ const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1
 rows! {
     /// `kickdrift/curves/1`.
     pub struct Claim {
-        input: Input,
+        input: Curves,
         curves: Vec<Curve>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        lambda1: Written<Laurent>,
-        #[serde(rename = "step1")]
-        _step1: Option<Written<Laurent>>,
-        #[serde(rename = "step2")]
-        _step2: Option<Written<Laurent>>,
-        h1_range: Written<Range>,
-        h2_range: Written<Range>,
-        a: Written<(i64, i64)>,
-        b: Written<(i64, i64)>,
-        samples: Written<u64>,
     }
 
     struct Curve {
@@ -78,11 +63,8 @@ impl Recheck for Claim {
     ];
     type Found = ();
 
-    fn again(&self, _: &Context) -> Result<(Value, ())> {
-        let Input { lambda1, h1_range, h2_range, a, b, samples, .. } = &self.input;
-        let families = Families { a: a.0, b: b.0, samples: usize::try_from(samples.0).unwrap_or(usize::MAX) };
-        let curves = families.curves(lambda1, &resonance::Window::new(h1_range, h2_range))?;
-        Ok((report::document(&curves).value(), ()))
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
@@ -98,7 +80,7 @@ impl Recheck for Claim {
 impl Claim {
     /// All curves through the window are there, by a, then b.
     fn complete(&self, window: &Window) -> Checked {
-        let ((a0, a1), (b0, b1), samples) = (*self.input.a, *self.input.b, *self.input.samples);
+        let ((a0, a1), (b0, b1), samples) = (self.input.a, self.input.b, self.input.samples as u64);
         let count = |lo: i64, hi: i64| i128::from(hi) - i128::from(lo) + 1;
         let points = count(a0, a1).saturating_mul(count(b0, b1)).saturating_mul(samples.into());
         holds(points <= MOST && samples >= 2, || "more points than a document holds, or none".into())?;
@@ -127,8 +109,8 @@ struct Window {
 }
 
 impl Window {
-    fn new(input: &Input) -> Window {
-        let ends = |(lo, hi): &Range| (lo.to_f64(), hi.to_f64());
+    fn new(input: &Curves) -> Window {
+        let ends = |(lo, hi): &(Laurent, Laurent)| (lo.to_f64(), hi.to_f64());
         let (h1, root) = (ends(&input.h1_range), input.lambda1.to_f64().sqrt());
         let share = |h1: f64| (h1 * root / 2.0).clamp(0.0, 1.0).asin() / FRAC_PI_2;
         // Neither end itself: a = 0 has a limit there, and a = 1 none.
@@ -138,7 +120,7 @@ impl Window {
             h1,
             h2: ends(&input.h2_range),
             root,
-            samples: *input.samples,
+            samples: input.samples as u64,
         }
     }
 

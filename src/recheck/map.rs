@@ -93,7 +93,7 @@ impl Recheck for Claim {
         let drawn = sample(&grid.fingerprint(), pairs, most(&grid, context.options));
         let (mut tally, mut rate, mut failures) = (Tally::default(), 0.0_f64, Vec::new());
         let (mut next, mut done) = (drawn.as_slice(), 0);
-        let resources = Resources { limits: *context.limits(), ..Resources::default() };
+        let resources = Resources { limits: context.limits(), ..Resources::default() };
         Map::of(&grid).with(products).within(resources).for_each_band(|_, band| {
             let pairs = band.verdicts.len() as u64;
             let (own, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
@@ -143,7 +143,7 @@ impl Claim {
         let (step1, step2) = grid.steps();
         let i = inside((&told.h1, step1), grid.columns())?;
         let j = inside((&told.h2, step2), grid.rows())?;
-        let (clocks, limits) = (grid.clocks(i, j)?, context.limits());
+        let (clocks, limits) = (grid.clocks(i, j)?, &context.limits());
         const BITS: u32 = 128;
         let ln = growth(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.ln_multiplier;
         let ln = ln.ok_or_else(|| Fault::Wrong("the fastest pair does not grow".into()))?;
@@ -182,7 +182,7 @@ fn most(grid: &Grid, options: &Options) -> u64 {
 /// What is wrong with a pair of a band.
 fn kick_by_kick(grid: &Grid, band: &Band, row: usize, context: &Context) -> Result<Option<Failure>> {
     let (i, j) = band.multipliers(grid, row);
-    let truth = again(Tier::Refine, &grid.clocks(i, j)?, context.limits())?.verdict;
+    let truth = again(Tier::Refine, &grid.clocks(i, j)?, &context.limits())?.verdict;
     let wrong = || format!("is {}, side {}, kick by kick", truth.kind().name(), truth.side());
     let name = || format!("h1 = {}, h2 = {}", grid.h1(i), grid.h2(j));
     context.failure(1, name, holds(band.decision(row).verdict == truth, wrong))

@@ -8,29 +8,21 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{check_ratio, fraction};
 use super::written::Written;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::number::{Ratio, Rational};
 use crate::propagator::methods::avi;
 use crate::propagator::{TwoClocks, half_period};
-use crate::report::polynomial as report;
+use crate::question::{Polynomial, Question};
 
 const ROUTE: &str = "the full period, kick by kick, at more rational points than the degrees leave free";
-
-/// The largest p + q unless more work is allowed: the points are some p q, of p + q kicks each.
-const MOST_KICKS: u64 = 120;
 
 rows! {
     /// `kickdrift/polynomial/1`.
     pub struct Claim {
-        input: Input,
+        input: Polynomial,
         p: u64,
         q: u64,
         terms: Vec<Term>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        ratio: Written<Ratio>,
     }
 }
 
@@ -64,14 +56,7 @@ impl Recheck for Claim {
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let (kicks, most) = (self.input.ratio.kicks(), MOST_KICKS.max(context.limits().kicks / 1_000_000));
-        if kicks > most {
-            return Err(Error::budget(
-                format!("polynomials of p + q = {kicks} are many points"),
-                kicks.saturating_mul(1_000_000),
-            ));
-        }
-        Ok((report::document(*self.input.ratio).value(), ()))
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
@@ -82,8 +67,8 @@ impl Recheck for Claim {
 
 impl Claim {
     fn whole(&self, context: &Context) -> Checked {
-        let ratio = check_ratio(self.p, self.q, context.limits())?;
-        same("its ratio", ratio, *self.input.ratio)?;
+        let ratio = check_ratio(self.p, self.q, &context.limits())?;
+        same("its ratio", ratio, self.input.ratio)?;
         let key = |term: &Term| (term.entry, term.s, term.rho);
         let increasing = self.terms.windows(2).all(|pair| key(&pair[0]) < key(&pair[1]));
         holds(increasing, || "its terms are not in order, each once".into())?;
@@ -103,7 +88,7 @@ impl Claim {
             let value = terms.iter().fold(Rational::zero(), |sum, term| {
                 sum + &*term.coefficient * power(s, term.s) * power(rho, term.rho)
             });
-            let truth = entry.kicked(*self.input.ratio, s, rho);
+            let truth = entry.kicked(self.input.ratio, s, rho);
             holds(value == truth, || format!("at s = {s}, rho = {rho} it is {truth}, not {value}"))?;
         }
         Ok(())

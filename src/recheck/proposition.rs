@@ -4,32 +4,22 @@ use serde_json::Value;
 
 use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
-use super::written::Written;
-use crate::error::{Error, Result};
-use crate::report::proposition as report;
-use crate::resonance::proposition;
+use crate::error::Result;
+use crate::question::{Proposition, Question};
 use num_integer::Integer;
 
 const ROUTE: &str =
     "eq. (10) with m = a p + b q in integers, b not 0; every coprime (p, q, m) once; curves counted";
 
-/// The largest bound: its witnesses fill some hundred megabytes.
-const MOST: u64 = 400;
-
 rows! {
     /// `kickdrift/proposition/1`.
     pub struct Claim {
-        input: Input,
+        input: Proposition,
         holds: bool,
         resonant_points: u64,
         curves: u64,
         failures: Vec<Witness>,
         witnesses: Vec<Witness>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        max: Written<u64>,
     }
 
     #[derive(Copy)]
@@ -52,18 +42,12 @@ impl Recheck for Claim {
     const TABLE: &'static str = "witnesses";
     type Found = ();
 
-    fn again(&self, _: &Context) -> Result<(Value, ())> {
-        let max = *self.input.max;
-        if !(1..=MOST).contains(&max) {
-            return Err(Error::input("input.max", max, format!("is not in 1..{MOST}")));
-        }
-        let mut witnesses = Vec::new();
-        let check = proposition::check(max, |witness| witnesses.push(*witness));
-        Ok((report::document(max, &check, &witnesses).value(), ()))
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
-        let max = *self.input.max;
+        let max = self.input.max;
         context.outcome(ROUTE, (&format!("max = {max}"), self.whole(max)), &self.witnesses, Witness::holds)
     }
 }

@@ -4,22 +4,19 @@ use num_traits::Zero;
 use serde_json::Value;
 
 use super::again::Recheck;
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::context::{Checked, Context, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::sample::sample;
 use super::tongues::{Input as Question, Tongue};
-use super::written::{Ends, Written, ratios};
-use crate::error::{Error, Result};
+use super::written::Ends;
+use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
-use crate::report::survey as report;
+use crate::question::{Question as _, Survey};
 use crate::resonance::dominant_family;
-use crate::tongue::{Entry, Tongues, survey};
+use crate::tongue::{Entry, Tongues};
 use crate::verdict::Limits;
 
 const ROUTE: &str = "thin tongues, and a random sample of the others, by exact signs about both edges";
-
-/// The most thin tongues that a survey lists.
-const MOST_THIN: usize = 100_000;
 
 /// Ratios of which one tongue each is rechecked by exact signs.
 const SAMPLE: u64 = 200;
@@ -27,15 +24,8 @@ const SAMPLE: u64 = 200;
 rows! {
     /// `kickdrift/survey/1`.
     pub struct Claim {
-        input: Input,
+        input: Survey,
         thinnest: Vec<Thin>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        max_sum: Written<u64>,
-        rho: Written<Rational>,
-        thinnest: Written<u64>,
     }
 
     struct Thin {
@@ -57,28 +47,22 @@ impl Place for Thin {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "thinnest";
-    type Found = Vec<Ratio>;
+    type Found = ();
 
-    fn again(&self, _: &Context) -> Result<(Value, Vec<Ratio>)> {
-        let Input { max_sum, rho, thinnest } = &self.input;
-        let list = ratios(None, Some(max_sum)).map_err(Fault::refused)?;
-        let thinnest = usize::try_from(thinnest.0).ok().filter(|&count| count <= MOST_THIN);
-        let thinnest = thinnest.ok_or_else(|| {
-            Error::input("input.thinnest", self.input.thinnest.0, format!("at most {MOST_THIN} are listed"))
-        })?;
-        Ok((report::document(&survey(**max_sum, rho, thinnest)?).value(), list))
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
-    fn check(&self, list: Vec<Ratio>, context: &Context) -> Result<Outcome> {
-        let rho = &self.input.rho.0;
-        let holds = |row: &Thin| row.holds(rho, context.limits());
+    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+        let (list, rho): (Vec<Ratio>, _) = (Ratio::up_to(self.input.max_sum).collect(), &self.input.rho);
+        let holds = |row: &Thin| row.holds(rho, &context.limits());
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), &self.thinnest, holds)?;
         // One tongue each of a sample of ratios, with all that the survey counts of it.
         let most = if context.options.all { list.len() as u64 } else { SAMPLE };
-        let name = format!("{} {rho}", self.input.max_sum.0);
+        let name = format!("{} {rho}", self.input.max_sum);
         let drawn: Vec<Ratio> =
             sample(&name, list.len() as u64, most).into_iter().map(|n| list[n as usize]).collect();
-        let failures = context.rows(&drawn, |&ratio| exact_signs(ratio, rho, context.limits()))?;
+        let failures = context.rows(&drawn, |&ratio| exact_signs(ratio, rho, &context.limits()))?;
         outcome
             .failures
             .extend(failures.into_iter().map(|failure| super::context::Failure { row: 0, ..failure }));

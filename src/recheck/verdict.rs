@@ -5,15 +5,13 @@ use serde_json::Value;
 use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
-use super::written::{Ends, Written, nullable, positive};
+use super::written::{Ends, Written, nullable};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
-use crate::report::verdict::Answer;
+use crate::question::{self, Question};
 use crate::resonance::dominant_family;
-#[cfg(feature = "system")]
-use crate::system::friction::damped_pair;
-use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_from, exact_trace, growth};
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace, growth};
 
 const ROUTE: &str =
     "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
@@ -21,7 +19,7 @@ const ROUTE: &str =
 rows! {
     /// `kickdrift/verdict/1`.
     pub struct Claim {
-        input: Input,
+        input: question::Verdict,
         p: u64,
         q: u64,
         kind: Written<Kind>,
@@ -32,16 +30,6 @@ rows! {
         #[serde(deserialize_with = "nullable")]
         resonance: Option<Resonance>,
         decided_by: Written<Tier>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        lambda1: Written<Laurent>,
-        lambda2: Written<Laurent>,
-        h1: Written<Laurent>,
-        h2: Written<Laurent>,
-        exact: Option<Written<bool>>,
-        friction: Option<Written<Rational>>,
     }
 
     struct Trace {
@@ -80,29 +68,13 @@ impl Recheck for Claim {
     type Found = Oscillator;
 
     fn again(&self, context: &Context) -> Result<(Value, Oscillator)> {
-        let Input { lambda1, lambda2, h1, h2, exact, friction } = &self.input;
-        let oscillator = Oscillator::new(lambda1.0.clone(), lambda2.0.clone(), h1.0.clone(), h2.0.clone())?;
-        positive("input.friction", friction.as_ref())?;
-        let first = if exact.is_some() { Tier::Exact } else { Tier::Filter };
-        let clocks = oscillator.clocks();
-        let answer = decide_from(first, &clocks, context.limits())?;
-        let again = Answer {
-            oscillator: oscillator.clone(),
-            decision: answer.decision(),
-            growth: answer.growth()?.clone(),
-            exact_trace: Answer::exact_trace(&clocks, exact.is_some()),
-            #[cfg(feature = "system")]
-            friction: friction
-                .as_ref()
-                .map(|rate| damped_pair(&oscillator, &rate.0, context.limits()))
-                .transpose()?,
-        };
-        Ok((again.document().value(), oscillator))
+        let answer = self.input.answer(&context.work())?;
+        Ok((self.input.document(&answer).value(), answer.oscillator))
     }
 
     fn check(&self, oscillator: Oscillator, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let holds = |row: &Claim| row.holds(&oscillator, context.limits());
+        let holds = |row: &Claim| row.holds(&oscillator, &context.limits());
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
         if self.input.friction.is_some() {
             outcome.not_rechecked.push("friction by another route: computed again only".into());

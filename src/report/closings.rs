@@ -16,22 +16,21 @@ const CAPTION: &str =
     "Closed tongues, where $Q = \\pm I$, in $s = h_1^2 \\Lambda_1$ and $\\rho = \\Lambda_2/\\Lambda_1$";
 
 /// The document `kickdrift/closings/1`. The caller adds the input; `what` says in words what was searched.
-///
-/// With `all_columns` the table is made for programs, else for people and paper.
-pub fn document(found: &[Found], digits: u32, what: &str, all_columns: bool) -> Document {
+pub fn document(found: &[Found], digits: u32, what: &str) -> Document {
     let closings = || found.iter().flat_map(|of| &of.closings);
     let complete: Vec<Value> = found
         .iter()
         .map(|of| json!({"p": of.ratio.p(), "q": of.ratio.q(), "complete": of.complete}))
         .collect();
+    let table = |short| {
+        let record = record(digits, short);
+        record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
+    };
     Document::new("closings")
         .entry("closings", record(digits, false).all(closings()))
         .entry("ratios", complete)
-        .long_rows(
-            record(digits, !all_columns)
-                .table("closings", "Closed tongues: Q = I or -I", closings())
-                .captioned(CAPTION),
-        )
+        .long_rows(table(false))
+        .for_people(table(true))
         .summary(&lines(found, what))
 }
 

@@ -11,11 +11,10 @@ use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally};
 const CAPTION: &str = "Pairs at which the prediction $q h_2 \\approx m T_{1/2}$ is wrong";
 
 /// The document `kickdrift/compare/1`; `places` are the names of an offender's two quantities. The caller
-/// adds the rest of the input.
+/// adds the input.
 pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> Document {
     let Comparisons { tally, offenders } = all;
     Document::new("compare")
-        .input("tolerance", tolerance)
         .entry("pairs", tally.pairs)
         .entry("unstable", tally.unstable)
         .entry("tan", json!({"agree": tally.tan_agree, "disagree": tally.tan_disagree}))

@@ -20,6 +20,8 @@ pub struct Document {
     input: Map<String, Value>,
     body: Map<String, Value>,
     table: Option<Table>,
+    /// In place of it, for LaTeX and text.
+    for_people: Option<Table>,
     /// Further tables, for LaTeX and text.
     more: Vec<Table>,
     /// In place of the tables in LaTeX.
@@ -52,6 +54,7 @@ impl Document {
             input: Map::new(),
             body: Map::new(),
             table: None,
+            for_people: None,
             more: Vec::new(),
             equations: Vec::new(),
             digits: None,
@@ -102,6 +105,13 @@ impl Document {
     #[must_use]
     pub fn long_rows(mut self, table: Table) -> Self {
         self.table = Some(table);
+        self
+    }
+
+    /// A shorter table in place of the rows, for LaTeX and text.
+    #[must_use]
+    pub fn for_people(mut self, table: Table) -> Self {
+        self.for_people = Some(table);
         self
     }
 
@@ -181,7 +191,8 @@ impl Document {
             Format::Csv => Ok(csv::document(table("csv")?)),
             Format::Latex if !self.equations.is_empty() => latex::equations(&self.equations, &self.input),
             Format::Latex => {
-                let all = std::iter::once(table("latex")?).chain(&self.more);
+                let first = self.for_people.as_ref().map_or_else(|| table("latex"), Ok)?;
+                let all = std::iter::once(first).chain(&self.more);
                 let all: Result<Vec<String>> =
                     all.map(|table| latex::document(table, &self.input, self.digits, self.float)).collect();
                 Ok(all?.join("\n"))
@@ -227,7 +238,8 @@ impl Document {
     fn text(&self, to_see: &str) -> String {
         let mut out = self.summary.clone();
         out.push('\n');
-        for table in self.table.iter().chain(&self.more).filter(|_| !self.summary_only) {
+        let first = self.for_people.as_ref().or(self.table.as_ref());
+        for table in first.into_iter().chain(&self.more).filter(|_| !self.summary_only) {
             let rows = table.rows().len();
             if rows > ROWS_FOR_PEOPLE {
                 out += &format!("\n{rows} rows: {to_see}\n");

@@ -13,8 +13,11 @@ use crate::propagator::{HalfPeriod, TwoClocks, half_period};
 /// Polynomials in s whose coefficients are polynomials in rho.
 type Bivariate = Polynomial<Polynomial<Rational>>;
 
+/// A, B, C, D and the trace by name.
+pub type Polynomials = [(&'static str, Bivariate); 5];
+
 /// A, B, C, D and the trace of h2/h1 = p/q, in the time unit h1: B in h1, C in 1/h1.
-pub fn polynomials(ratio: Ratio) -> [(&'static str, Bivariate); 5] {
+pub fn polynomials(ratio: Ratio) -> Polynomials {
     let s = Polynomial::variable();
     let rho = Polynomial::constant(Polynomial::variable());
     let half: HalfPeriod<Bivariate> = half_period(&TwoClocks::with_rho(ratio, s, rho));
@@ -23,19 +26,17 @@ pub fn polynomials(ratio: Ratio) -> [(&'static str, Bivariate); 5] {
     [a, b, c, d, ("trace", half.trace())]
 }
 
-/// The document `kickdrift/polynomial/1`.
-pub fn document(ratio: Ratio) -> Document {
-    let polynomials = polynomials(ratio);
+/// The document `kickdrift/polynomial/1` without its input.
+pub fn document(ratio: Ratio, polynomials: &Polynomials) -> Document {
     let text = |f: &Bivariate| f.text(&["s", "rho"]);
     let lines: Vec<String> = polynomials.iter().map(|(name, f)| format!("{name:<5} = {}", text(f))).collect();
     let values: Map<String, Value> =
         polynomials.iter().map(|(name, f)| ((*name).to_string(), Value::String(text(f)))).collect();
     Document::new("polynomial")
-        .input("ratio", ratio.to_string())
         .entry("p", ratio.p())
         .entry("q", ratio.q())
         .entry("polynomials", Value::Object(values))
-        .rows(table(&polynomials))
+        .rows(table(polynomials))
         .equations(polynomials.iter().map(|(name, f)| equation(name, f)).collect())
         .summary_alone(&lines)
 }

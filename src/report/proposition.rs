@@ -10,7 +10,7 @@ const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve 
 /// The same in LaTeX.
 const CAPTION_LATEX: &str = "Resonant points $h_2/h_1 = p/q$, $p\\theta = m\\pi$, and a curve $(a, b)$ with $m = ap + bq$ through each";
 
-/// The document `kickdrift/proposition/1`: counts, failures, and a witness for every resonant point.
+/// The document `kickdrift/proposition/1` without its input: counts, failures, and a witness for every resonant point.
 pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
     let Check { forward, backward, failures } = check;
     let verdict = if failures.is_empty() { "holds" } else { "FAILS" };
@@ -21,7 +21,6 @@ pub fn document(max: u64, check: &Check, witnesses: &[Witness]) -> Document {
         format!("  failures                                                        {:>9}", failures.len()),
     ];
     Document::new("proposition")
-        .input("max", max)
         .entry("holds", failures.is_empty())
         .entry("resonant_points", *forward)
         .entry("curves", *backward)

@@ -9,17 +9,10 @@ use super::table::{Cell, Column, Table};
 /// How the cell of one column is found in a `T`.
 type Find<'a, T> = Box<dyn Fn(&T) -> Cell + Send + Sync + 'a>;
 
-/// Where a cell stands in a JSON document: at a path among its entries, echoed as input, or nowhere.
-enum Place {
-    Entry(String),
-    Input,
-    Nowhere,
-}
-
-/// One cell: its column, where it is a column of tables, and the way to it.
+/// One cell: its column, where it is a column of tables, its path among the entries of JSON, where it is one of them, and the way to it.
 struct Field<'a, T> {
     column: Option<Column>,
-    place: Place,
+    path: Option<String>,
     find: Find<'a, T>,
 }
 
@@ -55,8 +48,8 @@ impl<'a, T> Record<'a, T> {
         Record { fields: Vec::new() }
     }
 
-    fn with(mut self, column: Option<Column>, place: Place, find: Find<'a, T>) -> Self {
-        self.fields.push(Field { column, place, find });
+    fn with(mut self, column: Option<Column>, path: Option<String>, find: Find<'a, T>) -> Self {
+        self.fields.push(Field { column, path, find });
         self
     }
 
@@ -75,25 +68,19 @@ impl<'a, T> Record<'a, T> {
         column: Column,
         find: impl Fn(&T) -> Cell + Send + Sync + 'a,
     ) -> Self {
-        self.with(Some(column), Place::Entry(path.into()), Box::new(find))
+        self.with(Some(column), Some(path.into()), Box::new(find))
     }
 
     /// One more entry of JSON alone.
     #[must_use]
     pub fn json(self, path: impl Into<String>, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(None, Place::Entry(path.into()), Box::new(find))
+        self.with(None, Some(path.into()), Box::new(find))
     }
 
     /// One more column of tables alone.
     #[must_use]
     pub fn column(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(Some(column), Place::Nowhere, Box::new(find))
-    }
-
-    /// One more field, an exact number, which JSON has as input.
-    #[must_use]
-    pub fn input(self, column: Column, find: impl Fn(&T) -> Cell + Send + Sync + 'a) -> Self {
-        self.with(Some(column), Place::Input, Box::new(find))
+        self.with(Some(column), None, Box::new(find))
     }
 
     /// The columns, in order.
@@ -116,11 +103,11 @@ impl<'a, T> Record<'a, T> {
         table
     }
 
-    /// The entries of one thing, as in JSON; what is echoed as input is not among them.
+    /// The entries of one thing, as in JSON.
     pub fn entries(&self, of: &T) -> Value {
         let mut entries = Map::new();
         for field in &self.fields {
-            if let Place::Entry(path) = &field.place {
+            if let Some(path) = &field.path {
                 put(&mut entries, path, serde_json::to_value((field.find)(of)).expect("a cell is JSON"));
             }
         }
@@ -135,13 +122,8 @@ impl<'a, T> Record<'a, T> {
         all.into_iter().map(|of| self.entries(of)).collect()
     }
 
-    /// Echoes the inputs of one thing into a document and adds its entries.
-    pub fn document(&self, mut document: Document, of: &T) -> Document {
-        for Field { column, place, find } in &self.fields {
-            if let (Place::Input, Some(column), Cell::Exact(text)) = (place, column, find(of)) {
-                document = document.input(&column.key, text);
-            }
-        }
+    /// Adds the entries of one thing to a document.
+    pub fn document(&self, document: Document, of: &T) -> Document {
         let Value::Object(entries) = self.entries(of) else { unreachable!("entries are an object") };
         entries.into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
     }

@@ -15,7 +15,7 @@ const DIGITS: usize = 4;
 const WIDTHS: &str = "Widths of all tongues over the first-order law $2 s \\rho |S|$, by the $a$ of the dominant family $(a, b)$";
 const THINNEST: &str = "The thinnest tongues that begin below $s = h_1^2 \\Lambda_1 = 4$";
 
-/// The document `kickdrift/survey/1`.
+/// The document `kickdrift/survey/1` without its input.
 pub fn document(survey: &Survey) -> Document {
     let closed: Vec<Value> =
         survey.closed.iter().map(|(ratio, m)| json!({"p": ratio.p(), "q": ratio.q(), "m": m})).collect();
@@ -23,8 +23,6 @@ pub fn document(survey: &Survey) -> Document {
     let widths = format!("Width over first-order width, by the dominant family (a, b), {of}");
     let thinnest = format!("The thinnest tongues that begin below s = 4, {of}");
     Document::new("survey")
-        .input("max_sum", survey.max_sum)
-        .input("rho", &survey.rho)
         .entry("ratios", survey.ratios)
         .entry("tongues", survey.tongues)
         .entry("open", survey.open)

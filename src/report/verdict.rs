@@ -62,19 +62,17 @@ impl Answer {
         Some((m, a, b))
     }
 
-    /// The document `kickdrift/verdict/1`.
+    /// The document `kickdrift/verdict/1` without its input.
     pub fn document(&self) -> Document {
         let record = record();
-        let (lambda1, lambda2) = (self.oscillator.lambda1(), self.oscillator.lambda2());
-        let document = Document::new("verdict").input("lambda1", lambda1).input("lambda2", lambda2);
-        let mut document = record.document(document, self);
+        let mut document = record.document(Document::new("verdict"), self);
         if let Some(exact) = &self.exact_trace {
             let (lo, hi) = self.growth.trace.to_f64_enclosure();
             document = document.entry("trace", json!({"lo": lo, "hi": hi, "exact": exact.to_string()}));
         }
         #[cfg(feature = "system")]
         if let Some(own) = &self.friction {
-            document = document.input("friction", &own.rate).entry("friction", super::friction::value(own));
+            document = document.entry("friction", super::friction::value(own));
         }
         document
             .long_rows(record.table("verdict", CAPTION, [self]).captioned(CAPTION_LATEX))
@@ -86,8 +84,8 @@ impl Answer {
 fn record() -> Record<'static, Answer> {
     type Of<'a> = &'a Answer;
     Record::new()
-        .input(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
-        .input(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
+        .column(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
+        .column(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
         .field(Column::math("p", "p"), |of| of.oscillator.clocks().p().into())
         .field(Column::math("q", "q"), |of| of.oscillator.clocks().q().into())
         .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())

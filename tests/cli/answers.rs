@@ -309,6 +309,7 @@ fn every_command_explains_itself() {
         "compare",
         "proposition",
         "polynomial",
+        "half",
         "map",
         "run",
         "tongues",

@@ -306,6 +306,7 @@ fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
         "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
         "curves --samples 12 --a 0..2 --b -2..2",
         "polynomial --ratio 5/4",
+        "half --ratio 5/4 --s 3/2 --rho 1/7",
         "proposition --max 5",
     ];
     no_change_passes(&lines, 1000);

@@ -3,9 +3,9 @@
 use plot::Figure;
 
 use crate::cli::args::Common;
-use crate::cli::ratios::Ratios;
-use crate::cli::tongues::{Atlas, Colour, MOST_SUM, Question};
+use crate::cli::tongues::{Atlas, Colour, Question};
 use crate::error::Result;
+use crate::question::{MOST_SUM, Ratios};
 use crate::scene::{FAMILIES, Scene};
 use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
 

@@ -12,12 +12,12 @@ use crate::cli::args::{Common, TO_SEE_ROWS};
 use crate::cli::map;
 use crate::cli::paper::Paper;
 use crate::cli::plane::Verdicts;
-use crate::cli::request::{Question, Request, THINNEST};
 use crate::cli::tongues as answers;
 use crate::error::Result;
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::rational::ratio;
+use crate::question::{Closings, Compare, Curves, Polynomial, Proposition, Question, Survey, THINNEST};
 use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::report::file::write_output;
@@ -102,39 +102,41 @@ impl<'a> Work<'a> {
                 let Verdicts { tally, marked } = self.verdicts()?;
                 Ok(map::document(&self.scene.grid()?, self.scene.range()?, tally, marked))
             }
-            _ => self.request(product)?.perform(self.common, false),
+            _ => self.asked(product),
         })
     }
 
     /// What a scene asks by wanting a product that one document is.
-    fn request(&self, product: Product) -> Result<Request> {
-        let scene = self.scene;
-        Ok(match product {
+    fn asked(&self, product: Product) -> Result<Document> {
+        let (scene, work) = (self.scene, self.common.work());
+        match product {
             Product::Curves => {
-                let (range, families) = (scene.range()?, self.families());
-                let (ranges, given) = (range.ranges().clone(), range.given().into());
-                Request::Curves { lambda1: scene.lambda1()?.clone(), ranges, families, given }
+                let Families { a, b, samples } = self.families();
+                let [step1, step2] = scene.range()?.steps().clone().map(Some);
+                let [h1_range, h2_range] = scene.range()?.ranges().clone();
+                let lambda1 = scene.lambda1()?.clone();
+                Curves { lambda1, step1, step2, h1_range, h2_range, a, b, samples }.ask(&work)
             }
             Product::Compare => {
+                let (lambda1, lambda2) = scene.stiffnesses()?;
                 let tolerance = scene.tolerance.clone().unwrap_or_else(|| ratio(1, 20));
-                Request::CompareGrid { grid: scene.grid()?, range: scene.range()?.clone(), tolerance }
+                Compare::over_grid([&lambda1, &lambda2], scene.range()?, tolerance).ask(&work)
             }
-            Product::Proposition => Request::Proposition { max: scene.max.unwrap_or(60) },
-            Product::Polynomial => Request::Polynomial { ratio: scene.ratio()? },
+            Product::Proposition => Proposition { max: scene.max.unwrap_or(60) }.ask(&work),
+            Product::Polynomial => Polynomial { ratio: scene.ratio()? }.ask(&work),
             Product::Closings => {
-                let range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
-                let question = Question::new(tongues::ratios(scene)?, None, range, 400, DIGITS)?;
-                Request::Closings(question)
+                let rho_range = scene.rho_range.clone().unwrap_or_else(|| (ratio(1, 10_000), ratio(100, 1)));
+                let (ratio, max_sum) = tongues::ratios(scene)?.fields();
+                Closings { ratio, max_sum, m: None, rho_range, samples: 400, digits: DIGITS }.ask(&work)
             }
             Product::Survey => {
-                let (max_sum, rho) =
-                    (scene.max_sum.expect("the scene was checked"), tongues::stiffness(scene)?.rho);
-                Request::Survey { max_sum, rho, thinnest: THINNEST }
+                let max_sum = scene.max_sum.expect("the scene was checked");
+                Survey { max_sum, rho: tongues::stiffness(scene)?.rho, thinnest: THINNEST }.ask(&work)
             }
             Product::Map | Product::Tongues | Product::Atlas | Product::Figure | Product::Overlay => {
                 unreachable!("of the grid, streamed, or drawn")
             }
-        })
+        }
     }
 
     /// A figure.

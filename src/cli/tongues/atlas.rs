@@ -6,10 +6,11 @@ use plot::{Figure, Foot};
 use super::Question;
 use crate::cli::args::Common;
 use crate::cli::paper::Paper;
-use crate::cli::ratios::Ratios;
+use crate::cli::ratios::below;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
+use crate::question::Ratios;
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
 use crate::tongue::{Quantity, Range, Tongue, TongueEdge, Wanted};
@@ -108,7 +109,7 @@ impl<'a> Atlas<'a> {
         };
         let foot = clock(Foot::default(), 1, stiffness.lambda1.as_ref(), window.h1.as_ref());
         let foot = clock(foot, 2, stiffness.lambda2.as_ref(), window.h2.as_ref());
-        self.question.ratios.below(foot)
+        below(self.question.ratios, foot)
     }
 
     fn title(&self) -> String {

@@ -13,21 +13,21 @@ use clap::ValueEnum;
 
 use super::args::{Common, from_str, of, whole};
 use super::paper::Paper;
-use super::ratios::{Flags, Ratios};
-use super::request::{Request, THINNEST};
+use super::ratios::Flags;
 use super::verdict::{EDGES_WORTH_CERTIFYING, within};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
+use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
 use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted, Window};
 pub use atlas::{Atlas, Colour};
 pub use output::put;
-pub use question::{MOST_SUM, Question};
+pub use question::Question;
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
@@ -128,7 +128,7 @@ impl Args {
         self.check(format)?;
         let put = |figure| self.paper.write(figure, format, common.output.as_deref(), common);
         match (format, self.figure) {
-            _ if self.survey => common.write(&self.all_tongues()?.perform(common, true)?, format),
+            _ if self.survey => common.write(&self.all_tongues()?.ask(&common.work())?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
                 put(strength::drawn(self.ratios()?, &self.stiffness()?, &theta)?)
@@ -226,12 +226,12 @@ impl Args {
         }
     }
 
-    fn all_tongues(&self) -> Result<Request> {
+    fn all_tongues(&self) -> Result<Survey> {
         let Ratios::UpTo(max_sum) = self.ratios()? else {
             return Err(Error::missing("max-sum", "a survey is of many ratios: give --max-sum N"));
         };
         let (rho, thinnest) = (self.stiffness()?.rho, self.thinnest.unwrap_or(THINNEST));
-        Ok(Request::Survey { max_sum, rho, thinnest })
+        Ok(Survey { max_sum, rho, thinnest })
     }
 
     fn ratios(&self) -> Result<Ratios> {

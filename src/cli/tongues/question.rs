@@ -4,8 +4,8 @@ use indicatif::ProgressBar;
 
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
-use crate::cli::ratios::Ratios;
 use crate::error::Result;
+use crate::question::Ratios;
 use crate::report::document::Document;
 use crate::scene::shown_range;
 use crate::tongue::{self, Progress, Range, Request, Selection, Stiffness, Tongue, Window};
@@ -18,9 +18,6 @@ pub struct Question {
     /// The columns of tables, by the names that CSV has; those that fit the form where none are given.
     pub columns: Option<Vec<String>>,
 }
-
-/// The largest p + q of all ratios: there are 1.2 million of them below 2000.
-pub const MOST_SUM: u64 = 2000;
 
 impl Progress for ProgressBar {
     fn expect(&self, total: u64) {
@@ -84,7 +81,11 @@ impl Question {
             ("b", integers(*b)),
             ("digits", asked.request.digits.map(|digits| digits.to_string())),
         ];
-        self.ratios.echo(document).inputs(given.into_iter().filter_map(|(key, value)| Some((key, value?))))
+        let (ratio, max_sum) = self.ratios.fields();
+        let ratios =
+            [("ratio", ratio.map(|own| own.to_string())), ("max_sum", max_sum.map(|own| own.to_string()))];
+        let given = ratios.into_iter().chain(given);
+        document.inputs(given.filter_map(|(key, value)| Some((key, value?))))
     }
 
     /// The question in words.

@@ -3,9 +3,10 @@
 use plot::{Figure, Foot, typeset};
 
 use super::atlas::share_of_pi;
-use crate::cli::ratios::Ratios;
+use crate::cli::ratios::below;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, rational};
+use crate::question::Ratios;
 use crate::report::strength::{self as report, figure};
 use crate::tongue::Stiffness;
 use crate::tongue::sampled::{self, Measured};
@@ -32,7 +33,7 @@ pub fn drawn(ratios: Ratios, stiffness: &Stiffness, theta: &Laurent) -> Result<F
         typeset(theta),
         stiffness.rho
     );
-    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho)).value("*θ*", theta);
+    let foot = below(ratios, Foot::default().value("*ρ*", &stiffness.rho)).value("*θ*", theta);
     Ok(figure(rational::to_f64(&share), &title, &measured).footed(&foot))
 }
 
@@ -51,7 +52,7 @@ pub fn widths(ratios: Ratios, stiffness: &Stiffness) -> Result<Figure> {
         ));
     }
     let title = format!("All tongues with *p* + *q* ≤ {max_sum}, 0 < *m* < *p*; *ρ* = {}", stiffness.rho);
-    let foot = ratios.below(Foot::default().value("*ρ*", &stiffness.rho));
+    let foot = below(ratios, Foot::default().value("*ρ*", &stiffness.rho));
     Ok(report::widths(&title, &measured).footed(&foot))
 }
 

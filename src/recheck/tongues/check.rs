@@ -25,7 +25,7 @@ impl Recheck for Claim {
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let asked = self.input.question(self.wanted(), context.limits())?;
+        let asked = self.input.question(self.wanted(), &context.limits())?;
         let (mut tally, mut rows) = (Tally::default(), Vec::new());
         let record = record(&asked.request, false);
         asked.each(&(), |part| {
@@ -40,9 +40,9 @@ impl Recheck for Claim {
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
-        let whole = self.complete(context.limits());
+        let whole = self.complete(&context.limits());
         context.outcome(ROUTE, ("the list", whole), &self.tongues, |row| {
-            row.holds(&self.input, context.limits())
+            row.holds(&self.input, &context.limits())
         })
     }
 }

@@ -40,7 +40,7 @@ impl Edge {
             format!("{name}: has no digits, or too many")
         })?;
         if let Some(decimal) = &self.decimal {
-            let ends = decimal.ends(input.digits.as_ref())?;
+            let ends = decimal.ends(input.digits.as_ref().map(|digits| digits.0))?;
             // The digits enclose the same zero.
             let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
             holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
@@ -98,8 +98,11 @@ impl Edge {
                 let h = h * &back;
                 &Laurent::from_rational(&h * &h) * &lambda1.0
             };
-            let decimal =
-                step.decimal.as_ref().map(|decimal| decimal.ends(input.digits.as_ref())).transpose()?;
+            let decimal = step
+                .decimal
+                .as_ref()
+                .map(|decimal| decimal.ends(input.digits.as_ref().map(|digits| digits.0)))
+                .transpose()?;
             for (lo, hi) in [exact(step.lo, step.hi)?].into_iter().chain(decimal) {
                 let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
                 holds(meets, || format!("{name}: {key} is not the step of s"))?;
