@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from dataclasses import fields as parts
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Self, cast, overload
+from typing import TYPE_CHECKING, Any, Self, TypeVar, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -148,11 +148,11 @@ class Table(Document, Sequence[Row]):
         return iter(self.rows)
 
     def to_csv(self) -> str:
-        """The rows as CSV, all columns; computed again in that form."""
+        """The rows as CSV, all columns."""
         return self._again("csv")
 
     def to_latex(self) -> str:
-        """The rows as a LaTeX table; computed again in that form."""
+        """The rows as a LaTeX table."""
         return self._again("latex")
 
     def _again(self, form: str) -> str:
@@ -191,6 +191,37 @@ class Table(Document, Sequence[Row]):
         more = f"<p>{len(self) - _SHOWN} more rows</p>" if len(self) > _SHOWN else ""
         title = html.escape(f"{type(self).__name__}: {', '.join(self._given())}")
         return f"<p>{title}</p><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Answer(Table):
+    """Rows that answer one question of the library; its other forms are written from the same answer."""
+
+    _question: str
+    _fields: tuple[tuple[str, str], ...]
+    _budget: int | None
+
+    @cached_property
+    def _answer(self) -> _native.Answer:
+        # A copy from another process has its document alone.
+        return _native.ask(self._question, dict(self._fields), self._budget)
+
+    def _again(self, form: str) -> str:
+        return self._answer.render(form)
+
+
+_Kind = TypeVar("_Kind", bound=Answer)
+
+
+def answered(
+    kind: type[_Kind], question: str, rows: str, budget: int | None = None, **fields: str | int | None
+) -> _Kind:
+    """The answer to a question; fields that are None are not given."""
+    given = tuple((name, str(value)) for name, value in fields.items() if value is not None)
+    answer = _native.ask(question, dict(given), budget)
+    table = kind(answer.render("json"), (), rows, question, given, budget)
+    table.__dict__["_answer"] = answer
+    return table
 
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:

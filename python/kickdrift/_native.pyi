@@ -6,12 +6,14 @@ import numpy as np
 import numpy.typing as npt
 
 __all__ = [
+    "Answer",
     "Map",
     "Number",
     "Page",
     "Pair",
     "Stop",
     "answer",
+    "ask",
     "decide",
     "main",
     "map",
@@ -107,6 +109,11 @@ def answer(
     text: str | None = None,
     arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
 ) -> bytes: ...
+@final
+class Answer:
+    def render(self, form: str) -> str: ...
+
+def ask(name: str, fields: Mapping[str, str], budget: int | None = None) -> Answer: ...
 def palette() -> tuple[dict[str, str], list[str], list[str]]: ...
 def main(arguments: Sequence[str]) -> int: ...
 def recheck(

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal
 
 from kickdrift import _plot
-from kickdrift._document import Table, ask, frame, given
+from kickdrift._document import Answer, Table, answered, ask, frame, given
 from kickdrift._numbers import Exact, Labels, Range, labels_text, range_text, text
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ def tongues(
     return Tongues(ask(arguments), tuple(arguments), "tongues")
 
 
-class Closings(Table):
+class Closings(Answer):
     """Where tongues close: pairs (s, rho) at which a resonance does not destabilize.
 
     Examples
@@ -186,7 +186,10 @@ def closings(
     >>> len(kd.closings(max_sum=8))
     4
     """
-    arguments = ["closings"] + given(
+    return answered(
+        Closings,
+        "closings",
+        "closings",
         ratio=_text("ratio", ratio),
         max_sum=max_sum,
         m=None if m is None else labels_text(m),
@@ -194,10 +197,9 @@ def closings(
         samples=samples,
         digits=digits,
     )
-    return Closings(ask(arguments), tuple(arguments), "closings")
 
 
-class Curves(Table):
+class Curves(Answer):
     """The resonance curves 1/T½ = a/h1 + b/h2, sampled.
 
     Examples
@@ -258,7 +260,10 @@ def curves(
     >>> curve.data["input"]["lambda1"]
     'pi^2'
     """
-    arguments = ["curves"] + given(
+    return answered(
+        Curves,
+        "curves",
+        "curves",
         lambda1=text("lambda1", lambda1),
         h1_range=range_text("h1", h1),
         h2_range=range_text("h2", h2),
@@ -266,10 +271,9 @@ def curves(
         b=b,
         samples=samples,
     )
-    return Curves(ask(arguments), tuple(arguments), "curves")
 
 
-class Proposition(Table):
+class Proposition(Answer):
     """The paper's Proposition checked: a witness (a, b) for each resonant point (p, q, m).
 
     Examples
@@ -304,11 +308,10 @@ def proposition(max: int | None = None) -> Proposition:
     >>> kd.proposition(max=2).rows[0]["b"]
     1
     """
-    arguments = ["proposition"] + given(max=max)
-    return Proposition(ask(arguments), tuple(arguments), "witnesses")
+    return answered(Proposition, "proposition", "witnesses", max=max)
 
 
-class Comparison(Table):
+class Comparison(Answer):
     """The trace verdict against the tan criterion and against resonance; its rows are the disagreements.
 
     Examples
@@ -368,16 +371,61 @@ def compare(
     >>> found.data["pairs"]
     180
     """
-    arguments = ["compare"] + given(
+    spacing = _text("step", step)
+    return answered(
+        Comparison,
+        "compare",
+        "offenders",
+        budget,
         lambda1=_text("lambda1", lambda1),
         lambda2=_text("lambda2", lambda2),
-        step=_text("step", step),
+        step1=spacing,
+        step2=spacing,
         h1_range=_range("h1", h1),
         h2_range=_range("h2", h2),
         max_sum=max_sum,
         rho=_text("rho", rho),
-        samples=samples,
+        samples=99 if samples is None and max_sum is not None else samples,
         tolerance=_text("tolerance", tolerance),
-        budget=budget,
     )
-    return Comparison(ask(arguments), tuple(arguments), "offenders")
+
+
+class Half(Answer):
+    """The four entries of a half period.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> [row["exact"] for row in kd.half("1/1", s=1, rho=0)]
+    ['3/4', '1/2', '-1/2', '1']
+    """
+
+
+def half(ratio: Exact, *, s: Exact, rho: Exact, budget: int | None = None) -> Half:
+    """Compute A, B, C, D of the half period, exact and enclosed, in the time unit h1.
+
+    Parameters
+    ----------
+    ratio : Exact
+        h2/h1 = p/q.
+    s : Exact
+        h1² lambda1, rational.
+    rho : Exact
+        lambda2/lambda1, rational.
+    budget : int, optional
+        The largest p + q; 2000 unless given.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input; more kicks than the budget allows.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.half("5/3", s="11/4", rho="1/25")[0]["sign"]
+    1
+    """
+    return answered(
+        Half, "half", "entries", budget, ratio=_text("ratio", ratio), s=_text("s", s), rho=_text("rho", rho)
+    )

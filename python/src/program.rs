@@ -6,7 +6,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use kickdrift::cli;
+use kickdrift::error::Error;
+use kickdrift::format::Format;
+use kickdrift::question::{self, Work};
 use kickdrift::recheck::{Claim, Options};
+use kickdrift::report::document::Document;
 use kickdrift::scene::{Array, Arrays};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -36,6 +40,35 @@ pub fn answer<'py>(
     let held = text.map(|text| cli::Held { text, arrays });
     let bytes = job::run(py, move |_| cli::answer_about(std::iter::once(name).chain(arguments), held))?;
     Ok(PyBytes::new(py, &bytes))
+}
+
+/// The document that answers a question, in each of its forms.
+#[pyclass(frozen)]
+pub struct Answer(Document);
+
+#[pymethods]
+impl Answer {
+    /// The document as json, csv, latex or text.
+    fn render(&self, form: &str) -> PyResult<String> {
+        let format = Format::DOCUMENT.into_iter().find(|format| format.name() == form);
+        let format = format.ok_or_else(|| raised(&Error::input("form", form, "is json, csv, latex or text")))?;
+        self.0.render(format).map_err(|error| raised(&error))
+    }
+}
+
+/// Answers a question: its name, and its fields as texts.
+#[pyfunction]
+#[pyo3(signature = (name, fields, budget = None))]
+pub fn ask(
+    py: Python<'_>,
+    name: String,
+    fields: BTreeMap<String, String>,
+    budget: Option<u64>,
+) -> PyResult<Answer> {
+    job::run(py, move |_| {
+        let fields = fields.into_iter().map(|(name, text)| (name, text.into())).collect();
+        question::ask(&name, &fields, &Work { budget, watch: None }).map(Answer)
+    })
 }
 
 /// Arrays in memory that a system refers to by name.
