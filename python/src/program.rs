@@ -51,7 +51,8 @@ impl Answer {
     /// The document as json, csv, latex or text.
     fn render(&self, form: &str) -> PyResult<String> {
         let format = Format::DOCUMENT.into_iter().find(|format| format.name() == form);
-        let format = format.ok_or_else(|| raised(&Error::input("form", form, "is json, csv, latex or text")))?;
+        let format =
+            format.ok_or_else(|| raised(&Error::input("form", form, "is json, csv, latex or text")))?;
         self.0.render(format).map_err(|error| raised(&error))
     }
 }

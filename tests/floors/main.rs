@@ -2,47 +2,79 @@
 
 mod sources;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 use std::path::Path;
 
 use sources::Sources;
 
-/// The floor of each module and of each crate in crates/; `error` lies below them all.
-const FLOORS: [(&str, u32); 21] = [
-    ("plot", 0),
-    ("format", 0),
-    ("vector", 0),
-    ("number", 0),
-    ("parallel", 0),
-    ("schedule", 1),
-    ("propagator", 2),
-    ("orbit", 3),
-    ("verdict", 4),
-    ("resonance", 5),
-    ("tongue", 6),
-    ("map", 6),
-    ("system", 6),
-    ("avi", 6),
-    ("advise", 7),
-    ("scene", 8),
-    ("report", 8),
-    ("question", 9),
-    ("recheck", 10),
-    ("explore", 10),
-    ("cli", 11),
-];
+/// A room as ARCHITECTURE.md lists it: its path below the repository, its floor, the most lines that it has.
+struct Room {
+    path: String,
+    floor: u32,
+    lines: usize,
+}
 
-fn floor(module: &str) -> u32 {
-    FLOORS.iter().find(|(name, _)| *name == module).unwrap_or_else(|| panic!("{module} has no floor")).1
+/// The rooms of ARCHITECTURE.md, from the rows of its table that name a folder or a file of src/ or crates/.
+fn rooms() -> Vec<Room> {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let room = |line: &str| {
+        let mut cells = line.strip_prefix("| `")?.split('|').map(str::trim);
+        let path = cells.next()?.trim_end_matches('`').to_string();
+        let mut number = || cells.next()?.replace(',', "").parse().ok();
+        let (floor, lines): (usize, usize) = (number()?, number()?);
+        Some(Room { path, floor: floor as u32, lines })
+    };
+    let rooms: Vec<Room> = text.lines().filter_map(room).collect();
+    assert!(rooms.len() > 15, "only {} rooms found: does ARCHITECTURE.md have its table?", rooms.len());
+    rooms
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The floor of each module and of each crate in crates/, by name; `error` lies below them all.
+fn floors() -> BTreeMap<String, u32> {
+    let name = |path: &str| path.rsplit('/').next().unwrap().trim_end_matches(".rs").to_string();
+    rooms().iter().map(|room| (name(&room.path), room.floor)).collect()
+}
+
+/// The lines of a file, or of all sources below a folder.
+fn lines(path: &Path) -> usize {
+    if !path.is_dir() {
+        let is_source = path.extension().is_some_and(|extension| extension == "rs");
+        return if is_source { fs::read_to_string(path).unwrap().lines().count() } else { 0 };
+    }
+    fs::read_dir(path).unwrap().map(|entry| lines(&entry.unwrap().path())).sum()
+}
+
+#[test]
+fn every_room_has_the_lines_that_its_list_allows() {
+    let rooms = rooms();
+    let (mut listed, mut wrong) = (0, Vec::new());
+    for Room { path, lines: most, .. } in &rooms {
+        let own = lines(&root().join(path));
+        listed += own;
+        // A list that is far above what is there tells nothing: room for a small change, and no more.
+        let least = most.saturating_sub(most / 20 + 60);
+        if own > *most || own < least {
+            wrong.push(format!("{path} has {own} lines, where ARCHITECTURE.md lists {most}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    let all = lines(&root().join("src")) + lines(&root().join("crates"));
+    assert_eq!(listed, all, "ARCHITECTURE.md does not list all of src and crates");
 }
 
 fn sources() -> Sources {
-    Sources::read(Path::new(env!("CARGO_MANIFEST_DIR")))
+    Sources::read(root())
 }
 
 #[test]
 fn imports_go_down_only() {
-    let mut seen = 0;
+    let (mut seen, floors) = (0, floors());
+    let floor = |module: &String| *floors.get(module).unwrap_or_else(|| panic!("{module} has no floor"));
     for source in sources().all {
         let Some(module) = source.module.first() else { continue };
         for import in source.imports.iter().filter_map(|import| import.path.first()) {
