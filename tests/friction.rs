@@ -158,7 +158,8 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     use kickdrift::system::levels::Outer;
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
     let text = std::fs::read_to_string(folder.join("water4.json")).unwrap().replace("1/250", "9/2000");
-    let scene = SystemScene::read_in(&folder, &text).unwrap().with_friction(ratio(1, 100)).unwrap();
+    let scene =
+        SystemScene::read_in(&folder, &text).unwrap().asked(None, false, Some(&ratio(1, 100))).unwrap();
     let weak = scene.friction(&Limits::default()).unwrap().unwrap();
     let (Mask::At(Masked { rate: (lo, hi), .. }), Some(growth)) = (weak.masking, weak.growth) else {
         panic!("{weak:?}")
@@ -169,7 +170,7 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     );
     // Friction takes half its rate from growth, to first order.
     assert!(lo < hi && hi < 1.02 * lo && (lo / (2.0 * growth.0) - 1.0).abs() < 0.2, "{lo} {hi} {growth:?}");
-    let (kernel, outer) = (scene.two_levels().unwrap().kernel, Outer::new(0.0045, 9).unwrap());
+    let (kernel, outer) = (scene.model().two_levels().unwrap().kernel, Outer::new(0.0045, 9).unwrap());
     let damping = |x: f64| kernel.damping(&outer, x);
     assert_eq!([damping(0.99 * lo), damping(1.01 * hi)], [Some(Damping::Growing), Some(Damping::Damped)]);
 }

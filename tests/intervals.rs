@@ -41,7 +41,7 @@ impl Numbers {
 }
 
 fn scene(source: &Value) -> SystemScene {
-    SystemScene::from_json(source.clone()).unwrap()
+    SystemScene::from_json_in("", source.clone()).unwrap()
 }
 
 /// The file with one number replaced.
@@ -82,7 +82,7 @@ fn assert_true(source: &Value, path: &str, all: &[Stretch], count: i64, numbers:
         let (lo, hi) = (from_f64_exact(own.lo).unwrap(), from_f64_exact(own.hi).unwrap());
         let inside = (0..count).map(|_| &lo + (&hi - &lo) * ratio(1 + numbers.below(998), 999));
         for value in [lo.clone(), hi.clone()].into_iter().chain(inside) {
-            let kind = exact_kind(with(source, path, &value).system(), &Limits::default()).unwrap();
+            let kind = exact_kind(with(source, path, &value).model().system(), &Limits::default()).unwrap();
             let stable = matches!(kind, Kind::Elliptic | Kind::Coexistence);
             assert_eq!(stable, own.verdict == Holds::Stable, "{path} = {value}: {kind:?} {own:?} {source}");
             seen += 1;

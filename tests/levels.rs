@@ -505,7 +505,7 @@ fn a_file_in_which_two_potentials_of_one_step_cancel_does_not_promise_what_movin
         "potentials": [potential("up"), potential("down")],
     });
     let scene = kickdrift::scene::SystemScene::from_json_in(&folder, source).unwrap();
-    let analysis = scene.decide(kickdrift::system::Route::Cheapest, &Limits::default()).unwrap();
+    let analysis = scene.model().decide(kickdrift::system::Route::Cheapest, &Limits::default()).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     let told = analysis.measured.as_ref().unwrap();
     assert!(analysis.is_stable() && told.holds == Holds::NotTold, "{told:?}");

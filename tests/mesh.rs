@@ -8,7 +8,7 @@ use kickdrift::system::{Analysis, Evidence, Limits, Route, middle};
 use kickdrift::verdict::Kind;
 
 fn decided(text: &str) -> Analysis {
-    SystemScene::read(text).unwrap().decide(Route::Cheapest, &Limits::default()).unwrap()
+    SystemScene::read(text).unwrap().model().decide(Route::Cheapest, &Limits::default()).unwrap()
 }
 
 /// Two bars between walls, lengths 3:2, each at C times its Courant step.
@@ -75,7 +75,7 @@ fn a_plate_is_stable_at_small_steps_and_beyond_them_its_worst_mode_is_told() {
     let mut told = (0, 0);
     for h in [ratio(1, 5), ratio(2, 5), ratio(1, 2), ratio(3, 5), ratio(7, 10)] {
         let scene = SystemScene::read(&plate(8, 8, &h)).unwrap();
-        let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
         if analysis.kind.unwrap() == Kind::Hyperbolic {
             told.1 += 1;
             assert_eq!(scene.labels().unwrap().len(), analysis.size);
@@ -91,7 +91,7 @@ fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_
     let stable = decided(&plate(24, 12, &ratio(1, 5)));
     assert!(stable.size >= 600 && stable.is_stable() && stable.is_proof());
     let scene = SystemScene::read(&plate(24, 12, &ratio(7, 10))).unwrap();
-    let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+    let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
     assert!(analysis.kind.unwrap() == Kind::Hyperbolic && analysis.is_proof());
     let mode = &analysis.parts[0].instabilities[0];
     let rest = vec![0.0; analysis.size];
@@ -99,7 +99,7 @@ fn a_mesh_too_large_for_all_its_eigenvalues_is_proven_either_way_and_its_growth_
     let measured = kickdrift::avi::growth_rate(&mut run, &rest, 1.0, (40, kickdrift::avi::Ends::Symmetric));
     // No rate is enclosed, and none is shown; the multiplier is a rounded one.
     assert!(mode.growth_rate.is_none() && analysis.growth_rate().is_none());
-    let rate = mode.multiplier.size().ln() / to_f64(&scene.system().period());
+    let rate = mode.multiplier.size().ln() / to_f64(&scene.model().system().period());
     assert!((measured / rate - 1.0).abs() < 1e-6, "{measured} {rate}");
 }
 

@@ -60,7 +60,7 @@ fn twelve_unstable_steps_grow_as_predicted_about_the_own_orbit_within_one_percen
             continue;
         }
         let found = measured(&scene, &own);
-        let equilibrium = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        let equilibrium = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
         let about_equilibrium = middle(equilibrium.growth_rate().unwrap());
         assert!(
             (found / predicted - 1.0).abs() < 0.01,

@@ -27,7 +27,7 @@ fn shipped_systems_are_read_and_proven() {
         ("three-clocks", 1, 3, false),
     ] {
         let scene = shipped(name);
-        let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
         assert_eq!((analysis.size, analysis.clocks), (size, clocks), "{name}");
         assert!(!scene.title().is_empty());
         assert!(analysis.is_proof(), "{name}: {:?}", analysis.warnings);
@@ -40,7 +40,7 @@ fn growth_of_small_deviations_is_that_of_the_hessians() {
     // Beside the simulated nonlinear forces: size² is lost, and roundoff/size is small.
     for name in ["fpu-quartic", "lennard-jones-resonant"] {
         let scene = shipped(name);
-        let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+        let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
         let predicted = middle(analysis.growth_rate().unwrap());
         let centre = scene.equilibrium().unwrap();
         assert!(!scene.is_linear());
@@ -97,7 +97,8 @@ fn the_unit_of_time_may_hold_pi() {
                 {{"step": "{}", "springs": [[0, null, "{}"]]}}, {{"step": "{}", "stiffness": [["{}"]]}}]}}"#,
             h[0], k[0], h[1], k[1]
         );
-        SystemScene::read(&text).map(|scene| scene.decide(Route::Cheapest, &Limits::default()).unwrap())
+        SystemScene::read(&text)
+            .map(|scene| scene.model().decide(Route::Cheapest, &Limits::default()).unwrap())
     };
     // The same system in three units: h sqrt(K/m) is what counts.
     let one = read("1", ["11/4", "57/10"], ["1", "5/3"]).unwrap();
@@ -133,7 +134,7 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
     let scene = shipped("edge-pi");
     let edge = scene.source()["potentials"].to_string();
     let edge = edge.trim_matches(['[', ']']);
-    let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+    let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
     assert_eq!((analysis.kind.unwrap(), analysis.parts[0].evidence), (Kind::Parabolic, Evidence::Exact));
     // A hair more or less of it: unstable and stable, proven in doubles.
     for (factor, kind) in [("1.00001", Kind::Hyperbolic), ("0.99999", Kind::Elliptic)] {
@@ -169,7 +170,10 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
 fn what_pi_may_not_be_in_is_refused() {
     let refused = |potentials: &str| {
         let scene = of_unit_masses(2, potentials);
-        scene.and_then(|scene| scene.decide(Route::Cheapest, &Limits::default())).unwrap_err().to_string()
+        scene
+            .and_then(|scene| scene.model().decide(Route::Cheapest, &Limits::default()))
+            .unwrap_err()
+            .to_string()
     };
     for (potentials, message) in [
         (
@@ -191,12 +195,17 @@ fn what_pi_may_not_be_in_is_refused() {
         assert!(error.starts_with(message), "{error}\nexpected {message}");
     }
     let scene = of_unit_masses(2, r#"{"step": "1/2", "springs": [[0, 1, "pi"], [0, null, "1"]]}"#).unwrap();
-    let error = scene.clone().with_friction(ratio(1, 2)).unwrap().friction(&Limits::default()).unwrap_err();
+    let error = scene
+        .clone()
+        .asked(None, false, Some(&ratio(1, 2)))
+        .unwrap()
+        .friction(&Limits::default())
+        .unwrap_err();
     assert_eq!(error.field(), "friction");
     assert!(scene.nearest_unstable(1e-3, &Limits::default()).is_err());
     // One outer step after another is no matter: 4/h² is passed between.
-    let kinds =
-        [ratio(1, 2), ratio(1, 1)].map(|step| scene.decide_at(&step, &Limits::default()).unwrap().kind);
+    let kinds = [ratio(1, 2), ratio(1, 1)]
+        .map(|step| scene.model().decide_at(&step, &Limits::default()).unwrap().kind);
     assert_eq!(kinds, [Kind::Elliptic, Kind::Hyperbolic].map(Some));
 }
 
@@ -255,7 +264,7 @@ fn hessians_are_taken_at_the_equilibrium() {
     let scene = shipped("lennard-jones");
     let x = scene.equilibrium().unwrap();
     assert!((x[1] - 2f64.powf(1.0 / 6.0)).abs() < 1e-12);
-    let curvature = to_f64(&scene.system().clocks()[0].stiffness.get(0, 1));
+    let curvature = to_f64(&scene.model().system().clocks()[0].stiffness.get(0, 1));
     assert!((curvature + 72.0 / 2f64.powf(1.0 / 3.0)).abs() < 1e-9);
     let mut run = scene.nonlinear_simulation(x.to_vec(), vec![0.0; 2]).unwrap().unwrap();
     let samples = avi::series(&mut run, x, 50, (1000, Ends::Symmetric));
@@ -269,7 +278,7 @@ fn springs_and_matrices_say_the_same() {
         let text = format!(
             r#"{{"schema": "kickdrift/system/1", "masses": [1, "3/2"], "potentials": [{{"step": "0.25", {potential}}}]}}"#
         );
-        SystemScene::read(&text).unwrap().system().clocks()[0].stiffness.clone()
+        SystemScene::read(&text).unwrap().model().system().clocks()[0].stiffness.clone()
     };
     let springs = read(r#""springs": [[0, 1, "10"], [1, null, "1/2"]]"#);
     assert_eq!(springs, read(r#""stiffness": [["10", "-10"], [-10, "21/2"]]"#));
@@ -528,8 +537,8 @@ fn intervals_of_any_number_cover_their_range_and_each_point_agrees_with_its_own_
                         None => file["potentials"][0]["scale"] = value.to_string().into(),
                     }
                 }
-                let scene = SystemScene::from_json(file).unwrap();
-                let analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+                let scene = SystemScene::from_json_in("", file).unwrap();
+                let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
                 assert_eq!(analysis.is_stable(), own.verdict == Holds::Stable, "{text} at {value}");
             }
         }
@@ -612,7 +621,7 @@ fn three_clocks_have_their_rigid_motions_projected_out_as_two_have() {
     let limits = Limits::default();
     for (steps, stable) in [(["1/8", "1/4", "1/2"], true), (["1/2", "1", "2"], false)] {
         let scene = tetrahedron(steps, positions.clone()).unwrap();
-        let analysis = scene.decide(Route::Cheapest, &limits).unwrap();
+        let analysis = scene.model().decide(Route::Cheapest, &limits).unwrap();
         assert!(analysis.is_proof() && analysis.is_stable() == stable, "{steps:?} {:?}", analysis.kind);
         assert!(
             analysis.warnings[0].contains("with 6 motions projected out (positions)"),

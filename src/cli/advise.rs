@@ -90,7 +90,7 @@ impl Args {
     fn molecule(&self, path: &Path, reading: Option<&Reading>, common: &Common) -> Result<()> {
         let archive = path.extension().is_some_and(|extension| extension == "npz");
         let scene = if archive { self.archive(path, reading, common)? } else { system::read(path, common)? };
-        let scene = self.changed(scene, path, common)?;
+        let scene = self.changed(scene)?;
         let (molecule, own) = scene.molecule()?;
         let own = reading.map_or(own, |reading| reading.scheme.clone());
         let given = self.given(reading)?.into_iter().filter(|scheme| !archive || *scheme != own);
@@ -135,18 +135,14 @@ impl Args {
     }
 
     /// With the hydrogens and the constraints of the command line.
-    fn changed(&self, scene: SystemScene, path: &Path, common: &Common) -> Result<SystemScene> {
-        let mut source = scene.source().clone();
-        if let Some(mass) = self.hmr.as_deref().map(heavy_hydrogen).transpose()? {
-            source["hydrogen_mass"] = decimal(&mass).into();
-        }
-        if let Some(which) = &self.constraints {
-            source["constraints"] = which.trim().into();
-        }
-        if source == *scene.source() {
+    fn changed(&self, scene: SystemScene) -> Result<SystemScene> {
+        let mass = self.hmr.as_deref().map(heavy_hydrogen).transpose()?.map(|mass| decimal(&mass));
+        let held = self.constraints.as_deref().map(|which| which.trim().to_string());
+        if mass.is_none() && held.is_none() {
             return Ok(scene);
         }
-        SystemScene::from_json_in(system::arrays(path, common), source)
+        let fields = [("hydrogen_mass", mass), ("constraints", held)].into_iter();
+        scene.with_fields(fields.filter_map(|(key, value)| Some((key, value?))))
     }
 
     fn friction(&self) -> Result<Option<Rational>> {

@@ -68,16 +68,8 @@ impl Args {
         // Refused before the work, not after it.
         self.paper.check(drawing(common)?.is_some())?;
         let (text, arrays) = source(&self.file, common)?;
-        let mut scene = SystemScene::read_in(arrays, &text)?;
-        if let Some(accuracy) = self.accuracy {
-            scene = scene.at_accuracy(accuracy)?;
-        }
-        if self.keep_rigid {
-            scene = scene.keeping_rigid()?;
-        }
-        if let Some(rate) = &self.friction {
-            scene = scene.with_friction(rate.clone())?;
-        }
+        let scene = SystemScene::read_in(arrays, &text)?;
+        let scene = scene.asked(self.accuracy, self.keep_rigid, self.friction.as_ref())?;
         if let Some(span) = &self.intervals {
             return self.intervals(&scene, span, common).map(|()| 0);
         }
@@ -127,7 +119,7 @@ impl Args {
     fn exit_code(&self, scene: &SystemScene, common: &Common) -> Result<u8> {
         let silent = common.quiet && common.output.is_none();
         let holds = if silent {
-            scene.verdict(self.route(), &limits(common))?
+            scene.model().verdict(self.route(), &limits(common))?
         } else {
             self.verdict(scene, common)?.holds()
         };
@@ -143,7 +135,7 @@ impl Args {
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<Analysis> {
         let waiting = waiting(scene, common.quiet);
-        let analysis = scene.decide(self.route(), &limits(common))?;
+        let analysis = scene.model().decide(self.route(), &limits(common))?;
         waiting.finish_and_clear();
         match drawing(common)? {
             Some(path) => {
@@ -175,7 +167,7 @@ impl Args {
     fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {
         let (xs, ys, limits) = (axes.x.values(), axes.ys(), limits(common));
         let bar = progress(common.quiet, (xs.len() * ys.len()) as u64, "points");
-        let decide = |x: &_, y: &_| axes.at(x, y)?.decide(self.route(), &limits);
+        let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(self.route(), &limits);
         let points = scan(&xs, &ys, decide, |done| bar.inc(done as u64));
         bar.finish_and_clear();
         let time_unit = scene.time_unit().map(String::from);
@@ -277,12 +269,12 @@ const PACE: u64 = 1_000_000_000;
 
 /// What a long verdict will cost, said on standard error before it begins, on a terminal only.
 fn waiting(scene: &SystemScene, quiet: bool) -> ProgressBar {
-    let cost = scene.cost();
+    let cost = scene.model().cost();
     if quiet || cost < 2 * PACE {
         return ProgressBar::hidden();
     }
     let spinner = ProgressBar::new_spinner();
-    let (n, seconds) = (scene.size(), cost / PACE);
+    let (n, seconds) = (scene.model().size(), cost / PACE);
     spinner
         .set_message(format!("{n} degrees of freedom: some {:.0e} products, {seconds} s or so", cost as f64));
     spinner.enable_steady_tick(std::time::Duration::from_millis(100));

@@ -23,10 +23,10 @@ const WIDTH: f64 = 1e-3;
 pub(super) fn modes(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
     let at = query.need("at", positive)?;
-    if scene.cost() > MOST_PRODUCTS {
-        return Err(Error::budget("a verdict on this system", scene.cost()));
+    if scene.model().cost() > MOST_PRODUCTS {
+        return Err(Error::budget("a verdict on this system", scene.model().cost()));
     }
-    let analysis = scene.decide_at(&at, &Limits::default())?;
+    let analysis = scene.model().decide_at(&at, &Limits::default())?;
     Ok(Reply::json(&json!({"at": rational::to_f64(&at), "verdict": verdict(scene, &analysis)})))
 }
 
@@ -42,8 +42,14 @@ fn verdict(scene: &SystemScene, analysis: &Analysis) -> Value {
 
 /// The file's outer step, and the range asked for: from a quarter of it to twice it, where none is.
 fn range(scene: &SystemScene, query: &Query) -> Result<(Rational, (Rational, Rational))> {
-    let own =
-        scene.system().clocks().iter().map(|clock| clock.step.clone()).max().expect("a system has clocks");
+    let own = scene
+        .model()
+        .system()
+        .clocks()
+        .iter()
+        .map(|clock| clock.step.clone())
+        .max()
+        .expect("a system has clocks");
     let (lo, hi) = match query.read("outer", parse_rational_range)? {
         Some(range) => range,
         None => (&own * rational::ratio(1, 4), &own * rational::ratio(2, 1)),
@@ -77,9 +83,9 @@ pub(super) fn stretches(session: &Session, query: &Query) -> Result<Reply> {
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let scene = system(session)?;
     let (own, (lo, hi)) = range(scene, query)?;
-    let affordable = MOST_PRODUCTS / scene.cost().max(1);
+    let affordable = MOST_PRODUCTS / scene.model().cost().max(1);
     if affordable < 2 {
-        return Err(Error::budget("two verdicts on this system", 2 * scene.cost()));
+        return Err(Error::budget("two verdicts on this system", 2 * scene.model().cost()));
     }
     let samples = query.read("samples", count(2, 1000))?.unwrap_or(200).min(affordable);
     let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
@@ -87,7 +93,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let (steps, limits) = (steps.collect::<Vec<f64>>(), Limits::default());
     let span: Span = format!("outer={lo}..{hi}").parse()?;
     let rates = scene.growth_rates(&span, &steps, &limits)?;
-    let analysis = scene.decide(Route::Cheapest, &limits)?;
+    let analysis = scene.model().decide(Route::Cheapest, &limits)?;
     Ok(Reply::json(&json!({
         "outer": steps, "rate": rates, "own": rational::to_f64(&own), "verdict": verdict(scene, &analysis),
         "unit": scene.time_unit(), "title": scene.title(),

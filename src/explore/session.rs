@@ -76,7 +76,7 @@ impl Session {
 
     /// A system; its two springs' plane where it is two clocks on one oscillator.
     pub fn of_system(system: SystemScene) -> Session {
-        let two = system.two_clocks();
+        let two = system.model().two_clocks();
         let known = two.and_then(|two| Session::new(two.lambda1().clone(), two.lambda2().clone()).ok());
         let mut session = known.unwrap_or_else(|| Session { stiffnesses: None, ..Session::figure1() });
         session.title = system.title().into();

@@ -12,6 +12,7 @@
 //!
 //! | file | what |
 //! |---|---|
+//! | `models` | what a system may be; which route decides it |
 //! | `model`, `sparse`, `builders`, `mesh` | what a system is, and the usual ones; finite elements |
 //! | `compose` | kicks and drifts that touch only the degrees of freedom of their potential |
 //! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
@@ -69,6 +70,7 @@ mod limits;
 mod measured;
 pub mod mesh;
 mod model;
+mod models;
 mod modes;
 mod modular;
 pub mod nearest;
@@ -99,6 +101,7 @@ pub use exact::{ExactVerdict, MuCount, decide_exact};
 pub use limits::{Limits, Route};
 pub use measured::{Holds, Measured, Removed};
 pub use model::{Potential, System};
+pub use models::{Body, MeasuredSystem, Model, Number, Oscillator, TwoLevels};
 pub use modes::{Origin, Resonance};
 pub use pi::{PiPotential, PiSystem};
 pub use rate::{Multiplier, middle};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use faer::Mat;
-use num_traits::{Signed, Zero};
+use num_traits::{One, Signed, Zero};
 
 use super::sparse::{Symmetric, inertia_of_sum, is_sum_semidefinite, null_space};
 use crate::error::{Error, Result};
@@ -101,6 +101,24 @@ impl System {
     /// unless all do.
     pub fn clocks(&self) -> &[Potential] {
         &self.clocks
+    }
+
+    /// The steps of the potentials as they were given.
+    pub fn steps(&self) -> Vec<Rational> {
+        self.potentials.iter().map(|own| own.step.clone()).collect()
+    }
+
+    /// The same with all stiffnesses times a factor, and all steps times another one.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub(super) fn with(&self, stiffer: &Rational, slower: &Rational) -> Result<System> {
+        let changed = |own: &Potential| Potential {
+            stiffness: if stiffer.is_one() { own.stiffness.clone() } else { own.stiffness.scaled(stiffer) },
+            step: &own.step * slower,
+            phase: own.phase.clone(),
+        };
+        System::new(self.mass.clone(), self.potentials.iter().map(changed).collect())
     }
 
     /// The same with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.

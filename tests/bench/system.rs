@@ -82,12 +82,13 @@ fn dense() {
         for outer in ["1", "14/5"] {
             let text = dense_file(n, 7, 4, outer);
             let read = || SystemScene::read(&text).expect("a system");
-            let decide =
-                |scene: &SystemScene| scene.decide(Route::Cheapest, &Limits::default()).expect("a verdict");
+            let decide = |scene: &SystemScene| {
+                scene.model().decide(Route::Cheapest, &Limits::default()).expect("a verdict")
+            };
             let (own, analysis) = least(3, 1.0, || decide(&read()));
             let scene = read();
             let (alone, _) = least(3, 1.0, || decide(&scene));
-            let (other, _) = least(3, 1.0, || multipliers(scene.system()));
+            let (other, _) = least(3, 1.0, || multipliers(scene.model().system()));
             println!(
                 "dense {n}, outer step {outer}: {} by {} in {:.2} ms; alone {:.3} ms, dense way {:.3} ms",
                 analysis.kind_name(),
@@ -107,7 +108,7 @@ fn dense() {
     let scene = SystemScene::read(&text).expect("a system");
     let axes = Scan::new(scene, axis(x), Some(axis(y))).expect("a map");
     let (xs, ys, limits) = (axes.x.values(), axes.ys(), Limits::default());
-    let decide = |x: &_, y: &_| axes.at(x, y)?.decide(Route::Cheapest, &limits);
+    let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(Route::Cheapest, &limits);
     let (own, points) = least(3, 0.0, || scan(&xs, &ys, decide, |_| ()).expect("a map"));
     println!("map of {} points, n = 12: {:.0} ms", points.len(), 1e3 * own);
     assert!(points.len() == 182);

@@ -31,10 +31,10 @@ const GROWTH: f64 = 1e-5;
 
 impl Other {
     fn new(scene: &SystemScene, band: f64) -> Result<Other> {
-        let levels = scene.two_levels()?;
+        let levels = scene.model().two_levels()?;
         let off = levels.kernel.norms().map(|norm| levels.accuracy * norm);
         let unit = to_f64(&scene.femtoseconds()?);
-        Ok(Other { hessians: scene.hessians()?, off, band, unit })
+        Ok(Other { hessians: scene.model().hessians()?, off, band, unit })
     }
 
     fn inner_steps(own: &Finding) -> u64 {

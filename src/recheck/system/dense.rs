@@ -30,8 +30,8 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = full_period(scene.system());
-    let (norm, n) = (q.norm(), scene.system().size() as f64);
+    let q: DMatrix<f64> = full_period(scene.model().system());
+    let (norm, n) = (q.norm(), scene.model().system().size() as f64);
     let sums = [
         (q.trace(), turns.iter().sum::<Complex64>(), norm),
         ((&q * &q).trace(), turns.iter().map(|turn| turn * turn - 2.0).sum(), norm * norm),
@@ -50,7 +50,7 @@ const STILL: f64 = 1e-5;
 
 /// The largest growth rate of measured stiffnesses holds the one of the dense full period, kick by kick and without any basis of modes.
 pub fn growth(scene: &SystemScene, analysis: &Analysis) -> Checked {
-    let Some((found, (lo, hi))) = scene.growth_of_period()?.zip(analysis.growth_rate()) else {
+    let Some((found, (lo, hi))) = scene.model().growth_of_period()?.zip(analysis.growth_rate()) else {
         return Ok(());
     };
     let off = STILL / analysis.period.to_f64() + ROUNDED * found;
@@ -61,7 +61,7 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis) -> Checked {
 
 /// The series of a linear run by powers of the full period: z after k periods is Qᵏ z₀.
 pub fn linear_run(scene: &SystemScene, request: &RunRequest, run: &Run) -> Checked {
-    let (system, centre) = (scene.system(), scene.equilibrium());
+    let (system, centre) = (scene.model().system(), scene.equilibrium());
     let n = system.size();
     let q: DMatrix<f64> = full_period(system);
     let shift = request.displacement.of(n)?;
@@ -93,7 +93,7 @@ mod tests {
         for (step, unstable) in [("1/200", false), ("1/100", true)] {
             let text = text.replace("\"1/200\"", &format!("\"{step}\""));
             let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
-            let mut analysis = scene.decide(Route::Cheapest, &Limits::default()).unwrap();
+            let mut analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
             assert_eq!((analysis.is_proof(), analysis.is_unstable()), (true, unstable));
             assert!(growth(&scene, &analysis).is_ok());
             // A hundredth more, or any where there is none.

@@ -15,6 +15,7 @@ use super::written::{Written, positive};
 use crate::avi::{Ends, Run};
 use crate::error::{Error, Kind as Reason, Result};
 use crate::number::Rational;
+use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::system::{self as report, SystemMap};
 use crate::scene::{Axis, Displacement, RunRequest, Scan, SystemScene};
@@ -83,17 +84,10 @@ const ALONE: &str = "none: every value is computed again, by the same route";
 
 impl Input {
     fn scene(&self, context: &Context) -> Result<SystemScene> {
-        let mut scene = SystemScene::from_json_in(&context.options.folder, self.system.clone())?;
-        if let Some(accuracy) = &self.accuracy {
-            scene = scene.at_accuracy(crate::number::rational::to_f64(accuracy))?;
-        }
-        if self.keep_rigid.is_some() {
-            scene = scene.keeping_rigid()?;
-        }
-        if let Some(rate) = positive("input.friction", self.friction.as_ref())? {
-            scene = scene.with_friction(rate.clone())?;
-        }
-        Ok(scene)
+        let scene = SystemScene::from_json_in(&context.options.folder, self.system.clone())?;
+        let accuracy = self.accuracy.as_ref().map(|own| to_f64(own));
+        let friction = positive("input.friction", self.friction.as_ref())?;
+        scene.asked(accuracy, self.keep_rigid.is_some(), friction)
     }
 
     /// The title is that of the system.
@@ -124,7 +118,7 @@ impl Recheck for Verdict {
     fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
         let (input, limits) = (&self.input, limits(context));
         let scene = input.scene(context)?;
-        let analysis = scene.decide(input.route(), &limits)?;
+        let analysis = scene.model().decide(input.route(), &limits)?;
         let friction = scene.friction(&limits)?;
         let orbit = match scene.own_orbit(&limits) {
             Err(error) if error.kind() == Reason::Input => None,
@@ -132,7 +126,7 @@ impl Recheck for Verdict {
         };
         let nearest = input.nearest.as_ref().map(|_| {
             let width = input.width.as_ref().ok_or_else(|| missing("input.width"))?;
-            scene.nearest_unstable(crate::number::rational::to_f64(width), &limits)
+            scene.nearest_unstable(to_f64(width), &limits)
         });
         let nearest = nearest.transpose()?;
         let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
@@ -148,7 +142,7 @@ impl Recheck for Verdict {
             return outcome(context, route, dense::growth(&scene, &analysis));
         }
         let traces = || dense::traces(&scene, &analysis);
-        match within(scene.exact_kind(&limits(context)))? {
+        match within(scene.model().exact_kind(&limits(context)))? {
             Some(truth) => {
                 let route = "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square";
                 outcome(context, route, same_kind(analysis.kind, truth).and_then(|()| traces()))
@@ -184,7 +178,8 @@ impl Recheck for Points {
         let time_unit = scene.time_unit().map(String::from);
         let scan_of = Scan::new(scene.clone(), x, y)?;
         let (xs, ys) = (scan_of.x.values(), scan_of.ys());
-        let decide = |x: &_, y: &_| -> Result<Analysis> { scan_of.at(x, y)?.decide(input.route(), &limits) };
+        let decide =
+            |x: &_, y: &_| -> Result<Analysis> { scan_of.at(x, y)?.model().decide(input.route(), &limits) };
         let (of, mut done) = ((xs.len() * ys.len()) as u64, 0);
         let points = scan(&xs, &ys, decide, |more| {
             done += more as u64;
@@ -203,7 +198,7 @@ impl Recheck for Points {
         for n in sample(&self.input.system.to_string(), of, most) {
             let point = &map.points[n as usize];
             let (x, y) = &point.at;
-            let Some(truth) = within(scan_of.at(x, y)?.exact_kind(&limits))? else { continue };
+            let Some(truth) = within(scan_of.at(x, y)?.model().exact_kind(&limits))? else { continue };
             decided += 1;
             let values = || map.names.iter().zip([x, y]).map(|(name, value)| format!("{name} = {value}"));
             let place = || values().collect::<Vec<_>>().join(", ");
@@ -223,7 +218,7 @@ impl Recheck for Intervals {
         let input = &self.input;
         let (span, width) =
             input.intervals.as_deref().zip(input.width.as_ref()).ok_or_else(|| missing("input"))?;
-        let (span, width) = (span.parse()?, crate::number::rational::to_f64(width));
+        let (span, width) = (span.parse()?, to_f64(width));
         let scene = input.scene(context)?;
         let found = scene.intervals(&span, width, &limits(context))?;
         Ok((input.echo(report::intervals(&found), &scene).value(), ()))

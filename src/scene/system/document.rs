@@ -80,7 +80,8 @@ impl Number {
 #[serde(deny_unknown_fields)]
 pub(super) struct Document {
     pub schema: String,
-    pub title: Option<String>,
+    #[serde(rename = "title")]
+    _title: Option<String>,
     #[serde(rename = "time_unit")]
     _time_unit: Option<String>,
     pub masses: Option<Vec<Number>>,

@@ -7,18 +7,19 @@
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
 
+use serde_json::Value;
+
 use super::SystemScene;
-use super::scan::MOST_POINTS;
+use super::document::Number as Written;
+use super::scan::{MOST_POINTS, found};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational_range;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::edges::{Family, Linear};
 use crate::system::nearest::Nearest;
-use crate::system::stretches::Stretch;
-use crate::system::stretches::merged;
+use crate::system::stretches::{Stretch, merged};
 use crate::system::vary::Intervals;
-use crate::system::{Analysis, Holds, Limits, Potential, Route, System, middle};
+use crate::system::{Limits, Model, Number, Route, middle};
 
 /// One number of a file and its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,69 +107,70 @@ impl SystemScene {
     ///
     /// # Errors
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
-    /// [`Family::stretches`].
+    /// [`Model::stretches`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
         self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
         if role == Role::Outer && span.lo <= Rational::default() {
             return Err(Error::input("intervals", span, "steps are positive"));
         }
-        let levels = self.measured.as_ref().filter(|own| own.is_of_two_levels());
-        let is_scale = span.path.ends_with(".scale");
-        let (inner_steps, stretches) = match (role, levels) {
-            (Role::Outer, _) => self.outer_stretches(span.ends(), width, limits)?,
-            (Role::Step, _) => (None, self.multiples(span, limits)?),
-            (Role::Linear, Some(own)) if is_scale => {
-                let (level, factor) = own.scaled_at(&span.path)?;
-                (None, own.stretches_of_scale(level, span.ends(), factor, width)?)
+        let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.model);
+        let number = match role {
+            Role::Outer => Number::Outer,
+            Role::Linear if self.model.inner_steps().is_some() && span.path.ends_with(".scale") => {
+                let (level, factor) = self.scale(&span.path)?;
+                Number::Scale(level, factor)
             }
-            (Role::Linear, _) => {
-                let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.system().clone());
-                let family = Family { linear: Linear::Number, at: &at };
-                (None, family.stretches(span.ends(), width, limits)?)
-            }
+            Role::Step | Role::Linear => Number::Linear(&at),
         };
-        Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
+        let (is_discrete, inner_steps) = (role == Role::Step, self.model.inner_steps());
+        let stretches = match role {
+            Role::Step => self.multiples(span, limits)?,
+            _ => self.model.stretches(&number, span.ends(), width, limits)?,
+        };
+        let inner_steps = inner_steps.filter(|_| role == Role::Outer);
+        Ok(Intervals { number: span.path.clone(), is_discrete, inner_steps, stretches })
+    }
+
+    /// Which of two measured levels the scale at a path is of, 0 the fast one, and its present value.
+    fn scale(&self, path: &str) -> Result<(usize, f64)> {
+        let key = path.strip_prefix("potentials.").and_then(|rest| rest.strip_suffix(".scale"));
+        let all = &self.source["potentials"];
+        let own = key.map_or(&Value::Null, |key| found(all, key));
+        if own.is_null() {
+            return Err(Error::input("intervals", path, "name the scale of a potential"));
+        }
+        let step = |of: &Value| Written::from(of["step"].clone()).read("step");
+        let step_of = step(own)?;
+        let steps = all.as_array().into_iter().flatten().map(step).collect::<Result<Vec<_>>>()?;
+        let factor = match own.get("scale") {
+            Some(scale) => to_f64(&Written::from(scale.clone()).read("scale")?),
+            None => 1.0,
+        };
+        if steps.iter().filter(|other| **other == step_of).count() > 1 || factor == 0.0 {
+            let remedy = "give the potential a step of its own and a scale that is not 0";
+            return Err(Error::input("intervals", path, remedy));
+        }
+        let level = self.model.steps().iter().position(|other| *other == step_of).expect("its own step");
+        Ok((level, factor))
     }
 
     /// The largest growth rate at each value of the number, per unit time, rounded; `None` where it is not told.
     ///
     /// # Errors
-    /// As [`SystemScene::intervals`] and [`SystemScene::decide`].
+    /// As [`SystemScene::intervals`] and [`Model::decide`].
     pub fn growth_rates(&self, span: &Span, values: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
-        let role = span.role()?;
-        if let (Role::Outer, Some(own)) = (role, self.measured.as_ref().filter(|own| own.is_of_two_levels()))
-        {
-            return own.growth_rates(values);
-        }
         // Some milliseconds a rate, whose last digits nobody sees.
         let limits = &Limits { refining: 1 << 20, ..*limits };
+        if span.role()? == Role::Outer {
+            return self.model.growth_rates(values, limits);
+        }
         let rate = |&value: &f64| {
-            let analysis = match role {
-                Role::Outer => self.decide_at(&exact(value), limits)?,
-                _ => {
-                    self.with("intervals", &[(&span.path, &exact(value))])?.decide(Route::Cheapest, limits)?
-                }
-            };
-            Ok(analysis.growth_rate().map(middle))
+            let value = from_f64_exact(value).expect("a finite number");
+            let scene = self.with("intervals", &[(&span.path, &value)])?;
+            Ok(scene.model.decide(Route::Cheapest, limits)?.growth_rate().map(middle))
         };
         crate::parallel::try_map(values, rate)
-    }
-
-    /// The verdict with the outer step `outer` > 0, all steps in the proportions of the file.
-    ///
-    /// # Errors
-    /// As [`SystemScene::decide`].
-    pub fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
-        if let Some(own) = self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
-            return own.decide_at(outer, limits);
-        }
-        let factor = outer / self.outer_step();
-        if let Some(own) = &self.with_pi {
-            return own.slowed(&factor)?.decide(Route::Cheapest, limits);
-        }
-        let slowed = self.slowed(&factor)?;
-        SystemScene::linear(self.source.clone(), String::new(), slowed).decide(Route::Cheapest, limits)
     }
 
     /// The unstable intervals of the outer step next to the one of the file, all steps in their ratios: between half of it and twice it.
@@ -177,16 +179,7 @@ impl SystemScene {
     /// As [`SystemScene::intervals`].
     pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
         self.allow_intervals("nearest", limits)?;
-        let step = to_f64(&self.steps().into_iter().max().unwrap_or_default());
-        if !self.measured.as_ref().is_some_and(|own| own.is_of_two_levels()) {
-            let at = |square: &Rational| self.at_square(square);
-            let family = Family { linear: Linear::Square, at: &at };
-            if let Some(all) = family.exactly(Nearest::reach(step), limits)? {
-                return Ok(Nearest::of(step, &all));
-            }
-        }
-        let own = self.decide(Route::Cheapest, limits)?.holds();
-        Nearest::search((step, own), |range| Ok(self.outer_stretches(range, width, limits)?.1))
+        self.model.nearest_unstable(width, limits)
     }
 
     /// What has no intervals is refused, and what costs too much.
@@ -195,54 +188,19 @@ impl SystemScene {
         if self.friction.is_some() {
             return refused("with friction", "take the friction out of the file");
         }
-        if !self.is_linear() || self.oscillator.is_some() || self.with_pi.is_some() {
+        if !self.is_linear() || matches!(self.model, Model::Oscillator(_) | Model::Pi(_)) {
             return refused("of this file", "are for linear systems of rational numbers");
         }
-        limits.allow(self.cost(), || format!("a verdict on {} degrees of freedom", self.size()))
-    }
-
-    /// The verdicts on a range of outer steps, all steps in their ratios, and the inner steps in each where these are two levels.
-    fn outer_stretches(
-        &self,
-        range: (f64, f64),
-        width: f64,
-        limits: &Limits,
-    ) -> Result<(Option<u64>, Vec<Stretch>)> {
-        match self.measured.as_ref().filter(|own| own.is_of_two_levels()) {
-            Some(own) => own.stretches(range, width).map(|(inner_steps, found)| (Some(inner_steps), found)),
-            None => {
-                let at = |square: &Rational| self.at_square(square);
-                let family = Family { linear: Linear::Square, at: &at };
-                Ok((None, family.stretches(range, width, limits)?))
-            }
-        }
-    }
-
-    fn outer_step(&self) -> Rational {
-        let steps = self.system().potentials().iter().map(|own| own.step.clone());
-        steps.max().unwrap_or_default()
-    }
-
-    /// All steps times a factor.
-    fn slowed(&self, factor: &Rational) -> Result<System> {
-        let slowed = |own: &Potential| Potential { step: &own.step * factor, ..own.clone() };
-        System::new(self.system().mass().clone(), self.system().potentials().iter().map(slowed).collect())
-    }
-
-    /// The system with the outer step whose square is given, all steps in their ratios: in the old steps all stiffnesses by as much as the
-    /// square grows.
-    fn at_square(&self, square: &Rational) -> Result<System> {
-        let own = self.outer_step();
-        let factor = square / (&own * &own);
-        let stiffer = |own: &Potential| Potential { stiffness: own.stiffness.scaled(&factor), ..own.clone() };
-        System::new(self.system().mass().clone(), self.system().potentials().iter().map(stiffer).collect())
+        let work = || format!("a verdict on {} degrees of freedom", self.model.size());
+        limits.allow(self.model.cost(), work)
     }
 
     /// The multiples of the shortest of the other steps, each alone: stretches from one multiple to another.
     fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
+        let longest = self.model.steps().into_iter().max().unwrap_or_default();
         // A step that no other has: with it in place, the shortest of the rest.
-        let far = self.outer_step() * Rational::from_integer(2.into());
-        let steps = self.with("intervals", &[(&span.path, &far)])?.steps();
+        let far = longest * Rational::from_integer(2.into());
+        let steps = self.with("intervals", &[(&span.path, &far)])?.model.steps();
         let inner = steps.into_iter().filter(|step| *step != far).min();
         let inner =
             inner.ok_or_else(|| Error::input("intervals", &span.path, "is the only step: name outer"))?;
@@ -254,29 +212,15 @@ impl SystemScene {
         }
         let next = |k: &Rational| Some(k + Rational::from_integer(1.into())).filter(|k| *k <= last);
         let values: Vec<_> = std::iter::successors(Some(first), next).map(|k| k * &inner).collect();
+        // One eigenbasis serves them all.
+        if let (Model::Measured(own), Some(_)) = (&self.model, self.model.inner_steps()) {
+            own.kernel()?;
+        }
         let stretch = |step: &Rational| {
-            let verdict = self.with("intervals", &[(&span.path, step)])?.holds(limits)?;
+            let model = self.with("intervals", &[(&span.path, step)])?.model;
+            let verdict = model.verdict(Route::Cheapest, limits)?;
             Ok(Stretch { lo: to_f64(step), hi: to_f64(step), verdict })
         };
         Ok(merged(crate::parallel::try_map(&values, stretch)?.into_iter()))
     }
-
-    fn steps(&self) -> Vec<Rational> {
-        match &self.measured {
-            Some(own) => own.steps(),
-            None => self.system().potentials().iter().map(|own| own.step.clone()).collect(),
-        }
-    }
-
-    /// What is proven of the system.
-    fn holds(&self, limits: &Limits) -> Result<Holds> {
-        match self.measured.as_ref().and_then(|own| own.holds().transpose()) {
-            Some(holds) => holds,
-            None => Ok(self.decide(Route::Cheapest, limits)?.holds()),
-        }
-    }
-}
-
-fn exact(x: f64) -> Rational {
-    from_f64_exact(x).expect("a finite end of a cell")
 }

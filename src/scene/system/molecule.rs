@@ -23,9 +23,9 @@ impl SystemScene {
     /// The molecule with the scheme of steps of its file, in fs.
     ///
     /// # Errors
-    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`SystemScene::two_levels`].
+    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::two_levels`](crate::system::Model::two_levels).
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
-        let (levels, unit) = (self.two_levels()?, self.femtoseconds()?);
+        let (levels, unit) = (self.model.two_levels()?, self.femtoseconds()?);
         let labels = self.source().get("labels").map(Vec::<String>::deserialize);
         let names = labels.and_then(std::result::Result::ok).unwrap_or_default();
         let scheme = Scheme::new([levels.inner, levels.outer].map(|step| step * &unit).to_vec())?;

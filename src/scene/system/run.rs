@@ -77,7 +77,7 @@ impl SystemScene {
     ///
     /// # Errors
     /// No periods or too many, a displacement of another size or of an energy beyond all doubles; a budget error with the cost,
-    /// before the run; as [`SystemScene::decide`] and [`SystemScene::linear_simulation`].
+    /// before the run; as [`Model::decide`](crate::system::Model::decide) and [`SystemScene::linear_simulation`].
     pub fn run(&self, request: &RunRequest, limits: &Limits) -> Result<Run> {
         let most = RunRequest::MOST_PERIODS;
         if request.periods == 0 || request.periods > most {
@@ -90,10 +90,10 @@ impl SystemScene {
         })?;
         let predicted = match &own {
             Some(orbit) => orbit.analysis.growth_rate(),
-            None => self.decide(Route::Cheapest, limits)?.growth_rate(),
+            None => self.model.decide(Route::Cheapest, limits)?.growth_rate(),
         };
         let predicted = predicted.map_or(f64::NAN, middle);
-        let shift = request.displacement.of(self.system().size())?;
+        let shift = request.displacement.of(self.model.size())?;
         let rest = vec![0.0; shift.len()];
         let Some(centre) = own.as_ref().map(|orbit| orbit.start.as_slice()).or_else(|| self.equilibrium())
         else {

@@ -12,6 +12,7 @@ use super::SystemScene;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
+use crate::system::Model;
 
 /// The most values of an axis, and the most points of a map.
 pub(super) const MOST_POINTS: usize = 100_000;
@@ -168,6 +169,16 @@ impl SystemScene {
         (words.replace('_', " "), time)
     }
 
+    /// The same file with other texts in some of its fields.
+    ///
+    /// # Errors
+    /// As [`SystemScene::read_in`].
+    pub fn with_fields(&self, fields: impl Iterator<Item = (&'static str, String)>) -> Result<SystemScene> {
+        let mut file = self.source.clone();
+        fields.for_each(|(key, value)| file[key] = value.into());
+        SystemScene::from_json_in(self.arrays.clone(), file)
+    }
+
     /// The same file with other numbers at some of its paths; `field` is what errors name.
     pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();
@@ -175,7 +186,7 @@ impl SystemScene {
             *place(&mut file, path, field)? = Value::String(value.to_string());
         }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
-        if let (Some(own), Some(old)) = (&mut scene.measured, &self.measured) {
+        if let (Model::Measured(own), Model::Measured(old)) = (&mut scene.model, &self.model) {
             own.follow(old);
         }
         Ok(scene)
@@ -183,7 +194,7 @@ impl SystemScene {
 }
 
 /// An item by its place or its name; nothing where there is none.
-fn found<'a>(items: &'a Value, key: &str) -> &'a Value {
+pub(super) fn found<'a>(items: &'a Value, key: &str) -> &'a Value {
     let all = items.as_array().map_or(&[][..], Vec::as_slice);
     let named = || all.iter().position(|item| item["name"].as_str() == Some(key));
     key.parse().ok().or_else(named).and_then(|i: usize| all.get(i)).unwrap_or(&Value::Null)

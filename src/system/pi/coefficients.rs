@@ -52,9 +52,7 @@ impl Coefficients {
 
     /// The same with all steps times a positive factor.
     pub fn slowed(&self, factor: &Rational) -> Result<Self> {
-        let slowed = |own: &Potential| Potential { step: &own.step * factor, ..own.clone() };
-        let potentials = self.system.potentials().iter().map(slowed).collect();
-        Ok(self.of_part(System::new(self.system.mass().clone(), potentials)?))
+        Ok(self.of_part(self.system.with(&Rational::one(), factor)?))
     }
 
     pub fn system(&self) -> &System {

@@ -3,19 +3,22 @@
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
-use super::measured::{Measured, rational};
+use super::measured::{MeasuredSystem, rational};
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
-use crate::system::{Analysis, Limits, Route, System, decide_by};
+use crate::system::analysis::Analysis;
+use crate::system::decide::decide_by;
+use crate::system::limits::{Limits, Route};
+use crate::system::model::System;
 
-impl Measured {
+impl MeasuredSystem {
     /// The verdict on these doubles as a rational system, without margins.
-    pub fn decide_projected(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+    pub(super) fn decide_projected(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let hessians = self.hessians()?;
         let (Some(basis), Some(removed)) = (hessians.basis(), hessians.removed()) else {
             self.refuse_constraints()?;
-            let mut analysis = decide_by(route, &self.system(), limits)?;
+            let mut analysis = decide_by(route, self.system(), limits)?;
             analysis.warnings.push(warning("as they are"));
             return Ok(analysis);
         };
@@ -28,12 +31,12 @@ impl Measured {
 
     /// Bᵀ M^-½ K M^-½ B of each stiffness, unit masses.
     fn projected(&self, basis: &Mat<f64>) -> System {
-        let project = |(step, stiffness): &(Rational, DMatrix<f64>)| {
-            let (own, n) = (self.weighted(stiffness), stiffness.nrows());
+        let project = |(step, own): (Rational, DMatrix<f64>)| {
+            let n = own.nrows();
             let image = basis.transpose() * MatRef::from_column_major_slice(own.as_slice(), n, n) * basis;
-            (step.clone(), DMatrix::from_fn(image.nrows(), image.ncols(), |i, j| image[(i, j)]))
+            (step, DMatrix::from_fn(image.nrows(), image.ncols(), |i, j| image[(i, j)]))
         };
-        let potentials: Vec<_> = self.potentials.iter().map(project).collect();
+        let potentials: Vec<_> = self.all_weighted().map(project).collect();
         rational(&vec![1.0; basis.ncols()], &potentials)
     }
 }
