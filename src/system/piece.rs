@@ -8,7 +8,7 @@ use super::frame::Frame;
 use super::large;
 use super::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
 use super::model::System;
-use super::pi::Coefficients;
+use super::pi::PiSystem;
 use super::signs::{self, Forms};
 use super::single;
 use super::sparse::{Symmetric, dot};
@@ -34,7 +34,7 @@ pub(super) struct Piece {
     /// x = Z y in the component's coordinates; `None` for the component itself.
     pub(super) columns: Option<Subspace>,
     /// The true stiffnesses, where they involve π: `system` then is very near to them.
-    pub(super) coefficients: Option<Coefficients>,
+    pub(super) coefficients: Option<PiSystem>,
 }
 
 /// The component itself, or what it splits into: subspaces that are invariant under M⁻¹ times each of its `stiffnesses`.
@@ -82,7 +82,7 @@ impl Piece {
                 None => single::decide(&self.system, how.1)?,
                 Some(own) => {
                     let period = Laurent::from_rational(self.system.period());
-                    let clocks = own.as_many_clocks(&self.system);
+                    let clocks = own.as_many_clocks();
                     single::decide_with_pi(&clocks, &self.system, period, how.1)?
                 }
             }

@@ -9,14 +9,14 @@ use super::enclose;
 use super::float;
 use super::frame::Frame;
 use super::limits::Limits;
-use super::model::System;
+use super::model::{Potential, System};
 use super::modes::{Origin, Resonance};
 use super::rate;
 use super::rate::Multiplier;
 use super::scalar::{shortest_families, shortest_family};
 use crate::error::Result;
 use crate::number::rational::to_f64;
-use crate::number::{Ball, Laurent, Rational, Sign};
+use crate::number::{Ball, Laurent, Rational, Ring, Sign};
 use crate::verdict::{self, Decidable, Kind, PartialSigns, Tier, Verdict};
 
 /// A trace, a label: what the kernels tell of one oscillator.
@@ -41,18 +41,18 @@ const FAMILIES: usize = 6;
 impl System {
     /// The system as K clocks on one oscillator; `None` unless it has one degree of freedom.
     pub fn as_many_clocks(&self) -> Option<ManyClocks<Rational>> {
-        if self.size() != 1 {
-            return None;
-        }
-        let first = &self.clocks()[0].step;
-        let steps: Vec<_> = self.clocks().iter().map(|clock| &clock.step / first).collect();
-        let phases: Vec<_> = self.clocks().iter().map(|clock| clock.phase.clone()).collect();
-        let strength = |clock: &super::Potential| {
-            first * &clock.step * clock.stiffness.get(0, 0) / self.mass().get(0, 0)
-        };
-        let strengths = self.clocks().iter().map(strength).collect();
-        Some(ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system"))
+        (self.size() == 1).then(|| many_clocks(self, |clock| clock.stiffness.get(0, 0)))
     }
+}
+
+/// The clocks of a system of one degree of freedom, each with its true stiffness.
+pub(super) fn many_clocks<S: Ring>(system: &System, stiffness: impl Fn(&Potential) -> S) -> ManyClocks<S> {
+    let (clocks, first) = (system.clocks(), &system.clocks()[0].step);
+    let steps: Vec<_> = clocks.iter().map(|clock| &clock.step / first).collect();
+    let phases: Vec<_> = clocks.iter().map(|clock| clock.phase.clone()).collect();
+    let unit = |clock: &Potential| S::from_rational(&(first * &clock.step / system.mass().get(0, 0)));
+    let strengths = clocks.iter().map(|clock| S::product(&unit(clock), &stiffness(clock))).collect();
+    ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system")
 }
 
 /// The verdict on a system of one degree of freedom; shapes are (1).

@@ -1,5 +1,6 @@
 //! A part of a system with π by the rational coefficients of its stiffnesses.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use nalgebra::DMatrix;
@@ -18,12 +19,12 @@ use crate::system::integers::{IntegerBlocks, IntegerProgram};
 use crate::system::limits::{Limits, degrees_of_freedom};
 use crate::system::model::{Potential, System};
 use crate::system::signs;
-use crate::system::sparse::Symmetric;
+use crate::system::single::many_clocks;
 use crate::verdict::Kind;
 
 /// The factor π^power of a coefficient, and the potential that it is one of.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::system) struct Term {
+pub(super) struct Term {
     pub potential: usize,
     pub power: i32,
 }
@@ -31,118 +32,87 @@ pub(in crate::system) struct Term {
 /// Every entry at ϖ is within 2^-ACCURACY of itself of the entry at π.
 const ACCURACY: u32 = 150;
 
-/// The coefficients K_kj as potentials of their own, with the indices k and the powers j.
+/// A system with stiffnesses over ℚ\[π, 1/π\], rational masses and steps.
+///
+/// ```
+/// use std::collections::BTreeMap;
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Limits, PiPotential, PiSystem, Route, Symmetric};
+/// use kickdrift::verdict::Kind;
+/// // Two unit masses, walls of stiffness π² and a spring of 7/10 between; velocity Verlet with the step 6/10.
+/// let mut walls = Symmetric::zero(2);
+/// (0..2).for_each(|i| walls.add_spring(i, None, &ratio(1, 1)));
+/// let mut spring = Symmetric::zero(2);
+/// spring.add_spring(0, Some(1), &ratio(7, 10));
+/// let stiffness = BTreeMap::from([(2, walls), (0, spring)]);
+/// let potential = PiPotential { stiffness, step: ratio(6, 10), phase: ratio(0, 1) };
+/// let system = PiSystem::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), vec![potential])?;
+/// let analysis = system.decide(Route::Cheapest, &Limits::default())?;
+/// // h² (π² + 7/5) = 4.06 > 4.
+/// assert!(analysis.is_proof() && analysis.kind.unwrap() == Kind::Hyperbolic);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 #[derive(Clone, Debug)]
-pub(in crate::system) struct Coefficients {
-    /// What its potentials have in common, every system with these coefficients has. Its clocks mean nothing.
+pub struct PiSystem {
+    /// The coefficients K_kj as potentials of their own,
     system: System,
+    /// with the indices k and the powers j.
     terms: Arc<[Term]>,
+    near: System,
 }
 
-impl Coefficients {
+impl PiSystem {
     /// A term for each coefficient, in the order of the potentials.
-    pub fn new(mass: Symmetric, coefficients: Vec<Potential>, terms: Vec<Term>) -> Result<Self> {
-        Ok(Coefficients { system: System::new(mass, coefficients)?, terms: terms.into() })
+    pub(super) fn of(system: System, terms: Arc<[Term]>) -> Result<Self> {
+        let near = near(&system, &terms)?;
+        Ok(PiSystem { system, terms, near })
     }
 
     /// Those of a part of the system.
-    pub fn of_part(&self, system: System) -> Self {
-        Coefficients { system, terms: self.terms.clone() }
+    pub(super) fn of_part(&self, system: System) -> Result<Self> {
+        PiSystem::of(system, self.terms.clone())
     }
 
     /// The same with all steps times a positive factor.
+    ///
+    /// # Errors
+    /// As [`System::new`].
     pub fn slowed(&self, factor: &Rational) -> Result<Self> {
-        Ok(self.of_part(self.system.with(&Rational::one(), factor)?))
+        self.of_part(self.system.with(&Rational::one(), factor)?)
     }
 
-    pub fn system(&self) -> &System {
+    /// The coefficients as potentials of their own: what these have in common, every system with these coefficients has. The clocks mean
+    /// nothing.
+    pub(super) fn system(&self) -> &System {
         &self.system
+    }
+
+    /// The system with a rational in the place of π, so near that every entry is within 2^-150 of itself of the true one.
+    pub fn near(&self) -> &System {
+        &self.near
     }
 
     /// The entry (i, j) of the stiffness that kicks at this step and phase.
     fn entry(&self, clock: &Potential, i: usize, j: usize) -> Laurent {
-        self.all().filter(|(own, _)| own.step == clock.step && own.phase == clock.phase).fold(
-            Laurent::zero(),
-            |mut sum, (own, term)| {
-                if let Some(x) = own.stiffness.row(i).get(&j) {
-                    sum += Laurent::monomial(x.clone(), term.power);
-                }
-                sum
-            },
-        )
+        entry(&self.system, &self.terms, clock, i, j)
     }
 
-    /// Each coefficient with its term.
-    fn all(&self) -> impl Iterator<Item = (&Potential, &Term)> {
-        self.system.potentials().iter().zip(&*self.terms)
-    }
-
-    /// The system at ϖ.
-    ///
-    /// # Errors
-    /// As [`System::new`].
-    pub fn near(&self) -> Result<System> {
-        let mut bits = 2 * ACCURACY;
-        loop {
-            let pi = Ball::pi(bits).lower();
-            let mut potentials: Vec<Potential> = Vec::new();
-            let mut last = None;
-            for (own, term) in self.all() {
-                let stiffness = own.stiffness.scaled(&pi.pow(term.power));
-                match potentials.last_mut().filter(|_| last == Some(term.potential)) {
-                    Some(sum) => sum.stiffness.add_all(&stiffness),
-                    None => potentials.push(Potential { stiffness, ..own.clone() }),
-                }
-                last = Some(term.potential);
-            }
-            let near = System::new(self.system.mass().clone(), potentials)?;
-            if self.is_near(&pi) {
-                return Ok(near);
-            }
-            bits *= 2;
-        }
-    }
-
-    /// Whether no entry that is not 0 is farther from the true one than allowed.
-    fn is_near(&self, pi: &Rational) -> bool {
-        let most = scale2(&BigInt::one(), -i64::from(ACCURACY));
-        let is_near = |exact: &Laurent| {
-            if exact.as_monomial().is_some() || exact.is_zero() {
-                return true;
-            }
-            // The ball is four times as tight.
-            let truth = exact.enclosure(ACCURACY + 2).lower();
-            let difference = exact.at(pi) / &truth - Rational::from_integer(1.into());
-            difference.abs() < most
-        };
-        let row_is_near =
-            |own: &Potential, i: usize| own.stiffness.row(i).keys().all(|&j| is_near(&self.entry(own, i, j)));
-        self.all().all(|(own, _)| (0..self.system.size()).all(|i| row_is_near(own, i)))
-    }
-
-    /// K clocks on one oscillator, where there is one degree of freedom: those of `near`.
-    pub fn as_many_clocks(&self, near: &System) -> ManyClocks<Laurent> {
-        let first = &near.clocks()[0].step;
-        let steps: Vec<_> = near.clocks().iter().map(|clock| &clock.step / first).collect();
-        let phases: Vec<_> = near.clocks().iter().map(|clock| clock.phase.clone()).collect();
-        let strength = |clock: &Potential| {
-            let unit = first * &clock.step / near.mass().get(0, 0);
-            &self.entry(clock, 0, 0) * &Laurent::from_rational(unit)
-        };
-        let strengths = near.clocks().iter().map(strength).collect();
-        ManyClocks::new(&steps, &phases, strengths).expect("the clocks of a checked system")
+    /// K clocks on one oscillator, where there is one degree of freedom: those of [`PiSystem::near`].
+    pub(in crate::system) fn as_many_clocks(&self) -> ManyClocks<Laurent> {
+        many_clocks(&self.near, |clock| self.entry(clock, 0, 0))
     }
 
     /// The same without its rigid modes.
-    fn vibrating(&self, frame: &Frame) -> Coefficients {
+    fn vibrating(&self, frame: &Frame) -> Result<Cow<'_, PiSystem>> {
         if frame.rigid.is_empty() {
-            return self.clone();
+            return Ok(Cow::Borrowed(self));
         }
-        self.of_part(self.system.restricted(&frame.complement(&self.system)))
+        self.of_part(self.system.restricted(&frame.complement(&self.system))).map(Cow::Owned)
     }
 
-    /// The half period in ℤ\[π\]; `near` is the system at ϖ.
-    fn half_period(&self, near: &System) -> IntegerBlocks<PiInteger> {
+    /// The half period in ℤ\[π\].
+    fn half_period(&self) -> IntegerBlocks<PiInteger> {
+        let near = &self.near;
         let mut program = Program::new(near).map(|x| Laurent::from_rational(x.clone()));
         for (clock, (kick, ticks)) in
             near.clocks().iter().zip(program.kicks.iter_mut().zip(near.schedule().clocks()))
@@ -171,31 +141,32 @@ impl Coefficients {
     ///
     /// # Errors
     /// A budget error with the estimated cost, before any work.
-    pub fn decide_by_signs(&self, frame: &Frame, limits: &Limits) -> Result<Option<Kind>> {
-        let vibrating = self.vibrating(frame);
-        let near = vibrating.near()?;
+    pub(in crate::system) fn decide_by_signs(&self, frame: &Frame, limits: &Limits) -> Result<Option<Kind>> {
+        let vibrating = self.vibrating(frame)?;
+        let n = vibrating.near.size() as f64;
         // Four eliminations of n³/3 products, of numbers that grow to n times the length of twice the entries'.
-        vibrating.allow(&near, 2.0 * (near.size() as f64).powi(5), limits)?;
-        Ok(signs::judge(&mut vibrating.half_period(&near)))
+        vibrating.allow(2.0 * n.powi(5), limits)?;
+        Ok(signs::judge(&mut vibrating.half_period()))
     }
 
     /// The exact verdict, and where the eigenvalues μ lie.
     ///
     /// # Errors
     /// A budget error with the estimated cost, before any work.
-    pub fn decide_exact(&self, frame: &Frame, limits: &Limits) -> Result<(Kind, MuCount)> {
-        let vibrating = self.vibrating(frame);
-        let near = vibrating.near()?;
+    pub(in crate::system) fn decide_exact(&self, frame: &Frame, limits: &Limits) -> Result<(Kind, MuCount)> {
+        let vibrating = self.vibrating(frame)?;
+        let n = vibrating.near.size() as f64;
         // Of power sums up to the (2n + 1)-th, two more factors n in length and degree. The 10 was 4 to 16 on chains of 3 to 6.
-        vibrating.allow(&near, 10.0 * (near.size() as f64).powi(7), limits)?;
-        Ok(moments::judge(&vibrating.half_period(&near)))
+        vibrating.allow(10.0 * n.powi(7), limits)?;
+        Ok(moments::judge(&vibrating.half_period()))
     }
 
     /// That exact arithmetic over ℚ\[π\] may begin; its cost is `factor` times the square of the degree and of the words of the half
     /// period's entries, which both grow with each kick.
-    fn allow(&self, near: &System, factor: f64, limits: &Limits) -> Result<()> {
+    fn allow(&self, factor: f64, limits: &Limits) -> Result<()> {
+        let near = &self.near;
         let highest = |clock: &Potential| {
-            let own = self.all().filter(|(own, _)| own.step == clock.step && own.phase == clock.phase);
+            let own = of_clock(&self.system, &self.terms, clock);
             own.map(|(_, term)| term.power.unsigned_abs()).max().unwrap_or(0)
         };
         let strikes = |k: usize| (near.strikes(k) / 2 + 1) as f64;
@@ -210,6 +181,69 @@ impl Coefficients {
     }
 }
 
+/// The coefficients that kick at the step and the phase of a clock, each with its term.
+fn of_clock<'a>(
+    system: &'a System,
+    terms: &'a [Term],
+    clock: &'a Potential,
+) -> impl Iterator<Item = (&'a Potential, &'a Term)> {
+    let all = system.potentials().iter().zip(terms);
+    all.filter(|(own, _)| own.step == clock.step && own.phase == clock.phase)
+}
+
+/// The entry (i, j) of the stiffness of a clock.
+fn entry(system: &System, terms: &[Term], clock: &Potential, i: usize, j: usize) -> Laurent {
+    let mut sum = Laurent::zero();
+    for (own, term) in of_clock(system, terms, clock) {
+        if let Some(x) = own.stiffness.row(i).get(&j) {
+            sum += Laurent::monomial(x.clone(), term.power);
+        }
+    }
+    sum
+}
+
+/// The system at ϖ.
+fn near(system: &System, terms: &[Term]) -> Result<System> {
+    let mut bits = 2 * ACCURACY;
+    loop {
+        let pi = Ball::pi(bits).lower();
+        let mut potentials: Vec<Potential> = Vec::new();
+        let mut last = None;
+        for (own, term) in system.potentials().iter().zip(terms) {
+            let stiffness = own.stiffness.scaled(&pi.pow(term.power));
+            match potentials.last_mut().filter(|_| last == Some(term.potential)) {
+                Some(sum) => sum.stiffness.add_all(&stiffness),
+                None => potentials.push(Potential { stiffness, ..own.clone() }),
+            }
+            last = Some(term.potential);
+        }
+        let near = System::new(system.mass().clone(), potentials)?;
+        if is_near(system, terms, &pi) {
+            return Ok(near);
+        }
+        bits *= 2;
+    }
+}
+
+/// Whether no entry that is not 0 is farther from the true one than allowed.
+fn is_near(system: &System, terms: &[Term], pi: &Rational) -> bool {
+    let most = scale2(&BigInt::one(), -i64::from(ACCURACY));
+    let is_near = |exact: &Laurent| {
+        if exact.as_monomial().is_some() || exact.is_zero() {
+            return true;
+        }
+        // The ball is four times as tight.
+        let truth = exact.enclosure(ACCURACY + 2).lower();
+        let difference = exact.at(pi) / &truth - Rational::from_integer(1.into());
+        difference.abs() < most
+    };
+    let places = |own: &Potential| own.stiffness.places().collect::<Vec<_>>();
+    system
+        .potentials()
+        .iter()
+        .all(|own| places(own).into_iter().all(|(i, j)| is_near(&entry(system, terms, own, i, j))))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -219,9 +253,10 @@ mod tests {
     use crate::system::decide::severity;
     use crate::system::decide_exact;
     use crate::system::numbers::Numbers;
+    use crate::system::sparse::Symmetric;
 
     /// Stiffnesses of unit masses by steps: entries by powers of π.
-    fn coefficients(potentials: &[(i64, DMatrix<Laurent>)]) -> Coefficients {
+    fn coefficients(potentials: &[(i64, DMatrix<Laurent>)]) -> PiSystem {
         let n = potentials[0].1.nrows();
         let (mut own, mut terms) = (Vec::new(), Vec::new());
         for (potential, (step, k)) in potentials.iter().enumerate() {
@@ -237,7 +272,8 @@ mod tests {
                 terms.push(Term { potential, power });
             }
         }
-        Coefficients::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), own, terms).unwrap()
+        PiSystem::of(System::new(Symmetric::diagonal(&vec![ratio(1, 1); n]), own).unwrap(), terms.into())
+            .unwrap()
     }
 
     /// Stiffnesses of the steps 1 and 2 whose half period is H = \[\[1 − (a + 2 b)/2, 1\], \[..\]\], D = 1 − a/2: on edges, at rest, inside and
@@ -256,7 +292,7 @@ mod tests {
     ];
 
     /// The diagonal system of some oscillators, turned by (3, 4, 5) so that no entry shows it, and the oscillators' own kinds.
-    fn turned(numbers: &mut Numbers) -> (Coefficients, Vec<Kind>) {
+    fn turned(numbers: &mut Numbers) -> (PiSystem, Vec<Kind>) {
         let n = 2 + numbers.below(2) as usize;
         let mut chosen: Vec<_> = (0..n).map(|_| OSCILLATORS[numbers.below(10) as usize]).collect();
         // Where the slow clock does nothing the period is another.
@@ -298,9 +334,9 @@ mod tests {
             seen[usize::from(severity(&kind))] += 1;
             // The same with the rational ϖ in the place of π, over characteristic polynomials: what vanishes at π does there, too. (A
             // mode at rest is set apart there.)
-            let near = own.near().unwrap();
+            let near = own.near();
             if near.rigid_modes().is_empty() {
-                let exact = decide_exact(&near, &limits).unwrap();
+                let exact = decide_exact(near, &limits).unwrap();
                 assert_eq!((exact.kind, exact.roots), (kind, roots));
             }
             if let Some(by_signs) = own.decide_by_signs(&frame, &limits).unwrap() {
@@ -328,8 +364,8 @@ mod tests {
                 k
             };
             let own = coefficients(&[(1, stiffness(30)), (2, stiffness(150)), (3, stiffness(400))]);
-            let near = own.near().unwrap();
-            let exact = decide_exact(&near, &limits).unwrap();
+            let near = own.near();
+            let exact = decide_exact(near, &limits).unwrap();
             let frame = Frame::whole(n);
             assert_eq!(own.decide_exact(&frame, &limits).unwrap(), (exact.kind, exact.roots));
             stable += usize::from(exact.kind == Kind::Elliptic);
@@ -345,7 +381,7 @@ mod tests {
         let other = Laurent::from_integer(1);
         let k = DMatrix::from_row_slice(2, 2, &[other.clone(), x.clone(), x.clone(), other]);
         let own = coefficients(&[(1, k)]);
-        let near = own.near().unwrap().clocks()[0].stiffness.get(0, 1);
+        let near = own.near().clocks()[0].stiffness.get(0, 1);
         let difference = Laurent::from_rational(near) - x.clone();
         let scaled = &difference * &Laurent::from_rational(Rational::from_integer(BigInt::one() << ACCURACY));
         // |near − x| 2^150 < |x|, and x > 0.

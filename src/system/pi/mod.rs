@@ -10,7 +10,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `coefficients` | one part by its coefficients: at ϖ, as clocks on one oscillator, its half period |
+//! | `coefficients` | a system by its coefficients: at ϖ, as clocks on one oscillator, its half period |
 //! | `moments` | the exact verdict without polynomials: inertias of power sums |
 
 mod coefficients;
@@ -18,7 +18,7 @@ pub(super) mod moments;
 
 use std::collections::BTreeMap;
 
-pub(super) use coefficients::Coefficients;
+pub use coefficients::PiSystem;
 use coefficients::Term;
 
 use super::analysis::Analysis;
@@ -43,32 +43,6 @@ pub struct PiPotential {
     pub step: Rational,
     /// 0 or 1/2.
     pub phase: Rational,
-}
-
-/// A system with stiffnesses over ℚ\[π, 1/π\], rational masses and steps.
-///
-/// ```
-/// use std::collections::BTreeMap;
-/// use kickdrift::number::rational::ratio;
-/// use kickdrift::system::{Limits, PiPotential, PiSystem, Route, Symmetric};
-/// use kickdrift::verdict::Kind;
-/// // Two unit masses, walls of stiffness π² and a spring of 7/10 between; velocity Verlet with the step 6/10.
-/// let mut walls = Symmetric::zero(2);
-/// (0..2).for_each(|i| walls.add_spring(i, None, &ratio(1, 1)));
-/// let mut spring = Symmetric::zero(2);
-/// spring.add_spring(0, Some(1), &ratio(7, 10));
-/// let stiffness = BTreeMap::from([(2, walls), (0, spring)]);
-/// let potential = PiPotential { stiffness, step: ratio(6, 10), phase: ratio(0, 1) };
-/// let system = PiSystem::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]), vec![potential])?;
-/// let analysis = system.decide(Route::Cheapest, &Limits::default())?;
-/// // h² (π² + 7/5) = 4.06 > 4.
-/// assert!(analysis.is_proof() && analysis.kind.unwrap() == Kind::Hyperbolic);
-/// # Ok::<(), kickdrift::error::Error>(())
-/// ```
-#[derive(Clone, Debug)]
-pub struct PiSystem {
-    whole: Coefficients,
-    near: System,
 }
 
 impl PiSystem {
@@ -98,24 +72,7 @@ impl PiSystem {
         if coefficients.is_empty() {
             return Err(Error::input("potentials", "none", "give at least one stiffness"));
         }
-        let whole = Coefficients::new(mass, coefficients, terms)?;
-        let near = whole.near()?;
-        Ok(PiSystem { whole, near })
-    }
-
-    /// The system with a rational in the place of π, so near that every entry is within 2^-150 of itself of the true one.
-    pub fn near(&self) -> &System {
-        &self.near
-    }
-
-    /// The same with all steps times a positive factor.
-    ///
-    /// # Errors
-    /// As [`System::new`].
-    pub fn slowed(&self, factor: &Rational) -> Result<Self> {
-        let whole = self.whole.slowed(factor)?;
-        let near = whole.near()?;
-        Ok(PiSystem { whole, near })
+        PiSystem::of(System::new(mass, coefficients)?, terms.into())
     }
 
     /// The verdict, as [`decide_by`](super::decide_by): multipliers and growth rates are rounded ones of [`PiSystem::near`].
@@ -123,7 +80,7 @@ impl PiSystem {
     /// # Errors
     /// As [`decide_by`](super::decide_by); a common null vector of all potentials that is not rational.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
-        decided(self.structure(), &self.near, |piece| self.over_pi(piece), (route, limits))
+        decided(self.structure(), self.near(), |piece| self.over_pi(piece), (route, limits))
     }
 
     /// The kind by exact arithmetic alone, part by part.
@@ -136,14 +93,13 @@ impl PiSystem {
 
     /// Each coefficient is to leave a subspace invariant.
     fn structure(&self) -> Structure<'_> {
-        (self.whole.system(), System::single_stiffnesses)
+        (self.system(), System::single_stiffnesses)
     }
 
     /// A part of the coefficients as one of the system.
     fn over_pi(&self, piece: Piece) -> Result<Piece> {
-        let own = self.whole.of_part(piece.system);
-        let near = own.near()?;
-        if near.rigid_modes().len() > piece.frame.rigid.len() {
+        let own = self.of_part(piece.system)?;
+        if own.near().rigid_modes().len() > piece.frame.rigid.len() {
             let remedy = "choose coordinates in which the vector that no potential sees is rational";
             return Err(Error::input(
                 "stiffness",
@@ -151,6 +107,6 @@ impl PiSystem {
                 remedy,
             ));
         }
-        Ok(Piece { system: near, coefficients: Some(own), ..piece })
+        Ok(Piece { system: own.near().clone(), coefficients: Some(own), ..piece })
     }
 }
