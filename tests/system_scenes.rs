@@ -60,7 +60,7 @@ fn growth_of_small_deviations_is_that_of_the_hessians() {
 #[test]
 fn clocks_with_pi_are_enclosed_about_exact_ones() {
     // Three clocks over Q[pi]: the trace that the file's answer encloses is the exact polynomial's value.
-    let analysis = shipped("three-clocks").decide(Route::Cheapest, &Limits::default()).unwrap();
+    let analysis = shipped("three-clocks").model().decide(Route::Cheapest, &Limits::default()).unwrap();
     let own = analysis.parts[0].oscillator.as_ref().unwrap();
     assert_eq!(own.strikes.len(), 3);
     let file = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/three-clocks.json"))
@@ -128,7 +128,7 @@ fn of_unit_masses(n: usize, potentials: &str) -> Result<SystemScene, kickdrift::
 #[test]
 fn stiffnesses_of_several_masses_may_hold_pi() {
     let decide = |n: usize, potentials: &str| {
-        of_unit_masses(n, potentials).unwrap().decide(Route::Cheapest, &Limits::default()).unwrap()
+        of_unit_masses(n, potentials).unwrap().model().decide(Route::Cheapest, &Limits::default()).unwrap()
     };
     // A = 1 − (K_1 + 2 K_2)/2 vanishes, whatever pi is; the eigenvectors of K_1 are irrational, so nothing splits.
     let scene = shipped("edge-pi");
@@ -152,11 +152,11 @@ fn stiffnesses_of_several_masses_may_hold_pi() {
     );
     assert!(analysis.is_proof());
     // By the exact route, and by the cheapest at a rational next to pi.
-    let exact = of_unit_masses(3, chain).unwrap().decide(Route::Exact, &Limits::default()).unwrap();
+    let exact = of_unit_masses(3, chain).unwrap().model().decide(Route::Exact, &Limits::default()).unwrap();
     assert_eq!(exact.kind, Some(Kind::Elliptic));
     // Its cost is told before it begins.
     let (coupled, few) = (of_unit_masses(2, edge).unwrap(), Limits { products: 10, ..Limits::default() });
-    let error = coupled.decide(Route::Exact, &few).unwrap_err().to_string();
+    let error = coupled.model().decide(Route::Exact, &few).unwrap_err().to_string();
     assert!(error.contains("exact arithmetic over Q[pi] on 2 degrees of freedom would cost"), "{error}");
     let rational = chain.replace("pi^2", "9.8696044").replace("1/pi", "0.31830989");
     let near = decide(3, &rational);
@@ -224,16 +224,16 @@ fn scans_vary_any_number_of_the_file() {
     .unwrap();
     assert_eq!(scan.x.values(), [ratio(1, 10), ratio(4, 10), ratio(7, 10), ratio(1, 1)]);
     let system = scan.at(&ratio(7, 10), &ratio(1, 2)).unwrap();
-    let clocks = system.system().clocks();
+    let clocks = system.model().system().clocks();
     assert_eq!((&clocks[1].step, clocks[0].stiffness.get(0, 0)), (&ratio(7, 10), ratio(25, 1)));
     // Points in parallel are those one by one.
-    let decide = |x: &_, y: &_| scan.at(x, y)?.decide(Route::Cheapest, &Limits::default());
+    let decide = |x: &_, y: &_| scan.at(x, y)?.model().decide(Route::Cheapest, &Limits::default());
     let (xs, ys) = (scan.x.values(), scan.ys());
     let points = kickdrift::system::scan::scan(&xs, &ys, decide, |_| {}).unwrap();
     assert_eq!(points.len(), 8);
     for point in points {
         let alone = scan.at(&point.at.0, &point.at.1).unwrap();
-        let alone = decide_system(alone.system(), &Limits::default()).unwrap();
+        let alone = decide_system(alone.model().system(), &Limits::default()).unwrap();
         assert_eq!((point.kind, point.growth_rate), (alone.kind, alone.growth_rate()));
     }
     let refused = |text: &str, start: &str| {
@@ -638,14 +638,17 @@ fn three_clocks_have_their_rigid_motions_projected_out_as_two_have() {
     }
     // By the null space as well, and two clocks as before.
     let bare = tetrahedron(["1/8", "1/4", "1/2"], serde_json::json!({})).unwrap();
-    let bare = bare.decide(Route::Cheapest, &limits).unwrap();
+    let bare = bare.model().decide(Route::Cheapest, &limits).unwrap();
     assert!(
         bare.is_proof() && bare.is_stable() && bare.warnings[0].contains("null space"),
         "{:?}",
         bare.warnings
     );
-    let two =
-        tetrahedron(["1/8", "1/8", "1/4"], positions).unwrap().decide(Route::Cheapest, &limits).unwrap();
+    let two = tetrahedron(["1/8", "1/8", "1/4"], positions)
+        .unwrap()
+        .model()
+        .decide(Route::Cheapest, &limits)
+        .unwrap();
     assert_eq!(two.measured.unwrap().removed.unwrap().count, 6);
 }
 
@@ -661,7 +664,7 @@ fn a_null_space_larger_than_that_of_rigid_motions_is_refused() {
         let potentials = serde_json::json!([{"step": "1/4", "stiffness": {"npy": "k"}}]);
         let mut fields = serde_json::json!({"masses": {"npy": "masses"}, "potentials": potentials});
         more.as_object().unwrap().iter().for_each(|(key, value)| fields[key] = value.clone());
-        held(&arrays, fields)?.decide(Route::Cheapest, &Limits::default())
+        held(&arrays, fields)?.model().decide(Route::Cheapest, &Limits::default())
     };
     let error = chain(serde_json::json!({})).unwrap_err().to_string();
     assert!(
@@ -681,8 +684,10 @@ fn a_null_space_larger_than_that_of_rigid_motions_is_refused() {
     }
     // Springs to all corners and a coarse accuracy: soft is not rigid.
     let coarse = serde_json::json!({"accuracy": 0.09});
-    let error =
-        tetrahedron(["1/8", "1/8", "1/4"], coarse).unwrap().decide(Route::Cheapest, &Limits::default());
+    let error = tetrahedron(["1/8", "1/8", "1/4"], coarse)
+        .unwrap()
+        .model()
+        .decide(Route::Cheapest, &Limits::default());
     let found = error.map(|own| own.measured.unwrap().removed.unwrap().count);
     assert!(found.is_err() || found.unwrap() == 6);
 }
@@ -761,7 +766,7 @@ fn heavy_hydrogens_are_held_as_the_pairs_that_they_are() {
             "masses": {"npy": "masses"}, "positions": {"npy": "positions"}, "constraints": constraints, "hydrogen_mass": "3.024",
             "potentials": [{"step": "1/4", "stiffness": {"npy": "k"}, "force": {"npy": "force"}}]
         });
-        let analysis = held(&arrays, fields)?.decide(Route::Cheapest, &Limits::default())?;
+        let analysis = held(&arrays, fields)?.model().decide(Route::Cheapest, &Limits::default())?;
         Ok::<_, kickdrift::error::Error>((analysis.parts[0].multipliers.clone(), analysis.measured))
     };
     // Both are nearest to particle 2.

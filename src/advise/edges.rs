@@ -17,7 +17,7 @@ use num_traits::Zero;
 use super::interval::{Unstable, Worst};
 use super::levels::Levels;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
-use crate::number::{Ball, Rational, Real, Sign};
+use crate::number::{Ball, Rational, Real, Sign, bisected};
 use crate::schedule::{KickDrift, Kicks, Schedule};
 
 const BITS: u32 = 192;
@@ -79,19 +79,11 @@ impl<'a> Edges<'a> {
     /// Neighbouring scales between which the k-th edge of a problem lies, or as close as balls tell; `None` above `most`.
     fn edge(&self, problem: usize, k: u64, most: f64) -> Option<(f64, f64)> {
         let below = |t: f64| self.half(t).map(|half| half.counts[problem] < k);
-        let (mut lo, mut hi) = (most * 1e-6, most);
+        let (lo, hi) = (most * 1e-6, most);
         if below(lo) != Some(true) || below(hi) != Some(false) {
             return None;
         }
-        while lo.next_up() < hi {
-            let middle = lo + (hi - lo) / 2.0;
-            match below(middle) {
-                Some(true) => lo = middle,
-                Some(false) => hi = middle,
-                None => break,
-            }
-        }
-        Some((lo, hi))
+        Some(bisected((lo, hi), 0.0, below))
     }
 
     /// Interval m, as outer steps; `None` where it is closed or thinner than doubles, or ends above `most` times the scheme.

@@ -18,7 +18,7 @@ use num_traits::Zero;
 
 use crate::error::{Error, Result};
 use crate::number::rational::from_f64_exact;
-use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
+use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::system::friction::{Damping, damped, masking};
 use crate::system::{Limits, ManyClocks, Potential, Symmetric, System, decide_oscillator};
@@ -208,7 +208,7 @@ impl Levels<'_> {
         };
         let at = |t: f64| self.in_first_region(&square(t));
         let none = || Error::missing("period", "give the period of at least one force");
-        let mut hi = (-60..60).map(|k| 2f64.powi(k)).find(|&t| at(t) == Some(false)).ok_or_else(none)?;
+        let hi = (-60..60).map(|k| 2f64.powi(k)).find(|&t| at(t) == Some(false)).ok_or_else(none)?;
         let mut lo = hi / 2.0;
         // The factor before this one was not told to have left: it is inside, or on the edge itself.
         while at(lo) != Some(true) {
@@ -217,15 +217,7 @@ impl Levels<'_> {
                 return Err(none());
             }
         }
-        while lo.next_up() < hi {
-            let middle = lo + (hi - lo) / 2.0;
-            match at(middle) {
-                Some(true) => lo = middle,
-                Some(false) => hi = middle,
-                None => break,
-            }
-        }
-        Ok((lo, hi))
+        Ok(bisected((lo, hi), 0.0, at))
     }
 }
 

@@ -25,6 +25,8 @@
 //! ```
 
 pub mod ball;
+#[cfg(any(feature = "advise", feature = "system"))]
+mod bisect;
 pub mod cyclotomic;
 #[cfg(feature = "system")]
 mod domain;
@@ -43,6 +45,8 @@ mod sign;
 mod twofold;
 
 pub use ball::Ball;
+#[cfg(any(feature = "advise", feature = "system"))]
+pub(crate) use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 #[cfg(feature = "system")]
 pub(crate) use domain::Domain;

@@ -9,7 +9,7 @@ use super::analysis::{Analysis, Evidence, Instability, Part};
 use super::explain::explained;
 use super::limits::{Limits, degrees_of_freedom};
 use super::period::{Drifts, Stiff, follow};
-use super::signs::{self, Forms};
+use super::signs;
 use super::spectrum::Spectrum;
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
@@ -82,9 +82,7 @@ pub fn decide_along(
     let drifts = Drifts { inverse_mass: &inverse_mass, decay: &Rational::default(), off: 0.0 };
     let blocks = follow(&drifts, schedule.half_period(), find).blocks(scales);
     let spectrum = Spectrum::new(&blocks);
-    let signed = Forms::new(&blocks)
-        .and_then(|mut forms| signs::judge(&mut forms))
-        .map(|kind| (kind, Evidence::Signs));
+    let signed = signs::proven(&blocks).map(|kind| (kind, Evidence::Signs));
     let discs = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
     let open = || spectrum.as_ref().map(|_| (None, Evidence::Estimate));
     let decided = signed.or_else(discs).map(|(kind, evidence)| (Some(kind), evidence));
@@ -98,17 +96,7 @@ pub fn decide_along(
     });
     let (multipliers, mut instabilities) = explained.unwrap_or_default();
     instabilities.iter_mut().for_each(Instability::normalize);
-    let part = Part {
-        dofs: (0..n).collect(),
-        size: n,
-        period,
-        kind,
-        evidence,
-        multipliers,
-        instabilities,
-        roots: None,
-        oscillator: None,
-    };
+    let part = Part::new(n, period, (kind, evidence), (multipliers, instabilities));
     let warnings = if kind.is_some() { Vec::new() } else { vec![NOT_DECIDED.into()] };
     Ok(Analysis::of_part(part, schedule.clocks().len(), warnings))
 }

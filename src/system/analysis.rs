@@ -99,6 +99,17 @@ pub struct Part {
 }
 
 impl Part {
+    /// One of `size` degrees of freedom, all of its system's, what was decided of it and by what.
+    pub(super) fn new(
+        size: usize,
+        period: Laurent,
+        (kind, evidence): (Option<Kind>, Evidence),
+        (multipliers, instabilities): (Vec<Multiplier>, Vec<Instability>),
+    ) -> Self {
+        let (dofs, roots, oscillator) = ((0..size).collect(), None, None);
+        Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator }
+    }
+
     /// The name of the kind in documents.
     pub fn kind_name(&self) -> &'static str {
         name(self.kind)

@@ -44,25 +44,11 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
 /// A system, and its stiffnesses that an invariant subspace is to be invariant under.
 pub(super) type Structure<'a> = (&'a System, fn(&System) -> Vec<&Symmetric>);
 
-/// The verdict on a system whose parts are those of `structure`; `prepared` makes such a part one of the system.
-///
-/// # Errors
-/// As [`decide_by`]; as `prepared`.
-pub(super) fn decided(
-    (structure, stiffnesses): Structure,
-    system: &System,
-    prepared: impl Fn(Piece) -> Result<Piece>,
-    how: (Route, &Limits),
-) -> Result<Analysis> {
-    let mut warnings = Vec::new();
-    if !system.is_total_semidefinite() {
-        warnings.push(
-            "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
-        );
-    }
-    let (mut parts, mut rigid_modes) = (Vec::new(), Vec::new());
-    for dofs in connected_parts(structure) {
-        let Some(component) = structure.component(&dofs) else {
+/// The pieces of each connected part, with the degrees of freedom of that part, and the rigid modes.
+fn apart((system, stiffnesses): Structure) -> (Vec<(Vec<usize>, Piece)>, Vec<Vec<Rational>>) {
+    let (mut all, mut rigid_modes) = (Vec::new(), Vec::new());
+    for dofs in connected_parts(system) {
+        let Some(component) = system.component(&dofs) else {
             rigid_modes.extend(dofs.iter().map(|&i| unit(system.size(), i)));
             continue;
         };
@@ -73,10 +59,32 @@ pub(super) fn decided(
             x
         };
         rigid_modes.extend(frame.rigid.iter().map(|(_, v)| place(v)));
-        for piece in pieces(component, frame, stiffnesses) {
-            parts.push(prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)?);
-        }
+        all.extend(pieces(component, frame, stiffnesses).into_iter().map(|piece| (dofs.clone(), piece)));
     }
+    (all, rigid_modes)
+}
+
+/// The verdict on a system whose parts are those of `structure`; `prepared` makes such a part one of the system.
+///
+/// # Errors
+/// As [`decide_by`]; as `prepared`.
+pub(super) fn decided(
+    structure: Structure,
+    system: &System,
+    prepared: impl Fn(Piece) -> Result<Piece>,
+    how: (Route, &Limits),
+) -> Result<Analysis> {
+    let mut warnings = Vec::new();
+    if !system.is_total_semidefinite() {
+        warnings.push(
+            "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
+        );
+    }
+    let (all, rigid_modes) = apart(structure);
+    let part = |(dofs, piece): (Vec<usize>, Piece)| {
+        prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)
+    };
+    let parts = all.into_iter().map(part).collect::<Result<Vec<_>>>()?;
     let kind = severest(parts.iter().map(|part| part.kind));
     let period = Laurent::from_rational(system.period());
     let (size, clocks) = (system.size(), system.clocks().len());
@@ -93,16 +101,12 @@ pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
 
 /// The same where parts are those of `structure`, as for [`decided`].
 pub(super) fn exact_kind_of(
-    (structure, stiffnesses): Structure,
+    structure: Structure,
     prepared: impl Fn(Piece) -> Result<Piece>,
     limits: &Limits,
 ) -> Result<Kind> {
-    let parts = connected_parts(structure).into_iter().filter_map(|dofs| structure.component(&dofs));
-    let parts = parts.flat_map(|own| {
-        let frame = Frame::new(&own);
-        pieces(own, frame, stiffnesses)
-    });
-    let kinds = parts.map(|own| Ok(prepared(own)?.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
+    let pieces = apart(structure).0.into_iter();
+    let kinds = pieces.map(|(_, own)| Ok(prepared(own)?.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
     Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
 }
 

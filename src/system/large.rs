@@ -39,19 +39,10 @@ pub(super) fn decide(system: &System, frame: &Frame) -> Option<Part> {
         return None;
     }
     let is_stable = action::is_stable(system, frame)?;
-    let part = |kind, multipliers, instabilities| Part {
-        dofs: Vec::new(),
-        size: frame.kept.len(),
-        period: Laurent::from_rational(system.period()),
-        kind: Some(kind),
-        evidence: Evidence::Signs,
-        multipliers,
-        instabilities,
-        roots: None,
-        oscillator: None,
-    };
+    let period = Laurent::from_rational(system.period());
+    let part = |kind, growing| Part::new(frame.kept.len(), period, (Some(kind), Evidence::Signs), growing);
     if is_stable {
-        return Some(part(Kind::Elliptic, Vec::new(), Vec::new()));
+        return Some(part(Kind::Elliptic, Default::default()));
     }
     let (lambda, v) = dominant(system, frame)?;
     let mu = c64::new((lambda + 1.0 / lambda - 2.0) / 4.0, 0.0);
@@ -65,7 +56,7 @@ pub(super) fn decide(system: &System, frame: &Frame) -> Option<Part> {
         resonance: None,
     };
     mode.normalize();
-    Some(part(Kind::Hyperbolic, vec![multiplier], vec![mode]))
+    Some(part(Kind::Hyperbolic, (vec![multiplier], vec![mode])))
 }
 
 /// One column of positions and momenta.

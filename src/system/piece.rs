@@ -9,7 +9,7 @@ use super::large;
 use super::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
 use super::model::System;
 use super::pi::PiSystem;
-use super::signs::{self, Forms};
+use super::signs;
 use super::single;
 use super::sparse::{Symmetric, dot};
 use super::spectrum::Spectrum;
@@ -107,7 +107,7 @@ impl Piece {
             return Ok(part);
         }
         let blocks = float::half_period(&self.system, &self.frame);
-        let signed = || asked.is_none().then(|| signs::judge(&mut Forms::new(&blocks)?)).flatten();
+        let signed = || asked.is_none().then(|| signs::proven(&blocks)).flatten();
         let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
         let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
         let (kind, evidence, roots) = match asked {
@@ -117,13 +117,13 @@ impl Piece {
                 None => self.exact_or_not(how.1, spectrum.as_ref(), warnings)?,
             },
         };
-        let (multipliers, instabilities) = match &spectrum {
+        let multipliers = match &spectrum {
             Some(spectrum) => self.explain(spectrum, &blocks, kind, how.1),
             None => Default::default(),
         };
-        let (size, period) = (self.frame.kept.len(), Laurent::from_rational(self.system.period()));
-        let dofs = Vec::new();
-        Ok(Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator: None })
+        let period = Laurent::from_rational(self.system.period());
+        let part = Part::new(self.frame.kept.len(), period, (kind, evidence), multipliers);
+        Ok(Part { roots, ..part })
     }
 
     /// The kind in exact arithmetic, and where the μ lie.

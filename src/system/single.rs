@@ -59,8 +59,8 @@ pub(super) fn many_clocks<S: Ring>(system: &System, stiffness: impl Fn(&Potentia
 pub(super) fn decide(system: &System, limits: &Limits) -> Result<Part> {
     let clocks = system.as_many_clocks().expect("one degree of freedom");
     // In fractions each kick makes the numbers longer.
-    let exact = |kicks: f64| 40.0 * kicks.powi(2);
-    decide_clocks(&clocks, system, Laurent::from_rational(system.period()), exact, limits)
+    let cost = |kicks: f64| 40.0 * kicks.powi(2);
+    decide_clocks(&clocks, system, Laurent::from_rational(system.period()), cost, limits)
 }
 
 /// The verdict on K clocks with stiffnesses that may involve π, as the one part of a system.
@@ -97,8 +97,25 @@ pub(super) fn decide_with_pi(
     period: Laurent,
     limits: &Limits,
 ) -> Result<Part> {
-    // Over Q[π] the degree grows with each kick too.
-    decide_clocks(clocks, rounded, period, |kicks| 0.15 * kicks.powi(4), limits)
+    decide_clocks(clocks, rounded, period, with_pi, limits)
+}
+
+/// The products of machine words that exact signs cost over ℚ\[π\], whose numbers grow with each kick in length and in degree.
+pub(super) fn with_pi(kicks: f64) -> f64 {
+    0.15 * kicks.powi(4)
+}
+
+/// That exact signs may be computed, whose cost depends so on the kicks of half a period.
+///
+/// # Errors
+/// A budget error with the cost, before any work.
+pub(super) fn allow_signs<S: Ring>(
+    clocks: &ManyClocks<S>,
+    cost: impl Fn(f64) -> f64,
+    limits: &Limits,
+) -> Result<()> {
+    let kicks = clocks.schedule().strikes() / 2;
+    limits.allow(cost(kicks as f64) as u64, || format!("exact signs of {kicks} kicks"))
 }
 
 /// By the ladder, by doubles, by balls, or by exact signs, of which `exact` tells the cost by the number of kicks.
@@ -131,17 +148,10 @@ fn decide_clocks<S: Decidable>(
         Kind::Hyperbolic => vec![instability(rounded, &period, multiplier, &scalar)],
         _ => Vec::new(),
     };
-    Ok(Part {
-        dofs: vec![0],
-        size: 1,
-        period,
-        kind: Some(kind),
-        evidence: Evidence::Scalar(scalar.tier),
-        multipliers: vec![multiplier],
-        instabilities,
-        roots: None,
-        oscillator: Some(Clocked { trace, strikes, label: scalar.label, families }),
-    })
+    let decided = (Some(kind), Evidence::Scalar(scalar.tier));
+    let part = Part::new(1, period, decided, (vec![multiplier], instabilities));
+    let oscillator = Some(Clocked { trace, strikes, label: scalar.label, families });
+    Ok(Part { oscillator, ..part })
 }
 
 /// One or two clocks of phase 0: the certified ladder.
@@ -218,8 +228,7 @@ fn by_signs<S: Decidable>(
     cost: impl Fn(f64) -> f64,
     limits: &Limits,
 ) -> Result<Scalar> {
-    let kicks = clocks.schedule().strikes() / 2;
-    limits.allow(cost(kicks as f64) as u64, || format!("exact signs of {kicks} kicks"))?;
+    allow_signs(clocks, cost, limits)?;
     let half = clocks.half_period();
     let mu = S::product(&half[(0, 1)], &half[(1, 0)]).enclosure(BITS);
     let ad = S::product(&half[(0, 0)], &half[(1, 1)]).enclosure(BITS);

@@ -28,19 +28,9 @@ impl Kernel {
         let margin =
             if unstable { self.unstable_margin(outer, spectrum.as_ref()) } else { self.margin(outer) };
         let period = Laurent::from_rational(period.clone());
-        let (multipliers, instabilities) =
-            spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
-        let part = Part {
-            dofs: (0..self.modes.nrows()).collect(),
-            size: self.size(),
-            period,
-            kind,
-            evidence,
-            multipliers,
-            instabilities,
-            roots: None,
-            oscillator: None,
-        };
+        let multipliers = spectrum.map(|own| self.multipliers(&own, kind, &period)).unwrap_or_default();
+        let part = Part::new(self.size(), period, (kind, evidence), multipliers);
+        let part = Part { dofs: (0..self.modes.nrows()).collect(), ..part };
         let measured = Some(Measured { margin, ..self.measured(outer, accuracy) });
         Analysis { measured, ..Analysis::of_part(part, 2, self.warnings(evidence)) }
     }

@@ -5,6 +5,7 @@
 
 use super::half::Half;
 use super::kernel::{Kernel, Outer};
+use crate::number::bisected;
 use crate::system::inertia::is_definite;
 
 /// Room for the roundings of a factor.
@@ -37,13 +38,9 @@ impl Kernel {
             Outer::new(step, inner_steps).is_ok_and(|outer| self.covers_band(&outer, band, epsilon))
         };
         // Every inner step is below its own limit, h w < 2.
-        let mut hi = 2.0 * inner_steps as f64 / self.highest_frequency();
-        let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| holds(step))?;
-        hi = hi.min(2.0 * lo);
-        while hi - lo > 1e-6 * lo {
-            let middle = lo + (hi - lo) / 2.0;
-            *(if holds(middle) { &mut lo } else { &mut hi }) = middle;
-        }
-        Some(lo)
+        let hi = 2.0 * inner_steps as f64 / self.highest_frequency();
+        let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| holds(step))?;
+        let hi = hi.min(2.0 * lo);
+        Some(bisected((lo, hi), 1e-6, |step| Some(holds(step))).0)
     }
 }

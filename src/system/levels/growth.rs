@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
+use crate::number::bisected;
 use crate::system::rate::exponent;
 
 /// A stretch of outer steps that grow.
@@ -79,12 +80,16 @@ impl Kernel {
         while last < above * (1.0 + THIN) {
             let step = last * (1.0 + width);
             if grows(step, self.rate_at(inner_steps, step)?) {
-                let still = |step: f64| Ok(!grows(step, self.rate_at(inner_steps, step)?));
-                return bisected(last, step, still).map(|ends| Some(ends.1));
+                return Ok(Some(self.end(inner_steps, (last, step), false).1));
             }
             (last, width) = (step, 1.3 * width);
         }
         Ok(None)
+    }
+
+    /// Steps to 1e-7 between which what is so at the first, growth or none, ends.
+    fn end(&self, inner_steps: u64, ends: (f64, f64), growth: bool) -> (f64, f64) {
+        bisected(ends, 1e-7, |step| Some(grows(step, self.rate_at(inner_steps, step).ok()?) == growth))
     }
 
     fn stretch(&self, inner_steps: u64, from: f64, width: f64) -> Result<Growing> {
@@ -97,9 +102,7 @@ impl Kernel {
                 still = Some(step);
             }
         }
-        let ends = still
-            .map(|still| bisected(last, still, |step| Ok(grows(step, self.rate_at(inner_steps, step)?))));
-        let ends = ends.transpose()?;
+        let ends = still.map(|still| self.end(inner_steps, (last, still), true));
         let worst = self.fastest(inner_steps, from, ends.map_or(last, |(upper, _)| upper))?;
         // At the end itself multipliers are double, and doubles tell nothing.
         let proven = |still: f64| (0..12).map(move |k| still * (1.0 + 1e-7 * f64::from(4u32.pow(k))));
@@ -132,13 +135,4 @@ impl Kernel {
 
 fn grows(step: f64, rate: f64) -> bool {
     rate * step > STILL
-}
-
-/// Neighbours to 1e-7 between which what holds at `lo` ends.
-fn bisected(mut lo: f64, mut hi: f64, holds: impl Fn(f64) -> Result<bool>) -> Result<(f64, f64)> {
-    while hi - lo > 1e-7 * lo {
-        let middle = lo + (hi - lo) / 2.0;
-        *(if holds(middle)? { &mut lo } else { &mut hi }) = middle;
-    }
-    Ok((lo, hi))
 }

@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::half::Half;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
+use crate::number::bisected;
 use crate::system::inertia::is_definite;
 use crate::system::norm;
 
@@ -87,10 +88,7 @@ impl Kernel {
         let mut hi = 1.000_001 * inner_steps as f64 * 2.0 * angle.sin() / self.highest_frequency();
         let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
         hi = hi.min(2.0 * lo);
-        while hi - lo > 1e-8 * lo {
-            let middle = lo + (hi - lo) / 2.0;
-            *(if stable(middle) { &mut lo } else { &mut hi }) = middle;
-        }
+        (lo, hi) = bisected((lo, hi), 1e-8, |step| Some(stable(step)));
         // Where the forms are near 0 doubles tell nothing: a little farther they do.
         let unstable = |step: f64| outer(step).is_some_and(|outer| self.is_unstable(&outer, 0.0));
         let steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));

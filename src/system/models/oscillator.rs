@@ -12,7 +12,7 @@ use crate::system::friction::{Friction, damped_oscillator};
 use crate::system::limits::Limits;
 use crate::system::model::{Potential, System};
 use crate::system::scalar::ManyClocks;
-use crate::system::single::decide_oscillator;
+use crate::system::single::{allow_signs, decide_oscillator, with_pi};
 use crate::system::sparse::Symmetric;
 use crate::verdict::Kind;
 
@@ -84,12 +84,7 @@ impl Oscillator {
 
     /// The kind by the four signs.
     pub(super) fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
-        let kicks = self.clocks.schedule().strikes();
-        // Kick by kick over ℚ[π], whose numbers grow by some words with each kick.
-        let cost = kicks.saturating_mul(kicks).saturating_mul(kicks);
-        if cost > limits.products {
-            return Err(Error::budget(format!("exact signs after {kicks} kicks"), cost));
-        }
+        allow_signs(&self.clocks, with_pi, limits)?;
         Ok(self.clocks.half_signs().verdict().kind())
     }
 

@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::number::U;
 use crate::system::float::FloatBlocks;
-use crate::system::inertia::{Inertia, proven};
+use crate::system::inertia::{self, Inertia};
 use crate::system::norm;
 use crate::verdict::Kind;
 
@@ -56,6 +56,11 @@ fn counts_differ(ends: [Inertia; 2], others: [Option<Inertia>; 2]) -> bool {
     ends.into_iter().filter_map(told).any(|count| others.iter().any(|other| *other != count))
 }
 
+/// The kind, where a definite form of the half period in doubles proves it within their error.
+pub(in crate::system) fn proven(blocks: &FloatBlocks) -> Option<Kind> {
+    judge(&mut Forms::new(blocks)?)
+}
+
 /// The forms of a half period in doubles, within the bound on its error.
 pub(in crate::system) struct Forms<'a> {
     a: Mat<f64>,
@@ -85,7 +90,7 @@ impl<'a> Forms<'a> {
         let rounding = 1.01 * (m as f64 + 4.0) * U * size_x * size_y;
         let slack = e * (size_x.min(self.blocks.norm) + size_y.min(self.blocks.norm) + e) + rounding;
         let symmetric = Mat::from_fn(m, m, |i, j| (product[(i, j)] + product[(j, i)]) / 2.0);
-        proven(&symmetric, 1.01 * slack).times(sign)
+        inertia::proven(&symmetric, 1.01 * slack).times(sign)
     }
 }
 

@@ -34,4 +34,4 @@ mod elimination;
 mod forms;
 
 pub(super) use elimination::{inertia as exact_inertia, rank as exact_rank};
-pub(super) use forms::{Forms, Inertias, judge};
+pub(super) use forms::{Forms, Inertias, judge, proven};
