@@ -165,10 +165,10 @@ impl Question {
         } else {
             Status::Island
         };
-        let slowest_tenfold =
+        let fewest_to_tenfold =
             rows.iter().filter_map(|row| row.tenfold_steps).map(|(_, hi)| hi).fold(f64::INFINITY, f64::min);
-        let grows = slowest_tenfold.is_finite();
-        let time = slowest_tenfold * to_f64(outer);
+        let grows = fewest_to_tenfold.is_finite();
+        let time = fewest_to_tenfold * to_f64(outer);
         let within_run = self.length.as_ref().filter(|_| grows).map(|length| time <= to_f64(length));
         let needs = self.needs(scheme, in_band);
         let pairs = self.pairs(scheme);

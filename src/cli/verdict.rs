@@ -75,7 +75,7 @@ impl Args {
 
 /// Checking a certificate costs Coq some 2 s at 400 kicks, in exact numbers; by intervals, where 128 bits do, 20 s at 5,000.
 const WORTH_CERTIFYING: u64 = 5000;
-/// Of a tongue's edges, whose numbers gain the bits of a double at every kick: some 20 s at 300 kicks, growing with the square.
+/// A tongue's edges are doubles, so exact numbers gain 53 bits at every kick: Coq takes some 20 s at 300 kicks, and the square of that.
 pub const EDGES_WORTH_CERTIFYING: u64 = 1000;
 
 /// That a certificate of so many kicks, `most` if no budget is given, is worth its while.

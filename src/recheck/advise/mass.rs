@@ -158,7 +158,8 @@ pub fn crosses(at: &impl Fn(f64) -> Mass, ends: Ends, name: &str) -> Checked {
     holds(apart, || format!("no {name} end of an unstable interval lies in {}..{}", ends.lo, ends.hi))
 }
 
-/// That growth inside is nowhere faster than told, and somewhere as fast: at 16 places (it has one top), and then nearer and nearer to the best.
+/// The growth that is written is the fastest inside the interval. It is compared at 16 places, then nearer and nearer to the best of
+/// them: growth has one maximum there.
 pub fn fastest_growth(at: &impl Fn(f64) -> Mass, (lo, hi): (f64, f64), steps: Option<f64>) -> Checked {
     let growth = |outer: f64| -> Checked<(f64, f64)> {
         let (trace, period) = at(outer).trace()?;

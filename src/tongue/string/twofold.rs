@@ -4,7 +4,7 @@ use crate::number::{Twofold, U};
 
 /// A double, or two: what orbits are followed in.
 pub(crate) trait Digits: Copy {
-    /// A product is right to within this part of itself and a sum, but for an eighth of that part of its terms, too.
+    /// The relative rounding error of a product. A sum has the same relative error and, beside it, an eighth of it times the terms.
     const LOSS: f64;
     /// a + b, rounded.
     fn sum(a: f64, b: f64) -> Self;
