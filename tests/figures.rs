@@ -1,10 +1,10 @@
 //! Figures as a whole: what a tiny one looks like to the byte, and that larger ones hold together.
 
-use kickdrift_plot::palette::{
+use kickdrift::plot::palette::{
     CAUTION, COEXISTENCE, Colour, GREY, Gradient, HYPERBOLIC, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE,
     family,
 };
-use kickdrift_plot::{
+use kickdrift::plot::{
     Axis, Cells, ColourBar, Figure, Foot, Hatch, Layer, Note, Panel, Picture, Place, Shape, Stroke,
 };
 
