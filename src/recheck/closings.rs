@@ -8,7 +8,7 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
-use super::written::{Decimal, Written, exact, nullable};
+use super::written::{Decimal, Written, exact};
 use crate::error::Result;
 use crate::number::{Ratio, Rational, Sign};
 use crate::propagator::TwoClocks;
@@ -40,8 +40,7 @@ rows! {
     struct Side {
         lo: f64,
         hi: f64,
-        #[serde(deserialize_with = "nullable")]
-        exact: Option<Written<Rational>>,
+        exact: Written<Rational> | null,
         decimal: Decimal,
     }
 

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::again::Recheck;
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period};
-use super::written::{Ends, Written, nullable};
+use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
@@ -53,10 +53,8 @@ rows! {
         offence: String,
         kind: Written<Kind>,
         tan: Written<Kind>,
-        #[serde(deserialize_with = "nullable")]
-        m: Option<u64>,
-        #[serde(deserialize_with = "nullable")]
-        distance: Option<Ends>,
+        m: u64 | null,
+        distance: Ends | null,
     }
 }
 

@@ -33,11 +33,29 @@
 //! assert_eq!(outcome.failures[0].row, 1);
 //! ```
 
-/// Rows of documents: what the other route needs of them. An input knows all of its fields.
+/// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null, one of type
+/// `Option` may be missing. An input knows all of its fields.
 macro_rules! rows {
-    ($($row:item)*) => {
-        $(#[derive(Clone, Debug, serde::Deserialize)] $row)*
+    ($(
+        $(#[$row:meta])*
+        $visible:vis struct $name:ident {
+            $($(#[$attribute:meta])* $seen:vis $field:ident: $type:ty $(| $null:ident)?,)*
+        }
+    )*) => {
+        $(
+            #[derive(Clone, Debug, serde::Deserialize)]
+            $(#[$row])*
+            $visible struct $name {
+                $(
+                    $(#[$attribute])*
+                    $(#[doc = stringify!($null)] #[serde(deserialize_with = "crate::recheck::written::nullable")])?
+                    $seen $field: rows!(@type $type $(, $null)?),
+                )*
+            }
+        )*
     };
+    (@type $type:ty) => { $type };
+    (@type $type:ty, $null:ident) => { Option<$type> };
 }
 
 #[cfg(feature = "advise")]

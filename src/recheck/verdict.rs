@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
-use super::written::{Ends, Written, nullable};
+use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
@@ -27,16 +27,13 @@ rows! {
         side: i8,
         trace: Trace,
         growth_rate: Ends,
-        #[serde(deserialize_with = "nullable")]
-        resonance: Option<Resonance>,
+        resonance: Resonance | null,
         decided_by: Written<Tier>,
     }
 
     struct Trace {
-        #[serde(deserialize_with = "nullable")]
-        lo: Option<f64>,
-        #[serde(deserialize_with = "nullable")]
-        hi: Option<f64>,
+        lo: f64 | null,
+        hi: f64 | null,
         exact: Option<Written<Rational>>,
     }
 

@@ -83,7 +83,8 @@ fn whole(text: &str) -> Result<u64> {
     whole.ok_or_else(|| Error::input("the number", text, "is no whole number of 64 bits"))
 }
 
-fn one_of<T: Copy, const N: usize>(
+/// One of some values, by its name.
+pub fn one_of<T: Copy, const N: usize>(
     field: &str,
     text: &str,
     all: [T; N],

@@ -10,7 +10,7 @@ use crate::number::rational::to_f64;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
 use crate::recheck::again::{Left, Recheck};
 use crate::recheck::context::{Checked, Context, Outcome, Place, holds};
-use crate::recheck::written::{Ends, Notation, Written, nullable, positive};
+use crate::recheck::written::{Ends, Notation, Written, one_of, positive};
 use crate::report::advise as report;
 use crate::verdict::Kind;
 
@@ -41,8 +41,7 @@ rows! {
     pub struct Mode {
         pub name: String,
         pub from: Written<Origin>,
-        #[serde(deserialize_with = "nullable")]
-        pub clock: Option<u64>,
+        pub clock: u64 | null,
         pub stiffness: Written<Laurent>,
     }
 
@@ -57,22 +56,17 @@ rows! {
         pub quarter: Ends,
         pub fifth: Ends,
         pub tenth: Ends,
-        #[serde(deserialize_with = "nullable")]
-        pub before: Option<f64>,
+        pub before: f64 | null,
     }
 
     pub struct SchemeRow {
         pub outer: Written<Rational>,
         pub status: String,
         pub band_edge: Ends,
-        #[serde(deserialize_with = "nullable")]
-        pub largest: Option<Written<Rational>>,
-        #[serde(deserialize_with = "nullable")]
-        pub safe: Option<Written<Rational>>,
-        #[serde(deserialize_with = "nullable")]
-        pub needs: Option<f64>,
-        #[serde(deserialize_with = "nullable")]
-        pub within_run: Option<bool>,
+        pub largest: Written<Rational> | null,
+        pub safe: Written<Rational> | null,
+        pub needs: f64 | null,
+        pub within_run: bool | null,
     }
 
     pub struct Row {
@@ -82,36 +76,21 @@ rows! {
         pub kind: Written<Kind>,
         pub trace: Ends,
         pub growth_rate: Ends,
-        #[serde(deserialize_with = "nullable")]
-        pub tenfold_steps: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub masked_above: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub damped: Option<bool>,
-        #[serde(deserialize_with = "nullable")]
-        pub first_lower: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub first_upper: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub first_tenfold_steps: Option<f64>,
-        #[serde(deserialize_with = "nullable")]
-        pub inside_lower: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub inside_upper: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub inside_tenfold_steps: Option<f64>,
-        #[serde(deserialize_with = "nullable")]
-        pub below_lower: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub below_upper: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub below_tenfold_steps: Option<f64>,
-        #[serde(deserialize_with = "nullable")]
-        pub above_lower: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub above_upper: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub above_tenfold_steps: Option<f64>,
+        pub tenfold_steps: Ends | null,
+        pub masked_above: Ends | null,
+        pub damped: bool | null,
+        pub first_lower: Ends | null,
+        pub first_upper: Ends | null,
+        pub first_tenfold_steps: f64 | null,
+        pub inside_lower: Ends | null,
+        pub inside_upper: Ends | null,
+        pub inside_tenfold_steps: f64 | null,
+        pub below_lower: Ends | null,
+        pub below_upper: Ends | null,
+        pub below_tenfold_steps: f64 | null,
+        pub above_lower: Ends | null,
+        pub above_upper: Ends | null,
+        pub above_tenfold_steps: f64 | null,
     }
 
     pub struct Interval {
@@ -119,10 +98,8 @@ rows! {
         pub mode: String,
         pub m: u64,
         pub lower: Ends,
-        #[serde(deserialize_with = "nullable")]
-        pub upper: Option<Ends>,
-        #[serde(deserialize_with = "nullable")]
-        pub tenfold_steps: Option<f64>,
+        pub upper: Ends | null,
+        pub tenfold_steps: f64 | null,
     }
 
     pub struct Pair {
@@ -142,10 +119,7 @@ impl Place for Row {
 impl Notation for Origin {
     fn read(text: &str) -> Result<Origin> {
         let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
-        let found = all.into_iter().find(|origin| origin.name() == text);
-        found.ok_or_else(|| {
-            Error::input("from", text, format!("is none of {}", all.map(Origin::name).join(", ")))
-        })
+        one_of("from", text, all, Origin::name)
     }
 }
 

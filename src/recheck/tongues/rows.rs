@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::number::{Laurent, Ratio, Rational};
 use crate::recheck::context::Place;
-use crate::recheck::written::{Column, Decimal, Ends, Range, Written, nullable};
+use crate::recheck::written::{Column, Decimal, Ends, Range, Written};
 use crate::resonance::dominant_family;
 use crate::tongue::{self, Entry, Gap, Resonance, Side};
 
@@ -43,16 +43,12 @@ rows! {
         pub p: u64,
         pub q: u64,
         pub m: u64,
-        #[serde(deserialize_with = "nullable")]
-        pub a: Option<i64>,
-        #[serde(deserialize_with = "nullable")]
-        pub b: Option<i64>,
+        pub a: i64 | null,
+        pub b: i64 | null,
         pub lower: Edge,
-        #[serde(deserialize_with = "nullable")]
-        pub upper: Option<Edge>,
+        pub upper: Edge | null,
         pub closed: bool,
-        #[serde(deserialize_with = "nullable")]
-        pub width: Option<Ends>,
+        pub width: Ends | null,
         #[serde(default)]
         pub growth: Column<Growth>,
         #[serde(default)]
