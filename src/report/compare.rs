@@ -1,7 +1,5 @@
 //! Trace against predictions as a document: the counts, and the offenders as rows.
 
-use serde_json::json;
-
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column};
@@ -17,14 +15,13 @@ pub fn document(all: &Comparisons, tolerance: &Rational, places: [&str; 2]) -> D
     Document::new("compare")
         .entry("pairs", tally.pairs)
         .entry("unstable", tally.unstable)
-        .entry("tan", json!({"agree": tally.tan_agree, "disagree": tally.tan_disagree}))
-        .entry(
-            "resonance",
-            json!({
-                "hits": tally.hits, "quiet": tally.quiet, "misses": tally.misses,
-                "false_alarms": tally.false_alarms, "beyond_verlet": tally.beyond_verlet,
-            }),
-        )
+        .entry("tan.agree", tally.tan_agree)
+        .entry("tan.disagree", tally.tan_disagree)
+        .entry("resonance.hits", tally.hits)
+        .entry("resonance.quiet", tally.quiet)
+        .entry("resonance.misses", tally.misses)
+        .entry("resonance.false_alarms", tally.false_alarms)
+        .entry("resonance.beyond_verlet", tally.beyond_verlet)
         .rows(
             record(places)
                 .table("offenders", "Pairs at which a prediction is wrong", offenders)

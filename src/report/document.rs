@@ -71,6 +71,15 @@ impl Document {
         self
     }
 
+    /// Echoes one input where it was given.
+    #[must_use]
+    pub fn input_given(self, key: &str, value: Option<impl ToString>) -> Self {
+        match value {
+            Some(value) => self.input(key, value),
+            None => self,
+        }
+    }
+
     /// Echoes inputs, in order.
     #[must_use]
     pub fn inputs<'a>(self, given: impl IntoIterator<Item = (&'a str, String)>) -> Self {
@@ -84,10 +93,10 @@ impl Document {
         self
     }
 
-    /// Adds one entry to the JSON body.
+    /// Adds one entry to the JSON body, at a path as those of a [`Record`](super::record::Record).
     #[must_use]
     pub fn entry(mut self, key: &str, value: impl Into<Value>) -> Self {
-        self.body.insert(key.into(), value.into());
+        put(&mut self.body, key, value.into());
         self
     }
 
@@ -252,6 +261,18 @@ impl Document {
             }
         }
         out
+    }
+}
+
+/// Puts a value at a path; a group begins with its first value.
+pub(super) fn put(entries: &mut Map<String, Value>, path: &str, value: Value) {
+    let Some((group, rest)) = path.split_once('.') else { return drop(entries.insert(path.into(), value)) };
+    let group = entries.entry(group).or_insert(Value::Null);
+    if !value.is_null() && group.is_null() {
+        *group = Map::new().into();
+    }
+    if let Value::Object(inside) = group {
+        put(inside, rest, value);
     }
 }
 

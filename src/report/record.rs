@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value};
 
-use super::document::Document;
+use super::document::{Document, put};
 use super::table::{Cell, Column, Table};
 
 /// How the cell of one column is found in a `T`.
@@ -126,17 +126,5 @@ impl<'a, T> Record<'a, T> {
     pub fn document(&self, document: Document, of: &T) -> Document {
         let Value::Object(entries) = self.entries(of) else { unreachable!("entries are an object") };
         entries.into_iter().fold(document, |document, (key, value)| document.entry(&key, value))
-    }
-}
-
-/// Puts a value at a path; a group begins with its first value.
-fn put(entries: &mut Map<String, Value>, path: &str, value: Value) {
-    let Some((group, rest)) = path.split_once('.') else { return drop(entries.insert(path.into(), value)) };
-    let group = entries.entry(group).or_insert(Value::Null);
-    if !value.is_null() && group.is_null() {
-        *group = Map::new().into();
-    }
-    if let Value::Object(inside) = group {
-        put(inside, rest, value);
     }
 }

@@ -1,7 +1,5 @@
 //! The answer to "is this pair stable?" as a document.
 
-use serde_json::json;
-
 use super::decimal;
 use super::document::Document;
 use super::record::Record;
@@ -67,8 +65,7 @@ impl Answer {
         let record = record();
         let mut document = record.document(Document::new("verdict"), self);
         if let Some(exact) = &self.exact_trace {
-            let (lo, hi) = self.growth.trace.to_f64_enclosure();
-            document = document.entry("trace", json!({"lo": lo, "hi": hi, "exact": exact.to_string()}));
+            document = document.entry("trace.exact", exact.to_string());
         }
         #[cfg(feature = "system")]
         if let Some(own) = &self.friction {

@@ -1,6 +1,6 @@
 //! What a person can act on: a line for each scheme, then what to do, then why.
 
-use super::words::{choice, down, fs, nearest, percent, time, told};
+use super::words::{choice, down, fs, nearest, percent, told, within};
 use crate::advise::engine::{Reading, nested_beside, not_nested};
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Pair, Row, Scheme, Status, Unstable};
@@ -99,11 +99,7 @@ fn line(advice: &Advice, answer: &Answer) -> String {
         Status::Island => island(answer, outer),
         Status::Unstable | Status::NotTold => unstable(answer, worst),
     };
-    let within = match (answer.within_run, &advice.length) {
-        (Some(true), Some(length)) => format!("; within the run of {}", time(length)),
-        (Some(false), Some(length)) => format!("; not within the run of {}", time(length)),
-        _ => String::new(),
-    };
+    let within = within(answer.within_run, &advice.length);
     // What no engine runs is no resonance to be frightened of.
     if let Some(beside) = nested_beside(&answer.scheme) {
         let kind = if answer.rows.iter().any(|row| row.found.rate.1 > 0.0) { "unstable" } else { "stable" };

@@ -13,7 +13,7 @@ use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Mode, PUBLISHED, Pair, Row, Unstable};
+use crate::advise::{Advice, Answer, Caution, Mode, PUBLISHED, Pair, Row, Scheme, Unstable};
 use crate::number::Rational;
 
 #[cfg(feature = "figure")]
@@ -24,17 +24,18 @@ pub use words::nearest;
 /// The document `kickdrift/advise/1`, its input included; the rows with all columns, or with those that fit paper;
 /// with what an engine's text says, where the steps are those of one.
 pub fn document(advice: &Advice, reading: Option<&Reading>, all_columns: bool) -> Document {
-    let rows = row_table(advice, all_columns);
-    let (modes, schemes, pairs) = (mode_table(advice, true), scheme_table(advice, true), pair_table(advice));
+    let (modes, pairs, fastest) = (mode_table(advice), pair_table(advice), &advice.modes[advice.fastest]);
     let document = echo(Document::new("advise"), advice)
         .entry("modes", modes.to_json_rows())
-        .entry("schemes", schemes.to_json_rows())
+        .entry("schemes", scheme_table(advice).to_json_rows())
         .entry("rows", row_table(advice, true).to_json_rows())
         .entry("intervals", interval_table(advice).to_json_rows())
         .entry("pairs", pairs.to_json_rows())
-        .entry("published", published(advice))
+        .entry("published", published(&fastest.name, |parts| fastest.part(parts).into()))
         .entry("unknown", lines::UNKNOWN.to_vec());
-    let document = document.long_rows(rows).and_rows(mode_table(advice, false));
+    let changed = advice.modes.iter().any(|mode| mode.before.is_some());
+    let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
+    let document = document.long_rows(row_table(advice, all_columns)).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let document = match reading {
         Some(reading) => document.entry("engine", engine(lines::of_answer(&advice.schemes[0]), reading)),
@@ -51,95 +52,87 @@ fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
 
 fn echo(document: Document, advice: &Advice) -> Document {
     let mode = |mode: &Mode| json!({"name": mode.name, "from": mode.origin.name(), "clock": mode.clock.map(|k| k + 1), "stiffness": mode.stiffness.to_string()});
-    let steps =
-        |answer: &Answer| -> Value { answer.scheme.steps().iter().map(ToString::to_string).collect() };
     let document = document
         .input("band", &advice.band)
         .input_json("modes", advice.modes.iter().map(mode).collect())
-        .input_json("schemes", advice.schemes.iter().map(steps).collect());
-    let document = match &advice.length {
-        Some(length) => document.input("length", length),
-        None => document,
-    };
-    let document = match &advice.friction {
-        Some(friction) => document.input("friction", friction),
-        None => document,
-    };
+        .input_json("schemes", schemes(advice.schemes.iter().map(|own| &own.scheme)));
+    let document = document
+        .input_given("length", advice.length.as_ref())
+        .input_given("friction", advice.friction.as_ref());
     if advice.held.is_empty() {
         return document;
     }
     document.input_json("constrained", advice.held.iter().map(mode).collect())
 }
 
-/// The published statements with their limits in fs, for the fastest mode.
-fn published(advice: &Advice) -> Value {
-    let mode = &advice.modes[advice.fastest];
-    let one = |of: &crate::advise::Caution| {
-        let (lo, hi) = mode.part(of.parts);
-        json!({"mode": mode.name, "parts": of.parts, "step": if of.inner { "inner" } else { "outer" }, "limit": {"lo": lo, "hi": hi},
-            "statement": of.statement, "source": of.source})
-    };
-    PUBLISHED.iter().map(one).collect()
+/// The published statements for the fastest mode, with their limits in fs: `part` of its period.
+fn published(mode: &str, part: impl Fn(u64) -> Cell + Send + Sync) -> Value {
+    let record = Record::new()
+        .field(Column::new("mode"), |_: &Caution| mode.into())
+        .field(Column::new("parts"), |of| of.parts.into())
+        .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
+        .field(Column::new("limit"), |of| part(of.parts))
+        .field(Column::new("statement"), |of| of.statement.into())
+        .field(Column::new("source"), |of| of.source.into());
+    record.all(&PUBLISHED).into()
 }
 
-/// An enclosure for programs, a rounded decimal for people.
-fn quantity(enclosure: Option<(f64, f64)>, all: bool) -> Cell {
-    match enclosure {
-        Some(ends) if all => ends.into(),
-        Some(ends) => Cell::Exact(nearest(ends, 5)),
-        None => Cell::Missing,
+/// The steps of schemes, from the innermost on.
+fn schemes<'a>(all: impl Iterator<Item = &'a Scheme>) -> Value {
+    all.map(|own| own.steps().iter().map(ToString::to_string).collect::<Value>()).collect()
+}
+
+/// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
+fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
+    let kept = || full.columns().iter().map(|column| shown(&column.key));
+    let columns = full.columns().iter().zip(kept()).filter(|(_, kept)| *kept);
+    let columns = columns.map(|(column, _)| Column { enclosed: false, ..column.clone() }).collect();
+    let mut table = Table::new(full.name(), full.caption(), columns);
+    for row in full.rows() {
+        let cell = |(cell, kept): (&Cell, bool)| match *cell {
+            _ if !kept => None,
+            Cell::Float(x) => Some(Cell::Exact(nearest((x, x), 5))),
+            Cell::Enclosure { lo, hi } => Some(Cell::Exact(nearest((lo, hi), 5))),
+            _ => Some(cell.clone()),
+        };
+        table.push(row.iter().zip(kept()).filter_map(cell).collect());
     }
+    table
 }
 
-fn column(key: &str, title: &str, all: bool) -> Column {
-    let column = Column::new(key).in_words(title);
-    if all { column.enclosure() } else { column }
+/// An enclosure, in fs unless it is said otherwise.
+fn enclosed(key: &str, title: &str) -> Column {
+    Column::new(key).in_words(title).enclosure()
 }
 
-fn mode_table(advice: &Advice, all: bool) -> Table {
+fn mode_table(advice: &Advice) -> Table {
     let mut record = Record::new()
         .field(Column::new("name").in_words("mode").left(), |mode: &Mode| mode.name.as_str().into())
-        .field(Column::new("from").left(), |mode: &Mode| mode.origin.name().into())
-        .field(Column::new("clock"), |mode: &Mode| mode.clock.map(|k| k as u64 + 1).into());
-    if all {
-        record = record
-            .field(Column::new("stiffness").in_unit("1/fs^2"), |mode: &Mode| Cell::exact(&mode.stiffness));
-    }
-    let mut record = record
-        .field(column("period", "T", all).in_unit("fs"), move |mode: &Mode| {
-            quantity(Some(mode.period()), all)
-        })
-        .field(column("verlet", "T/pi", all), move |mode: &Mode| quantity(Some(mode.verlet()), all));
+        .field(Column::new("from").left(), |mode| mode.origin.name().into())
+        .field(Column::new("clock"), |mode| mode.clock.map(|k| k as u64 + 1).into())
+        .field(Column::new("stiffness").in_unit("1/fs^2"), |mode| Cell::exact(&mode.stiffness))
+        .field(enclosed("period", "T").in_unit("fs"), |mode| mode.period().into())
+        .field(enclosed("verlet", "T/pi"), |mode| mode.verlet().into());
     for (parts, key) in [(2, "half"), (3, "third"), (4, "quarter"), (5, "fifth"), (10, "tenth")] {
-        let title = format!("T/{parts}");
-        record =
-            record.field(column(key, &title, all), move |mode: &Mode| quantity(Some(mode.part(parts)), all));
+        record = record.field(enclosed(key, &format!("T/{parts}")), move |mode| mode.part(parts).into());
     }
-    if advice.modes.iter().any(|mode| mode.before.is_some()) || all {
-        record =
-            record.field(Column::new("before").in_words("T before").in_unit("fs"), move |mode: &Mode| {
-                match mode.before {
-                    Some(before) if !all => Cell::Exact(nearest((before, before), 5)),
-                    other => other.into(),
-                }
-            });
-    }
-    record.table("modes", "Periods in fs, and the steps that they limit", &advice.modes)
+    record.field(Column::new("before").in_words("T before").in_unit("fs"), |mode| mode.before.into()).table(
+        "modes",
+        "Periods in fs, and the steps that they limit",
+        &advice.modes,
+    )
 }
 
-fn scheme_table(advice: &Advice, all: bool) -> Table {
-    let exact = |x: &Option<Rational>| x.as_ref().map_or(Cell::Missing, Cell::exact);
-    let record = Record::new()
-        .field(Column::new("outer").in_unit("fs"), |answer: &Answer| Cell::exact(answer.scheme.outer()))
-        .field(Column::new("status").left(), |answer| answer.status.name().into())
-        .field(column("band_edge", "stable below", all).in_unit("fs"), move |answer| {
-            quantity(Some(answer.band_edge), all)
-        })
-        .field(Column::new("largest").in_unit("fs"), move |answer| exact(&answer.largest))
-        .field(Column::new("safe").in_unit("fs"), move |answer| exact(&answer.safe))
-        .field(Column::new("needs").in_unit("fs"), |answer| answer.needs.into())
-        .field(Column::new("within_run"), |answer| answer.within_run.into());
-    record.table("schemes", "Schemes of steps", &advice.schemes)
+fn scheme_table(advice: &Advice) -> Table {
+    Record::new()
+        .field(Column::new("outer"), |answer: &Answer| Cell::exact(answer.scheme.outer()))
+        .field(Column::new("status"), |answer| answer.status.name().into())
+        .field(Column::new("band_edge").enclosure(), |answer| answer.band_edge.into())
+        .field(Column::new("largest"), |answer| answer.largest.as_ref().map(Cell::exact).into())
+        .field(Column::new("safe"), |answer| answer.safe.as_ref().map(Cell::exact).into())
+        .field(Column::new("needs"), |answer| answer.needs.into())
+        .field(Column::new("within_run"), |answer| answer.within_run.into())
+        .table("schemes", "", &advice.schemes)
 }
 
 /// One row of one scheme, with what names it.
@@ -161,32 +154,19 @@ fn row_table(advice: &Advice, all: bool) -> Table {
     let named: Vec<Named> = named.map(|of| Named { mode: &advice.modes[of.row.mode].name, ..of }).collect();
     let mut record = Record::new()
         .field(Column::new("scheme"), |of: &Named| (of.scheme as u64).into())
-        .field(Column::new("outer").in_words("outer step").in_unit("fs"), move |of: &Named| {
-            if all {
-                Cell::exact(of.answer.scheme.outer())
-            } else {
-                Cell::Exact(decimal(of.answer.scheme.outer()))
-            }
+        .field(Column::new("outer").in_words("outer step").in_unit("fs"), move |of| {
+            let outer = of.answer.scheme.outer();
+            if all { Cell::exact(outer) } else { Cell::Exact(decimal(outer)) }
         })
-        .field(Column::new("mode").left(), |of: &Named| of.mode.into())
-        .field(Column::new("kind").left(), |of: &Named| of.row.found.kind.name().into())
-        .field(column("trace", "Tr", all), move |of: &Named| quantity(Some(of.row.found.trace), all));
-    record = record
-        .field(column("growth_rate", "growth", all).in_unit("1/ps"), move |of: &Named| {
-            quantity(Some(per_ps(of.row.found.rate)), all)
+        .field(Column::new("mode").left(), |of| of.mode.into())
+        .field(Column::new("kind").left(), |of| of.row.found.kind.name().into())
+        .field(enclosed("trace", "Tr"), |of| of.row.found.trace.into())
+        .field(enclosed("growth_rate", "growth").in_unit("1/ps"), |of| per_ps(of.row.found.rate).into())
+        .field(enclosed("tenfold_steps", "tenfold in steps"), |of| of.row.tenfold_steps.into())
+        .field(enclosed("masked_above", "masked above a friction").in_unit("1/ps"), |of| {
+            of.row.masking.map(per_ps).into()
         })
-        .field(column("tenfold_steps", "tenfold in steps", all), move |of: &Named| {
-            quantity(of.row.tenfold_steps, all)
-        });
-    if all || advice.schemes.iter().any(|answer| answer.rows.iter().any(|row| row.masking.is_some())) {
-        record = record.field(
-            column("masked_above", "masked above a friction", all).in_unit("1/ps"),
-            move |of: &Named| quantity(of.row.masking.map(per_ps), all),
-        );
-    }
-    if all || advice.friction.is_some() {
-        record = record.field(Column::new("damped"), |of: &Named| of.row.is_damped.into());
-    }
+        .field(Column::new("damped"), |of| of.row.is_damped.into());
     let places: [(&str, &str, Which); 4] = [
         ("first", "first unstable", |row| row.first.as_ref()),
         ("inside", "inside", |row| row.inside.as_ref()),
@@ -194,25 +174,30 @@ fn row_table(advice: &Advice, all: bool) -> Table {
         ("above", "above it", |row| row.above.as_ref()),
     ];
     let shown = if all { 4 } else { 1 };
+    let ends: [(&str, &str, End); 2] =
+        [("lower", "from", |of| Some(of.lower)), ("upper", "to", |of| of.upper)];
     for (key, title, which) in places.into_iter().take(shown) {
-        let ends: [(&str, &str, End); 2] =
-            [("lower", "from", |of| Some(of.lower)), ("upper", "to", |of| of.upper)];
         for (end, word, find) in ends {
-            let column = column(&format!("{key}_{end}"), &format!("{title} {word}"), all).in_unit("fs");
-            record = record.field(column, move |of: &Named| quantity(which(of.row).and_then(find), all));
+            let column = enclosed(&format!("{key}_{end}"), &format!("{title} {word}")).in_unit("fs");
+            record = record.field(column, move |of| which(of.row).and_then(find).into());
         }
         let worst = Column::new(&format!("{key}_tenfold_steps")).in_words("worst: tenfold in steps");
-        record = record.field(worst, move |of: &Named| match which(of.row).and_then(|of| of.worst) {
+        record = record.field(worst, move |of| match which(of.row).and_then(|of| of.worst) {
             Some(worst) if !all => Cell::Exact(nearest((worst.steps, worst.steps), 4)),
-            Some(worst) => worst.steps.into(),
-            None => Cell::Missing,
+            worst => worst.map(|worst| worst.steps).into(),
         });
     }
-    record.table(
-        "rows",
-        "Each fast mode at each scheme of steps, the stiffest modes on the other clocks",
-        &named,
-    )
+    let caption = "Each fast mode at each scheme of steps, the stiffest modes on the other clocks";
+    let table = record.table("rows", caption, &named);
+    if all {
+        return table;
+    }
+    let masked = named.iter().any(|of| of.row.masking.is_some());
+    for_people(&table, |key| match key {
+        "masked_above" => masked,
+        "damped" => advice.friction.is_some(),
+        _ => true,
+    })
 }
 
 fn interval_table(advice: &Advice) -> Table {
@@ -222,12 +207,12 @@ fn interval_table(advice: &Advice) -> Table {
         rows.flat_map(|(n, row)| row.intervals.iter().map(move |own| (n, row.mode, own))).collect();
     let record = Record::new()
         .field(Column::new("scheme"), |of: &(u64, usize, &Unstable)| of.0.into())
-        .field(Column::new("mode").left(), |of| advice.modes[of.1].name.as_str().into())
+        .field(Column::new("mode"), |of| advice.modes[of.1].name.as_str().into())
         .field(Column::new("m"), |of| of.2.label.into())
-        .field(column("lower", "from", true), |of| quantity(Some(of.2.lower), true))
-        .field(column("upper", "to", true), |of| quantity(of.2.upper, true))
+        .field(Column::new("lower").enclosure(), |of| of.2.lower.into())
+        .field(Column::new("upper").enclosure(), |of| of.2.upper.into())
         .field(Column::new("tenfold_steps"), |of| of.2.worst.map(|worst| worst.steps).into());
-    record.table("intervals", "Unstable intervals of the outer step", &all)
+    record.table("intervals", "", &all)
 }
 
 /// A rate per fs as one per ps, rounded outward.

@@ -1,43 +1,37 @@
 //! What is told of a molecule's Hessians: lines to act on, then tables.
 
-use serde_json::{Value, json};
-
 use super::lines::{self, advised, read_from};
-use super::words::{choice, down, fs, nearest, percent, time};
-use super::{column, quantity};
+use super::words::{choice, down, fs, nearest, percent, within};
+use super::{enclosed, for_people, published, schemes};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
-use crate::advise::{Finding, Findings, Group, PUBLISHED, Scheme, Status};
+use crate::advise::{Finding, Findings, Group, Status};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
-use crate::system::Holds;
 use crate::system::levels::Growing;
 
 /// The document `kickdrift/advise-system/1`, but for the input; for people with `notes` on how it was read.
 pub fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
-    let removed = findings.removed.as_ref().map(|own| json!({"count": own.count, "found_by": own.found_by}));
+    let removed = findings.removed.as_ref();
     let document = Document::new("advise-system")
         .input("band", &findings.band)
-        .input_json("schemes", findings.schemes.iter().map(|own| steps(&own.scheme)).collect());
-    let document = match &findings.length {
-        Some(length) => document.input("length", length),
-        None => document,
-    };
-    let document = match &findings.friction {
-        Some(friction) => document.input("friction", friction),
-        None => document,
-    };
+        .input_json("schemes", schemes(findings.schemes.iter().map(|own| &own.scheme)));
+    let fastest = &findings.groups[0];
+    let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
     let document = document
-        .entry("rigid_motions", removed)
+        .input_given("length", findings.length.as_ref())
+        .input_given("friction", findings.friction.as_ref())
+        .entry("rigid_motions.count", removed.map(|own| own.count))
+        .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
         .entry("accuracy", findings.accuracy)
         .entry("slow_period", findings.slow)
-        .entry("groups", groups(findings, true).to_json_rows())
-        .entry("rows", rows(findings, true).to_json_rows())
-        .entry("intervals", intervals(findings, true).to_json_rows())
-        .entry("published", published(findings))
+        .entry("groups", groups.to_json_rows())
+        .entry("rows", rows.to_json_rows())
+        .entry("intervals", intervals.to_json_rows())
+        .entry("published", published(&fastest.atoms, |parts| (fastest.period.0 / parts as f64).into()))
         .entry("unknown", UNKNOWN.to_vec());
     let best = &findings.schemes[0];
     let document = match reading {
@@ -45,14 +39,14 @@ pub fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]
         None => document,
     };
     document
-        .long_rows(rows(findings, false))
-        .and_rows(intervals(findings, false))
-        .and_rows(groups(findings, false))
+        .long_rows(for_people(&rows, |key| match key {
+            "holds" => false,
+            "masked_above" | "damped" => findings.friction.is_some(),
+            _ => true,
+        }))
+        .and_rows(for_people(&intervals, |_| true))
+        .and_rows(for_people(&groups, |_| true))
         .summary(&summary(findings, reading, notes))
-}
-
-fn steps(scheme: &Scheme) -> Value {
-    scheme.steps().iter().map(ToString::to_string).collect()
 }
 
 /// What Hessians at one place do not tell.
@@ -140,11 +134,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
         }
         Status::Unstable => format!("unstable{}: do not use", grows(own)),
     };
-    let within = match (own.within_run, &findings.length) {
-        (Some(true), Some(length)) => format!("; within the run of {}", time(length)),
-        (Some(false), Some(length)) => format!("; not within the run of {}", time(length)),
-        _ => String::new(),
-    };
+    let within = within(own.within_run, &findings.length);
     format!("{:7} {what}{within}", fs(own.scheme.outer()))
 }
 
@@ -173,105 +163,58 @@ fn grows(own: &Finding) -> String {
     )
 }
 
-fn published(findings: &Findings) -> Value {
-    let fastest = &findings.groups[0];
-    let one = |of: &crate::advise::Caution| {
-        json!({"mode": fastest.atoms, "parts": of.parts, "step": if of.inner { "inner" } else { "outer" },
-            "limit": fastest.period.0 / of.parts as f64, "statement": of.statement, "source": of.source})
-    };
-    PUBLISHED.iter().map(one).collect()
-}
-
-/// A rounded double for programs, five digits for people.
-fn number(x: Option<f64>, all: bool) -> Cell {
-    match x {
-        Some(x) if !all => Cell::Exact(rounded(x, 5)),
-        other => other.into(),
-    }
-}
-
-fn groups(findings: &Findings, all: bool) -> Table {
-    let record = Record::new()
+fn groups(findings: &Findings) -> Table {
+    Record::new()
         .field(Column::new("count"), |own: &Group| (own.count as u64).into())
-        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), move |own| {
-            number(Some(own.period.0), all)
-        })
-        .field(Column::new("longest").in_words("longest").in_unit("fs"), move |own| {
-            number(Some(own.period.1), all)
-        })
-        .field(Column::new("half").in_words("T/2"), move |own| number(Some(own.period.0 / 2.0), all))
-        .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into());
-    record.table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
+        .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |own| own.period.0.into())
+        .field(Column::new("longest").in_unit("fs"), |own| own.period.1.into())
+        .field(Column::new("half").in_words("T/2"), |own| (own.period.0 / 2.0).into())
+        .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into())
+        .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
 }
 
 /// Of each scheme, those at its ratio.
-fn intervals(findings: &Findings, all: bool) -> Table {
+fn intervals(findings: &Findings) -> Table {
     let schemes = (1u64..).zip(&findings.schemes);
     let found: Vec<(u64, &Growing)> =
         schemes.flat_map(|(n, own)| own.growing.iter().map(move |growing| (n, growing))).collect();
-    type One<'a> = (u64, &'a Growing);
+    let column = |key: &str, title: &str| Column::new(key).in_words(title);
     let record = Record::new()
-        .field(Column::new("scheme"), |own: &One| own.0.into())
-        .field(Column::new("lower").in_words("grows from").in_unit("fs"), move |own| {
-            number(Some(own.1.lower), all)
+        .field(Column::new("scheme"), |own: &(u64, &Growing)| own.0.into())
+        .field(column("lower", "grows from").in_unit("fs"), |own| own.1.lower.into())
+        .field(column("upper", "to").in_unit("fs"), |own| own.1.upper.into())
+        .field(column("stable_again", "stable again").in_unit("fs"), |own| own.1.stable_again.into())
+        .field(column("worst_outer", "worst at").in_unit("fs"), |own| own.1.worst.0.into())
+        .field(column("worst_growth_rate", "growth there").in_unit("1/ps"), |own| {
+            (1000.0 * own.1.worst.1).into()
         })
-        .field(Column::new("upper").in_words("to").in_unit("fs"), move |own| number(own.1.upper, all))
-        .field(Column::new("stable_again").in_words("stable again").in_unit("fs"), move |own| {
-            number(own.1.stable_again, all)
-        })
-        .field(Column::new("worst_outer").in_words("worst at").in_unit("fs"), move |own| {
-            number(Some(own.1.worst.0), all)
-        })
-        .field(Column::new("worst_growth_rate").in_words("growth there").in_unit("1/ps"), move |own| {
-            number(Some(1000.0 * own.1.worst.1), all)
-        })
-        .field(Column::new("worst_tenfold_steps").in_words("tenfold in steps"), move |own| {
-            number(Some(std::f64::consts::LN_10 / (own.1.worst.0 * own.1.worst.1)), all)
+        .field(column("worst_tenfold_steps", "tenfold in steps"), |own| {
+            (std::f64::consts::LN_10 / (own.1.worst.0 * own.1.worst.1)).into()
         });
     record.table("intervals", "Unstable intervals of the outer step: the beginning of the first and that it is stable again proven, the rest sampled", &found)
 }
 
-fn rows(findings: &Findings, all: bool) -> Table {
-    let exact = |x: &Option<Rational>| x.as_ref().map_or(Cell::Missing, Cell::exact);
-    let holds = |holds: Holds| Cell::from(holds.name());
-    let mut record = Record::new()
-        .field(Column::new("outer").in_words("outer step").in_unit("fs"), |own: &Finding| {
-            Cell::exact(own.scheme.outer())
+fn rows(findings: &Findings) -> Table {
+    let exact = |x: &Option<Rational>| Cell::from(x.as_ref().map(Cell::exact));
+    let per_ps = |rate: Option<f64>| Cell::from(rate.map(|rate| 1000.0 * rate));
+    let column = |key: &str, title: &str| Column::new(key).in_words(title);
+    Record::new()
+        .field(column("outer", "outer step").in_unit("fs"), |own: &Finding| Cell::exact(own.scheme.outer()))
+        .field(Column::new("status").left(), |own| own.status.name().into())
+        .field(Column::new("holds").left(), |own| own.holds.name().into())
+        .field(Column::new("margin"), |own| own.margin.into())
+        .field(enclosed("first", "first unstable from").in_unit("fs"), |own| own.first.into())
+        .field(column("first_upper", "at least to").in_unit("fs"), |own| own.first_upper.into())
+        .field(column("growth_rate", "growth").in_unit("1/ps"), move |own| per_ps(own.rate))
+        .field(column("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps().into())
+        .field(column("atoms", "growing").left(), |own| own.atoms.as_deref().into())
+        .field(column("masked_above", "masked above a friction").in_unit("1/ps"), move |own| {
+            per_ps(own.masking)
         })
-        .field(Column::new("status").left(), |own| own.status.name().into());
-    if all {
-        record = record.field(Column::new("holds").left(), move |own| holds(own.holds));
-    }
-    let record = record
-        .field(Column::new("margin"), move |own| number(own.margin, all))
-        .field(column("first", "first unstable from", all).in_unit("fs"), move |own| quantity(own.first, all))
-        .field(Column::new("first_upper").in_words("at least to").in_unit("fs"), move |own| {
-            number(own.first_upper, all)
-        })
-        .field(Column::new("growth_rate").in_words("growth").in_unit("1/ps"), move |own| {
-            number(own.rate.map(|rate| 1000.0 * rate), all)
-        })
-        .field(Column::new("tenfold_steps").in_words("tenfold in steps"), move |own| {
-            number(own.tenfold_steps(), all)
-        })
-        .field(Column::new("atoms").in_words("growing").left(), |own| {
-            own.atoms.as_deref().map_or(Cell::Missing, Cell::from)
-        });
-    let record = match all || findings.friction.is_some() {
-        false => record,
-        true => record
-            .field(
-                Column::new("masked_above").in_words("masked above a friction").in_unit("1/ps"),
-                move |own| number(own.masking.map(|rate| 1000.0 * rate), all),
-            )
-            .field(Column::new("damped"), |own| own.is_damped.into()),
-    };
-    let record = record
-        .field(Column::new("band_edge").in_words("stable below").in_unit("fs"), move |own| {
-            number(own.band_edge, all)
-        })
+        .field(Column::new("damped"), |own| own.is_damped.into())
+        .field(column("band_edge", "stable below").in_unit("fs"), |own| own.band_edge.into())
         .field(Column::new("largest").in_unit("fs"), move |own| exact(&own.largest))
         .field(Column::new("safe").in_unit("fs"), move |own| exact(&own.safe))
-        .field(Column::new("within_run"), |own| own.within_run.into());
-    record.table("rows", "The molecule at each scheme of steps", &findings.schemes)
+        .field(Column::new("within_run"), |own| own.within_run.into())
+        .table("rows", "The molecule at each scheme of steps", &findings.schemes)
 }

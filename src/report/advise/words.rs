@@ -30,12 +30,18 @@ pub(super) fn told(mode: &Mode) -> String {
 }
 
 /// A length of time in the unit that suits it.
-pub(super) fn time(x: &Rational) -> String {
+fn time(x: &Rational) -> String {
     let over = |n: u64| x / Rational::from_integer(n.into());
     let one = Rational::from_integer(1.into());
     let units = [(1_000_000_000_000_000, "s"), (1_000_000, "ns"), (1000, "ps")];
     let found = units.into_iter().find(|(n, _)| over(*n) >= one);
     found.map_or_else(|| fs(x), |(n, unit)| format!("{} {unit}", decimal(&over(n))))
+}
+
+/// "; within the run of 10 ns", where a run was given and something grows.
+pub(super) fn within(run: Option<bool>, length: &Option<Rational>) -> String {
+    let Some((within, length)) = run.zip(length.as_ref()) else { return String::new() };
+    format!("; {}within the run of {}", if within { "" } else { "not " }, time(length))
 }
 
 pub(super) fn percent(x: &Rational) -> String {
