@@ -1,7 +1,5 @@
 //! Closed tongues as a document: each a box s × ρ that holds exactly one of them.
 
-use serde_json::{Value, json};
-
 use super::decimal::outward;
 use super::document::Document;
 use super::record::Record;
@@ -18,17 +16,17 @@ const CAPTION: &str =
 /// The document `kickdrift/closings/1`. The caller adds the input; `what` says in words what was searched.
 pub fn document(found: &[Found], digits: u32, what: &str) -> Document {
     let closings = || found.iter().flat_map(|of| &of.closings);
-    let complete: Vec<Value> = found
-        .iter()
-        .map(|of| json!({"p": of.ratio.p(), "q": of.ratio.q(), "complete": of.complete}))
-        .collect();
+    let ratios = Record::new()
+        .json("p", |of: &Found| of.ratio.p().into())
+        .json("q", |of| of.ratio.q().into())
+        .json("complete", |of| of.complete.into());
     let table = |short| {
         let record = record(digits, short);
         record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
     };
     Document::new("closings")
         .entry("closings", record(digits, false).all(closings()))
-        .entry("ratios", complete)
+        .entry("ratios", ratios.all(found))
         .long_rows(table(false))
         .for_people(table(true))
         .summary(&lines(found, what))

@@ -1,11 +1,10 @@
 //! A survey of all ratios as a document: counts, the thinnest tongues, how widths spread about the first-order law.
 
-use serde_json::{Value, json};
-
 use super::decimal::{self, rounded};
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column};
+use crate::number::Ratio;
 use crate::tongue::{Spread, Survey, Thin};
 
 /// Digits that people need of a quotient of widths.
@@ -17,8 +16,10 @@ const THINNEST: &str = "The thinnest tongues that begin below $s = h_1^2 \\Lambd
 
 /// The document `kickdrift/survey/1` without its input.
 pub fn document(survey: &Survey) -> Document {
-    let closed: Vec<Value> =
-        survey.closed.iter().map(|(ratio, m)| json!({"p": ratio.p(), "q": ratio.q(), "m": m})).collect();
+    let closed = Record::new()
+        .json("p", |(ratio, _): &(Ratio, u64)| ratio.p().into())
+        .json("q", |(ratio, _)| ratio.q().into())
+        .json("m", |(_, m)| (*m).into());
     let of = format!("for all p + q up to {} at rho = {}", survey.max_sum, survey.rho);
     let widths = format!("Width over first-order width, by the dominant family (a, b), {of}");
     let thinnest = format!("The thinnest tongues that begin below s = 4, {of}");
@@ -26,15 +27,13 @@ pub fn document(survey: &Survey) -> Document {
         .entry("ratios", survey.ratios)
         .entry("tongues", survey.tongues)
         .entry("open", survey.open)
-        .entry("closed", closed)
-        .entry("edges", json!({"doubles": survey.edges.0, "more_bits": survey.edges.1}))
-        .entry(
-            "predicted",
-            json!({
-                "points": survey.predicted, "outside": survey.predicted_outside,
-                "on_edge": survey.predicted_on_edge, "inside": survey.predicted_inside,
-            }),
-        )
+        .entry("closed", closed.all(&survey.closed))
+        .entry("edges.doubles", survey.edges.0)
+        .entry("edges.more_bits", survey.edges.1)
+        .entry("predicted.points", survey.predicted)
+        .entry("predicted.outside", survey.predicted_outside)
+        .entry("predicted.on_edge", survey.predicted_on_edge)
+        .entry("predicted.inside", survey.predicted_inside)
         .entry("width_ratios", spreads(None).all(&survey.width_ratios))
         .entry("thinnest", thin().all(&survey.thinnest))
         .long_rows(

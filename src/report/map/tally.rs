@@ -50,7 +50,7 @@ const FAMILIES_LISTED: usize = 6;
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
     pub counts: Counts,
-    counters: Counters,
+    pub(super) counters: Counters,
     /// Pairs by the a of their dominant family, where labels were asked for.
     families: BTreeMap<i64, u64>,
     /// The pair that grows fastest where growth was asked for: no other one is proven to grow faster.
@@ -84,12 +84,6 @@ impl Tally {
                 self.fastest = Some(Fastest { steps, rate, tenfold });
             }
         }
-    }
-
-    /// The kicks composed: the cost of the map, the same on every machine.
-    pub(super) fn work(&self) -> Value {
-        let Counters { kicks, kicks_again, escalated, .. } = self.counters;
-        json!({"kicks": kicks, "kicks_again": kicks_again, "escalated": escalated})
     }
 
     /// What was asked for beside the verdicts, where some pair grows.
