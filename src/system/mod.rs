@@ -10,26 +10,20 @@
 //! so the multipliers come from an n x n matrix and half a period. Stable iff every μ is real and in [−1, 0] and Q is
 //! diagonalizable.
 //!
-//! | file | what |
+//! | room | what |
 //! |---|---|
-//! | `models` | what a system may be; which route decides it |
-//! | `model`, `sparse`, `builders`, `mesh` | what a system is, and the usual ones; finite elements |
-//! | `compose` | kicks and drifts that touch only the degrees of freedom of their potential |
-//! | `frame`, `split` | rigid modes set apart, commuting potentials split: exactly |
-//! | `scalar`, `enclose`, `single` | K clocks on one oscillator: exact, in balls, decided |
-//! | `float`, `inertia`, `signs` | the half period in doubles with a proven bound; signs of symmetric matrices decide |
-//! | `large`, `action`, `envelope` | thousands of degrees of freedom: signs of the sparse action, and the mode that grows fastest |
-//! | `spectrum`, `bauer_fike`, `clusters` | eigenvalues with proven discs, where the signs do not tell |
-//! | `integers`, `modular`, `roots`, `exact`, `refined` | exact arithmetic |
-//! | `rate` | growth rates, enclosed |
+//! | `model` | what a system may be made of; one verdict for all, whichever route decides |
+//! | `linear` | masses, potentials and clocks over ℚ; the usual systems, finite elements |
+//! | `half` | the half period, in any ring and in doubles |
+//! | `signs` | signs of symmetric matrices decide: of the half period's forms, of the sparse action |
+//! | `spectrum` | eigenvalues with proven discs, where the signs do not tell; growth rates, modes |
+//! | `exact` | exact arithmetic over ℚ |
+//! | `single` | one oscillator under any number of clocks |
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
-//! | `decide`, `piece` | the verdict, part by part |
-//! | `analysis`, `explain`, `modes` | what is told of it, what grows and why |
-//! | `period` | whole periods in doubles, with friction or a stiffness of its own for each kick |
+//! | `levels` | two levels of dense stiffnesses in doubles, with margins |
+//! | `verdict` | the verdict, part by part, and what is known beside it |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
-//! | `along` | about a periodic orbit: a Hessian for each kick |
-//! | `scan`, `vary`, `stretches`, `nearest` | maps; all systems between two; a range covered; the unstable intervals next to a number |
-//! | `critical`, `edges` | where the verdict can change, exactly; what lies between |
+//! | `vary` | maps; the unstable intervals of one number |
 //!
 //! The cost for n degrees of freedom, whose potentials kick T/h_k times a period and hold e_k entries: n Σ (T/h_k) e_k
 //! for the half period, some n³ for the eigenvalues and their bound in doubles. Exact arithmetic grows with the length
@@ -45,66 +39,35 @@
 //! assert!(analysis.is_stable());
 //! ```
 
-mod action;
-mod along;
-mod analysis;
-mod bauer_fike;
-pub mod builders;
-mod clusters;
-mod compose;
-mod critical;
-mod decide;
-pub mod edges;
-mod enclose;
-mod envelope;
 mod exact;
-mod explain;
-mod float;
-mod frame;
 pub mod friction;
-mod inertia;
-mod integers;
-mod large;
+mod half;
 pub mod levels;
-mod limits;
-mod measured;
-pub mod mesh;
+mod linear;
 mod model;
-mod models;
-mod modes;
-mod modular;
-pub mod nearest;
-mod norm;
 #[cfg(test)]
 mod numbers;
-mod period;
 mod pi;
-mod piece;
-mod rate;
-mod refined;
-mod roots;
-mod scalar;
-pub mod scan;
 mod signs;
 mod single;
-mod sparse;
 mod spectrum;
-mod split;
-pub mod stretches;
 pub mod vary;
+mod verdict;
 
-pub use along::{OwnOrbit, decide_along};
-pub use analysis::{Analysis, Clocked, Evidence, Instability, Part};
-pub use compose::{full_period, half_period};
-pub use decide::{decide_by, decide_system, exact_kind, verdict_cost};
-pub use exact::{ExactVerdict, MuCount, decide_exact};
-pub use limits::{Limits, Route};
-pub use measured::{Holds, Measured, Removed};
-pub use model::{Potential, System};
-pub use models::{Body, MeasuredSystem, Model, Number, Oscillator, TwoLevels};
-pub use modes::{Origin, Resonance};
+pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
+pub use half::compose::{full_period, half_period};
+pub use linear::sparse::Symmetric;
+pub use linear::system::{Potential, System};
+pub use linear::{builders, mesh};
+pub use model::{Body, MeasuredSystem, Model, Number, Oscillator, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
-pub use rate::{Multiplier, middle};
-pub use scalar::{ManyClocks, families, shortest_families, shortest_family};
-pub use single::decide_oscillator;
-pub use sparse::Symmetric;
+pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};
+pub use single::decide::decide_oscillator;
+pub use spectrum::modes::{Origin, Resonance};
+pub use spectrum::rate::{Multiplier, middle};
+pub use vary::{edges, nearest, scan, stretches};
+pub use verdict::along::{OwnOrbit, decide_along};
+pub use verdict::analysis::{Analysis, Clocked, Evidence, Instability, Part};
+pub use verdict::decide::{decide_by, decide_system, exact_kind, verdict_cost};
+pub use verdict::limits::{Limits, Route};
+pub use verdict::measured::{Holds, Measured, Removed};

@@ -10,17 +10,17 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Rational, Real, U};
 use crate::propagator::Oscillator;
 use crate::system::ManyClocks;
-use crate::system::compose::connected_parts;
-use crate::system::decide::decide_by;
-use crate::system::float::scaled_program;
-use crate::system::frame::Frame;
-use crate::system::inertia::is_definite;
-use crate::system::limits::{Limits, Route, degrees_of_freedom};
-use crate::system::measured::Holds;
-use crate::system::model::System;
-use crate::system::norm;
-use crate::system::period::{Drifts, Stiff, follow};
-use crate::system::spectrum::{components, residual};
+use crate::system::half::compose::connected_parts;
+use crate::system::half::float::scaled_program;
+use crate::system::half::norm;
+use crate::system::half::period::{Drifts, Stiff, follow};
+use crate::system::linear::frame::Frame;
+use crate::system::linear::system::System;
+use crate::system::signs::inertia::is_definite;
+use crate::system::spectrum::discs::{components, residual};
+use crate::system::verdict::decide::decide_by;
+use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
+use crate::system::verdict::measured::Holds;
 use crate::verdict::{self, Tier};
 
 /// What friction does to a system.

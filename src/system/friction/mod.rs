@@ -17,7 +17,7 @@
 //! |---|---|
 //! | `scalar` | one oscillator: exact for a rational c, enclosed for a rate γ |
 //! | `masking` | the smallest friction that masks a resonance of one oscillator, from the polynomial Tr Q(c) |
-//! | `matrices` | many degrees of freedom, in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](super::levels::Kernel::friction)) |
+//! | `matrices` | many degrees of freedom, in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](crate::system::levels::Kernel::friction)) |
 //!
 //! ```
 //! use kickdrift::number::{Rational, rational::ratio};

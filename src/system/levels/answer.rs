@@ -5,11 +5,11 @@ use num_complex::Complex64;
 
 use super::kernel::{Kernel, Outer};
 use crate::number::{Laurent, Rational};
-use crate::system::analysis::{Analysis, Evidence, Instability, Part};
-use crate::system::explain::explained;
-use crate::system::measured::Measured;
-use crate::system::rate::Multiplier;
-use crate::system::spectrum::Spectrum;
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::spectrum::explain::explained;
+use crate::system::spectrum::rate::Multiplier;
+use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
+use crate::system::verdict::measured::Measured;
 use crate::verdict::Kind;
 
 impl Kernel {

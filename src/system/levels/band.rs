@@ -6,7 +6,7 @@
 use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::number::bisected;
-use crate::system::inertia::is_definite;
+use crate::system::signs::inertia::is_definite;
 
 /// Room for the roundings of a factor.
 const ROOM: f64 = 1e-12;

@@ -2,8 +2,8 @@
 
 use faer::{Mat, Side};
 
-use crate::system::compose::connected;
-use crate::system::inertia::backward_error;
+use crate::system::half::compose::connected;
+use crate::system::signs::inertia::backward_error;
 
 /// V and Λ, V block-diagonal but for the order of rows and columns.
 pub(super) struct Basis {
@@ -98,7 +98,7 @@ impl Block {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::norm;
+    use crate::system::half::norm;
 
     /// Molecules of three degrees of freedom whose rows are far apart.
     #[test]

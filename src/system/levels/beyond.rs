@@ -15,8 +15,8 @@ use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
 use super::region::largest;
 use crate::number::U;
-use crate::system::norm;
-use crate::system::spectrum::Spectrum;
+use crate::system::half::norm;
+use crate::system::spectrum::discs::Spectrum;
 use crate::verdict::Kind;
 
 /// A matrix that is known but for an error: bounds on the norms of the true and the computed one, and on their distance.

@@ -13,10 +13,10 @@ use super::interval::Interval;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
 use crate::error::{Error, Result};
 use crate::number::U;
-use crate::system::inertia::backward_error;
-use crate::system::measured::Holds;
-use crate::system::norm;
-use crate::system::spectrum::Spectrum;
+use crate::system::half::norm;
+use crate::system::signs::inertia::backward_error;
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
 
 /// Twists of an index: modes of both of Krein's signs alternate more often in no molecule seen.

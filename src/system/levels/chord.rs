@@ -13,11 +13,11 @@ use super::rigid::Hessians;
 use crate::error::Result;
 use crate::number::U;
 use crate::parallel::both;
-use crate::system::inertia::is_definite;
-use crate::system::large::start;
-use crate::system::limits::SIDE_BY_SIDE;
-use crate::system::measured::Holds;
-use crate::system::norm;
+use crate::system::half::norm;
+use crate::system::signs::inertia::is_definite;
+use crate::system::verdict::large::start;
+use crate::system::verdict::limits::SIDE_BY_SIDE;
+use crate::system::verdict::measured::Holds;
 
 /// Steps of Lanczos's recursion for the ends of the spectrum: where it is dense at its ends, they are found to some hundredths.
 const STEPS: usize = 24;

@@ -15,7 +15,7 @@ use faer::Mat;
 use super::half::Half;
 use super::interval::Interval;
 use super::kernel::{Kernel, Outer};
-use crate::system::inertia::negative_bounds;
+use crate::system::signs::inertia::negative_bounds;
 
 /// Twists of an index: more of them cost more than discs about the eigenvalues.
 const MOST_TWISTS: usize = 6;

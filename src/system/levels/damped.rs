@@ -24,8 +24,8 @@ use super::kernel::{Kernel, Outer};
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::number::{Rational, U};
 use crate::system::friction::{Damping, Friction, Mask, Masked, Radius, damping};
-use crate::system::norm;
-use crate::system::period::decayed;
+use crate::system::half::norm;
+use crate::system::half::period::decayed;
 
 /// The sums take a step for each pair of inner steps.
 const MOST_INNER_STEPS: u64 = 1 << 12;

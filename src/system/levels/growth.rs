@@ -8,7 +8,7 @@ use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
 use crate::number::bisected;
-use crate::system::rate::exponent;
+use crate::system::spectrum::rate::exponent;
 
 /// A stretch of outer steps that grow.
 #[derive(Clone, Copy, Debug, PartialEq)]

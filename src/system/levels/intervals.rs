@@ -3,9 +3,9 @@
 use super::cell::Cells;
 use super::kernel::{Kernel, Outer};
 use crate::error::{Error, Result};
-use crate::system::measured::Holds;
-use crate::system::rate::exponent;
-use crate::system::stretches::{Stretch, cover, merged};
+use crate::system::spectrum::rate::exponent;
+use crate::system::vary::stretches::{Stretch, cover, merged};
+use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
 
 /// The largest relative change of the stiffnesses by which one verdict is carried on.

@@ -11,10 +11,10 @@ use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Rational, U};
 use crate::parallel::both;
-use crate::system::inertia::{is_definite, spectral_norm};
-use crate::system::limits::SIDE_BY_SIDE;
-use crate::system::measured::Removed;
-use crate::system::norm;
+use crate::system::half::norm;
+use crate::system::signs::inertia::{is_definite, spectral_norm};
+use crate::system::verdict::limits::SIDE_BY_SIDE;
+use crate::system::verdict::measured::Removed;
 
 /// F = U (Λ + E₁) Uᵀ and S = U (S' + E₂) Uᵀ for an orthogonal U: Λ and S', and bounds on E₁ and E₂ (2-norm).
 #[derive(Clone, Debug)]

@@ -5,8 +5,8 @@ use faer::Mat;
 
 use super::rigid::Hessians;
 use crate::number::U;
-use crate::system::inertia::{is_definite, proven};
-use crate::system::norm;
+use crate::system::half::norm;
+use crate::system::signs::inertia::{is_definite, proven};
 
 /// The most rows of an action: its eigenvalues take seconds from there on.
 const MOST_ROWS: usize = 1200;

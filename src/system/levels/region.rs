@@ -5,8 +5,8 @@ use faer::Mat;
 use super::half::Half;
 use super::kernel::{Kernel, Outer, STEP_ERROR};
 use crate::number::bisected;
-use crate::system::inertia::is_definite;
-use crate::system::norm;
+use crate::system::half::norm;
+use crate::system::signs::inertia::is_definite;
 
 /// The halves of all modes with every stiffness shifted by as much as errors and `epsilon` allow.
 pub(super) struct Shifted {

@@ -5,10 +5,10 @@ use nalgebra::DMatrix;
 
 use crate::error::{Error, Result};
 use crate::number::U;
-use crate::system::compose::connected;
-use crate::system::inertia::{orthogonality, spectral_norm};
-use crate::system::measured::Removed;
-use crate::system::norm;
+use crate::system::half::compose::connected;
+use crate::system::half::norm;
+use crate::system::signs::inertia::{orthogonality, spectral_norm};
+use crate::system::verdict::measured::Removed;
 
 /// F and S, mass-weighted (1/time²), in coordinates without the rigid motions.
 #[derive(Clone, Debug)]

@@ -12,14 +12,14 @@ use crate::error::Result;
 use crate::number::rational::scale2;
 use crate::number::{Ball, Laurent, PiInteger, Rational, Real};
 use crate::system::ManyClocks;
-use crate::system::compose::{Kick, Program, half_period_of};
-use crate::system::exact::MuCount;
-use crate::system::frame::Frame;
-use crate::system::integers::{IntegerBlocks, IntegerProgram};
-use crate::system::limits::{Limits, degrees_of_freedom};
-use crate::system::model::{Potential, System};
+use crate::system::exact::decide::MuCount;
+use crate::system::exact::integers::{IntegerBlocks, IntegerProgram};
+use crate::system::half::compose::{Kick, Program, half_period_of};
+use crate::system::linear::frame::Frame;
+use crate::system::linear::system::{Potential, System};
 use crate::system::signs;
-use crate::system::single::many_clocks;
+use crate::system::single::decide::many_clocks;
+use crate::system::verdict::limits::{Limits, degrees_of_freedom};
 use crate::verdict::Kind;
 
 /// The factor π^power of a coefficient, and the potential that it is one of.
@@ -250,10 +250,10 @@ mod tests {
     use crate::number::ExactSign;
     use crate::number::parse::parse;
     use crate::number::rational::ratio;
-    use crate::system::decide::severity;
     use crate::system::decide_exact;
+    use crate::system::linear::sparse::Symmetric;
     use crate::system::numbers::Numbers;
-    use crate::system::sparse::Symmetric;
+    use crate::system::verdict::decide::severity;
 
     /// Stiffnesses of unit masses by steps: entries by powers of π.
     fn coefficients(potentials: &[(i64, DMatrix<Laurent>)]) -> PiSystem {

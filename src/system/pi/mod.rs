@@ -21,14 +21,14 @@ use std::collections::BTreeMap;
 pub use coefficients::PiSystem;
 use coefficients::Term;
 
-use super::analysis::Analysis;
-use super::decide::{Structure, decided, exact_kind_of};
-use super::limits::{Limits, Route};
-use super::model::{Potential, System, check_mass, check_potential};
-use super::piece::Piece;
-use super::sparse::Symmetric;
 use crate::error::{Error, Result};
 use crate::number::Rational;
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System, check_mass, check_potential};
+use crate::system::verdict::analysis::Analysis;
+use crate::system::verdict::decide::{Structure, decided, exact_kind_of};
+use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::piece::Piece;
 use crate::verdict::Kind;
 
 /// The highest power of π, and of 1/π: numbers at ϖ, and degrees in π, grow with it.
@@ -75,10 +75,10 @@ impl PiSystem {
         PiSystem::of(System::new(mass, coefficients)?, terms.into())
     }
 
-    /// The verdict, as [`decide_by`](super::decide_by): multipliers and growth rates are rounded ones of [`PiSystem::near`].
+    /// The verdict, as [`decide_by`](crate::system::decide_by): multipliers and growth rates are rounded ones of [`PiSystem::near`].
     ///
     /// # Errors
-    /// As [`decide_by`](super::decide_by); a common null vector of all potentials that is not rational.
+    /// As [`decide_by`](crate::system::decide_by); a common null vector of all potentials that is not rational.
     pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         decided(self.structure(), self.near(), |piece| self.over_pi(piece), (route, limits))
     }

@@ -17,14 +17,14 @@
 //!
 //! Multiplicities of 0 and −1 are those in the characteristic polynomial, by Newton's identities. Outside of them S is
 //! semisimple iff its minimal polynomial has no more degree than there are distinct μ: iff T, T S, ..., T S^r are dependent,
-//! T = S^a (S + 1)^b with these multiplicities and r distinct μ. At λ = ±1 as in [`exact`](crate::system::exact).
+//! T = S^a (S + 1)^b with these multiplicities and r distinct μ. At λ = ±1 as in [`exact`](crate::system::exact::decide).
 
 use nalgebra::DMatrix;
 
 use crate::number::Domain;
-use crate::system::exact::MuCount;
-use crate::system::inertia::Inertia;
-use crate::system::integers::{IntegerBlocks, product};
+use crate::system::exact::decide::MuCount;
+use crate::system::exact::integers::{IntegerBlocks, product};
+use crate::system::signs::inertia::Inertia;
 use crate::system::signs::{exact_inertia, exact_rank};
 use crate::verdict::Kind;
 

@@ -1,7 +1,7 @@
 //! Exact inertias and ranks by elimination without fractions, in ℤ or ℤ\[π\].
 
 use crate::number::{Domain, Sign};
-use crate::system::inertia::Inertia;
+use crate::system::signs::inertia::Inertia;
 use nalgebra::DMatrix;
 
 /// The inertia of a symmetric matrix.

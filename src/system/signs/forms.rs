@@ -3,9 +3,9 @@
 use faer::Mat;
 
 use crate::number::U;
-use crate::system::float::FloatBlocks;
-use crate::system::inertia::{self, Inertia};
-use crate::system::norm;
+use crate::system::half::float::FloatBlocks;
+use crate::system::half::norm;
+use crate::system::signs::inertia::{self, Inertia};
 use crate::verdict::Kind;
 
 /// The inertias of P, R, W and Z, each computed when it is asked for.

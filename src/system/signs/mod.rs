@@ -29,9 +29,14 @@
 //! |---|---|
 //! | `forms` | the table above, from inertias, and the forms of a half period in doubles |
 //! | `elimination` | exact inertias and ranks without fractions |
+//! | `inertia` | proven inertias of dense matrices in doubles |
+//! | `action`, `envelope` | the action of large sparse systems; sparse matrices and their proven signs |
 
+pub(super) mod action;
 mod elimination;
+pub(super) mod envelope;
 mod forms;
+pub(super) mod inertia;
 
 pub(super) use elimination::{inertia as exact_inertia, rank as exact_rank};
 pub(super) use forms::{Forms, Inertias, judge, proven};

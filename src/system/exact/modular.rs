@@ -1,0 +1,100 @@
+//! Linear algebra over prime fields.
+
+use nalgebra::DMatrix;
+use num_bigint::BigInt;
+
+use crate::number::PrimeField;
+
+/// The matrix modulo the prime.
+pub(in crate::system) fn matrix(field: &PrimeField, m: &DMatrix<BigInt>) -> DMatrix<u64> {
+    m.map(|x| field.of_big(&x))
+}
+
+/// a b.
+pub(in crate::system) fn times(field: &PrimeField, a: &DMatrix<u64>, b: &DMatrix<u64>) -> DMatrix<u64> {
+    DMatrix::from_fn(a.nrows(), b.ncols(), |i, j| {
+        (0..a.ncols()).fold(0, |sum, k| field.add(sum, field.mul(a[(i, k)], b[(k, j)])))
+    })
+}
+
+/// The rank, by elimination.
+pub(in crate::system) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize {
+    let mut rank = 0;
+    for column in 0..m.ncols() {
+        let Some(pivot) = (rank..m.nrows()).find(|&i| m[(i, column)] != 0) else { continue };
+        m.swap_rows(rank, pivot);
+        let inverse = field.invert(m[(rank, column)]);
+        for i in rank + 1..m.nrows() {
+            let factor = field.mul(m[(i, column)], inverse);
+            for j in column..m.ncols() {
+                m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(rank, j)]));
+            }
+        }
+        rank += 1;
+    }
+    rank
+}
+
+/// The coefficients of det(z − m), lowest first, monic; by reduction to Hessenberg's form.
+pub(in crate::system) fn characteristic(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<u64> {
+    reduce_to_hessenberg(field, &mut m);
+    // f_k = det(z − leading k x k) = (z − m_kk) f_(k−1) − Σ_i m_ik (subdiagonals i+1..k) f_(i−1).
+    let mut f: Vec<Vec<u64>> = vec![vec![field.of(1)]];
+    for k in 0..m.nrows() {
+        let mut next = vec![0; k + 2];
+        for (j, &c) in f[k].iter().enumerate() {
+            next[j + 1] = field.add(next[j + 1], c);
+            next[j] = field.sub(next[j], field.mul(m[(k, k)], c));
+        }
+        let mut below = field.of(1);
+        for i in (0..k).rev() {
+            below = field.mul(below, m[(i + 1, i)]);
+            let factor = field.mul(below, m[(i, k)]);
+            for (j, &c) in f[i].iter().enumerate() {
+                next[j] = field.sub(next[j], field.mul(factor, c));
+            }
+        }
+        f.push(next);
+    }
+    f.pop().expect("not empty")
+}
+
+fn reduce_to_hessenberg(field: &PrimeField, m: &mut DMatrix<u64>) {
+    let n = m.nrows();
+    for k in 1..n.saturating_sub(1) {
+        let Some(pivot) = (k..n).find(|&i| m[(i, k - 1)] != 0) else { continue };
+        m.swap_rows(k, pivot);
+        m.swap_columns(k, pivot);
+        let inverse = field.invert(m[(k, k - 1)]);
+        for i in k + 1..n {
+            let factor = field.mul(m[(i, k - 1)], inverse);
+            if factor == 0 {
+                continue;
+            }
+            for j in 0..n {
+                m[(i, j)] = field.sub(m[(i, j)], field.mul(factor, m[(k, j)]));
+            }
+            for j in 0..n {
+                m[(j, k)] = field.add(m[(j, k)], field.mul(factor, m[(j, i)]));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::prime_fields;
+
+    #[test]
+    fn the_characteristic_polynomial_of_a_companion_matrix_is_its_polynomial() {
+        let field = prime_fields().nth(3).unwrap();
+        // z^4 - 2 z^3 + 3 z^2 - 5 z + 7.
+        let last = [-7, 5, -3, 2];
+        let m =
+            DMatrix::from_fn(4, 4, |i, j| BigInt::from(if j == 3 { last[i] } else { i64::from(i == j + 1) }));
+        let got: Vec<_> = characteristic(&field, matrix(&field, &m));
+        let want: Vec<_> = [7, -5, 3, -2, 1].map(|c| field.of_big(&BigInt::from(c))).into();
+        assert_eq!(got, want);
+    }
+}

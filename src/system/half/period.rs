@@ -1,0 +1,179 @@
+//! A period or half of one in doubles with a proven bound, with friction, and with a stiffness of its own for every kick.
+//!
+//! Each step is Ĥ_k = M_k Ĥ_(k−1) + Δ_k, the M_k shears or, with friction, shears times diag(1, c): then H_k is d_k^½ times a
+//! symplectic matrix, d_k the product of the c's, and ‖H_k⁻¹‖ = ‖H_k‖/d_k. The error after the last step is
+//! Σ_j H H_j⁻¹ Δ_j, so with σ = Σ ‖Ĥ_j‖ |Δ_j|/d_j, ρ = Σ |Δ_j|/d_j and G = max ‖Ĥ_k‖ the bound of [`float`](crate::system::half::float)
+//! holds: if 8 G ρ ≤ 1 all errors stay below 2 G σ, and ‖E‖ ≤ ‖Ĥ‖ s/(1 − s), s = σ + 2 G σ ρ.
+
+use std::collections::BTreeMap;
+
+use faer::Mat;
+
+use crate::number::{Ball, Rational, U};
+use crate::schedule::{Event, Weight};
+use crate::system::half::compose::Row;
+use crate::system::half::float::FloatBlocks;
+use crate::system::half::norm;
+
+/// One kick: the rows of F that are not 0, and how far (2-norm) the true F may be from them.
+#[derive(Clone, Debug)]
+pub(in crate::system) struct Stiff {
+    pub rows: Vec<(usize, Row<f64>)>,
+    pub off: f64,
+}
+
+/// What happens between the events: drifts with M⁻¹ in ticks, which is known but for `off` (2-norm), v → c v with c = exp(−decay) a
+/// tick.
+#[derive(Clone, Debug)]
+pub(in crate::system) struct Drifts<'a> {
+    pub inverse_mass: &'a [Row<f64>],
+    pub decay: &'a Rational,
+    pub off: f64,
+}
+
+/// The rows of positions and momenta, 2n columns each, and the bound on the error of all (Frobenius).
+#[derive(Clone, Debug)]
+pub(in crate::system) struct Propagated {
+    pub n: usize,
+    x: Vec<f64>,
+    p: Vec<f64>,
+    pub error: Option<f64>,
+}
+
+/// The sums of the bound.
+struct Account {
+    rho: f64,
+    sigma: f64,
+    largest: f64,
+    /// d_k.
+    volume: f64,
+}
+
+impl Account {
+    fn add(&mut self, error: f64, state: &Propagated) {
+        let size = state.size();
+        self.largest = self.largest.max(size);
+        self.rho += error / self.volume;
+        self.sigma += error / self.volume * size;
+    }
+}
+
+/// Follows the events, `kick(k, clock)` being the stiffness that the clock kicks with in the k-th of them.
+pub(in crate::system) fn follow<'a>(
+    drifts: &Drifts,
+    events: impl Iterator<Item = Event>,
+    kick: impl Fn(usize, usize) -> &'a Stiff,
+) -> Propagated {
+    let n = drifts.inverse_mass.len();
+    let unit = |first: usize| {
+        (0..2 * n * n).map(|k| f64::from(u8::from(k % (2 * n) == first + k / (2 * n)))).collect()
+    };
+    let mut state = Propagated { n, x: unit(0), p: unit(n), error: None };
+    let mut account = Account { rho: 0.0, sigma: 0.0, largest: state.size(), volume: 1.0 };
+    let mut known: BTreeMap<u64, f64> = BTreeMap::new();
+    for (k, event) in events.enumerate() {
+        if event.drift > 0 {
+            let c = *known.entry(event.drift).or_insert_with(|| decayed(drifts.decay, event.drift));
+            let error = state.drift(drifts, event.drift as f64, c);
+            account.volume *= c;
+            account.add(error, &state);
+        }
+        for clock in event.clocks() {
+            let error = state.kick(kick(k, clock), event.weight);
+            account.add(error, &state);
+        }
+    }
+    state.error = account.bound(state.size());
+    state
+}
+
+/// exp(−decay ticks), to the nearest double but for 2^-60.
+pub(in crate::system) fn decayed(decay: &Rational, ticks: u64) -> f64 {
+    let exponent = decay * Rational::from_integer(ticks.into());
+    Ball::from_rational(&exponent, 96).neg().exp(96).mid_f64()
+}
+
+impl Account {
+    fn bound(&self, end: f64) -> Option<f64> {
+        // 1.01: the roundings of norms, of d_k and of the sums.
+        let (rho, sigma, largest) = (1.01 * self.rho, 1.01 * self.sigma, 1.01 * self.largest);
+        // An `is_nan` sum fails the comparison, too.
+        (8.0 * largest * rho <= 1.0).then(|| {
+            let s = sigma + 2.0 * largest * sigma * rho;
+            1.02 * end * s / (1.0 - s)
+        })
+    }
+}
+
+impl Propagated {
+    fn row(rows: &[f64], columns: usize, i: usize) -> &[f64] {
+        &rows[i * columns..(i + 1) * columns]
+    }
+
+    /// ‖Ĥ‖_F.
+    fn size(&self) -> f64 {
+        1.01 * self.x.iter().chain(&self.p).map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error.
+    fn drift(&mut self, drifts: &Drifts, ticks: f64, c: f64) -> f64 {
+        let columns = 2 * self.n;
+        let mean = ticks * (1.0 + c) / 2.0;
+        let mut squares = 0.0;
+        let moved = mean * drifts.off * norm2(&self.p).sqrt();
+        for (i, masses) in drifts.inverse_mass.iter().enumerate() {
+            let target = &mut self.x[i * columns..(i + 1) * columns];
+            let mut size = norm2(target).sqrt();
+            for (j, a) in masses {
+                let (factor, p) = (mean * a, Propagated::row(&self.p, columns, *j));
+                target.iter_mut().zip(p).for_each(|(x, p)| *x += factor * p);
+                size += factor.abs() * norm2(p).sqrt();
+            }
+            // Each term: the factor's five roundings (a, t, c, sum, product), the product's, at most k sums.
+            squares += ((masses.len() as f64 + 6.0) * size).powi(2);
+        }
+        if c != 1.0 {
+            squares += 4.0 * norm2(&self.p);
+            self.p.iter_mut().for_each(|p| *p *= c);
+        }
+        1.01 * (U * squares.sqrt() + moved)
+    }
+
+    /// p ← p − w F x; more than the error.
+    fn kick(&mut self, stiff: &Stiff, weight: Weight) -> f64 {
+        let columns = 2 * self.n;
+        let weight = if weight == Weight::Full { -1.0 } else { -0.5 };
+        let mut squares = 0.0;
+        for (i, row) in &stiff.rows {
+            let target = &mut self.p[i * columns..(i + 1) * columns];
+            let mut size = norm2(target).sqrt();
+            for (j, a) in row {
+                let (factor, x) = (weight * a, Propagated::row(&self.x, columns, *j));
+                target.iter_mut().zip(x).for_each(|(p, x)| *p += factor * x);
+                size += factor.abs() * norm2(x).sqrt();
+            }
+            squares += ((row.len() as f64 + 3.0) * size).powi(2);
+        }
+        1.01 * (U * squares.sqrt() + weight.abs() * stiff.off * norm2(&self.x).sqrt())
+    }
+
+    /// The whole propagator, 2n x 2n.
+    pub fn matrix(&self) -> Mat<f64> {
+        let columns = 2 * self.n;
+        Mat::from_fn(columns, columns, |i, j| {
+            if i < self.n { self.x[i * columns + j] } else { self.p[(i - self.n) * columns + j] }
+        })
+    }
+
+    /// As the blocks of a half period whose positions are a_i x_i.
+    pub fn blocks(&self, scales: Vec<f64>) -> FloatBlocks {
+        let columns = 2 * self.n;
+        let rows = |from: &[f64]| (0..self.n).map(|i| Propagated::row(from, columns, i).to_vec()).collect();
+        let norm = 1.01 * norm::frobenius(&self.matrix()) + self.error.unwrap_or(0.0);
+        FloatBlocks { m: self.n, y: rows(&self.x), p: rows(&self.p), error: self.error, norm, scales }
+    }
+}
+
+fn norm2(row: &[f64]) -> f64 {
+    row.iter().map(|x| x * x).sum()
+}

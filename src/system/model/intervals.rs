@@ -1,0 +1,117 @@
+//! Verdicts and growth rates of a model over the outer step, or over another number of it.
+
+use num_traits::One;
+
+use super::Model;
+use crate::error::Result;
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::spectrum::rate::middle;
+use crate::system::vary::edges::{Family, Linear};
+use crate::system::vary::nearest::Nearest;
+use crate::system::vary::stretches::Stretch;
+use crate::system::verdict::analysis::Analysis;
+use crate::system::verdict::decide::decide_by;
+use crate::system::verdict::limits::{Limits, Route};
+
+/// A number that is varied.
+pub enum Number<'a> {
+    /// The outer step, all steps in their ratios.
+    Outer,
+    /// A factor of one of two measured levels, 0 the fast one, and its present value.
+    Scale(usize, f64),
+    /// One on which masses or stiffnesses depend linearly, steps fixed, and the model of one of its values.
+    Linear(&'a (dyn Fn(&Rational) -> Result<Model> + Sync)),
+}
+
+impl Model {
+    /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
+    ///
+    /// # Errors
+    /// As [`Family::stretches`].
+    pub fn stretches(
+        &self,
+        number: &Number,
+        range: (f64, f64),
+        width: f64,
+        limits: &Limits,
+    ) -> Result<Vec<Stretch>> {
+        match (number, self) {
+            (Number::Scale(level, factor), Model::Measured(own)) => {
+                own.stretches_of_scale(*level, range, *factor, width)
+            }
+            (Number::Linear(at), _) => {
+                let at = |x: &Rational| Ok(at(x)?.system().clone());
+                Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
+            }
+            _ => match self.levels() {
+                Some(own) => own.stretches(range, width),
+                None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
+            },
+        }
+    }
+
+    /// What `ask` finds of the systems of all outer steps.
+    fn over_outer_steps<T>(&self, ask: impl Fn(&Family) -> Result<T>) -> Result<T> {
+        let (system, own) = (self.system(), self.outer_step());
+        // In the old steps all stiffnesses grow as the square of the step does.
+        let at = |square: &Rational| system.with(&(square / (&own * &own)), &Rational::one());
+        ask(&Family { linear: Linear::Square, at: &at })
+    }
+
+    /// The unstable intervals of the outer step next to its own, all steps in their ratios: between half of it and twice it.
+    ///
+    /// # Errors
+    /// As [`Model::stretches`] and [`Model::decide`].
+    pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
+        let step = to_f64(&self.outer_step());
+        if self.levels().is_none() {
+            let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
+            if let Some(all) = self.over_outer_steps(exactly)? {
+                return Ok(Nearest::of(step, &all));
+            }
+        }
+        let own = self.verdict(Route::Cheapest, limits)?;
+        Nearest::search((step, own), |range| self.stretches(&Number::Outer, range, width, limits))
+    }
+
+    /// The verdict with the outer step `outer` > 0, all steps in their ratios.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        if let Some(own) = self.levels() {
+            return own.decide_at(outer, limits);
+        }
+        let factor = outer / self.outer_step();
+        match self {
+            Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
+            _ => decide_by(Route::Cheapest, &self.system().with(&Rational::one(), &factor)?, limits),
+        }
+    }
+
+    /// The largest growth rate at each outer step, all steps in their ratios, per unit time, rounded; `None` where it is not known.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn growth_rates(&self, steps: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
+        if let Some(own) = self.levels() {
+            return own.growth_rates(steps);
+        }
+        let rate = |&step: &f64| {
+            let outer = from_f64_exact(step).expect("a finite step");
+            Ok(self.decide_at(&outer, limits)?.growth_rate().map(middle))
+        };
+        crate::parallel::try_map(steps, rate)
+    }
+
+    /// The longest step.
+    fn outer_step(&self) -> Rational {
+        self.steps().into_iter().max().unwrap_or_default()
+    }
+
+    /// The inner steps in an outer one of two measured levels.
+    pub fn inner_steps(&self) -> Option<u64> {
+        self.levels().map(|own| own.inner_steps())
+    }
+}

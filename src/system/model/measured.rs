@@ -1,0 +1,358 @@
+//! Stiffnesses in doubles, as people measure them, each potential with its clock.
+
+use std::borrow::Cow;
+use std::sync::{Arc, OnceLock};
+
+use faer::Mat;
+use nalgebra::DMatrix;
+use num_traits::One;
+
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::friction::Friction;
+use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions, translations};
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
+use crate::system::vary::stretches::{Stretch, cover};
+use crate::system::verdict::analysis::Analysis;
+use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::measured::Holds;
+
+/// What moves, and what of it is held.
+#[derive(Clone, Debug, Default)]
+pub struct Body {
+    /// Of each degree of freedom; `None`: the stiffnesses are mass-weighted and no masses are known.
+    pub masses: Option<Vec<f64>>,
+    /// Of each particle in space.
+    pub positions: Option<Vec<[f64; 3]>>,
+    /// Whether the stiffnesses are M^-½ K M^-½ instead of K.
+    pub is_weighted: bool,
+    /// Whether rotations are no rigid motions, as in a periodic box.
+    pub is_periodic: bool,
+    /// The mass-weighted gradients of the distances that are held, a column each; by these the stiffnesses are bent.
+    pub held: Option<DMatrix<f64>>,
+}
+
+/// Measured stiffnesses with their clocks.
+#[derive(Clone, Debug)]
+pub struct MeasuredSystem {
+    /// The sums of the stiffnesses of each step, by increasing step.
+    potentials: Vec<(Rational, DMatrix<f64>)>,
+    /// The stiffnesses of steps that several potentials have: each is known to its own norm.
+    shares: Vec<(Rational, Vec<DMatrix<f64>>)>,
+    body: Body,
+    accuracy: f64,
+    keeps_rigid: bool,
+    system: OnceLock<System>,
+    kernel: Arc<OnceLock<Kernel>>,
+}
+
+/// Two levels of measured stiffnesses.
+#[derive(Clone, Debug)]
+pub struct TwoLevels<'a> {
+    pub kernel: &'a Kernel,
+    pub inner: Rational,
+    pub outer: Rational,
+    /// Every stiffness is known to this times its norm.
+    pub accuracy: f64,
+}
+
+impl MeasuredSystem {
+    /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and positions, where they are given,
+    /// fit them.
+    ///
+    /// # Errors
+    /// Steps as those of [`System::new`]; an accuracy as for [`MeasuredSystem::at_accuracy`].
+    pub fn new(body: Body, given: Vec<(Rational, DMatrix<f64>)>, accuracy: f64) -> Result<MeasuredSystem> {
+        let mut shares: Vec<(Rational, Vec<DMatrix<f64>>)> = Vec::new();
+        for (step, stiffness) in given {
+            match shares.iter_mut().find(|(other, _)| *other == step) {
+                Some((_, own)) => own.push(stiffness),
+                None => shares.push((step, vec![stiffness])),
+            }
+        }
+        let sum = |(step, own): &(Rational, Vec<DMatrix<f64>>)| {
+            let (n, m) = own[0].shape();
+            (step.clone(), own.iter().fold(DMatrix::zeros(n, m), |sum, k| sum + k))
+        };
+        let mut potentials: Vec<(Rational, DMatrix<f64>)> = shares.iter().map(sum).collect();
+        shares.retain(|(_, own)| own.len() > 1);
+        potentials.sort_by(|a, b| a.0.cmp(&b.0));
+        // The steps, checked as those of any system are.
+        let clock = |(step, _): &(Rational, _)| Potential::new(Symmetric::zero(1), step.clone());
+        System::new(Symmetric::diagonal(&[Rational::one()]), potentials.iter().map(clock).collect())?;
+        let (system, kernel) = (OnceLock::new(), Arc::default());
+        let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid: false, system, kernel };
+        read.at_accuracy(accuracy)
+    }
+
+    /// The same with every stiffness known to this times its norm.
+    ///
+    /// # Errors
+    /// An accuracy that is not in (0, 1/10).
+    pub fn at_accuracy(mut self, accuracy: f64) -> Result<MeasuredSystem> {
+        if !(accuracy > 0.0 && accuracy < 0.1) {
+            return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
+        }
+        (self.accuracy, self.kernel) = (accuracy, Arc::default());
+        Ok(self)
+    }
+
+    /// The same with its rigid motions left in.
+    #[must_use]
+    pub fn keeping_rigid(mut self) -> MeasuredSystem {
+        (self.keeps_rigid, self.kernel) = (true, Arc::default());
+        self
+    }
+
+    /// Takes over the accuracy of another of the same body, whether it keeps rigid motions, and its eigenbasis where the stiffnesses are the
+    /// same.
+    pub fn follow(&mut self, other: &MeasuredSystem) {
+        (self.accuracy, self.keeps_rigid) = (other.accuracy, other.keeps_rigid);
+        if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
+            self.kernel = Arc::clone(&other.kernel);
+        }
+    }
+
+    /// The steps, increasing.
+    pub(super) fn steps(&self) -> Vec<Rational> {
+        self.potentials.iter().map(|(step, _)| step.clone()).collect()
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.potentials[0].1.nrows()
+    }
+
+    /// The same doubles as a rational system: in mass-weighted coordinates with unit masses where they are.
+    pub(super) fn system(&self) -> &System {
+        self.system.get_or_init(|| {
+            let masses = self.body.masses.as_ref().filter(|_| !self.body.is_weighted);
+            rational(masses.map_or(&vec![1.0; self.size()], |own| own), &self.potentials)
+        })
+    }
+
+    /// The two levels, with their period; `None` where the steps are of another kind.
+    fn outer(&self) -> Option<(Outer, Rational)> {
+        match self.potentials.as_slice() {
+            [(step, _)] => Some((Outer::of_steps(step, step)?, step.clone())),
+            [(inner, _), (outer, _)] => Some((Outer::of_steps(inner, outer)?, outer.clone())),
+            _ => None,
+        }
+    }
+
+    /// Whether the kernel of two levels decides it.
+    pub(super) fn is_of_two_levels(&self) -> bool {
+        self.outer().is_some()
+    }
+
+    pub(super) fn inner_steps(&self) -> u64 {
+        self.outer().map_or(1, |(outer, _)| outer.inner_steps())
+    }
+
+    /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
+    pub(super) fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
+            return self.decide_projected(route, limits);
+        };
+        self.allow(limits)?;
+        Ok(self.kernel()?.decide(&outer, &period, self.accuracy))
+    }
+
+    /// What is proven of the doubles given: of two levels in the eigenbasis, where it is known, else at the least cost for this one verdict.
+    pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
+        let Some((outer, _)) = self.outer() else {
+            return Ok(self.decide_projected(Route::Cheapest, limits)?.holds());
+        };
+        self.allow(limits)?;
+        match self.kernel.get() {
+            Some(kernel) => Ok(kernel.verdict_within(&outer, 0.0)),
+            None => self.hessians()?.verdict(&outer),
+        }
+    }
+
+    /// The verdict at an outer step, as many inner ones in it as in its own.
+    pub(super) fn decide_at(&self, outer: &Rational, limits: &Limits) -> Result<Analysis> {
+        self.allow(limits)?;
+        let at = Outer::new(to_f64(outer), self.inner_steps())?;
+        Ok(self.kernel()?.decide(&at, outer, self.accuracy))
+    }
+
+    /// What friction of this rate per unit time does.
+    pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        let (outer, _) = self.outer().ok_or_else(|| {
+            self.other_steps(
+                "friction is answered for two levels, the outer step a multiple of the inner one",
+            )
+        })?;
+        // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
+        let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
+        limits.allow(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
+        Ok(self.kernel()?.friction(&outer, rate))
+    }
+
+    fn other_steps(&self, remedy: &str) -> Error {
+        Error::input("potentials", format!("{} steps", self.potentials.len()), remedy)
+    }
+
+    fn allow(&self, limits: &Limits) -> Result<()> {
+        limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
+    }
+
+    /// The products that a verdict costs, roughly.
+    pub(super) fn cost(&self) -> u64 {
+        (self.size() as u64).saturating_pow(3).saturating_mul(200)
+    }
+
+    /// The verdicts on a range of outer steps, as many inner ones in each.
+    pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Result<Vec<Stretch>> {
+        self.kernel()?.stretches(self.inner_steps(), range, width)
+    }
+
+    /// The verdicts on a range of factors of one level, 0 the fast one, of the present value `factor`, all else as it is.
+    pub(super) fn stretches_of_scale(
+        &self,
+        level: usize,
+        (lo, hi): (f64, f64),
+        factor: f64,
+        width: f64,
+    ) -> Result<Vec<Stretch>> {
+        let Some((outer, _)) = self.outer() else {
+            return Ok(vec![Stretch { lo, hi, verdict: Holds::NotTold }]);
+        };
+        let cells = Cells::new(self.kernel()?)?;
+        cover((lo, hi), width, |lo, hi| {
+            let (a, b) = (lo / factor, hi / factor);
+            Ok(cells.verdict_scaled(&outer, level, (a.min(b), a.max(b))))
+        })
+    }
+
+    /// The growth rate at each outer step, as many inner ones in it; `None` where none is known.
+    pub(super) fn growth_rates(&self, steps: &[f64]) -> Result<Vec<Option<f64>>> {
+        let (inner_steps, kernel) = (self.inner_steps(), self.kernel()?);
+        steps.iter().map(|&step| Ok(kernel.growth_rate(&Outer::new(step, inner_steps)?))).collect()
+    }
+
+    /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of two levels.
+    pub(super) fn growth_of_period(&self) -> Result<Option<f64>> {
+        let Some((outer, _)) = self.outer() else { return Ok(None) };
+        Ok(Some(self.hessians()?.growth_of_period(outer.step(), outer.inner_steps())))
+    }
+
+    /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
+    pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(self.not_two()) };
+        self.outer().ok_or_else(|| self.not_two())?;
+        let [inner, outer] = [inner, outer].map(Clone::clone);
+        Ok(TwoLevels { kernel: self.kernel()?, inner, outer, accuracy: self.accuracy })
+    }
+
+    fn not_two(&self) -> Error {
+        self.other_steps("give two potentials, the step of one a multiple of the other's")
+    }
+
+    /// The eigenbasis, computed when it is first asked for.
+    pub fn kernel(&self) -> Result<&Kernel> {
+        if let Some(kernel) = self.kernel.get() {
+            return Ok(kernel);
+        }
+        let kernel = Kernel::new(&self.hessians()?)?;
+        Ok(self.kernel.get_or_init(|| kernel))
+    }
+
+    /// The stiffness of the shortest step and the sum of the others, rigid motions and held distances projected out.
+    pub(super) fn hessians(&self) -> Result<Hessians> {
+        let whole = self.summed_hessians()?;
+        Ok(self.shares.iter().fold(whole, |whole, (step, own)| {
+            let level = usize::from(*step != self.potentials[0].0);
+            whole.of_shares(level, &own.iter().map(|k| self.weighted(k)).collect::<Vec<_>>())
+        }))
+    }
+
+    /// M^-½ K M^-½ of a stiffness given.
+    fn weighted(&self, k: &DMatrix<f64>) -> DMatrix<f64> {
+        match self.body.masses.as_ref().filter(|_| !self.body.is_weighted) {
+            Some(m) => DMatrix::from_fn(k.nrows(), k.ncols(), |i, j| k[(i, j)] / (m[i].sqrt() * m[j].sqrt())),
+            None => k.clone(),
+        }
+    }
+
+    /// M^-½ K M^-½ of each potential, with its step.
+    pub(super) fn all_weighted(&self) -> impl Iterator<Item = (Rational, DMatrix<f64>)> {
+        self.potentials.iter().map(|(step, k)| (step.clone(), self.weighted(k)))
+    }
+
+    fn summed_hessians(&self) -> Result<Hessians> {
+        let ((_, fast), others) = self.potentials.split_first().expect("at least one");
+        let slow = match others {
+            [(_, slow)] => Cow::Borrowed(slow),
+            _ => Cow::Owned(
+                others.iter().fold(DMatrix::zeros(self.size(), self.size()), |sum, (_, k)| sum + k),
+            ),
+        };
+        let slow = slow.as_ref();
+        let Body { masses, positions, is_weighted, is_periodic, held } = &self.body;
+        let hessians = match masses {
+            Some(masses) if !is_weighted => Hessians::weighted(masses, fast, slow, self.accuracy)?,
+            _ => Hessians::new(fast, slow, self.accuracy)?,
+        };
+        Ok(match (positions, masses) {
+            (Some(positions), Some(masses)) if held.is_some() => {
+                let held = held.as_ref().expect("some");
+                let rigid = if self.keeps_rigid { Mat::new() } else { self.rigid(Some(positions), masses) };
+                let all = |i: usize, j: usize| match j.checked_sub(held.ncols()) {
+                    None => held[(i, j)],
+                    Some(j) => rigid[(i, j)],
+                };
+                let all = Mat::from_fn(held.nrows(), held.ncols() + rigid.ncols(), all);
+                let by = if self.keeps_rigid { "constraints" } else { "positions and constraints" };
+                hessians.without(&all.qr().compute_thin_Q(), by)
+            }
+            _ if self.keeps_rigid => hessians,
+            (_, Some(masses)) if *is_periodic && self.size().is_multiple_of(3) => {
+                hessians.without(&self.rigid(None, masses), "periodic box")
+            }
+            (Some(positions), Some(masses)) => {
+                hessians.without(&self.rigid(Some(positions), masses), "positions")
+            }
+            _ => hessians.without_null_space(self.accuracy, if *is_periodic { 3 } else { 6 })?,
+        })
+    }
+
+    fn rigid(&self, positions: Option<&[[f64; 3]]>, masses: &[f64]) -> Mat<f64> {
+        let masses: Vec<f64> = masses.iter().step_by(3).copied().collect();
+        match positions {
+            Some(positions) if !self.body.is_periodic => rigid_motions(positions, &masses),
+            _ => translations(&masses),
+        }
+    }
+
+    /// Where the matrices themselves would be taken, all distances free.
+    ///
+    /// # Errors
+    /// Where distances are held.
+    pub fn refuse_constraints(&self) -> Result<()> {
+        let remedy = "a run leaves all distances free: take the constraints out";
+        let given =
+            |held: &DMatrix<f64>| Error::input("constraints", format!("{} pairs", held.ncols()), remedy);
+        self.body.held.as_ref().map_or(Ok(()), |held| Err(given(held)))
+    }
+}
+
+/// Doubles as a rational system; what asymmetry there is is split evenly.
+pub(super) fn rational(masses: &[f64], potentials: &[(Rational, DMatrix<f64>)]) -> System {
+    let exact = |x: f64| from_f64_exact(x).expect("finite, as it was read");
+    let masses: Vec<_> = masses.iter().map(|&m| exact(m)).collect();
+    let potential = |(step, stiffness): &(Rational, DMatrix<f64>)| {
+        let mut sum = Symmetric::zero(masses.len());
+        for i in 0..masses.len() {
+            for j in 0..=i {
+                sum.add(i, j, &exact(stiffness[(i, j)] / 2.0 + stiffness[(j, i)] / 2.0));
+            }
+        }
+        Potential::new(sum, step.clone())
+    };
+    let potentials = potentials.iter().map(potential).collect();
+    System::new(Symmetric::diagonal(&masses), potentials).expect("masses and steps as they were checked")
+}

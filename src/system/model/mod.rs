@@ -1,0 +1,185 @@
+//! A system by the numbers that it is made of. Which route decides it is the model's own affair.
+//!
+//! | file | what |
+//! |---|---|
+//! | `oscillator` | one mass, some number of which involves π: its steps may, too |
+//! | `measured`, `projected` | dense stiffnesses in doubles: as two levels with margins, or on any clocks |
+//! | `intervals` | verdicts and growth rates over the outer step, or over another number |
+
+mod intervals;
+mod measured;
+mod oscillator;
+mod projected;
+
+use crate::error::{Error, Result};
+use crate::number::{Laurent, Rational};
+use crate::propagator;
+use crate::system::friction::{Friction, damped_system};
+use crate::system::levels::Hessians;
+use crate::system::linear::system::{Potential, System};
+use crate::system::pi::PiSystem;
+use crate::system::verdict::analysis::Analysis;
+use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
+use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::measured::Holds;
+use crate::verdict::Kind;
+pub use intervals::Number;
+pub use measured::{Body, MeasuredSystem, TwoLevels};
+pub use oscillator::Oscillator;
+
+/// What a system is.
+#[derive(Clone, Debug)]
+pub enum Model {
+    /// Rational masses, stiffnesses and steps, few entries or many.
+    Rational(System),
+    /// Several degrees of freedom with stiffnesses over ℚ\[π, 1/π\].
+    Pi(PiSystem),
+    /// One oscillator over ℚ\[π, 1/π\].
+    Oscillator(Oscillator),
+    /// Stiffnesses in doubles, known to some accuracy.
+    Measured(MeasuredSystem),
+}
+
+impl Model {
+    /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
+    /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles.
+    pub fn system(&self) -> &System {
+        match self {
+            Model::Rational(own) => own,
+            Model::Pi(own) => own.near(),
+            Model::Oscillator(own) => &own.rounded,
+            Model::Measured(own) => own.system(),
+        }
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        match self {
+            Model::Measured(own) => own.size(),
+            _ => self.system().size(),
+        }
+    }
+
+    /// The products of doubles that the verdict costs, roughly, where doubles prove it.
+    pub fn cost(&self) -> u64 {
+        match self {
+            Model::Measured(own) => own.cost(),
+            _ => verdict_cost(self.system()),
+        }
+    }
+
+    /// The verdict with everything that is known beside it.
+    ///
+    /// # Errors
+    /// As [`decide_by`]; a budget error where what would decide exceeds the limits.
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        match self {
+            Model::Rational(own) => decide_by(route, own, limits),
+            Model::Pi(own) => own.decide(route, limits),
+            Model::Oscillator(own) => own.decide(limits),
+            Model::Measured(own) => own.decide(route, limits),
+        }
+    }
+
+    /// What is proven, and nothing else: of two measured levels without an eigenbasis where that proves it.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn verdict(&self, route: Route, limits: &Limits) -> Result<Holds> {
+        match self {
+            Model::Measured(own) if route == Route::Cheapest => own.verdict(limits),
+            _ => Ok(self.decide(route, limits)?.holds()),
+        }
+    }
+
+    /// The kind by exact arithmetic alone: by characteristic polynomials over ℚ or power sums over ℚ\[π\], part by part; of an
+    /// oscillator with π by the four signs.
+    ///
+    /// # Errors
+    /// A budget error, before the work on the part that exceeds it.
+    pub fn exact_kind(&self, limits: &Limits) -> Result<Kind> {
+        match self {
+            Model::Pi(own) => own.exact_kind(limits),
+            Model::Oscillator(own) => own.exact_kind(limits),
+            Model::Rational(_) | Model::Measured(_) => exact_kind(self.system(), limits),
+        }
+    }
+
+    /// What friction of a rate per unit time does, O in the middle of every drift.
+    ///
+    /// # Errors
+    /// As [`damped_system`]; π in the stiffnesses of several degrees of freedom, irrational steps; measured stiffnesses whose steps are
+    /// others than two of which one is a multiple of the other.
+    pub fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        match self {
+            Model::Rational(own) => damped_system(own, rate, limits),
+            Model::Pi(_) => {
+                let remedy = "with several degrees of freedom write stiffnesses without pi";
+                Err(Error::input("friction", rate, remedy))
+            }
+            Model::Oscillator(own) => own.friction(rate, limits),
+            Model::Measured(own) => own.friction(rate, limits),
+        }
+    }
+
+    fn measured(&self) -> Option<&MeasuredSystem> {
+        if let Model::Measured(own) = self { Some(own) } else { None }
+    }
+
+    /// The measured stiffnesses whose kernel of two levels decides.
+    fn levels(&self) -> Option<&MeasuredSystem> {
+        self.measured().filter(|own| own.is_of_two_levels())
+    }
+
+    /// Both levels of a system of two measured ones.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured, and where the steps are others than an inner and an outer one.
+    pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
+        let exact = || Error::input("stiffness", "given in place", remedy);
+        self.measured().ok_or_else(exact)?.two_levels()
+    }
+
+    /// The matrices of [`Model::two_levels`], rigid motions projected out.
+    ///
+    /// # Errors
+    /// As [`Model::two_levels`].
+    pub fn hessians(&self) -> Result<Hessians> {
+        self.two_levels()?;
+        self.measured().expect("measured, as two levels are").hessians()
+    }
+
+    /// The largest ln |λ|/T of two levels of measured stiffnesses by the dense full period, rounded; `None` of any other system.
+    ///
+    /// # Errors
+    /// As [`Model::decide`].
+    pub fn growth_of_period(&self) -> Result<Option<f64>> {
+        self.measured().map_or(Ok(None), MeasuredSystem::growth_of_period)
+    }
+
+    /// The same as two clocks on one oscillator, where it is that, without phases.
+    pub fn two_clocks(&self) -> Option<propagator::Oscillator> {
+        let system = match self {
+            Model::Oscillator(own) => return own.as_two_clocks(),
+            Model::Rational(own) if own.size() == 1 => own,
+            _ => return None,
+        };
+        let [fast, slow] = system.clocks() else { return None };
+        if [fast, slow].iter().any(|clock| clock.phase != Rational::default()) {
+            return None;
+        }
+        let lambda =
+            |clock: &Potential| Laurent::from_rational(clock.stiffness.get(0, 0) / system.mass().get(0, 0));
+        let step = |clock: &Potential| Laurent::from_rational(clock.step.clone());
+        propagator::Oscillator::new(lambda(fast), lambda(slow), step(fast), step(slow)).ok()
+    }
+
+    /// All steps, those of potentials of one clock each for itself.
+    pub fn steps(&self) -> Vec<Rational> {
+        match self {
+            Model::Measured(own) => own.steps(),
+            _ => self.system().steps(),
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! Verdicts on all systems between two: the stable and unstable intervals of one number, none left out.
+//!
+//! A number t on which masses and stiffnesses depend linearly, steps fixed, makes kicks K_k(t) between K_k⁻ and K_k⁺ in Loewner's
+//! order for t in a cell. Near the first region the signs of the action at both decide for the whole cell (`action`; the order theorem
+//! of `proofs/REGION.md`). Elsewhere the half period in the middle does, its bound widened by how far kicks and drifts are from it: the
+//! forms' inertias, or discs about the eigenvalues.
+
+use std::collections::BTreeSet;
+
+use faer::Mat;
+use num_traits::{Signed, Zero};
+
+use crate::error::{Error, Result};
+use crate::number::rational::to_f64;
+use crate::number::{Rational, U};
+use crate::system::half::compose::inverted;
+use crate::system::half::float::scaled_program;
+use crate::system::half::norm;
+use crate::system::half::period::{Drifts, Stiff, follow};
+use crate::system::linear::frame::Frame;
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
+use crate::system::signs::action::{self, is_total_definite};
+use crate::system::signs::envelope::Sign;
+use crate::system::signs::{self, Forms};
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::vary::stretches::Stretch;
+use crate::system::verdict::measured::Holds;
+use crate::verdict::Kind;
+
+/// The stretches of one number of a system.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Intervals {
+    /// The number's name.
+    pub number: String,
+    /// Whether only the ends of the stretches and the multiples between were decided, not all between.
+    pub is_discrete: bool,
+    /// The inner steps in an outer one, where these are two levels and the number is the outer step at that ratio.
+    pub inner_steps: Option<u64>,
+    /// They cover the range, in order; where edges were isolated exactly, neighbouring doubles end one and begin the next.
+    pub stretches: Vec<Stretch>,
+}
+
+impl Intervals {
+    /// \[lo, hi\]: where what is proven stable before the first unstable stretch ends, and where that begins; twice the first
+    /// unstable number where only some were decided.
+    pub fn first_unstable(&self) -> Option<(f64, f64)> {
+        let k = self.stretches.iter().position(|own| own.verdict == Holds::Unstable)?;
+        if self.is_discrete {
+            return Some((self.stretches[k].lo, self.stretches[k].lo));
+        }
+        let stable = self.stretches[..k].iter().rev().find(|own| own.verdict == Holds::Stable)?;
+        Some((stable.hi, self.stretches[k].lo))
+    }
+}
+
+/// What is proven of all systems between the first and the last, on a line through the second, masses and stiffnesses being linear in
+/// the place on it: the second is their mean.
+///
+/// # Errors
+/// Where it is not, or steps differ.
+pub(in crate::system) fn verdict_between(systems: [&System; 3]) -> Result<Holds> {
+    verify_line(systems)?;
+    let [lo, middle, hi] = systems;
+    let rigid = middle.rigid_modes();
+    let varies_mass = lo.mass() != hi.mass();
+    if varies_mass && !middle.mass().is_diagonal() || lo.rigid_modes() != rigid || hi.rigid_modes() != rigid {
+        return Ok(Holds::NotTold);
+    }
+    let cell = Cell { systems, frame: Frame::new(middle) };
+    Ok(match cell.by_action()? {
+        Holds::NotTold => cell.by_half_period()?,
+        told => told,
+    })
+}
+
+/// That steps are the same and the second system is the mean of the others.
+///
+/// # Errors
+/// Where it is not.
+pub(in crate::system) fn verify_line(systems: [&System; 3]) -> Result<()> {
+    let [lo, middle, hi] = systems;
+    let steps = |own: &System| {
+        own.potentials().iter().map(|own| (own.step.clone(), own.phase.clone())).collect::<Vec<_>>()
+    };
+    let is_mean = |[a, b, c]: [&Symmetric; 3]| {
+        let mut twice = a.clone();
+        twice.add_all(c);
+        twice == b.scaled(&Rational::from_integer(2.into()))
+    };
+    let stiffnesses = |k: usize| systems.map(|own| &own.potentials()[k].stiffness);
+    if steps(lo) != steps(middle)
+        || steps(hi) != steps(middle)
+        || !is_mean(systems.map(System::mass))
+        || !(0..middle.potentials().len()).all(|k| is_mean(stiffnesses(k)))
+    {
+        let remedy = "choose a number on which masses or stiffnesses depend linearly, steps fixed: a mass, a scale, a stiffness";
+        return Err(Error::input("intervals", "this number", remedy));
+    }
+    Ok(())
+}
+
+/// Three systems on a line.
+struct Cell<'a> {
+    systems: [&'a System; 3],
+    frame: Frame,
+}
+
+impl Cell<'_> {
+    /// The order theorem: all kicks lie between those of two systems.
+    fn by_action(&self) -> Result<Holds> {
+        let [lo, middle, hi] = self.systems;
+        if !middle.mass().is_diagonal() {
+            return Ok(Holds::NotTold);
+        }
+        let (mut less, mut more) = (Vec::new(), Vec::new());
+        for (k, own) in middle.potentials().iter().enumerate() {
+            let ends = [lo, hi].map(|system| &system.potentials()[k].stiffness);
+            let [small, large] = self.ordered(ends, &own.stiffness);
+            less.push(Potential { stiffness: small, ..own.clone() });
+            more.push(Potential { stiffness: large, ..own.clone() });
+        }
+        // Lighter masses act as stiffer kicks.
+        let masses = |pick: fn(Rational, Rational) -> Rational| {
+            let entry = |i: usize| pick(lo.mass().get(i, i), hi.mass().get(i, i));
+            Symmetric::diagonal(&(0..middle.size()).map(entry).collect::<Vec<_>>())
+        };
+        let more = System::new(masses(|a, b| a.min(b)), more)?;
+        let less = System::new(masses(|a, b| a.max(b)), less)?;
+        // Where a kick vanishes the schedule is another, and nothing can be compared.
+        if self.clocks() != more.clocks().len() || self.clocks() != less.clocks().len() {
+            return Ok(Holds::NotTold);
+        }
+        let Some(stiffer) = action::signs(&more) else { return Ok(Holds::NotTold) };
+        if stiffer == [Some(Sign::Positive); 2] {
+            let is_stable = is_total_definite(&less, &self.frame);
+            return Ok(if is_stable { Holds::Stable } else { Holds::NotTold });
+        }
+        if !stiffer.contains(&Some(Sign::Positive)) {
+            return Ok(Holds::NotTold);
+        }
+        let softer = action::signs(&less).unwrap_or_default();
+        let is_unstable =
+            |k: usize| stiffer[k] == Some(Sign::Positive) && softer[1 - k] == Some(Sign::Negative);
+        Ok(if is_unstable(0) || is_unstable(1) { Holds::Unstable } else { Holds::NotTold })
+    }
+
+    /// K⁻ ≤ K ≤ K⁺ for all K on the segment: its ends where their difference is semidefinite, else the middle less and more
+    /// the sums of the rows of |K_hi − K_lo|/2 on the diagonal (Gershgorin).
+    fn ordered(&self, [a, b]: [&Symmetric; 2], middle: &Symmetric) -> [Symmetric; 2] {
+        let minus = Rational::from_integer((-1).into());
+        let mut difference = b.clone();
+        difference.add_all(&a.scaled(&minus));
+        if difference.is_zero() || difference.is_positive_semidefinite() {
+            return [a.clone(), b.clone()];
+        }
+        if difference.scaled(&minus).is_positive_semidefinite() {
+            return [b.clone(), a.clone()];
+        }
+        let half = Rational::new(1.into(), 2.into());
+        let row =
+            |i: usize| difference.row(i).values().fold(Rational::zero(), |sum, x| sum + x.abs()) * &half;
+        let shift = Symmetric::diagonal(&(0..difference.size()).map(row).collect::<Vec<_>>());
+        [&minus, &-minus.clone()].map(|sign| {
+            let mut moved = middle.clone();
+            moved.add_all(&shift.scaled(sign));
+            moved
+        })
+    }
+
+    /// The half period in the middle, every kick and drift off by as much as it moves.
+    fn by_half_period(&self) -> Result<Holds> {
+        let [lo, middle, hi] = self.systems;
+        let reduced = self.reduced(middle)?;
+        if reduced.clocks().len() != self.clocks() {
+            return Ok(Holds::NotTold);
+        }
+        let m = reduced.size();
+        let (program, scales) = scaled_program(&reduced, &Frame::whole(m));
+        let tick = reduced.tick();
+        let stiff = |(k, clock): (usize, &Potential)| {
+            let ticks = Rational::from_integer(reduced.schedule().clocks()[k].step().into());
+            let factor = to_f64(&(tick * tick * ticks));
+            let mut moved = Mat::<f64>::zeros(m, m);
+            for (from, to) in middle.potentials().iter().zip(hi.potentials()) {
+                if (&from.step, &from.phase) == (&clock.step, &clock.phase) {
+                    for (a, &i) in self.frame.kept.iter().enumerate() {
+                        for (b, &j) in self.frame.kept.iter().enumerate() {
+                            let change = to_f64(&(to.stiffness.get(i, j) - from.stiffness.get(i, j)));
+                            moved[(a, b)] += change * factor / (scales[a] * scales[b]);
+                        }
+                    }
+                }
+            }
+            let rows = program.kicks[k].rows.clone();
+            let squares: f64 = rows.iter().flat_map(|(_, row)| row).map(|(_, x)| x * x).sum();
+            Stiff { rows, off: 1.01 * (norm::spectral(&moved) + 2.0 * U * squares.sqrt()) }
+        };
+        let kicks: Vec<Stiff> = reduced.clocks().iter().enumerate().map(stiff).collect();
+        // ‖P diag(e) Pᵀ‖ ≤ Σ e_i |P_i|², P = (I, −N); where N is empty the largest e_i.
+        let moved = |i: usize| {
+            let inverse = self.systems.map(|own| own.mass().get(i, i).recip());
+            let far = (&inverse[0] - &inverse[1]).abs().max((&inverse[2] - &inverse[1]).abs());
+            let column: f64 = match self.frame.kept.iter().position(|&own| own == i) {
+                Some(k) => scales[k] * scales[k],
+                None => self
+                    .frame
+                    .rigid
+                    .iter()
+                    .filter(|(own, _)| *own == i)
+                    .map(|(_, n)| self.square(n, &scales))
+                    .sum(),
+            };
+            1.01 * to_f64(&far) * column
+        };
+        let varies = lo.mass() != hi.mass();
+        let all = (0..if varies { middle.size() } else { 0 }).map(moved);
+        let off = if self.frame.rigid.is_empty() { all.fold(0.0, f64::max) } else { all.sum::<f64>() };
+        let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &Rational::zero(), off };
+        let blocks =
+            follow(&drifts, reduced.schedule().half_period(), |_, clock| &kicks[clock]).blocks(scales);
+        let signed = Forms::new(&blocks).and_then(|mut forms| signs::judge(&mut forms));
+        let told = signed.or_else(|| Spectrum::new(&blocks)?.certified(&blocks));
+        Ok(match told {
+            Some(Kind::Elliptic) => Holds::Stable,
+            Some(Kind::Hyperbolic) => Holds::Unstable,
+            _ => Holds::NotTold,
+        })
+    }
+
+    /// The number of clocks that kick anywhere on the segment.
+    fn clocks(&self) -> usize {
+        let [lo, middle, hi] = self.systems.map(System::potentials);
+        let kicks = |k: &usize| [lo, middle, hi].iter().any(|own| !own[*k].stiffness.is_zero());
+        let clocks = (0..middle.len()).filter(kicks).map(|k| (&middle[k].step, &middle[k].phase));
+        clocks.collect::<BTreeSet<_>>().len()
+    }
+
+    /// Σ (a_i n_i)² over the coordinates kept.
+    fn square(&self, n: &[Rational], scales: &[f64]) -> f64 {
+        self.frame.kept.iter().zip(scales).map(|(&i, a)| (a * to_f64(&n[i])).powi(2)).sum()
+    }
+
+    /// The system in the frame's coordinates: positions modulo rigid modes, M⁻¹ as P M⁻¹ Pᵀ.
+    fn reduced(&self, system: &System) -> Result<System> {
+        if self.frame.rigid.is_empty() {
+            return Ok(system.clone());
+        }
+        let inverse = inverted(system.mass().to_dense());
+        let columns = nalgebra::DMatrix::from_fn(self.frame.kept.len(), system.size(), |a, i| {
+            let rigid = self.frame.rigid.iter().find(|(own, _)| *own == i);
+            match rigid {
+                Some((_, n)) => -n[self.frame.kept[a]].clone(),
+                None => Rational::from_integer(i64::from(self.frame.kept[a] == i).into()),
+            }
+        });
+        let mass = Symmetric::try_from(&inverted(&columns * inverse * columns.transpose()))?;
+        let kept = |own: &Potential| Potential {
+            stiffness: own.stiffness.restricted(&self.frame.kept),
+            ..own.clone()
+        };
+        System::new(mass, system.potentials().iter().map(kept).collect())
+    }
+}

@@ -1,0 +1,322 @@
+//! The half period of systems on a line, modulo a prime, with bounds on its invariants.
+//!
+//! *Degree.* Minors of size k of a product are sums of products of minors of its factors (Cauchy and Binet). Those of a kick K₀ + s K₁ have
+//! a degree of at most min(k, rank K₁). Those of a drift, times δ(s) = Π (masses that vary), have at most the degree of δ, since
+//! minors of M⁻¹ are those of M over det M (Jacobi). The coefficients c_k of χ are such sums over S = Bᵀ C, two half periods.
+//!
+//! *Length.* On |s| = 1 no entry of kicks and drifts exceeds the sum of its coefficients' sizes, so no product of their row sums is
+//! exceeded by a row sum of H or Hᵀ. A polynomial that is at most b on |s| = 1 has no coefficient beyond b (Cauchy).
+
+use std::collections::BTreeSet;
+
+use nalgebra::DMatrix;
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::{One, Signed, Zero};
+
+use super::line::Line;
+use crate::error::Result;
+use crate::number::rational::{ratio, to_f64};
+use crate::number::{PrimeField, Rational};
+use crate::schedule::Weight;
+use crate::system::half::compose::{Kick, Program, Row, State};
+use crate::system::linear::frame::Frame;
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
+
+/// x₀ + s x₁.
+type Linear<T> = [T; 2];
+
+/// A mass (or what stands for it): c (α + β s), α and β whole numbers without a common factor.
+struct Mass {
+    c: Rational,
+    line: Linear<BigInt>,
+}
+
+/// The half period on a line.
+pub(super) struct Half {
+    /// A system with the clocks of almost all of them.
+    generic: System,
+    frame: Frame,
+    program: Program<Linear<Rational>>,
+    /// Where masses vary; then the mass matrix is diagonal.
+    masses: Option<Vec<Mass>>,
+    /// The ranks of what each clock's kick gains with s.
+    ranks: Vec<usize>,
+    /// Integer multiples: the eigenvalues of `scale` δ^E S are integral over ℤ\[s\].
+    pub scale: BigInt,
+    /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
+    pub is_selfadjoint: bool,
+}
+
+impl Half {
+    /// `None` where masses off the diagonal vary.
+    ///
+    /// # Errors
+    /// As [`Line::at`].
+    pub fn new(line: &Line) -> Result<Option<Half>> {
+        if line.varies_mass() && !line.ends.iter().all(|own| own.mass().is_diagonal()) {
+            return Ok(None);
+        }
+        let (frame, generic) = (line.frame()?, generic(line)?);
+        let mut program = Program::new(&generic).map(|x| [x.clone(), Rational::zero()]);
+        let mut ranks = Vec::new();
+        for (k, clock) in generic.clocks().iter().enumerate() {
+            let [lo, hi] = line.ends.each_ref().map(|own| sum(own, clock));
+            let ticks = Rational::from_integer(generic.schedule().clocks()[k].step().into());
+            let factor = generic.tick() * generic.tick() * ticks;
+            let mut gained = hi;
+            gained.add_all(&lo.scaled(&ratio(-1, 1)));
+            ranks.push(gained.size() - gained.null_space().len());
+            let rows = rows(&lo, &gained, &factor);
+            let islands: BTreeSet<_> = rows.iter().map(|(i, _)| program.island_of[*i]).collect();
+            program.kicks[k] = Kick { rows, islands: islands.into_iter().collect() };
+        }
+        let masses = line.varies_mass().then(|| {
+            let [lo, hi] = line.ends.each_ref().map(System::mass);
+            (0..lo.size()).map(|i| Mass::between(lo.get(i, i), hi.get(i, i))).collect::<Vec<_>>()
+        });
+        let scale = BigInt::one();
+        let is_selfadjoint = line.commutes;
+        let mut half = Half { generic, frame, program, masses, ranks, scale, is_selfadjoint };
+        half.scale = half.common();
+        Ok(Some(half))
+    }
+
+    /// m, the size of S.
+    pub fn size(&self) -> usize {
+        self.frame.kept.len()
+    }
+
+    /// Kicks of the half period, those at one instant as one.
+    fn kicks(&self) -> usize {
+        self.generic.schedule().half_period().filter(|event| event.clocks().next().is_some()).count()
+    }
+
+    /// E: the drifts of two half periods.
+    fn drifts(&self) -> usize {
+        2 * self.generic.schedule().half_period().filter(|event| event.drift > 0).count()
+    }
+
+    /// The operations of one evaluation, roughly.
+    pub fn cost(&self) -> f64 {
+        let (n, m) = (self.program.size() as f64, self.size() as f64);
+        let entries = self.program.entries().count() as f64;
+        (self.kicks() as f64 + 1.0) * 2.0 * m * (entries + n) + 12.0 * m.powi(3) + 200.0 * m.powi(2)
+    }
+
+    /// The degree of δ^E.
+    fn degree_of_masses(&self) -> usize {
+        let varying = |own: &&Mass| !own.line[1].is_zero();
+        self.drifts() * self.masses.iter().flatten().filter(varying).count()
+    }
+
+    /// The most that δ^E c_k can have as its degree.
+    pub fn degree(&self, k: usize) -> usize {
+        let kicks = self.generic.schedule().half_period().flat_map(|event| event.clocks());
+        2 * kicks.map(|clock| self.ranks[clock].min(k)).sum::<usize>() + self.degree_of_masses()
+    }
+
+    /// More than log₂ of the eigenvalues of scale δ^E S on |s| = 1, and of scale δ^E itself there.
+    pub fn bits(&self) -> [f64; 2] {
+        let size = |x: &BigInt| to_f64(&Rational::from_integer(x.abs()));
+        let row = |row: &Row<Linear<Rational>>| {
+            row.iter().flat_map(|(_, x)| x).map(|x| to_f64(&x.abs())).sum::<f64>()
+        };
+        let largest = |rows: &mut dyn Iterator<Item = f64>| rows.fold(0.0, f64::max);
+        let kicks: Vec<f64> = self
+            .program
+            .kicks
+            .iter()
+            .map(|own| largest(&mut own.rows.iter().map(|(_, own)| row(own))))
+            .collect();
+        let (inverse, masses) = match &self.masses {
+            None => (largest(&mut self.program.inverse_mass.iter().map(row)), 0.0),
+            Some(own) => {
+                let length = |own: &Mass| size(&own.line[0]) + size(&own.line[1]);
+                let varying = own.iter().filter(|own| !own.line[1].is_zero());
+                (
+                    largest(&mut own.iter().map(|own| 1.0 / (to_f64(&own.c) * length(own)))),
+                    varying.map(|own| length(own).log2()).sum(),
+                )
+            }
+        };
+        let events: Vec<(f64, f64)> = self
+            .generic
+            .schedule()
+            .half_period()
+            .map(|event| (event.drift as f64 * inverse, event.clocks().map(|clock| kicks[clock]).sum()))
+            .collect();
+        // Any unit of momentum: that in which drifts and kicks are alike.
+        let (drift, kick) = events.iter().fold((0.0, 0.0), |sum, own| (sum.0 + own.0, sum.1 + own.1));
+        let unit = if drift > 0.0 && kick > 0.0 { (kick / drift).sqrt() } else { 1.0 };
+        let path = events.iter().map(|(x, k)| (1.0 + x * unit).log2() + (1.0 + k / unit).log2()).sum::<f64>();
+        let rigid: f64 = self.frame.rigid.iter().flat_map(|(_, n)| n).map(|x| to_f64(&x.abs())).sum();
+        let framed = 4.0 * (1.0 + rigid).log2();
+        let scale = self.scale.bits() as f64 + self.drifts() as f64 * masses;
+        [1.001 * (scale + 2.0 * path + framed) + 4.0, 1.001 * scale + 1.0]
+    }
+
+    /// f^(2 kicks) with a common denominator f, and that of the frame squared: over momenta p/e every kick is 1/f of an integer one, every
+    /// drift an integer one over δ.
+    fn common(&self) -> BigInt {
+        let lcm = |lcm: BigInt, x: &Rational| lcm.lcm(x.denom());
+        let e = match &self.masses {
+            None => self.program.inverse_mass.iter().flatten().map(|(_, x)| &x[0]).fold(BigInt::one(), lcm),
+            Some(own) => own.iter().map(|own| own.c.recip()).fold(BigInt::one(), |e, x| lcm(e, &x)),
+        };
+        let twice = Rational::from_integer(e * 2);
+        let entries = self.program.kicks.iter().flat_map(|own| &own.rows).flat_map(|(_, row)| row);
+        let f = entries.flat_map(|(_, x)| x).fold(BigInt::one(), |f, x| lcm(f, &(x / &twice)));
+        let delta = self.frame.denominator();
+        num_traits::pow(f, 2 * self.kicks()) * &delta * &delta
+    }
+
+    /// The program modulo a prime; `None` where that divides a denominator.
+    pub fn residues(&self, field: &PrimeField) -> Option<Program<Linear<u64>>> {
+        let constants = self.frame.rigid.iter().flat_map(|(_, n)| n);
+        let masses = self.masses.iter().flatten().map(|own| &own.c);
+        let all = self.program.entries().flatten().chain(constants);
+        let sound = all.into_iter().all(|x| field.of_rational(x).is_some())
+            && masses.into_iter().all(|c| field.of_rational(&c.recip()).is_some());
+        let of = |x: &Rational| field.of_rational(x).expect("just seen");
+        sound.then(|| self.program.map(|x| x.each_ref().map(of)))
+    }
+
+    /// scale S at s modulo the prime, and δ^E; `None` where a mass vanishes.
+    pub fn product(
+        &self,
+        field: &PrimeField,
+        program: &Program<Linear<u64>>,
+        s: u64,
+    ) -> Option<(DMatrix<u64>, u64)> {
+        let at = |x: &Linear<u64>| field.add(x[0], field.mul(s, x[1]));
+        let mut program = program.map(at);
+        let mut delta = field.of(1);
+        for (i, own) in self.masses.iter().flatten().enumerate() {
+            let line = at(&own.line.each_ref().map(|x| field.of_big(x)));
+            if line == 0 {
+                return None;
+            }
+            if !own.line[1].is_zero() {
+                delta = field.mul(delta, line);
+            }
+            let c = field.of_rational(&own.c.recip())?;
+            program.inverse_mass[i] = vec![(i, field.mul(c, field.invert(line)))];
+        }
+        let rows = self.run(field, &program);
+        let m = self.size();
+        let scale = field.of_big(&self.scale);
+        let entry = |i: usize, j: usize| {
+            let sum = (0..m).fold(0, |sum, k| {
+                let (b, c) = (rows.x[k][m + i], rows.p[k][j]);
+                field.add(sum, field.mul(b, c))
+            });
+            field.mul(scale, sum)
+        };
+        Some((DMatrix::from_fn(m, m, entry), field.power(delta, self.drifts() as u64)))
+    }
+
+    /// The half period in the frame's coordinates: A and B as rows of positions, C and D as those of momenta.
+    fn run(&self, field: &PrimeField, program: &Program<u64>) -> Rows {
+        let (n, m) = (program.size(), self.size());
+        let of = |x: &Rational| field.of_rational(x).expect("seen with the program");
+        let mut rows = Rows { field: *field, x: vec![vec![0; 2 * m]; n], p: vec![vec![0; 2 * m]; n] };
+        for k in 0..m {
+            rows.x[self.frame.kept[k]][k] = field.of(1);
+            for (i, value) in self.frame.momentum(k) {
+                rows.p[i][m + k] = of(&value);
+            }
+        }
+        program.run(self.generic.schedule().half_period(), &mut rows);
+        let kept = |row: &Vec<u64>, i: usize, x: &[Vec<u64>]| {
+            let mut row = row.clone();
+            for (own, n) in &self.frame.rigid {
+                let factor = field.sub(0, of(&n[i]));
+                add(field, &mut row, factor, &x[*own]);
+            }
+            row
+        };
+        let x = self.frame.kept.iter().map(|&i| kept(&rows.x[i], i, &rows.x)).collect();
+        let p = self.frame.kept.iter().map(|&i| rows.p[i].clone()).collect();
+        Rows { field: *field, x, p }
+    }
+}
+
+/// A system of the line with all clocks that any of them has.
+fn generic(line: &Line) -> Result<System> {
+    let [lo, hi] = &line.ends;
+    let acts = |own: &&Potential| !sum(lo, own).is_zero() || !sum(hi, own).is_zero();
+    let mut clocks: Vec<_> =
+        lo.potentials().iter().filter(acts).map(|own| (own.step.clone(), own.phase.clone())).collect();
+    clocks.sort();
+    clocks.dedup();
+    // A sum that is linear in s and not 0 vanishes at one s at most.
+    let mut found = line.at(&ratio(1, 2))?;
+    for k in 0..clocks.len() as i64 {
+        if found.clocks().len() == clocks.len() {
+            break;
+        }
+        found = line.at(&ratio(1, 3 + k))?;
+    }
+    Ok(found)
+}
+
+/// The stiffness of all potentials with the clock of one.
+fn sum(system: &System, clock: &Potential) -> Symmetric {
+    let mut sum = Symmetric::zero(system.size());
+    let own = system.potentials().iter().filter(|own| (&own.step, &own.phase) == (&clock.step, &clock.phase));
+    own.for_each(|own| sum.add_all(&own.stiffness));
+    sum
+}
+
+/// The rows of factor (K₀ + s K₁) that are not 0.
+fn rows(constant: &Symmetric, gained: &Symmetric, factor: &Rational) -> Vec<(usize, Row<Linear<Rational>>)> {
+    let row = |i: usize| {
+        let places =
+            constant.row(i).keys().chain(gained.row(i).keys().filter(|j| constant.get(i, **j).is_zero()));
+        let entry = |&j: &usize| (j, [constant.get(i, j) * factor, gained.get(i, j) * factor]);
+        places.map(entry).collect::<Vec<_>>()
+    };
+    (0..constant.size()).map(|i| (i, row(i))).filter(|(_, row)| !row.is_empty()).collect()
+}
+
+impl Mass {
+    fn between(lo: Rational, hi: Rational) -> Mass {
+        let gained = &hi - &lo;
+        let denominator = lo.denom().lcm(gained.denom());
+        let whole = |x: &Rational| (x * Rational::from_integer(denominator.clone())).to_integer();
+        let (a, b) = (whole(&lo), whole(&gained));
+        let common = a.gcd(&b);
+        Mass { c: Rational::new(common.clone(), denominator), line: [a / &common, b / &common] }
+    }
+}
+
+struct Rows {
+    field: PrimeField,
+    x: Vec<Vec<u64>>,
+    p: Vec<Vec<u64>>,
+}
+
+impl State<u64> for Rows {
+    fn drift(&mut self, program: &Program<u64>, island: usize, ticks: u64) {
+        let ticks = self.field.of(ticks);
+        for &i in &program.islands[island] {
+            for (j, a) in &program.inverse_mass[i] {
+                add(&self.field, &mut self.x[i], self.field.mul(ticks, *a), &self.p[*j]);
+            }
+        }
+    }
+
+    fn kick(&mut self, i: usize, row: &Row<u64>, weight: Weight) {
+        let half = self.field.sub(0, self.field.invert(self.field.of(2)));
+        let weight = if weight == Weight::Full { self.field.sub(0, self.field.of(1)) } else { half };
+        for (j, a) in row {
+            add(&self.field, &mut self.p[i], self.field.mul(weight, *a), &self.x[*j]);
+        }
+    }
+}
+
+fn add(field: &PrimeField, row: &mut [u64], factor: u64, other: &[u64]) {
+    row.iter_mut().zip(other).for_each(|(x, &y)| *x = field.add(*x, field.mul(factor, y)));
+}

@@ -1,0 +1,59 @@
+//! Maps of a system: its verdict over two parameters.
+
+use crate::parallel::try_map;
+
+use crate::error::Result;
+use crate::number::Rational;
+use crate::system::spectrum::rate::middle;
+use crate::system::verdict::analysis::{Analysis, name};
+use crate::verdict::Kind;
+
+/// One point of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The two parameters.
+    pub at: (Rational, Rational),
+    /// `None`: not decided.
+    pub kind: Option<Kind>,
+    /// An enclosure of the largest growth rate, per unit time; (0, 0) if nothing grows exponentially; `None`: not bounded.
+    pub growth_rate: Option<(f64, f64)>,
+}
+
+impl Point {
+    /// The name of the kind in documents.
+    pub fn kind_name(&self) -> &'static str {
+        name(self.kind)
+    }
+
+    /// The middle of that enclosure, 0 where there is none.
+    pub fn rounded_rate(&self) -> f64 {
+        self.growth_rate.map_or(0.0, middle)
+    }
+}
+
+/// Points that are handed to all threads at once.
+const AHEAD: usize = 512;
+
+/// The verdicts `decide(x, y)` for all pairs of parameters, row by row of y; in parallel, in order. `see` is told how
+/// many more are done, now and then.
+///
+/// # Errors
+/// The first error of `decide`.
+pub fn scan(
+    xs: &[Rational],
+    ys: &[Rational],
+    decide: impl Fn(&Rational, &Rational) -> Result<Analysis> + Sync,
+    mut see: impl FnMut(usize),
+) -> Result<Vec<Point>> {
+    let pairs: Vec<_> = ys.iter().flat_map(|y| xs.iter().map(move |x| (x, y))).collect();
+    let point = |&(x, y): &(&Rational, &Rational)| {
+        let analysis = decide(x, y)?;
+        Ok(Point { at: (x.clone(), y.clone()), kind: analysis.kind, growth_rate: analysis.growth_rate() })
+    };
+    let mut points = Vec::with_capacity(pairs.len());
+    for group in pairs.chunks(AHEAD) {
+        points.extend(try_map(group, point)?);
+        see(group.len());
+    }
+    Ok(points)
+}

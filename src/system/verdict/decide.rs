@@ -1,0 +1,137 @@
+//! A system's verdict, part by part, each by the cheapest means that proves it.
+//!
+//! 1. Connected components and rigid modes are set apart; small components whose potentials commute are split
+//!    along their rational eigenvectors.
+//! 2. A part of one degree of freedom is the scalar problem: two clocks go to the certified ladder of
+//!    [`verdict`](crate::verdict), more of them to doubles, balls and exact signs.
+//! 3. Any other part is tried in doubles with proven discs, multiple eigenvalues in clusters; where these do not tell,
+//!    in exact arithmetic.
+//! 4. Where exact arithmetic exceeds the budget and doubles prove nothing, the kind is not decided.
+//!
+//! The cost for n degrees of freedom: the half period ([`compose`](crate::system::half::compose)) and some twenty products of n x n
+//! matrices for the eigenvalues and their bound; exact arithmetic as its budget error tells.
+
+use crate::error::Result;
+use crate::number::{Laurent, Rational};
+use crate::system::half::compose::{self, connected_parts};
+use crate::system::linear::frame::Frame;
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::System;
+use crate::system::verdict::analysis::Analysis;
+use crate::system::verdict::large;
+use crate::system::verdict::limits::{Limits, Route};
+use crate::system::verdict::piece::{Piece, pieces, unit};
+use crate::verdict::Kind;
+
+/// The verdict on a system.
+///
+/// # Errors
+/// A budget error of the scalar kernels. (A large part that only exact arithmetic could decide, beyond the
+/// budget, is no error but not decided, with a warning.)
+pub fn decide_system(system: &System, limits: &Limits) -> Result<Analysis> {
+    decide_by(Route::Cheapest, system, limits)
+}
+
+/// The verdict on a system by one route.
+///
+/// # Errors
+/// As [`decide_system`]; by [`Route::Exact`] also where exact arithmetic exceeds the budget.
+pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analysis> {
+    let how = (route, limits);
+    decided((system, System::stiffnesses), system, Ok, how)
+}
+
+/// A system, and its stiffnesses that an invariant subspace is to be invariant under.
+pub(in crate::system) type Structure<'a> = (&'a System, fn(&System) -> Vec<&Symmetric>);
+
+/// The pieces of each connected part, with the degrees of freedom of that part, and the rigid modes.
+fn apart((system, stiffnesses): Structure) -> (Vec<(Vec<usize>, Piece)>, Vec<Vec<Rational>>) {
+    let (mut all, mut rigid_modes) = (Vec::new(), Vec::new());
+    for dofs in connected_parts(system) {
+        let Some(component) = system.component(&dofs) else {
+            rigid_modes.extend(dofs.iter().map(|&i| unit(system.size(), i)));
+            continue;
+        };
+        let frame = Frame::new(&component);
+        let place = |v: &Vec<Rational>| {
+            let mut x = vec![Rational::default(); system.size()];
+            dofs.iter().zip(v).for_each(|(&i, value)| x[i] = value.clone());
+            x
+        };
+        rigid_modes.extend(frame.rigid.iter().map(|(_, v)| place(v)));
+        all.extend(pieces(component, frame, stiffnesses).into_iter().map(|piece| (dofs.clone(), piece)));
+    }
+    (all, rigid_modes)
+}
+
+/// The verdict on a system whose parts are those of `structure`; `prepared` makes such a part one of the system.
+///
+/// # Errors
+/// As [`decide_by`]; as `prepared`.
+pub(in crate::system) fn decided(
+    structure: Structure,
+    system: &System,
+    prepared: impl Fn(Piece) -> Result<Piece>,
+    how: (Route, &Limits),
+) -> Result<Analysis> {
+    let mut warnings = Vec::new();
+    if !system.is_total_semidefinite() {
+        warnings.push(
+            "the total stiffness is indefinite: the system itself is unstable, whatever the steps".into(),
+        );
+    }
+    let (all, rigid_modes) = apart(structure);
+    let part = |(dofs, piece): (Vec<usize>, Piece)| {
+        prepared(piece)?.decide(system.size(), &dofs, how, &mut warnings)
+    };
+    let parts = all.into_iter().map(part).collect::<Result<Vec<_>>>()?;
+    let kind = severest(parts.iter().map(|part| part.kind));
+    let period = Laurent::from_rational(system.period());
+    let (size, clocks) = (system.size(), system.clocks().len());
+    Ok(Analysis { size, clocks, period, kind, rigid_modes, parts, warnings, measured: None })
+}
+
+/// The kind by exact arithmetic alone, over characteristic polynomials: the severest of the parts', each over its own period.
+///
+/// # Errors
+/// A budget error, before the work on the part that exceeds it.
+pub fn exact_kind(system: &System, limits: &Limits) -> Result<Kind> {
+    exact_kind_of((system, System::stiffnesses), Ok, limits)
+}
+
+/// The same where parts are those of `structure`, as for [`decided`].
+pub(in crate::system) fn exact_kind_of(
+    structure: Structure,
+    prepared: impl Fn(Piece) -> Result<Piece>,
+    limits: &Limits,
+) -> Result<Kind> {
+    let pieces = apart(structure).0.into_iter();
+    let kinds = pieces.map(|(_, own)| Ok(prepared(own)?.exact(limits)?.0)).collect::<Result<Vec<_>>>()?;
+    Ok(kinds.into_iter().max_by_key(severity).unwrap_or(Kind::Elliptic))
+}
+
+/// The products of doubles that a verdict costs, roughly, at the pace of eigenvalue iterations: the half period, and all
+/// eigenvalues with their proof; of large systems some products of matrices, which are twenty times as fast.
+pub fn verdict_cost(system: &System) -> u64 {
+    let n = system.size() as u64;
+    let per_cube = if system.size() < large::LARGE { 60 } else { 2 };
+    compose::cost(system).saturating_add(n.saturating_pow(3).saturating_mul(per_cube))
+}
+
+/// That of a system of these parts: exponential growth is one whatever the others do.
+fn severest(kinds: impl Iterator<Item = Option<Kind>>) -> Option<Kind> {
+    // One that is not decided may grow.
+    let place = |kind: &Option<Kind>| {
+        kind.as_ref().map_or(2 * severity(&Kind::Hyperbolic) - 1, |kind| 2 * severity(kind))
+    };
+    kinds.max_by_key(place).unwrap_or(Some(Kind::Elliptic))
+}
+
+pub(in crate::system) fn severity(kind: &Kind) -> u8 {
+    match kind {
+        Kind::Elliptic => 0,
+        Kind::Coexistence => 1,
+        Kind::Parabolic => 2,
+        Kind::Hyperbolic => 3,
+    }
+}

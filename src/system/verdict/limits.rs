@@ -1,0 +1,60 @@
+//! By which means an answer is sought, and what it may cost.
+
+use crate::error::{Error, Result};
+use crate::verdict;
+
+/// Which means are tried for parts of several degrees of freedom.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Route {
+    /// The cheapest that proves the verdict; where none does within the budget, an estimate.
+    Cheapest,
+    /// Exact arithmetic, or an error that tells its cost.
+    Exact,
+}
+
+/// The most work that one verdict may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Products of doubles or of 64-bit words.
+    pub products: u64,
+    /// Of these, for the digits of a growth rate that doubles do not give.
+    pub refining: u64,
+}
+
+/// From so many degrees of freedom on pieces of work with their matrices are worth threads of their own.
+pub(in crate::system) const SIDE_BY_SIDE: usize = 64;
+
+impl Default for Limits {
+    /// 5·10^10 products: a minute or two at worst; some tenths of a second for the digits of a rate.
+    fn default() -> Self {
+        Limits { products: 50_000_000_000, refining: 1 << 28 }
+    }
+}
+
+impl Limits {
+    /// That work of this cost may begin; `work` is its description.
+    ///
+    /// # Errors
+    /// A budget error with the cost where it exceeds the limit.
+    pub fn allow(&self, cost: u64, work: impl FnOnce() -> String) -> Result<()> {
+        if cost <= self.products {
+            return Ok(());
+        }
+        let (cost_told, most) = (cost as f64, self.products as f64);
+        let work = format!(
+            "{} would cost about {cost_told:.1e} products of machine words, the limit is {most:.1e}",
+            work()
+        );
+        Err(Error::budget(work, cost).or("choose steps with simpler ratios"))
+    }
+
+    /// The same limit in kicks of the scalar ladder, whose refine tier spends some thousand products on each.
+    pub(in crate::system) fn of_ladder(&self) -> verdict::Limits {
+        verdict::Limits { kicks: self.products / 1000 }
+    }
+}
+
+/// "1 degree of freedom", "2 degrees of freedom".
+pub(in crate::system) fn degrees_of_freedom(n: usize) -> String {
+    format!("{n} degree{} of freedom", if n == 1 { "" } else { "s" })
+}

@@ -1,0 +1,169 @@
+//! Invariant parts of a component, and the verdict on each.
+
+use crate::error::{Kind as ErrorKind, Result};
+use crate::number::{Laurent, Rational};
+use crate::parallel::both;
+use crate::system::exact::decide::{MuCount, decide_by_signs, decide_exact};
+use crate::system::half::compose::check_length;
+use crate::system::half::float;
+use crate::system::linear::frame::Frame;
+use crate::system::linear::sparse::{Symmetric, dot};
+use crate::system::linear::split::{Subspace, invariant_subspaces, may_split};
+use crate::system::linear::system::System;
+use crate::system::pi::PiSystem;
+use crate::system::signs;
+use crate::system::single::decide as single;
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::verdict::analysis::{Evidence, Part};
+use crate::system::verdict::large;
+use crate::system::verdict::limits::{Limits, Route, SIDE_BY_SIDE, degrees_of_freedom};
+use crate::verdict::Kind;
+
+/// Components of at most this size are brought to rational normal forms before anything else.
+const SMALL: usize = 16;
+
+/// The unit vector e_i.
+pub(in crate::system) fn unit(n: usize, i: usize) -> Vec<Rational> {
+    (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()
+}
+
+/// A part of a component on its way to a verdict.
+pub(in crate::system) struct Piece {
+    pub(in crate::system) system: System,
+    pub(in crate::system) frame: Frame,
+    /// x = Z y in the component's coordinates; `None` for the component itself.
+    pub(in crate::system) columns: Option<Subspace>,
+    /// The true stiffnesses, where they involve π: `system` then is very near to them.
+    pub(in crate::system) coefficients: Option<PiSystem>,
+}
+
+/// The component itself, or what it splits into: subspaces that are invariant under M⁻¹ times each of its `stiffnesses`.
+pub(in crate::system) fn pieces(
+    component: System,
+    frame: Frame,
+    stiffnesses: fn(&System) -> Vec<&Symmetric>,
+) -> Vec<Piece> {
+    let is_large = component.size() > SMALL;
+    if is_large || frame.rigid.is_empty() && !may_split(&component, &stiffnesses(&component)) {
+        return vec![Piece { system: component, frame, columns: None, coefficients: None }];
+    }
+    let complement = frame.complement(&component);
+    if complement.is_empty() {
+        return Vec::new();
+    }
+    let vibrating = component.restricted(&complement);
+    let whole = || vec![(0..vibrating.size()).map(|i| unit(vibrating.size(), i)).collect()];
+    let subspaces = invariant_subspaces(&vibrating, &stiffnesses(&vibrating)).unwrap_or_else(whole);
+    let piece = |space: Subspace| {
+        let system = vibrating.restricted(&space);
+        let frame = Frame::whole(system.size());
+        let lifted = |y: &Vec<Rational>| {
+            let rows =
+                (0..component.size()).map(|i| complement.iter().map(|z| z[i].clone()).collect::<Vec<_>>());
+            rows.map(|row| dot(&row, y)).collect()
+        };
+        let columns = Some(space.iter().map(lifted).collect());
+        Piece { system, frame, columns, coefficients: None }
+    };
+    subspaces.into_iter().map(piece).collect()
+}
+
+impl Piece {
+    /// The verdict on the piece of a component of `n` that has the degrees of freedom `dofs`.
+    pub(in crate::system) fn decide(
+        &self,
+        n: usize,
+        dofs: &[usize],
+        how: (Route, &Limits),
+        warnings: &mut Vec<String>,
+    ) -> Result<Part> {
+        let mut part = if self.system.size() == 1 && self.frame.rigid.is_empty() {
+            match &self.coefficients {
+                None => single::decide(&self.system, how.1)?,
+                Some(own) => {
+                    let period = Laurent::from_rational(self.system.period());
+                    let clocks = own.as_many_clocks();
+                    single::decide_with_pi(&clocks, &self.system, period, how.1)?
+                }
+            }
+        } else {
+            self.decide_many(how, warnings)?
+        };
+        let taken =
+            |i: &usize| self.columns.as_ref().is_none_or(|z| z.iter().any(|z| z[*i] != Rational::default()));
+        part.dofs = (0..dofs.len()).filter(taken).map(|i| dofs[i]).collect();
+        for instability in &mut part.instabilities {
+            self.place_shape(instability, n, dofs);
+        }
+        Ok(part)
+    }
+
+    fn decide_many(&self, how: (Route, &Limits), warnings: &mut Vec<String>) -> Result<Part> {
+        // What may be refused is asked for before anything else is computed.
+        let asked = (how.0 == Route::Exact).then(|| self.exact(how.1)).transpose()?;
+        check_length(&self.system, how.1)?;
+        if let Some(part) = asked.is_none().then(|| large::decide(&self.system, &self.frame)).flatten() {
+            warnings.push(large::NOTE.into());
+            return Ok(part);
+        }
+        let blocks = float::half_period(&self.system, &self.frame);
+        let signed = || asked.is_none().then(|| signs::proven(&blocks)).flatten();
+        let (signed, spectrum) = both(blocks.m >= SIDE_BY_SIDE, signed, || Spectrum::new(&blocks));
+        let certified = || Some((spectrum.as_ref()?.certified(&blocks)?, Evidence::Discs));
+        let (kind, evidence, roots) = match asked {
+            Some((kind, roots)) => (Some(kind), Evidence::Exact, Some(roots)),
+            None => match signed.map(|kind| (kind, Evidence::Signs)).or_else(certified) {
+                Some((kind, evidence)) => (Some(kind), evidence, None),
+                None => self.exact_or_not(how.1, spectrum.as_ref(), warnings)?,
+            },
+        };
+        let multipliers = match &spectrum {
+            Some(spectrum) => self.explain(spectrum, &blocks, kind, how.1),
+            None => Default::default(),
+        };
+        let period = Laurent::from_rational(self.system.period());
+        let part = Part::new(self.frame.kept.len(), period, (kind, evidence), multipliers);
+        Ok(Part { roots, ..part })
+    }
+
+    /// The kind in exact arithmetic, and where the μ lie.
+    pub(in crate::system) fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
+        match &self.coefficients {
+            None => decide_exact(&self.system, limits).map(|exact| (exact.kind, exact.roots)),
+            Some(own) => own.decide_exact(&self.frame, limits),
+        }
+    }
+
+    /// The kind, where one of the half period's forms is definite, in exact arithmetic.
+    fn exact_by_signs(&self, limits: &Limits) -> Result<Option<Kind>> {
+        match &self.coefficients {
+            None => decide_by_signs(&self.system, &self.frame, limits),
+            Some(own) => own.decide_by_signs(&self.frame, limits),
+        }
+    }
+
+    fn exact_or_not(
+        &self,
+        limits: &Limits,
+        spectrum: Option<&Spectrum>,
+        warnings: &mut Vec<String>,
+    ) -> Result<(Option<Kind>, Evidence, Option<MuCount>)> {
+        if let Ok(Some(kind)) = self.exact_by_signs(limits) {
+            return Ok((Some(kind), Evidence::Exact, None));
+        }
+        let error = match (self.exact(limits), spectrum) {
+            (Ok((kind, roots)), _) => return Ok((Some(kind), Evidence::Exact, Some(roots))),
+            (Err(error), Some(_)) if error.kind() == ErrorKind::Budget => error,
+            (Err(error), _) => return Err(error),
+        };
+        warnings.push(format!(
+            "doubles do not decide {} (eigenvalues too close together or to the edge of stability); {error}",
+            degrees_of_freedom(self.frame.kept.len())
+        ));
+        Ok((None, Evidence::Estimate, None))
+    }
+}
+
+/// Where nothing is proven: eigenvalues of a matrix of norm 1 with a well-conditioned basis are good to some
+/// 10^-12; a double eigenvalue splits by the square root of that.
+pub(in crate::system) const ROUGH: f64 = 1e-6;
