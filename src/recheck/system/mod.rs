@@ -83,11 +83,12 @@ fn outcome(context: &Context, route: &'static str, other: Checked) -> Result<Out
 const ALONE: &str = "none: every value is computed again, by the same route";
 
 impl Input {
-    fn scene(&self, context: &Context) -> Result<SystemScene> {
+    /// The system, and what its answer may cost: a kick of the scalar ladder is some hundred products.
+    fn asked(&self, context: &Context) -> Result<(SystemScene, Limits)> {
         let scene = SystemScene::from_json_in(&context.options.folder, self.system.clone())?;
         let accuracy = self.accuracy.as_ref().map(|own| to_f64(own));
         let friction = positive("input.friction", self.friction.as_ref())?;
-        scene.asked(accuracy, self.keep_rigid.is_some(), friction)
+        Ok((scene.asked(accuracy, self.keep_rigid.is_some(), friction)?, limits(context)))
     }
 
     /// The title is that of the system.
@@ -100,7 +101,6 @@ impl Input {
     }
 }
 
-/// A kick of the scalar ladder is some hundred products.
 fn limits(context: &Context) -> Limits {
     let products = context.limits().kicks.saturating_mul(100).max(Limits::default().products);
     Limits { products, ..Limits::default() }
@@ -116,8 +116,8 @@ impl Recheck for Verdict {
     type Found = (SystemScene, Analysis);
 
     fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
-        let (input, limits) = (&self.input, limits(context));
-        let scene = input.scene(context)?;
+        let input = &self.input;
+        let (scene, limits) = input.asked(context)?;
         let analysis = scene.model().decide(input.route(), &limits)?;
         let friction = scene.friction(&limits)?;
         let orbit = match scene.own_orbit(&limits) {
@@ -171,10 +171,10 @@ impl Recheck for Points {
     type Found = (Scan, SystemMap);
 
     fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
-        let (input, limits) = (&self.input, limits(context));
+        let input = &self.input;
         let x: Axis = input.scan_x.as_ref().ok_or_else(|| missing("input.scan_x"))?.parse()?;
         let y = input.scan_y.as_ref().map(|own| own.parse()).transpose()?;
-        let scene = input.scene(context)?;
+        let (scene, limits) = input.asked(context)?;
         let time_unit = scene.time_unit().map(String::from);
         let scan_of = Scan::new(scene.clone(), x, y)?;
         let (xs, ys) = (scan_of.x.values(), scan_of.ys());
@@ -219,8 +219,8 @@ impl Recheck for Intervals {
         let (span, width) =
             input.intervals.as_deref().zip(input.width.as_ref()).ok_or_else(|| missing("input"))?;
         let (span, width) = (span.parse()?, to_f64(width));
-        let scene = input.scene(context)?;
-        let found = scene.intervals(&span, width, &limits(context))?;
+        let (scene, limits) = input.asked(context)?;
+        let found = scene.intervals(&span, width, &limits)?;
         Ok((input.echo(report::intervals(&found), &scene).value(), ()))
     }
 
@@ -246,9 +246,9 @@ impl Recheck for Simulated {
             Some("staggered") => Ends::Staggered,
             _ => return Err(missing("input.form")),
         };
-        let scene = input.scene(context)?;
+        let (scene, limits) = input.asked(context)?;
         let request = RunRequest { periods, displacement, ends };
-        let run: Run = scene.run(&request, &limits(context))?;
+        let run = scene.run(&request, &limits)?;
         let again = input.echo(crate::report::simulate::document(&run), &scene);
         Ok((again.value(), (scene, request, run)))
     }

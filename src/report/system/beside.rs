@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::nearest;
-use super::words::{rate, stable};
+use super::words::rate;
 use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
@@ -40,7 +40,7 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
     let orbit = own.orbit.map(|own| {
         let about = &own.analysis;
         json!({
-            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": stable(about),
+            "displacement": own.displacement, "start": own.start, "kind": about.kind_name(), "stable": about.holds().is_stable(),
             "proven": about.is_proof(), "growth_rate": about.growth_rate().map(enclosure),
         })
     });

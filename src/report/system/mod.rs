@@ -28,7 +28,7 @@ pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
-use words::{rate, stable};
+use words::rate;
 
 const CAPTION: &str =
     "Multipliers $\\lambda$ over one synchronization period, $\\lambda + 1/\\lambda = 2 + 4\\mu$";
@@ -44,7 +44,7 @@ pub fn document(analysis: &Analysis, beside: &Beside) -> Document {
         .entry("clocks", analysis.clocks)
         .entry("period", analysis.period.to_string())
         .entry("kind", analysis.kind_name())
-        .entry("stable", stable(analysis))
+        .entry("stable", analysis.holds().is_stable())
         .entry("proven", analysis.is_proof())
         .entry("growth_rate", analysis.growth_rate().map(enclosure))
         .entry("rigid_modes", analysis.rigid_modes.len())

@@ -2,12 +2,6 @@
 
 use crate::number::rational::from_f64_exact;
 use crate::report::decimal;
-use crate::system::Analysis;
-
-/// Whether it is stable, where that is decided.
-pub(super) fn stable(analysis: &Analysis) -> Option<bool> {
-    analysis.is_proof().then(|| analysis.is_stable())
-}
 
 /// Digits of a growth rate in words.
 const DIGITS: u32 = 8;

@@ -15,7 +15,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `scalar` | one oscillator: exact for a rational c, enclosed for a rate γ |
+//! | `scalar` | one oscillator, enclosed for a rate γ |
 //! | `masking` | the smallest friction that masks a resonance of one oscillator, from the polynomial Tr Q(c) |
 //! | `matrices` | many degrees of freedom, in doubles with a proven bound (two levels of measured stiffnesses: [`Kernel::friction`](crate::system::levels::Kernel::friction)) |
 //!
@@ -41,4 +41,4 @@ pub use damping::Damping;
 pub use masking::{Masking, masking};
 pub use matrices::{Friction, Mask, Masked, damped_oscillator, damped_pair, damped_system};
 pub(in crate::system) use matrices::{Radius, damping};
-pub use scalar::{Damped, damped, damped_exactly};
+pub use scalar::{Damped, damped};

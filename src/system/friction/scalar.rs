@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::damping::Damping;
 use crate::error::{Error, Result};
-use crate::number::{Ball, ExactSign, Rational, Real, Ring, Sign};
+use crate::number::{Ball, Real, Sign};
 use crate::schedule::{KickDrift, Kicks};
 use crate::system::ManyClocks;
 
@@ -114,59 +114,5 @@ impl KickDrift<Ball> for Orbit<'_> {
         for (x, v) in self.x.iter().zip(&mut self.v) {
             *v = v.sub(&strength.mul(x, self.bits), self.bits);
         }
-    }
-}
-
-/// Where the spectral radius lies if v → c v over each tick, 0 ≤ c < 1, in exact arithmetic.
-///
-/// # Errors
-/// A factor outside \[0, 1).
-pub fn damped_exactly<S: ExactSign>(clocks: &ManyClocks<S>, factor: &Rational) -> Result<Damping> {
-    let one = Rational::from_integer(1.into());
-    if *factor < Rational::default() || *factor >= one {
-        return Err(Error::input("friction", factor, "the factor of the velocity a tick is in [0, 1)"));
-    }
-    let half = S::from_rational(&Rational::new(1.into(), 2.into()));
-    let kicks = Kicks::of_clocks(clocks.strengths().to_vec(), |k| [k.clone(), k * half.clone()]);
-    let (zero, unit) = (S::zero(), S::one());
-    let mut orbit = Exactly {
-        x: [unit.clone(), zero.clone()],
-        v: [zero, unit.clone()],
-        tick: clocks.schedule().tick(),
-        factor,
-    };
-    kicks.lead(clocks.schedule().staggered_period(), &mut orbit);
-    let trace = orbit.x[0].clone() + orbit.v[1].clone();
-    let power = |ticks: u64| S::from_rational(&factor.pow(i32::try_from(ticks).unwrap_or(i32::MAX)));
-    let sum = unit + power(clocks.schedule().period());
-    Ok(match ((sum.clone() + -trace.clone()).sign(), (sum + trace).sign()) {
-        (Sign::Negative, _) | (_, Sign::Negative) => Damping::Growing,
-        (Sign::Positive, Sign::Positive) => Damping::Damped,
-        _ => Damping::Marginal,
-    })
-}
-
-/// The rows of the propagator over a ring.
-struct Exactly<'a, S> {
-    x: [S; 2],
-    v: [S; 2],
-    tick: &'a Rational,
-    factor: &'a Rational,
-}
-
-impl<S: Ring> KickDrift<S> for Exactly<'_, S> {
-    fn drift(&mut self, ticks: u64) {
-        let c = self.factor.pow(i32::try_from(ticks).unwrap_or(i32::MAX));
-        let one = Rational::from_integer(1.into());
-        let mean = self.tick * Rational::new(ticks.into(), 2.into()) * (one + &c);
-        let (c, mean) = (S::from_rational(&c), S::from_rational(&mean));
-        for (x, v) in self.x.iter_mut().zip(&mut self.v) {
-            x.add_product(&mean, v);
-            *v = S::product(&c, v);
-        }
-    }
-
-    fn kick(&mut self, strength: &S) {
-        self.x.iter().zip(&mut self.v).for_each(|(x, v)| v.sub_product(strength, x));
     }
 }

@@ -17,7 +17,6 @@ use crate::system::half::norm;
 use crate::system::signs::inertia::backward_error;
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::verdict::measured::Holds;
-use crate::verdict::Kind;
 
 /// Twists of an index: modes of both of Krein's signs alternate more often in no molecule seen.
 const MOST_TWISTS: usize = 64;
@@ -98,11 +97,7 @@ impl<'a> Cells<'a> {
                 return Holds::Stable;
             }
         }
-        match spectrum.and_then(|(own, off)| own.certified_around(&off)) {
-            Some(Kind::Hyperbolic) => Holds::Unstable,
-            Some(Kind::Elliptic) => Holds::Stable,
-            _ => Holds::NotTold,
-        }
+        spectrum.and_then(|(own, off)| own.certified_around(&off)).into()
     }
 
     fn counts(&self, cell: &Cell) -> Option<Counts> {

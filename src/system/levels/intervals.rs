@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::system::spectrum::rate::exponent;
 use crate::system::vary::stretches::{Stretch, cover, merged};
 use crate::system::verdict::measured::Holds;
-use crate::verdict::Kind;
 
 /// The largest relative change of the stiffnesses by which one verdict is carried on.
 const WIDEST: f64 = 0.05;
@@ -76,10 +75,6 @@ impl Kernel {
         if self.is_stable_by_index(outer, epsilon) {
             return Holds::Stable;
         }
-        match self.beyond(outer, epsilon) {
-            Some(Kind::Elliptic) => Holds::Stable,
-            Some(Kind::Hyperbolic) => Holds::Unstable,
-            _ => Holds::NotTold,
-        }
+        self.beyond(outer, epsilon).into()
     }
 }

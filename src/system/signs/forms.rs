@@ -62,7 +62,7 @@ pub(in crate::system) fn proven(blocks: &FloatBlocks) -> Option<Kind> {
 }
 
 /// The forms of a half period in doubles, within the bound on its error.
-pub(in crate::system) struct Forms<'a> {
+struct Forms<'a> {
     a: Mat<f64>,
     b: Mat<f64>,
     c: Mat<f64>,

@@ -39,4 +39,4 @@ mod forms;
 pub(super) mod inertia;
 
 pub(super) use elimination::{inertia as exact_inertia, rank as exact_rank};
-pub(super) use forms::{Forms, Inertias, judge, proven};
+pub(super) use forms::{Inertias, judge, proven};

@@ -20,13 +20,12 @@ use crate::system::half::period::{Drifts, Stiff, follow};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
+use crate::system::signs;
 use crate::system::signs::action::{self, is_total_definite};
 use crate::system::signs::envelope::Sign;
-use crate::system::signs::{self, Forms};
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::measured::Holds;
-use crate::verdict::Kind;
 
 /// The stretches of one number of a system.
 #[derive(Clone, Debug, PartialEq)]
@@ -219,13 +218,8 @@ impl Cell<'_> {
         let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &Rational::zero(), off };
         let blocks =
             follow(&drifts, reduced.schedule().half_period(), |_, clock| &kicks[clock]).blocks(scales);
-        let signed = Forms::new(&blocks).and_then(|mut forms| signs::judge(&mut forms));
-        let told = signed.or_else(|| Spectrum::new(&blocks)?.certified(&blocks));
-        Ok(match told {
-            Some(Kind::Elliptic) => Holds::Stable,
-            Some(Kind::Hyperbolic) => Holds::Unstable,
-            _ => Holds::NotTold,
-        })
+        let proven = signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks));
+        Ok(proven.into())
     }
 
     /// The number of clocks that kick anywhere on the segment.

@@ -185,12 +185,12 @@ impl Analysis {
 
     /// Whether powers of the propagator are proven to stay bounded, rigid modes apart.
     pub fn is_stable(&self) -> bool {
-        matches!(self.kind, Some(Kind::Elliptic | Kind::Coexistence))
+        self.holds() == Holds::Stable
     }
 
     /// Whether they are proven not to.
     pub fn is_unstable(&self) -> bool {
-        self.kind.is_some() && !self.is_stable()
+        self.holds() == Holds::Unstable
     }
 
     /// Whether it is decided: nothing is told that is not proven.
@@ -200,11 +200,7 @@ impl Analysis {
 
     /// What is proven.
     pub fn holds(&self) -> Holds {
-        match (self.is_stable(), self.is_unstable()) {
-            (true, _) => Holds::Stable,
-            (_, true) => Holds::Unstable,
-            _ => Holds::NotTold,
-        }
+        self.kind.into()
     }
 
     /// The name of the kind in documents.

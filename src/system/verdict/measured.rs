@@ -1,5 +1,7 @@
 //! How far a verdict on measured stiffnesses stands.
 
+use crate::verdict::Kind;
+
 /// Rigid motions that were projected out of every potential.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Removed {
@@ -24,7 +26,22 @@ pub enum Holds {
     NotTold,
 }
 
+impl From<Option<Kind>> for Holds {
+    fn from(proven: Option<Kind>) -> Holds {
+        match proven {
+            Some(Kind::Elliptic | Kind::Coexistence) => Holds::Stable,
+            Some(Kind::Parabolic | Kind::Hyperbolic) => Holds::Unstable,
+            None => Holds::NotTold,
+        }
+    }
+}
+
 impl Holds {
+    /// Whether it is stable, where that is decided.
+    pub fn is_stable(self) -> Option<bool> {
+        (self != Holds::NotTold).then_some(self == Holds::Stable)
+    }
+
     /// The name in documents.
     pub fn name(self) -> &'static str {
         match self {
