@@ -187,7 +187,7 @@ impl Claim {
     ///
     /// # Errors
     /// An input that makes no sense, and a recheck that costs more than the options allow; what does not hold is no error
-    /// but a [`Failure`](super::Failure).
+    /// but a [`Failure`].
     pub fn recheck(&self, options: &Options, see: Option<See>) -> Result<Outcome> {
         self.rows.recheck(&self.document, How::Both, &Context { options, see })
     }

@@ -252,7 +252,7 @@ impl SystemScene {
         nonlinear.own_orbit(&masses, limits)
     }
 
-    /// Whether the system of [`SystemScene::system`] is all there is: no bond but harmonic ones.
+    /// Whether [`SystemScene::model`] is all there is: no bond but harmonic ones.
     pub fn is_linear(&self) -> bool {
         self.bonds.as_ref().is_none_or(|n| n.is_harmonic)
     }

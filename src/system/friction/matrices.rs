@@ -98,16 +98,25 @@ pub fn damped_system(system: &System, rate: &Rational, limits: &Limits) -> Resul
         limits
             .allow(cost, || format!("the eigenvalues of a period of {}", degrees_of_freedom(part.size())))?;
     }
-    let all = ticking.iter().map(|part| at(part, rate)).collect::<Result<Vec<_>>>()?;
-    let masks = parts.iter().zip(&ticking).map(|(part, ticking)| masked(part, ticking, limits));
-    let masks = masks.collect::<Result<Vec<_>>>()?;
-    let growth = all.iter().map(|(_, growth)| *growth).collect::<Option<Vec<_>>>();
+    let all = parts.iter().zip(&ticking).map(|(part, ticking)| damped_part(part, ticking, rate, limits));
+    let all = all.collect::<Result<Vec<_>>>()?;
+    let growth = all.iter().map(|own| own.growth).collect::<Option<Vec<_>>>();
     Ok(Friction {
         rate: rate.clone(),
-        damping: worst(all.iter().map(|(damping, _)| *damping)),
+        damping: worst(all.iter().map(|own| own.damping)),
         growth: growth.and_then(|all| all.into_iter().reduce(|a, b| (a.0.max(b.0), a.1.max(b.1)))),
-        masking: masks.into_iter().fold(Mask::NotNeeded, Mask::and),
+        masking: all.iter().map(|own| own.masking).fold(Mask::NotNeeded, Mask::and),
     })
+}
+
+/// The same for one part, which ticks with all clocks of the whole.
+fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits) -> Result<Friction> {
+    if let Some(clocks) = ticking.as_many_clocks() {
+        let unit = Laurent::from_rational(ticking.clocks()[0].step.clone());
+        return damped_oscillator(&clocks, &unit, rate);
+    }
+    let (damping, growth) = at(ticking, rate);
+    Ok(Friction { rate: rate.clone(), damping, growth, masking: masked(part, ticking, limits)? })
 }
 
 /// The same for a pair of steps.
@@ -180,12 +189,7 @@ fn parts(system: &System) -> Vec<System> {
 type At = (Option<Damping>, Option<(f64, f64)>);
 
 /// Where ρ lies, and ln ρ/T.
-fn at(part: &System, rate: &Rational) -> Result<At> {
-    if let Some(clocks) = part.as_many_clocks() {
-        let unit = Laurent::from_rational(part.clocks()[0].step.clone());
-        let own = damped_oscillator(&clocks, &unit, rate)?;
-        return Ok((own.damping, own.growth));
-    }
+fn at(part: &System, rate: &Rational) -> At {
     let frame = Frame::whole(part.size());
     let (program, _) = scaled_program(part, &frame);
     // Entries within one rounding of the true ones are in the bound of [`follow`].
@@ -193,9 +197,9 @@ fn at(part: &System, rate: &Rational) -> Result<At> {
         program.kicks.iter().map(|kick| Stiff { rows: kick.rows.clone(), off: 0.0 }).collect();
     let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &(rate * part.tick()), off: 0.0 };
     let q = follow(&drifts, part.schedule().symmetric_period(), |_, clock| &kicks[clock]);
-    let Some(error) = q.error else { return Ok((None, None)) };
+    let Some(error) = q.error else { return (None, None) };
     let radius = Radius::of(&q.matrix(), error);
-    Ok((damping(&q.matrix(), error, radius), radius.map(|own| own.growth(to_f64(&part.period())))))
+    (damping(&q.matrix(), error, radius), radius.map(|own| own.growth(to_f64(&part.period()))))
 }
 
 /// Where the spectral radius of all matrices within `error` (2-norm) of q lies: by its enclosure, or, near double eigenvalues where that is
@@ -264,35 +268,24 @@ impl Radius {
 
 /// The friction that masks what grows in a part, which ticks with all clocks of the whole.
 fn masked(part: &System, ticking: &System, limits: &Limits) -> Result<Mask> {
-    if let Some(clocks) = ticking.as_many_clocks() {
-        let unit = Laurent::from_rational(ticking.clocks()[0].step.clone());
-        return Ok(damped_oscillator(&clocks, &unit, &Rational::from_integer(1.into()))?.masking);
-    }
-    let side =
-        |rate: f64| -> Result<Option<Damping>> { Ok(at(ticking, &from_f64_exact(rate).expect("finite"))?.0) };
+    let side = |rate: f64| at(ticking, &from_f64_exact(rate).expect("finite")).0;
     // A friction that is next to none: does anything grow?
     let period = to_f64(&ticking.period());
     let mut lo = 1e-6 / period;
-    match side(lo)? {
+    match side(lo) {
         Some(Damping::Growing) => {}
         None if decide_by(Route::Cheapest, part, limits)?.holds() != Holds::Stable => {
             return Ok(Mask::NotTold);
         }
         _ => return Ok(Mask::NotNeeded),
     }
-    let mut hi = 1.0 / period;
-    for _ in 0..40 {
-        match side(hi)? {
-            Some(Damping::Damped) => break,
-            _ => hi *= 2.0,
-        }
-    }
-    if side(hi)? != Some(Damping::Damped) {
+    let mut all = (0..=40).map(|k| 2f64.powi(k) / period);
+    let Some(mut hi) = all.find(|&rate| side(rate) == Some(Damping::Damped)) else {
         return Ok(Mask::NotTold);
-    }
+    };
     while hi > lo * (1.0 + WIDTH) {
         let middle = if hi > 4.0 * lo { (lo * hi).sqrt() } else { (lo + hi) / 2.0 };
-        match side(middle)? {
+        match side(middle) {
             Some(Damping::Growing) => lo = middle,
             Some(Damping::Damped) => hi = middle,
             // So near to 1 that doubles do not tell: the bracket is as narrow as it gets.
