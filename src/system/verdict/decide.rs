@@ -44,8 +44,11 @@ pub fn decide_by(route: Route, system: &System, limits: &Limits) -> Result<Analy
 /// A system, and its stiffnesses that an invariant subspace is to be invariant under.
 pub(in crate::system) type Structure<'a> = (&'a System, fn(&System) -> Vec<&Symmetric>);
 
-/// The pieces of each connected part, with the degrees of freedom of that part, and the rigid modes.
-fn apart((system, stiffnesses): Structure) -> (Vec<(Vec<usize>, Piece)>, Vec<Vec<Rational>>) {
+/// Pieces, each with the degrees of freedom of the connected part that it is of, and the rigid modes.
+type Apart = (Vec<(Vec<usize>, Piece)>, Vec<Vec<Rational>>);
+
+/// The pieces of all connected parts.
+fn apart((system, stiffnesses): Structure) -> Apart {
     let (mut all, mut rigid_modes) = (Vec::new(), Vec::new());
     for dofs in connected_parts(system) {
         let Some(component) = system.component(&dofs) else {
