@@ -23,8 +23,9 @@ const ROWS_FOR_PEOPLE: u64 = 60;
 /// Computes the tongues and writes them as the flags say.
 ///
 /// # Errors
-/// As [`put`], and an unwritable place.
+/// As [`put`] and [`Question::allow`], and an unwritable place.
 pub fn write(question: &Question, common: &Common, format: Format) -> Result<()> {
+    question.allow(common)?;
     write_with(common.output.as_deref(), |sink| put(question, common, format, sink).map(drop))?;
     common.wrote_output();
     Ok(())

@@ -4,7 +4,7 @@ use indicatif::ProgressBar;
 
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::question::Ratios;
 use crate::report::document::Document;
 use crate::scene::shown_range;
@@ -18,6 +18,9 @@ pub struct Question {
     /// The columns of tables, by the names that CSV has; those that fit the form where none are given.
     pub columns: Option<Vec<String>>,
 }
+
+/// Rows unless a budget says otherwise: some gigabytes of text, minutes of work.
+const MOST_ROWS: u64 = 30_000_000;
 
 impl Progress for ProgressBar {
     fn expect(&self, total: u64) {
@@ -49,6 +52,24 @@ impl Question {
     #[must_use]
     pub fn in_columns(self, columns: Option<Vec<String>>) -> Self {
         Question { columns, ..self }
+    }
+
+    /// That so many rows may be computed and written, where no window and no label says that they are fewer: p + q - 1 of p/q.
+    ///
+    /// # Errors
+    /// A budget error with their number.
+    pub fn allow(&self, common: &Common) -> Result<()> {
+        let asked = &self.asked;
+        if asked.window != Window::default() || asked.selection != Selection::default() {
+            return Ok(());
+        }
+        let rows = asked.ratios.iter().map(|ratio| ratio.kicks() - 1).sum::<u64>();
+        let most = common.budget.unwrap_or(MOST_ROWS);
+        if rows <= most {
+            return Ok(());
+        }
+        let work = format!("the tongues of {} are {rows} rows, the budget is {most}", self.ratios.words());
+        Err(Error::budget(work, rows).or("choose a smaller --max-sum, a window, or --survey"))
     }
 
     /// Hands on the tongues in the order of p + q, p, m.
