@@ -27,6 +27,7 @@ mod polynomial;
 mod proposition;
 mod ratios;
 mod survey;
+mod tongues;
 mod verdict;
 
 pub(crate) use asking::question;
@@ -40,6 +41,7 @@ pub use polynomial::Polynomial;
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
 pub use survey::{Survey, THINNEST};
+pub use tongues::Tongues;
 pub use verdict::Verdict;
 
 use serde_json::{Map, Value};

@@ -7,11 +7,11 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::sample::sample;
-use super::tongues::{Input as Question, Tongue};
+use super::tongues::Tongue;
 use super::written::Ends;
 use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
-use crate::question::{Question as _, Survey};
+use crate::question::{self, Question as _, Survey};
 use crate::resonance::dominant_family;
 use crate::tongue::{Entry, Tongues};
 use crate::verdict::Limits;
@@ -116,5 +116,5 @@ fn exact_signs(ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked {
     let tongues = Tongues::new(ratio, rho)?;
     let below = tongues.below(4.0)?;
     let Some(gap) = below.get(below.len() / 2).filter(|gap| gap.upper.is_some()) else { return Ok(()) };
-    Tongue::bare(ratio, gap).holds(&Question::bare(rho), limits)
+    Tongue::bare(ratio, gap).holds(&question::Tongues { rho: rho.clone(), ..Default::default() }, limits)
 }

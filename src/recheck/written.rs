@@ -7,8 +7,8 @@ use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
-use crate::number::parse::{parse, parse_integer_range, parse_range, parse_ratio, parse_rational};
-use crate::number::{Ball, Laurent, Ratio, Rational, rational};
+use crate::number::parse::{parse, parse_range, parse_rational};
+use crate::number::{Ball, Laurent, Rational, rational};
 use crate::tongue;
 use crate::verdict::{Kind, Tier};
 
@@ -52,8 +52,6 @@ notation! {
     Rational: text => parse_rational("the number", text);
     Laurent: text => parse("the number", text);
     Range: text => parse_range("the range", text);
-    (i64, i64): text => parse_integer_range("the range", text);
-    Ratio: text => lowest(text);
     u64: text => whole(text);
     bool: text => one_of("flag", text, [true], |_| "true");
     Kind: text => one_of("kind", text, [Kind::Elliptic, Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence], Kind::name);
@@ -61,21 +59,12 @@ notation! {
     tongue::Entry: text => one_of("entry", text, tongue::Entry::ALL, tongue::Entry::name);
     tongue::Resonance: text => one_of("resonance", text, [tongue::Resonance::Fast, tongue::Resonance::Slow], tongue::Resonance::name);
     tongue::Side: text => one_of("position", text, SIDES, tongue::Side::name);
-    Vec<(u64, u64)>: text => labels(text);
 }
 
 const SIDES: [tongue::Side; 5] = {
     use tongue::Side::{Above, Below, Inside, OnLower, OnUpper};
     [Below, OnLower, Inside, OnUpper, Above]
 };
-
-fn lowest(text: &str) -> Result<Ratio> {
-    let ratio = parse_ratio("the ratio", text)?;
-    if ratio.to_string() == text {
-        return Ok(ratio);
-    }
-    Err(Error::input("the ratio", text, "is not in lowest terms"))
-}
 
 fn whole(text: &str) -> Result<u64> {
     let number = parse_rational("the number", text)?;
@@ -92,15 +81,6 @@ pub fn one_of<T: Copy, const N: usize>(
 ) -> Result<T> {
     let found = all.into_iter().find(|&value| name(value) == text);
     found.ok_or_else(|| Error::input(field, text, format!("is none of {}", all.map(name).join(", "))))
-}
-
-/// Labels as `1,4..7`.
-fn labels(text: &str) -> Result<Vec<(u64, u64)>> {
-    let run = |part: &str| {
-        let (from, upto) = part.split_once("..").unwrap_or((part, part));
-        Ok((whole(from)?, whole(upto)?))
-    };
-    text.split(',').map(run).collect()
 }
 
 /// A rate or a length that an input may have.
@@ -235,20 +215,5 @@ impl Decimal {
         let written = fits(e) || (hi == ten.pow(e) && fits(e - 1));
         holds(written, || format!("its decimals have not {digits} digits"))?;
         Ok((lo, hi))
-    }
-}
-
-/// The most p + q of a list of ratios: there are 1.2 million of them below 2000.
-const MOST_SUM: u64 = 2000;
-
-/// The ratios that a document is about: one, or all coprime p + q up to a sum.
-pub fn ratios(ratio: Option<&Written<Ratio>>, max_sum: Option<&Written<u64>>) -> Checked<Vec<Ratio>> {
-    match (ratio, max_sum) {
-        (Some(ratio), None) => Ok(vec![**ratio]),
-        (None, Some(sum)) => {
-            holds((2..=MOST_SUM).contains(&**sum), || format!("max_sum is not in 2..{MOST_SUM}"))?;
-            Ok(Ratio::up_to(**sum).collect())
-        }
-        _ => Err(Fault::Wrong("its input names neither one ratio nor a largest sum".into())),
     }
 }

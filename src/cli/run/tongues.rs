@@ -5,9 +5,9 @@ use plot::Figure;
 use crate::cli::args::Common;
 use crate::cli::tongues::{Atlas, Colour, Question};
 use crate::error::Result;
-use crate::question::{MOST_SUM, Ratios};
+use crate::question::{MOST_SUM, Ratios, Tongues};
 use crate::scene::{FAMILIES, Scene};
-use crate::tongue::{Request, Selection, Stiffness, Wanted, Window};
+use crate::tongue::{Stiffness, Wanted};
 
 /// The atlas.
 pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
@@ -21,10 +21,9 @@ pub fn atlas(scene: &Scene, common: &Common) -> Result<Figure> {
 
 /// The question that tongues and atlas answer.
 pub fn question(scene: &Scene, wanted: Wanted) -> Result<Question> {
-    let [h1, h2] = scene.window.clone().map_or([None, None], |window| window.map(Some));
-    let window = Window { h1, h2 };
-    let request = Request { wanted, ..Request::default() };
-    Question::new(ratios(scene)?, stiffness(scene)?, window, Selection::default(), request)
+    let [h1_range, h2_range] = scene.window.clone().map_or([None, None], |window| window.map(Some));
+    let all = Tongues::of(ratios(scene)?, stiffness(scene)?);
+    Question::new(Tongues { h1_range, h2_range, ..all }, wanted)
 }
 
 /// All ratios where a sum is given, else the one.

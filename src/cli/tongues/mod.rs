@@ -20,11 +20,11 @@ use crate::format::Format;
 use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
-use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST};
+use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
-use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted, Window};
+use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted};
 pub use atlas::{Atlas, Colour};
 pub use output::put;
 pub use question::Question;
@@ -116,9 +116,6 @@ enum Drawn {
     /// Tr Q of one ratio through its tongues, and through the one of --m [default: the widest], with half a period's entries.
     Trace,
 }
-
-/// Digits beyond this are a slip of the keyboard.
-const MOST_DIGITS: u32 = 10_000;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
@@ -243,13 +240,10 @@ impl Args {
     }
 
     fn question(&self, wanted: Wanted) -> Result<Question> {
-        let window = Window { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
-        let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
-        if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
-            return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
-        }
-        let request = tongue::Request { wanted, lambda1: None, digits: self.digits };
-        Question::new(self.ratios()?, self.stiffness()?, window, selection, request)
+        let (h1_range, h2_range) = (self.h1_range.clone(), self.h2_range.clone());
+        let (m, a, b, digits) = (self.m.clone(), self.a, self.b, self.digits);
+        let all = Asked::of(self.ratios()?, self.stiffness()?);
+        Question::new(Asked { h1_range, h2_range, m, a, b, digits, ..all }, wanted)
     }
 
     /// What to compute, where `--columns` says it by groups and not by the names of columns.

@@ -5,14 +5,14 @@ use indicatif::ProgressBar;
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
 use crate::error::{Error, Result};
-use crate::question::Ratios;
+use crate::question::{Fields, Ratios, Tongues};
 use crate::report::document::Document;
-use crate::scene::shown_range;
-use crate::tongue::{self, Progress, Range, Request, Selection, Stiffness, Tongue, Window};
+use crate::tongue::{self, Progress, Selection, Tongue, Wanted, Window};
 
 /// All that `tongues` asks.
 #[derive(Clone, Debug)]
 pub struct Question {
+    tongues: Tongues,
     pub ratios: Ratios,
     pub asked: tongue::Question,
     /// The columns of tables, by the names that CSV has; those that fit the form where none are given.
@@ -33,19 +33,13 @@ impl Progress for ProgressBar {
 }
 
 impl Question {
-    /// The question, if it makes sense.
+    /// The question, if it makes sense, with what is `wanted` of each tongue.
     ///
     /// # Errors
-    /// As [`tongue::Question::new`].
-    pub fn new(
-        ratios: Ratios,
-        stiffness: Stiffness,
-        window: Window,
-        selection: Selection,
-        request: Request,
-    ) -> Result<Self> {
-        let asked = tongue::Question::new(ratios.list(), stiffness, window, selection, request)?;
-        Ok(Question { ratios, asked, columns: None })
+    /// As [`Tongues::asked`].
+    pub fn new(tongues: Tongues, wanted: Wanted) -> Result<Self> {
+        let (ratios, asked) = (tongues.ratios()?, tongues.asked(wanted)?);
+        Ok(Question { tongues, ratios, asked, columns: None })
     }
 
     /// The same, its tables in these columns.
@@ -86,27 +80,7 @@ impl Question {
 
     /// Echoes the question, exactly.
     pub fn echo(&self, document: Document) -> Document {
-        let asked = &self.asked;
-        let Stiffness { rho, lambda1, lambda2 } = &asked.stiffness;
-        let range = |range: &Option<Range>| range.as_ref().map(shown_range);
-        let integers = |range: Option<(i64, i64)>| range.map(|(lo, hi)| format!("{lo}..{hi}"));
-        let Selection { m, a, b, .. } = &asked.selection;
-        let given = [
-            ("rho", Some(rho.to_string())),
-            ("lambda1", lambda1.as_ref().map(ToString::to_string)),
-            ("lambda2", lambda2.as_ref().map(ToString::to_string)),
-            ("h1_range", range(&asked.window.h1)),
-            ("h2_range", range(&asked.window.h2)),
-            ("m", m.as_ref().map(ToString::to_string)),
-            ("a", integers(*a)),
-            ("b", integers(*b)),
-            ("digits", asked.request.digits.map(|digits| digits.to_string())),
-        ];
-        let (ratio, max_sum) = self.ratios.fields();
-        let ratios =
-            [("ratio", ratio.map(|own| own.to_string())), ("max_sum", max_sum.map(|own| own.to_string()))];
-        let given = ratios.into_iter().chain(given);
-        document.inputs(given.filter_map(|(key, value)| Some((key, value?))))
+        document.inputs(self.tongues.input())
     }
 
     /// The question in words.

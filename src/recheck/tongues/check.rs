@@ -25,7 +25,7 @@ impl Recheck for Claim {
     type Found = ();
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
-        let asked = self.input.question(self.wanted(), &context.limits())?;
+        let asked = self.question(&context.limits())?;
         let (mut tally, mut rows) = (Tally::default(), Vec::new());
         let record = record(&asked.request, false);
         asked.each(&(), |part| {

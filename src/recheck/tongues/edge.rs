@@ -40,7 +40,7 @@ impl Edge {
             format!("{name}: has no digits, or too many")
         })?;
         if let Some(decimal) = &self.decimal {
-            let ends = decimal.ends(input.digits.as_ref().map(|digits| digits.0))?;
+            let ends = decimal.ends(input.digits.map(u64::from))?;
             // The digits enclose the same zero.
             let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
             holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
@@ -96,13 +96,10 @@ impl Edge {
             })?;
             let s = |h: Rational| {
                 let h = h * &back;
-                &Laurent::from_rational(&h * &h) * &lambda1.0
+                &Laurent::from_rational(&h * &h) * lambda1
             };
-            let decimal = step
-                .decimal
-                .as_ref()
-                .map(|decimal| decimal.ends(input.digits.as_ref().map(|digits| digits.0)))
-                .transpose()?;
+            let decimal =
+                step.decimal.as_ref().map(|decimal| decimal.ends(input.digits.map(u64::from))).transpose()?;
             for (lo, hi) in [exact(step.lo, step.hi)?].into_iter().chain(decimal) {
                 let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
                 holds(meets, || format!("{name}: {key} is not the step of s"))?;

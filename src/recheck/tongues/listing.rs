@@ -1,17 +1,14 @@
 //! Tongues as a list: none left out, and counted as they are.
 
-use super::rows::{Claim, Input, Tongue};
-use crate::error::{Error, Result};
+use super::rows::{Claim, Tongue};
+use crate::error::Result;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::recheck::context::{Checked, Fault, Place, holds};
 use crate::recheck::exact::check_ratio;
-use crate::recheck::written::{Range, ratios};
+use crate::recheck::written::Range;
 use crate::resonance::dominant_family;
-use crate::tongue::{Labels, Question, Request, Selection, Stiffness, Tongues, Wanted, Window};
+use crate::tongue::{Question, Selection, Tongues, Wanted};
 use crate::verdict::Limits;
-
-/// The most digits of an edge.
-const MOST_DIGITS: u64 = 10_000;
 
 /// The label of the last tongue, which has no upper edge.
 pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
@@ -21,11 +18,11 @@ pub fn last(ratio: Ratio, rho: &Rational) -> u64 {
 impl Claim {
     /// The labels asked for are there, in order: as many edges as an entry has zeros, so each enclosure holds one.
     pub(super) fn complete(&self, limits: &Limits) -> Checked {
-        let list = ratios(self.input.ratio.as_ref(), self.input.max_sum.as_ref())?;
+        let list = self.input.ratios()?.list();
         let mut rows = self.tongues.iter().zip(1..);
         for ratio in list {
             let (p, q) = ratio.terms();
-            for m in self.input.labels(ratio, limits)? {
+            for m in self.labels(ratio, limits)? {
                 let place = format!("p = {p}, q = {q}, m = {m}");
                 let missing = || Fault::Wrong(format!("{place} is missing at the end"));
                 let (row, i): (&Tongue, u64) = rows.next().ok_or_else(missing)?;
@@ -53,47 +50,33 @@ impl Claim {
     }
 }
 
-impl Input {
+impl Claim {
     /// The question, within the limits.
-    pub(super) fn question(&self, wanted: Wanted, limits: &Limits) -> Result<Question> {
-        let list = ratios(self.ratio.as_ref(), self.max_sum.as_ref()).map_err(Fault::refused)?;
-        if let Some(longest) = list.iter().max_by_key(|ratio| ratio.kicks()) {
+    pub(super) fn question(&self, limits: &Limits) -> Result<Question> {
+        if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
             check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
         }
-        let [lambda1, lambda2] =
-            [&self.lambda1, &self.lambda2].map(|own| own.as_ref().map(|own| own.0.clone()));
-        // rho is echoed, whether it was given or follows.
-        let rho = lambda2.is_none().then(|| self.rho.clone());
-        let stiffness = Stiffness::new(rho, lambda1, lambda2)?;
-        let [h1, h2] = [&self.h1_range, &self.h2_range].map(|own| own.as_ref().map(|own| own.0.clone()));
-        let m = self.m.as_ref().map(|m| Labels(m.0.clone()));
-        let [a, b] = [&self.a, &self.b].map(|own| own.as_ref().map(|own| own.0));
-        let digits = self.digits.as_ref().map(|digits| digits.0);
-        if let Some(digits) = digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
-            return Err(Error::input("input.digits", digits, format!("is not in 1..{MOST_DIGITS}")));
-        }
-        let request = Request { wanted, lambda1: None, digits: digits.map(|digits| digits as u32) };
-        let selection = Selection { m, a, b, s: None };
-        Question::new(list, stiffness, Window { h1, h2 }, selection, request)
+        self.input.asked(self.wanted())
     }
 
     /// The labels asked for; those in a window by the string's counts again.
     fn labels(&self, ratio: Ratio, limits: &Limits) -> Checked<Vec<u64>> {
         check_ratio(ratio.p(), ratio.q(), limits)?;
-        let last = last(ratio, &self.rho);
-        if let Some(list) = self.m.as_ref().filter(|_| self.ratio.is_some()) {
-            let labels = list.iter().flat_map(|&(from, upto)| [from, upto]);
+        let last = last(ratio, &self.input.rho);
+        if let Some(list) = self.input.m.as_ref().filter(|_| self.input.ratio.is_some()) {
+            let labels = list.0.iter().flat_map(|&(from, upto)| [from, upto]);
             holds(labels.into_iter().all(|m| (1..=last).contains(&m)), || {
                 format!("{ratio} has the tongues 1 to {last}")
             })?;
         }
         let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
-        let (a, b) = (self.a.as_ref().map(|a| a.0), self.b.as_ref().map(|b| b.0));
+        let (a, b) = (self.input.a, self.input.b);
         let wanted = |&m: &u64| {
             let listed = self
+                .input
                 .m
                 .as_ref()
-                .is_none_or(|list| list.iter().any(|&(from, upto)| (from..=upto).contains(&m)));
+                .is_none_or(|list| list.0.iter().any(|&(from, upto)| (from..=upto).contains(&m)));
             listed
                 && ((a.is_none() && b.is_none()) || {
                     let family = dominant_family(ratio, m);
@@ -103,16 +86,16 @@ impl Input {
         let labels: Vec<u64> = (1..=last).filter(wanted).collect();
         let Some(window) = self.window(ratio) else { return Ok(labels) };
         let selection = Selection { s: Some(window), ..Selection::default() };
-        let met = Tongues::new(ratio, &self.rho)?.select(&selection)?;
+        let met = Tongues::new(ratio, &self.input.rho)?.select(&selection)?;
         Ok(met.iter().map(|gap| gap.m).filter(|m| labels.binary_search(m).is_ok()).collect())
     }
 
     /// The window of s = h1² L1, its ends rounded outward: h1 = h2 q/p.
     fn window(&self, ratio: Ratio) -> Option<(f64, f64)> {
-        let lambda1 = self.lambda1.as_ref()?;
+        let lambda1 = self.input.lambda1.as_ref()?;
         let back = Laurent::from_rational(ratio.inverse().into());
-        let of_h1 = self.h1_range.as_ref().map(|range| range.0.clone());
-        let of_h2 = self.h2_range.as_ref().map(|range| (&range.0.0 * &back, &range.0.1 * &back));
+        let of_h1 = self.input.h1_range.clone();
+        let of_h2 = self.input.h2_range.as_ref().map(|(lo, hi)| (lo * &back, hi * &back));
         let (lo, hi): Range = match (of_h1, of_h2) {
             (Some((a, b)), Some((c, d))) => (a.max(c), b.min(d)),
             (one, other) => one.or(other)?,
@@ -121,7 +104,7 @@ impl Input {
         if hi < lo || hi < zero {
             return Some((1.0, 0.0)); // empty
         }
-        let s = |h1: Laurent| &(&h1 * &h1) * &lambda1.0;
+        let s = |h1: Laurent| &(&h1 * &h1) * lambda1;
         Some((s(lo.max(zero)).enclose_f64().0, s(hi).enclose_f64().1))
     }
 }

@@ -15,4 +15,4 @@ mod listing;
 mod rows;
 
 pub use edge::simplest;
-pub use rows::{Claim, Input, Tongue};
+pub use rows::{Claim, Tongue};

@@ -1,10 +1,9 @@
 //! The rows of a document of tongues.
 
-use serde::Deserialize;
-
-use crate::number::{Laurent, Ratio, Rational};
+use crate::number::{Ratio, Rational};
+pub use crate::question::Tongues as Input;
 use crate::recheck::context::Place;
-use crate::recheck::written::{Column, Decimal, Ends, Range, Written};
+use crate::recheck::written::{Column, Decimal, Ends, Written};
 use crate::resonance::dominant_family;
 use crate::tongue::{self, Entry, Gap, Resonance, Side};
 
@@ -15,29 +14,6 @@ rows! {
         pub tongues: Vec<Tongue>,
     }
 
-    #[derive(Default)]
-    #[serde(deny_unknown_fields)]
-    pub struct Input {
-        pub ratio: Option<Written<Ratio>>,
-        pub max_sum: Option<Written<u64>>,
-        #[serde(deserialize_with = "given_rho")]
-        pub rho: Rational,
-        pub lambda1: Option<Written<Laurent>>,
-        pub lambda2: Option<Written<Laurent>>,
-        pub h1_range: Option<Written<Range>>,
-        pub h2_range: Option<Written<Range>>,
-        pub m: Option<Written<Vec<(u64, u64)>>>,
-        pub a: Option<Written<(i64, i64)>>,
-        pub b: Option<Written<(i64, i64)>>,
-        pub digits: Option<Written<u64>>,
-    }
-}
-
-fn given_rho<'de, D: serde::Deserializer<'de>>(deserializer: D) -> std::result::Result<Rational, D::Error> {
-    Written::deserialize(deserializer).map(|rho| rho.0)
-}
-
-rows! {
     /// A row.
     pub struct Tongue {
         pub p: u64,
@@ -134,13 +110,6 @@ impl Tongue {
             predicted: Column::Absent,
             first_order: Column::Absent,
         }
-    }
-}
-
-impl Input {
-    /// The input of bare tongues.
-    pub fn bare(rho: &Rational) -> Input {
-        Input { rho: rho.clone(), ..Input::default() }
     }
 }
 

@@ -1,0 +1,71 @@
+//! Which tongues are asked for.
+
+use super::asking::question;
+use super::ratios::{MOST_SUM, Ratios};
+use crate::error::{Error, Result};
+use crate::number::{Laurent, Ratio, Rational};
+use crate::tongue::{self, Labels, Range, Request, Selection, Stiffness, Wanted, Window};
+
+question! {
+    /// Tongues of one ratio or of all, at one ρ. What else is wanted of each is seen in the document's rows.
+    #[derive(Default)]
+    struct Tongues {
+        /// h2/h1 = p/q.
+        ratio: Option<Ratio>,
+        /// In place of one ratio: all coprime p + q up to this number.
+        max_sum: Option<u64>,
+        /// λ2/λ1, not negative; where both stiffnesses are given, their quotient.
+        rho: Rational,
+        /// The fast stiffness: edges are given in h1 and h2 too.
+        lambda1: Option<Laurent>,
+        /// The slow stiffness.
+        lambda2: Option<Laurent>,
+        /// Only tongues that meet this closed range of h1.
+        h1_range: Option<Range>,
+        /// Only tongues that meet this closed range of h2.
+        h2_range: Option<Range>,
+        /// Only these labels.
+        m: Option<Labels>,
+        /// Only tongues whose dominant family has its a in this range.
+        a: Option<(i64, i64)>,
+        /// Only tongues whose dominant family has its b in this range.
+        b: Option<(i64, i64)>,
+        /// Significant digits of the edges, more or fewer than doubles have.
+        digits: Option<u32>,
+    }
+}
+
+/// Digits beyond this are a slip of the keyboard.
+const MOST_DIGITS: u32 = 10_000;
+
+impl Tongues {
+    /// All tongues of these ratios.
+    pub fn of(ratios: Ratios, stiffness: Stiffness) -> Tongues {
+        let ((ratio, max_sum), Stiffness { rho, lambda1, lambda2 }) = (ratios.fields(), stiffness);
+        Tongues { ratio, max_sum, rho, lambda1, lambda2, ..Tongues::default() }
+    }
+
+    /// The ratios.
+    ///
+    /// # Errors
+    /// Neither one ratio nor a sum, or both; a sum out of range.
+    pub fn ratios(&self) -> Result<Ratios> {
+        Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+    }
+
+    /// The question about these tongues, with what is `wanted` of each beside the edges.
+    ///
+    /// # Errors
+    /// As [`Tongues::ratios`] and [`tongue::Question::new`]; digits out of range.
+    pub fn asked(&self, wanted: Wanted) -> Result<tongue::Question> {
+        if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
+            return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
+        }
+        let rho = self.lambda2.is_none().then(|| self.rho.clone());
+        let stiffness = Stiffness::new(rho, self.lambda1.clone(), self.lambda2.clone())?;
+        let window = Window { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
+        let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
+        let request = Request { wanted, lambda1: None, digits: self.digits };
+        tongue::Question::new(self.ratios()?.list(), stiffness, window, selection, request)
+    }
+}
