@@ -173,3 +173,25 @@ fn the_unstable_intervals_next_to_a_stable_number_do_not_hold_it() {
     let open: f64 = found.untold.iter().map(|(lo, hi)| hi - lo).sum();
     assert!(open < 1e-2, "{found:?}");
 }
+
+/// Where many modes are in one resonance, counts at both ends of a cell decide; the exact polynomials are beyond the budget here.
+#[test]
+fn chains_beyond_the_exact_budget_are_unstable_where_counts_prove_it_and_every_number_agrees() {
+    let steps = ["1/4", "3/10", "7/20"];
+    let own = scene(&json!({
+        "schema": "kickdrift/system/1",
+        "build": {"kind": "chain", "masses": 30, "stiffness": ["4", "2", "1/2"], "steps": steps},
+    }));
+    let limits = Limits { products: 10_000_000, ..Limits::default() };
+    let found = own.intervals(&"outer=22/25..19/20".parse().unwrap(), 1e-2, &limits).unwrap();
+    let unstable = || found.stretches.iter().filter(|own| own.verdict == Holds::Unstable);
+    let length: f64 = unstable().map(|own| own.hi - own.lo).sum();
+    assert!(length > 0.05, "{found:?}");
+    for stretch in unstable() {
+        for k in 0..=20 {
+            let outer = stretch.lo + (stretch.hi - stretch.lo) * f64::from(k) / 20.0;
+            let own = own.model().decide_at(&from_f64_exact(outer).unwrap(), &Limits::default()).unwrap();
+            assert!(!own.is_stable(), "{outer} in {stretch:?}");
+        }
+    }
+}

@@ -59,20 +59,47 @@ pub(in crate::system) fn is_stable(system: &System, frame: &Frame) -> Option<boo
     }
 }
 
-/// Whether counts of negative eigenvalues prove a real multiplier off the circle: neg J_fh and neg J_hf differ, or n + neg J_hh and
-/// neg J_ff (`proofs/REGION.md`, section 3; the latter where no rigid mode is at μ = 0).
+/// Whether counts of negative eigenvalues prove a real multiplier off the circle.
 fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
-    let Some(action) = Action::new(system) else { return false };
-    let terms = 2 + system.clocks().len();
-    let count = |&held: &Held| action.matrix(held)?.negatives(terms, ROUNDINGS);
-    let found = map(&[Held::End, Held::Start, Held::Both, Held::Neither], count);
+    let counts = Counts::new(system);
     // J_hh and J_hf must be regular: all their eigenvalues told.
-    let [fh, Some((hf, most_hf)), Some((hh, most_hh)), ff] = found[..] else { return false };
-    let differ = |(least, most): (usize, usize), other: usize| least > other || most < other;
-    hf == most_hf
-        && hh == most_hh
-        && (fh.is_some_and(|own| differ(own, hf))
-            || frame.rigid.is_empty() && ff.is_some_and(|own| differ(own, system.size() + hh)))
+    let are_regular = |own: &Counts| [own.hh, own.hf].iter().all(|own| own.is_some_and(|(a, b)| a == b));
+    counts.is_some_and(|own| {
+        are_regular(&own) && differ([&own, &own], frame.rigid.is_empty().then_some(system.size()))
+    })
+}
+
+/// Bounds on the number of negative eigenvalues of the action for each pair of ends: no fewer than the first are negative, no more than the
+/// second negative or 0; `None` where nothing is told. f: free, h: x = 0, the first letter for t = 0.
+pub(in crate::system) struct Counts {
+    fh: Option<(usize, usize)>,
+    hf: Option<(usize, usize)>,
+    hh: Option<(usize, usize)>,
+    ff: Option<(usize, usize)>,
+}
+
+impl Counts {
+    pub fn new(system: &System) -> Option<Counts> {
+        let action = Action::new(system)?;
+        let terms = 2 + system.clocks().len();
+        let count = |&held: &Held| action.matrix(held)?.negatives(terms, ROUNDINGS);
+        let found = map(&[Held::End, Held::Start, Held::Both, Held::Neither], count);
+        Some(Counts { fh: found[0], hf: found[1], hh: found[2], ff: found[3] })
+    }
+}
+
+/// Whether neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff, for all kicks between those of two systems, the softer one
+/// first: every count grows with the kicks. The latter is asked where n is given: where no rigid mode is at μ = 0 (`proofs/REGION.md`,
+/// sections 3 and 5).
+pub(in crate::system) fn differ([softer, stiffer]: [&Counts; 2], n: Option<usize>) -> bool {
+    let exceeds = |[low, high]: [Option<(usize, usize)>; 2], [more, other]: [usize; 2]| {
+        low.zip(high).is_some_and(|(low, high)| low.0 + more > high.1 + other)
+    };
+    exceeds([softer.fh, stiffer.hf], [0, 0])
+        || exceeds([softer.hf, stiffer.fh], [0, 0])
+        || n.is_some_and(|n| {
+            exceeds([softer.ff, stiffer.hh], [0, n]) || exceeds([softer.hh, stiffer.ff], [n, 0])
+        })
 }
 
 /// The signs of the action of paths that are held at their start, and at their end.

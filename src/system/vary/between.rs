@@ -2,7 +2,7 @@
 //!
 //! A number t on which masses and stiffnesses depend linearly, steps fixed, makes kicks K_k(t) between K_k⁻ and K_k⁺ in Loewner's
 //! order for t in a cell. Near the first region the signs of the action at both decide for the whole cell (`action`; the order theorem
-//! of `proofs/REGION.md`). Elsewhere the half period in the middle does, its bound widened by how far kicks and drifts are from it: the
+//! of `proofs/REGION.md`), and beyond it counts of negative eigenvalues do where many modes resonate at once. Elsewhere the half period in the middle does, its bound widened by how far kicks and drifts are from it: the
 //! forms' inertias, or discs about the eigenvalues.
 
 use std::collections::BTreeSet;
@@ -11,7 +11,7 @@ use faer::Mat;
 use num_traits::{Signed, Zero};
 
 use crate::error::{Error, Result};
-use crate::number::rational::to_f64;
+use crate::number::rational::{ratio, to_f64};
 use crate::number::{Rational, U};
 use crate::system::half::compose::inverted;
 use crate::system::half::float::scaled_program;
@@ -21,9 +21,10 @@ use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::signs;
-use crate::system::signs::action::{self, is_total_definite};
+use crate::system::signs::action::{self, Counts, differ, is_total_definite};
 use crate::system::signs::envelope::Sign;
 use crate::system::spectrum::discs::Spectrum;
+use crate::system::vary::critical::Line;
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::measured::Holds;
 
@@ -99,6 +100,29 @@ pub(in crate::system) fn verify_line(systems: [&System; 3]) -> Result<()> {
     Ok(())
 }
 
+/// A cell is halved so often where counts prove its middle unstable.
+const HALVINGS: u32 = 5;
+
+/// Whether counts prove all systems between two unstable, the softer one first, every kick growing from one to the other: at both ends
+/// together, or half by half as long as they prove the middle of each.
+fn differ_throughout(
+    [softer, stiffer]: [(&System, &Counts); 2],
+    n: Option<usize>,
+    halvings: u32,
+) -> Result<bool> {
+    if differ([softer.1, stiffer.1], n) {
+        return Ok(true);
+    }
+    if halvings == 0 {
+        return Ok(false);
+    }
+    let middle = Line::new([softer.0.clone(), stiffer.0.clone()]).at(&ratio(1, 2))?;
+    let Some(counts) = Counts::new(&middle).filter(|own| differ([own, own], n)) else { return Ok(false) };
+    let own = (&middle, &counts);
+    Ok(differ_throughout([softer, own], n, halvings - 1)?
+        && differ_throughout([own, stiffer], n, halvings - 1)?)
+}
+
 /// Three systems on a line.
 struct Cell<'a> {
     systems: [&'a System; 3],
@@ -135,13 +159,24 @@ impl Cell<'_> {
             let is_stable = is_total_definite(&less, &self.frame);
             return Ok(if is_stable { Holds::Stable } else { Holds::NotTold });
         }
-        if !stiffer.contains(&Some(Sign::Positive)) {
-            return Ok(Holds::NotTold);
-        }
         let softer = action::signs(&less).unwrap_or_default();
         let is_unstable =
             |k: usize| stiffer[k] == Some(Sign::Positive) && softer[1 - k] == Some(Sign::Negative);
-        Ok(if is_unstable(0) || is_unstable(1) { Holds::Unstable } else { Holds::NotTold })
+        let is_unstable = is_unstable(0) || is_unstable(1) || self.has_real_unstable_mode([&less, &more])?;
+        Ok(if is_unstable { Holds::Unstable } else { Holds::NotTold })
+    }
+
+    /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all between. Where these are the
+    /// segment's ends, every kick grows along it, so that it may be proven piece by piece.
+    fn has_real_unstable_mode(&self, ends: [&System; 2]) -> Result<bool> {
+        let n = self.frame.rigid.is_empty() && is_total_definite(ends[0], &self.frame);
+        let n = n.then(|| ends[0].size());
+        let [Some(softer), Some(stiffer)] = ends.map(Counts::new) else { return Ok(false) };
+        let is = |a: &System, b: &System| a.mass() == b.mass() && a.potentials() == b.potentials();
+        let [lo, _, hi] = self.systems;
+        let [less, more] = ends;
+        let is_ordered = is(less, lo) && is(more, hi) || is(less, hi) && is(more, lo);
+        differ_throughout([(less, &softer), (more, &stiffer)], n, if is_ordered { HALVINGS } else { 0 })
     }
 
     /// K⁻ ≤ K ≤ K⁺ for all K on the segment: its ends where their difference is semidefinite, else the middle less and more
@@ -218,6 +253,9 @@ impl Cell<'_> {
         let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &Rational::zero(), off };
         let blocks =
             follow(&drifts, reduced.schedule().half_period(), |_, clock| &kicks[clock]).blocks(scales);
+        if blocks.error.is_none() {
+            return Ok(Holds::NotTold);
+        }
         let proven = signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks));
         Ok(proven.into())
     }
