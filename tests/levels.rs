@@ -392,6 +392,49 @@ fn what_accuracy_does_not_tell_is_not_told() {
     assert_eq!(analysis.measured.unwrap().holds, Holds::Unstable);
 }
 
+#[test]
+fn an_estimate_names_no_kind() {
+    // Verlet with F + S = 4 at a step of 1 stands exactly on the edge of stability, where no rounded number decides.
+    let diagonal = |x: &[f64]| DMatrix::from_diagonal(&x.to_vec().into());
+    for (fast, slow) in [([3.0, 0.5], [1.0, 0.25]), ([3.5, 0.5], [0.5, -0.25])] {
+        let analysis = kernel(&diagonal(&fast), &diagonal(&slow)).decide(
+            &Outer::new(1.0, 1).unwrap(),
+            &ratio(1, 1),
+            1e-9,
+        );
+        assert_eq!((analysis.kind, analysis.kind_name()), (None, "not decided"));
+        assert_eq!(analysis.parts[0].evidence, Evidence::Estimate);
+        assert!(!analysis.is_stable() && !analysis.is_unstable());
+        assert_eq!(analysis.holds(), Holds::NotTold);
+        assert!(analysis.warnings.iter().any(|own| own.contains("doubles do not decide")));
+    }
+    // Beside edges a verdict is a proof, or there is none.
+    let (mut numbers, mut open) = (Numbers(8), 0);
+    for inner in [1u64, 2, 3, 6] {
+        let (fast, slow) = numbers.levels(4);
+        let kernel = kernel(&fast, &slow);
+        let (mut lo, mut hi) = kernel.first_unstable(inner).unwrap();
+        loop {
+            let middle = lo / 2.0 + hi / 2.0;
+            if middle <= lo || middle >= hi {
+                break;
+            }
+            let part = &kernel.decide(&Outer::new(middle, inner).unwrap(), &ratio(1, 1), 1e-9).parts[0];
+            assert_eq!(part.kind.is_none(), part.evidence == Evidence::Estimate);
+            assert_eq!(part.kind.is_none(), part.kind_name() == "not decided");
+            match part.kind {
+                Some(Kind::Elliptic) => lo = middle,
+                Some(_) => hi = middle,
+                None => {
+                    open += 1;
+                    break;
+                }
+            }
+        }
+    }
+    assert!(open > 0);
+}
+
 /// Fast squares of frequency from −1 to 5.5, so that an inner step of 1 is beyond Verlet's limit or a fast mode falls where there are such.
 fn beyond(numbers: &mut Numbers, n: usize) -> (DMatrix<f64>, DMatrix<f64>) {
     let basis = numbers.symmetric(n).symmetric_eigen().eigenvectors;
