@@ -1,5 +1,6 @@
 //! No input panics, hangs, or is refused in more than one line.
 
+use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use kickdrift::error::Error;
@@ -187,4 +188,106 @@ proptest! {
         *scene.pointer_mut(&all[at.index(all.len())]).unwrap() = value;
         sane(|| Scene::read(&scene.to_string()))?;
     }
+}
+
+/// What the program is run with: a command, and what may follow it.
+const COMMANDS: [&str; 14] = [
+    "verdict --lambda1 10 --lambda2 2/5 --h1 1/10 --h2 1/2 --exact --friction --certificate",
+    "curves --lambda1 10 --a 0..2 --b -1..1 --samples 9 --h1-range 1/10..1 --h2-range 1/10..2",
+    "compare --max-sum 7 --rho 1/25 --samples 9 --lambda1 16 --lambda2 1 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+    "proposition --max 6",
+    "polynomial --ratio 5/3",
+    "map --lambda1 10 --lambda2 2/5 --step 1/10 --step1 1/10 --h1-range 1/10..1 --h2-range 1/10..3 --shard --growth --label",
+    "tongues --ratio 5/3 --max-sum 6 --rho 1/10 --m 1..3 --digits 9 --columns edges --survey --thinnest 3 --figure atlas",
+    "closings --ratio 5/3 --max-sum 6 --m 2 --samples 9 --digits 9",
+    "system data/scenes/diatomic-tether.json --scan potentials.0.scale=1..2:1/2 --intervals masses.0=1/2..1 --resolution 1e-2 --nearest --exact --friction 1/2",
+    "simulate --lambda1 10 --lambda2 2/5 --h1 1/10 --h2 1/2 --periods 9",
+    "run data/scenes/small.json",
+    "verify data/scenes/small.json",
+    "advise --period OH=10fs --bond CH:K=340kcal/mol/A^2,12.011,1.008 --steps 1/2fs,4fs --band 5% --length 10ns --friction 1/ps --on OH=1 --hmr 3.024 --constraints h-bonds",
+    "generate man completions bash",
+];
+
+/// What may stand in the place of any word.
+const WORDS: [&str; 24] = [
+    "--format",
+    "json",
+    "csv",
+    "text",
+    "latex",
+    "--output",
+    "--quiet",
+    "--threads",
+    "1",
+    "--budget",
+    "--",
+    "-",
+    "",
+    "-1",
+    "0",
+    "1/0",
+    "1e400",
+    "NaN",
+    "pi",
+    "1..0",
+    "7/7",
+    "4fs",
+    "--help",
+    "\u{202e}",
+];
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, max_shrink_iters: 20, ..ProptestConfig::default() })]
+
+    /// Some words of a command line left out, doubled or replaced: the program answers, or refuses in one line.
+    #[test]
+    fn any_command_line_is_answered_or_refused_in_one_line(
+        command in select(COMMANDS.to_vec()),
+        all in prop::collection::vec((any::<Index>(), 0u8..3, select(WORDS.to_vec())), 0..5),
+        numbers in prop::collection::vec((any::<Index>(), select(NUMBERS.to_vec())), 0..2),
+    ) {
+        let mut words: Vec<&str> = command.split(' ').collect();
+        for (at, how, word) in all {
+            let at = at.index(words.len());
+            match how {
+                0 if words.len() > 1 => drop(words.remove(at)),
+                1 => words.insert(at, words[at]),
+                _ => words[at] = word,
+            }
+        }
+        for (at, number) in numbers {
+            let at = at.index(words.len());
+            words[at] = number;
+        }
+        // Whatever was asked, at little cost, and into no file.
+        words.retain(|word| !["--output", "--certificate", "--budget"].contains(word));
+        words.extend(["--budget", "100000"]);
+        let (code, stderr) = answered(&words)?;
+        prop_assert!(matches!(code, Some(0..=2)), "{words:?}: {code:?} {stderr}");
+        prop_assert!(!stderr.contains("panicked"), "{words:?}: {stderr}");
+        let is_one_line = stderr.lines().count() == 1 && stderr.starts_with("kickdrift: ");
+        prop_assert!(code == Some(0) || is_one_line || code == Some(1), "{words:?}: {stderr}");
+    }
+}
+
+/// The program's exit code and what it wrote on standard error; what takes longer than patience allows is ended and fails.
+fn answered(words: &[&str]) -> Result<(Option<i32>, String), TestCaseError> {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_kickdrift"))
+        .args(words)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if start.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            return Err(TestCaseError::fail(format!("{words:?} took longer than {PATIENCE:?}")));
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    let ended = child.wait_with_output().unwrap();
+    Ok((ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned()))
 }
