@@ -80,6 +80,7 @@ mod written;
 
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
+use serde_path_to_error::{Path, Segment};
 
 use self::again::{Compared, Recheck, compare as compared};
 use self::context::{Context, REMEDY};
@@ -166,8 +167,8 @@ impl Claim {
     /// A text that is no JSON, a schema that cannot be rechecked, a head that kickdrift does not write, a field that is
     /// missing or not what the schema says; named by its path.
     pub fn read(text: &str) -> Result<Claim> {
-        let document: Map<String, Value> = json::from_str(text)
-            .map_err(|cause| Error::input("document", "no JSON", format!("{cause}; {REMEDY}")))?;
+        let document: Map<String, Value> =
+            json::from_str(text).map_err(|cause| Error::input("document", "no JSON", not_json(&cause)))?;
         let schema = document.get("schema").cloned().unwrap_or_default();
         let name = schema.as_str().and_then(|name| name.strip_prefix("kickdrift/")?.strip_suffix("/1"));
         let mut rows = document.clone();
@@ -253,8 +254,29 @@ fn head(document: &Map<String, Value>) -> Result<()> {
 
 /// All fields by their types; one that is wrong is named by its path.
 fn typed<T: DeserializeOwned>(document: Map<String, Value>) -> Result<T> {
-    serde_path_to_error::deserialize(Value::Object(document)).map_err(|fault| {
-        let why = format!("{}; {REMEDY}", fault.inner());
-        Error::input(&fault.path().to_string(), "not what the schema says", why)
+    let whole = Value::Object(document);
+    serde_path_to_error::deserialize(&whole).map_err(|fault| {
+        let path = fault.path().to_string();
+        let why = format!("{}; {REMEDY}", json::plain(fault.inner()));
+        match at(&whole, fault.path()) {
+            Some(value) if !value.is_object() && !value.is_array() => Error::input(&path, value, why),
+            _ => {
+                let field = if path == "." { "document" } else { &path };
+                Error::input(field, "not as kickdrift writes it", why)
+            }
+        }
     })
+}
+
+/// The value at a path.
+fn at<'a>(whole: &'a Value, path: &Path) -> Option<&'a Value> {
+    path.iter().try_fold(whole, |value, step| match step {
+        Segment::Map { key } => value.get(key),
+        Segment::Seq { index } => value.get(index),
+        _ => None,
+    })
+}
+
+fn not_json(cause: &serde_json::Error) -> String {
+    format!("line {}, column {}: {}; {REMEDY}", cause.line(), cause.column(), json::plain(cause))
 }

@@ -34,7 +34,10 @@ pub trait Notation: Sized {
 
 impl<'de, T: Notation> Deserialize<'de> for Written<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
-        T::read(&String::deserialize(deserializer)?).map(Written).map_err(D::Error::custom)
+        // The path and the text itself are named by who reads the document.
+        T::read(&String::deserialize(deserializer)?)
+            .map(Written)
+            .map_err(|own| D::Error::custom(own.remedy()))
     }
 }
 

@@ -15,6 +15,57 @@ pub fn from_str<T: DeserializeOwned>(text: &str) -> serde_json::Result<T> {
     serde_json::from_str(text)
 }
 
+/// What is wrong, in words for people, without the place: "found the number 5 where a list belongs".
+pub fn plain(cause: &serde_json::Error) -> String {
+    let place = format!(" at line {} column {}", cause.line(), cause.column());
+    let words = cause.to_string();
+    let words = words.strip_suffix(&place).unwrap_or(&words);
+    if cause.is_eof() {
+        return "the text ends before its last brace or bracket is closed".into();
+    }
+    if cause.is_syntax() {
+        return format!("no JSON from here on ({words})");
+    }
+    let found =
+        ["invalid type: ", "invalid value: ", "invalid "].iter().find_map(|own| words.strip_prefix(own));
+    if let Some((found, wanted)) = found.and_then(|own| own.split_once(", expected ")) {
+        return format!("found {} where {} belongs", noun(found), noun(wanted));
+    }
+    match words.split_once(", expected ") {
+        Some((unknown, known)) => {
+            let known = known.strip_prefix("one of ").unwrap_or(known);
+            format!("{unknown}; known here: {known}")
+        }
+        None => words.into(),
+    }
+}
+
+/// What serde calls a part of a document, as JSON calls it.
+fn noun(name: &str) -> String {
+    let own = [
+        ("a tuple of size ", "a list of "),
+        ("an array of length ", "a list of "),
+        ("length ", "a list of "),
+        ("string ", "the text "),
+        ("integer ", "the number "),
+        ("floating point ", "the number "),
+        ("boolean ", ""),
+    ];
+    match name {
+        "a sequence" | "sequence" => "a list".into(),
+        "a string" => "a text".into(),
+        "a map" | "map" => "an object".into(),
+        "a boolean" => "true or false".into(),
+        "null" | "unit value" => "null".into(),
+        _ if name.starts_with("struct ") => "an object".into(),
+        _ => {
+            let renamed =
+                own.iter().find_map(|(serde, json)| Some(format!("{json}{}", name.strip_prefix(serde)?)));
+            renamed.unwrap_or_else(|| name.into()).replace('`', "")
+        }
+    }
+}
+
 /// Any value whose objects have each key once.
 struct Once;
 
@@ -90,5 +141,26 @@ mod tests {
             "{message}"
         );
         assert!(read("{\"a\": 1, \"\\u0061\": 1}").is_err() && read("{} {}").is_err());
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_in_words_of_json() {
+        #[derive(Debug, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        struct Small {
+            #[allow(dead_code)]
+            list: Vec<[u8; 2]>,
+            #[allow(dead_code)]
+            name: Option<String>,
+        }
+        let wrong = |text: &str| plain(&from_str::<Small>(text).unwrap_err());
+        assert_eq!(wrong("{\"list\": 5}"), "found the number 5 where a list belongs");
+        assert_eq!(wrong("{\"list\": [\"a\"]}"), "found the text \"a\" where a list of 2 belongs");
+        assert_eq!(wrong("{\"list\": [[1]]}"), "found a list of 1 where a list of 2 belongs");
+        assert_eq!(wrong("{\"list\": [], \"name\": [1]}"), "found a list where a text belongs");
+        assert_eq!(wrong("{\"lists\": []}"), "unknown field `lists`; known here: `list` or `name`");
+        assert_eq!(wrong("{}"), "missing field `list`");
+        assert_eq!(wrong("{\"list\": ["), "the text ends before its last brace or bracket is closed");
+        assert!(wrong("{\"list\": x}").starts_with("no JSON from here on"));
     }
 }

@@ -263,10 +263,8 @@ fn missing(field: &str, example: &str) -> Error {
 
 /// The line at which reading stopped, and why.
 fn not_a_scene(text: &str, cause: &serde_json::Error) -> Error {
-    let (number, column) = (cause.line(), cause.column());
+    let number = cause.line();
     let line = text.lines().nth(number.saturating_sub(1)).unwrap_or("");
-    let words = cause.to_string();
-    let why = words.strip_suffix(&format!(" at line {number} column {column}")).unwrap_or(&words);
-    let remedy = format!("{why}; a scene is one JSON object, as data/scenes/figure1.json");
+    let remedy = format!("{}; a scene is one JSON object, as data/scenes/figure1.json", json::plain(cause));
     Error::input(&format!("line {number} of the scene"), line.trim(), remedy)
 }

@@ -218,7 +218,7 @@ fn what_cannot_be_rechecked_is_told() {
     for (file, parts) in [
         ("run.json", &["kickdrift/run/1", "one of tongues, closings, survey"][..]),
         ("text.json", &["document = no JSON", "as kickdrift wrote them"]),
-        ("bare.json", &["missing field `input`"]),
+        ("bare.json", &["document = not as kickdrift writes it: missing field `input`"]),
         ("none.json", &["none.json", "cannot read it"]),
     ] {
         let ended = desk.run(&["verify", file]);

@@ -18,7 +18,7 @@ use super::document::{Document, enclosure};
 use super::record::Record;
 use super::table::Column;
 use super::text::counted;
-use crate::system::{Analysis, Clocked, Holds, Instability, MuCount, Multiplier, Origin, Part};
+use crate::system::{Analysis, Clocked, Holds, Instability, MuCount, Multiplier, Origin, Part, Resonance};
 pub use beside::Beside;
 #[cfg(feature = "figure")]
 pub use chart::Colouring;
@@ -196,11 +196,26 @@ fn described(unstable: &Instability) -> String {
     };
     line += &format!("growth rate {}", rate(unstable.growth_rate));
     if let Some(r) = &unstable.resonance {
-        let sign = if r.sign > 0 { '+' } else { '-' };
-        let (first, second) = r.frequencies;
-        line += &format!("; near w = {first:.4} {sign} {second:.4} = 2 pi ({})", terms(&r.family, "h"));
+        line += &resonance(r);
     }
     line
+}
+
+/// "; near w = 0.3 + 3.1 = 2 pi (1/h1 - 1/h3)": the resonance in words.
+fn resonance(own: &Resonance) -> String {
+    let (first, second) = own.frequencies;
+    if first == 0.0 && second == 0.0 {
+        return "; no resonance: the total stiffness is not positive on this mode".into();
+    }
+    let sign = if own.sign > 0 { '+' } else { '-' };
+    let sum = match own.m {
+        0 => "0".into(),
+        m if own.family.is_empty() => format!("2 pi {m}/T"),
+        _ => format!("2 pi ({})", terms(&own.family, "h")),
+    };
+    // Four decimals leave nothing of a slow mode.
+    let shown = |w: f64| if w == 0.0 || w >= 1e-3 { format!("{w:.4}") } else { format!("{w:.3e}") };
+    format!("; near w = {} {sign} {} = {sum}", shown(first), shown(second))
 }
 
 /// A multiplier, its part, and the part's number from 1.

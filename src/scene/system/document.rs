@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
+use crate::scene::json;
 
 /// The most degrees of freedom: dense matrices of this size still fit.
 pub(super) const LARGEST: usize = 4096;
@@ -152,7 +153,7 @@ pub(super) struct MeshDocument {
 }
 
 #[derive(Clone, Debug, Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "this is neither a node nor a node and an axis, as 3 or [3, 1]")]
 pub(super) enum Fixed {
     Axis([Number; 2]),
     Node(Number),
@@ -177,10 +178,11 @@ pub(super) fn ends(field: &str, i: &Number, j: Option<&Number>, n: usize) -> Res
 
 /// Why a text is no system.
 pub(super) fn no_system(cause: serde_json::Error) -> Error {
-    let place = if cause.line() > 0 { format!("line {}", cause.line()) } else { "this file".into() };
+    let (line, column) = (cause.line(), cause.column());
+    let place = if line > 0 { format!("line {line}, column {column}") } else { "this file".into() };
     Error::input(
         "system",
         place,
-        format!("{cause}; write one JSON object as in data/scenes/diatomic-tether.json"),
+        format!("{}; write one JSON object as in data/scenes/diatomic-tether.json", json::plain(&cause)),
     )
 }
