@@ -1,6 +1,7 @@
 //! The (a, b) families of resonance curves.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
 use super::field::flag;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Sign};

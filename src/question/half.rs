@@ -1,6 +1,7 @@
 //! The half period of one pair of clocks in numbers.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
 use super::field::flag;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Ratio, Rational, rational};

@@ -1,6 +1,7 @@
 //! The half period of one ratio in s and ρ.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
 use super::field::flag;
 use crate::error::{Error, Result};
 use crate::number::Ratio;

@@ -1,6 +1,7 @@
 //! The Proposition, checked exhaustively.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
 use super::field::flag;
 use crate::error::{Error, Result};
 use crate::report::document::Document;
