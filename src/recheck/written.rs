@@ -90,6 +90,7 @@ pub fn one_of<T: Copy, const N: usize>(
 ///
 /// # Errors
 /// One that is not positive.
+#[cfg(feature = "system")]
 pub fn positive<'a>(field: &str, given: Option<&'a Written<Rational>>) -> Result<Option<&'a Rational>> {
     match given.map(|given| &given.0) {
         Some(value) if *value <= Rational::default() => Err(Error::input(field, value, "must be positive")),
