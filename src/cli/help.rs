@@ -82,15 +82,23 @@ const EXAMPLES: [(&str, &[&str]); 14] = [
     ("generate", &["generate man --output man", "generate completions --output completions"]),
 ];
 
-/// The program with all of this.
+/// The program with all of this, its commands in their order.
 pub fn explained(program: Command) -> Command {
-    let program = EXAMPLES.into_iter().fold(program, |program, (name, examples)| {
-        let text = below(name, examples);
-        program.mut_subcommand(name, |command| command.after_help(text))
-    });
-    USAGES.into_iter().fold(program, |program, (name, required)| {
-        let usage = format!("kickdrift {name} [OPTIONS] {required}");
-        program.mut_subcommand(name, |command| command.override_usage(usage))
+    let names: Vec<String> = program.get_subcommands().map(|own| own.get_name().to_string()).collect();
+    names.iter().fold(program, |program, name| {
+        program.mut_subcommand(name, |command| {
+            let of = |known: &&str| **known == **name;
+            let command = match EXAMPLES.iter().find(|(known, _)| of(known)) {
+                Some((_, examples)) => command.after_help(below(name, examples)),
+                None => command,
+            };
+            match USAGES.iter().find(|(known, _)| of(known)) {
+                Some((_, required)) => {
+                    command.override_usage(format!("kickdrift {name} [OPTIONS] {required}"))
+                }
+                None => command,
+            }
+        })
     })
 }
 
