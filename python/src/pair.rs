@@ -4,6 +4,7 @@ use kickdrift::error::Result;
 use kickdrift::format::Format;
 use kickdrift::number::{Laurent, Rational};
 use kickdrift::propagator::Oscillator;
+use kickdrift::question::{Question, Verdict};
 use kickdrift::report::document::Document;
 use kickdrift::report::verdict::Answer as Report;
 use kickdrift::system::friction::damped_pair;
@@ -137,8 +138,9 @@ impl Pair {
         let friction =
             self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate, &limits)).transpose()?;
         let oscillator = self.oscillator.clone();
-        let document = Report { oscillator, decision, growth, exact_trace, friction }.document();
-        Ok(if self.exact { document.input("exact", "true") } else { document })
+        let asked =
+            Verdict { friction: self.friction.clone(), exact: self.exact, ..Verdict::of(&oscillator) };
+        Ok(asked.document(&Report { oscillator, decision, growth, exact_trace, friction }))
     }
 }
 

@@ -12,6 +12,7 @@ use crate::number::parse::parse;
 use crate::number::rational::{ratio, simplest};
 use crate::number::{Laurent, Rational};
 use crate::propagator::Oscillator;
+use crate::question::{Question, Verdict};
 use crate::report::certificate::coq;
 use crate::report::verdict::Answer;
 use crate::verdict::{Limits, decide};
@@ -28,7 +29,7 @@ pub(super) const MOST_CERTIFIED: u64 = 5000;
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let oscillator = oscillator(session, query)?;
     let answer = decided(&oscillator)?;
-    let mut body = answer.document().value();
+    let mut body = Verdict::of(&oscillator).document(&answer).value();
     body["tenfold"] = tenfold(&answer);
     let (inside, below, above) = about(&answer)?;
     body["tongue"] = inside;
@@ -39,8 +40,8 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
 
 /// The verdict's document, a file to keep.
 pub(super) fn document(session: &Session, query: &Query) -> Result<Reply> {
-    let answer = decided(&oscillator(session, query)?)?;
-    let text = answer.document().render(Format::Json)?;
+    let oscillator = oscillator(session, query)?;
+    let text = Verdict::of(&oscillator).document(&decided(&oscillator)?).render(Format::Json)?;
     Ok(Reply::file("verdict.json", "application/json", text.into_bytes()))
 }
 

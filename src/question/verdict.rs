@@ -31,6 +31,13 @@ question! {
 const DAMPED_KICK: f64 = 1e-5;
 
 impl Verdict {
+    /// The question about an oscillator with its steps.
+    pub fn of(oscillator: &Oscillator) -> Verdict {
+        let own = [oscillator.lambda1(), oscillator.lambda2(), oscillator.h1(), oscillator.h2()];
+        let [lambda1, lambda2, h1, h2] = own.map(Clone::clone);
+        Verdict { lambda1, lambda2, h1, h2, friction: None, exact: false }
+    }
+
     /// The oscillator with its steps.
     ///
     /// # Errors
