@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::Laurent;
-use crate::number::parse::{parse, parse_range};
+use crate::question::flag;
 use crate::report::document::{Document, Layout};
 use crate::report::file::{is_captured, write_output};
 use crate::report::latex::Float;
@@ -31,7 +31,7 @@ pub struct Common {
     #[arg(long, global = true, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
-    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>)]
+    #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
     pub threads: Option<usize>,
     /// The environment of LaTeX tables [default: table where a column of two takes it, else table*; longtable beyond a page].
     #[arg(long, global = true, value_name = "ENV", value_enum)]
@@ -40,7 +40,7 @@ pub struct Common {
     #[arg(long, global = true)]
     pub quiet: bool,
     /// The most kicks that one tier may compose for one pair [default: 100000000].
-    #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = whole::<u64>)]
+    #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = flag::<u64>)]
     pub budget: Option<u64>,
     /// The command as figures carry it.
     #[arg(skip)]
@@ -67,12 +67,6 @@ pub fn of<T>(
 /// The same for a type that is read from text and names its field by itself.
 pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|error: Error| error.remedy().to_string())
-}
-
-/// A count, with the remedy that the standard library's message lacks.
-pub fn whole<T: TryFrom<u64>>(text: &str) -> std::result::Result<T, String> {
-    let number: u64 = text.parse().map_err(|_| "write a whole number, in digits only, within 64 bits")?;
-    T::try_from(number).map_err(|_| "choose a smaller number".into())
 }
 
 /// The formats that can be asked for by name; figures and arrays are asked for by the file's extension.
@@ -193,7 +187,7 @@ pub struct Columns {
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     /// Significant digits of text and latex [default: all; in latex 10, or as many as fit].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
     digits: Option<u32>,
 }
 
@@ -233,10 +227,10 @@ impl Columns {
 #[derive(Clone, Debug, clap::Args)]
 pub struct Stiffness {
     /// The stiffness of the fast force, as 10 or pi^2.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     pub lambda1: Laurent,
     /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     pub lambda2: Laurent,
 }
 
@@ -244,19 +238,19 @@ pub struct Stiffness {
 #[derive(Clone, Debug, clap::Args)]
 pub struct Grid {
     /// The spacing of both steps.
-    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "D", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     step: Option<Laurent>,
     /// The spacing of h1, where it differs.
-    #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "D1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     step1: Option<Laurent>,
     /// The spacing of h2, where it differs.
-    #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "D2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     step2: Option<Laurent>,
     /// The closed range of h1, as 1/100..2/pi.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
     h1_range: Option<StepRange>,
     /// The closed range of h2.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
     h2_range: Option<StepRange>,
 }
 

@@ -1,12 +1,11 @@
 //! `kickdrift closings`: where tongues close.
 
-use super::args::{Common, from_str, of, whole};
+use super::args::Common;
 use super::ratios::Flags;
 use crate::error::Result;
 use crate::format::Format;
 use crate::number::Rational;
-use crate::number::parse::parse_rational_range;
-use crate::question::{Closings, Question};
+use crate::question::{Closings, Question, flag};
 use crate::report::closings::DIGITS;
 use crate::tongue::Labels;
 
@@ -16,16 +15,16 @@ pub struct Args {
     #[command(flatten)]
     which: Flags,
     /// Only these labels (with --ratio), as 4 or 1,3,7..9.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = from_str::<Labels>)]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
     m: Option<Labels>,
     /// The closed range of rho = lambda2/lambda1, positive.
-    #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true, value_parser = of(parse_rational_range))]
+    #[arg(long, value_name = "LO..HI", default_value = "1/10000..100", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
     rho_range: (Rational, Rational),
     /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross, where p + q > 24.
-    #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "N", default_value_t = 400, allow_negative_numbers = true, value_parser = flag::<usize>)]
     samples: usize,
     /// Significant digits of s and rho.
-    #[arg(long, value_name = "N", default_value_t = DIGITS, allow_negative_numbers = true, value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", default_value_t = DIGITS, allow_negative_numbers = true, value_parser = flag::<u32>)]
     digits: u32,
 }
 

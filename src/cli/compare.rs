@@ -1,35 +1,34 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
-use super::args::{self, Columns, Common, of, whole};
+use super::args::{self, Columns, Common};
 use crate::error::Result;
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::Rational;
-use crate::number::parse::{parse, parse_rational};
-use crate::question::{Compare, Question};
+use crate::question::{Compare, Question, flag};
 
 /// Flags of `compare`: either a grid with both stiffnesses, or --max-sum with --rho.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The stiffness of the fast force (with a grid).
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda1: Option<Laurent>,
     /// The stiffness of the slow force (with a grid).
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda2: Option<Laurent>,
     #[command(flatten)]
     grid: args::Grid,
     /// Instead of a grid: all coprime p + q up to this number.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
     max_sum: Option<u64>,
     /// lambda2/lambda1, with --max-sum.
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     rho: Option<Rational>,
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
-    #[arg(long, value_name = "K", default_value_t = 99, allow_negative_numbers = true, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "K", default_value_t = 99, allow_negative_numbers = true, value_parser = flag::<u64>)]
     samples: u64,
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
-    #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
     #[command(flatten)]
     columns: Columns,

@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::args::{Common, of};
+use super::args::Common;
 use crate::error::Result;
 use crate::number::Laurent;
-use crate::number::parse::parse;
+use crate::question::flag;
 
 /// Flags of `explore`.
 #[derive(Debug, clap::Args)]
@@ -14,13 +14,13 @@ pub struct Args {
     #[arg(value_name = "SCENE.json", conflicts_with_all = ["lambda1", "lambda2", "period"])]
     scene: Option<PathBuf>,
     /// The stiffness of the fast force, as 10 or pi^2.
-    #[arg(long, value_name = "X", requires = "lambda2", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "X", requires = "lambda2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda1: Option<Laurent>,
     /// The stiffness of the slow force, as 2/5 or pi^2/25; may be negative.
-    #[arg(long, value_name = "Y", requires = "lambda1", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "Y", requires = "lambda1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda2: Option<Laurent>,
     /// A period in place of a stiffness, (2 pi/T)^2: twice, the fast force first.
-    #[arg(long, value_name = "T", conflicts_with_all = ["lambda1", "lambda2"], value_parser = of(parse))]
+    #[arg(long, value_name = "T", conflicts_with_all = ["lambda1", "lambda2"], value_parser = flag::<Laurent>)]
     period: Vec<Laurent>,
     /// The unit of time, for the page's words.
     #[arg(long, value_name = "UNIT")]

@@ -2,20 +2,18 @@
 
 use plot::Foot;
 
-use super::args::{of, whole};
 use crate::error::{Error, Result};
 use crate::number::Ratio;
-use crate::number::parse::parse_ratio;
-use crate::question::Ratios;
+use crate::question::{Ratios, flag};
 
 /// The flags that say which.
 #[derive(Debug, clap::Args)]
 pub struct Flags {
     /// h2/h1 = p/q; several, as 5/3,7/2, for a diagram.
-    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = of(parse_ratio))]
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = flag::<Ratio>)]
     ratio: Vec<Ratio>,
     /// All coprime p + q up to this number.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u64>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
     max_sum: Option<u64>,
 }
 

@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use plot::Foot;
 
-use super::args::{Columns, Common, whole};
+use super::args::{Columns, Common};
 use super::paper::Paper;
 use super::system::{limits, read};
 use crate::avi::Ends;
 use crate::error::Result;
 use crate::format::Format;
+use crate::question::flag;
 use crate::report::simulate as report;
 use crate::scene::{Displacement, RunRequest};
 
@@ -20,7 +21,7 @@ pub struct Args {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// Synchronization periods to run.
-    #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = flag::<u32>)]
     periods: u32,
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
     #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]

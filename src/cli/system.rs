@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use indicatif::ProgressBar;
 use plot::{Figure, Foot};
 
-use super::args::{Columns, Common, from_str, of};
+use super::args::{Columns, Common, from_str};
 use super::paper::Paper;
 use super::progress::progress;
 use crate::error::{Error, Kind, Result};
 use crate::format::Format;
 use crate::number::Rational;
-use crate::number::parse::parse_rational;
+use crate::question::flag;
 use crate::report::document::Document;
 use crate::report::system::{self as report, Beside, Colouring, SystemMap};
 use crate::scene::{Arrays, Axis, Scan, Span, SystemScene, file};
@@ -49,7 +49,7 @@ pub struct Args {
     #[arg(long, value_name = "W")]
     resolution: Option<f64>,
     /// Friction per unit time, v times exp(-G t) amid every drift between any two kicks (BAOAB): is it enough?
-    #[arg(long, value_name = "G", value_parser = of(parse_rational), conflicts_with_all = ["scan", "intervals"])]
+    #[arg(long, value_name = "G", value_parser = flag::<Rational>, conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable, both proven; with --quiet and without --output that is all the answer.
     #[arg(long, conflicts_with_all = ["scan", "intervals", "friction"])]

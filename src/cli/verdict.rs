@@ -2,13 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::args::{Columns, Common, Stiffness, of};
+use super::args::{Columns, Common, Stiffness};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::parse::{parse, parse_rational};
 use crate::number::{Laurent, Rational};
 use crate::propagator::Oscillator;
-use crate::question::{self, Question};
+use crate::question::{self, Question, flag};
 use crate::report::certificate;
 use crate::report::file::write_output;
 use crate::verdict::{Verdict, decide_from};
@@ -19,10 +18,10 @@ pub struct Args {
     #[command(flatten)]
     stiffness: Stiffness,
     /// The fast step.
-    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     h1: Laurent,
     /// The slow step; h2/h1 must be rational.
-    #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     h2: Laurent,
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
@@ -31,7 +30,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
     /// Friction per unit time, v times exp(-G t) amid every drift between any two kicks (BAOAB): is it enough?
-    #[arg(long, value_name = "G", value_parser = of(parse_rational))]
+    #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.
     #[arg(long)]

@@ -12,10 +12,10 @@ use crate::number::parse::parse;
 use crate::number::rational::{ratio, simplest};
 use crate::number::{Laurent, Rational};
 use crate::propagator::Oscillator;
-use crate::question::{Question, Verdict};
+use crate::question::{Question, Verdict, Work};
 use crate::report::certificate::coq;
 use crate::report::verdict::Answer;
-use crate::verdict::{Limits, decide};
+use crate::verdict::Limits;
 
 /// Kicks that one tier may compose.
 pub(super) const MOST_KICKS: u64 = 3_000_000;
@@ -82,11 +82,7 @@ fn simplified(h1: &Laurent, h2: &Laurent, within: &Rational) -> Result<Laurent> 
 }
 
 pub(super) fn decided(oscillator: &Oscillator) -> Result<Answer> {
-    let clocks = oscillator.clocks();
-    let answer = decide(&clocks, &LIMITS)?;
-    let (decision, growth) = (answer.decision(), answer.growth()?.clone());
-    let exact_trace = Answer::exact_trace(&clocks, false);
-    Ok(Answer { oscillator: oscillator.clone(), decision, growth, exact_trace, friction: None })
+    Verdict::of(oscillator).answer(&Work { budget: Some(MOST_KICKS), watch: None })
 }
 
 /// Slow steps and time until the amplitude is tenfold.

@@ -10,16 +10,13 @@ use crate::number::{Laurent, Ratio, Rational};
 use crate::scene::shown_range;
 use crate::tongue::Labels;
 
-/// A value that is written as a text, exactly.
+/// A value that is written as a text, exactly: in a question, and in documents.
 pub trait Notation: Sized {
-    /// Reads what [`Notation::written`] writes, and whatever else a person may type.
+    /// Reads what is written, and whatever else a person may type.
     ///
     /// # Errors
     /// Another text, named by the field.
     fn parsed(field: &str, text: &str) -> Result<Self>;
-
-    /// The text; `None` where nothing is to be written.
-    fn written(&self) -> Option<String>;
 }
 
 macro_rules! notation {
@@ -29,10 +26,6 @@ macro_rules! notation {
                 fn parsed(field: &str, text: &str) -> Result<Self> {
                     $parse(field, text)
                 }
-
-                fn written(&self) -> Option<String> {
-                    $show(self)
-                }
             }
 
             impl Field for $type {
@@ -41,7 +34,7 @@ macro_rules! notation {
                 }
 
                 fn shown(&self) -> Option<String> {
-                    self.written()
+                    Some($show(self))
                 }
             }
         )*
@@ -49,16 +42,16 @@ macro_rules! notation {
 }
 
 notation! {
-    Rational: parse_rational, plain;
-    Laurent: parse, plain;
-    Ratio: parse_ratio, plain;
-    (Laurent, Laurent): parse_range, |range| Some(shown_range(range));
-    (Rational, Rational): parse_rational_range, |range| Some(shown_range(range));
-    (i64, i64): parse_integer_range, |range| Some(shown_range(range));
-    u64: whole, plain;
-    u32: whole, plain;
-    usize: whole, plain;
-    Labels: |_, text: &str| text.parse(), plain;
+    Rational: parse_rational, ToString::to_string;
+    Laurent: parse, ToString::to_string;
+    Ratio: parse_ratio, ToString::to_string;
+    (Laurent, Laurent): parse_range, shown_range;
+    (Rational, Rational): parse_rational_range, shown_range;
+    (i64, i64): parse_integer_range, shown_range;
+    u64: whole, ToString::to_string;
+    u32: whole, ToString::to_string;
+    usize: whole, ToString::to_string;
+    Labels: |_, text: &str| text.parse(), ToString::to_string;
 }
 
 /// A flag, which is not there where it is not set.
@@ -75,10 +68,6 @@ impl Field for bool {
     fn shown(&self) -> Option<String> {
         self.then(|| "true".into())
     }
-}
-
-fn plain(value: &impl ToString) -> Option<String> {
-    Some(value.to_string())
 }
 
 fn whole<T: TryFrom<u64>>(field: &str, text: &str) -> Result<T> {
@@ -102,13 +91,16 @@ pub trait Field: Sized {
     fn shown(&self) -> Option<String>;
 }
 
-impl<T: Notation> Field for Option<T> {
+impl<T: Field> Field for Option<T> {
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
-        Some(given.map(|value| parsed(name, value)).transpose())
+        match given {
+            None => Some(Ok(None)),
+            Some(_) => T::of(given, name).map(|own| own.map(Some)),
+        }
     }
 
     fn shown(&self) -> Option<String> {
-        self.as_ref()?.written()
+        self.as_ref()?.shown()
     }
 }
 

@@ -2,13 +2,12 @@
 
 use std::ops::Deref;
 
-use num_traits::ToPrimitive;
 use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
-use crate::number::parse::{parse, parse_range, parse_rational};
 use crate::number::{Ball, Laurent, Rational, rational};
+use crate::question::Notation;
 use crate::tongue;
 use crate::verdict::{Kind, Tier};
 
@@ -27,53 +26,43 @@ impl<T> Deref for Written<T> {
     }
 }
 
-/// How a value is written.
-pub trait Notation: Sized {
-    fn read(text: &str) -> Result<Self>;
-}
-
 impl<'de, T: Notation> Deserialize<'de> for Written<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> std::result::Result<Self, D::Error> {
         // The path and the text itself are named by who reads the document.
-        T::read(&String::deserialize(deserializer)?)
+        T::parsed("value", &String::deserialize(deserializer)?)
             .map(Written)
             .map_err(|own| D::Error::custom(own.remedy()))
     }
 }
 
-macro_rules! notation {
-    ($($type:ty: $text:ident => $read:expr;)*) => {
+macro_rules! named {
+    ($($type:ty: $field:literal, $all:expr;)*) => {
         $(impl Notation for $type {
-            fn read($text: &str) -> Result<Self> {
-                $read
+            fn parsed(_: &str, text: &str) -> Result<Self> {
+                one_of($field, text, $all, <$type>::name)
             }
         })*
     };
 }
 
-notation! {
-    Rational: text => parse_rational("the number", text);
-    Laurent: text => parse("the number", text);
-    Range: text => parse_range("the range", text);
-    u64: text => whole(text);
-    bool: text => one_of("flag", text, [true], |_| "true");
-    Kind: text => one_of("kind", text, [Kind::Elliptic, Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence], Kind::name);
-    Tier: text => one_of("tier", text, Tier::ALL, Tier::name);
-    tongue::Entry: text => one_of("entry", text, tongue::Entry::ALL, tongue::Entry::name);
-    tongue::Resonance: text => one_of("resonance", text, [tongue::Resonance::Fast, tongue::Resonance::Slow], tongue::Resonance::name);
-    tongue::Side: text => one_of("position", text, SIDES, tongue::Side::name);
+named! {
+    Kind: "kind", [Kind::Elliptic, Kind::Hyperbolic, Kind::Parabolic, Kind::Coexistence];
+    Tier: "tier", Tier::ALL;
+    tongue::Entry: "entry", tongue::Entry::ALL;
+    tongue::Resonance: "resonance", [tongue::Resonance::Fast, tongue::Resonance::Slow];
+    tongue::Side: "position", SIDES;
+}
+
+impl Notation for bool {
+    fn parsed(_: &str, text: &str) -> Result<Self> {
+        one_of("flag", text, [true], |_| "true")
+    }
 }
 
 const SIDES: [tongue::Side; 5] = {
     use tongue::Side::{Above, Below, Inside, OnLower, OnUpper};
     [Below, OnLower, Inside, OnUpper, Above]
 };
-
-fn whole(text: &str) -> Result<u64> {
-    let number = parse_rational("the number", text)?;
-    let whole = number.is_integer().then(|| number.to_integer().to_u64()).flatten();
-    whole.ok_or_else(|| Error::input("the number", text, "is no whole number of 64 bits"))
-}
 
 /// One of some values, by its name.
 pub fn one_of<T: Copy, const N: usize>(

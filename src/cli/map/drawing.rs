@@ -1,12 +1,11 @@
 //! How a map is drawn.
 
 use super::Map;
-use crate::cli::args::of;
 use crate::cli::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
-use crate::number::parse::parse_integer_range;
+use crate::question::flag;
 use crate::report::plane::{Colouring, window};
 use crate::resonance::Curve;
 use crate::resonance::Families;
@@ -22,10 +21,10 @@ pub struct Drawing {
     #[arg(long)]
     curves: bool,
     /// The range of a for --curves [default: 0..3].
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
     a: Option<(i64, i64)>,
     /// The range of b for --curves [default: -12..12].
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
     b: Option<(i64, i64)>,
     #[command(flatten)]
     pub paper: Paper,

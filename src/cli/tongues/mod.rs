@@ -11,16 +11,15 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::args::{Common, from_str, of, whole};
+use super::args::Common;
 use super::paper::Paper;
 use super::ratios::Flags;
 use super::verdict::{EDGES_WORTH_CERTIFYING, within};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::parse::{parse, parse_integer_range, parse_range, parse_rational};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
-use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked};
+use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
@@ -35,31 +34,31 @@ pub struct Args {
     #[command(flatten)]
     which: Flags,
     /// rho = lambda2/lambda1, not negative.
-    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = of(parse_rational))]
+    #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     rho: Option<Rational>,
     /// The fast stiffness: edges are given in h1 and h2 too.
-    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda1: Option<Laurent>,
     /// The slow stiffness, in place of --rho.
-    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     lambda2: Option<Laurent>,
     /// Only tongues that meet this closed range of h1 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
     h1_range: Option<Range>,
     /// Only tongues that meet this closed range of h2 (needs --lambda1).
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Laurent, Laurent)>)]
     h2_range: Option<Range>,
     /// Only these labels, as 4 or 1,3,7..9.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = from_str::<Labels>)]
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
     m: Option<Labels>,
     /// Only tongues whose dominant family has its a in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
     a: Option<(i64, i64)>,
     /// Only tongues whose dominant family has its b in this range.
-    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = of(parse_integer_range))]
+    #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(i64, i64)>)]
     b: Option<(i64, i64)>,
     /// Give the edges to so many significant digits, more or fewer than doubles have.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>)]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
     digits: Option<u32>,
     /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
     ///
@@ -70,7 +69,7 @@ pub struct Args {
     #[arg(long)]
     survey: bool,
     /// The thinnest tongues that a survey lists.
-    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole::<usize>)]
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = flag::<usize>)]
     thinnest: Option<usize>,
     /// What a figure (--output FILE.svg, FILE.pdf or FILE.png) shows [default: atlas].
     #[arg(long, value_name = "WHAT")]
@@ -79,7 +78,7 @@ pub struct Args {
     #[arg(long, value_name = "WHAT")]
     colour: Option<Colour>,
     /// The fast clock's angle of --figure strength, a rational multiple of pi between 0 and pi [default: pi/2].
-    #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = of(parse))]
+    #[arg(long, value_name = "THETA", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     theta: Option<Laurent>,
     /// Also write a Coq proof of the edges of the tongue chosen by --ratio, --rho and --m.
     #[arg(long, value_name = "FILE.v", requires_all = ["ratio", "m"], conflicts_with_all = ["survey", "figure"])]

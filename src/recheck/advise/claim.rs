@@ -8,9 +8,10 @@ use crate::advise::{self, Origin, Question, Scheme};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
+use crate::question::Notation;
 use crate::recheck::again::{Left, Recheck};
 use crate::recheck::context::{Checked, Context, Outcome, Place, holds};
-use crate::recheck::written::{Ends, Notation, Written, one_of, positive};
+use crate::recheck::written::{Ends, Written, one_of, positive};
 use crate::report::advise as report;
 use crate::verdict::Kind;
 
@@ -117,7 +118,7 @@ impl Place for Row {
 }
 
 impl Notation for Origin {
-    fn read(text: &str) -> Result<Origin> {
+    fn parsed(_: &str, text: &str) -> Result<Origin> {
         let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
         one_of("from", text, all, Origin::name)
     }
