@@ -22,7 +22,7 @@ impl Ball {
     }
 
     /// ln 2 = 18 artanh(1/26) − 2 artanh(1/4801) + 8 artanh(1/8749).
-    pub(super) fn ln2(bits: u32) -> Ball {
+    pub(crate) fn ln2(bits: u32) -> Ball {
         LN2.with(|cache| cached(cache, bits, |w| reciprocals(w, false, &[(18, 26), (-2, 4801), (8, 8749)])))
     }
 }

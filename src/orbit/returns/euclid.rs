@@ -119,6 +119,6 @@ impl<T: Coefficient> Level<T> {
         if steps == 0 {
             return Some(None);
         }
-        Some(Some((run.at(steps, x, budget)?, steps)))
+        Some(Some((run.product(steps, x, 0, budget)?, steps)))
     }
 }

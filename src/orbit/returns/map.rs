@@ -70,6 +70,63 @@ impl<T: Coefficient> Map<T> {
         Map::new(&[one], Some(Turn::NONE))
     }
 
+    /// Numbers as they are, without a turn.
+    pub fn of(terms: Vec<Entries<T>>) -> Self {
+        Map { terms, error: 0.0, exponent: 0, turn: None }
+    }
+
+    /// The coefficients, without the power of two.
+    pub fn terms(&self) -> &[Entries<T>] {
+        &self.terms
+    }
+
+    /// 2^e ε.
+    pub fn error(&self) -> f64 {
+        self.error * power_of_two(self.exponent)
+    }
+
+    /// Σ |M_j| + ε, which no value exceeds, with the power of two.
+    pub fn size(&self) -> f64 {
+        (self.norms().iter().sum::<f64>() + self.error) * power_of_two(self.exponent) * UP
+    }
+
+    /// The same matrix function, known up to `by` times its size less well.
+    pub fn widened(mut self, by: f64) -> Self {
+        self.error = (self.error + by * (self.norms().iter().sum::<f64>() + self.error)) * UP + FLOOR;
+        self
+    }
+
+    /// Without the last terms that are far below the rounding of the first.
+    pub fn trimmed(mut self) -> Self {
+        let least = 1e-3 * T::UNIT * norm(&self.terms[0]);
+        while self.terms.len() > 1 && norm(&self.terms[self.terms.len() - 1]) < least {
+            self.error = (self.error + self.terms.pop().map_or(0.0, |term| norm(&term))) * UP;
+        }
+        self
+    }
+
+    pub fn negative(mut self) -> Self {
+        self.terms.iter_mut().flatten().for_each(|x| *x = x.negative());
+        self
+    }
+
+    /// The sum of both, on the same interval; a sum has no turn.
+    pub fn plus(&self, other: &Self) -> Self {
+        let exponent = self.exponent.max(other.exponent);
+        let scaled = |map: &Self| {
+            let k = (map.exponent - exponent).max(-2000) as i32;
+            let terms = map.terms.iter().map(|m| m.each_ref().map(|x| x.scale2(k))).collect::<Vec<_>>();
+            (terms, map.error * 2f64.powi(k))
+        };
+        let ((mut terms, one), (others, two)) = (scaled(self), scaled(other));
+        let size = |terms: &[Entries<T>]| terms.iter().map(norm).sum::<f64>();
+        let rounding = 1.42 * T::UNIT * (size(&terms) + size(&others));
+        let zero = || std::array::from_fn(|_| T::zero());
+        terms.resize_with(terms.len().max(others.len()), zero);
+        terms.iter_mut().flatten().zip(others.iter().flatten()).for_each(|(x, y)| *x = x.plus(y));
+        Map { terms, error: (one + two + rounding) * UP + FLOOR, exponent, turn: None }
+    }
+
     /// Whether the bound still leaves something.
     pub fn is_useful(&self) -> bool {
         self.error < 0.1 * norm(&self.terms[0])
@@ -108,8 +165,8 @@ impl<T: Coefficient> Map<T> {
     }
 
     fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
-        direction(image(&self.terms[0]), self.error)?;
-        earlier.turn?.then(self.turn?, direction(image(&product.terms[0]), product.error)?)
+        self.direction()?;
+        earlier.turn?.then(self.turn?, product.direction()?)
     }
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
@@ -129,6 +186,11 @@ impl<T: Coefficient> Map<T> {
             power = power.times(beta);
         }
         self.moved(alpha, terms)
+    }
+
+    /// The direction of the image of (1, 0) at t = 0, where it is known.
+    pub fn direction(&self) -> Option<f64> {
+        direction(image(&self.terms[0]), self.error)
     }
 
     /// At the point t = α.
@@ -173,7 +235,7 @@ impl<T: Coefficient> Map<T> {
             });
             if let Some(moved) = moved {
                 turn = moved;
-                let angle = direction(image(&part.terms[0]), part.error)?;
+                let angle = part.direction()?;
                 return Some(turn.on(principal(angle - turn.angle), angle));
             }
         }
@@ -201,6 +263,11 @@ impl<T: Coefficient> Map<T> {
         let range = super::number::exact(self.error).mul(&unit, 64);
         self.terms[0].each_ref().map(|x| x.ball().add(&range, T::BITS))
     }
+}
+
+/// 2^e as far as doubles reach.
+fn power_of_two(e: i64) -> f64 {
+    2f64.powi(e.clamp(-2000, 2000) as i32)
 }
 
 /// Σ m_j and Σ j m_j.

@@ -17,6 +17,8 @@ mod euclid;
 mod map;
 mod number;
 mod run;
+mod series;
+mod slow;
 mod turn;
 
 use num_traits::ToPrimitive;

@@ -12,8 +12,13 @@ pub trait Coefficient: Clone {
     const TERMS: usize;
     /// The most products of functions that one run may cost: a second or a few.
     const PRODUCTS: u64;
+    /// The error that a product of very many factors may have.
+    const CLOSE: f64;
 
     fn zero() -> Self;
+    /// x, exactly.
+    fn of(x: f64) -> Self;
+    fn negative(&self) -> Self;
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
     /// x 2^k, exactly.
@@ -37,9 +42,18 @@ impl Coefficient for f64 {
     const BITS: u32 = 80;
     const TERMS: usize = 13;
     const PRODUCTS: u64 = 400_000;
+    const CLOSE: f64 = 1e-7;
 
     fn zero() -> Self {
         0.0
+    }
+
+    fn of(x: f64) -> Self {
+        x
+    }
+
+    fn negative(&self) -> Self {
+        -self
     }
 
     #[inline(always)]
@@ -78,9 +92,18 @@ impl Coefficient for Twofold {
     const BITS: u32 = 130;
     const TERMS: usize = 22;
     const PRODUCTS: u64 = 100_000;
+    const CLOSE: f64 = 1e-13;
 
     fn zero() -> Self {
         Twofold::ZERO
+    }
+
+    fn of(x: f64) -> Self {
+        Twofold { hi: x, lo: 0.0 }
+    }
+
+    fn negative(&self) -> Self {
+        Twofold::negative(*self)
     }
 
     #[inline(always)]
@@ -123,9 +146,18 @@ impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
     const BITS: u32 = LENGTH + 32;
     const TERMS: usize = 8 + LENGTH as usize / 7;
     const PRODUCTS: u64 = 600;
+    const CLOSE: f64 = 1e-40;
 
     fn zero() -> Self {
         Long(Ball::zero())
+    }
+
+    fn of(x: f64) -> Self {
+        Long(exact(x))
+    }
+
+    fn negative(&self) -> Self {
+        Long(self.0.neg())
     }
 
     fn plus(&self, other: &Self) -> Self {

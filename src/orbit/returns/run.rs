@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use super::map::Map;
 use super::number::Coefficient;
+use super::slow::{self, Slow};
 use crate::parallel::go_on;
 
 /// A matrix function on the integers `start..start + length`, which are units of 1/q, and where it leads: x to x + stride.
@@ -23,20 +24,16 @@ pub struct Branch<T> {
 }
 
 impl<T: Coefficient> Branch<T> {
-    /// On a part of the interval.
+    /// On a part of the interval, or at a point, a part of length 0.
     pub fn on(&self, start: i64, length: i64) -> Map<T> {
         if (start, length) == (self.start, self.length) {
             return self.map.clone();
         }
-        // The difference of the middles is less than half the length.
-        let alpha = 2 * (start - self.start) - (self.length - length);
+        // The difference of the middles is less than half the length, though twice the one of the starts may be too long.
+        let alpha = (start - self.start).wrapping_mul(2).wrapping_sub(self.length - length);
         let divisor = self.length as u64;
-        self.map.part(&T::quotient(alpha, divisor), &T::quotient(length, divisor))
-    }
-
-    /// At a point.
-    pub fn at(&self, x: i64) -> Map<T> {
-        self.map.at(&T::quotient(2 * (x - self.start) - self.length, self.length as u64))
+        let alpha = T::quotient(alpha, divisor);
+        if length == 0 { self.map.at(&alpha) } else { self.map.part(&alpha, &T::quotient(length, divisor)) }
     }
 
     /// With the same function on a part of its interval.
@@ -50,15 +47,18 @@ pub struct Run<T> {
     pub branch: Branch<T>,
     /// By the logarithm of n and the place.
     pieces: HashMap<(u32, i64), Branch<T>>,
+    /// What very long products are made of.
+    slow: Option<Slow<T>>,
 }
 
 /// Products of functions that may still be made; `None` from whatever needs more.
 pub struct Budget(pub u64);
 
 impl Budget {
-    /// A giant partial quotient is given up before the work.
-    fn allows(&self, factors: u64) -> Option<()> {
-        (2 * factors.isqrt() <= self.0).then_some(())
+    /// Pays for as much work as so many products.
+    pub fn spend(&mut self, products: u64) -> Option<()> {
+        self.0 = self.0.checked_sub(products)?;
+        go_on().ok()
     }
 
     /// `later` after `earlier`.
@@ -73,12 +73,15 @@ impl Budget {
 
 impl<T: Coefficient> Run<T> {
     pub fn new(branch: Branch<T>) -> Self {
-        Run { branch, pieces: HashMap::new() }
+        Run { branch, pieces: HashMap::new(), slow: None }
     }
 
-    /// P_n on start..start + length; `None` where the budget or the bound does not last.
+    /// P_n on start..start + length, or at a point; `None` where the budget or the bound does not last.
     pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
-        budget.allows(n)?;
+        if n >= slow::WORTH {
+            let slow = self.slow.get_or_insert_with(|| Slow::new(self.branch.clone()));
+            return slow.product(n, start, length, budget);
+        }
         let (mut product, mut from) = (None, start);
         for log2 in (0..64 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
             let next = self.power(log2, from, length, budget)?;
@@ -91,39 +94,15 @@ impl<T: Coefficient> Run<T> {
         product
     }
 
-    /// P_n at a point.
-    pub fn at(&mut self, n: u64, x: i64, budget: &mut Budget) -> Option<Map<T>> {
-        budget.allows(n)?;
-        let (mut product, mut from) = (Map::identity(), x);
-        for log2 in (0..64 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
-            let value = self.power_at(log2, from, budget)?;
-            product = budget.product(&value, &product)?;
-            from += self.branch.stride << log2;
-        }
-        Some(product)
-    }
-
     /// P_n for n = 2^log2.
     fn power(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
         if log2 == 0 {
             return Some(self.branch.on(start, length));
         }
-        if 2 * length <= self.branch.length >> log2 {
+        if self.branch.length >> log2 >= 2.max(2 * length) {
             return Some(self.piece(log2, start, budget)?.on(start, length));
         }
         self.twice(log2, start, length, budget)
-    }
-
-    fn power_at(&mut self, log2: u32, x: i64, budget: &mut Budget) -> Option<Map<T>> {
-        if log2 == 0 {
-            return Some(self.branch.at(x));
-        }
-        if 2 <= self.branch.length >> log2 {
-            return Some(self.piece(log2, x, budget)?.at(x));
-        }
-        let first = self.power_at(log2 - 1, x, budget)?;
-        let second = self.power_at(log2 - 1, x + (self.branch.stride << (log2 - 1)), budget)?;
-        budget.product(&second, &first)
     }
 
     fn twice(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {

@@ -64,3 +64,22 @@ fn return_maps_are_what_kicks_give() {
     assert!(doubles.iter().all(|count| *count > pairs * 9 / 10), "{counts:?} of {pairs}");
     assert_eq!((two, long), ([pairs; 2], [pairs; 2]));
 }
+
+/// Beside simple ratios, where a partial quotient is long enough for normal forms: elliptic, hyperbolic and across |Tr| = 2.
+#[test]
+fn slow_products_are_what_kicks_give() {
+    let mut state = 7u64;
+    let mut next = |n: u64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) % n
+    };
+    for size in [40_000, 100_000] {
+        for _ in 0..12 {
+            let (n, k) = (1 + next(4), size + next(size));
+            let (p, q) = if next(2) == 0 { (n * k + 1, k) } else { (n * k - 1, k) };
+            let (s, strength) = (ratio(1 + next(3998) as i64, 1000), ratio(next(2000) as i64 - 300, 1000));
+            let found = tally(p, q, s.clone(), strength.clone());
+            eprintln!("{p}/{q} s = {s} k = {strength}: {found:?}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Products of very many slowly varying factors: a giant partial quotient, two steps near a simple ratio.
+//!
+//! The branch's interval is halved until on each piece one of two forms holds. Where the factor's two multipliers stay apart, it
+//! is brought to [`Normal`] form, in which factors commute and their product is a closed sum. Where they meet, at |Tr| = 2, the
+//! piece is so short that all its factors together do little: they are [`Near`] the identity in fit coordinates, and powers of
+//! two of them are functions on all of the piece. So the pieces are as many as the logarithm of the quotient.
+
+mod near;
+mod normal;
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::map::Map;
+use super::number::Coefficient;
+use super::run::{Branch, Budget};
+use near::Near;
+use normal::Normal;
+
+/// From so many factors on, pieces are cheaper than doubling.
+pub const WORTH: u64 = 1 << 14;
+
+/// A piece of so few steps is left to its single factors.
+const FEW: i64 = 32;
+
+/// What an attempt to find a normal form costs, in products of functions.
+const ATTEMPT: u64 = 20;
+
+enum Form<T> {
+    Normal(Box<Normal<T>>),
+    Near(Near<T>),
+    /// Single factors.
+    Rough,
+}
+
+/// A branch and the forms of its pieces.
+pub struct Slow<T> {
+    branch: Branch<T>,
+    /// By start and length; `None` is halved.
+    forms: HashMap<(i64, i64), Option<Rc<Form<T>>>>,
+}
+
+impl<T: Coefficient> Slow<T> {
+    pub fn new(branch: Branch<T>) -> Self {
+        Slow { branch, forms: HashMap::new() }
+    }
+
+    /// P_n on start..start + length, which is not longer than a stride; at a point where the length is 0.
+    pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+        let stride = self.branch.stride;
+        let (mut product, mut x, mut left): (Option<Map<T>>, i64, u64) = (None, start, n);
+        while left > 0 {
+            let (from, long, form) = self.form(x, budget)?;
+            // All that is taken, and the state behind it, lies on the piece.
+            let within = if stride > 0 {
+                (x >= from).then(|| (from + long - length - x) / stride)
+            } else {
+                (x + length <= from + long).then(|| (x - from) / -stride)
+            };
+            let steps = (within.unwrap_or(0).max(0) as u64).min(left);
+            let (steps, next) = match (&*form, steps) {
+                (Form::Normal(normal), 2..) => (steps, normal.product(steps, x, length)?),
+                (Form::Near(near), 2..) => (steps, near.product(steps, x, length, budget)?),
+                _ => (1, self.branch.on(x, length)),
+            };
+            product = Some(match product {
+                Some(product) => budget.product(&next, &product)?,
+                None => next,
+            });
+            x += stride * steps as i64;
+            left -= steps;
+        }
+        product
+    }
+
+    /// The piece on which the step from x lies, with its form.
+    fn form(&mut self, x: i64, budget: &mut Budget) -> Option<(i64, i64, Rc<Form<T>>)> {
+        let (mut from, mut long) = (self.branch.start, self.branch.length);
+        loop {
+            if !self.forms.contains_key(&(from, long)) {
+                let form = self.found(from, long, budget)?.map(Rc::new);
+                self.forms.insert((from, long), form);
+            }
+            if let Some(form) = &self.forms[&(from, long)] {
+                return Some((from, long, form.clone()));
+            }
+            let half = long / 2;
+            let is_below = if self.branch.stride > 0 { x < from + half } else { x <= from + half };
+            (from, long) = if is_below { (from, half) } else { (from + half, long - half) };
+        }
+    }
+
+    /// The form on a piece; within `Some`, `None` where it has none and is to be halved.
+    #[allow(clippy::option_option)]
+    fn found(&self, from: i64, long: i64, budget: &mut Budget) -> Option<Option<Form<T>>> {
+        let steps = long / self.branch.stride.abs();
+        if steps < FEW {
+            return Some(Some(Form::Rough));
+        }
+        let piece = self.branch.restricted(from, long);
+        if let Some(near) = Near::new(&piece, steps as u64, budget)? {
+            return Some(Some(Form::Near(near)));
+        }
+        if !normal::is_apart(&piece.map) {
+            return Some(None);
+        }
+        budget.spend(ATTEMPT)?;
+        Some(Normal::new(&piece, steps as u64).map(|normal| Form::Normal(Box::new(normal))))
+    }
+}
