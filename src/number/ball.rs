@@ -146,7 +146,7 @@ impl Ball {
     }
 
     /// The exponent t with |x| < 2^t for every x in the ball; `None` for the exact ball 0.
-    fn top(&self) -> Option<i64> {
+    pub(crate) fn top(&self) -> Option<i64> {
         self.magnitude().top()
     }
 

@@ -40,6 +40,9 @@ const WORTH_REFINING: u64 = 2_000_000;
 /// Bits of relative accuracy asked of the trace's distance from ±2: more than a double shows.
 const ACCURACY: i64 = 60;
 
+/// As many are enough of a period so long that its return maps decide: ten digits.
+const ACCURACY_OF_RETURNS: i64 = 34;
+
 /// The enclosures of a pair whose verdict is known.
 ///
 /// # Errors
@@ -99,7 +102,8 @@ impl Runs {
         let more = returns::PRECISIONS.into_iter().filter(|bits| bits > known);
         let more = more.filter_map(|bits| Some((returns::run(clocks, bits)?, bits)));
         let found = |ends: &refine::Ends, bits| {
-            accurate(ends, bits, verdict).filter(|(_, label)| label.is_some() || verdict.side() == 0)
+            accurate(ends, bits, verdict, ACCURACY_OF_RETURNS)
+                .filter(|(_, label)| label.is_some() || verdict.side() == 0)
         };
         let as_known = || Some((ends.products(2 * known), from_nodes(ends, verdict)));
         found(ends, *known)
@@ -116,14 +120,14 @@ impl Runs {
     ) -> Result<(Products, Option<u64>)> {
         let mut bits = 128;
         if let Some((ends, known)) = &self.refined {
-            if let Some(found) = accurate(ends, *known, verdict) {
+            if let Some(found) = accurate(ends, *known, verdict, ACCURACY) {
                 return Ok(found);
             }
             bits = 2 * known;
         }
         loop {
             let ends = refine::run_at_any(clocks, schedule, bits);
-            if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict)) {
+            if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict, ACCURACY)) {
                 return Ok(found);
             }
             go_on()?;
@@ -180,10 +184,13 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
 }
 
 /// The products and the label, where `bits` bits were enough.
-fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict) -> Option<(Products, Option<u64>)> {
+fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict, least: i64) -> Option<(Products, Option<u64>)> {
     let products = ends.products(2 * bits);
     let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
-    (accuracy >= ACCURACY).then(|| (products, from_nodes(ends, verdict)))
+    // Of a trace beyond 2^n only the logarithm is shown, which is known to log₂ n bits more.
+    let beyond = products.ad.top().unwrap_or(0).max(64) as u64;
+    let accuracy = accuracy.saturating_add(i64::from(beyond.ilog2()) - 6);
+    (accuracy >= least).then(|| (products, from_nodes(ends, verdict)))
 }
 
 impl refine::Ends {

@@ -16,12 +16,13 @@
 use super::number::Coefficient;
 use super::turn::{Turn, direction, principal};
 use crate::number::Ball;
+use crate::vector::instructions::{Instructions, Task};
 
 /// Some hundreds of roundings of positive numbers.
 const UP: f64 = 1.0 + 1e-12;
 
-/// More than any number of underflows adds to a function whose largest entry is near 1.
-const FLOOR: f64 = 1e-250;
+/// More than any number of underflows, of squares too, adds to a function whose largest entry is near 1.
+const FLOOR: f64 = 1e-150;
 
 /// [[a, b], [c, d]] in a row.
 pub type Entries<T> = [T; 4];
@@ -40,7 +41,12 @@ pub struct Map<T> {
 /// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
 fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
     let [a, b, c, d] = m.each_ref().map(T::near);
-    0.5 * ((a + d).hypot(b - c) + (a - d).hypot(b + c)) * UP
+    0.5 * (length(a + d, b - c) + length(a - d, b + c)) * UP
+}
+
+/// |(x, y)|, but for what underflows.
+fn length(x: f64, y: f64) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 /// The image of (1, 0).
@@ -139,21 +145,18 @@ impl<T: Coefficient> Map<T> {
     /// `self` after `earlier`, on the same interval.
     pub fn after(&self, earlier: &Self) -> Self {
         let (b, a) = (self.norms(), earlier.norms());
-        let n = (b.len() + a.len() - 1).min(T::TERMS);
-        let mut terms: Vec<Entries<T>> = vec![std::array::from_fn(|_| T::zero()); n];
-        for (i, later) in self.terms.iter().enumerate() {
-            for (term, first) in terms[i.min(n)..].iter_mut().zip(&earlier.terms) {
-                for (k, entry) in term.iter_mut().enumerate() {
-                    let (row, column) = (k & 2, k & 1);
-                    let product = later[row].times(&first[column]);
-                    let product = product.plus(&later[row + 1].times(&first[column + 2]));
-                    *entry = entry.plus(&product);
-                }
-            }
-        }
         let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
-        let dropped: f64 =
-            b.iter().enumerate().map(|(i, b)| b * a.iter().skip(n.saturating_sub(i)).sum::<f64>()).sum();
+        // Σ |B_i| |A_j|, i + j = m.
+        let mut sizes = vec![0.0; b.len() + a.len() - 1];
+        b.iter().enumerate().for_each(|(i, b)| sizes[i..].iter_mut().zip(&a).for_each(|(m, a)| *m += b * a));
+        // What is far below the rounding is left out.
+        let (mut n, mut dropped, least) = (sizes.len(), 0.0, 0.25 * T::UNIT * sum_b * sum_a);
+        while n > T::TERMS || n > 1 && dropped + sizes[n - 1] < least {
+            n -= 1;
+            dropped += sizes[n];
+        }
+        let product = Product { later: &self.terms, earlier: &earlier.terms, terms: n };
+        let terms = Instructions::best().perform_alone(product);
         let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
         let carried = sum_b * earlier.error + sum_a * self.error + self.error * earlier.error;
         let error = (carried + dropped + rounding) * UP + FLOOR;
@@ -171,20 +174,7 @@ impl<T: Coefficient> Map<T> {
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
     pub fn part(&self, alpha: &T, beta: &T) -> Self {
-        let mut terms = self.terms.clone();
-        for i in 0..terms.len() {
-            for j in (i..terms.len() - 1).rev() {
-                let (low, high) = terms.split_at_mut(j + 1);
-                for (own, next) in low[j].iter_mut().zip(&high[0]) {
-                    *own = own.plus(&alpha.times(next));
-                }
-            }
-        }
-        let mut power = beta.clone();
-        for term in &mut terms[1..] {
-            term.iter_mut().for_each(|x| *x = x.times(&power));
-            power = power.times(beta);
-        }
+        let terms = Instructions::best().perform_alone(Part { terms: self.terms.clone(), alpha, beta });
         self.moved(alpha, terms)
     }
 
@@ -262,6 +252,70 @@ impl<T: Coefficient> Map<T> {
         let unit = Ball::one().neg().union(&Ball::one(), 64);
         let range = super::number::exact(self.error).mul(&unit, 64);
         self.terms[0].each_ref().map(|x| x.ball().add(&range, T::BITS))
+    }
+}
+
+/// The first coefficients of a product.
+struct Product<'a, T> {
+    later: &'a [Entries<T>],
+    earlier: &'a [Entries<T>],
+    terms: usize,
+}
+
+impl<T: Coefficient> Task for Product<'_, T> {
+    type Output = Vec<Entries<T>>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Entries<T>> {
+        let mut terms: Vec<Entries<T>> = Vec::with_capacity(self.terms);
+        for m in 0..self.terms {
+            let first = (m + 1).saturating_sub(self.earlier.len());
+            let mut sum = [T::zero(), T::zero(), T::zero(), T::zero()];
+            for i in first..self.later.len().min(m + 1) {
+                let ([a, b, c, d], [e, f, g, h]) = (&self.later[i], &self.earlier[m - i]);
+                let products = [
+                    a.times(e).plus(&b.times(g)),
+                    a.times(f).plus(&b.times(h)),
+                    c.times(e).plus(&d.times(g)),
+                    c.times(f).plus(&d.times(h)),
+                ];
+                let [p, q, r, s] = products;
+                sum = [sum[0].plus(&p), sum[1].plus(&q), sum[2].plus(&r), sum[3].plus(&s)];
+            }
+            terms.push(sum);
+        }
+        terms
+    }
+}
+
+/// The coefficients in t' of t = α + β t'.
+struct Part<'a, T> {
+    terms: Vec<Entries<T>>,
+    alpha: &'a T,
+    beta: &'a T,
+}
+
+impl<T: Coefficient> Task for Part<'_, T> {
+    type Output = Vec<Entries<T>>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Entries<T>> {
+        let Part { mut terms, alpha, beta } = self;
+        for i in 0..terms.len() {
+            for j in (i..terms.len() - 1).rev() {
+                for k in 0..4 {
+                    terms[j][k] = terms[j][k].plus(&alpha.times(&terms[j + 1][k]));
+                }
+            }
+        }
+        let mut power = beta.clone();
+        for term in &mut terms[1..] {
+            for entry in term {
+                *entry = entry.times(&power);
+            }
+            power = power.times(beta);
+        }
+        terms
     }
 }
 

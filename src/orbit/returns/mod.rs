@@ -9,7 +9,8 @@
 //!     K(x) = 1 + k [[u x, σ x²], [−u²/σ, −u x]],
 //! ```
 //!
-//! a polynomial in x. From kick to kick the offset moves by p/q mod 1, and the state by K(x') R(nθ), n = ⌊x + p/q⌋. So the half
+//! a polynomial in x. (Beyond the base's own limit, s ≤ 0 and s ≥ 4, the velocity has another unit κ in place of σ, and the base's
+//! step is [[c, κ], [−σ²/κ, c]], c = 1 − s/2.) From kick to kick the offset moves by p/q mod 1, and the state by K(x') R(nθ), n = ⌊x + p/q⌋. So the half
 //! period is a product of such maps along the orbit of x, half a kick before it, and what is left up to T/2 after it. Winding
 //! comes out of the same run: each product has its [`Turn`], so the sign changes of x are known without following them.
 
@@ -30,23 +31,34 @@ use crate::propagator::TwoClocks;
 use map::Map;
 use number::{Coefficient, Long, exact};
 use run::{Branch, Budget};
-use turn::{Turn, direction};
+use turn::{Turn, direction, principal};
+use std::f64::consts::PI;
 
 /// The precisions, in bits.
 pub const PRECISIONS: [u32; 3] = [53, 106, 256];
 
-/// From so many kicks of each clock on, return maps are cheaper than kicks, whatever the partial quotients.
-const LONG: u64 = 1 << 22;
+/// From so many kicks of each clock on, return maps in doubles are cheaper than the filter's kicks (tests/bench/README.md).
+const LONG: u64 = 1 << 16;
+
+/// From so many kicks of each clock on, doubles have no digits left.
+const TOO_LONG_FOR_DOUBLES: u64 = 1 << 44;
+
+/// Bits of an angle that is multiplied by up to 2^62.
+const WHOLE: u32 = 112;
+
+/// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
+const LEAST_UNIT: f64 = 1e-3;
 
 /// Whether the period is so long that its return maps are to be tried before its kicks.
 pub fn is_worth(ratio: Ratio) -> bool {
     ratio.p().min(ratio.q()) >= LONG
 }
 
-/// The half period in numbers of so many bits, or more; `None` outside 0 < s < 4 of both clocks, where the bound loses all
-/// digits, where a partial quotient asks for too many products, and where the work was stopped.
+/// The half period in numbers of so many bits, or more; `None` where the bound loses all digits, where a partial
+/// quotient asks for too many products, and where the work was stopped.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, bits: u32) -> Option<Ends> {
     match bits {
+        0..=53 if clocks.p().min(clocks.q()) > TOO_LONG_FOR_DOUBLES => None,
         0..=53 => run_in::<S, f64>(clocks),
         54..=106 => run_in::<S, Twofold>(clocks),
         107..=256 => run_in::<S, Long<256>>(clocks),
@@ -54,12 +66,23 @@ pub fn run<S: Real>(clocks: &TwoClocks<S>, bits: u32) -> Option<Ends> {
     }
 }
 
-/// With the clock of more kicks as the base, or the other one where that is beyond its own limit.
+/// With the clock as the base by which the other one's kicks distort less, or the other where that fails.
 fn run_in<S: Real, T: Coefficient>(clocks: &TwoClocks<S>) -> Option<Ends> {
     let own = || Frame::new::<S, T>(clocks)?.ends::<T>();
     let swapped =
         || Some(in_first_unit(Frame::new::<S, T>(&clocks.swapped())?.ends::<T>()?, clocks.ratio(), T::BITS));
-    if clocks.p() >= clocks.q() { own().or_else(swapped) } else { swapped().or_else(own) }
+    if distortion(clocks) <= distortion(&clocks.swapped()) {
+        own().or_else(swapped)
+    } else {
+        swapped().or_else(own)
+    }
+}
+
+/// The norm of the other clock's kick in the base's coordinates, about; far more where the base is beyond its own limit.
+fn distortion<S: Real>(clocks: &TwoClocks<S>) -> f64 {
+    let [s, k] = [clocks.fast(), clocks.slow()].map(|x| x.enclosure(53).mid_f64());
+    let square = s * (1.0 - 0.25 * s);
+    if square > 0.0 { k.abs() / square.sqrt() } else { 1e6 + k.abs() }
 }
 
 /// From the unit of time h2 to h1.
@@ -76,8 +99,20 @@ struct Frame {
     q: u64,
     s: Ball,
     k: Ball,
-    sigma: Ball,
+    /// The unit of the velocity: σ, and beyond the base's own limit √|σ²|, or 1 beside it.
+    unit: Ball,
+    turning: Option<Turning>,
     bits: u32,
+}
+
+/// How a step of the base turns directions.
+enum Turning {
+    /// 0 < s < 4: by θ/2π, known to so many bits that of n < 2^62 steps' turns the whole ones are.
+    By(Ball),
+    /// s ≥ 4: a half turn, and (1, 0) stays on its side.
+    Half,
+    /// s ≤ 0: (1, 0) stays on its side.
+    Not,
 }
 
 /// A power of the base's step: cos nθ, sin nθ, and the lift.
@@ -87,16 +122,34 @@ struct Rotation {
 }
 
 impl Frame {
-    /// `None` unless 0 < s < 4.
+    /// `None` where the bits do not tell on which side of its own limit the base is.
     fn new<S: Real, T: Coefficient>(clocks: &TwoClocks<S>) -> Option<Frame> {
-        let bits = T::BITS + 160;
+        // Powers of a step lose as many bits as their exponent has.
+        let bits = T::BITS + 96;
         let (s, k) = (clocks.fast().enclosure(bits), clocks.slow().enclosure(bits));
         let square = s.sub(&s.square(bits).scale2(-2), bits);
-        if s.sign() != Some(Sign::Positive) || square.sign() != Some(Sign::Positive) {
-            return None;
-        }
-        let sigma = square.sqrt(bits)?;
-        Some(Frame { p: clocks.p(), q: clocks.q(), s, k, sigma, bits })
+        let elliptic = square.sign()? == Sign::Positive;
+        let unit = if elliptic || square.mid_f64().abs() > LEAST_UNIT {
+            square.abs().sqrt(bits)?
+        } else {
+            Ball::one()
+        };
+        let turning = if elliptic {
+            let cosine = Ball::one().sub(&s.scale2(-1), bits).round(WHOLE);
+            let theta = cosine.acos(WHOLE);
+            theta.and_then(|theta| theta.div(&Ball::pi(WHOLE).scale2(1), WHOLE)).map(Turning::By)
+        } else {
+            Some(if s.mid_f64() > 2.0 { Turning::Half } else { Turning::Not })
+        };
+        Some(Frame { p: clocks.p(), q: clocks.q(), s, k, unit, turning, bits })
+    }
+
+    /// One step of the base from the middle of a kick to that of the next, [[c, κ], [−σ²/κ, c]], c = 1 − s/2.
+    fn step(&self) -> Option<Matrix> {
+        let bits = self.bits;
+        let cosine = Ball::one().sub(&self.s.scale2(-1), bits);
+        let square = self.s.sub(&self.s.square(bits).scale2(-2), bits);
+        Some([cosine.clone(), self.unit.clone(), square.div(&self.unit, bits)?.neg(), cosine])
     }
 
     fn ball(&self, n: i64, d: u64) -> Ball {
@@ -104,9 +157,8 @@ impl Frame {
     }
 
     /// n steps of the base.
-    fn rotation(&self, n: u64) -> Rotation {
-        let (bits, cosine) = (self.bits, Ball::one().sub(&self.s.scale2(-1), self.bits));
-        let step = [cosine.clone(), self.sigma.clone(), self.sigma.neg(), cosine.clone()];
+    fn rotation(&self, n: u64) -> Option<Rotation> {
+        let (bits, step) = (self.bits, self.step()?);
         let mut matrix = [Ball::one(), Ball::zero(), Ball::zero(), Ball::one()];
         for bit in (0..64 - n.leading_zeros()).rev() {
             matrix = product(&matrix, &matrix, bits);
@@ -114,16 +166,29 @@ impl Frame {
                 matrix = product(&matrix, &step, bits);
             }
         }
-        let turn = towards(&matrix[0], &matrix[2]).and_then(|angle| {
-            // Full turns: −nθ = 2π whole + angle.
-            let theta = cosine.acos(bits)?.div(&Ball::pi(bits).scale2(1), bits)?;
-            let turns = theta.mul(&Ball::from_integer(&n.into()), bits).neg();
-            let fraction = exact(angle).div(&Ball::pi(64).scale2(1), 64)?;
-            let whole = turns.sub(&fraction, bits);
-            let (lower, upper) = (whole.lower().round(), whole.upper().round());
-            (lower == upper).then_some(Turn { whole: lower.to_integer().to_i128()?, angle })
-        });
-        Rotation { matrix, turn }
+        let turn = towards(&matrix[0], &matrix[2]).and_then(|angle| self.turned(n, angle));
+        Some(Rotation { matrix, turn })
+    }
+
+    /// The turn of n steps of the base that lead (1, 0) into this direction.
+    fn turned(&self, n: u64, angle: f64) -> Option<Turn> {
+        match self.turning.as_ref()? {
+            Turning::By(theta) => {
+                // Full turns: −nθ = 2π whole + angle.
+                let turns = theta.mul(&Ball::from_integer(&n.into()), WHOLE).neg();
+                let fraction = exact(angle).div(&Ball::pi(64).scale2(1), 64)?;
+                let whole = turns.sub(&fraction, WHOLE);
+                let (lower, upper) = (whole.lower().round(), whole.upper().round());
+                (lower == upper).then_some(Turn { whole: lower.to_integer().to_i128()?, angle })
+            }
+            Turning::Half => {
+                // By −nπ, and then by less than a right angle.
+                let half = if n % 2 == 0 { 0.0 } else { -PI };
+                let beside = principal(angle - half);
+                Some(Turn { whole: -i128::from(n / 2), ..Turn::NONE }.on(half + beside, angle))
+            }
+            Turning::Not => Some(Turn { whole: 0, angle }),
+        }
     }
 
     /// The terms of N(m + w t), K = 1 + k N.
@@ -133,8 +198,8 @@ impl Frame {
         let quarter = self.s.square(bits).scale2(-2);
         // Polynomials in x.
         let u_x = [zero.clone(), one.clone(), half];
-        let square = [zero.clone(), zero, self.sigma.clone()];
-        let over = |x: Ball| x.div(&self.sigma, bits).expect("sigma > 0").neg();
+        let square = [zero.clone(), zero, self.unit.clone()];
+        let over = |x: Ball| x.div(&self.unit, bits).expect("a positive unit").neg();
         let slope = [over(one), over(self.s.neg()), over(quarter)];
         let at = |[c, b, a]: &[Ball; 3]| {
             let a_m = a.mul(m, bits);
@@ -147,10 +212,10 @@ impl Frame {
     }
 
     /// K(x) R(nθ), x from middle − half to middle + half, both in units of 1/2q.
-    fn branch<T: Coefficient>(&self, middle: u64, half: u64, steps: u64) -> Map<T> {
+    fn branch<T: Coefficient>(&self, middle: u64, half: u64, steps: u64) -> Option<Map<T>> {
         let bits = self.bits;
         let unit = |n: u64| self.ball(n as i64, self.q).scale2(-1);
-        let rotation = self.rotation(steps);
+        let rotation = self.rotation(steps)?;
         let mut terms = self.nilpotent(&unit(middle), &unit(half));
         terms.iter_mut().flatten().for_each(|x| *x = x.mul(&self.k, bits));
         for diagonal in [0, 3] {
@@ -158,7 +223,7 @@ impl Frame {
         }
         let terms = terms.map(|term| product(&term, &rotation.matrix, bits));
         let turn = rotation.turn.zip(towards(&terms[0][0], &terms[0][2]));
-        Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle)))
+        Some(Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle))))
     }
 
     /// A positive kick turns clockwise, between a drift and its inverse, too.
@@ -166,16 +231,16 @@ impl Frame {
         self.k.sign() != Some(Sign::Negative)
     }
 
-    fn branches<T: Coefficient>(&self) -> [Branch<T>; 2] {
+    fn branches<T: Coefficient>(&self) -> Option<[Branch<T>; 2]> {
         let (whole, b) = (self.p / self.q, self.p % self.q);
         let a = self.q - b;
-        let left = self.branch(2 * b + a, a, whole);
-        let right = self.branch(b, b, whole + 1);
+        let left = self.branch(2 * b + a, a, whole)?;
+        let right = self.branch(b, b, whole + 1)?;
         let [a, b] = [a as i64, b as i64];
-        [
+        Some([
             Branch { map: left, start: 0, length: a, stride: b, height: 1 },
             Branch { map: right, start: a, length: b, stride: -a, height: 1 },
-        ]
+        ])
     }
 
     /// The even and the odd solution at T/2.
@@ -185,15 +250,15 @@ impl Frame {
         let middle = if n == 0 {
             Map::identity()
         } else {
-            let [left, right] = self.branches::<T>();
+            let [left, right] = self.branches::<T>()?;
             euclid::walk(left, right, n, &mut budget)?.0
         };
         if middle.exponent.unsigned_abs() > 1 << 54 {
             return None;
         }
-        let (bits, sigma) = (self.bits, &self.sigma);
+        let (bits, unit) = (self.bits, &self.unit);
         // Half a kick of the other clock at t = 0.
-        let start = self.k.div(sigma, bits)?.scale2(-1).neg();
+        let start = self.k.div(unit, bits)?.scale2(-1).neg();
         let mut journey = Journey {
             product: [Ball::one(), Ball::zero(), start.clone(), Ball::one()],
             turn: towards(&Ball::one(), &start).map(|angle| Turn { whole: 0, angle }),
@@ -203,7 +268,7 @@ impl Frame {
         self.close(&mut journey)?;
         let [a, b, c, d] = journey.product.each_ref().map(|x| x.scale2(middle.exponent));
         let nodes = journey.turn.and_then(|turn| nodes(turn, a.sign()?));
-        let (c, b) = (c.mul(sigma, bits), b.div(sigma, bits)?);
+        let (c, b) = (c.mul(unit, bits), b.div(unit, bits)?);
         let end = |x: Ball, v: Ball, nodes| End { signs: (certain(&x), certain(&v)), x, v, nodes };
         Some(Ends { even: end(a, c, nodes), odd: end(b, d, None) })
     }
@@ -220,7 +285,7 @@ impl Frame {
             journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
         } else {
             let passed = (u128::from(q / 2) * u128::from(p) / u128::from(q)) as u64;
-            let rotation = self.rotation(p / 2 - passed);
+            let rotation = self.rotation(p / 2 - passed)?;
             journey.go(&rotation.matrix, |turn, angle| {
                 let by = rotation.turn?;
                 let turned = turn.on(by.angle, angle);
@@ -229,11 +294,12 @@ impl Frame {
         }
         if p % 2 == 1 {
             // T/2 is half way between two strikes of the base: its kick's second half and half a drift.
-            let kick = self.s.div(&self.sigma, bits)?.scale2(-1).neg();
+            let is_attracting = self.s.sign() != Some(Sign::Negative);
+            let kick = self.s.div(&self.unit, bits)?.scale2(-1).neg();
             journey.go(&[Ball::one(), Ball::zero(), kick, Ball::one()], |turn, angle| {
-                Some(turn.sheared(true, angle))
+                Some(turn.sheared(is_attracting, angle))
             });
-            let drift = self.sigma.scale2(-1);
+            let drift = self.unit.scale2(-1);
             journey.go(&[Ball::one(), drift, Ball::zero(), Ball::one()], |turn, angle| {
                 Some(turn.sheared(true, angle))
             });

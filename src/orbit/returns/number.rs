@@ -12,7 +12,7 @@ pub trait Coefficient: Clone {
     const TERMS: usize;
     /// The most products of functions that one run may cost: a second or a few.
     const PRODUCTS: u64;
-    /// The error that a product of very many factors may have.
+    /// The error that a product of many factors may have, where rounding leaves it so small.
     const CLOSE: f64;
 
     fn zero() -> Self;
@@ -42,7 +42,7 @@ impl Coefficient for f64 {
     const BITS: u32 = 80;
     const TERMS: usize = 13;
     const PRODUCTS: u64 = 400_000;
-    const CLOSE: f64 = 1e-7;
+    const CLOSE: f64 = 1e-8;
 
     fn zero() -> Self {
         0.0
@@ -130,6 +130,24 @@ impl Coefficient for Twofold {
         Twofold::sum(hi, ball.sub(&exact(hi), Self::BITS).mid_f64())
     }
 
+    fn quotient(n: i64, d: u64) -> Self {
+        if n == 0 {
+            return Twofold::ZERO;
+        }
+        // n/d = 2^-shift (first + second 2^-64) 2^-64 within 2^-128 relatively.
+        let shift = n.unsigned_abs().leading_zeros().saturating_sub(d.leading_zeros());
+        let dividend = u128::from(n.unsigned_abs()) << shift;
+        let (d, above) = (u128::from(d), dividend / u128::from(d));
+        let first = (dividend % d) << 64;
+        let second = (first % d) << 64;
+        let [first, second] = [above << 64 | first / d, second / d];
+        let hi = first as f64;
+        let lo = (first as i128 - hi as i128) as f64;
+        let unit = 2f64.powi(-64 - shift as i32).copysign(n as f64);
+        let sum = Twofold::sum(hi, lo + second as f64 * 2f64.powi(-64));
+        Twofold { hi: sum.hi * unit, lo: sum.lo * unit }
+    }
+
     fn ball(&self) -> Ball {
         // Two doubles may lie far apart: a sum of exact balls within 2^-2000 of the larger is exact for those above 2^-900.
         exact(self.hi).add(&exact(self.lo), 2200)
@@ -192,4 +210,24 @@ pub fn exact(x: f64) -> Ball {
         if exponent == 0 { (mantissa, -1074) } else { (mantissa | 1 << 52, exponent - 1075) };
     let ball = Ball::from_integer(&mantissa.into()).scale2(exponent);
     if x < 0.0 { ball.neg() } else { ball }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quotients_of_two_doubles_are_near() {
+        let places = [1u64, 2, 3, 10, 12345, 1 << 31, (1 << 53) + 1, (1 << 62) - 1, (1 << 62) - 57];
+        for n in places {
+            for d in places {
+                for n in [n as i64, -(n as i64)] {
+                    let near = <Twofold as Coefficient>::quotient(n, d).ball();
+                    let exact = Ball::from_rational(&Rational::new(n.into(), d.into()), 300);
+                    let lost = near.sub(&exact, 300).div(&exact, 300).unwrap().abs().to_f64_enclosure().1;
+                    assert!(lost < 3.0 * Twofold::UNIT, "{n}/{d}: {lost}");
+                }
+            }
+        }
+    }
 }

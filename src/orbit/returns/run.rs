@@ -3,7 +3,7 @@
 //! P_n(x) = F(x + (n − 1) d) … F(x + d) F(x), so P_2n(x) = P_n(x + n d) P_n(x). F varies by so much over its interval of length
 //! L, and P_n by as much over a piece of length L/n. So there are about 2 n pieces on which P_n is known, each as long as two
 //! of the next kind, and k/n places where it is asked for: a product of k factors costs about √k products of functions. Its
-//! error grows by a factor per doubling, like a power of k.
+//! error grows by a factor per doubling, like a power of k. From [`slow::WORTH`] factors on, [`Slow`] takes fewer and keeps it.
 
 use std::collections::HashMap;
 

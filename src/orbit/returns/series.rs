@@ -4,6 +4,7 @@ use num_complex::Complex64;
 
 use super::number::Coefficient;
 use crate::number::Ball;
+use crate::vector::instructions::{Instructions, Task};
 
 /// A complex number.
 type Complex<T> = [T; 2];
@@ -11,18 +12,22 @@ type Complex<T> = [T; 2];
 #[derive(Clone)]
 pub struct Series<T>(pub Vec<Complex<T>>);
 
+#[inline(always)]
 fn plus<T: Coefficient>([a, b]: &Complex<T>, [c, d]: &Complex<T>) -> Complex<T> {
     [a.plus(c), b.plus(d)]
 }
 
+#[inline(always)]
 fn negative<T: Coefficient>(x: &Complex<T>) -> Complex<T> {
     x.each_ref().map(T::negative)
 }
 
+#[inline(always)]
 fn times<T: Coefficient>([a, b]: &Complex<T>, [c, d]: &Complex<T>) -> Complex<T> {
     [a.times(c).plus(&b.times(d).negative()), a.times(d).plus(&b.times(c))]
 }
 
+#[inline(always)]
 fn scaled<T: Coefficient>(x: &Complex<T>, by: &T) -> Complex<T> {
     x.each_ref().map(|x| x.times(by))
 }
@@ -123,23 +128,12 @@ impl<T: Coefficient> Series<T> {
         self.plus(&other.negative())
     }
 
-    pub fn scaled(&self, by: &T) -> Self {
-        Series(self.0.iter().map(|x| scaled(x, by)).collect())
-    }
-
     pub fn scale2(&self, k: i32) -> Self {
         Series(self.0.iter().map(|x| x.each_ref().map(|x| x.scale2(k))).collect())
     }
 
     pub fn times(&self, other: &Self) -> Self {
-        let n = (self.0.len() + other.0.len() - 1).min(T::TERMS);
-        let mut product = vec![[T::zero(), T::zero()]; n];
-        for (i, x) in self.0.iter().enumerate().take(n) {
-            for (sum, y) in product[i..].iter_mut().zip(&other.0) {
-                *sum = plus(sum, &times(x, y));
-            }
-        }
-        Series(product)
+        Series(Instructions::best().perform_alone(Product(&self.0, &other.0)))
     }
 
     /// The coefficients one after the other: c_k of `length` from `next(k, those before)`.
@@ -158,12 +152,9 @@ impl<T: Coefficient> Series<T> {
 
     pub fn over(&self, divisor: &Self) -> Option<Self> {
         let inverse = reciprocal(&divisor.0[0])?;
-        let length = if divisor.0.len() == 1 { self.0.len() } else { T::TERMS };
-        Some(Series::solved(length, times(&self.0[0], &inverse), |k, known| {
-            let passed = divisor.0[1..].iter().zip(known.iter().rev());
-            let rest = passed.fold(self.term(k), |rest, (b, q)| plus(&rest, &negative(&times(b, q))));
-            times(&rest, &inverse)
-        }))
+        let terms = if divisor.0.len() == 1 { self.0.len() } else { T::TERMS };
+        let quotient = Quotient { series: &self.0, divisor: &divisor.0, inverse, terms };
+        Some(Series(Instructions::best().perform_alone(quotient)))
     }
 
     pub fn root(&self) -> Option<Self> {
@@ -192,12 +183,68 @@ impl<T: Coefficient> Series<T> {
 
     /// At t + τ.
     pub fn shifted(&self, tau: &T) -> Self {
-        let mut terms = self.0.clone();
+        Series(Instructions::best().perform_alone(Shift(self.0.clone(), tau)))
+    }
+}
+
+struct Product<'a, T>(&'a [Complex<T>], &'a [Complex<T>]);
+
+impl<T: Coefficient> Task for Product<'_, T> {
+    type Output = Vec<Complex<T>>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Complex<T>> {
+        let Product(one, two) = self;
+        let terms = (one.len() + two.len() - 1).min(T::TERMS);
+        let mut product = vec![[T::zero(), T::zero()]; terms];
+        for i in 0..one.len().min(terms) {
+            for j in 0..two.len().min(terms - i) {
+                product[i + j] = plus(&product[i + j], &times(&one[i], &two[j]));
+            }
+        }
+        product
+    }
+}
+
+struct Quotient<'a, T> {
+    series: &'a [Complex<T>],
+    divisor: &'a [Complex<T>],
+    /// Of the divisor's first coefficient.
+    inverse: Complex<T>,
+    terms: usize,
+}
+
+impl<T: Coefficient> Task for Quotient<'_, T> {
+    type Output = Vec<Complex<T>>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Complex<T>> {
+        let mut quotient: Vec<Complex<T>> = Vec::with_capacity(self.terms);
+        for k in 0..self.terms {
+            let mut rest = if k < self.series.len() { self.series[k].clone() } else { [T::zero(), T::zero()] };
+            for j in 1..self.divisor.len().min(k + 1) {
+                rest = plus(&rest, &negative(&times(&self.divisor[j], &quotient[k - j])));
+            }
+            quotient.push(times(&rest, &self.inverse));
+        }
+        quotient
+    }
+}
+
+/// By τ.
+struct Shift<'a, T>(Vec<Complex<T>>, &'a T);
+
+impl<T: Coefficient> Task for Shift<'_, T> {
+    type Output = Vec<Complex<T>>;
+
+    #[inline(always)]
+    fn run(self) -> Vec<Complex<T>> {
+        let Shift(mut terms, tau) = self;
         for i in 0..terms.len() {
             for j in (i..terms.len() - 1).rev() {
                 terms[j] = plus(&terms[j], &scaled(&terms[j + 1], tau));
             }
         }
-        Series(terms)
+        terms
     }
 }

@@ -18,7 +18,7 @@ use near::Near;
 use normal::Normal;
 
 /// From so many factors on, pieces are cheaper than doubling.
-pub const WORTH: u64 = 1 << 14;
+pub const WORTH: u64 = 1 << 10;
 
 /// A piece of so few steps is left to its single factors.
 const FEW: i64 = 32;
@@ -26,9 +26,17 @@ const FEW: i64 = 32;
 /// What an attempt to find a normal form costs, in products of functions.
 const ATTEMPT: u64 = 20;
 
+/// A product that its factors' roundings leave no more digits is not begun.
+const HOPELESS: f64 = 1e-6;
+
+/// What rounding adds to the bound of a product of n factors, about.
+fn roundings<T: Coefficient>(n: u64) -> f64 {
+    1000.0 * T::UNIT * n as f64
+}
+
 enum Form<T> {
     Normal(Box<Normal<T>>),
-    Near(Near<T>),
+    Near(Box<Near<T>>),
     /// Single factors.
     Rough,
 }
@@ -40,15 +48,60 @@ pub struct Slow<T> {
     forms: HashMap<(i64, i64), Option<Rc<Form<T>>>>,
 }
 
+/// The product so far, in the coordinates of the last piece, and what leads out of these.
+struct Chain<T> {
+    product: Option<Map<T>>,
+    bridge: Option<Map<T>>,
+}
+
+/// The later one after the earlier, where there is one.
+fn after<T: Coefficient>(later: Map<T>, earlier: Option<Map<T>>, budget: &mut Budget) -> Option<Map<T>> {
+    match earlier {
+        Some(earlier) => budget.product(&later, &earlier),
+        None => Some(later),
+    }
+}
+
+impl<T: Coefficient> Chain<T> {
+    /// A single factor.
+    fn step(&mut self, factor: Map<T>, budget: &mut Budget) -> Option<()> {
+        self.bridge = Some(after(factor, self.bridge.take(), budget)?);
+        Some(())
+    }
+
+    /// The factors of a piece in its coordinates, what leads into these and out of them.
+    fn go(&mut self, enter: Map<T>, product: Map<T>, leave: Map<T>, budget: &mut Budget) -> Option<()> {
+        let bridge = after(enter, self.bridge.take(), budget)?;
+        let entered = after(bridge, self.product.take(), budget)?;
+        self.product = Some(budget.product(&product, &entered)?);
+        self.bridge = Some(leave);
+        Some(())
+    }
+
+    fn end(self, budget: &mut Budget) -> Option<Map<T>> {
+        match self.bridge {
+            Some(bridge) => after(bridge, self.product, budget).map(Map::trimmed),
+            None => self.product,
+        }
+    }
+}
+
 impl<T: Coefficient> Slow<T> {
     pub fn new(branch: Branch<T>) -> Self {
         Slow { branch, forms: HashMap::new() }
     }
 
     /// P_n on start..start + length, which is not longer than a stride; at a point where the length is 0.
+    ///
+    /// In the coordinates of each piece its factors have norms near 1. So what leads from those of one piece to those of the next, as
+    /// near to 1, is multiplied first, and no bound grows by what coordinates distort.
     pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+        if roundings::<T>(n) > HOPELESS {
+            return None;
+        }
         let stride = self.branch.stride;
-        let (mut product, mut x, mut left): (Option<Map<T>>, i64, u64) = (None, start, n);
+        let (mut x, mut left) = (start, n);
+        let mut chain = Chain { product: None, bridge: None };
         while left > 0 {
             let (from, long, form) = self.form(x, budget)?;
             // All that is taken, and the state behind it, lies on the piece.
@@ -58,19 +111,27 @@ impl<T: Coefficient> Slow<T> {
                 (x + length <= from + long).then(|| (x - from) / -stride)
             };
             let steps = (within.unwrap_or(0).max(0) as u64).min(left);
-            let (steps, next) = match (&*form, steps) {
-                (Form::Normal(normal), 2..) => (steps, normal.product(steps, x, length)?),
-                (Form::Near(near), 2..) => (steps, near.product(steps, x, length, budget)?),
-                _ => (1, self.branch.on(x, length)),
+            let end = x + stride * steps as i64;
+            let steps = match (&*form, steps) {
+                (Form::Normal(normal), 2..) => {
+                    let product = normal.product(steps, x, length)?;
+                    chain.go(normal.enter(x, length), product, normal.leave(end, length), budget)?;
+                    steps
+                }
+                (Form::Near(near), 2..) => {
+                    let product = near.product(steps, x, length, budget)?;
+                    chain.go(near.enter(), product, near.leave(), budget)?;
+                    steps
+                }
+                _ => {
+                    chain.step(self.branch.on(x, length), budget)?;
+                    1
+                }
             };
-            product = Some(match product {
-                Some(product) => budget.product(&next, &product)?,
-                None => next,
-            });
             x += stride * steps as i64;
             left -= steps;
         }
-        product
+        chain.end(budget)
     }
 
     /// The piece on which the step from x lies, with its form.
@@ -99,7 +160,7 @@ impl<T: Coefficient> Slow<T> {
         }
         let piece = self.branch.restricted(from, long);
         if let Some(near) = Near::new(&piece, steps as u64, budget)? {
-            return Some(Some(Form::Near(near)));
+            return Some(Some(Form::Near(Box::new(near))));
         }
         if !normal::is_apart(&piece.map) {
             return Some(None);

@@ -7,7 +7,7 @@
 use super::super::map::Map;
 use super::super::number::Coefficient;
 use super::super::run::{Branch, Budget};
-use super::super::turn::Turn;
+use super::normal::inverses;
 
 /// The most that the factors of a piece may do together, n |X|.
 const TOGETHER: f64 = 64.0;
@@ -16,8 +16,10 @@ const TOGETHER: f64 = 64.0;
 const POWER: f64 = 0.5;
 
 pub struct Near<T> {
-    /// G and G⁻¹.
-    coordinates: [Map<T>; 2],
+    /// G.
+    to: Map<T>,
+    /// G⁻¹.
+    from: Map<T>,
     /// The products of 2^i factors, where all of these lie on the piece.
     powers: Vec<Branch<T>>,
     stride: i64,
@@ -56,12 +58,7 @@ fn fit<T: Coefficient>(map: &Map<T>) -> Option<[f64; 4]> {
     };
     let [upper, lower] = map.terms().iter().map(beside).fold([0.0; 2], |[u, l], [x, y]| [u + x, l + y]);
     let stretch = (lower / upper).sqrt().sqrt();
-    (1e-60..1e60).contains(&stretch).then_some([
-        stretch * cos,
-        -stretch * sin,
-        sin / stretch,
-        cos / stretch,
-    ])
+    (1e-60..1e60).contains(&stretch).then_some([stretch * cos, -stretch * sin, sin / stretch, cos / stretch])
 }
 
 impl<T: Coefficient> Near<T> {
@@ -69,9 +66,8 @@ impl<T: Coefficient> Near<T> {
     #[allow(clippy::option_option)]
     pub fn new(piece: &Branch<T>, steps: u64, budget: &mut Budget) -> Option<Option<Self>> {
         let Some(entries) = fit(&piece.map) else { return Some(None) };
-        let Some(coordinates) = pair(entries) else { return Some(None) };
-        let [to, from] = &coordinates;
-        let map = to.after(&piece.map).after(from);
+        let Some((to, from)) = inverses(Map::of(vec![entries.map(T::of)])) else { return Some(None) };
+        let map = to.after(&piece.map).after(&from);
         let distance = distance(&map);
         let few = distance * steps as f64 <= TOGETHER && map.is_useful();
         if !few {
@@ -92,31 +88,33 @@ impl<T: Coefficient> Near<T> {
             let map = budget.product(&next, &last.on(start, length))?.trimmed();
             powers.push(Branch { map, start, length, ..piece.clone() });
         }
-        Some(Some(Near { coordinates, powers, stride }))
+        Some(Some(Near { to, from, powers, stride }))
     }
 
+    /// The coordinates, G.
+    pub fn enter(&self) -> Map<T> {
+        self.to.clone()
+    }
+
+    /// G⁻¹.
+    pub fn leave(&self) -> Map<T> {
+        self.from.clone()
+    }
+
+    /// G P_n G⁻¹ from start..start + length, or a point, as long as all of it lies on the piece.
     pub fn product(&self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
-        let [to, from] = &self.coordinates;
-        let (mut product, mut x, mut left) = (to.clone(), start, n);
+        let (mut product, mut x, mut left): (Option<Map<T>>, i64, u64) = (None, start, n);
         for (log2, power) in self.powers.iter().enumerate().rev() {
             while left >> log2 > 0 {
-                product = budget.product(&power.on(x, length), &product)?;
+                let next = power.on(x, length);
+                product = Some(match product {
+                    Some(product) => budget.product(&next, &product)?,
+                    None => next,
+                });
                 x += self.stride << log2;
                 left -= 1 << log2;
             }
         }
-        budget.product(from, &product)
+        product
     }
-}
-
-/// G, a turn and then a stretch, and its inverse, both with the turns of (1, 0) that undo each other.
-fn pair<T: Coefficient>(entries: [f64; 4]) -> Option<[Map<T>; 2]> {
-    let [a, b, c, d] = entries.map(T::of);
-    let forth = Map::of(vec![[a.clone(), b.clone(), c.clone(), d.clone()]]);
-    let back = super::normal::inverse(&forth)?;
-    let turned = |mut map: Map<T>| {
-        map.turn = map.direction().map(|angle| Turn { whole: 0, angle });
-        map
-    };
-    Some([turned(forth), turned(back)])
 }

@@ -17,19 +17,16 @@ use super::super::map::{Entries, Map};
 use super::super::number::Coefficient;
 use super::super::run::Branch;
 use super::super::series::Series;
-use super::super::turn::{Turn, principal};
+use super::super::turn::Turn;
 use crate::number::{Ball, Rational};
 use num_traits::ToPrimitive;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::PI;
 
 /// The most corrections: more of them gain less than rounding takes.
 const CORRECTIONS: usize = 24;
 
 /// Terms of an exponential series: e^x of |x| ≤ 4 to 2^-300.
 const EXPONENTIAL: u32 = 110;
-
-/// A direction farther than this from the opposite one has a certain sign.
-const APART: f64 = 0.1;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
@@ -161,7 +158,8 @@ fn hyperbolic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i64, tau: &T) 
     // G A G^-1, G = [[cos, sin], [-sin, cos]].
     let square = cos.times(&cos).plus(&sin.times(&sin));
     let [a, b, c, d] = entries;
-    let mixed = |x: &Series<T>, y: &Series<T>| [cos.times(x).plus(&sin.times(y)), cos.times(y).minus(&sin.times(x))];
+    let mixed =
+        |x: &Series<T>, y: &Series<T>| [cos.times(x).plus(&sin.times(y)), cos.times(y).minus(&sin.times(x))];
     let ([top_a, low_a], [top_b, low_b]) = (mixed(a, c), mixed(b, d));
     let ([a, b], [c, d]) = (mixed(&top_a, &top_b), mixed(&low_a, &low_b));
     let turned = [a.over(&square)?, b.over(&square)?, c.over(&square)?, d.over(&square)?];
@@ -180,6 +178,10 @@ fn hyperbolic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i64, tau: &T) 
     let second = Series::real(std::iter::once(T::of_ball(&ln))).minus(&second);
     let rows = |z: &Series<T>| [cos.minus(&sin.times(z)), sin.plus(&cos.times(z))];
     let ([a, b], [c, d]) = (rows(&large), rows(&small));
+    // W keeps the orientation, and (1, 0) on its side where it can.
+    let flipped = |x: [Series<T>; 2], flip: bool| if flip { x.map(|x| x.negative()) } else { x };
+    let [p, q, r, s] = [&a, &b, &c, &d].map(|x| x.first().re);
+    let ([a, b], [c, d]) = (flipped([a, b], p < 0.0), flipped([c, d], (p * s - q * r < 0.0) != (p < 0.0)));
     let logarithms = [part(&first, false), part(&second, false)];
     Some(Guess { kind: Kind::Hyperbolic, rows: [a, b, c, d], logarithms, is_negative: !positive })
 }
@@ -203,6 +205,24 @@ impl Kind {
         match self {
             Kind::Elliptic => [a.clone(), c.clone()],
             Kind::Hyperbolic => [a.clone(), d.clone()],
+        }
+    }
+
+    /// The turn of e^S, with so many whole turns, elliptic, or half turns, hyperbolic, beside it.
+    fn turn(self, angle: &Ball, turns: i128) -> Option<Turn> {
+        match self {
+            Kind::Elliptic => {
+                let bits = 256;
+                let whole = angle.div(&Ball::pi(bits).scale2(1), bits)?;
+                let whole = whole.lower().round().to_integer().to_i128()?;
+                let own = Ball::pi(bits).scale2(1).mul(&Ball::from_integer(&whole.into()), bits);
+                let rest = angle.sub(&own, bits).to_f64_enclosure().0;
+                Some(Turn { whole: whole + turns, angle: rest })
+            }
+            Kind::Hyperbolic => {
+                let angle = if turns % 2 == 0 { 0.0 } else { PI };
+                Some(Turn { whole: turns.div_euclid(2), angle })
+            }
         }
     }
 
@@ -242,9 +262,12 @@ impl Kind {
         // The terms from count on are less than size^count/count! e^size.
         if size > 0.0 {
             for k in (1..count).rev() {
-                let part = Map::new(&[[Ball::one(), Ball::zero(), Ball::zero(), Ball::one()].map(|x| {
-                    Ball::from_rational(&Rational::new(1.into(), k.into()), T::BITS).mul(&x, T::BITS)
-                })], None);
+                let part = Map::new(
+                    &[[Ball::one(), Ball::zero(), Ball::zero(), Ball::one()].map(|x| {
+                        Ball::from_rational(&Rational::new(1.into(), k.into()), T::BITS).mul(&x, T::BITS)
+                    })],
+                    None,
+                );
                 series = one.plus(&part.after(&rest.after(&series)));
             }
         }
@@ -254,7 +277,7 @@ impl Kind {
 }
 
 /// The inverse of a matrix function: the adjugate over the determinant, V. With V W = 1 + R, W⁻¹ = (1 + R)⁻¹ V.
-pub fn inverse<T: Coefficient>(given: &Map<T>) -> Option<Map<T>> {
+fn inverse<T: Coefficient>(given: &Map<T>) -> Option<Map<T>> {
     let [a, b, c, d] = series(given);
     let determinant = a.times(&d).minus(&b.times(&c));
     let entries = [&d, &b.negative(), &c.negative(), &a].map(|x| x.over(&determinant));
@@ -263,6 +286,16 @@ pub fn inverse<T: Coefficient>(given: &Map<T>) -> Option<Map<T>> {
     inverse.exponent = -given.exponent;
     let rest = inverse.after(given).plus(&Map::identity().negative()).size();
     (rest < 0.1).then(|| inverse.widened(rest / (1.0 - rest) * (1.0 + 1e-12)))
+}
+
+/// Both, with turns that undo each other: they keep the orientation, and no direction turns by a half turn.
+pub fn inverses<T: Coefficient>(given: Map<T>) -> Option<(Map<T>, Map<T>)> {
+    let back = inverse(&given)?;
+    let turned = |mut map: Map<T>| {
+        map.turn = map.direction().map(|angle| Turn { whole: 0, angle });
+        map
+    };
+    Some((turned(given), turned(back)))
 }
 
 impl<T: Coefficient> Normal<T> {
@@ -283,8 +316,8 @@ impl<T: Coefficient> Normal<T> {
             return None;
         }
         let on = |map: Map<T>| Branch { map, start, length, stride: 0, height: 0 };
-        let rows = on(map(&rows));
-        let columns = on(inverse(&rows.map)?);
+        let (rows, columns) = inverses(map(&rows))?;
+        let (rows, columns) = (on(rows), on(columns));
         let logarithm = map(&kind.entries(logarithms.clone(), Series::constant(0.0), Series::negative));
         let multiplier = on(kind.exponential(&logarithm)?);
         let signed = if is_negative { factor.clone().negative() } else { factor };
@@ -294,130 +327,67 @@ impl<T: Coefficient> Normal<T> {
         let kept = multiplier.on(from, long).after(&rows.on(from, long));
         let rest = moved.plus(&kept.negative()).size();
         let error = rest * columns.map.size() * (varied - first).exp() * (1.0 + 1e-9);
-        if !(error * steps as f64 <= T::CLOSE) {
+        let lost = error * steps as f64;
+        if lost.is_nan() || lost > T::CLOSE.max(super::roundings::<T>(steps)) {
             return None;
         }
         let sum = on(summed(kind, &logarithms, stride, length)?);
-        let mut normal = Normal {
-            kind,
-            rows,
-            columns,
-            sum,
-            error,
-            exponent,
-            is_negative,
-            turns: None,
-            stride,
-        };
-        normal.turns = normal.own_turns(&piece.map, &logarithms[1], &tau);
+        let mut normal =
+            Normal { kind, rows, columns, sum, error, exponent, is_negative, turns: None, stride };
+        let angle = logarithms[1].first().re;
+        normal.turns = normal.own_turns(&piece.map, &multiplier.map, angle, &tau);
         Some(normal)
     }
 
-    /// P_n from start..start + length, or a point, as long as all of it lies on the piece.
+    /// The coordinates W at places of the piece.
+    pub fn enter(&self, start: i64, length: i64) -> Map<T> {
+        self.rows.on(start, length)
+    }
+
+    /// W⁻¹.
+    pub fn leave(&self, start: i64, length: i64) -> Map<T> {
+        self.columns.on(start, length)
+    }
+
+    /// W P_n W⁻¹ from start..start + length, or a point, as long as all of it lies on the piece.
     pub fn product(&self, n: u64, start: i64, length: i64) -> Option<Map<T>> {
         let end = start + self.stride * n as i64;
         let sum = self.sum.on(end, length).plus(&self.sum.on(start, length).negative());
-        let angle = sum.terms()[0][2].ball().scale2(sum.exponent);
         let error = (self.error * n as f64).exp_m1() * (1.0 + 1e-9);
-        let product = self.kind.exponential(&sum)?.widened(error);
-        let (first, last) = (self.rows.on(start, length), self.columns.on(end, length));
-        let mut product = last.after(&product.after(&first));
+        let mut product = self.kind.exponential(&sum)?.widened(error);
         product.exponent += self.exponent * n as i64;
-        if self.is_negative && n % 2 == 1 {
+        product.turn = self.turns.and_then(|turns| {
+            let turns = turns.checked_mul(n.into())?;
+            let own = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent);
+            self.kind.turn(&own, turns)
+        });
+        Some(if self.is_negative && n % 2 == 1 { product.negative() } else { product })
+    }
+
+    /// The whole turns of one factor beside e^L, elliptic, or its half turns, hyperbolic: what the turn of the one in the middle is.
+    fn own_turns(&self, factor: &Map<T>, multiplier: &Map<T>, angle: f64, tau: &T) -> Option<i128> {
+        let half_turns = i128::from(self.is_negative);
+        let mut product = multiplier.at(&T::zero());
+        product.turn = self.kind.turn(&super::super::number::exact(angle), half_turns);
+        if self.is_negative {
             product = product.negative();
         }
-        product.turn = match self.kind {
-            Kind::Elliptic => self.turned(n, &angle, &product),
-            Kind::Hyperbolic => {
-                let columns = [self.columns.on(start, length), last];
-                let half_turns = self.turns.and_then(|turns| turns.checked_mul(n.into()));
-                half_turns.and_then(|turns| self.followed(&first, columns, turns, n % 2 == 1, &product))
-            }
-        };
-        product.is_useful().then(|| product.trimmed())
+        let [rows, columns] = [self.rows.map.at(&T::zero()), self.columns.map.at(tau)];
+        let whole = factor.turn?.whole - columns.after(&product.after(&rows)).turn?.whole;
+        Some(match self.kind {
+            Kind::Elliptic => whole,
+            Kind::Hyperbolic => 2 * whole + half_turns,
+        })
     }
-
-    /// What one factor turns, from its own turn in the middle.
-    fn own_turns(&self, factor: &Map<T>, angle: &Series<T>, tau: &T) -> Option<i128> {
-        let turn = factor.turn?;
-        match self.kind {
-            Kind::Elliptic => Some(turn.whole - beside(turn.angle, angle.first().re)?),
-            Kind::Hyperbolic => {
-                let at = |t: &T| self.columns.map.at(t);
-                let columns = [at(&T::zero()), at(tau)];
-                let factor = factor.at(&T::zero());
-                let follows = |turns| self.followed(&self.rows.map, columns.clone(), turns, true, &factor);
-                // With no half turn, and what that differs by.
-                let none = follows(i128::from(self.is_negative))?;
-                Some(2 * (turn.whole - none.whole) + i128::from(self.is_negative))
-            }
-        }
-    }
-
-    /// W keeps the direction of (1, 0), so P_n turns it into the same half turn as e^S does.
-    fn turned(&self, n: u64, angle: &Ball, product: &Map<T>) -> Option<Turn> {
-        let bits = T::BITS;
-        let whole = angle.div(&Ball::pi(bits).scale2(1), bits)?;
-        let whole = Rational::round(&whole.lower()).to_integer().to_i128()?;
-        let turns = Ball::pi(bits).scale2(1).mul(&Ball::from_integer(&whole.into()), bits);
-        let rest = angle.sub(&turns, bits).to_f64_enclosure().0;
-        let direction = product.direction()?;
-        let own = self.turns?.checked_mul(n.into())?;
-        Some(Turn { whole: whole + own + beside(direction, rest)?, angle: direction })
-    }
-
-    /// (1, 0) and the first column v, on the same side of the second one, stay there; v is followed along the piece.
-    fn followed(
-        &self,
-        first: &Map<T>,
-        columns: [Map<T>; 2],
-        half_turns: i128,
-        is_odd: bool,
-        product: &Map<T>,
-    ) -> Option<Turn> {
-        // A direction turns by less than a right angle along the piece.
-        let varies = |map: &Map<T>| {
-            let image = |term: &Entries<T>| term[0].near().hypot(term[2].near());
-            let rest: f64 = map.terms()[1..].iter().map(image).sum();
-            rest < 0.5 * image(&map.terms()[0])
-        };
-        let side = first.terms()[0][0].near();
-        let is_certain = side.abs() > 2.0 * first.error() + 1e-9 * first.size();
-        if !varies(&self.columns.map) || !is_certain {
-            return None;
-        }
-        let [start, end] = columns.map(|map| map.direction());
-        let (start, end) = (start?, end?);
-        let oriented = |angle: f64| if side > 0.0 { angle } else { principal(angle + PI) };
-        let by = principal(end - start);
-        // Half turns as whole ones and a rest, from the direction of v to where it has come.
-        let (whole, half) = (half_turns.div_euclid(2), half_turns.rem_euclid(2) as f64);
-        if (half == 1.0) != (self.is_negative && is_odd) {
-            return None;
-        }
-        let reached = oriented(start) + by + half * PI;
-        let direction = product.direction()?;
-        let beside = principal(direction - reached);
-        if beside.abs() > PI - APART {
-            return None;
-        }
-        let turned = Turn::NONE.on(reached + beside, direction);
-        Some(Turn { whole: turned.whole + whole, angle: direction })
-    }
-}
-
-/// By how many turns `angle` is to be moved to lie in the same half turn, of which the ends are multiples of π, as `other`.
-fn beside(angle: f64, other: f64) -> Option<i128> {
-    let half = (other / PI).floor();
-    let distance = |turns: f64| {
-        let angle = angle + TAU * turns;
-        (half * PI - angle).max(angle - (half + 1.0) * PI).max(0.0)
-    };
-    [-1i8, 0, 1].into_iter().find(|&turns| distance(turns.into()) < APART).map(i128::from)
 }
 
 /// Q with Q(t + τ) − Q(t) = L(t), τ = 2 d/length, from the last coefficient to the first.
-fn summed<T: Coefficient>(kind: Kind, logarithms: &[Series<T>; 2], stride: i64, length: i64) -> Option<Map<T>> {
+fn summed<T: Coefficient>(
+    kind: Kind,
+    logarithms: &[Series<T>; 2],
+    stride: i64,
+    length: i64,
+) -> Option<Map<T>> {
     let bits = T::BITS + 64;
     let tau = Ball::from_rational(&Rational::new(stride.into(), length.into()), bits).scale2(1);
     let terms = logarithms.iter().map(|x| x.0.len()).max().unwrap_or(1);
