@@ -31,8 +31,8 @@ use crate::propagator::TwoClocks;
 use map::Map;
 use number::{Coefficient, Long, exact};
 use run::{Branch, Budget};
-use turn::{Turn, direction, principal};
 use std::f64::consts::PI;
+use turn::{Turn, direction, principal};
 
 /// The precisions, in bits.
 pub const PRECISIONS: [u32; 3] = [53, 106, 256];

@@ -221,7 +221,8 @@ impl<T: Coefficient> Task for Quotient<'_, T> {
     fn run(self) -> Vec<Complex<T>> {
         let mut quotient: Vec<Complex<T>> = Vec::with_capacity(self.terms);
         for k in 0..self.terms {
-            let mut rest = if k < self.series.len() { self.series[k].clone() } else { [T::zero(), T::zero()] };
+            let mut rest =
+                if k < self.series.len() { self.series[k].clone() } else { [T::zero(), T::zero()] };
             for j in 1..self.divisor.len().min(k + 1) {
                 rest = plus(&rest, &negative(&times(&self.divisor[j], &quotient[k - j])));
             }

@@ -94,7 +94,14 @@ fn slow_products_are_what_kicks_give() {
 /// Bases at their own limit, beyond it, and repelling ones; two such clocks, too.
 #[test]
 fn return_maps_are_what_kicks_give_beyond_the_limit() {
-    let strengths = [ratio(-1, 10), ratio(0, 1), ratio(4, 1), ratio(399_999, 100_000), ratio(400_001, 100_000), ratio(9, 2)];
+    let strengths = [
+        ratio(-1, 10),
+        ratio(0, 1),
+        ratio(4, 1),
+        ratio(399_999, 100_000),
+        ratio(400_001, 100_000),
+        ratio(9, 2),
+    ];
     let (mut pairs, mut labels) = (0, 0);
     for s in &strengths {
         for k in [ratio(1, 10), ratio(-1, 1000), ratio(4, 1), ratio(5, 1), ratio(13, 10)] {
