@@ -77,38 +77,59 @@ impl Runs {
             let trace = Ball::from_integer(&(2 * i64::from(side.sign())).into());
             return Ok(Growth { trace, ln_multiplier: None, label: None });
         }
-        if let Some((products, nodes)) = self.returned(clocks, verdict) {
-            go_on()?;
-            return Ok(from_products(products, verdict, nodes));
+        let ratio = clocks.ratio();
+        // Where return maps decided, they also tell more than the filter's kicks could.
+        if self.refined.is_some() && returns::is_worth(ratio, 53) {
+            if let Some(Returned { products, label, .. }) =
+                self.returned(clocks, verdict, ACCURACY_OF_RETURNS)
+            {
+                go_on()?;
+                return Ok(from_products(products, verdict, label));
+            }
         }
-        let schedule = Schedule::two_clocks(clocks.ratio())?;
+        let schedule = Schedule::two_clocks(ratio)?;
         let filtered = self.filtered.unwrap_or_else(|| first_tier(clocks, &schedule));
         let label = filtered.as_ref().and_then(|ends| label(ends, verdict));
         if let Some(ends) = filtered.filter(|_| schedule.strikes() > WORTH_REFINING) {
             return Ok(from_products(products(&ends), verdict, label));
         }
-        limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
+        if returns::is_worth(ratio, 106) {
+            let found = self.returned(clocks, verdict, ACCURACY).filter(|found| found.is_enough);
+            go_on()?;
+            if let Some(Returned { products, label: nodes, .. }) = found {
+                return Ok(from_products(products, verdict, label.or(nodes)));
+            }
+        }
+        limits.allow(refine::kicks(ratio), Tier::Refine)?;
         let (products, nodes) = self.refined(clocks, &schedule, verdict)?;
         Ok(from_products(products, verdict, label.or(nodes)))
     }
 
-    /// By return maps where these decided, in so many bits as it takes: as near as they get.
+    /// By the known run, then by return maps in more bits, until `least` bits are known, and the label.
     fn returned<S: Decidable>(
         &self,
         clocks: &TwoClocks<S>,
         verdict: Verdict,
-    ) -> Option<(Products, Option<u64>)> {
-        let (ends, known) = self.refined.as_ref().filter(|_| returns::is_worth(clocks.ratio()))?;
-        let more = returns::PRECISIONS.into_iter().filter(|bits| bits > known);
-        let more = more.filter_map(|bits| Some((returns::run(clocks, bits)?, bits)));
-        let found = |ends: &refine::Ends, bits| {
-            accurate(ends, bits, verdict, ACCURACY_OF_RETURNS)
-                .filter(|(_, label)| label.is_some() || verdict.side() == 0)
+        least: i64,
+    ) -> Option<Returned> {
+        let of = |ends: &refine::Ends, bits| {
+            let (products, label) = (ends.products(2 * bits), from_nodes(ends, verdict));
+            // More bits than two doubles have tell no label that these do not.
+            let is_labelled = label.is_some() || verdict.side() == 0 || bits > 53;
+            let is_enough = products.accuracy() >= least && is_labelled;
+            Returned { products, label, is_enough }
         };
-        let as_known = || Some((ends.products(2 * known), from_nodes(ends, verdict)));
-        found(ends, *known)
-            .or_else(|| more.into_iter().find_map(|(ends, bits)| found(&ends, bits)))
-            .or_else(as_known)
+        let mut best = self.refined.as_ref().map(|(ends, bits)| of(ends, *bits));
+        let known = self.refined.as_ref().map_or(53, |(_, bits)| *bits);
+        for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits > known) {
+            if best.as_ref().is_some_and(|best| best.is_enough) {
+                break;
+            }
+            let Some(ends) = returns::run(clocks, bits) else { continue };
+            let found = of(&ends, bits);
+            best = Some(Returned { label: found.label.or(best.and_then(|best| best.label)), ..found });
+        }
+        best
     }
 
     /// Refines until the distance from ±2 is known to [`ACCURACY`] bits; with the label as the sign changes give it.
@@ -120,14 +141,14 @@ impl Runs {
     ) -> Result<(Products, Option<u64>)> {
         let mut bits = 128;
         if let Some((ends, known)) = &self.refined {
-            if let Some(found) = accurate(ends, *known, verdict, ACCURACY) {
+            if let Some(found) = accurate(ends, *known, verdict) {
                 return Ok(found);
             }
             bits = 2 * known;
         }
         loop {
             let ends = refine::run_at_any(clocks, schedule, bits);
-            if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict, ACCURACY)) {
+            if let Some(found) = ends.and_then(|ends| accurate(&ends, bits, verdict)) {
                 return Ok(found);
             }
             go_on()?;
@@ -160,6 +181,13 @@ pub fn filter_trace<S: Real>(clocks: &TwoClocks<S>) -> Option<Ball> {
     Some(from_products(products(&ends), Verdict::Elliptic, None).trace)
 }
 
+/// What return maps tell.
+struct Returned {
+    products: Products,
+    label: Option<u64>,
+    is_enough: bool,
+}
+
 /// BC and AD, as enclosures; AD − BC = 1.
 #[derive(Clone, Debug)]
 pub(super) struct Products {
@@ -184,13 +212,18 @@ fn from_products(products: Products, verdict: Verdict, label: Option<u64>) -> Gr
 }
 
 /// The products and the label, where `bits` bits were enough.
-fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict, least: i64) -> Option<(Products, Option<u64>)> {
+fn accurate(ends: &refine::Ends, bits: u32, verdict: Verdict) -> Option<(Products, Option<u64>)> {
     let products = ends.products(2 * bits);
-    let accuracy = products.bc.relative_accuracy_bits().min(products.ad.relative_accuracy_bits());
-    // Of a trace beyond 2^n only the logarithm is shown, which is known to log₂ n bits more.
-    let beyond = products.ad.top().unwrap_or(0).max(64) as u64;
-    let accuracy = accuracy.saturating_add(i64::from(beyond.ilog2()) - 6);
-    (accuracy >= least).then(|| (products, from_nodes(ends, verdict)))
+    (products.accuracy() >= ACCURACY).then(|| (products, from_nodes(ends, verdict)))
+}
+
+impl Products {
+    /// Bits to which both are known; of a trace beyond 2^n only the logarithm is shown, which is known to log₂ n bits more.
+    fn accuracy(&self) -> i64 {
+        let accuracy = self.bc.relative_accuracy_bits().min(self.ad.relative_accuracy_bits());
+        let beyond = self.ad.top().unwrap_or(0).max(64) as u64;
+        accuracy.saturating_add(i64::from(beyond.ilog2()) - 6)
+    }
 }
 
 impl refine::Ends {

@@ -33,8 +33,12 @@ pub fn decide<S: Decidable>(clocks: &TwoClocks<S>, limits: &Limits) -> Result<An
 /// As [`decide`].
 pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Limits) -> Result<Answer<S>> {
     let mut runs = Runs::default();
-    if let Some((verdict, decided_by)) = by_returns(first, clocks, &mut runs)? {
-        return Ok(answer(verdict, decided_by, clocks, limits, runs));
+    if first != Tier::Exact && returns::is_worth(clocks.ratio(), 53) {
+        let least = if first == Tier::Filter { 53 } else { 106 };
+        if let Some((verdict, bits)) = by_returns(clocks, least, &mut runs)? {
+            let decided_by = if bits == 53 { Tier::Filter } else { Tier::Refine };
+            return Ok(answer(verdict, decided_by, clocks, limits, runs));
+        }
     }
     for decided_by in Tier::ALL.into_iter().filter(|&tier| tier >= first) {
         let verdict = match decided_by {
@@ -59,26 +63,19 @@ fn answer<S: Decidable>(
     Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() }
 }
 
-/// Long periods by their return maps: in doubles, then in more bits. `None` where the period is short, and where no precision
-/// decides: an entry may be zero, or a partial quotient too large.
+/// By return maps in `least` bits, then in more; with the bits that decide. `None` where no precision does: an entry may be
+/// zero, or a partial quotient too large.
 fn by_returns<S: Decidable>(
-    first: Tier,
     clocks: &TwoClocks<S>,
+    least: u32,
     runs: &mut Runs,
-) -> Result<Option<(Verdict, Tier)>> {
-    if first == Tier::Exact || !returns::is_worth(clocks.ratio()) {
-        return Ok(None);
-    }
-    for bits in returns::PRECISIONS {
-        let tier = if bits == returns::PRECISIONS[0] { Tier::Filter } else { Tier::Refine };
-        if tier < first {
-            continue;
-        }
+) -> Result<Option<(Verdict, u32)>> {
+    for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits >= least) {
         go_on()?;
         let Some(ends) = returns::run(clocks, bits) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             runs.refined = Some((ends, bits));
-            return Ok(Some((verdict, tier)));
+            return Ok(Some((verdict, bits)));
         }
     }
     go_on().map(|()| None)
@@ -120,8 +117,15 @@ fn by_refine<S: Decidable>(
     limits: &Limits,
     runs: &mut Runs,
 ) -> Result<Option<Verdict>> {
-    let schedule = Schedule::two_clocks(clocks.ratio())?;
-    limits.allow(refine::kicks(clocks.ratio()), Tier::Refine)?;
+    let ratio = clocks.ratio();
+    // From there on they were tried before the filter.
+    if returns::is_worth(ratio, 106) && !returns::is_worth(ratio, 53) {
+        if let Some((verdict, _)) = by_returns(clocks, 106, runs)? {
+            return Ok(Some(verdict));
+        }
+    }
+    let schedule = Schedule::two_clocks(ratio)?;
+    limits.allow(refine::kicks(ratio), Tier::Refine)?;
     let mut verdict = |bits: u32| {
         let ends = refine::run_at_any(clocks, &schedule, bits)?;
         let verdict = ends.signs().verdict();

@@ -12,9 +12,10 @@
 //! intervals. The first n maps from x = 0 are a few returns of the deepest level whose heights fit, then of the next, and so on
 //! (Ostrowski's numeration). All lengths and heights are exact.
 
+use super::branch::{Branch, Budget};
 use super::map::Map;
 use super::number::Coefficient;
-use super::run::{Branch, Budget, Run};
+use super::run::Run;
 
 /// The two branches of one level; the longer one is the one that runs.
 struct Level<T> {

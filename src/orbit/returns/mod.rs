@@ -14,6 +14,7 @@
 //! period is a product of such maps along the orbit of x, half a kick before it, and what is left up to T/2 after it. Winding
 //! comes out of the same run: each product has its [`Turn`], so the sign changes of x are known without following them.
 
+mod branch;
 mod euclid;
 mod map;
 mod number;
@@ -28,9 +29,9 @@ use super::ends::{End, Ends};
 use super::leap::{Matrix, product};
 use crate::number::{Ball, Ratio, Rational, Real, Sign, Twofold};
 use crate::propagator::TwoClocks;
+use branch::{Branch, Budget};
 use map::Map;
 use number::{Coefficient, Long, exact};
-use run::{Branch, Budget};
 use std::f64::consts::PI;
 use turn::{Turn, direction, principal};
 
@@ -40,7 +41,10 @@ pub const PRECISIONS: [u32; 3] = [53, 106, 256];
 /// From so many kicks of each clock on, return maps in doubles are cheaper than the filter's kicks (tests/bench/README.md).
 const LONG: u64 = 1 << 16;
 
-/// From so many kicks of each clock on, doubles have no digits left.
+/// From so many on, return maps in two doubles are cheaper than kicks in 128 bits.
+const LONG_FOR_BITS: u64 = 1 << 9;
+
+/// From so many on, doubles have no digits left.
 const TOO_LONG_FOR_DOUBLES: u64 = 1 << 44;
 
 /// Bits of an angle that is multiplied by up to 2^62.
@@ -49,9 +53,9 @@ const WHOLE: u32 = 112;
 /// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
 const LEAST_UNIT: f64 = 1e-3;
 
-/// Whether the period is so long that its return maps are to be tried before its kicks.
-pub fn is_worth(ratio: Ratio) -> bool {
-    ratio.p().min(ratio.q()) >= LONG
+/// Whether the period is so long that its return maps are to be tried before its kicks, in doubles or in more bits.
+pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
+    ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
 }
 
 /// The half period in numbers of so many bits, or more; `None` where the bound loses all digits, where a partial

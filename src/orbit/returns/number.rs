@@ -10,7 +10,7 @@ pub trait Coefficient: Clone {
     const BITS: u32;
     /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as small as UNIT.
     const TERMS: usize;
-    /// The most products of functions that one run may cost: a second or a few.
+    /// The most products of functions that one run may cost: a fraction of a second, or about one.
     const PRODUCTS: u64;
     /// The error that a product of many factors may have, where rounding leaves it so small.
     const CLOSE: f64;
@@ -41,7 +41,7 @@ impl Coefficient for f64 {
     const UNIT: f64 = U;
     const BITS: u32 = 80;
     const TERMS: usize = 13;
-    const PRODUCTS: u64 = 400_000;
+    const PRODUCTS: u64 = 50_000;
     const CLOSE: f64 = 1e-8;
 
     fn zero() -> Self {
@@ -91,7 +91,7 @@ impl Coefficient for Twofold {
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
     const BITS: u32 = 130;
     const TERMS: usize = 22;
-    const PRODUCTS: u64 = 100_000;
+    const PRODUCTS: u64 = 20_000;
     const CLOSE: f64 = 1e-13;
 
     fn zero() -> Self {

@@ -11,11 +11,11 @@ mod normal;
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use super::branch::{Branch, Budget};
 use super::map::Map;
 use super::number::Coefficient;
-use super::run::{Branch, Budget};
 use near::Near;
-use normal::Normal;
+use normal::{Normal, roundings};
 
 /// From so many factors on, pieces are cheaper than doubling.
 pub const WORTH: u64 = 1 << 10;
@@ -28,11 +28,6 @@ const ATTEMPT: u64 = 20;
 
 /// A product that its factors' roundings leave no more digits is not begun.
 const HOPELESS: f64 = 1e-6;
-
-/// What rounding adds to the bound of a product of n factors, about.
-fn roundings<T: Coefficient>(n: u64) -> f64 {
-    1000.0 * T::UNIT * n as f64
-}
 
 enum Form<T> {
     Normal(Box<Normal<T>>),

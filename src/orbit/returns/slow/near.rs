@@ -4,9 +4,9 @@
 //! are equally small, B = G A G⁻¹ = c + X with n |X| of some units for all n steps of the piece. So the products of 2^i factors
 //! vary like exponentials of 2^i X, and are functions on all of the piece as long as 2^i |X| < 1.
 
+use super::super::branch::{Branch, Budget};
 use super::super::map::Map;
 use super::super::number::Coefficient;
-use super::super::run::{Branch, Budget};
 use super::normal::inverses;
 
 /// The most that the factors of a piece may do together, n |X|.

@@ -13,14 +13,19 @@
 //! first multiplier the larger one on all of the piece. W and L are polynomials with floating coefficients, exactly; how they
 //! were found is of no concern, R is bounded by maps. The sum is Q(x + n d) − Q(x), Q the polynomial with Q(x + d) − Q(x) = L(x).
 
+use super::super::branch::Branch;
 use super::super::map::{Entries, Map};
 use super::super::number::Coefficient;
-use super::super::run::Branch;
 use super::super::series::Series;
 use super::super::turn::Turn;
 use crate::number::{Ball, Rational};
 use num_traits::ToPrimitive;
 use std::f64::consts::PI;
+
+/// What rounding adds to the bound of a product of n factors, about.
+pub fn roundings<T: Coefficient>(n: u64) -> f64 {
+    1000.0 * T::UNIT * n as f64
+}
 
 /// The most corrections: more of them gain less than rounding takes.
 const CORRECTIONS: usize = 24;
@@ -328,7 +333,7 @@ impl<T: Coefficient> Normal<T> {
         let rest = moved.plus(&kept.negative()).size();
         let error = rest * columns.map.size() * (varied - first).exp() * (1.0 + 1e-9);
         let lost = error * steps as f64;
-        if lost.is_nan() || lost > T::CLOSE.max(super::roundings::<T>(steps)) {
+        if lost.is_nan() || lost > T::CLOSE.max(roundings::<T>(steps)) {
             return None;
         }
         let sum = on(summed(kind, &logarithms, stride, length)?);
