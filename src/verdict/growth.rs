@@ -79,13 +79,13 @@ impl Runs {
         }
         let ratio = clocks.ratio();
         // Where return maps decided, they also tell more than the filter's kicks could.
-        if self.refined.is_some() && returns::is_worth(ratio, 53) {
-            if let Some(Returned { products, label, .. }) =
+        if self.refined.is_some()
+            && returns::is_worth(ratio, 53)
+            && let Some(Returned { products, label, .. }) =
                 self.returned(clocks, verdict, ACCURACY_OF_RETURNS)
-            {
-                go_on()?;
-                return Ok(from_products(products, verdict, label));
-            }
+        {
+            go_on()?;
+            return Ok(from_products(products, verdict, label));
         }
         let schedule = Schedule::two_clocks(ratio)?;
         let filtered = self.filtered.unwrap_or_else(|| first_tier(clocks, &schedule));

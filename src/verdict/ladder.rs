@@ -119,10 +119,11 @@ fn by_refine<S: Decidable>(
 ) -> Result<Option<Verdict>> {
     let ratio = clocks.ratio();
     // From there on they were tried before the filter.
-    if returns::is_worth(ratio, 106) && !returns::is_worth(ratio, 53) {
-        if let Some((verdict, _)) = by_returns(clocks, 106, runs)? {
-            return Ok(Some(verdict));
-        }
+    if returns::is_worth(ratio, 106)
+        && !returns::is_worth(ratio, 53)
+        && let Some((verdict, _)) = by_returns(clocks, 106, runs)?
+    {
+        return Ok(Some(verdict));
     }
     let schedule = Schedule::two_clocks(ratio)?;
     limits.allow(refine::kicks(ratio), Tier::Refine)?;

@@ -303,8 +303,9 @@ impl<T: Coefficient> Task for Part<'_, T> {
         let Part { mut terms, alpha, beta } = self;
         for i in 0..terms.len() {
             for j in (i..terms.len() - 1).rev() {
-                for k in 0..4 {
-                    terms[j][k] = terms[j][k].plus(&alpha.times(&terms[j + 1][k]));
+                let [term, next] = &mut terms[j..j + 2] else { unreachable!("two in a row") };
+                for (entry, next) in term.iter_mut().zip(next) {
+                    *entry = entry.plus(&alpha.times(next));
                 }
             }
         }

@@ -187,7 +187,7 @@ impl Frame {
             }
             Turning::Half => {
                 // By −nπ, and then by less than a right angle.
-                let half = if n % 2 == 0 { 0.0 } else { -PI };
+                let half = if n.is_multiple_of(2) { 0.0 } else { -PI };
                 let beside = principal(angle - half);
                 Some(Turn { whole: -i128::from(n / 2), ..Turn::NONE }.on(half + beside, angle))
             }

@@ -140,7 +140,7 @@ impl Coefficient for Twofold {
         let (d, above) = (u128::from(d), dividend / u128::from(d));
         let first = (dividend % d) << 64;
         let second = (first % d) << 64;
-        let [first, second] = [above << 64 | first / d, second / d];
+        let [first, second] = [(above << 64) | (first / d), second / d];
         let hi = first as f64;
         let lo = (first as i128 - hi as i128) as f64;
         let unit = 2f64.powi(-64 - shift as i32).copysign(n as f64);
