@@ -1,4 +1,5 @@
-//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
+//! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder, for very long ones
+//! return maps over the other clock.
 
 use serde_json::Value;
 
@@ -6,15 +7,15 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Written};
-use crate::error::Result;
+use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Ball, Laurent, Rational, Real};
+use crate::orbit::returns;
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::question::{self, Question};
 use crate::resonance::dominant_family;
-use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace, growth};
+use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth};
 
-const ROUTE: &str =
-    "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder";
+const ROUTE: &str = "the full period, kick by kick, in exact arithmetic; long periods: the next tier of the ladder, or return maps over the other clock";
 
 rows! {
     /// `kickdrift/verdict/1`.
@@ -56,6 +57,8 @@ struct Truth {
     trace: Ball,
     ln_multiplier: Option<Ball>,
     exact: Option<Rational>,
+    /// m, where another route tells it; `None` where the kicks have to be followed for it.
+    label: Option<Option<u64>>,
 }
 
 const BITS: u32 = 192;
@@ -71,8 +74,25 @@ impl Recheck for Claim {
 
     fn check(&self, oscillator: Oscillator, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let holds = |row: &Claim| row.holds(&oscillator, &context.limits());
+        let clocks = oscillator.clocks();
+        let truth = match self.truth(&clocks, &context.limits()) {
+            // Kicks that nobody can follow.
+            Err(error) if error.kind() == ErrorKind::Budget && returns::is_worth(clocks.ratio(), 53) => None,
+            truth => Some(truth?),
+        };
+        let holds = |row: &Claim| {
+            truth.as_ref().map_or(Ok(()), |truth| row.holds(&oscillator, truth, &context.limits()))
+        };
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
+        match truth {
+            None => outcome.not_rechecked.push(
+                "any value by another route, for none decides so long a period: computed again only".into(),
+            ),
+            Some(Truth { label: Some(None), .. }) if self.resonance.is_some() => {
+                outcome.not_rechecked.push("resonance by another route: computed again only".into());
+            }
+            Some(_) => {}
+        }
         if self.input.friction.is_some() {
             outcome.not_rechecked.push("friction by another route: computed again only".into());
         }
@@ -81,17 +101,16 @@ impl Recheck for Claim {
 }
 
 impl Claim {
-    fn holds(&self, oscillator: &Oscillator, limits: &Limits) -> Checked {
+    fn holds(&self, oscillator: &Oscillator, truth: &Truth, limits: &Limits) -> Checked {
         let clocks = oscillator.clocks();
         let ratio = (self.p, self.q);
         holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
-        let truth = self.truth(&clocks, limits)?;
-        self.against(&truth)?;
-        self.numbers(oscillator, &truth)?;
-        self.label(&clocks, limits)
+        self.against(truth)?;
+        self.numbers(oscillator, truth)?;
+        self.label(&clocks, truth, limits)
     }
 
-    /// The full period where that is affordable, else a tier that did not decide.
+    /// The full period where that is affordable, else return maps or a tier that did not decide.
     fn truth(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Truth> {
         if affordable(clocks) {
             let FullPeriod { verdict, trace } = full_period(clocks);
@@ -102,13 +121,20 @@ impl Claim {
                 trace: trace.enclosure(BITS),
                 ln_multiplier,
                 exact: trace.as_rational(),
+                label: None,
             });
         }
-        let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
-        let verdict = again(tier, clocks, limits)?.verdict;
-        let Growth { trace, ln_multiplier, .. } = growth(clocks, verdict, limits)?;
+        let (verdict, Growth { trace, ln_multiplier, label }, is_long) = match decide_anew(clocks)? {
+            Some(answer) => (answer.verdict, answer.growth()?.clone(), true),
+            None => {
+                let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
+                let verdict = again(tier, clocks, limits)?.verdict;
+                (verdict, growth(clocks, verdict, limits)?, false)
+            }
+        };
         let rational = clocks.as_rational().filter(|_| self.trace.exact.is_some());
-        Ok(Truth { verdict, trace, ln_multiplier, exact: rational.map(|clocks| exact_trace(&clocks)) })
+        let exact = rational.map(|clocks| exact_trace(&clocks));
+        Ok(Truth { verdict, trace, ln_multiplier, exact, label: is_long.then_some(label) })
     }
 
     fn against(&self, truth: &Truth) -> Checked {
@@ -137,18 +163,20 @@ impl Claim {
     }
 
     /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
-    fn label(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Checked {
-        let (p, q) = clocks.ratio().terms();
-        // Families beyond 31 bits are not written.
-        let due = *self.kind == Kind::Hyperbolic && p.max(q) < 1 << 31;
+    fn label(&self, clocks: &TwoClocks<Laurent>, truth: &Truth, limits: &Limits) -> Checked {
+        // Return maps need not tell a label.
+        let due = truth.label.map_or(*self.kind == Kind::Hyperbolic, |label| label.is_some());
         let Some(Resonance { m, a, b }) = self.resonance else {
             return holds(!due, || "what grows has a label".into());
         };
-        holds(due && m < 1 << 31, || "has no label".into())?;
-        let verdict = again(Tier::Refine, clocks, limits)?.verdict;
-        let turns = growth(clocks, verdict, limits)?.label;
-        holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))?;
+        holds(*self.kind == Kind::Hyperbolic && m < 1 << 62, || "has no label".into())?;
         let family = dominant_family(clocks.ratio(), m);
-        holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))
+        holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))?;
+        let turns = match truth.label {
+            Some(None) => return Ok(()),
+            Some(turns) => turns,
+            None => growth(clocks, again(Tier::Refine, clocks, limits)?.verdict, limits)?.label,
+        };
+        holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))
     }
 }

@@ -151,6 +151,9 @@ impl TryFrom<RawEnds> for Ends {
     }
 }
 
+/// The logarithm of what lies beyond every double, where an outward rounding to doubles loses nothing that is written.
+const BEYOND_DOUBLES: i64 = 2000;
+
 impl Ends {
     /// `None` where the ends are those of no enclosure.
     pub fn new(lo: Option<f64>, hi: Option<f64>) -> Option<Ends> {
@@ -161,6 +164,11 @@ impl Ends {
 
     /// Whether the ball's value can lie inside.
     pub fn holds(&self, ball: &Ball) -> bool {
+        // Far beyond doubles a ball is not worth its digits.
+        if ball.top().is_some_and(|log2| log2 > BEYOND_DOUBLES) {
+            let (lower, upper) = ball.to_f64_enclosure();
+            return self.lo <= upper && lower <= self.hi;
+        }
         let below = rational::from_f64_exact(self.lo).is_none_or(|lo| lo <= ball.upper());
         below && rational::from_f64_exact(self.hi).is_none_or(|hi| ball.lower() <= hi)
     }

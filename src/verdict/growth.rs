@@ -78,8 +78,8 @@ impl Runs {
             return Ok(Growth { trace, ln_multiplier: None, label: None });
         }
         let ratio = clocks.ratio();
-        // Where return maps decided, they also tell more than the filter's kicks could.
-        if self.refined.is_some()
+        // Unless kicks had to decide, return maps tell more than the filter's could.
+        if (self.refined.is_some() || self.filtered.is_none())
             && returns::is_worth(ratio, 53)
             && let Some(Returned { products, label, .. }) =
                 self.returned(clocks, verdict, ACCURACY_OF_RETURNS)
@@ -121,7 +121,9 @@ impl Runs {
         };
         let mut best = self.refined.as_ref().map(|(ends, bits)| of(ends, *bits));
         let known = self.refined.as_ref().map_or(53, |(_, bits)| *bits);
-        for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits > known) {
+        // Where kicks are few, 128 bits of them cost less than return maps in 256.
+        let most = if returns::is_worth(clocks.ratio(), 53) { u32::MAX } else { 106 };
+        for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits > known && bits <= most) {
             if best.as_ref().is_some_and(|best| best.is_enough) {
                 break;
             }

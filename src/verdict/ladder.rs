@@ -1,5 +1,6 @@
 //! filter → refine → exact.
 
+use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
 use super::answer::Answer;
@@ -35,7 +36,7 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
     let mut runs = Runs::default();
     if first != Tier::Exact && returns::is_worth(clocks.ratio(), 53) {
         let least = if first == Tier::Filter { 53 } else { 106 };
-        if let Some((verdict, bits)) = by_returns(clocks, least, &mut runs)? {
+        if let Some((verdict, bits)) = by_returns(clocks, least..=256, &mut runs)? {
             let decided_by = if bits == 53 { Tier::Filter } else { Tier::Refine };
             return Ok(answer(verdict, decided_by, clocks, limits, runs));
         }
@@ -53,6 +54,29 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
     unreachable!("the exact tier decides every pair")
 }
 
+/// Decides a long period by another route than [`decide`]: return maps over the other clock, or in more bits. `None` where the period
+/// is short, and where neither decides.
+///
+/// # Errors
+/// `Stopped`.
+pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<S>>> {
+    if !returns::is_worth(clocks.ratio(), 53) {
+        return Ok(None);
+    }
+    let [_, middle, most] = returns::PRECISIONS;
+    let routes = [(true, middle), (false, most)];
+    for (over_other, bits) in routes {
+        go_on()?;
+        let run = if over_other { returns::run_over_other } else { returns::run };
+        let Some(ends) = run(clocks, bits) else { continue };
+        if let Some(verdict) = ends.signs().verdict() {
+            let runs = Runs { refined: Some((ends, bits)), ..Runs::default() };
+            return Ok(Some(answer(verdict, Tier::Refine, clocks, &Limits::default(), runs)));
+        }
+    }
+    go_on().map(|()| None)
+}
+
 fn answer<S: Decidable>(
     verdict: Verdict,
     decided_by: Tier,
@@ -63,14 +87,14 @@ fn answer<S: Decidable>(
     Answer { verdict, decided_by, clocks: clocks.clone(), limits: *limits, runs, growth: OnceLock::new() }
 }
 
-/// By return maps in `least` bits, then in more; with the bits that decide. `None` where no precision does: an entry may be
+/// By return maps in the least of these bits, then in more; with the bits that decide. `None` where no precision does: an entry may be
 /// zero, or a partial quotient too large.
 fn by_returns<S: Decidable>(
     clocks: &TwoClocks<S>,
-    least: u32,
+    precisions: RangeInclusive<u32>,
     runs: &mut Runs,
 ) -> Result<Option<(Verdict, u32)>> {
-    for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits >= least) {
+    for bits in returns::PRECISIONS.into_iter().filter(|bits| precisions.contains(bits)) {
         go_on()?;
         let Some(ends) = returns::run(clocks, bits) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
@@ -121,7 +145,7 @@ fn by_refine<S: Decidable>(
     // From there on they were tried before the filter.
     if returns::is_worth(ratio, 106)
         && !returns::is_worth(ratio, 53)
-        && let Some((verdict, _)) = by_returns(clocks, 106, runs)?
+        && let Some((verdict, _)) = by_returns(clocks, 106..=106, runs)?
     {
         return Ok(Some(verdict));
     }

@@ -60,26 +60,35 @@ pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
 
 /// The half period in numbers of so many bits, or more; `None` where the bound loses all digits, where a partial
 /// quotient asks for too many products, and where the work was stopped.
+///
+/// The base is the clock by which the other one's kicks distort less, or the other where that fails.
 pub fn run<S: Real>(clocks: &TwoClocks<S>, bits: u32) -> Option<Ends> {
+    let fast = distortion(clocks) <= distortion(&clocks.swapped());
+    over(clocks, fast, bits).or_else(|| over(clocks, !fast, bits))
+}
+
+/// As [`run`], over the clock that distorts more alone: another route to the same numbers.
+pub fn run_over_other<S: Real>(clocks: &TwoClocks<S>, bits: u32) -> Option<Ends> {
+    over(clocks, distortion(clocks) > distortion(&clocks.swapped()), bits)
+}
+
+/// With the fast or the slow clock as the base.
+fn over<S: Real>(clocks: &TwoClocks<S>, fast: bool, bits: u32) -> Option<Ends> {
     match bits {
         0..=53 if clocks.p().min(clocks.q()) > TOO_LONG_FOR_DOUBLES => None,
-        0..=53 => run_in::<S, f64>(clocks),
-        54..=106 => run_in::<S, Twofold>(clocks),
-        107..=256 => run_in::<S, Long<256>>(clocks),
+        0..=53 => over_in::<S, f64>(clocks, fast),
+        54..=106 => over_in::<S, Twofold>(clocks, fast),
+        107..=256 => over_in::<S, Long<256>>(clocks, fast),
         _ => None,
     }
 }
 
-/// With the clock as the base by which the other one's kicks distort less, or the other where that fails.
-fn run_in<S: Real, T: Coefficient>(clocks: &TwoClocks<S>) -> Option<Ends> {
-    let own = || Frame::new::<S, T>(clocks)?.ends::<T>();
-    let swapped =
-        || Some(in_first_unit(Frame::new::<S, T>(&clocks.swapped())?.ends::<T>()?, clocks.ratio(), T::BITS));
-    if distortion(clocks) <= distortion(&clocks.swapped()) {
-        own().or_else(swapped)
-    } else {
-        swapped().or_else(own)
+fn over_in<S: Real, T: Coefficient>(clocks: &TwoClocks<S>, fast: bool) -> Option<Ends> {
+    if fast {
+        return Frame::new::<S, T>(clocks)?.ends::<T>();
     }
+    let ends = Frame::new::<S, T>(&clocks.swapped())?.ends::<T>()?;
+    Some(in_first_unit(ends, clocks.ratio(), T::BITS))
 }
 
 /// The norm of the other clock's kick in the base's coordinates, about; far more where the base is beyond its own limit.
