@@ -2,6 +2,7 @@
 
 use super::grid::Grid;
 use super::shard::Shard;
+use super::work::MOST_TOGETHER;
 use crate::error::{Error, Result};
 use crate::verdict::Limits;
 
@@ -12,7 +13,7 @@ const TIMES_A_PAIR: u64 = 10_000;
 const SAMPLE: u64 = 1 << 16;
 
 impl Grid {
-    /// How many kicks the verdicts compose, Σ (min(p, q)/2 + 1): exact for grids of up to 2^16 pairs, else from as many
+    /// How many kicks the verdicts compose, Σ (min(p, q)/2 + 1), with as much as a long period's return maps cost at most: exact for grids of up to 2^16 pairs, else from as many
     /// of them, drawn the same way each time. min(p, q) varies by about as much as its mean, so the estimate is off by
     /// 0.4 %, one standard deviation.
     pub fn kicks(&self) -> f64 {
@@ -20,7 +21,7 @@ impl Grid {
         let kicks = |n: u64| {
             let rows = self.shape().1 as u64;
             let ratio = self.ratio(self.columns().0 + n / rows, self.rows().0 + n % rows);
-            (ratio.p().min(ratio.q()) / 2 + 1) as f64
+            (ratio.p().min(ratio.q()) / 2 + 1).min(MOST_TOGETHER) as f64
         };
         if pairs <= SAMPLE {
             return (0..pairs).map(kicks).sum();
@@ -29,10 +30,10 @@ impl Grid {
         sum / SAMPLE as f64 * pairs as f64
     }
 
-    /// No pair composes more kicks than this.
+    /// No pair costs more kicks than this.
     pub fn longest(&self) -> u64 {
         let (a, b) = self.step_ratio();
-        (self.columns().1 * b).min(self.rows().1 * a) / 2 + 1
+        ((self.columns().1 * b).min(self.rows().1 * a) / 2 + 1).min(MOST_TOGETHER)
     }
 }
 

@@ -5,12 +5,12 @@ use super::bases::OnBase;
 use super::enclosure::Enclosure;
 use super::growth::ln_multiplier;
 use super::products::{Growing, Products};
-use super::work::{LANES, Work};
+use super::work::{LANES, MOST_TOGETHER, Work};
 use crate::error::Result;
 use crate::number::Laurent;
 use crate::orbit::filter::{Ends, Group};
 use crate::orbit::floquet::{Floquet, Pair};
-use crate::orbit::plain;
+use crate::orbit::{plain, returns};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 use crate::vector::instructions::Instructions;
@@ -27,7 +27,7 @@ impl Work<'_> {
         let mut kicks = 0;
         for most in BLOCKS {
             let (mut group, mut ends) = (Group::<LANES>::watched(Instructions::best(), most), [None; LANES]);
-            kicks += self.side_by_side(&rest, |pairs, positions| {
+            kicks += self.side_by_side(&rest, MOST_TOGETHER, |pairs, positions| {
                 let pairs: Vec<Pair> = pairs.iter().map(OnBase::pair).collect();
                 let ends = &mut ends[..pairs.len()];
                 if products.label {
@@ -71,8 +71,11 @@ const BLOCKS: [u64; 2] = [4, 1];
 /// Growth that the filter knows less well than this, relatively, is computed with more bits.
 const PRECISION: f64 = 1e-6;
 
-/// What the runs in doubles, for a pair that has no base, and in two doubles give.
+/// What the runs in doubles, for a pair that has no base, and in two doubles give; nothing of long periods, which have return maps.
 fn kick_by_kick<T>(clocks: &TwoClocks<Laurent>, mut found: impl FnMut(Ends) -> Option<T>) -> Option<T> {
+    if returns::is_worth(clocks.ratio(), 53) {
+        return None;
+    }
     let schedule = Schedule::two_clocks(clocks.ratio()).ok()?;
     let quick = if Floquet::new(clocks).is_none() { plain::run(clocks, &schedule) } else { None };
     quick.and_then(&mut found).or_else(|| found(plain::sharp(clocks, &schedule)?))

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::resources::Resources;
-use super::work::{LANES, by_counting, in_groups};
+use super::work::{LANES, MOST_TOGETHER, by_counting, in_groups};
 use crate::error::Result;
 use crate::orbit::filter::UNDECIDED;
 use crate::orbit::strengths::{Placed, Strengths};
@@ -117,8 +117,8 @@ fn together<P: Source + ?Sized>(
 ) -> Result<Vec<Decision>> {
     resources.go_on()?;
     let limits = &resources.limits;
-    // Longer ones than the limits allow are left to the ladder, which says so.
-    let allowed = |pair: &Strengths| pair.updates() < limits.kicks;
+    // The ladder says so where one is longer than the limits allow.
+    let allowed = |pair: &Strengths| pair.updates() < limits.kicks.min(MOST_TOGETHER);
     let (first, mut unsorted) = (part.start, Unsorted::of_at_most(part.len()));
     source.strengths(part.clone(), |n, strengths| {
         if allowed(&strengths) {

@@ -16,6 +16,9 @@ use crate::verdict::{Limits, decide};
 /// Pairs that run side by side: four AVX-512 registers hide each other's latency.
 pub(super) const LANES: usize = 32;
 
+/// Longer pairs are left to the ladder, whose return maps cost less than so many updates in a group (tests/bench/README.md).
+pub(super) const MOST_TOGETHER: u64 = 1 << 16;
+
 /// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not certify, and these
 /// again where there are enough: long ones, for which a look at every update is the sharpest bound, and still many times
 /// faster than one by one. Returns what is left.
@@ -113,7 +116,7 @@ impl<'a> Work<'a> {
 
     /// The verdicts of the pairs at these positions as far as the groups certify them, and the kicks that it took.
     fn decide_in(&self, mut group: Group<LANES>, order: &[u32], verdicts: &mut [u8]) -> Result<u64> {
-        self.side_by_side(order, |pairs, positions| {
+        self.side_by_side(order, MOST_TOGETHER, |pairs, positions| {
             let found = group.verdicts(pairs);
             positions.iter().zip(found).for_each(|(&n, verdict)| verdicts[n] = verdict);
             group.kicks()
@@ -122,7 +125,7 @@ impl<'a> Work<'a> {
 
     pub(super) fn uncertified_unstable(&self) -> Result<u64> {
         let (mut group, mut unstable) = (Group::<LANES>::new(Instructions::best()), 0);
-        self.side_by_side(&self.order, |pairs, _| {
+        self.side_by_side(&self.order, u64::MAX, |pairs, _| {
             let verdicts = group.uncertified(pairs);
             unstable += verdicts[..pairs.len()].iter().filter(|&&verdict| verdict != 0).count() as u64;
             group.kicks()
@@ -131,10 +134,11 @@ impl<'a> Work<'a> {
     }
 
     /// Hands the pairs at the given positions, which are in the order of their updates, on in groups that run side by side, without
-    /// those that have no base, and counts the kicks that the groups say they compose.
+    /// those that have no base or more than `most` updates, and counts the kicks that the groups say they compose.
     pub(super) fn side_by_side(
         &self,
         order: &[u32],
+        most: u64,
         mut run: impl FnMut(&[OnBase], &[usize]) -> u64,
     ) -> Result<u64> {
         let mut kicks = 0;
@@ -145,7 +149,8 @@ impl<'a> Work<'a> {
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
                 let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
-                if let Some(pair) = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd) {
+                let pair = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd);
+                if let Some(pair) = pair.filter(|pair| pair.updates() <= most) {
                     pairs.push(pair);
                     positions.push(n);
                 }

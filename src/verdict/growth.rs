@@ -16,7 +16,8 @@ use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
-use crate::orbit::{filter, plain, refine, returns};
+use crate::orbit::returns::{self, Wanted};
+use crate::orbit::{filter, plain, refine};
 use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -120,14 +121,17 @@ impl Runs {
             Returned { products, label, is_enough }
         };
         let mut best = self.refined.as_ref().map(|(ends, bits)| of(ends, *bits));
-        let known = self.refined.as_ref().map_or(53, |(_, bits)| *bits);
+        // For the label the same bits may do, with the sign changes that a verdict alone does not ask for.
+        let wanted = if verdict.side() == 0 { Wanted::Entries } else { Wanted::Nodes };
+        let known = self.refined.as_ref().map_or(0, |(_, bits)| *bits);
+        let from = if wanted == Wanted::Nodes { known } else { known + 1 };
         // Where kicks are few, 128 bits of them cost less than return maps in 256.
         let most = if returns::is_worth(clocks.ratio(), 53) { u32::MAX } else { 106 };
-        for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits > known && bits <= most) {
+        for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits >= from && bits <= most) {
             if best.as_ref().is_some_and(|best| best.is_enough) {
                 break;
             }
-            let Some(ends) = returns::run(clocks, bits) else { continue };
+            let Some(ends) = returns::run(clocks, bits, wanted) else { continue };
             let found = of(&ends, bits);
             best = Some(Returned { label: found.label.or(best.and_then(|best| best.label)), ..found });
         }

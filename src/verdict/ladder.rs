@@ -11,7 +11,8 @@ use super::lone;
 use super::tier::{Limits, Tier};
 use crate::error::Result;
 use crate::orbit::floquet::Floquet;
-use crate::orbit::{filter, plain, refine, returns};
+use crate::orbit::returns::{self, Wanted};
+use crate::orbit::{filter, plain, refine};
 use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -68,7 +69,7 @@ pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<
     for (over_other, bits) in routes {
         go_on()?;
         let run = if over_other { returns::run_over_other } else { returns::run };
-        let Some(ends) = run(clocks, bits) else { continue };
+        let Some(ends) = run(clocks, bits, Wanted::Entries) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             let runs = Runs { refined: Some((ends, bits)), ..Runs::default() };
             return Ok(Some(answer(verdict, Tier::Refine, clocks, &Limits::default(), runs)));
@@ -96,7 +97,7 @@ fn by_returns<S: Decidable>(
 ) -> Result<Option<(Verdict, u32)>> {
     for bits in returns::PRECISIONS.into_iter().filter(|bits| precisions.contains(bits)) {
         go_on()?;
-        let Some(ends) = returns::run(clocks, bits) else { continue };
+        let Some(ends) = returns::run(clocks, bits, Wanted::Entries) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             runs.refined = Some((ends, bits));
             return Ok(Some((verdict, bits)));

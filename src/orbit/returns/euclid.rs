@@ -13,6 +13,7 @@
 //! (Ostrowski's numeration). All lengths and heights are exact.
 
 use super::branch::{Branch, Budget};
+use super::fit;
 use super::map::Map;
 use super::number::Coefficient;
 use super::run::Run;
@@ -21,6 +22,8 @@ use super::run::Run;
 struct Level<T> {
     left: Run<T>,
     right: Run<T>,
+    /// From its coordinates to those of the level above.
+    back: Option<Map<T>>,
 }
 
 /// The product of the first n maps from x = 0, and the place reached; `None` where the budget or a bound does not last.
@@ -33,8 +36,8 @@ pub fn walk<T: Coefficient>(
     if n == 0 {
         return Some((Map::identity(), 0));
     }
-    let mut levels = descend(left, right, n, budget)?;
-    let (mut product, mut x, mut n) = (Map::identity(), 0, n);
+    let (mut levels, mut product) = descend(left, right, n, budget)?;
+    let (mut x, mut n) = (0, n);
     while let Some(mut level) = levels.pop() {
         while let Some((value, steps)) = level.next(x, n, budget)? {
             let (stride, height) = level.moves(x);
@@ -45,23 +48,33 @@ pub fn walk<T: Coefficient>(
             x += stride * steps as i64;
             n -= height * steps;
         }
+        if let Some(back) = level.back {
+            product = back.after(&product);
+        }
     }
     debug_assert_eq!(n, 0);
     Some((product, x))
 }
 
-/// The levels as far as their returns fit into n < q maps: beyond, of the new branch's factors only some are needed, which its
-/// level has. (The last return of all holds q of them.)
+/// The levels as far as their returns fit into n < q maps, and what leads into the coordinates of the last: beyond, of the new
+/// branch's factors only some are needed, which its level has. (The last return of all holds q of them.)
 fn descend<T: Coefficient>(
     mut left: Branch<T>,
     mut right: Branch<T>,
     n: u64,
     budget: &mut Budget,
-) -> Option<Vec<Level<T>>> {
-    let mut levels = Vec::new();
+) -> Option<(Vec<Level<T>>, Map<T>)> {
+    let (mut levels, mut entered) = (Vec::new(), Map::identity());
     loop {
         let (a, b) = (left.length, right.length);
-        let mut level = Level { left: Run::new(left.clone()), right: Run::new(right.clone()) };
+        let back = fit::coordinates(&left.map, &right.map).map(|(there, back)| {
+            for branch in [&mut left, &mut right] {
+                branch.map = there.after(&branch.map).after(&back);
+            }
+            entered = there.after(&entered);
+            back
+        });
+        let mut level = Level { left: Run::new(left.clone()), right: Run::new(right.clone()), back };
         if a >= b {
             let k = a / b;
             let rest = a - k * b;
@@ -93,7 +106,7 @@ fn descend<T: Coefficient>(
         }
         levels.push(level);
     }
-    Some(levels)
+    Some((levels, entered))
 }
 
 impl<T: Coefficient> Level<T> {

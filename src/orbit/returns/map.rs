@@ -1,10 +1,15 @@
 //! A 2 × 2 matrix as a function on an interval: Taylor coefficients and a bound on all that they lack.
 //!
-//! M(t) = 2^e (Σ M_j t^j + E(t)), −1 ≤ t ≤ 1, |E(t)| ≤ ε in the spectral norm. With |M|₁ = Σ |M_j| the product has
+//! M(t) = 2^e (Σ M_j t^j + E(t)), −1 ≤ t ≤ 1, |E(t)| ≤ ε in the spectral norm. With |M| the largest norm of Σ M_j t^j the product has
 //!
 //! ```text
-//!     ε_{BA} = |B|₁ ε_A + |A|₁ ε_B + ε_A ε_B + Σ_{i + j ≥ n} |B_i| |A_j| + rounding.
+//!     ε_{BA} = |B| ε_A + |A| ε_B + ε_A ε_B + Σ_{i + j ≥ n} |B_i| |A_j| + rounding.
 //! ```
+//!
+//! *The largest norm*: that of [[a, b], [c, d]] is (|z| + |w|)/2 with z = a + d + i (b − c), w = a − d + i (b + c). With
+//! |z(t)|² = Σ r_k t^k, r_k = Σ Re z_i z̄_j over i + j = k, it is at most r_0 + Σ |r_k|. Where M(t) turns by an angle that varies with
+//! t, all r_k but r_0 vanish, and the bound is 1, while Σ |M_j| grows like an exponential of the angle's range. So errors of
+//! turns add up and are not multiplied.
 //!
 //! *Rounding*, u the unit of the numbers, in the norm of Frobenius, which is at most √2 times the spectral one. An entry of
 //! B_i A_j passes through at most 2 (i + j) + 3 operations on its way into the coefficient i + j, so the product's is at most
@@ -13,7 +18,7 @@
 //! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
 //! [`FLOOR`] what is lost where numbers underflow.
 
-use super::number::Coefficient;
+use super::number::{Coefficient, near_ball};
 use super::turn::{Turn, direction, principal};
 use crate::number::Ball;
 use crate::vector::instructions::{Instructions, Task};
@@ -24,12 +29,20 @@ const UP: f64 = 1.0 + 1e-12;
 /// More than any number of underflows, of squares too, adds to a function whose largest entry is near 1.
 const FLOOR: f64 = 1e-150;
 
+/// More terms than a function has by [`Coefficient::TERMS`].
+const MOST_TERMS: usize = 48;
+
+/// Where the sum of all terms' norms is so little more than the first, nothing less is looked for.
+const NEARLY: f64 = 1.01;
+
 /// [[a, b], [c, d]] in a row.
 pub type Entries<T> = [T; 4];
 
 #[derive(Clone)]
 pub struct Map<T> {
     terms: Vec<Entries<T>>,
+    /// No Σ M_j t^j has a larger norm.
+    norm: f64,
     /// ε.
     error: f64,
     /// e.
@@ -44,6 +57,50 @@ fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
     0.5 * (length(a + d, b - c) + length(a - d, b + c)) * UP
 }
 
+/// What no Σ M_j t^j exceeds on [−1, 1] in norm.
+fn largest<T: Coefficient>(terms: &[Entries<T>]) -> f64 {
+    let sum = terms.iter().map(norm).sum::<f64>() * UP;
+    if sum <= NEARLY * norm(&terms[0]) || terms.len() > MOST_TERMS {
+        return sum;
+    }
+    // The parts z and w of all terms, real and imaginary, side by side.
+    let mut parts = [[0.0; MOST_TERMS]; 4];
+    for (j, term) in terms.iter().enumerate() {
+        let [a, b, c, d] = term.each_ref().map(T::near);
+        (parts[0][j], parts[1][j], parts[2][j], parts[3][j]) = (a + d, b - c, a - d, b + c);
+    }
+    let [z, w] = Instructions::best().perform_alone(Squares { parts, terms: terms.len() });
+    // Entries are known to 2^-50; that, and what some hundreds of roundings do to all r_k together.
+    let slack = 8e-13 * sum * sum;
+    0.5 * ((z + slack).sqrt() + (w + slack).sqrt()) * UP
+}
+
+/// r_0 + Σ |r_k| of z and w.
+struct Squares {
+    parts: [[f64; MOST_TERMS]; 4],
+    terms: usize,
+}
+
+impl Task for Squares {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run(self) -> [f64; 2] {
+        let mut sums = [[0.0; 2 * MOST_TERMS]; 2];
+        for (sums, [re, im]) in sums.iter_mut().zip([[0, 1], [2, 3]]) {
+            let (re, im) = (&self.parts[re], &self.parts[im]);
+            for i in 0..self.terms {
+                let (x, y) = (re[i], im[i]);
+                for (r, (re, im)) in sums[i..].iter_mut().zip(re[..self.terms].iter().zip(&im[..self.terms]))
+                {
+                    *r += x * re + y * im;
+                }
+            }
+        }
+        sums.map(|sums| sums[0] + sums[1..2 * self.terms - 1].iter().map(|r| r.abs()).sum::<f64>())
+    }
+}
+
 /// |(x, y)|, but for what underflows.
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
@@ -55,30 +112,43 @@ fn image<T: Coefficient>(m: &Entries<T>) -> [f64; 2] {
 }
 
 impl<T: Coefficient> Map<T> {
-    /// From balls.
-    pub fn new(terms: &[Entries<Ball>], turn: Option<Turn>) -> Self {
+    /// From enclosures.
+    pub fn new(terms: &[Entries<T::Enclosure>], turn: Option<Turn>) -> Self {
+        Map { turn, ..Map::enclosing(terms, T::near_enclosure) }
+    }
+
+    /// From balls, without a turn.
+    pub fn of_balls(terms: &[Entries<Ball>]) -> Self {
+        Map::enclosing(terms, near_ball)
+    }
+
+    fn enclosing<E>(terms: &[Entries<E>], near: impl Fn(&E) -> (T, f64)) -> Self {
         let mut error = FLOOR;
-        let mut taken = |ball: &Ball| {
-            let near = T::of_ball(ball);
-            let (lo, hi) = ball.sub(&near.ball(), T::BITS).to_f64_enclosure();
-            error += lo.abs().max(hi.abs());
+        let mut taken = |enclosure: &E| {
+            let (near, lost) = near(enclosure);
+            error += lost;
             near
         };
-        let terms = terms.iter().map(|m| m.each_ref().map(&mut taken)).collect();
-        let mut map = Map { terms, error: error * UP, exponent: 0, turn };
-        map.balance();
-        map
+        let terms: Vec<_> = terms.iter().map(|m| m.each_ref().map(&mut taken)).collect();
+        Map::bounded(terms, error * UP, 0)
     }
 
     /// The identity.
     pub fn identity() -> Self {
-        let one = [Ball::one(), Ball::zero(), Ball::zero(), Ball::one()];
-        Map::new(&[one], Some(Turn::NONE))
+        let [zero, one] = [0.0, 1.0].map(T::of);
+        Map { turn: Some(Turn::NONE), ..Map::of(vec![[one.clone(), zero.clone(), zero, one]]) }
     }
 
     /// Numbers as they are, without a turn.
     pub fn of(terms: Vec<Entries<T>>) -> Self {
-        Map { terms, error: 0.0, exponent: 0, turn: None }
+        Map { norm: largest(&terms), terms, error: 0.0, exponent: 0, turn: None }
+    }
+
+    /// Without a turn, balanced.
+    fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i64) -> Self {
+        let mut map = Map { norm: largest(&terms), terms, error, exponent, turn: None };
+        map.balance();
+        map
     }
 
     /// The coefficients, without the power of two.
@@ -91,14 +161,20 @@ impl<T: Coefficient> Map<T> {
         self.error * power_of_two(self.exponent)
     }
 
-    /// Σ |M_j| + ε, which no value exceeds, with the power of two.
+    /// What no value exceeds in norm, with the power of two.
     pub fn size(&self) -> f64 {
-        (self.norms().iter().sum::<f64>() + self.error) * power_of_two(self.exponent) * UP
+        (self.norm + self.error) * power_of_two(self.exponent) * UP
+    }
+
+    /// Known within `error` beside what it is known by, without the power of two.
+    pub fn known_within(mut self, error: f64) -> Self {
+        self.error = (self.error + error) * UP + FLOOR;
+        self
     }
 
     /// The same matrix function, known up to `by` times its size less well.
     pub fn widened(mut self, by: f64) -> Self {
-        self.error = (self.error + by * (self.norms().iter().sum::<f64>() + self.error)) * UP + FLOOR;
+        self.error = (self.error + by * (self.norm + self.error)) * UP + FLOOR;
         self
     }
 
@@ -106,7 +182,9 @@ impl<T: Coefficient> Map<T> {
     pub fn trimmed(mut self) -> Self {
         let least = 1e-3 * T::UNIT * norm(&self.terms[0]);
         while self.terms.len() > 1 && norm(&self.terms[self.terms.len() - 1]) < least {
-            self.error = (self.error + self.terms.pop().map_or(0.0, |term| norm(&term))) * UP;
+            let lost = self.terms.pop().map_or(0.0, |term| norm(&term));
+            self.error = (self.error + lost) * UP;
+            self.norm = (self.norm + lost) * UP;
         }
         self
     }
@@ -130,7 +208,8 @@ impl<T: Coefficient> Map<T> {
         let zero = || std::array::from_fn(|_| T::zero());
         terms.resize_with(terms.len().max(others.len()), zero);
         terms.iter_mut().flatten().zip(others.iter().flatten()).for_each(|(x, y)| *x = x.plus(y));
-        Map { terms, error: (one + two + rounding) * UP + FLOOR, exponent, turn: None }
+        let error = (one + two + rounding) * UP + FLOOR;
+        Map { norm: largest(&terms), terms, error, exponent, turn: None }
     }
 
     /// Whether the bound still leaves something.
@@ -158,18 +237,16 @@ impl<T: Coefficient> Map<T> {
         let product = Product { later: &self.terms, earlier: &earlier.terms, terms: n };
         let terms = Instructions::best().perform_alone(product);
         let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
-        let carried = sum_b * earlier.error + sum_a * self.error + self.error * earlier.error;
+        let carried = self.norm * earlier.error + earlier.norm * self.error + self.error * earlier.error;
         let error = (carried + dropped + rounding) * UP + FLOOR;
-        let exponent = self.exponent + earlier.exponent;
-        let mut product = Map { terms, error, exponent, turn: None };
-        product.turn = self.turn_after(earlier, &product);
-        product.balance();
-        product
+        let product = Map::bounded(terms, error, self.exponent + earlier.exponent);
+        Map { turn: self.turn_after(earlier, &product), ..product }
     }
 
     fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
+        let (first, then) = (earlier.turn?, self.turn?);
         self.direction()?;
-        earlier.turn?.then(self.turn?, product.direction()?)
+        first.then(then, product.direction()?)
     }
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
@@ -198,11 +275,8 @@ impl<T: Coefficient> Map<T> {
     fn moved(&self, alpha: &T, terms: Vec<Entries<T>>) -> Self {
         let [sum, rank] = sums(&self.norms());
         let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank);
-        let mut part =
-            Map { terms, error: (self.error + rounding) * UP + FLOOR, exponent: self.exponent, turn: None };
-        part.turn = self.turn_moved(alpha.near(), &part);
-        part.balance();
-        part
+        let part = Map::bounded(terms, (self.error + rounding) * UP + FLOOR, self.exponent);
+        Map { turn: self.turn_moved(alpha.near(), &part), ..part }
     }
 
     /// The turn, followed along t from 0 to α in so small steps that the image's direction changes by less than a right angle
@@ -242,16 +316,15 @@ impl<T: Coefficient> Map<T> {
         if !(1.0 / 16.0..=16.0).contains(&size) && size > 1e-200 && size < 1e200 {
             let k = -size.log2().round() as i32;
             self.terms.iter_mut().flatten().for_each(|x| *x = x.scale2(k));
+            self.norm *= 2f64.powi(k);
             self.error = self.error * 2f64.powi(k) * UP + FLOOR;
             self.exponent -= i64::from(k);
         }
     }
 
     /// The entries at t = 0 without the power of two.
-    pub fn balls(&self) -> Entries<Ball> {
-        let unit = Ball::one().neg().union(&Ball::one(), 64);
-        let range = super::number::exact(self.error).mul(&unit, 64);
-        self.terms[0].each_ref().map(|x| x.ball().add(&range, T::BITS))
+    pub fn enclosures(&self, bits: u32) -> Entries<T::Enclosure> {
+        self.terms[0].each_ref().map(|x| x.enclosed(self.error, bits))
     }
 }
 

@@ -1,10 +1,15 @@
 //! The numbers that coefficients are made of: doubles, two doubles, long numbers.
 
+use super::enclosure::{Close, Enclosure, Wide, quotient};
+
+pub use super::enclosure::exact;
 use crate::number::{Ball, Rational, Twofold, U};
 
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
 /// UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
 pub trait Coefficient: Clone {
+    /// What a pair's constants are enclosed in.
+    type Enclosure: Enclosure;
     const UNIT: f64;
     /// The precision at which balls serve it.
     const BITS: u32;
@@ -29,6 +34,10 @@ pub trait Coefficient: Clone {
     fn of_ball(ball: &Ball) -> Self;
     /// The number, exactly.
     fn ball(&self) -> Ball;
+    /// A number this near to the enclosed one, at most.
+    fn near_enclosure(enclosure: &Self::Enclosure) -> (Self, f64);
+    /// What lies within `error` of it.
+    fn enclosed(&self, error: f64, bits: u32) -> Self::Enclosure;
 
     /// n/d within 3 UNIT relatively.
     fn quotient(n: i64, d: u64) -> Self {
@@ -38,6 +47,7 @@ pub trait Coefficient: Clone {
 }
 
 impl Coefficient for f64 {
+    type Enclosure = Close;
     const UNIT: f64 = U;
     const BITS: u32 = 80;
     const TERMS: usize = 13;
@@ -82,12 +92,21 @@ impl Coefficient for f64 {
         exact(*self)
     }
 
+    fn near_enclosure(enclosure: &Close) -> (Self, f64) {
+        enclosure.double()
+    }
+
+    fn enclosed(&self, error: f64, _: u32) -> Close {
+        Close::new(Twofold { hi: *self, lo: 0.0 }, error)
+    }
+
     fn quotient(n: i64, d: u64) -> Self {
         n as f64 / d as f64
     }
 }
 
 impl Coefficient for Twofold {
+    type Enclosure = Wide;
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
     const BITS: u32 = 130;
     const TERMS: usize = 22;
@@ -131,26 +150,20 @@ impl Coefficient for Twofold {
     }
 
     fn quotient(n: i64, d: u64) -> Self {
-        if n == 0 {
-            return Twofold::ZERO;
-        }
-        // n/d = 2^-shift (first + second 2^-64) 2^-64 within 2^-128 relatively.
-        let shift = n.unsigned_abs().leading_zeros().saturating_sub(d.leading_zeros());
-        let dividend = u128::from(n.unsigned_abs()) << shift;
-        let (d, above) = (u128::from(d), dividend / u128::from(d));
-        let first = (dividend % d) << 64;
-        let second = (first % d) << 64;
-        let [first, second] = [(above << 64) | (first / d), second / d];
-        let hi = first as f64;
-        let lo = (first as i128 - hi as i128) as f64;
-        let unit = 2f64.powi(-64 - shift as i32).copysign(n as f64);
-        let sum = Twofold::sum(hi, lo + second as f64 * 2f64.powi(-64));
-        Twofold { hi: sum.hi * unit, lo: sum.lo * unit }
+        quotient(n, d)
     }
 
     fn ball(&self) -> Ball {
         // Two doubles may lie far apart: a sum of exact balls within 2^-2000 of the larger is exact for those above 2^-900.
         exact(self.hi).add(&exact(self.lo), 2200)
+    }
+
+    fn near_enclosure(enclosure: &Wide) -> (Self, f64) {
+        near_ball(&enclosure.ball())
+    }
+
+    fn enclosed(&self, error: f64, bits: u32) -> Wide {
+        within(&self.ball(), error, bits)
     }
 }
 
@@ -160,6 +173,7 @@ impl Coefficient for Twofold {
 pub struct Long<const LENGTH: u32>(Ball);
 
 impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
+    type Enclosure = Wide;
     const UNIT: f64 = f64::from_bits((1023 + 2 - LENGTH as u64) << 52);
     const BITS: u32 = LENGTH + 32;
     const TERMS: usize = 8 + LENGTH as usize / 7;
@@ -201,15 +215,26 @@ impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
     fn ball(&self) -> Ball {
         self.0.clone()
     }
+
+    fn near_enclosure(enclosure: &Wide) -> (Self, f64) {
+        near_ball(&enclosure.ball())
+    }
+
+    fn enclosed(&self, error: f64, bits: u32) -> Wide {
+        within(&self.ball(), error, bits)
+    }
 }
 
-/// A double, exactly.
-pub fn exact(x: f64) -> Ball {
-    let (mantissa, exponent) = (x.to_bits() & ((1 << 52) - 1), (x.to_bits() >> 52 & 0x7ff) as i64);
-    let (mantissa, exponent) =
-        if exponent == 0 { (mantissa, -1074) } else { (mantissa | 1 << 52, exponent - 1075) };
-    let ball = Ball::from_integer(&mantissa.into()).scale2(exponent);
-    if x < 0.0 { ball.neg() } else { ball }
+/// A number near the ball, and how far from what it holds at most.
+pub fn near_ball<T: Coefficient>(ball: &Ball) -> (T, f64) {
+    let near = T::of_ball(ball);
+    let (lo, hi) = ball.sub(&near.ball(), T::BITS).to_f64_enclosure();
+    (near, lo.abs().max(hi.abs()))
+}
+
+fn within(middle: &Ball, error: f64, bits: u32) -> Wide {
+    let unit = Ball::one().neg().union(&Ball::one(), 64);
+    Wide::new(middle.add(&exact(error).mul(&unit, 64), bits), bits)
 }
 
 #[cfg(test)]

@@ -5,8 +5,6 @@
 //! of the next kind, and k/n places where it is asked for: a product of k factors costs about √k products of functions. Its
 //! error grows by a factor per doubling, like a power of k. From [`slow::WORTH`] factors on, [`Slow`] takes fewer and keeps it.
 
-use std::collections::HashMap;
-
 use super::branch::{Branch, Budget};
 use super::map::Map;
 use super::number::Coefficient;
@@ -15,15 +13,15 @@ use super::slow::{self, Slow};
 /// A branch and what is known of its products.
 pub struct Run<T> {
     pub branch: Branch<T>,
-    /// By the logarithm of n and the place.
-    pieces: HashMap<(u32, i64), Branch<T>>,
+    /// By the logarithm of n and the place: some dozens.
+    pieces: Vec<((u32, i64), Branch<T>)>,
     /// What very long products are made of.
     slow: Option<Slow<T>>,
 }
 
 impl<T: Coefficient> Run<T> {
     pub fn new(branch: Branch<T>) -> Self {
-        Run { branch, pieces: HashMap::new(), slow: None }
+        Run { branch, pieces: Vec::new(), slow: None }
     }
 
     /// P_n on start..start + length, or at a point; `None` where the budget or the bound does not last.
@@ -66,7 +64,8 @@ impl<T: Coefficient> Run<T> {
         let Branch { start, length, stride, .. } = self.branch;
         let long = length >> log2;
         let place = (x - start) / (long / 2);
-        if !self.pieces.contains_key(&(log2, place)) {
+        let known = |pieces: &[((u32, i64), Branch<T>)]| pieces.iter().position(|own| own.0 == (log2, place));
+        if known(&self.pieces).is_none() {
             // All of x, x + d, ..., x + (n − 1) d lie in the branch's interval.
             let reach = stride * ((1 << log2) - 1);
             let (least, end) = (start.max(start - reach), (start + length).min(start + length - reach));
@@ -74,8 +73,8 @@ impl<T: Coefficient> Run<T> {
             let long = long.min(end - from);
             let map = self.twice(log2, from, long, budget)?;
             let piece = Branch { map, start: from, length: long, stride: 0, height: 0 };
-            self.pieces.insert((log2, place), piece);
+            self.pieces.push(((log2, place), piece));
         }
-        self.pieces.get(&(log2, place))
+        Some(&self.pieces[known(&self.pieces)?].1)
     }
 }

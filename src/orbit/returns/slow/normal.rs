@@ -247,7 +247,7 @@ impl Kind {
             }
             Kind::Hyperbolic => [exp(&without(&a)), exp(&without(&b))],
         };
-        let mut first = Map::new(&[self.entries(first, Ball::zero(), Ball::neg)], None);
+        let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
         first.exponent += log2;
         // e^R, R = S without its constant term.
         let mut terms = exponent.terms().to_vec();
@@ -267,12 +267,8 @@ impl Kind {
         // The terms from count on are less than size^count/count! e^size.
         if size > 0.0 {
             for k in (1..count).rev() {
-                let part = Map::new(
-                    &[[Ball::one(), Ball::zero(), Ball::zero(), Ball::one()].map(|x| {
-                        Ball::from_rational(&Rational::new(1.into(), k.into()), T::BITS).mul(&x, T::BITS)
-                    })],
-                    None,
-                );
+                let over = Ball::from_rational(&Rational::new(1.into(), k.into()), T::BITS);
+                let part = Map::of_balls(&[[over.clone(), Ball::zero(), Ball::zero(), over]]);
                 series = one.plus(&part.after(&rest.after(&series)));
             }
         }
@@ -419,5 +415,5 @@ fn summed<T: Coefficient>(
     let [first, second] = logarithms.each_ref().map(solved);
     let pairs = first?.into_iter().zip(second?);
     let terms: Vec<_> = pairs.map(|(a, b)| kind.entries([a, b], Ball::zero(), Ball::neg)).collect();
-    Some(Map::new(&terms, None))
+    Some(Map::of_balls(&terms))
 }

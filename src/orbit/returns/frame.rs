@@ -1,0 +1,314 @@
+//! The constants of a pair, the two branches made of them, and what lies between their product and T/2.
+
+use std::f64::consts::PI;
+
+use num_bigint::BigUint;
+use num_traits::ToPrimitive;
+
+use super::branch::{Branch, Budget};
+use super::enclosure::{Enclosure, Matrix, power, product};
+use super::euclid;
+use super::map::Map;
+use super::number::{Coefficient, exact};
+use super::turn::{Turn, direction, principal};
+use crate::number::{Ball, Ratio, Real, Sign};
+use crate::orbit::ends::{End, Ends};
+use crate::propagator::TwoClocks;
+
+/// Bits of a base's angle beside those of the number of its steps.
+const ANGLE: u32 = 50;
+
+/// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
+const LEAST_UNIT: f64 = 1e-3;
+
+/// p/q of the base and the other clock: `whole` + `rest`/q steps of the base from one kick of the other to the next.
+#[derive(Clone, Debug)]
+pub struct Beat {
+    pub whole: BigUint,
+    pub rest: u64,
+    pub q: u64,
+}
+
+impl From<Ratio> for Beat {
+    fn from(ratio: Ratio) -> Self {
+        let (p, q) = ratio.terms();
+        Beat { whole: (p / q).into(), rest: p % q, q }
+    }
+}
+
+impl Beat {
+    fn p(&self) -> BigUint {
+        &self.whole * self.q + self.rest
+    }
+}
+
+/// The constants of a pair.
+pub struct Frame<T: Coefficient> {
+    beat: Beat,
+    s: T::Enclosure,
+    k: T::Enclosure,
+    /// The unit of the velocity: σ, and beyond the base's own limit √|σ²|, or 1 beside it.
+    unit: T::Enclosure,
+    /// `None` where nobody asks for turns.
+    turning: Option<Turning>,
+    bits: u32,
+}
+
+/// How a step of the base turns directions.
+enum Turning {
+    /// 0 < s < 4: by θ/2π, known so well that of as many steps' turns the whole ones are.
+    By(Ball),
+    /// s ≥ 4: a half turn, and (1, 0) stays on its side.
+    Half,
+    /// s ≤ 0: (1, 0) stays on its side.
+    Not,
+}
+
+/// A power of the base's step: cos nθ, sin nθ, and the lift.
+struct Rotation<E> {
+    matrix: Matrix<E>,
+    turn: Option<Turn>,
+}
+
+impl<T: Coefficient> Frame<T> {
+    /// `None` where these numbers do not tell on which side of its own limit the base is. Turns are followed where they are `wanted`.
+    pub fn new<S: Real>(clocks: &TwoClocks<S>, beat: Beat, wanted: bool) -> Option<Self> {
+        // Powers of a step lose as many bits as their exponent has.
+        let lost = beat.whole.bits() as u32;
+        let bits = T::BITS + 34 + lost;
+        let [s, k] = [T::Enclosure::of(clocks.fast(), bits)?, T::Enclosure::of(clocks.slow(), bits)?];
+        let square = s.minus(&s.times(&s).scale2(-2));
+        let elliptic = square.sign()? == Sign::Positive;
+        let unit = if elliptic {
+            square.root()?
+        } else if square.ends().1.abs() > LEAST_UNIT {
+            square.negative().root()?
+        } else {
+            T::Enclosure::quotient(1, 1, bits)
+        };
+        let turning = if !wanted {
+            None
+        } else if elliptic {
+            let bits = ANGLE + lost + 62;
+            let cosine = Ball::one().sub(&clocks.fast().enclosure(bits).scale2(-1), bits);
+            let theta = cosine.acos(bits);
+            theta.and_then(|theta| theta.div(&Ball::pi(bits).scale2(1), bits)).map(Turning::By)
+        } else {
+            Some(if s.ends().0 > 2.0 { Turning::Half } else { Turning::Not })
+        };
+        Some(Frame { beat, s, k, unit, turning, bits })
+    }
+
+    fn quotient(&self, n: i64, d: u64) -> T::Enclosure {
+        T::Enclosure::quotient(n, d, self.bits)
+    }
+
+    fn one(&self) -> T::Enclosure {
+        self.quotient(1, 1)
+    }
+
+    fn zero(&self) -> T::Enclosure {
+        self.quotient(0, 1)
+    }
+
+    /// One step of the base from the middle of a kick to that of the next, [[c, κ], [−σ²/κ, c]], c = 1 − s/2.
+    fn step(&self) -> Option<Matrix<T::Enclosure>> {
+        let cosine = self.one().minus(&self.s.scale2(-1));
+        let square = self.s.minus(&self.s.times(&self.s).scale2(-2));
+        Some([cosine.clone(), self.unit.clone(), square.over(&self.unit)?.negative(), cosine])
+    }
+
+    /// n steps of the base.
+    fn rotation(&self, n: &BigUint) -> Option<Rotation<T::Enclosure>> {
+        let one = [self.one(), self.zero(), self.zero(), self.one()];
+        let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
+        let matrix = power(&self.step()?, &one, digits);
+        let turn = self.towards(&matrix[0], &matrix[2]).and_then(|angle| self.turned(n, angle));
+        Some(Rotation { matrix, turn })
+    }
+
+    /// The direction of (x, y); `None` where nobody asks for turns.
+    fn towards(&self, x: &T::Enclosure, y: &T::Enclosure) -> Option<f64> {
+        self.turning.as_ref()?;
+        let [(a, b), (c, d)] = [x.ends(), y.ends()];
+        direction([0.5 * (a + b), 0.5 * (c + d)], (b - a) + (d - c))
+    }
+
+    /// The turn of n steps of the base that lead (1, 0) into this direction.
+    fn turned(&self, n: &BigUint, angle: f64) -> Option<Turn> {
+        match self.turning.as_ref()? {
+            Turning::By(theta) => {
+                // Full turns: −nθ = 2π whole + angle.
+                let bits = ANGLE + 62 + n.bits() as u32;
+                let turns = theta.mul(&Ball::from_integer(&n.clone().into()), bits).neg();
+                let fraction = exact(angle).div(&Ball::pi(64).scale2(1), 64)?;
+                let whole = turns.sub(&fraction, bits);
+                let (lower, upper) = (whole.lower().round(), whole.upper().round());
+                (lower == upper).then_some(Turn { whole: lower.to_integer().to_i128()?, angle })
+            }
+            Turning::Half => {
+                // By −nπ, and then by less than a right angle.
+                let half = if n.bit(0) { -PI } else { 0.0 };
+                let beside = principal(angle - half);
+                let whole = -(n >> 1u32).to_i128()?;
+                Some(Turn { whole, ..Turn::NONE }.on(half + beside, angle))
+            }
+            Turning::Not => Some(Turn { whole: 0, angle }),
+        }
+    }
+
+    /// The terms of N(m + w t), K = 1 + k N.
+    fn nilpotent(&self, m: &T::Enclosure, w: &T::Enclosure) -> [Matrix<T::Enclosure>; 3] {
+        let half = self.s.scale2(-1).negative();
+        let quarter = self.s.times(&self.s).scale2(-2);
+        let over = |x: &T::Enclosure| x.over(&self.unit).expect("a positive unit").negative();
+        // Polynomials in x, from the constant term on.
+        let u_x = [self.zero(), self.one(), half];
+        let square = [self.zero(), self.zero(), self.unit.clone()];
+        let slope = [over(&self.one()), over(&self.s.negative()), over(&quarter)];
+        let at = |[c, b, a]: [T::Enclosure; 3]| {
+            let a_m = a.times(m);
+            let value = a_m.plus(&b).times(m).plus(&c);
+            let first = a_m.scale2(1).plus(&b).times(w);
+            [value, first, a.times(&w.times(w))]
+        };
+        let (u_x, square, slope) = (at(u_x), at(square), at(slope));
+        std::array::from_fn(|j| [u_x[j].clone(), square[j].clone(), slope[j].clone(), u_x[j].negative()])
+    }
+
+    /// 1 + `by` N, N constant or a function.
+    fn shear<const N: usize>(
+        &self,
+        nilpotent: &[Matrix<T::Enclosure>; N],
+        by: &T::Enclosure,
+    ) -> [Matrix<T::Enclosure>; N] {
+        let mut terms = nilpotent.each_ref().map(|term| term.each_ref().map(|x| x.times(by)));
+        for diagonal in [0, 3] {
+            terms[0][diagonal] = terms[0][diagonal].plus(&self.one());
+        }
+        terms
+    }
+
+    /// K(x) after a power of the base's step, x from middle − half to middle + half, both in units of 1/2q.
+    fn branch(&self, middle: u64, half: u64, steps: &Rotation<T::Enclosure>) -> Map<T> {
+        let unit = |n: u64| self.quotient(n as i64, self.beat.q).scale2(-1);
+        let terms = self.shear(&self.nilpotent(&unit(middle), &unit(half)), &self.k);
+        let terms = terms.map(|term| product(&term, &steps.matrix));
+        let turn = steps.turn.zip(self.towards(&terms[0][0], &terms[0][2]));
+        Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle)))
+    }
+
+    /// A positive kick turns clockwise, between a drift and its inverse, too.
+    fn is_clockwise(&self) -> bool {
+        self.k.sign() != Some(Sign::Negative)
+    }
+
+    fn branches(&self) -> Option<[Branch<T>; 2]> {
+        let Beat { whole, rest: b, q } = &self.beat;
+        let (a, b) = (q - b, *b);
+        let left = self.branch(2 * b + a, a, &self.rotation(whole)?);
+        let right = self.branch(b, b, &self.rotation(&(whole + 1u32))?);
+        let [a, b] = [a as i64, b as i64];
+        Some([
+            Branch { map: left, start: 0, length: a, stride: b, height: 1 },
+            Branch { map: right, start: a, length: b, stride: -a, height: 1 },
+        ])
+    }
+
+    /// The even and the odd solution at T/2.
+    pub fn ends(&self) -> Option<Ends> {
+        let n = self.beat.q / 2;
+        let mut budget = Budget(T::PRODUCTS);
+        let middle = if n == 0 {
+            Map::identity()
+        } else {
+            let [left, right] = self.branches()?;
+            euclid::walk(left, right, n, &mut budget)?.0
+        };
+        if middle.exponent.unsigned_abs() > 1 << 54 {
+            return None;
+        }
+        let (zero, one) = (self.zero(), self.one());
+        // Half a kick of the other clock at t = 0.
+        let start = self.k.over(&self.unit)?.scale2(-1).negative();
+        let mut journey = Journey {
+            frame: self,
+            turn: self.towards(&one, &start).map(|angle| Turn { whole: 0, angle }),
+            product: [one.clone(), zero, start, one],
+        };
+        journey.go(&middle.enclosures(self.bits), |turn, angle| turn.then(middle.turn?, angle));
+        self.close(&mut journey)?;
+        let [a, b, c, d] = &journey.product;
+        let nodes = journey.turn.and_then(|turn| nodes(turn, a.sign()?));
+        let (c, b) = (c.times(&self.unit), b.over(&self.unit)?);
+        let end = |x: &T::Enclosure, v: &T::Enclosure, nodes| {
+            let of = |x: &T::Enclosure| x.ball().scale2(middle.exponent);
+            End { signs: (certain(x), certain(v)), x: of(x), v: of(v), nodes }
+        };
+        Some(Ends { even: end(a, &c, nodes), odd: end(&b, d, None) })
+    }
+
+    /// What is left from the last kick of the other clock up to T/2, or half a kick less.
+    fn close(&self, journey: &mut Journey<T>) -> Option<()> {
+        let Beat { whole, rest, q } = &self.beat;
+        let p = self.beat.p();
+        if q.is_multiple_of(2) {
+            let [undo, ..] = self.nilpotent(&self.one().scale2(-1), &self.zero());
+            let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
+            journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
+        } else {
+            let offset = u128::from(q / 2) * u128::from(*rest) / u128::from(*q);
+            let passed = whole * (q / 2) + offset;
+            let rotation = self.rotation(&((&p >> 1u32) - passed))?;
+            journey.go(&rotation.matrix, |turn, angle| {
+                let by = rotation.turn?;
+                let turned = turn.on(by.angle, angle);
+                Some(Turn { whole: turned.whole + by.whole, ..turned })
+            });
+        }
+        if p.bit(0) {
+            // T/2 is half way between two strikes of the base: its kick's second half and half a drift.
+            let (zero, one) = (self.zero(), self.one());
+            let is_attracting = self.s.sign() != Some(Sign::Negative);
+            let kick = self.s.over(&self.unit)?.scale2(-1).negative();
+            journey.go(&[one.clone(), zero.clone(), kick, one.clone()], |turn, angle| {
+                Some(turn.sheared(is_attracting, angle))
+            });
+            let drift = self.unit.scale2(-1);
+            journey.go(&[one.clone(), drift, zero, one], |turn, angle| Some(turn.sheared(true, angle)));
+        }
+        Some(())
+    }
+}
+
+/// A product that grows, with its lift.
+struct Journey<'a, T: Coefficient> {
+    frame: &'a Frame<T>,
+    product: Matrix<T::Enclosure>,
+    turn: Option<Turn>,
+}
+
+impl<T: Coefficient> Journey<'_, T> {
+    fn go(&mut self, step: &Matrix<T::Enclosure>, turned: impl Fn(Turn, f64) -> Option<Turn>) {
+        self.product = product(step, &self.product);
+        let angle = self.frame.towards(&self.product[0], &self.product[2]);
+        self.turn = self.turn.zip(angle).and_then(|(turn, angle)| turned(turn, angle));
+    }
+}
+
+/// How often x changed its sign: at the odd quarters of the clockwise turn, which each of the steps passes in one sense.
+fn nodes(turn: Turn, sign: Sign) -> Option<u64> {
+    let beside = if sign == Sign::Positive {
+        0
+    } else if turn.angle > 0.0 {
+        -1
+    } else {
+        1
+    };
+    u64::try_from(beside - 2 * turn.whole).ok()
+}
+
+/// A sign; enclosures of zero have none.
+fn certain<E: Enclosure>(x: &E) -> Option<Sign> {
+    x.sign().filter(|&sign| sign != Sign::Zero)
+}
