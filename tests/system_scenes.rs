@@ -4,8 +4,10 @@ use kickdrift::avi::{self, Ends};
 use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
 use kickdrift::number::{Ball, Laurent, Real};
 use kickdrift::scene::{Array, Arrays, Axis, Scan, Span, SystemScene};
+use kickdrift::system::friction::Damping;
 use kickdrift::system::{Evidence, Holds, Limits, ManyClocks, Route, decide_system, middle};
 use kickdrift::verdict::{Kind, Tier};
+use nalgebra::DMatrix;
 
 fn shipped(name: &str) -> SystemScene {
     let path = format!("{}/data/scenes/{name}.json", env!("CARGO_MANIFEST_DIR"));
@@ -650,6 +652,66 @@ fn three_clocks_have_their_rigid_motions_projected_out_as_two_have() {
         .decide(Route::Cheapest, &limits)
         .unwrap();
     assert_eq!(two.measured.unwrap().removed.unwrap().count, 6);
+}
+
+/// The fast frequencies lie beyond the inner step's own limit: no disc about an eigenvalue is in reach there, and counts decide.
+#[test]
+fn the_neighbours_of_a_stable_step_do_not_hold_it_where_only_counts_decide() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/input");
+    let text = std::fs::read_to_string(folder.join("own.json")).unwrap();
+    let scene = SystemScene::read_in(Arrays::from(&folder), &text).unwrap();
+    let found = scene.nearest_unstable(1e-4, &Limits::default()).unwrap();
+    assert!(found.number == 7.5 && found.own.is_none(), "{found:?}");
+    let (below, above) = (found.below.unwrap().proven, found.above.unwrap().proven);
+    // The dense period grows at both, and is still at 7.5 and between 6.0 and 8.09.
+    assert!((5.71..5.72).contains(&below.0) && (5.99..6.0001).contains(&below.1), "{below:?}");
+    assert!((8.09..8.10).contains(&above.0) && above.1 >= 14.99, "{above:?}");
+}
+
+/// ln ρ/T of whole kicks and drifts with v → exp(−γ t) v in their middle, steps 1/2, 1 and 2, rigid motions apart.
+fn damped_growth_of_the_tetrahedron(rate: f64) -> f64 {
+    let pairs: [&[(usize, usize)]; 3] = [&[(0, 1), (1, 2)], &[(0, 2), (2, 3)], &[(0, 3), (1, 3)]];
+    let masses = [1.0_f64, 2.0, 3.0, 1.5];
+    let weighted = |pairs: &[(usize, usize)]| {
+        let k = springs(pairs);
+        DMatrix::from_fn(12, 12, |i, j| k[12 * i + j] / (masses[i / 3] * masses[j / 3]).sqrt())
+    };
+    let stiffness = pairs.map(weighted);
+    let mut period = DMatrix::<f64>::identity(24, 24);
+    let (tick, decay) = (0.5, (-0.5 * rate).exp());
+    for k in 0..4 {
+        for (own, every) in stiffness.iter().zip([1, 2, 4]).filter(|(_, every)| k % every == 0) {
+            let change = own * period.rows(0, 12) * (tick * f64::from(every));
+            period.rows_mut(12, 12).zip_apply(&change, |v, dv| *v -= dv);
+        }
+        for half in 0..2 {
+            let change = period.rows(12, 12) * (tick / 2.0);
+            period.rows_mut(0, 12).zip_apply(&change, |x, dx| *x += dx);
+            if half == 0 {
+                period.rows_mut(12, 12).apply(|v| *v *= decay);
+            }
+        }
+    }
+    // Six rigid motions stay where they are.
+    let multipliers = faer::Mat::from_fn(24, 24, |i, j| period[(i, j)]).eigenvalues().unwrap();
+    let is_rigid = |x: &&faer::c64| (*x - 1.0).norm() < 1e-6;
+    assert_eq!(multipliers.iter().filter(is_rigid).count(), 6, "{multipliers:?}");
+    let apart = multipliers.iter().filter(|x| !is_rigid(x)).map(|x| x.norm());
+    apart.fold(0.0, f64::max).ln() / 2.0
+}
+
+#[test]
+fn friction_on_measured_stiffnesses_of_three_clocks_is_that_of_the_plain_product() {
+    let positions = serde_json::json!({"positions": {"npy": "positions"}});
+    let scene = tetrahedron(["1/2", "1", "2"], positions).unwrap();
+    let mut signs = Vec::new();
+    for (rate, rounded) in [(ratio(1, 100), 0.01), (ratio(5, 1), 5.0)] {
+        let found = scene.model().friction(&rate, &Limits::default()).unwrap();
+        let ((lo, hi), plain) = (found.growth.unwrap(), damped_growth_of_the_tetrahedron(rounded));
+        assert!(lo - 1e-9 <= plain && plain <= hi + 1e-9 && hi - lo < 1e-6, "{lo} {plain} {hi}");
+        signs.push(found.damping.unwrap());
+    }
+    assert_eq!(signs[0], Damping::Growing, "without friction it grows");
 }
 
 #[test]

@@ -444,6 +444,23 @@ fn closings_of_high_tongues_end() {
     assert!(high.complete && high.closings.len() == 1 && !high.closings[0].below_verlet);
 }
 
+/// Their half periods have so many kicks that balls in 512 bits lose all digits over a box, and edges so close that doubles do not tell them.
+#[test]
+fn closings_of_longer_periods_end() {
+    for (p, q) in [(29, 21), (31, 29)] {
+        let (ratio, search) = (Ratio::new(p, q).unwrap(), Search { samples: 60, ..Search::default() });
+        let found = closings(ratio, &search).unwrap();
+        assert!(!found.complete && found.closings.len() > 2, "{p}/{q}: {}", found.closings.len());
+        for own in &found.closings {
+            let clocks = TwoClocks::with_rho(ratio, own.s.middle(), own.rho.middle());
+            // The middle of the box is no closing but for rational ones, and Q is all but 1 or −1 there.
+            let answer = decide(&clocks, &Limits::default()).unwrap();
+            let off = answer.growth().unwrap().trace.mid_f64().abs() - 2.0;
+            assert!(off.abs() < 1e-9, "{p}/{q}, m = {}: {off}", own.m);
+        }
+    }
+}
+
 #[test]
 fn known_closings_come_out() {
     let closing = &found(5, 3)[0];

@@ -1,9 +1,7 @@
-"""Rigid motions of mass-weighted Hessians, found and projected out."""
+"""Rigid motions in coordinates that only OpenMM and ASE know: along constraints, among atoms that a field holds."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from typing import TypeAlias
 
 import numpy as np
@@ -39,43 +37,3 @@ def complement(columns: Doubles) -> Doubles:
     whole, sizes, _ = np.linalg.svd(columns)
     rank = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum())
     return np.asarray(whole[:, rank:])
-
-
-def is_of_two_levels(steps: Sequence[Fraction]) -> bool:
-    """Whether the library projects rigid motions out itself: one step, or two whose ratio is an integer."""
-    different = sorted(set(steps))
-    return len(different) < 2 or (len(different) == 2 and (different[1] / different[0]).denominator == 1)
-
-
-def fit(arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles]) -> bool:
-    """Whether the shapes are those of one system; what does not fit is refused where it is decided."""
-    n = len(next(iter(matrices.values()))) if matrices else 0
-    where = arrays.get("positions")
-    square = all(own.shape == (n, n) for own in matrices.values())
-    return square and n > 0 and arrays["masses"].size in (n, n / 3) and (where is None or where.size == n)
-
-
-def without_rigid(
-    arrays: Mapping[str, Doubles], matrices: Mapping[str, Doubles], accuracy: float
-) -> tuple[dict[str, Doubles], str]:
-    """Mass-weighted Hessians without rigid motions: by the positions, else the null space of the total within the
-    accuracy, as the library does for two levels."""
-    n = len(next(iter(matrices.values())))
-    masses = arrays["masses"].ravel()
-    masses = masses if masses.size == n else np.repeat(masses, 3)
-    weighted = {name: own / np.sqrt(np.outer(masses, masses)) for name, own in matrices.items()}
-    where = arrays.get("positions")
-    if where is not None:
-        rigid, by = rigid_motions(where.reshape(-1, 3), masses[::3]), "positions"
-    else:
-        values, vectors = np.linalg.eigh(np.sum(list(weighted.values()), axis=0))
-        least = accuracy * sum(norm(own) for own in weighted.values())
-        rigid, by = vectors[:, np.abs(values) <= least], "null space of the total"
-    kept = complement(rigid)
-    if not rigid.size or not kept.size:
-        return weighted, f"no rigid motions projected out ({by})"
-    projected = {name: kept.T @ own @ kept for name, own in weighted.items()}
-    return (
-        {name: (own + own.T) / 2 for name, own in projected.items()},
-        f"{rigid.shape[1]} rigid motions projected out ({by})",
-    )

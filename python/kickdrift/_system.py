@@ -23,7 +23,6 @@ from kickdrift._document import Document, Frozen, Table, ask, frame, given
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
-from kickdrift._rigid import fit, is_of_two_levels, without_rigid
 
 if TYPE_CHECKING:
     import pandas
@@ -111,6 +110,7 @@ class System(Frozen):
         time_unit: str = "",
         labels: Sequence[str] = (),
         notes: Sequence[str] = (),
+        periodic: bool = False,
         keep_rigid: bool = False,
     ) -> System:
         """Make a system of measured Hessians.
@@ -132,6 +132,8 @@ class System(Frozen):
             One for each degree of freedom, or for each particle of three.
         notes : sequence of str, optional
             What was left out or estimated: the first warnings of every answer.
+        periodic : bool
+            The particles are in a periodic box: three translations are rigid, and no rotation.
         keep_rigid : bool
             Project no rigid motions out: there are none, as of atoms among others that stand still.
 
@@ -155,13 +157,9 @@ class System(Frozen):
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
-        document: dict[str, Any] = {"accuracy": float(accuracy)}
-        if not keep_rigid and not is_of_two_levels(list(steps.values())) and fit(arrays, matrices):
-            matrices, note = without_rigid(arrays, matrices, accuracy)
-            arrays, labels, notes, keep_rigid = {}, (), (*notes, note), True
-            document["mass_weighted"] = True
-        document |= {name: _at(name) for name in arrays}
-        named = {"title": title, "time_unit": time_unit, "labels": list(labels), "keep_rigid": keep_rigid}
+        document: dict[str, Any] = {"accuracy": float(accuracy), **{name: _at(name) for name in arrays}}
+        named = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = [
             {"name": name, "step": str(step), "stiffness": _at(f"hessian{place}")}

@@ -24,7 +24,7 @@ from kickdrift._hessians import (
     unbalanced,
 )
 from kickdrift._numbers import Exact, doubles, duration
-from kickdrift._rigid import Doubles, complement, is_held, rigid_motions
+from kickdrift._rigid import Doubles, is_held, rigid_motions
 from kickdrift._system import System
 
 try:
@@ -90,29 +90,23 @@ def system(
     total = np.sum([matrix for matrix, _ in measured.values()], axis=0) / units.fs**2
     follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
     notes = unbalanced(pulls, total, masses, "eV/Å", follow)
-    # A periodic cell has no rotations: its translations are projected out here, rigid motions in the open by positions.
     moved = rigid_motions(where, masses, rotations=False)
     held = is_held(total * units.fs**2, moved, sum(error for _, error in measured.values()))
-    periodic = bool(atoms.pbc.any()) and not held
-    kept = complement(moved) if periodic else np.eye(where.size)
-    weights = np.ones(kept.shape[1]) if periodic else masses
-    root = np.sqrt(weights if periodic else np.repeat(masses, 3))
-    if periodic:
-        notes.append("3 rigid motions projected out (box)")
+    root = np.sqrt(np.repeat(masses, 3))
     potentials: dict[str, tuple[Exact, Doubles]] = {}
     for (name, (matrix, _)), step in zip(measured.items(), steps, strict=True):
-        own = kept.T @ matrix @ kept
-        potentials[name] = (step, (own + own.T) / 2 * np.outer(root, root))
+        potentials[name] = (step, (matrix + matrix.T) / 2 * np.outer(root, root))
     return System.from_hessians(
-        weights,
+        masses,
         potentials,
-        positions=None if periodic or held else where,
+        positions=None if held else where,
         accuracy=accuracy,
         title=f"{len(atoms)} atoms, fs and Å",
         time_unit="fs",
-        labels=() if periodic else [f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
+        labels=[f"{symbol}{n}" for n, symbol in enumerate(atoms.get_chemical_symbols())],
         notes=notes,
-        keep_rigid=periodic or held,
+        periodic=bool(atoms.pbc.any()),
+        keep_rigid=held,
     )
 
 

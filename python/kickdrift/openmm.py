@@ -149,10 +149,11 @@ def system(
     if chosen is not None:
         notes.append(f"only {len(atoms or ())} of {engine.count} atoms move")
     # In their own coordinates where nothing is projected out here: answers name the atoms then.
-    plain = not constraints and chosen is None and moved.shape[1] != _TRANSLATIONS
+    plain = not constraints and chosen is None
+    periodic = system.usesPeriodicBoundaryConditions()
     kept = np.eye(len(moved)) if plain else complement(moved)
     if not plain and moved.size:
-        notes.append(f"{moved.shape[1]} rigid motions projected out ({'box' if moved.shape[1] == 3 else 'positions'})")
+        notes.append(f"{moved.shape[1]} rigid motions projected out ({'box' if periodic else 'positions'})")
     masses = engine.masses if plain else np.ones(kept.shape[1])
     root = np.sqrt(np.repeat(masses, 3) if plain else masses)
     potentials: dict[str, tuple[Exact, Doubles]] = {}
@@ -168,6 +169,7 @@ def system(
         time_unit="ps",
         labels=[f"atom {n}" for n in range(engine.count)] if plain else (),
         notes=notes,
+        periodic=periodic and plain,
         keep_rigid=not (plain and moved.size),
     )
 

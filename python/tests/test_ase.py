@@ -103,8 +103,9 @@ def test_groups_that_pull_against_each_other_are_told_of() -> None:
 def test_a_cell_has_three_rigid_motions_and_a_field_none() -> None:
     cell = ase.Atoms("H2", [[0, 0, 0], [1.0, 0, 0]], cell=[5, 5, 5], pbc=True)
     found = ka.system(cell, {"fast": (Pair(30, 1.0), "1/4"), "slow": (Pair(1, 1.0), 1)})
-    assert found.notes == ("3 rigid motions projected out (box)",)
-    assert found.decide().data["degrees_of_freedom"] == 3
+    boxed = found.decide().measured
+    assert boxed is not None
+    assert (boxed["rigid_motions"]["count"], boxed["rigid_motions"]["found_by"]) == (3, "periodic box")
     field = {"fast": (Springs(30), "1/4"), "slow": (Springs(1), 1)}
     measured = ka.system(ase.Atoms("H2", np.eye(2, 3)), field).decide().measured
     assert measured is not None and measured["rigid_motions"] is None

@@ -7,6 +7,9 @@ use crate::tongue::{Gap, Tongues};
 
 const BITS: u32 = 128;
 
+/// Tongues whose edges are computed side by side.
+const AT_ONCE: u64 = 8;
+
 /// Outer steps that are unstable, at the ratio of the steps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unstable {
@@ -32,8 +35,10 @@ pub struct Worst {
 
 /// The tongues of one fast stiffness and one slow one at a ratio of steps.
 pub(crate) struct Intervals<'a> {
-    /// For ρ rounded down and up: edges fall as ρ rises, so the two enclose those of an irrational ρ.
-    tongues: [Tongues; 2],
+    /// For ρ, rounded down where it is irrational,
+    low: Tongues,
+    /// and then for ρ rounded up: edges fall as ρ rises, so the two enclose its own.
+    high: Option<Tongues>,
     ratio: Ratio,
     fast: &'a Laurent,
 }
@@ -41,22 +46,21 @@ pub(crate) struct Intervals<'a> {
 impl<'a> Intervals<'a> {
     /// Of stiffnesses that are on the clocks h1 and h2 = h1 p/q.
     pub fn new(ratio: Ratio, fast: &'a Laurent, slow: &Laurent) -> Result<Self> {
-        let [lo, hi] = match Laurent::ratio(slow, fast) {
-            Some(rho) => [rho.clone(), rho],
+        let of = |rho: &Rational| Tongues::new(ratio, rho);
+        let (low, high) = match Laurent::ratio(slow, fast) {
+            Some(rho) => (of(&rho)?, None),
             None => {
-                let rho = slow
-                    .enclosure(BITS)
-                    .div(&fast.enclosure(BITS), BITS)
-                    .expect("the fast stiffness is positive");
-                [rho.lower(), rho.upper()]
+                let rho = slow.enclosure(BITS).div(&fast.enclosure(BITS), BITS);
+                let rho = rho.expect("the fast stiffness is positive");
+                (of(&rho.lower())?, Some(of(&rho.upper())?))
             }
         };
-        Ok(Intervals { tongues: [Tongues::new(ratio, &lo)?, Tongues::new(ratio, &hi)?], ratio, fast })
+        Ok(Intervals { low, high, ratio, fast })
     }
 
     /// The last label.
     pub fn last(&self) -> u64 {
-        self.tongues[0].last()
+        self.low.last()
     }
 
     /// √(s/L1) p/q, the outer step, over an enclosure of s.
@@ -70,42 +74,59 @@ impl<'a> Intervals<'a> {
         (of(lo).to_f64_enclosure().0, of(hi).to_f64_enclosure().1)
     }
 
-    fn gaps(&self, label: u64) -> Result<[Gap; 2]> {
-        Ok([self.tongues[0].gap(label)?, self.tongues[1].gap(label)?])
+    /// The tongues `from` ..= `upto`, for ρ rounded down and up.
+    fn gaps(&self, from: u64, upto: u64) -> Result<Vec<[Gap; 2]>> {
+        let low = self.low.gaps(from, upto)?;
+        let high = self.high.as_ref().map_or_else(|| Ok(low.clone()), |own| own.gaps(from, upto))?;
+        Ok(low.into_iter().zip(high).map(|(low, high)| [low, high]).collect())
+    }
+
+    fn gap(&self, label: u64) -> Result<[Gap; 2]> {
+        Ok(self.gaps(label, label)?.remove(0))
+    }
+
+    fn lower(&self, [low, high]: &[Gap; 2]) -> (f64, f64) {
+        self.step(high.lower.lo, low.lower.hi)
     }
 
     /// Tongue `label`; `None` where it is closed.
     pub fn get(&self, label: u64) -> Result<Option<Unstable>> {
-        let [low, high] = self.gaps(label)?;
+        self.open(&self.gap(label)?)
+    }
+
+    /// A tongue with its growth; `None` where it is closed.
+    fn open(&self, gaps: &[Gap; 2]) -> Result<Option<Unstable>> {
+        let [low, high] = gaps;
         if low.closed || high.closed {
             return Ok(None);
         }
-        let lower = self.step(high.lower.lo, low.lower.hi);
+        let lower = self.lower(gaps);
         let upper = low.upper.zip(high.upper).map(|(low, high)| self.step(high.lo, low.hi));
-        let peak = self.tongues[0].peak(&low)?;
+        let peak = self.low.peak(low)?;
         let worst = peak.map(|peak| {
             let rate = peak.growth_rate(self.fast);
             Worst { rate, steps: peak.slow_steps_to_tenfold, time: std::f64::consts::LN_10 / rate }
         });
-        Ok(Some(Unstable { label, lower, upper, worst }))
+        Ok(Some(Unstable { label: low.m, lower, upper, worst }))
     }
 
     /// The first tongue, at which the stable region that begins at step 0 ends; without an upper end where it is closed, as without a slow force.
     pub fn first(&self) -> Result<Unstable> {
-        let [low, high] = self.gaps(1)?;
-        let lower = self.step(high.lower.lo, low.lower.hi);
-        Ok(self.get(1)?.unwrap_or(Unstable { label: 1, lower, upper: None, worst: None }))
+        let gaps = self.gap(1)?;
+        let lower = self.lower(&gaps);
+        Ok(self.open(&gaps)?.unwrap_or(Unstable { label: 1, lower, upper: None, worst: None }))
     }
 
     /// The open ones that begin below a step, from the first on: at most so many.
     pub fn up_to(&self, step: f64, count: usize) -> Result<Vec<Unstable>> {
         let mut found = Vec::new();
-        for label in 1..=self.last() {
-            let [low, high] = self.gaps(label)?;
-            if found.len() == count || self.step(high.lower.lo, low.lower.hi).0 > step {
-                break;
+        for from in (1..=self.last()).step_by(AT_ONCE as usize) {
+            for gaps in self.gaps(from, self.last().min(from + AT_ONCE - 1))? {
+                if found.len() == count || self.lower(&gaps).0 > step {
+                    return Ok(found);
+                }
+                found.extend(self.open(&gaps)?);
             }
-            found.extend(self.get(label)?);
         }
         Ok(found)
     }
@@ -116,8 +137,7 @@ impl<'a> Intervals<'a> {
         let (mut lo, mut hi) = (1, self.last() + 1);
         while lo < hi {
             let middle = lo + (hi - lo) / 2;
-            let [low, high] = self.gaps(middle)?;
-            let begins = self.step(high.lower.lo, low.lower.hi).0;
+            let begins = self.lower(&self.gap(middle)?).0;
             if begins > outer { hi = middle } else { lo = middle + 1 }
         }
         let below = (1..lo).rev().map(|label| self.get(label)).find_map(Result::transpose).transpose()?;

@@ -101,6 +101,9 @@ const MOST_GROUPS: usize = 12;
 /// Frequencies below this part of the highest one are no modes of the fast stiffness: rigid to it, or slow.
 const NO_MODE: f64 = 1e-2;
 
+/// The most products unless a budget is given: a minute or two.
+const MOST_PRODUCTS: u64 = 1_000_000_000_000;
+
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;
 
@@ -111,6 +114,26 @@ impl Molecule {
     /// From a kernel whose unit of time is so many fs.
     pub fn new(kernel: Kernel, unit: Rational, names: Vec<String>, accuracy: f64) -> Molecule {
         Molecule { kernel, unit, names, accuracy }
+    }
+
+    /// The products that advice on so many degrees of freedom at so many schemes costs, about: factorizations that bisect to edges and
+    /// margins, sampled eigenvalues; with a friction those of whole periods.
+    ///
+    /// # Errors
+    /// A budget error where that is more than `most`.
+    pub fn allow(size: usize, schemes: usize, has_friction: bool, most: Option<u64>) -> Result<u64> {
+        let cubes = if has_friction { 800 } else { 200 };
+        let cost = (size as u64).saturating_pow(3).saturating_mul(cubes * schemes as u64);
+        let most = most.unwrap_or(MOST_PRODUCTS);
+        if cost <= most {
+            return Ok(cost);
+        }
+        let (told, limit) = (cost as f64, most as f64);
+        let work = format!(
+            "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {told:.1e} products, the budget is {limit:.1e}",
+            if schemes == 1 { "" } else { "s" }
+        );
+        Err(Error::budget(work, cost).or("ask about fewer schemes"))
     }
 
     /// The findings at each scheme, all periods within `band` of theirs.

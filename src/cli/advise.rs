@@ -8,7 +8,7 @@ use super::progress::announce;
 use super::system;
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
-use crate::advise::{Constraints, Mode, Question, Scheme};
+use crate::advise::{Constraints, Mode, Molecule, Question, Scheme};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Rational;
@@ -18,6 +18,10 @@ use crate::scene::{SystemScene, file, of_archive};
 
 /// Fastest periods of molecules, in fs.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
+
+/// Kicks a second that advice on periods follows, and products a second of advice on Hessians, as measured.
+const KICKS_A_SECOND: f64 = 5e6;
+const PRODUCTS_A_SECOND: f64 = 1e10;
 
 /// Flags of `advise`.
 ///
@@ -74,7 +78,7 @@ impl Args {
             return self.molecule(path, reading.as_ref(), common);
         }
         let question = self.question(reading.as_ref())?.within(common.limits());
-        announce(common.quiet, "advice on these steps", question.cost() as f64 * 3e-7);
+        announce(common.quiet, "advice on these steps", question.cost() as f64 / KICKS_A_SECOND);
         let advice = question.answer()?;
         let document = |format| report::document(&advice, reading.as_ref(), format == Format::Csv);
         match common.output.as_deref().filter(|_| format.is_figure()) {
@@ -91,11 +95,24 @@ impl Args {
         let archive = path.extension().is_some_and(|extension| extension == "npz");
         let scene = if archive { self.archive(path, reading, common)? } else { system::read(path, common)? };
         let scene = self.changed(scene)?;
+        let (band, length, friction) = (part("band", &self.band)?, self.run_length()?, self.friction()?);
+        let asked = self.given(reading)?;
+        let size = scene.model().size();
+        let cost = Molecule::allow(
+            size,
+            (asked.len() + usize::from(!archive)).max(1),
+            friction.is_some(),
+            common.budget,
+        )?;
+        announce(
+            common.quiet,
+            &format!("advice on {size} degrees of freedom"),
+            cost as f64 / PRODUCTS_A_SECOND,
+        );
         let (molecule, own) = scene.molecule()?;
         let own = reading.map_or(own, |reading| reading.scheme.clone());
-        let given = self.given(reading)?.into_iter().filter(|scheme| !archive || *scheme != own);
+        let given = asked.into_iter().filter(|scheme| !archive || *scheme != own);
         let schemes: Vec<Scheme> = [own.clone()].into_iter().chain(given).collect();
-        let (band, length, friction) = (part("band", &self.band)?, self.run_length()?, self.friction()?);
         let findings = molecule.advise(&schemes, &band, length.as_ref(), friction.as_ref())?;
         let fastest = findings.groups[0].period.0;
         if archive && !PLAUSIBLE.contains(&fastest) {

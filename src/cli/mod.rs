@@ -38,10 +38,11 @@ use crate::format::Format;
 use crate::question::{Curves, Half, Polynomial, Proposition};
 #[cfg(unix)]
 use crate::report::file::abandon;
-use crate::report::file::{captured, replaceable, write_output};
+use crate::report::file::{captured, is_captured, replaceable, write_output};
 use args::Common;
 pub use args::Held;
 use asked::{Asked, Default};
+use progress::Patience;
 
 /// Exact, certified linear stability of multiple-time-step integrators.
 ///
@@ -216,6 +217,8 @@ fn run(cli: &Cli) -> Result<u8> {
     if !cli.command.draws() {
         common.format(&Format::DOCUMENT, Format::Text)?;
     }
+    let _patience =
+        Patience::new(common.quiet || is_captured() || matches!(cli.command, Command::Explore(_)));
     match &cli.command {
         Command::Verdict(args) => return args.run(common),
         Command::Curves(args) => args.run(common, Default::Table)?,

@@ -1,7 +1,10 @@
 //! Progress on standard error.
 
 use std::fmt::Write;
-use std::io::IsTerminal;
+use std::io::{IsTerminal, stderr};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
 
 use indicatif::{HumanCount, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
@@ -10,6 +13,7 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
+    COUNTED.store(true, Ordering::Relaxed);
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::stderr());
     let template = format!("{{bar:30}} {{human_pos}} of {{human_len}} {things}, {{rate}}/s, {{eta}} left");
     let style = ProgressStyle::with_template(&template).expect("the template is sound");
@@ -18,8 +22,33 @@ pub fn progress(quiet: bool, length: u64, things: &str) -> ProgressBar {
 
 /// Says on a terminal what is about to take more than a second, and about how long: for work that no bar counts.
 pub fn announce(quiet: bool, work: &str, seconds: f64) {
-    if seconds > 1.0 && !quiet && std::io::stderr().is_terminal() {
+    if seconds > 1.0 && !quiet && stderr().is_terminal() {
         eprintln!("kickdrift: {work}: some {seconds:.0} s of one core");
+    }
+}
+
+/// Whether a bar has counted something.
+static COUNTED: AtomicBool = AtomicBool::new(false);
+
+/// Says on a terminal that work which no bar counts goes on: after two seconds, and after twice as long each time. Until it is dropped.
+pub struct Patience(#[expect(dead_code, reason = "dropping it ends the thread")] Option<Sender<()>>);
+
+impl Patience {
+    pub fn new(quiet: bool) -> Patience {
+        if quiet || !stderr().is_terminal() {
+            return Patience(None);
+        }
+        let (work, ended) = channel::<()>();
+        std::thread::spawn(move || {
+            let (mut passed, mut next) = (0, 2);
+            while ended.recv_timeout(Duration::from_secs(next - passed)) == Err(RecvTimeoutError::Timeout) {
+                if !COUNTED.load(Ordering::Relaxed) {
+                    eprintln!("kickdrift: {next} s so far");
+                }
+                (passed, next) = (next, 2 * next);
+            }
+        });
+        Patience(Some(work))
     }
 }
 

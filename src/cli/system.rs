@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use indicatif::ProgressBar;
 use plot::{Figure, Foot};
 
 use super::args::{Columns, Common, from_str};
 use super::paper::Paper;
-use super::progress::progress;
+use super::progress::{announce, progress};
 use crate::error::{Error, Kind, Result};
 use crate::format::Format;
 use crate::number::Rational;
@@ -134,9 +133,9 @@ impl Args {
     }
 
     fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<Analysis> {
-        let waiting = waiting(scene, common.quiet);
+        let words = format!("a verdict on {} degrees of freedom", scene.model().size());
+        announce(common.quiet, &words, scene.model().seconds());
         let analysis = scene.model().decide(self.route(), &limits(common))?;
-        waiting.finish_and_clear();
         match drawing(common)? {
             Some(path) => {
                 self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default(), common)?
@@ -262,21 +261,4 @@ fn folder(path: &Path) -> Arrays {
 pub fn read(path: &Path, common: &Common) -> Result<SystemScene> {
     let (text, arrays) = source(path, common)?;
     SystemScene::read_in(arrays, &text)
-}
-
-/// Products of doubles a second, roughly; and from how many on a verdict is announced.
-const PACE: u64 = 1_000_000_000;
-
-/// What a long verdict will cost, said on standard error before it begins, on a terminal only.
-fn waiting(scene: &SystemScene, quiet: bool) -> ProgressBar {
-    let cost = scene.model().cost();
-    if quiet || cost < 2 * PACE {
-        return ProgressBar::hidden();
-    }
-    let spinner = ProgressBar::new_spinner();
-    let (n, seconds) = (scene.model().size(), cost / PACE);
-    spinner
-        .set_message(format!("{n} degrees of freedom: some {:.0e} products, {seconds} s or so", cost as f64));
-    spinner.enable_steady_tick(std::time::Duration::from_millis(100));
-    spinner
 }

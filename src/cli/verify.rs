@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::args::Common;
-use super::progress::progress;
+use super::progress::{announce, progress};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::recheck::{Claim, Options, Outcome};
@@ -26,9 +26,8 @@ pub struct Args {
     data: Option<PathBuf>,
 }
 
-/// Work that is announced before it begins, in kicks, and kicks a second: some tens of seconds.
-const ANNOUNCED_KICKS: u64 = 20_000_000;
-const KICKS_A_SECOND: u64 = 400_000;
+/// Kicks a second of the slower route.
+const KICKS_A_SECOND: f64 = 4e5;
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
@@ -39,10 +38,7 @@ impl Args {
         let claim = Claim::read(&text)?;
         let options = Options { budget: common.budget, all: self.all, folder: self.folder() };
         let work = claim.work(&options)?;
-        if work > ANNOUNCED_KICKS && !common.quiet {
-            let seconds = work / KICKS_A_SECOND;
-            eprintln!("kickdrift: {file}: about {work} kicks, some {seconds} s on one core");
-        }
+        announce(common.quiet, &format!("{file}, about {work} kicks"), work as f64 / KICKS_A_SECOND);
         let bar = progress(common.quiet, 0, "rows");
         let see = |done: u64, of: u64| {
             bar.set_length(of);

@@ -31,7 +31,7 @@ question! {
 const MOST_SUM: u64 = 200;
 /// Steps of a search unless a budget says otherwise: all ratios up to the largest sum at ten times the usual samples. And the seconds of one.
 const MOST_COST: u64 = 1_000_000_000_000;
-const STEP: f64 = 1e-7;
+const STEP: f64 = 3e-7;
 const MOST_SAMPLES: usize = 1_000_000;
 /// The boxes are known to 2^-100 of their centres.
 const MOST_DIGITS: u32 = 28;

@@ -21,7 +21,7 @@ question! {
 const LARGEST_MAX: u64 = 400;
 
 /// Seconds for each of max³ (1 + ln max) points and curves.
-const POINT: f64 = 1e-6;
+const POINT: f64 = 1.5e-6;
 
 impl Question for Proposition {
     const NAME: &'static str = "proposition";

@@ -26,9 +26,9 @@ question! {
     }
 }
 
-/// Seconds a kick of friction: a microsecond at each of some ten precisions.
+/// Seconds a kick of friction.
 #[cfg(feature = "system")]
-const DAMPED_KICK: f64 = 1e-5;
+const DAMPED_KICK: f64 = 1e-6;
 
 impl Verdict {
     /// The question about an oscillator with its steps.

@@ -327,6 +327,12 @@ fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
         "closings --ratio 501/499 --budget 1000000",
         "advise --period 10fs --period 40fs --steps 3fs,3.0001fs --budget 1000000",
         "advise --period 10fs --period 20fs --period 40fs --engine n2.namd",
+        concat!("advise ", env!("CARGO_MANIFEST_DIR"), "/data/scenes/water4.json --budget 1000000"),
+        concat!(
+            "advise ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/water4.json --friction 1/ps --budget 30000000"
+        ),
     ] {
         let ended = desk.run(&words(line));
         assert_eq!((ended.code, ended.stdout.as_str()), (Some(2), ""), "{line}");

@@ -181,11 +181,7 @@ impl MeasuredSystem {
 
     /// What friction of this rate per unit time does.
     pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
-        let (outer, _) = self.outer().ok_or_else(|| {
-            self.other_steps(
-                "friction is answered for two levels, the outer step a multiple of the inner one",
-            )
-        })?;
+        let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
         // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
         let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
         limits.allow(cost, || format!("the eigenvalues of a period of {} rows", 2 * self.size()))?;
@@ -200,9 +196,9 @@ impl MeasuredSystem {
         limits.allow(self.cost(), || format!("eigenvalues and factorizations of {} rows", self.size()))
     }
 
-    /// The products that a verdict costs, roughly.
+    /// The products that a verdict costs, roughly: two eigenvalue problems, changes of basis, some fifty factorizations.
     pub(super) fn cost(&self) -> u64 {
-        (self.size() as u64).saturating_pow(3).saturating_mul(200)
+        (self.size() as u64).saturating_pow(3).saturating_mul(60)
     }
 
     /// The verdicts on a range of outer steps, as many inner ones in each.

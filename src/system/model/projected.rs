@@ -7,6 +7,7 @@ use super::measured::{MeasuredSystem, rational};
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::friction::{Friction, damped_system};
 use crate::system::linear::system::System;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
@@ -27,6 +28,14 @@ impl MeasuredSystem {
         let what = format!("with {} motions projected out ({}) and rounded", removed.count, removed.found_by);
         analysis.warnings.push(warning(&what));
         Ok(analysis)
+    }
+
+    /// What friction does to these doubles as a rational system.
+    pub(super) fn friction_projected(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        match self.hessians()?.basis() {
+            Some(basis) => damped_system(&self.projected(basis), rate, limits),
+            None => self.refuse_constraints().and_then(|()| damped_system(self.system(), rate, limits)),
+        }
     }
 
     /// Bᵀ M^-½ K M^-½ B of each stiffness, unit masses.

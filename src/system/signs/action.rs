@@ -13,9 +13,10 @@
 //! a period, J is negative whatever end is held; then the numbers of negative eigenvalues tell of real multipliers off the circle.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use crate::number::rational::to_f64;
-use crate::parallel::map;
+use crate::parallel::{both, map};
 use crate::schedule::Weight;
 use crate::system::half::compose::{Program, Row};
 use crate::system::linear::frame::Frame;
@@ -61,51 +62,66 @@ pub(in crate::system) fn is_stable(system: &System, frame: &Frame) -> Option<boo
 
 /// Whether counts of negative eigenvalues prove a real multiplier off the circle.
 fn has_real_unstable_mode(system: &System, frame: &Frame) -> bool {
-    let counts = Counts::new(system);
     // J_hh and J_hf must be regular: all their eigenvalues told.
-    let are_regular = |own: &Counts| [own.hh, own.hf].iter().all(|own| own.is_some_and(|(a, b)| a == b));
-    counts.is_some_and(|own| {
-        are_regular(&own) && differ([&own, &own], frame.rigid.is_empty().then_some(system.size()))
-    })
+    let are_regular = |own: &Counts| {
+        let is_sharp =
+            |held| own.count(held, Bound::Least).is_some_and(|a| own.count(held, Bound::Most) == Some(a));
+        [Held::Both, Held::Start].into_iter().all(is_sharp)
+    };
+    let n = frame.rigid.is_empty().then_some(system.size());
+    Counts::new(system).is_some_and(|own| differ([&own, &own], n) && are_regular(&own))
 }
 
-/// Bounds on the number of negative eigenvalues of the action for each pair of ends: no fewer than the first are negative, no more than the
-/// second negative or 0; `None` where nothing is told. f: free, h: x = 0, the first letter for t = 0.
+/// Bounds on the number of negative eigenvalues of the action for each pair of ends, each computed when it is first asked for.
 pub(in crate::system) struct Counts {
-    fh: Option<(usize, usize)>,
-    hf: Option<(usize, usize)>,
-    hh: Option<(usize, usize)>,
-    ff: Option<(usize, usize)>,
+    action: Action,
+    /// The terms of an entry: two drifts meet in it, and each clock once.
+    terms: usize,
+    known: [[OnceLock<Option<usize>>; 2]; 4],
+}
+
+/// No fewer are negative; no more are negative or 0.
+#[derive(Clone, Copy)]
+enum Bound {
+    Least,
+    Most,
 }
 
 impl Counts {
     pub fn new(system: &System) -> Option<Counts> {
-        let action = Action::new(system)?;
-        let terms = 2 + system.clocks().len();
-        let count = |&held: &Held| action.matrix(held)?.negatives(terms, ROUNDINGS);
-        let found = map(&[Held::End, Held::Start, Held::Both, Held::Neither], count);
-        Some(Counts { fh: found[0], hf: found[1], hh: found[2], ff: found[3] })
+        Some(Counts {
+            action: Action::new(system)?,
+            terms: 2 + system.clocks().len(),
+            known: Default::default(),
+        })
+    }
+
+    /// `None` where nothing is told.
+    fn count(&self, held: Held, bound: Bound) -> Option<usize> {
+        let (terms, is_least) = (self.terms, matches!(bound, Bound::Least));
+        let found = &self.known[held as usize][bound as usize];
+        *found.get_or_init(|| self.action.matrix(held)?.negatives(terms, ROUNDINGS, is_least))
     }
 }
 
 /// Whether neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff, for all kicks between those of two systems, the softer one
-/// first: every count grows with the kicks. The latter is asked where n is given: where no rigid mode is at μ = 0 (`proofs/REGION.md`,
-/// sections 3 and 5).
+/// first: every count grows with the kicks. f: free, h: x = 0, the first letter for t = 0. The latter is asked where n is given: where no
+/// rigid mode is at μ = 0 (`proofs/REGION.md`, sections 3 and 5).
 pub(in crate::system) fn differ([softer, stiffer]: [&Counts; 2], n: Option<usize>) -> bool {
-    let exceeds = |[low, high]: [Option<(usize, usize)>; 2], [more, other]: [usize; 2]| {
-        low.zip(high).is_some_and(|(low, high)| low.0 + more > high.1 + other)
+    let exceeds = |[low, high]: [Held; 2], [more, other]: [usize; 2]| {
+        let (low, high) = both(true, || softer.count(low, Bound::Least), || stiffer.count(high, Bound::Most));
+        low.zip(high).is_some_and(|(low, high)| low + more > high + other)
     };
-    exceeds([softer.fh, stiffer.hf], [0, 0])
-        || exceeds([softer.hf, stiffer.fh], [0, 0])
+    exceeds([Held::End, Held::Start], [0, 0])
+        || exceeds([Held::Start, Held::End], [0, 0])
         || n.is_some_and(|n| {
-            exceeds([softer.ff, stiffer.hh], [0, n]) || exceeds([softer.hh, stiffer.ff], [n, 0])
+            exceeds([Held::Neither, Held::Both], [0, n]) || exceeds([Held::Both, Held::Neither], [n, 0])
         })
 }
 
 /// The signs of the action of paths that are held at their start, and at their end.
 pub(in crate::system) fn signs(system: &System) -> Option<[Option<Sign>; 2]> {
     let action = Action::new(system)?;
-    // Two drifts meet in an entry, and each clock once.
     let terms = 2 + system.clocks().len();
     let found = map(&[Held::Start, Held::End], |&held| action.matrix(held)?.sign(terms, ROUNDINGS));
     Some([found[0], found[1]])

@@ -68,14 +68,13 @@ impl Envelope {
         1.01 * (terms + roundings) as f64 * U * self.sizes.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Bounds on the number of negative eigenvalues of the true matrix, as in [`Envelope::sign`]: no fewer than the first are negative, no
-    /// more than the second negative or 0; `None` where elimination without exchanges is too far from the matrix.
+    /// A bound on the number of negative eigenvalues of the true matrix, as in [`Envelope::sign`]: no fewer than the least are negative, no
+    /// more than the other one negative or 0; `None` where elimination without exchanges is too far from the matrix.
     ///
     /// L D Lᵀ of m ± c I that runs to its end differs from it by at most γ |L| |D| |Lᵀ|, γ for two roundings more than a row has entries
     /// (Higham, Accuracy and Stability, section 10.1): where that and the errors of m are within c, Sylvester's law tells.
-    pub fn negatives(&self, terms: usize, roundings: usize) -> Option<(usize, usize)> {
-        let slack = self.slack(terms, roundings);
-        Some((self.pivots(slack, 1.0)?, self.pivots(slack, -1.0)?))
+    pub fn negatives(&self, terms: usize, roundings: usize, is_least: bool) -> Option<usize> {
+        self.pivots(self.slack(terms, roundings), if is_least { 1.0 } else { -1.0 })
     }
 
     /// The negative pivots of the matrix moved by c I of this sign, c more than all errors; `None` where no c tried is.

@@ -2,10 +2,11 @@
 //!
 //! A number t on which masses and stiffnesses depend linearly, steps fixed, makes kicks K_k(t) between K_k⁻ and K_k⁺ in Loewner's
 //! order for t in a cell. Near the first region the signs of the action at both decide for the whole cell (`action`; the order theorem
-//! of `proofs/REGION.md`), and beyond it counts of negative eigenvalues do where many modes resonate at once. Elsewhere the half period in the middle does, its bound widened by how far kicks and drifts are from it: the
-//! forms' inertias, or discs about the eigenvalues.
+//! of `proofs/REGION.md`), and beyond it counts of negative eigenvalues do where many modes resonate at once. Elsewhere the half period in
+//! the middle does, its bound widened by how far kicks and drifts are from it: the forms' inertias, or discs about the eigenvalues.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 use num_traits::{Signed, Zero};
@@ -24,7 +25,6 @@ use crate::system::signs;
 use crate::system::signs::action::{self, Counts, differ, is_total_definite};
 use crate::system::signs::envelope::Sign;
 use crate::system::spectrum::discs::Spectrum;
-use crate::system::vary::critical::Line;
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::measured::Holds;
 
@@ -54,24 +54,122 @@ impl Intervals {
     }
 }
 
-/// What is proven of all systems between the first and the last, on a line through the second, masses and stiffnesses being linear in
-/// the place on it: the second is their mean.
-///
-/// # Errors
-/// Where it is not, or steps differ.
-pub(in crate::system) fn verdict_between(systems: [&System; 3]) -> Result<Holds> {
-    verify_line(systems)?;
-    let [lo, middle, hi] = systems;
-    let rigid = middle.rigid_modes();
-    let varies_mass = lo.mass() != hi.mass();
-    if varies_mass && !middle.mass().is_diagonal() || lo.rigid_modes() != rigid || hi.rigid_modes() != rigid {
-        return Ok(Holds::NotTold);
+/// Cells of one line of systems, and what they have in common.
+pub(in crate::system) struct Cells<'a> {
+    /// The system of a number.
+    at: &'a (dyn Fn(f64) -> Result<System> + Sync),
+    /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which needs no check then.
+    is_scaled: bool,
+    /// Of such, how each stiffness moves.
+    courses: OnceLock<Vec<Course>>,
+    /// Counts at ends of cells, which neighbours share, by the bits of the number.
+    counts: Mutex<BTreeMap<u64, Arc<Option<Counts>>>>,
+}
+
+/// A cell is halved so often where counts prove its middle unstable.
+const HALVINGS: u32 = 5;
+
+/// Counts that are kept.
+const MOST_ENDS: usize = 128;
+
+impl<'a> Cells<'a> {
+    pub fn new(at: &'a (dyn Fn(f64) -> Result<System> + Sync), is_scaled: bool) -> Cells<'a> {
+        Cells { at, is_scaled, courses: OnceLock::new(), counts: Mutex::default() }
     }
-    let cell = Cell { systems, frame: Frame::new(middle) };
-    Ok(match cell.by_action()? {
-        Holds::NotTold => cell.by_half_period()?,
-        told => told,
-    })
+
+    /// What is proven of all systems of numbers between two: those of both ends and their mean are given, masses and stiffnesses
+    /// being linear in the place between.
+    ///
+    /// # Errors
+    /// Where the second system is not the mean, or steps differ.
+    pub fn verdict(&self, ends: (f64, f64), systems: [&System; 3]) -> Result<Holds> {
+        let [lo, middle, hi] = systems;
+        let varies_mass = lo.mass() != hi.mass();
+        if !self.is_scaled {
+            verify_line(systems)?;
+            let rigid = middle.rigid_modes();
+            if varies_mass && !middle.mass().is_diagonal()
+                || lo.rigid_modes() != rigid
+                || hi.rigid_modes() != rigid
+            {
+                return Ok(Holds::NotTold);
+            }
+        }
+        let courses = || -> Vec<Course> {
+            let pairs = lo.potentials().iter().zip(hi.potentials());
+            pairs.map(|(a, b)| Course::of(&a.stiffness, &b.stiffness)).collect()
+        };
+        let courses = if self.is_scaled { self.courses.get_or_init(courses).clone() } else { courses() };
+        let cell = Cell { ends, systems, frame: Frame::new(middle), courses, cells: self };
+        Ok(match cell.by_action()? {
+            Holds::NotTold => cell.by_half_period()?,
+            told => told,
+        })
+    }
+
+    /// The counts at a number.
+    fn counts(&self, x: f64) -> Result<Arc<Option<Counts>>> {
+        let known = || self.counts.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(own) = known().get(&x.to_bits()) {
+            return Ok(Arc::clone(own));
+        }
+        let own = Arc::new(Counts::new(&(self.at)(x)?));
+        let mut known = known();
+        if known.len() >= MOST_ENDS {
+            known.clear();
+        }
+        Ok(Arc::clone(known.entry(x.to_bits()).or_insert(own)))
+    }
+
+    /// Whether counts prove all systems between two numbers unstable, every kick growing from one to the other: at both ends together, or
+    /// half by half as long as they prove the middle of each.
+    fn differ_throughout(
+        &self,
+        (lo, hi): (f64, f64),
+        is_rising: bool,
+        n: Option<usize>,
+        halvings: u32,
+    ) -> Result<bool> {
+        let ends = [self.counts(lo)?, self.counts(hi)?];
+        let [Some(a), Some(b)] = ends.each_ref().map(|own| own.as_ref().as_ref()) else { return Ok(false) };
+        if differ(if is_rising { [a, b] } else { [b, a] }, n) {
+            return Ok(true);
+        }
+        let middle = lo + (hi - lo) / 2.0;
+        if halvings == 0 || !(lo < middle && middle < hi) {
+            return Ok(false);
+        }
+        let own = self.counts(middle)?;
+        Ok(own.as_ref().as_ref().is_some_and(|own| differ([own, own], n))
+            && self.differ_throughout((lo, middle), is_rising, n, halvings - 1)?
+            && self.differ_throughout((middle, hi), is_rising, n, halvings - 1)?)
+    }
+}
+
+/// How a stiffness moves as the number grows, in Loewner's order.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Course {
+    Fixed,
+    Rising,
+    Falling,
+    Neither,
+}
+
+impl Course {
+    fn of(lo: &Symmetric, hi: &Symmetric) -> Course {
+        let minus = Rational::from_integer((-1).into());
+        let mut difference = hi.clone();
+        difference.add_all(&lo.scaled(&minus));
+        if difference.is_zero() {
+            Course::Fixed
+        } else if difference.is_positive_semidefinite() {
+            Course::Rising
+        } else if difference.scaled(&minus).is_positive_semidefinite() {
+            Course::Falling
+        } else {
+            Course::Neither
+        }
+    }
 }
 
 /// That steps are the same and the second system is the mean of the others.
@@ -100,33 +198,27 @@ pub(in crate::system) fn verify_line(systems: [&System; 3]) -> Result<()> {
     Ok(())
 }
 
-/// A cell is halved so often where counts prove its middle unstable.
-const HALVINGS: u32 = 5;
-
-/// Whether counts prove all systems between two unstable, the softer one first, every kick growing from one to the other: at both ends
-/// together, or half by half as long as they prove the middle of each.
-fn differ_throughout(
-    [softer, stiffer]: [(&System, &Counts); 2],
-    n: Option<usize>,
-    halvings: u32,
-) -> Result<bool> {
-    if differ([softer.1, stiffer.1], n) {
-        return Ok(true);
-    }
-    if halvings == 0 {
-        return Ok(false);
-    }
-    let middle = Line::new([softer.0.clone(), stiffer.0.clone()]).at(&ratio(1, 2))?;
-    let Some(counts) = Counts::new(&middle).filter(|own| differ([own, own], n)) else { return Ok(false) };
-    let own = (&middle, &counts);
-    Ok(differ_throughout([softer, own], n, halvings - 1)?
-        && differ_throughout([own, stiffer], n, halvings - 1)?)
+/// Less and more than all on a segment: its middle less and more the sums of the rows of |K_hi − K_lo|/2 on the diagonal (Gershgorin).
+fn spread([lo, hi]: [&Symmetric; 2], middle: &Symmetric) -> [Symmetric; 2] {
+    let [minus, half] = [ratio(-1, 1), ratio(1, 2)];
+    let mut difference = hi.clone();
+    difference.add_all(&lo.scaled(&minus));
+    let row = |i: usize| difference.row(i).values().fold(Rational::zero(), |sum, x| sum + x.abs()) * &half;
+    let shift = Symmetric::diagonal(&(0..difference.size()).map(row).collect::<Vec<_>>());
+    [minus, ratio(1, 1)].map(|sign| {
+        let mut moved = middle.clone();
+        moved.add_all(&shift.scaled(&sign));
+        moved
+    })
 }
 
 /// Three systems on a line.
 struct Cell<'a> {
+    ends: (f64, f64),
     systems: [&'a System; 3],
     frame: Frame,
+    courses: Vec<Course>,
+    cells: &'a Cells<'a>,
 }
 
 impl Cell<'_> {
@@ -136,70 +228,80 @@ impl Cell<'_> {
         if !middle.mass().is_diagonal() {
             return Ok(Holds::NotTold);
         }
+        match self.rises() {
+            Some(true) => self.between_kicks([lo, hi], Some(true)),
+            Some(false) => self.between_kicks([hi, lo], Some(false)),
+            None => {
+                let [less, more] = self.around()?;
+                self.between_kicks([&less, &more], None)
+            }
+        }
+    }
+
+    /// Whether all kicks grow with the number, or all fall; lighter masses act as stiffer kicks.
+    fn rises(&self) -> Option<bool> {
+        let [lo, _, hi] = self.systems.map(System::mass);
+        let masses = |is: fn(&Rational, &Rational) -> bool| {
+            lo == hi || (0..lo.size()).all(|i| is(&lo.get(i, i), &hi.get(i, i)))
+        };
+        let all = |course| self.courses.iter().all(|own| [Course::Fixed, course].contains(own));
+        if all(Course::Rising) && masses(PartialOrd::ge) {
+            return Some(true);
+        }
+        (all(Course::Falling) && masses(PartialOrd::le)).then_some(false)
+    }
+
+    /// Systems with kicks no stronger and no weaker than any of the cell.
+    fn around(&self) -> Result<[System; 2]> {
+        let [lo, middle, hi] = self.systems;
         let (mut less, mut more) = (Vec::new(), Vec::new());
         for (k, own) in middle.potentials().iter().enumerate() {
-            let ends = [lo, hi].map(|system| &system.potentials()[k].stiffness);
-            let [small, large] = self.ordered(ends, &own.stiffness);
+            let [a, b] = [lo, hi].map(|system| system.potentials()[k].stiffness.clone());
+            let [small, large] = match self.courses[k] {
+                Course::Fixed | Course::Rising => [a, b],
+                Course::Falling => [b, a],
+                Course::Neither => spread([&a, &b], &own.stiffness),
+            };
             less.push(Potential { stiffness: small, ..own.clone() });
             more.push(Potential { stiffness: large, ..own.clone() });
         }
-        // Lighter masses act as stiffer kicks.
         let masses = |pick: fn(Rational, Rational) -> Rational| {
             let entry = |i: usize| pick(lo.mass().get(i, i), hi.mass().get(i, i));
             Symmetric::diagonal(&(0..middle.size()).map(entry).collect::<Vec<_>>())
         };
-        let more = System::new(masses(|a, b| a.min(b)), more)?;
-        let less = System::new(masses(|a, b| a.max(b)), less)?;
+        Ok([System::new(masses(|a, b| a.max(b)), less)?, System::new(masses(|a, b| a.min(b)), more)?])
+    }
+
+    /// What is proven where all kicks lie between those of two systems, the softer one first; these are the cell's ends where the kicks
+    /// are known to rise or fall.
+    fn between_kicks(&self, [less, more]: [&System; 2], rises: Option<bool>) -> Result<Holds> {
         // Where a kick vanishes the schedule is another, and nothing can be compared.
         if self.clocks() != more.clocks().len() || self.clocks() != less.clocks().len() {
             return Ok(Holds::NotTold);
         }
-        let Some(stiffer) = action::signs(&more) else { return Ok(Holds::NotTold) };
+        let Some(stiffer) = action::signs(more) else { return Ok(Holds::NotTold) };
         if stiffer == [Some(Sign::Positive); 2] {
-            let is_stable = is_total_definite(&less, &self.frame);
+            let is_stable = is_total_definite(less, &self.frame);
             return Ok(if is_stable { Holds::Stable } else { Holds::NotTold });
         }
-        let softer = action::signs(&less).unwrap_or_default();
+        let softer = action::signs(less).unwrap_or_default();
         let is_unstable =
             |k: usize| stiffer[k] == Some(Sign::Positive) && softer[1 - k] == Some(Sign::Negative);
-        let is_unstable = is_unstable(0) || is_unstable(1) || self.has_real_unstable_mode([&less, &more])?;
+        let is_unstable =
+            is_unstable(0) || is_unstable(1) || self.has_real_unstable_mode([less, more], rises)?;
         Ok(if is_unstable { Holds::Unstable } else { Holds::NotTold })
     }
 
-    /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all between. Where these are the
-    /// segment's ends, every kick grows along it, so that it may be proven piece by piece.
-    fn has_real_unstable_mode(&self, ends: [&System; 2]) -> Result<bool> {
-        let n = self.frame.rigid.is_empty() && is_total_definite(ends[0], &self.frame);
-        let n = n.then(|| ends[0].size());
-        let [Some(softer), Some(stiffer)] = ends.map(Counts::new) else { return Ok(false) };
-        let is = |a: &System, b: &System| a.mass() == b.mass() && a.potentials() == b.potentials();
-        let [lo, _, hi] = self.systems;
-        let [less, more] = ends;
-        let is_ordered = is(less, lo) && is(more, hi) || is(less, hi) && is(more, lo);
-        differ_throughout([(less, &softer), (more, &stiffer)], n, if is_ordered { HALVINGS } else { 0 })
-    }
-
-    /// K⁻ ≤ K ≤ K⁺ for all K on the segment: its ends where their difference is semidefinite, else the middle less and more
-    /// the sums of the rows of |K_hi − K_lo|/2 on the diagonal (Gershgorin).
-    fn ordered(&self, [a, b]: [&Symmetric; 2], middle: &Symmetric) -> [Symmetric; 2] {
-        let minus = Rational::from_integer((-1).into());
-        let mut difference = b.clone();
-        difference.add_all(&a.scaled(&minus));
-        if difference.is_zero() || difference.is_positive_semidefinite() {
-            return [a.clone(), b.clone()];
+    /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all between; where every kick grows
+    /// from one end of the cell to the other, piece by piece.
+    fn has_real_unstable_mode(&self, kicks: [&System; 2], rises: Option<bool>) -> Result<bool> {
+        let n = self.frame.rigid.is_empty() && is_total_definite(kicks[0], &self.frame);
+        let n = n.then(|| kicks[0].size());
+        if let Some(rises) = rises {
+            return self.cells.differ_throughout(self.ends, rises, n, HALVINGS);
         }
-        if difference.scaled(&minus).is_positive_semidefinite() {
-            return [b.clone(), a.clone()];
-        }
-        let half = Rational::new(1.into(), 2.into());
-        let row =
-            |i: usize| difference.row(i).values().fold(Rational::zero(), |sum, x| sum + x.abs()) * &half;
-        let shift = Symmetric::diagonal(&(0..difference.size()).map(row).collect::<Vec<_>>());
-        [&minus, &-minus.clone()].map(|sign| {
-            let mut moved = middle.clone();
-            moved.add_all(&shift.scaled(sign));
-            moved
-        })
+        let [Some(softer), Some(stiffer)] = kicks.map(Counts::new) else { return Ok(false) };
+        Ok(differ([&softer, &stiffer], n))
     }
 
     /// The half period in the middle, every kick and drift off by as much as it moves.

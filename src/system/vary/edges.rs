@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, ratio, simplest};
 use crate::system::linear::system::System;
-use crate::system::vary::between::{verdict_between, verify_line};
+use crate::system::vary::between::{Cells, verify_line};
 use crate::system::vary::critical::{Gap, Line, gaps};
 use crate::system::vary::stretches::{Stretch, cover};
 use crate::system::verdict::decide::decide_system;
@@ -21,7 +21,7 @@ use crate::system::verdict::measured::Holds;
 pub enum Linear {
     /// The number x itself.
     Number,
-    /// x², x > 0.
+    /// x², x > 0, by which all stiffnesses are multiplied.
     Square,
 }
 
@@ -50,7 +50,7 @@ impl Family<'_> {
     pub fn stretches(&self, (lo, hi): (f64, f64), width: f64, limits: &Limits) -> Result<Vec<Stretch>> {
         match if lo < hi { self.exactly((lo, hi), limits)? } else { None } {
             Some(found) => Ok(found),
-            None => cover((lo, hi), width, |lo, hi| self.cell(lo, hi)),
+            None => self.over_cells(|cells| cover((lo, hi), width, |lo, hi| self.cell(cells, lo, hi))),
         }
     }
 
@@ -66,13 +66,21 @@ impl Family<'_> {
         let fraction = |x: f64| (self.linear.of(&exact(x)) - &a) / (&b - &a);
         let Some(gaps) = gaps(&line, (lo, hi), &fraction, limits)? else { return Ok(None) };
         let verdict = |x: &Rational| Ok(decide_system(&(self.at)(&self.linear.of(x))?, limits)?.holds());
-        between((lo, hi), &gaps, &verdict, &|lo, hi| self.cell(lo, hi)).map(Some)
+        self.over_cells(|cells| {
+            between((lo, hi), &gaps, &verdict, &|lo, hi| self.cell(cells, lo, hi)).map(Some)
+        })
     }
 
-    /// What cells prove of all between.
-    fn cell(&self, lo: f64, hi: f64) -> Result<Holds> {
+    /// What `ask` finds of the cells of these systems.
+    fn over_cells<T>(&self, ask: impl FnOnce(&Cells) -> Result<T>) -> Result<T> {
+        let at = |x: f64| (self.at)(&self.linear.of(&exact(x)));
+        ask(&Cells::new(&at, self.linear == Linear::Square))
+    }
+
+    /// What a cell proves of all between.
+    fn cell(&self, cells: &Cells, lo: f64, hi: f64) -> Result<Holds> {
         let three = self.three(lo, hi)?;
-        verdict_between(three.each_ref().map(|(_, own)| own))
+        cells.verdict((lo, hi), three.each_ref().map(|(_, own)| own))
     }
 
     /// The systems at both ends and at their mean.

@@ -6,8 +6,9 @@
 use num_traits::{One, Signed};
 
 use super::jet::{Jet, jets};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::{Ball, Ratio, Rational, Sign, rational};
+use crate::parallel::go_on;
 use crate::propagator::TwoClocks;
 use crate::tongue::edge::{Enclosure, simplest};
 use crate::tongue::string::Entry;
@@ -27,11 +28,18 @@ pub struct Closing {
     pub below_verlet: bool,
 }
 
-/// Bits of the Newton steps and of the box.
+/// Bits of the first Newton steps and of their box, and the most that are tried.
 const BITS: u32 = 512;
+const MOST_BITS: u32 = 1 << 14;
 
-/// The box's half width: 2^-100 of its centre, while the centre is good to about 2^-400.
+/// The box's half width for each [`BITS`] bits: 2^-100 of its centre, while the centre is good to about 2^-400.
 const BOX: i64 = -100;
+
+/// Digits of an edge that doubles do not tell from its neighbour.
+const DIGITS: u32 = 60;
+
+/// A bracket of ρ is halved so often before more bits are tried: balls may lose more of them over a period than there are.
+const HALVINGS: u32 = 8;
 
 /// Which entry's zero is the lower edge.
 #[derive(Clone, Debug)]
@@ -56,11 +64,19 @@ pub(crate) fn orders(ratio: Ratio, rho: &Rational, m: Option<u64>) -> Result<Vec
 }
 
 /// Narrows the bracket of ρ, finds the zero by Newton's method, and proves it.
+///
+/// # Errors
+/// As [`orders`]; a closing that more digits are needed for than are tried.
 pub(crate) fn certify(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Closing> {
     let pair = Entry::of_tongue(m % 2 == 1);
     let (mut lo, mut hi) = (lo.clone(), hi.clone());
-    loop {
-        let start = Start::new(ratio, m, &lo, &hi)?;
+    for halvings in 1.. {
+        go_on()?;
+        let bits = BITS << ((halvings - 1) / HALVINGS);
+        if bits > MOST_BITS {
+            break;
+        }
+        let start = Start::new(ratio, m, (&lo, &hi), bits)?;
         if let Some(closing) =
             start.newton(pair)?.and_then(|(s, rho)| start.proven(pair, &s, &rho).transpose())
         {
@@ -76,6 +92,8 @@ pub(crate) fn certify(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Res
             (false, _) => hi = middle,
         }
     }
+    let work = format!("the closing of tongue {m} of {ratio} near rho = {}", rational::to_f64(&lo));
+    Err(Error::too_much(format!("{work} needs more digits than are tried"), "choose a simpler ratio"))
 }
 
 /// A bracket of ρ, and of s: all edges fall as ρ grows (masses do), so tongue m's edges at its ends bound s*.
@@ -84,10 +102,11 @@ struct Start {
     m: u64,
     s: (Rational, Rational),
     rho: (Rational, Rational),
+    bits: u32,
 }
 
 impl Start {
-    fn new(ratio: Ratio, m: u64, lo: &Rational, hi: &Rational) -> Result<Self> {
+    fn new(ratio: Ratio, m: u64, (lo, hi): (&Rational, &Rational), bits: u32) -> Result<Self> {
         let edges = |rho: &Rational| -> Result<(f64, f64)> {
             let gap = Tongues::new(ratio, rho)?.gap(m)?;
             let upper = gap.upper.expect("a finite tongue");
@@ -95,20 +114,21 @@ impl Start {
         };
         let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
         let s = (exact(edges(hi)?.0), exact(edges(lo)?.1));
-        Ok(Start { ratio, m, s, rho: (lo.clone(), hi.clone()) })
+        Ok(Start { ratio, m, s, rho: (lo.clone(), hi.clone()), bits })
     }
 
     /// Newton's method from the bracket's middle; `None` where it leaves the bracket.
     fn newton(&self, pair: [Entry; 2]) -> Result<Option<(Rational, Rational)>> {
+        let bits = self.bits;
         let middle = |(lo, hi): &(Rational, Rational)| {
-            Ball::from_rational(&((lo + hi) / Rational::from_integer(2.into())), BITS)
+            Ball::from_rational(&((lo + hi) / Rational::from_integer(2.into())), bits)
         };
         let (mut s, mut rho) = (middle(&self.s), middle(&self.rho));
-        // Nine squarings of 1/2 pass 2^-500.
+        // Fourteen squarings of 1/2 pass 2^-MOST_BITS.
         for _ in 0..24 {
-            let jets = jets(self.ratio, &point(&s), &point(&rho), pair, BITS)?;
-            let Some([ds, dr]) = solve(&jets, [&jets[0].0[0], &jets[1].0[0]]) else { return Ok(None) };
-            (s, rho) = (point(&s.sub(&ds, BITS)), point(&rho.sub(&dr, BITS)));
+            let jets = jets(self.ratio, &point(&s, bits), &point(&rho, bits), pair, bits)?;
+            let Some([ds, dr]) = solve(&jets, [&jets[0].0[0], &jets[1].0[0]], bits) else { return Ok(None) };
+            (s, rho) = (point(&s.sub(&ds, bits), bits), point(&rho.sub(&dr, bits), bits));
         }
         let (s, rho) = (s.lower(), rho.lower());
         let within = |x: &Rational, (lo, hi): &(Rational, Rational)| {
@@ -121,25 +141,25 @@ impl Start {
 
     /// Krawczyk's test on the box about (s, ρ), and that the zero belongs to tongue m.
     fn proven(&self, pair: [Entry; 2], s: &Rational, rho: &Rational) -> Result<Option<Closing>> {
-        let ratio = self.ratio;
-        let centre = [s, rho].map(|x| Ball::from_rational(x, BITS));
-        let radius = [s, rho].map(|x| x.abs() * rational::scale2(&One::one(), BOX));
+        let (ratio, bits) = (self.ratio, self.bits);
+        let centre = [s, rho].map(|x| Ball::from_rational(x, bits));
+        let radius = [s, rho].map(|x| x.abs() * rational::scale2(&One::one(), BOX * i64::from(bits / BITS)));
         let sides: [Ball; 2] = std::array::from_fn(|i| {
-            let end = |x: Rational| Ball::from_rational(&x, BITS);
-            end([s, rho][i] - &radius[i]).union(&end([s, rho][i] + &radius[i]), BITS)
+            let end = |x: Rational| Ball::from_rational(&x, bits);
+            end([s, rho][i] - &radius[i]).union(&end([s, rho][i] + &radius[i]), bits)
         });
-        let wide: [Ball; 2] = std::array::from_fn(|i| sides[i].sub(&centre[i], BITS));
-        let at = jets(ratio, &centre[0], &centre[1], pair, BITS)?;
-        let over = jets(ratio, &sides[0], &sides[1], pair, BITS)?;
+        let wide: [Ball; 2] = std::array::from_fn(|i| sides[i].sub(&centre[i], bits));
+        let at = jets(ratio, &centre[0], &centre[1], pair, bits)?;
+        let over = jets(ratio, &sides[0], &sides[1], pair, bits)?;
         // K − centre = −Y F(centre) + (1 − Y F'(box)) (box − centre), Y ≈ F'(centre)⁻¹.
-        let Some(inverse) = inverse(&at) else { return Ok(None) };
+        let Some(inverse) = inverse(&at, bits) else { return Ok(None) };
         let mut image = Vec::new();
         for (i, row) in inverse.iter().enumerate() {
-            let mut sum = dot(row, [&at[0].0[0], &at[1].0[0]]).neg();
+            let mut sum = dot(row, [&at[0].0[0], &at[1].0[0]], bits).neg();
             for (k, wide) in wide.iter().enumerate() {
-                let product = dot(row, [&over[0].0[k + 1], &over[1].0[k + 1]]);
+                let product = dot(row, [&over[0].0[k + 1], &over[1].0[k + 1]], bits);
                 let unit = if i == k { Ball::one() } else { Ball::zero() };
-                sum = sum.add(&unit.sub(&product, BITS).mul(wide, BITS), BITS);
+                sum = sum.add(&unit.sub(&product, bits).mul(wide, bits), bits);
             }
             image.push(sum);
         }
@@ -158,17 +178,16 @@ impl Start {
     /// neighbouring zeros stay away from its s.
     fn belongs(&self, s: &Enclosure, rho: &Enclosure) -> Result<bool> {
         let index = self.m.div_ceil(2) as usize;
-        let (lo, hi) = s.to_f64();
         let early = Tongues::new(self.ratio, &rho.lo)?;
         let late = Tongues::new(self.ratio, &rho.hi)?;
         let mut mine = true;
         for entry in Entry::of_tongue(self.m % 2 == 1) {
             // Falling in ρ: the zero below is highest early, the zero above lowest late.
             if index > 1 {
-                mine &= early.edges(entry, index - 1, index - 1)?[0].hi < lo;
+                mine &= is_away(&early, entry, index - 1, |edge| edge.hi < s.lo)?;
             }
             if index < late.zeros(entry) {
-                mine &= late.edges(entry, index + 1, index + 1)?[0].lo > hi;
+                mine &= is_away(&late, entry, index + 1, |edge| edge.lo > s.hi)?;
             }
         }
         Ok(mine)
@@ -195,26 +214,32 @@ impl Start {
     }
 }
 
-/// The ball's midpoint, as an exact ball.
-fn point(x: &Ball) -> Ball {
-    let middle = (x.lower() + x.upper()) / Rational::from_integer(2.into());
-    Ball::from_rational(&Ball::from_rational(&middle, BITS).lower(), 2 * BITS)
+/// Whether an edge lies on its own side of a box: as doubles tell it, else by more digits.
+fn is_away(tongues: &Tongues, entry: Entry, index: usize, is: impl Fn(&Enclosure) -> bool) -> Result<bool> {
+    let edge = &tongues.edges(entry, index, index)?[0];
+    Ok(is(&Enclosure::from(edge)) || is(&tongues.refine(edge, DIGITS)?))
 }
 
-fn dot(row: &[Ball; 2], x: [&Ball; 2]) -> Ball {
-    row[0].mul(x[0], BITS).add(&row[1].mul(x[1], BITS), BITS)
+/// The ball's midpoint, as an exact ball.
+fn point(x: &Ball, bits: u32) -> Ball {
+    let middle = (x.lower() + x.upper()) / Rational::from_integer(2.into());
+    Ball::from_rational(&Ball::from_rational(&middle, bits).lower(), 2 * bits)
+}
+
+fn dot(row: &[Ball; 2], x: [&Ball; 2], bits: u32) -> Ball {
+    row[0].mul(x[0], bits).add(&row[1].mul(x[1], bits), bits)
 }
 
 /// The inverse Jacobian, enclosed.
-fn inverse(jets: &[Jet; 2]) -> Option<[[Ball; 2]; 2]> {
+fn inverse(jets: &[Jet; 2], bits: u32) -> Option<[[Ball; 2]; 2]> {
     let [Jet([_, a, b]), Jet([_, c, d])] = jets;
-    let determinant = a.mul(d, BITS).sub(&b.mul(c, BITS), BITS);
-    let entry = |x: &Ball| x.div(&determinant, BITS);
+    let determinant = a.mul(d, bits).sub(&b.mul(c, bits), bits);
+    let entry = |x: &Ball| x.div(&determinant, bits);
     Some([[entry(d)?, entry(&b.neg())?], [entry(&c.neg())?, entry(a)?]])
 }
 
 /// F'⁻¹ f.
-fn solve(jets: &[Jet; 2], f: [&Ball; 2]) -> Option<[Ball; 2]> {
-    let inverse = inverse(jets)?;
-    Some([dot(&inverse[0], f), dot(&inverse[1], f)])
+fn solve(jets: &[Jet; 2], f: [&Ball; 2], bits: u32) -> Option<[Ball; 2]> {
+    let inverse = inverse(jets, bits)?;
+    Some([dot(&inverse[0], f, bits), dot(&inverse[1], f, bits)])
 }
