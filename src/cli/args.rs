@@ -12,12 +12,12 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::Laurent;
-use crate::question::flag;
+use crate::question::{Map, StepRange, flag};
 use crate::report::document::{Document, Layout};
 use crate::report::file::{is_captured, write_output};
 use crate::report::latex::Float;
 use crate::report::map::needed;
-use crate::scene::{Arrays, GridRange, StepRange};
+use crate::scene::Arrays;
 use crate::verdict::Limits;
 
 /// Flags of every command.
@@ -261,8 +261,8 @@ impl Grid {
             && [&self.h1_range, &self.h2_range].iter().all(|range| range.is_none())
     }
 
-    /// The grid as a library type.
-    pub fn range(&self) -> Result<GridRange> {
+    /// The question about the verdicts of the grid, for these stiffnesses.
+    pub fn map(&self, lambda1: &Laurent, lambda2: &Laurent) -> Result<Map> {
         let missing = |flag: &str, example: &str| {
             Error::missing(flag, format!("a grid needs it, as --{flag} {example}"))
         };
@@ -272,9 +272,16 @@ impl Grid {
         let range = |flag: &str, range: &Option<StepRange>, example: &str| {
             range.clone().ok_or_else(|| missing(flag, example))
         };
-        let steps = [step(&self.step1)?, step(&self.step2)?];
-        let h1 = range("h1-range", &self.h1_range, "1/100..2/pi")?;
-        let h2 = range("h2-range", &self.h2_range, "1/100..7/2")?;
-        Ok(GridRange::new(steps, [h1, h2]))
+        Ok(Map {
+            lambda1: lambda1.clone(),
+            lambda2: lambda2.clone(),
+            step1: step(&self.step1)?,
+            step2: step(&self.step2)?,
+            h1_range: range("h1-range", &self.h1_range, "1/100..2/pi")?,
+            h2_range: range("h2-range", &self.h2_range, "1/100..7/2")?,
+            label: false,
+            growth: false,
+            shard: None,
+        })
     }
 }

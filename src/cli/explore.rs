@@ -63,7 +63,8 @@ mod ways {
     use crate::error::{Error, Result};
     use crate::explore::Session;
     use crate::number::{ExactSign, Laurent, Rational, Sign};
-    use crate::scene::{Scene, SystemScene, file};
+    use crate::question::Scene;
+    use crate::scene::{SystemScene, file};
 
     impl Args {
         /// What the page starts on.
@@ -108,7 +109,7 @@ mod ways {
             let folder = path.parent().unwrap_or(std::path::Path::new(""));
             return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
         }
-        Session::of_scene(&Scene::read(&text)?)
+        Session::of_scene(&Scene::from_json(&text)?)
     }
 
     /// Whether a browser was started on the address.

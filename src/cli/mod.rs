@@ -15,7 +15,6 @@ mod help;
 mod map;
 mod merge;
 mod paper;
-mod plane;
 mod progress;
 mod ratios;
 mod run;

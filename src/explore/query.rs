@@ -8,7 +8,7 @@ use super::session::Session;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_range, parse_rational};
 use crate::number::{Laurent, Rational};
-use crate::scene::StepRange;
+use crate::question::StepRange;
 use crate::tongue::Stiffness;
 
 /// Parameters of one address, each given once.

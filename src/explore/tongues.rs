@@ -9,7 +9,7 @@ use super::reply::Reply;
 use super::session::Session;
 use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
-use crate::scene::StepRange;
+use crate::question::StepRange;
 use crate::tongue::{Quantity, Question, Request, Selection, Stiffness, Tongue, TongueEdge, Window};
 
 /// Segments, about, that a page can draw while it is dragged.

@@ -118,6 +118,8 @@ pub struct Work<'a> {
     pub budget: Option<u64>,
     /// Who is told; nobody unless given.
     pub watch: Option<&'a dyn Watch>,
+    /// The threads of a map, which has its own; 0 for one a core.
+    pub threads: usize,
 }
 
 /// Who is told of long work.

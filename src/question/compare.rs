@@ -1,6 +1,8 @@
 //! The trace against the predictions: over a grid, or over ratios.
 
 use super::asking::{Question, Work, question};
+use super::field::StepRange;
+use super::map::Map;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
 use crate::map::Grid;
@@ -8,7 +10,6 @@ use crate::number::{Laurent, Rational};
 use crate::report::compare;
 use crate::report::document::Document;
 use crate::resonance::compare::{Comparisons, compare_ratios};
-use crate::scene::{GridRange, StepRange};
 
 question! {
     /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses, or over all coprime
@@ -46,11 +47,11 @@ pub enum Over {
 }
 
 impl Compare {
-    /// The comparison over a grid.
-    pub fn over_grid(lambdas: [&Laurent; 2], range: &GridRange, tolerance: Rational) -> Compare {
-        let [lambda1, lambda2] = lambdas.map(|lambda| Some(lambda.clone()));
-        let [step1, step2] = range.steps().clone().map(Some);
-        let [h1_range, h2_range] = range.ranges().clone().map(Some);
+    /// The comparison over the grid of a map.
+    pub fn over_grid(map: Map, tolerance: Rational) -> Compare {
+        let Map { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = map;
+        let [lambda1, lambda2, step1, step2] = [lambda1, lambda2, step1, step2].map(Some);
+        let [h1_range, h2_range] = [h1_range, h2_range].map(Some);
         let (max_sum, rho, samples) = (None, None, None);
         Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples }
     }

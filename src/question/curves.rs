@@ -1,6 +1,7 @@
 //! The (a, b) families of resonance curves.
 
 use super::asking::{Question, Work, question};
+use super::field::StepRange;
 #[cfg(feature = "cli")]
 use super::field::flag;
 use crate::error::{Error, Result};
@@ -8,7 +9,6 @@ use crate::number::{ExactSign, Laurent, Sign};
 use crate::report::curves;
 use crate::report::document::Document;
 use crate::resonance::{Curve, Families, Window};
-use crate::scene::StepRange;
 
 question! {
     /// The curves 1/T½ = a/h1 + b/h2 over closed ranges of h1 and h2.

@@ -1,6 +1,7 @@
 //! Which tongues are asked for.
 
 use super::asking::question;
+use super::field::notation;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
@@ -35,6 +36,39 @@ question! {
     }
 }
 
+/// What the colours of an atlas stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Colour {
+    /// The a of the dominant family.
+    Family,
+    /// The fastest growth inside the tongue.
+    Growth,
+}
+
+impl Colour {
+    /// What has to be computed for the colours.
+    pub fn needs(self) -> Wanted {
+        Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Colour::Family => "family",
+            Colour::Growth => "growth",
+        }
+    }
+
+    fn read(field: &str, text: &str) -> Result<Colour> {
+        let known = [Colour::Family, Colour::Growth].into_iter().find(|own| own.name() == text);
+        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
+    }
+}
+
+notation! {
+    Colour: Colour::read, |own: &Colour| own.name().to_string();
+}
+
 /// Digits beyond this are a slip of the keyboard.
 const MOST_DIGITS: u32 = 10_000;
 
@@ -51,6 +85,14 @@ impl Tongues {
     /// Neither one ratio nor a sum, or both; a sum out of range.
     pub fn ratios(&self) -> Result<Ratios> {
         Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
+    }
+
+    /// The question in words.
+    ///
+    /// # Errors
+    /// As [`Tongues::ratios`].
+    pub fn words(&self) -> Result<String> {
+        Ok(format!("{} at rho = {}", self.ratios()?.words(), self.rho))
     }
 
     /// The question about these tongues, with what is `wanted` of each beside the edges.

@@ -99,7 +99,7 @@ pub struct Context<'a> {
 impl Context<'_> {
     /// What computing an answer again may cost.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.options.budget, watch: None }
+        Work { budget: self.options.budget, ..Work::default() }
     }
 
     /// The kicks that one verdict may compose.

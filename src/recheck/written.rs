@@ -6,13 +6,10 @@ use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Laurent, Rational, rational};
+use crate::number::{Ball, Rational, rational};
 use crate::question::Notation;
 use crate::tongue;
 use crate::verdict::{Kind, Tier};
-
-/// A closed range of exact numbers.
-pub type Range = (Laurent, Laurent);
 
 /// A value that stands in a document as a text.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,15 +1,12 @@
 //! How a map is drawn.
 
-use super::Map;
 use crate::cli::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::Products;
-use crate::question::flag;
+use crate::map::{Grid, Products};
+use crate::question::{FAMILIES, flag};
 use crate::report::plane::{Colouring, window};
-use crate::resonance::Curve;
-use crate::resonance::Families;
-use crate::scene::FAMILIES;
+use crate::resonance::{Curve, Families};
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
@@ -68,12 +65,12 @@ impl Drawing {
     ///
     /// # Errors
     /// Ranges that are too large.
-    pub fn sampled(&self, map: &Map) -> Result<Vec<Curve>> {
+    pub fn sampled(&self, grid: &Grid) -> Result<Vec<Curve>> {
         if !self.curves {
             return Ok(Vec::new());
         }
-        let default = FAMILIES;
-        let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
-        families.curves(map.grid.lambdas().0, &window(&map.grid))
+        let families =
+            Families { a: self.a.unwrap_or(FAMILIES.a), b: self.b.unwrap_or(FAMILIES.b), ..FAMILIES };
+        families.curves(grid.lambdas().0, &window(grid))
     }
 }

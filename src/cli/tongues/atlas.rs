@@ -1,6 +1,5 @@
 //! The atlas of tongues in the (h1, h2) plane.
 
-use clap::ValueEnum;
 use plot::{Figure, Foot};
 
 use super::Question;
@@ -10,26 +9,10 @@ use crate::cli::ratios::below;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::question::Ratios;
+use crate::question::{Colour, Ratios};
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
-use crate::tongue::{Quantity, Range, Tongue, TongueEdge, Wanted};
-
-/// What the colours stand for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
-    /// The a of the dominant family.
-    Family,
-    /// The fastest growth inside the tongue.
-    Growth,
-}
-
-impl Colour {
-    /// What has to be computed for the colours.
-    pub fn needs(self) -> Wanted {
-        Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
-    }
-}
+use crate::tongue::{Quantity, Range, Tongue, TongueEdge};
 
 /// A question whose answer is drawn.
 pub struct Atlas<'a> {

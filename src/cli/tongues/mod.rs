@@ -19,12 +19,12 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Rational};
-use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
+use crate::question::{Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
 use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted};
-pub use atlas::{Atlas, Colour};
+pub use atlas::Atlas;
 pub use output::put;
 pub use question::Question;
 

@@ -85,6 +85,6 @@ impl Question {
 
     /// The question in words.
     pub fn words(&self) -> String {
-        format!("{} at rho = {}", self.ratios.words(), self.asked.stiffness.rho)
+        self.tongues.words().unwrap_or_default()
     }
 }
