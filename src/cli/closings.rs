@@ -5,8 +5,7 @@ use super::ratios::Flags;
 use crate::error::Result;
 use crate::format::Format;
 use crate::number::Rational;
-use crate::question::{Closings, Question, flag};
-use crate::report::closings::DIGITS;
+use crate::question::{Closings, DIGITS, Question, flag};
 use crate::tongue::Labels;
 
 /// Flags of `closings`: a ratio or all of them.

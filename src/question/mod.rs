@@ -35,7 +35,7 @@ mod want;
 
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
-pub use closings::Closings;
+pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
 pub use field::{Field, Notation, StepRange, flag, shown_range};
@@ -47,7 +47,7 @@ pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
 pub use survey::{Survey, THINNEST};
 pub use tongues::{Colour, Tongues};
-pub use verdict::Verdict;
+pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
 
 use serde_json::{Map as Input, Value};

@@ -3,7 +3,7 @@
 use serde_json::{Map as Input, Value};
 
 use super::asking::{Fields, Question, Work, question};
-use super::closings::Closings;
+use super::closings::{Closings, DIGITS};
 use super::compare::Compare;
 use super::curves::Curves;
 use super::field::StepRange;
@@ -17,7 +17,6 @@ use super::want::{Product, Want};
 use crate::error::{Error, Result};
 use crate::number::rational::ratio;
 use crate::number::{Laurent, Ratio, Rational};
-use crate::report::closings::DIGITS;
 use crate::report::document::Document;
 use crate::resonance::Families;
 use crate::scene::json;
