@@ -40,9 +40,7 @@
 //! proofs in `proofs/`.
 //!
 //! ```
-//! use kickdrift::number::parse::parse;
-//! use kickdrift::propagator::Oscillator;
-//! use kickdrift::verdict::{decide, Kind, Limits};
+//! use kickdrift::{Kind, Limits, Oscillator, decide, parse};
 //! let x = |text| parse("quantity", text).unwrap();
 //! // Just below h2 = T½ = 1: resonant.
 //! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("1/100"), x("0.98")).unwrap();
@@ -140,6 +138,16 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+
+// What everyone needs, without the way to it.
+pub use error::{Error, Result};
+pub use map::{Grid, Map};
+pub use number::parse::parse;
+pub use number::{Laurent, Ratio, Rational, Sign};
+pub use propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
+pub use resonance::{Families, dominant_family};
+pub use tongue::{Tongues, closings};
+pub use verdict::{Kind, Limits, Side, Verdict, decide};
 
 #[doc(hidden)]
 pub use vector::instructions::force_instructions;

@@ -8,7 +8,7 @@ use kickdrift::map::{Band, Counters, Grid, Map as Task, Resources};
 use kickdrift::number::Laurent;
 use kickdrift::question::{self, Question};
 use kickdrift::report::figure::file;
-use kickdrift::report::map::{Rows, Tally, marked};
+use kickdrift::report::map::{MapTally, Rows, marked};
 use kickdrift::report::plane::{Chart, Colouring};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -33,7 +33,7 @@ struct Arrays {
 pub struct Map {
     asked: question::Map,
     grid: Grid,
-    tally: Tally,
+    tally: MapTally,
 }
 
 /// The first and the last multiplier of the columns and of the rows of a grid.
@@ -60,7 +60,7 @@ pub fn map<'py>(
 ) -> PyResult<(Map, Bound<'py, PyDict>)> {
     let (asked, grid) = asked(&stiffness, &steps, &ranges, products)?;
     let (map, arrays) = job::run(py, move |stopped| {
-        let mut map = Map { asked, grid, tally: Tally::default() };
+        let mut map = Map { asked, grid, tally: MapTally::default() };
         let arrays = map.compute(threads, budget, stopped)?;
         Ok((map, arrays))
     })?;
@@ -188,7 +188,8 @@ impl Map {
             chart.add(&self.grid, &Band { first, columns: 1, rows, verdicts, tiers, growing, counters });
         }
         let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&self.asked.foot());
-        let bytes = file(figure, &self.asked.command(), Format::Svg).map_err(|error| raised(&error))?;
+        let bytes =
+            file(figure, &self.asked.bare().command(), Format::Svg).map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }

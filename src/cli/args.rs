@@ -80,6 +80,12 @@ impl ValueEnum for Format {
     }
 }
 
+/// That none of these flags is given, which are of no use here.
+pub fn unused(given: &[(&str, bool)], remedy: &str) -> Result<()> {
+    let found = given.iter().find(|(_, given)| *given);
+    found.map_or(Ok(()), |(flag, _)| Err(Error::input(flag, "given", remedy)))
+}
+
 /// How rows that are left out of a text are to be seen.
 pub const TO_SEE_ROWS: &str = "use --format csv, json or latex to see them";
 
@@ -118,9 +124,6 @@ impl Common {
     }
 
     /// `--format`, else what the extension of `--output` says, else `default`.
-    ///
-    /// # Errors
-    /// Where the extension is not that of one of the `forms` that the result has, and `--float` without a LaTeX table.
     pub fn format(&self, forms: &[Format], default: Format) -> Result<Format> {
         let format = self.form(forms, default)?;
         match self.float {
@@ -198,18 +201,13 @@ impl Columns {
     }
 
     /// What a map has to compute for the columns asked for.
-    ///
-    /// # Errors
-    /// Where columns or digits are given and no rows are written.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [("--columns", self.columns.is_some()), ("--digits", self.digits.is_some())];
         let has_rows = matches!(format, Format::Csv | Format::Latex | Format::Text);
-        match given.into_iter().find(|(_, given)| *given && !has_rows) {
-            Some((flag, _)) => {
-                Err(Error::input(flag, "given", "is for rows: add --format csv, latex or text"))
-            }
-            None => Ok(needed(self.names().unwrap_or_default())),
+        if !has_rows {
+            unused(&given, "is for rows: add --format csv, latex or text")?;
         }
+        Ok(needed(self.names().unwrap_or_default()))
     }
 
     /// As the document takes it.

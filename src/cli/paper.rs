@@ -4,7 +4,7 @@ use std::path::Path;
 
 use plot::Figure;
 
-use super::args::{Common, of};
+use super::args::{Common, of, unused};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::figure::file;
@@ -38,9 +38,6 @@ impl Paper {
     }
 
     /// That nothing is asked of a figure where none is drawn.
-    ///
-    /// # Errors
-    /// Where it is.
     pub fn check(&self, draws: bool) -> Result<()> {
         let given = [
             ("--width", self.width.is_some()),
@@ -49,16 +46,10 @@ impl Paper {
             ("--time-unit", self.time_unit.is_some()),
             ("--outlines", self.outlines),
         ];
-        match given.into_iter().find(|(_, given)| *given && !draws) {
-            Some((flag, _)) => Err(Error::input(flag, "given", "is for figures, and this draws none")),
-            None => Ok(()),
-        }
+        if draws { Ok(()) } else { unused(&given, "is for figures, and this draws none") }
     }
 
     /// The figure as the flags want it, as the bytes of a file that carries its command.
-    ///
-    /// # Errors
-    /// A unit of time for a figure without time, and as [`file`].
     pub fn bytes(&self, mut figure: Figure, format: Format, command: &str) -> Result<Vec<u8>> {
         if let Some(unit) = &self.time_unit {
             if !figure.has_time() {
@@ -83,17 +74,11 @@ impl Paper {
     }
 
     /// The same written to a place, or to standard output.
-    ///
-    /// # Errors
-    /// As [`Paper::bytes`], and an unwritable place.
     pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>, common: &Common) -> Result<()> {
         self.write_as(figure, format, path, (&common.command, common))
     }
 
     /// The same, with a command of its own.
-    ///
-    /// # Errors
-    /// As [`Paper::write`].
     pub fn write_as(
         &self,
         figure: Figure,
@@ -107,9 +92,6 @@ impl Paper {
     }
 
     /// The same written to FILE.svg, FILE.pdf or FILE.png, which a flag names.
-    ///
-    /// # Errors
-    /// Another name, and as [`Paper::write`].
     pub fn draw(&self, field: &str, path: &Path, figure: Figure, common: &Common) -> Result<()> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());

@@ -33,7 +33,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let (inside, below, above) = about(&answer)?;
     body["tongue"] = inside;
     body["nearest"] = json!({"below": below, "above": above});
-    body["command"] = command(&oscillator).into();
+    body["command"] = Verdict::of(&oscillator).command().into();
     Ok(Reply::json(&body))
 }
 
@@ -102,18 +102,4 @@ fn about(answer: &Decided) -> Result<(Value, Value, Value)> {
     let around = ray.around(oscillator.clocks().fast(), stable)?;
     let value = |tongue: &Option<_>| tongue.as_ref().map_or(Value::Null, ray::value);
     Ok((value(&around.inside), value(&around.below), value(&around.above)))
-}
-
-/// The line that gives the same answer.
-fn command(oscillator: &Oscillator) -> String {
-    let quantities = [
-        ("lambda1", oscillator.lambda1()),
-        ("lambda2", oscillator.lambda2()),
-        ("h1", oscillator.h1()),
-        ("h2", oscillator.h2()),
-    ];
-    // Quotes only where a shell would see more than a word.
-    let quoted = |text: String| if text.contains(['*', ' ', '(']) { format!("'{text}'") } else { text };
-    let flags = quantities.map(|(name, x)| format!(" --{name} {}", quoted(x.to_string())));
-    format!("kickdrift verdict{}", flags.concat())
 }

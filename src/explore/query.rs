@@ -106,6 +106,13 @@ pub(super) fn positive(field: &str, text: &str) -> Result<Rational> {
     if x > Rational::default() { Ok(x) } else { Err(Error::input(field, text, "must be positive")) }
 }
 
+/// So many evenly spaced numbers, both ends included.
+pub(super) fn spaced((lo, hi): &(Rational, Rational), samples: u64) -> Vec<Rational> {
+    let whole = |n: u64| Rational::from_integer(n.into());
+    let part = (hi - lo) / whole(samples - 1);
+    (0..samples).map(|k| lo + &part * whole(k)).collect()
+}
+
 /// A whole number in digits.
 pub(super) fn whole(field: &str, text: &str) -> Result<BigUint> {
     let digits = text.bytes().all(|byte| byte.is_ascii_digit());

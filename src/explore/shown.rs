@@ -7,9 +7,9 @@ use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::{self, Grid, Resources};
+use crate::map::Products;
 use crate::number::Laurent;
-use crate::question::{FAMILIES, Map, Scene, shown_range};
+use crate::question::{FAMILIES, Map, Question, Scene, Work, shown_range};
 use crate::report::figure::file;
 use crate::report::map::Counts;
 use crate::report::plane::{Chart, Colouring, window};
@@ -67,27 +67,22 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let coloured = coloured.map(|what| format!(" --colour {what}"));
     let flags =
         coloured.unwrap_or_default() + if query.text("curves") == Some("1") { " --curves" } else { "" };
-    let bytes = drawn(&grid, colouring, |chart, counts| {
-        let figure = chart.figure(&grid, counts, &curves).footed(&map.foot());
-        file(figure, &(map.command() + &flags), format)
+    let (mut chart, mut counts) = (Chart::new(&grid, colouring), Counts::default());
+    let Products { label, growth } = colouring.needs();
+    let work = Work { threads: 1, ..Work::default() };
+    Map { label, growth, ..map.clone() }.each(&grid, &work, |band| {
+        chart.add(&grid, &band);
+        counts.add(&band);
+        Ok(())
     })?;
+    let figure = chart.figure(&grid, &counts, &curves).footed(&map.foot());
+    let bytes = file(figure, &(map.command() + &flags), format)?;
     let (name, media) = match format {
         Format::Png => ("map.png", "image/png"),
         Format::Pdf => ("map.pdf", "application/pdf"),
         _ => ("map.svg", "image/svg+xml"),
     };
     Ok(Reply::file(name, media, bytes))
-}
-
-fn drawn<T>(grid: &Grid, colouring: Colouring, draw: impl FnOnce(&Chart, &Counts) -> Result<T>) -> Result<T> {
-    let (mut chart, mut counts) = (Chart::new(grid, colouring), Counts::default());
-    let resources = Resources { threads: 1, ..Resources::default() };
-    map::Map::of(grid).with(colouring.needs()).within(resources).for_each_band(|_, band| {
-        chart.add(grid, &band);
-        counts.add(&band);
-        Ok(())
-    })?;
-    draw(&chart, &counts)
 }
 
 fn figure(field: &str, text: &str) -> Result<Format> {

@@ -10,7 +10,7 @@ use super::session::Session;
 use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
 use crate::question::StepRange;
-use crate::tongue::{Quantity, Question, Request, Selection, Stiffness, Tongue, TongueEdge, Window};
+use crate::tongue::{Bounds, Listing, Request, Selection, StepWindow, Stiffness, Tongue, TongueEdge};
 
 /// Segments, about, that a page can draw while it is dragged.
 const MOST_SEGMENTS: f64 = 3000.0;
@@ -94,13 +94,13 @@ fn question(
     stiffness: Stiffness,
     window: [StepRange; 2],
     frame: &Frame,
-) -> Result<Question> {
+) -> Result<Listing> {
     let digits = Some(frame.depth()).filter(|&depth| depth >= DEEP).map(|depth| depth + DIGITS);
     let [h1, h2] = window.map(Some);
-    Question::new(
+    Listing::new(
         ratios,
         stiffness,
-        Window { h1, h2 },
+        StepWindow { h1, h2 },
         Selection::default(),
         Request { digits, ..Request::default() },
     )
@@ -142,7 +142,7 @@ fn segment(tongue: &Tongue, frame: &Frame) -> Option<Value> {
 
 /// The middle of an edge's enclosure in h1, by as many digits as there are.
 fn h1(edge: &TongueEdge) -> Option<Rational> {
-    let Quantity { lo, hi, precise } = &edge.steps.as_ref()?[0];
+    let Bounds { lo, hi, precise } = &edge.steps.as_ref()?[0];
     match precise {
         Some(precise) => Some(precise.middle()),
         None => rational::from_f64_exact(0.5 * lo + 0.5 * hi),

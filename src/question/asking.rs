@@ -4,6 +4,7 @@ use serde_json::{Map, Value};
 
 use crate::error::Result;
 use crate::report::document::Document;
+use crate::report::text::quoted;
 use crate::tongue::Progress;
 use crate::verdict::Limits;
 
@@ -47,7 +48,7 @@ macro_rules! question {
                 Ok($Name { $($field: read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
             }
 
-            fn input(&self) -> Vec<(&'static str, String)> {
+            fn input(&self) -> Vec<(&'static str, serde_json::Value)> {
                 let given = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
                 given.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
             }
@@ -74,8 +75,8 @@ pub trait Fields: Sized {
     /// A field that is missing, unknown or not what it should be, by its name.
     fn read(input: &Map<String, Value>) -> Result<Self>;
 
-    /// The fields as documents echo them: exact texts; what is not given is not there.
-    fn input(&self) -> Vec<(&'static str, String)>;
+    /// The fields as documents echo them: exact texts, or what has parts of its own; what is not given is not there.
+    fn input(&self) -> Vec<(&'static str, Value)>;
 }
 
 /// What is asked: its answer is computed, and shown in one document.
@@ -99,6 +100,15 @@ pub trait Question: Fields {
     /// The answer in a document.
     fn document(&self, answer: &Self::Answer) -> Document {
         self.show(answer).inputs(self.input())
+    }
+
+    /// The command line that asks it, as a shell reads it.
+    fn command(&self) -> String {
+        let flag = |(key, value): (&str, Value)| match (key.replace('_', "-"), value.as_str()) {
+            (key, Some("true")) => format!(" --{key}"),
+            (key, text) => format!(" --{key} {}", quoted(text.unwrap_or_default())),
+        };
+        format!("kickdrift {}{}", Self::NAME, self.input().into_iter().map(flag).collect::<String>())
     }
 
     /// Answer and document in one.

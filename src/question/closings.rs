@@ -1,6 +1,8 @@
 //! Where tongues close.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
+use super::field::flag;
 use super::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
@@ -13,18 +15,24 @@ use crate::tongue::{self, Closing, Enclosure, Found, Labels, Search};
 
 question! {
     /// The pairs (s, ρ) at which tongues of one ratio or of all are closed.
-    struct Closings {
+    args struct Closings {
         /// h2/h1 = p/q.
+        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
         ratio: Option<Ratio>,
-        /// In place of one ratio: all coprime p + q up to this number.
+        /// All coprime p + q up to this number.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
         max_sum: Option<u64>,
-        /// Only these labels, of one ratio.
+        /// Only these labels (with --ratio), as 4 or 1,3,7..9.
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
         m: Option<Labels>,
-        /// The closed range of ρ, positive.
+        /// The closed range of rho = lambda2/lambda1, positive.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
         rho_range: (Rational, Rational) = "1/10000..100",
-        /// Values of ρ, evenly spaced in ln ρ, between which edges are seen to cross, where p + q > 24.
+        /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross, where p + q > 24.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
         samples: usize = "400",
-        /// Significant digits of s and ρ.
+        /// Significant digits of s and rho.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
         digits: u32 = "25",
     }
 }

@@ -36,13 +36,13 @@ macro_rules! notation {
                 }
             }
 
-            impl $crate::question::Field for $type {
+            impl $crate::question::field::Field for $type {
                 fn of(given: Option<&serde_json::Value>, name: &str) -> Option<$crate::error::Result<Self>> {
                     given.map(|value| $crate::question::field::parsed(name, value))
                 }
 
-                fn shown(&self) -> Option<String> {
-                    Some($show(self))
+                fn shown(&self) -> Option<serde_json::Value> {
+                    Some($show(self).into())
                 }
             }
         )*
@@ -76,7 +76,7 @@ impl Field for bool {
         })
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.then(|| "true".into())
     }
 }
@@ -98,8 +98,8 @@ pub trait Field: Sized {
     /// What is given; `None` where something has to be.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
-    /// The text that documents echo; `None` where the field is not to be there.
-    fn shown(&self) -> Option<String>;
+    /// What documents echo, as a rule a text; `None` where the field is not to be there.
+    fn shown(&self) -> Option<Value>;
 }
 
 impl<T: Field> Field for Option<T> {
@@ -110,7 +110,7 @@ impl<T: Field> Field for Option<T> {
         }
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.as_ref()?.shown()
     }
 }

@@ -6,9 +6,7 @@ use crate::error::{Error, Result};
 use crate::map::{self, Band, Grid, Products, Resources, Shard};
 use crate::number::Laurent;
 use crate::report::document::Document;
-use crate::report::map::{Tally, document};
-#[cfg(feature = "figure")]
-use crate::report::text::quoted;
+use crate::report::map::{MapTally, document};
 
 question! {
     /// The verdicts of all pairs of multiples of two spacings in closed ranges.
@@ -42,6 +40,12 @@ impl Map {
     pub fn grid(&self) -> Result<Grid> {
         let Map { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = self.clone();
         Grid::new(lambda1, lambda2, [step1, step2], h1_range, h2_range)
+    }
+
+    /// The same pairs, nothing else being asked of them.
+    #[must_use]
+    pub fn bare(&self) -> Map {
+        Map { label: false, growth: false, shard: None, ..self.clone() }
     }
 
     /// What is asked for beside the verdicts.
@@ -86,22 +90,14 @@ impl Map {
             foot.value(&format!("*Λ*_{n}"), lambda).grid(&format!("*h*_{n}"), [lo, hi, step])
         })
     }
-
-    /// The command that asks for its verdicts, the same whether they are computed or joined from parts.
-    pub fn command(&self) -> String {
-        use super::Fields;
-        let pairs = Map { label: false, growth: false, shard: None, ..self.clone() };
-        let flag = |(key, value): (&str, String)| format!(" --{} {}", key.replace('_', "-"), quoted(&value));
-        format!("kickdrift map{}", pairs.input().into_iter().map(flag).collect::<String>())
-    }
 }
 
 impl Question for Map {
     const NAME: &'static str = "map";
-    type Answer = Tally;
+    type Answer = MapTally;
 
-    fn answer(&self, work: &Work) -> Result<Tally> {
-        let (grid, mut tally) = (self.grid()?, Tally::default());
+    fn answer(&self, work: &Work) -> Result<MapTally> {
+        let (grid, mut tally) = (self.grid()?, MapTally::default());
         self.each(&grid, work, |band| {
             tally.add(&grid, &band);
             Ok(())
@@ -109,7 +105,7 @@ impl Question for Map {
         Ok(tally)
     }
 
-    fn show(&self, tally: &Tally) -> Document {
+    fn show(&self, tally: &MapTally) -> Document {
         document(tally, None)
     }
 }

@@ -5,7 +5,7 @@ use super::field::notation;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
-use crate::tongue::{self, Labels, Range, Request, Selection, Stiffness, Wanted, Window};
+use crate::tongue::{self, Labels, Range, Request, Selection, StepWindow, Stiffness, Wanted};
 
 question! {
     /// Tongues of one ratio or of all, at one ρ. What else is wanted of each is seen in the document's rows.
@@ -98,16 +98,16 @@ impl Tongues {
     /// The question about these tongues, with what is `wanted` of each beside the edges.
     ///
     /// # Errors
-    /// As [`Tongues::ratios`] and [`tongue::Question::new`]; digits out of range.
-    pub fn asked(&self, wanted: Wanted) -> Result<tongue::Question> {
+    /// As [`Tongues::ratios`] and [`tongue::Listing::new`]; digits out of range.
+    pub fn asked(&self, wanted: Wanted) -> Result<tongue::Listing> {
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
         let rho = self.lambda2.is_none().then(|| self.rho.clone());
         let stiffness = Stiffness::new(rho, self.lambda1.clone(), self.lambda2.clone())?;
-        let window = Window { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
+        let window = StepWindow { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
         let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
         let request = Request { wanted, lambda1: None, digits: self.digits };
-        tongue::Question::new(self.ratios()?.list(), stiffness, window, selection, request)
+        tongue::Listing::new(self.ratios()?.list(), stiffness, window, selection, request)
     }
 }

@@ -8,6 +8,7 @@ use crate::format::Format;
 
 /// A product of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Product {
     /// The verdicts of the grid.
     Map,
@@ -111,8 +112,8 @@ impl Field for Vec<Want> {
         Some(texts.ok_or_else(refused).and_then(|all| all.into_iter().map(Want::new).collect()))
     }
 
-    fn shown(&self) -> Option<String> {
-        Some(self.iter().map(Want::file_name).collect::<Vec<_>>().join(", "))
+    fn shown(&self) -> Option<Value> {
+        Some(self.iter().map(Want::file_name).collect::<Vec<_>>().join(", ").into())
     }
 }
 

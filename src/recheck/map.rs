@@ -12,7 +12,7 @@ use crate::map::{Band, Grid};
 use crate::number::{Ball, Laurent, Real};
 use crate::parallel::try_map;
 use crate::question::{Map, Question};
-use crate::report::map::Tally;
+use crate::report::map::MapTally;
 use crate::verdict::{Tier, growth};
 
 const ROUTE: &str = "the pairs of a random sample kick by kick";
@@ -75,7 +75,7 @@ impl Recheck for Claim {
             ));
         }
         let drawn = sample(&grid.fingerprint(), pairs, most(&grid, context.options));
-        let (mut tally, mut rate, mut failures) = (Tally::default(), 0.0_f64, Vec::new());
+        let (mut tally, mut rate, mut failures) = (MapTally::default(), 0.0_f64, Vec::new());
         let (mut next, mut done) = (drawn.as_slice(), 0);
         self.input.each(&grid, &context.work(), |band| {
             let pairs = band.verdicts.len() as u64;

@@ -18,7 +18,6 @@ pub struct Axis {
     pub(crate) lo: f64,
     pub(crate) hi: f64,
     pub(crate) scale: Scale,
-    pub(crate) numbered: bool,
     pub(crate) chosen: Option<Vec<Tick>>,
     /// The power of time that its values have.
     time: i8,
@@ -51,7 +50,7 @@ impl Axis {
     }
 
     fn new(label: &str, lo: f64, hi: f64, scale: Scale) -> Self {
-        Axis { label: label.into(), lo, hi, scale, numbered: true, chosen: None, time: 0 }
+        Axis { label: label.into(), lo, hi, scale, chosen: None, time: 0 }
     }
 
     /// The same axis in units of time, which its label names.
@@ -78,13 +77,6 @@ impl Axis {
             _ => format!("{} (1/{unit})", self.label),
         };
         Axis { label, ..self.clone() }
-    }
-
-    /// The same axis without numbers and label, for a panel whose neighbour shows them.
-    #[must_use]
-    pub fn unnumbered(mut self) -> Self {
-        self.numbered = false;
-        self
     }
 
     /// The same axis with ticks of one's own: for names, or for points that matter.

@@ -1,4 +1,4 @@
-//! What a figure is drawn with: paths, rectangles, pictures and words, from which each file format is written.
+//! What a figure is drawn with: paths, rectangles and words, from which each file format is written.
 //!
 //! Lengths are points (1/72 inch), y pointing down. Coordinates of paths are whole hundredths of a point (3.5
 //! micrometres), so that every format draws the very same lines.
@@ -200,16 +200,6 @@ impl Words {
     }
 }
 
-/// Pixels that fill a rectangle, first row at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Image {
-    pub place: Rect,
-    pub width: u32,
-    pub pixels: Vec<Colour>,
-    /// Whether pixels are blended where they meet; else each is the square that it is.
-    pub smooth: bool,
-}
-
 /// A rectangle with its left upper corner at (x, y).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Patch {
@@ -217,10 +207,7 @@ pub(crate) struct Patch {
     pub y: f64,
     pub width: f64,
     pub height: f64,
-    /// The radius of its corners, where they are rounded.
-    pub radius: Option<f64>,
     pub colour: Colour,
-    pub opacity: Option<f64>,
 }
 
 /// A piece of a drawing; later ones cover earlier ones.
@@ -228,7 +215,6 @@ pub(crate) struct Patch {
 pub(crate) enum Element {
     Path(Path, Paint),
     Patch(Patch),
-    Image(Image),
     Words(Words),
     /// What follows shows only inside the rectangle, up to `Close`; these do not nest.
     Open(Rect),

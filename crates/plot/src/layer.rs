@@ -1,4 +1,4 @@
-//! What stands in a panel: lines, dots, areas, cells of a grid, pictures.
+//! What stands in a panel: lines, dots, areas, cells of a grid.
 
 use super::palette::{Colour, INK};
 
@@ -114,7 +114,6 @@ pub(crate) enum Mark {
     Dots { points: Vec<[f64; 2]>, shape: Shape, size: f64, colour: Colour },
     Area { outlines: Vec<Vec<[f64; 2]>>, colour: Colour, opacity: f64 },
     Cells(Cells),
-    Picture(Picture),
 }
 
 /// One layer of a panel; later layers cover earlier ones.
@@ -144,11 +143,6 @@ impl Layer {
     /// The marked cells of a grid.
     pub fn cells(cells: Cells) -> Self {
         Mark::Cells(cells).into()
-    }
-
-    /// A picture that fills a rectangle.
-    pub fn picture(picture: Picture) -> Self {
-        Mark::Picture(picture).into()
     }
 
     /// The same lines with a mark of so many points at each of their points; what has no lines stays as it is.
@@ -238,27 +232,6 @@ impl Cells {
     }
 }
 
-/// A picture of coloured pixels, its first row at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    pub(crate) x: [f64; 2],
-    pub(crate) y: [f64; 2],
-    pub(crate) width: u32,
-    pub(crate) pixels: Vec<Colour>,
-}
-
-impl Picture {
-    /// `pixels` in rows of `width`, filling the rectangle `x` by `y` (edges, not centres, in data units).
-    ///
-    /// # Panics
-    /// Unless the pixels make whole rows, at least one.
-    pub fn new(x: [f64; 2], y: [f64; 2], width: u32, pixels: Vec<Colour>) -> Self {
-        let whole = width > 0 && !pixels.is_empty() && pixels.len().is_multiple_of(width as usize);
-        assert!(whole, "{} pixels in rows of {width}", pixels.len());
-        Picture { x, y, width, pixels }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,11 +247,5 @@ mod tests {
         let run = |i, j, across, up, class| Run { i, j, across, up, class };
         let expected = [run(0, 0, 3, 1, 0), run(2, 1, 1, 2, 0), run(2, 3, 2, 1, 1), run(3, 4, 1, 1, 1)];
         assert_eq!(cells.runs, expected);
-    }
-
-    #[test]
-    #[should_panic(expected = "5 pixels in rows of 2")]
-    fn a_ragged_picture_is_a_bug() {
-        Picture::new([0.0, 1.0], [0.0, 1.0], 2, vec![INK; 5]);
     }
 }

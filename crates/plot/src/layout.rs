@@ -8,7 +8,7 @@ use super::font::Face;
 use super::key;
 use super::label::wrapped;
 use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, beside, overhang};
-use super::panel::{Panel, Place};
+use super::panel::Panel;
 
 /// The paper's rim.
 pub(crate) const RIM: f64 = 3.0;
@@ -91,7 +91,7 @@ fn starts(
 
 fn above(panel: &Panel, width: f64, left: f64) -> f64 {
     let title = title_height(panel, width);
-    let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width, left) } else { 0.0 };
+    let legend = if panel.legend.is_some() { key::rows_height(panel, width, left) } else { 0.0 };
     // The topmost number of the vertical axis reaches over the frame by half its height.
     (title + legend).max(NUMBER * DIGIT / 2.0)
 }
@@ -105,9 +105,6 @@ fn title_height(panel: &Panel, width: f64) -> f64 {
 }
 
 fn below(panel: &Panel) -> f64 {
-    if !panel.x.numbered {
-        return TICK;
-    }
     let label = if panel.x.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     TICK + GAP + NUMBER * DIGIT + 2.0 + label
 }

@@ -10,7 +10,7 @@
 //! let panel = Panel::new(Axis::linear("*t* (s)", 0.0, 1.0), Axis::linear("*x*", -1.1, 1.1))
 //!     .titled("One oscillation")
 //!     .with(Layer::lines(vec![wave], Stroke::LINE));
-//! let figure = Figure::single_column(60.0).with(panel);
+//! let figure = Figure::new(85.0, 60.0).with(panel);
 //! assert!(figure.svg().starts_with("<svg"));
 //! assert_eq!(&figure.png(300.0).unwrap()[1..4], b"PNG");
 //! ```
@@ -19,7 +19,7 @@
 //! |---|---|
 //! | `palette` | colours and gradients |
 //! | `axis` | scales and ticks |
-//! | `layer` | lines, dots, areas, cells, pictures |
+//! | `layer` | lines, dots, areas, cells |
 //! | `panel` | axes, layers, notes, legend, colour bar |
 //! | `layout` | where everything goes |
 //! | `measure` | sizes of letters, ticks that fit, from data to the page |
@@ -30,7 +30,7 @@
 //! | `clip` | what lies in the frame |
 //! | `foot` | what stands below: the parameters |
 //! | `font`, `label` | glyphs, and words made of them |
-//! | `canvas` | paths, rectangles, pictures, words: what every format draws |
+//! | `canvas` | paths, rectangles, words: what every format draws |
 //! | `outline` | its lines and curves, for formats that draw by themselves |
 //! | `svg` | the canvas as SVG |
 //! | `png` | the canvas as pixels |
@@ -63,7 +63,7 @@ pub use axis::{Axis, Scale, Tick};
 pub use canvas::Anchor;
 pub use font::font_file;
 pub use foot::Foot;
-pub use layer::{Cells, Dash, Hatch, Layer, Picture, Shape, Stroke};
+pub use layer::{Cells, Dash, Hatch, Layer, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
 use canvas::Canvas;
@@ -114,11 +114,6 @@ impl Figure {
             outlined,
             panels,
         }
-    }
-
-    /// A figure for one column of a paper: 85 mm wide.
-    pub fn single_column(height_mm: f64) -> Self {
-        Self::new(85.0, height_mm)
     }
 
     /// A figure for the full width of a paper: 175 mm.

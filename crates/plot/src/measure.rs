@@ -88,9 +88,6 @@ pub(crate) fn widest_number(axis: &Axis, length: f64) -> f64 {
 
 /// What an upright axis so long takes to its left: ticks, numbers and its label.
 pub(crate) fn beside(axis: &Axis, length: f64) -> f64 {
-    if !axis.numbered {
-        return TICK;
-    }
     let label = if axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     TICK + GAP + widest_number(axis, length) + 1.5 + label
 }

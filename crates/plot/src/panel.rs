@@ -12,14 +12,6 @@ use super::palette::{Colour, Gradient, INK};
 pub enum Place {
     /// In lines between title and frame: never over the data.
     Above,
-    /// In a corner of the panel.
-    TopLeft,
-    /// In a corner of the panel.
-    TopRight,
-    /// In a corner of the panel.
-    BottomLeft,
-    /// In a corner of the panel.
-    BottomRight,
 }
 
 /// The key to a gradient, at the right of a panel.
@@ -220,7 +212,7 @@ mod tests {
         assert_eq!(ColourBar::range_of(rates(2)).0, (0.02 + 0.1 * 19.0) / RESOLVED);
         assert_eq!(ColourBar::range_of((1..=200).map(f64::from)), (11.0, 198.0));
         assert_eq!(ColourBar::range_of(std::iter::empty()), (1.0, 1.0));
-        let bar = ColourBar::new(Axis::log("", 1.0, 2.0), Gradient::full());
+        let bar = ColourBar::new(Axis::log("", 1.0, 2.0), Gradient::on_white());
         assert_eq!(bar.clone().over([1.0, 2.0].into_iter()).beyond, [false, false]);
         assert_eq!(bar.clone().over([0.5, 1.5].into_iter()).beyond, [true, false]);
         assert_eq!(bar.over([1.0, f64::INFINITY].into_iter()).beyond, [false, true]);

@@ -1,7 +1,8 @@
 //! How a map is drawn.
 
+use crate::cli::args::unused;
 use crate::cli::paper::Paper;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::format::Format;
 use crate::map::{Grid, Products};
 use crate::question::{FAMILIES, flag};
@@ -34,9 +35,6 @@ impl Drawing {
     }
 
     /// What has to be computed for the drawing: nothing where none is made.
-    ///
-    /// # Errors
-    /// Where flags of figures are given without one, or flags of curves without these.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [
             ("--colour", self.colour.is_some()),
@@ -46,25 +44,16 @@ impl Drawing {
         ];
         self.paper.check(format.is_figure())?;
         if !format.is_figure() {
-            return match given.iter().find(|(_, given)| *given) {
-                None => Ok(Products::default()),
-                Some((flag, _)) => Err(Error::input(
-                    flag,
-                    "given",
-                    "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png",
-                )),
-            };
+            unused(&given, "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png")?;
+            return Ok(Products::default());
         }
-        match given[2..].iter().find(|(_, given)| *given && !self.curves) {
-            Some((flag, _)) => Err(Error::input(flag, "given", "is for curves: add --curves")),
-            None => Ok(self.colouring().needs()),
+        if !self.curves {
+            unused(&given[2..], "is for curves: add --curves")?;
         }
+        Ok(self.colouring().needs())
     }
 
     /// The curves wanted.
-    ///
-    /// # Errors
-    /// Ranges that are too large.
     pub fn sampled(&self, grid: &Grid) -> Result<Vec<Curve>> {
         if !self.curves {
             return Ok(Vec::new());

@@ -7,11 +7,11 @@ use crate::cli::args::{Columns, Common};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Band, Grid};
-use crate::question::{Fields, Map};
+use crate::question::{Fields, Map, Question};
 use crate::report::csv;
 use crate::report::document::Layout;
 use crate::report::file::{write_output, write_with};
-use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
+use crate::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
 use crate::report::plane::Chart;
 
 /// A result on its way out.
@@ -64,7 +64,7 @@ impl Output<'_> {
             _ => MOST_ROWS,
         };
         let rows = self.rows()?;
-        let (mut tally, mut pairs) = (Tally::default(), Vec::<Marked>::new());
+        let (mut tally, mut pairs) = (MapTally::default(), Vec::<Marked>::new());
         self.each(source, &mut |band| {
             tally.add(self.grid, band);
             if tally.counts.marked() <= most {
@@ -115,7 +115,7 @@ impl Output<'_> {
             Ok(())
         })?;
         let figure = chart.figure(self.grid, &counts, &curves).footed(&self.map.foot());
-        let command = self.common.command.replacen("kickdrift map", &self.map.command(), 1);
+        let command = self.common.command.replacen("kickdrift map", &self.map.bare().command(), 1);
         self.drawing.paper.write_as(figure, self.format, path, (&command, self.common))
     }
 }

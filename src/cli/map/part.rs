@@ -16,7 +16,7 @@ const SCHEMA: &str = "kickdrift/part/1";
 
 /// A map in writing: its fields, whether flags are set or not.
 fn written(map: &Map) -> Input<String, Value> {
-    let fields = map.input().into_iter().map(|(key, text)| (key.into(), text.into()));
+    let fields = map.input().into_iter().map(|(key, text)| (key.into(), text));
     let mut all: Input<String, Value> =
         [("schema".into(), SCHEMA.into())].into_iter().chain(fields).collect();
     all.insert("label".into(), map.label.into());
@@ -48,9 +48,6 @@ pub struct Part {
 
 impl Part {
     /// The part in a directory that exists.
-    ///
-    /// # Errors
-    /// Where the directory holds no map that this version knows.
     pub fn open(directory: &Path) -> Result<Part> {
         let remedy = "name a directory that kickdrift map --resume has written";
         let unreadable = |cause: &dyn std::fmt::Display| {
@@ -63,9 +60,6 @@ impl Part {
     }
 
     /// A directory for bands of this map, made where there is none.
-    ///
-    /// # Errors
-    /// Where the directory holds another map, or cannot be written.
     pub fn create(directory: &Path, map: &Map) -> Result<Part> {
         if directory.join(NAME).exists() {
             let part = Part::open(directory)?;
@@ -80,9 +74,6 @@ impl Part {
     }
 
     /// The map that all the parts belong to.
-    ///
-    /// # Errors
-    /// Where there is none, or two parts are of different maps.
     pub fn common_map(parts: &[Part]) -> Result<Map> {
         let [first, others @ ..] = parts else {
             return Err(Error::input("PARTS", "none", "name the directories of the parts"));

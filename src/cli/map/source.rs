@@ -20,9 +20,6 @@ impl Source {
     }
 
     /// Hands the bands on in order.
-    ///
-    /// # Errors
-    /// As [`Map::for_each_band`] and [`merge`].
     pub fn each(
         &self,
         grid: &Grid,

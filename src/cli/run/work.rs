@@ -18,7 +18,7 @@ use crate::report::document::Document;
 use crate::report::file::write_output;
 use crate::report::map::{MapArrays, Marked, Rows, marked};
 use crate::report::plane::{self, Cloud};
-use crate::report::{map, tongues::Tally};
+use crate::report::{map, tongues::TongueTally};
 use crate::resonance::{Curve, Window};
 use crate::tongue::Wanted;
 
@@ -35,7 +35,7 @@ pub struct Work<'a> {
     curves: OnceCell<Vec<Curve>>,
     documents: Made<Document>,
     /// What stands out among the tongues, once they were written.
-    tongues: OnceCell<Tally>,
+    tongues: OnceCell<TongueTally>,
     figures: Made<Figure>,
 }
 
@@ -43,7 +43,7 @@ pub struct Work<'a> {
 struct Verdicts {
     map: Map,
     grid: Grid,
-    tally: map::Tally,
+    tally: map::MapTally,
     marked: Vec<Marked>,
 }
 
@@ -103,7 +103,7 @@ impl<'a> Work<'a> {
         self.figures.get(product, || {
             if product == Product::Atlas {
                 let colour = self.scene.colour.unwrap_or(Colour::Family);
-                let question = tongues::Question::new(self.scene.tongues()?, colour.needs())?;
+                let question = tongues::Stream::new(self.scene.tongues()?, colour.needs())?;
                 return Atlas::new(&question, colour, Some(self.scene.families()))?.figure(self.common);
             }
             let Verdicts { map, grid, marked, .. } = self.verdicts()?;
@@ -120,7 +120,7 @@ impl<'a> Work<'a> {
     /// The tongues' bytes in one format.
     fn tongues(&self, format: Format) -> Result<Vec<u8>> {
         let growth = self.scene.max_sum.is_none();
-        let question = tongues::Question::new(self.scene.tongues()?, Wanted { growth, ..Wanted::all() })?;
+        let question = tongues::Stream::new(self.scene.tongues()?, Wanted { growth, ..Wanted::all() })?;
         let mut bytes = Vec::new();
         let tally = tongues::put(&question, self.common, format, &mut bytes)?;
         // It is the same in every format.
@@ -145,7 +145,8 @@ impl<'a> Work<'a> {
             let map = self.scene.map()?;
             let grid = map.grid()?;
             let arrays = self.archive.as_ref().map(|path| MapArrays::new(path, &grid, Products::default()));
-            let (mut arrays, mut tally, mut all) = (arrays.transpose()?, map::Tally::default(), Vec::new());
+            let (mut arrays, mut tally, mut all) =
+                (arrays.transpose()?, map::MapTally::default(), Vec::new());
             map.each(&grid, &self.common.work(), |band| {
                 tally.add(&grid, &band);
                 all.extend(marked(&grid, &band));

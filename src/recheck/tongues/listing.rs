@@ -7,7 +7,7 @@ use crate::question::StepRange;
 use crate::recheck::context::{Checked, Fault, Place, holds};
 use crate::recheck::exact::check_ratio;
 use crate::resonance::dominant_family;
-use crate::tongue::{Question, Selection, Tongues, Wanted};
+use crate::tongue::{Listing, Selection, Tongues, Wanted};
 use crate::verdict::Limits;
 
 /// The label of the last tongue, which has no upper edge.
@@ -52,7 +52,7 @@ impl Claim {
 
 impl Claim {
     /// The question, within the limits.
-    pub(super) fn question(&self, limits: &Limits) -> Result<Question> {
+    pub(super) fn question(&self, limits: &Limits) -> Result<Listing> {
         if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
             check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
         }

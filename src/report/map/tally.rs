@@ -48,7 +48,7 @@ const FAMILIES_LISTED: usize = 6;
 
 /// What the summary reports.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct MapTally {
     pub counts: Counts,
     pub(super) counters: Counters,
     /// Pairs by the a of their dominant family, where labels were asked for.
@@ -64,7 +64,7 @@ struct Fastest {
     tenfold: Enclosure,
 }
 
-impl Tally {
+impl MapTally {
     /// Counts a band in.
     pub fn add(&mut self, grid: &Grid, band: &Band) {
         self.counts.add(band);

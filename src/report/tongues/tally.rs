@@ -8,7 +8,7 @@ use crate::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct TongueTally {
     pub count: u64,
     pub closed: u64,
     /// Inside, on the edge, outside: predicted points.
@@ -19,7 +19,7 @@ pub struct Tally {
     ratios: Option<(f64, f64)>,
 }
 
-impl Tally {
+impl TongueTally {
     /// Counts a tongue in.
     pub fn add(&mut self, tongue: &Tongue) {
         let row = &tongue.row;
