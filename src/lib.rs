@@ -81,9 +81,9 @@
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
-//! | 8 | [`scene`] | input documents → library types |
+//! | 8 | [`scene`] | systems' files → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
-//! | 9 | [`question`] | what is asked, typed; each question with its answer and its document |
+//! | 9 | [`question`] | what is asked, typed; each question with its answer, its rows and its document |
 //! | 10 | [`recheck`] | every document's claims found again by another route |
 //! | 10 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
 //! | 11 | [`cli`] | arguments → a question → the library → a report |

@@ -129,7 +129,7 @@ fn strange_letters_make_a_sound_pdf() {
 fn patchwork() -> Figure {
     let mut cells = Cells::new([0.5, 0.5], [1.0, 1.0], Gradient::on_white().steps(24).split_off(12));
     (0..12).for_each(|n| cells.push(n % 4, n / 4, (7 * n % 12) as u16));
-    let axes = (Axis::linear("", 0.0, 4.0).unnumbered(), Axis::linear("", 0.0, 3.0));
+    let axes = (Axis::linear("", 0.0, 4.0), Axis::linear("", 0.0, 3.0));
     Figure::new(31.0, 29.0).with(Panel::new(axes.0, axes.1).with(Layer::cells(cells)))
 }
 

@@ -64,7 +64,7 @@ pub fn of<T>(
     move |text| parse("value", text).map_err(|error| error.remedy().to_string())
 }
 
-/// The same for a type that is read from text and names its field by itself.
+/// A parser of values whose errors name the field already.
 pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|error: Error| error.remedy().to_string())
 }
@@ -118,7 +118,7 @@ impl Common {
         write_output(None, document.render(Format::Text)?.as_bytes())
     }
 
-    /// The same of `--output`, where it is given.
+    /// Says on standard error that the file of `--output` is written, where there is one.
     pub fn wrote_output(&self) {
         self.output.iter().for_each(|path| self.wrote(path.display()));
     }
@@ -148,7 +148,7 @@ impl Common {
         })
     }
 
-    /// The same for a table, which people read as text at a terminal and programs as JSON elsewhere.
+    /// The format of a table: text at a terminal, JSON elsewhere, unless one is asked for.
     pub fn format_of_table(&self, forms: &[Format]) -> Result<Format> {
         let read = self.output.is_none() && std::io::stdout().is_terminal();
         self.format(forms, if read { Format::Text } else { Format::Json })

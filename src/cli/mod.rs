@@ -155,7 +155,7 @@ pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> 
     answer_about(arguments, None)
 }
 
-/// The same about a system in memory: the file that the arguments name is not read, and only its name is echoed.
+/// [`answer`] about a system in memory: the file that the arguments name is not read, and only its name is echoed.
 ///
 /// # Errors
 /// As [`answer`].

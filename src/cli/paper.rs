@@ -73,12 +73,12 @@ impl Paper {
         file(if self.outlines { figure.outlined() } else { figure }, command, format)
     }
 
-    /// The same written to a place, or to standard output.
+    /// Writes the figure to a file, or to standard output.
     pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>, common: &Common) -> Result<()> {
         self.write_as(figure, format, path, (&common.command, common))
     }
 
-    /// The same, with a command of its own.
+    /// Writes the figure with this command in it.
     pub fn write_as(
         &self,
         figure: Figure,
@@ -91,7 +91,7 @@ impl Paper {
         Ok(())
     }
 
-    /// The same written to FILE.svg, FILE.pdf or FILE.png, which a flag names.
+    /// Writes the figure to the FILE.svg, FILE.pdf or FILE.png that a flag names.
     pub fn draw(&self, field: &str, path: &Path, figure: Figure, common: &Common) -> Result<()> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());

@@ -50,7 +50,7 @@ impl Query {
         self.text(key).map(|text| parse(key, text)).transpose()
     }
 
-    /// The same of one that must be there.
+    /// What a parser makes of a parameter that must be there.
     pub fn need<T>(&self, key: &str, parse: impl Fn(&str, &str) -> Result<T>) -> Result<T> {
         self.read(key, parse)?.ok_or_else(|| Error::missing(key, format!("add {key}=... to the address")))
     }

@@ -90,7 +90,7 @@ impl Session {
         session
     }
 
-    /// The same with another window; one without width, or beyond doubles, cannot be shown: then it keeps its own.
+    /// Takes another window. One without width, or beyond doubles, cannot be shown: the session keeps its own.
     #[must_use]
     pub fn within(self, window: [StepRange; 2]) -> Session {
         match spacing(&window) {
@@ -99,7 +99,7 @@ impl Session {
         }
     }
 
-    /// The same with a unit of time.
+    /// Takes a unit of time.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Session {
         Session { unit: Some(unit.into()), ..self }

@@ -120,19 +120,19 @@ pub trait Question: Fields {
     }
 }
 
-/// What an answer may cost, and who is told of long work.
+/// What an answer may cost, and who hears of long work.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit
     /// unless given.
     pub budget: Option<u64>,
-    /// Who is told; nobody unless given.
+    /// Who hears of long work; nobody unless given.
     pub watch: Option<&'a dyn Watch>,
     /// The threads of a map, which has its own; 0 for one a core.
     pub threads: usize,
 }
 
-/// Who is told of long work.
+/// Hears of long work: a bar of progress, as a rule.
 pub trait Watch: Sync {
     /// Work is about to begin that takes so many seconds of one core.
     fn announce(&self, work: &str, seconds: f64);
@@ -146,7 +146,7 @@ impl Work<'_> {
         self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
     }
 
-    /// Tells who watches that work is about to begin.
+    /// Announces work that is about to begin.
     pub fn announce(&self, work: &str, seconds: f64) {
         self.watch.inspect(|watch| watch.announce(work, seconds));
     }

@@ -95,7 +95,7 @@ pub fn flag<T: Notation>(text: &str) -> std::result::Result<T, String> {
 
 /// A field of a question: a value, an option of one, or a flag.
 pub trait Field: Sized {
-    /// What is given; `None` where something has to be.
+    /// Reads the value that is given; `None` where a value is missing that has to be there.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
     /// What documents echo, as a rule a text; `None` where the field is not to be there.

@@ -42,7 +42,7 @@ impl Map {
         Grid::new(lambda1, lambda2, [step1, step2], h1_range, h2_range)
     }
 
-    /// The same pairs, nothing else being asked of them.
+    /// The question about the verdicts of these pairs alone.
     #[must_use]
     pub fn bare(&self) -> Map {
         Map { label: false, growth: false, shard: None, ..self.clone() }

@@ -23,7 +23,7 @@ const LARGEST_MAX: u64 = 400;
 
 const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
 
-/// The same in LaTeX.
+/// The caption in LaTeX.
 const CAPTION_LATEX: &str = "Resonant points $h_2/h_1 = p/q$, $p\\theta = m\\pi$, and a curve $(a, b)$ with $m = ap + bq$ through each";
 
 /// Seconds for each of max³ (1 + ln max) points and curves.

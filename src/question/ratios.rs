@@ -37,7 +37,7 @@ impl Ratios {
         }
     }
 
-    /// The same, if there are not too many.
+    /// These ratios, if there are not too many.
     ///
     /// # Errors
     /// A sum that is not in 2..=`most`.

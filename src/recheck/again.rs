@@ -1,6 +1,6 @@
 //! A document held, value by value, against the same document computed again from its input.
 //!
-//! The same input gives the same document, digit by digit, so whatever was changed afterwards differs. Values that the input
+//! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the input
 //! does not determine are [`Left`] out, and only those: what a check names as not rechecked follows from this comparison.
 
 use serde_json::{Map, Value};
@@ -26,6 +26,19 @@ pub trait Recheck {
     /// What another route says.
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome>;
 }
+
+/// The part of a [`Recheck`] by which a question is asked again; its answer is at hand for the other route.
+macro_rules! asked {
+    ($question:ty) => {
+        type Found = <$question as $crate::question::Question>::Answer;
+
+        fn again(&self, context: &Context) -> Result<(serde_json::Value, Self::Found)> {
+            let answer = $crate::question::Question::answer(&self.input, &context.work())?;
+            Ok(($crate::question::Question::document(&self.input, &answer).value(), answer))
+        }
+    };
+}
+pub(crate) use asked;
 
 /// What a comparison finds.
 pub struct Compared {

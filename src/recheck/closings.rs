@@ -96,7 +96,7 @@ impl Claim {
     }
 
     /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for pairs, as the
-    /// edges' orders at both ends of the range of ρ tell.
+    /// edges' orders at both ends of the range of ρ require.
     fn counted(
         &self,
         ratio: Ratio,

@@ -1,7 +1,7 @@
 //! Documents rechecked: computed again from their inputs, then held against the mathematics by another route than the one
 //! that made them.
 //!
-//! The same input gives the same document, so whatever was changed afterwards differs from the document computed again: every
+//! One input gives one document, so whatever was changed afterwards differs from the document computed again: every
 //! value is compared, and those that the input does not determine are named. What would be wrong from the start is looked
 //! for by the other route.
 //!
@@ -201,7 +201,7 @@ impl Claim {
         self.rows.recheck(&self.document, How::OtherRouteAlone, &Context { options, see })
     }
 
-    /// About how many kicks the slower route composes; 0 where that is not worth telling.
+    /// About how many kicks the slower route composes; 0 where these are few.
     ///
     /// # Errors
     /// An input of the document that makes no sense.

@@ -1,10 +1,6 @@
 //! Polynomials: numbers kicked and drifted at as many rational points as determine them.
 
-use num_traits::{One, Zero};
-use serde::Deserialize;
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds};
 use super::exact::{check_ratio, fraction};
 use super::written::Written;
@@ -12,7 +8,9 @@ use crate::error::Result;
 use crate::number::{Ratio, Rational};
 use crate::propagator::methods::avi;
 use crate::propagator::{TwoClocks, half_period};
-use crate::question::{Polynomial, Question};
+use crate::question::Polynomial;
+use num_traits::{One, Zero};
+use serde::Deserialize;
 
 const ROUTE: &str = "the full period, kick by kick, at more rational points than the degrees leave free";
 
@@ -51,13 +49,9 @@ impl Place for Entry {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "terms";
-    type Found = ();
+    asked!(Polynomial);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let all = [Entry::A, Entry::B, Entry::C, Entry::D, Entry::Trace];
         context.outcome(ROUTE, ("the ratio", self.affordable(context)), &all, |&entry| self.entry(entry))
     }

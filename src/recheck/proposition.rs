@@ -1,11 +1,9 @@
 //! The Proposition's witnesses, in integers: no analysis.
 
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use crate::error::Result;
-use crate::question::{Proposition, Question};
+use crate::question::Proposition;
 use num_integer::Integer;
 
 const ROUTE: &str =
@@ -40,13 +38,9 @@ impl Place for Witness {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "witnesses";
-    type Found = ();
+    asked!(Proposition);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let max = self.input.max;
         context.outcome(ROUTE, (&format!("max = {max}"), self.whole(max)), &self.witnesses, Witness::holds)
     }

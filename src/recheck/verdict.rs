@@ -1,15 +1,13 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::propagator::{Oscillator, TwoClocks};
-use crate::question::{self, Question};
+use crate::question;
 use crate::resonance::dominant_family;
 use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, exact_trace, growth};
 
@@ -62,16 +60,11 @@ const BITS: u32 = 192;
 
 impl Recheck for Claim {
     const TABLE: &'static str = "";
-    type Found = Oscillator;
+    asked!(question::Verdict);
 
-    fn again(&self, context: &Context) -> Result<(Value, Oscillator)> {
-        let answer = self.input.answer(&context.work())?;
-        Ok((self.input.document(&answer).value(), answer.oscillator))
-    }
-
-    fn check(&self, oscillator: Oscillator, context: &Context) -> Result<Outcome> {
+    fn check(&self, answer: question::Decided, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let holds = |row: &Claim| row.holds(&oscillator, &context.limits());
+        let holds = |row: &Claim| row.holds(&answer.oscillator, &context.limits());
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
         if self.input.friction.is_some() {
             outcome.not_rechecked.push("friction by another route: computed again only".into());
@@ -127,7 +120,7 @@ impl Claim {
             "the trace lies outside its enclosure".into()
         })?;
         let right = told.is_none() || told.as_deref() == truth.exact.as_ref();
-        holds(right, || "the trace is not what it is told to be exactly".into())?;
+        holds(right, || "the exact trace is another one".into())?;
         let Some(ln) = &truth.ln_multiplier else {
             let Ends { lo, hi } = self.growth_rate;
             return holds((lo, hi) == (0.0, 0.0), || "grows though it is not hyperbolic".into());

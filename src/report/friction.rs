@@ -21,7 +21,7 @@ pub(crate) fn value(own: &Friction) -> Value {
     })
 }
 
-/// The same for people.
+/// Lines for people.
 pub(crate) fn lines(own: &Friction) -> Vec<String> {
     let radius = match own.damping {
         Some(Damping::Damped) => "spectral radius proven below 1: means and covariances stay bounded",

@@ -53,13 +53,13 @@ impl Axis {
         Axis { label: label.into(), lo, hi, scale, chosen: None, time: 0 }
     }
 
-    /// The same axis in units of time, which its label names.
+    /// Puts it in units of time, which its label names.
     #[must_use]
     pub fn of_time(self) -> Self {
         Axis { time: 1, ..self }
     }
 
-    /// The same axis in inverse units of time, which its label names.
+    /// Puts it in inverse units of time, which its label names.
     #[must_use]
     pub fn per_time(self) -> Self {
         Axis { time: -1, ..self }
@@ -69,7 +69,7 @@ impl Axis {
         self.time != 0
     }
 
-    /// The same axis with the unit in its label.
+    /// Writes the unit into its label.
     pub(crate) fn in_units_of(&self, unit: &str) -> Self {
         let label = match self.time {
             0 => self.label.clone(),
@@ -79,7 +79,7 @@ impl Axis {
         Axis { label, ..self.clone() }
     }
 
-    /// The same axis with ticks of one's own: for names, or for points that matter.
+    /// Replaces its ticks: by names, or by points that matter.
     #[must_use]
     pub fn ticks(mut self, ticks: Vec<Tick>) -> Self {
         self.chosen = Some(ticks);

@@ -131,7 +131,7 @@ impl Pen {
         Pen { colour, width, round_joins: false, round_caps: false, dashes: Vec::new() }
     }
 
-    /// The same line in a pattern.
+    /// Breaks the line into a pattern.
     pub(crate) fn dashed(mut self, dash: Dash) -> Pen {
         let width = self.width;
         match dash {
@@ -144,7 +144,7 @@ impl Pen {
         self
     }
 
-    /// The same line with round ends.
+    /// Rounds its ends.
     pub(crate) fn capped(mut self) -> Pen {
         self.round_caps = true;
         self

@@ -38,14 +38,14 @@ impl Stroke {
     /// 0.7 pt in dots.
     pub const DOTTED: Stroke = Stroke { colour: INK, width: 0.7, dash: Dash::Dotted };
 
-    /// The same stroke in another colour.
+    /// Changes its colour.
     #[must_use]
     pub const fn in_colour(mut self, colour: Colour) -> Self {
         self.colour = colour;
         self
     }
 
-    /// The same stroke in another width, in points.
+    /// Changes its width, in points.
     #[must_use]
     pub const fn wide(mut self, width: f64) -> Self {
         self.width = width;
@@ -145,7 +145,7 @@ impl Layer {
         Mark::Cells(cells).into()
     }
 
-    /// The same lines with a mark of so many points at each of their points; what has no lines stays as it is.
+    /// Puts a mark of so many points at each point of its lines; a layer without lines stays as it is.
     #[must_use]
     pub fn marked(mut self, shape: Shape, size: f64) -> Self {
         if let Mark::Lines { marks, .. } = &mut self.mark {
@@ -154,14 +154,14 @@ impl Layer {
         self
     }
 
-    /// The same areas or cells with strokes over them, white on what is dark and dark on what is light.
+    /// Draws strokes over its areas or cells, white on dark colours and dark on light ones.
     #[must_use]
     pub fn hatched(mut self, hatch: Option<Hatch>) -> Self {
         self.hatch = hatch;
         self
     }
 
-    /// The same layer with an entry in the legend.
+    /// Gives it an entry in the legend.
     #[must_use]
     pub fn labelled(mut self, label: &str) -> Self {
         self.label = Some(label.into());
@@ -205,7 +205,7 @@ impl Cells {
         Cells { origin, step, colours, least: 0.35, runs: Vec::new() }
     }
 
-    /// The same grid, no cell of it drawn smaller than this many points.
+    /// Draws no cell smaller than this many points.
     #[must_use]
     pub fn at_least(mut self, points: f64) -> Self {
         self.least = points;

@@ -26,7 +26,7 @@ pub(crate) struct Site {
 }
 
 impl Site {
-    /// The same place so much further down.
+    /// Moves it down.
     pub(crate) fn lowered(self, by: f64) -> Site {
         let [left, top, right, bottom] = self.frame;
         Site { frame: [left, top + by, right, bottom + by], top: self.top + by }

@@ -126,21 +126,21 @@ impl Figure {
         Figure { frame_mm: Some(frame_mm), ..Self::new(width_mm, frame_mm) }
     }
 
-    /// The same figure with at most so many panels side by side; further ones go below.
+    /// Puts at most so many panels side by side; further ones go below.
     #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns.max(1);
         self
     }
 
-    /// The same figure with a name for the SVG: shown by browsers as a hint, read aloud, never drawn.
+    /// Names the SVG: browsers show the name as a hint and read it aloud; it is never drawn.
     #[must_use]
     pub fn named(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The same figure in another width; its height follows unless it is that of rows, but no row of panels falls below 45 mm
+    /// Changes its width. Its height follows unless it is that of rows, but no row of panels falls below 45 mm
     /// that was higher.
     #[must_use]
     pub fn wide(mut self, width_mm: f64) -> Self {
@@ -151,7 +151,7 @@ impl Figure {
         self
     }
 
-    /// The same figure with a heading above all panels, in the notation of labels; it becomes the name, too, and takes the place of
+    /// Puts a heading above all panels, in the notation of labels. It becomes the name, too, and takes the place of
     /// the title of a single panel.
     #[must_use]
     pub fn headed(mut self, heading: &str) -> Self {
@@ -159,7 +159,7 @@ impl Figure {
         self.untitled().named(&Label::new(heading).words)
     }
 
-    /// The same figure without heading and foot, for papers whose caption says both; several panels keep their titles.
+    /// Leaves out heading and foot, for papers whose caption says both; several panels keep their titles.
     #[must_use]
     pub fn bare(self) -> Self {
         let [heading, foot] = [const { String::new() }; 2];
@@ -174,21 +174,21 @@ impl Figure {
         self
     }
 
-    /// The same figure, its files carrying the program that made them with its version, and the command.
+    /// Writes into its files the program that made them with its version, and the command.
     #[must_use]
     pub fn made_by(mut self, program: &str, command: &str) -> Self {
         self.maker = Some([program.into(), command.into()]);
         self
     }
 
-    /// The same figure with small words below all panels: what it was made from.
+    /// Puts small words below all panels: what it was made from.
     #[must_use]
     pub fn footed(mut self, foot: &Foot) -> Self {
         self.foot = foot.to_string();
         self
     }
 
-    /// The same figure with this unit at axes of times and rates, in place of "time".
+    /// Names this unit at axes of times and rates, in place of "time".
     #[must_use]
     pub fn in_units_of(mut self, time: &str) -> Self {
         self.time_unit = time.into();
@@ -200,14 +200,14 @@ impl Figure {
         self.panels.iter().any(Panel::has_time)
     }
 
-    /// The same figure with letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
+    /// Draws letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
     #[must_use]
     pub fn outlined(mut self) -> Self {
         self.outlined = true;
         self
     }
 
-    /// The same figure with one more panel.
+    /// Adds a panel.
     #[must_use]
     pub fn with(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
@@ -239,7 +239,7 @@ impl Figure {
         (panels, sites, height)
     }
 
-    /// The same figure with these notes in its panels, in their order.
+    /// Adds notes to its panels, in their order.
     #[must_use]
     pub fn noted(mut self, notes: Vec<Vec<Note>>) -> Self {
         for (panel, notes) in self.panels.iter_mut().zip(notes) {

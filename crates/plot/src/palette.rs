@@ -63,7 +63,7 @@ impl Gradient {
         Gradient { from: [0.81, 0.165, 0.225], to: [0.24, 0.115, -0.21] }
     }
 
-    /// The same colours from the other end.
+    /// Runs from the other end.
     #[must_use]
     pub const fn reversed(self) -> Self {
         Gradient { from: self.to, to: self.from }
@@ -102,7 +102,7 @@ pub fn family(index: usize) -> Colour {
     from_lch(lightness, chroma, hue)
 }
 
-/// The same hues for lines behind their families: paler, and all about as light as each other.
+/// The hue of a family for lines behind it: paler, and all about as light as each other.
 pub fn behind(index: usize) -> Colour {
     let [lightness, chroma, hue] = FAMILIES[index % FAMILIES.len()];
     from_lch(0.62 + 0.15 * lightness, 0.6 * chroma, hue)

@@ -147,7 +147,7 @@ fn place(p: u64, m: u64, lower: &mut ZeroOf, upper: &mut ZeroOf) -> Checked<Side
         }
         bits += 32;
     }
-    Err(Fault::Wrong("the predicted point cannot be told from an edge".into()))
+    Err(Fault::Wrong("the predicted point and an edge do not part".into()))
 }
 
 /// The distance of the point from an edge, to ten digits.

@@ -1,11 +1,10 @@
 //! The rows of a document of tongues.
 
-use crate::number::{Ratio, Rational};
+use crate::number::Rational;
 pub use crate::question::Tongues as Input;
 use crate::recheck::context::Place;
 use crate::recheck::written::{Column, Decimal, Ends, Written};
-use crate::resonance::dominant_family;
-use crate::tongue::{self, Entry, Gap, Resonance, Side};
+use crate::tongue::{Entry, Resonance, Side};
 
 rows! {
     /// `kickdrift/tongues/1`.
@@ -88,44 +87,5 @@ rows! {
         pub centre_error: f64,
         pub width_error: f64,
         pub width_ratio: f64,
-    }
-}
-
-impl Tongue {
-    /// A tongue as it is computed, without further columns.
-    pub fn bare(ratio: Ratio, gap: &Gap) -> Tongue {
-        let ((p, q), family) = (ratio.terms(), dominant_family(ratio, gap.m));
-        let width = gap.upper.map(|_| Ends { lo: gap.width.0, hi: gap.width.1 });
-        Tongue {
-            p,
-            q,
-            m: gap.m,
-            a: Some(family.0),
-            b: Some(family.1),
-            lower: Edge::bare(&gap.lower),
-            upper: gap.upper.as_ref().map(Edge::bare),
-            closed: gap.closed,
-            width,
-            growth: Column::Absent,
-            predicted: Column::Absent,
-            first_order: Column::Absent,
-        }
-    }
-}
-
-impl Edge {
-    /// An edge as it is computed.
-    pub fn bare(edge: &tongue::Edge) -> Edge {
-        let entry = Written(edge.entry);
-        Edge {
-            lo: edge.lo,
-            hi: edge.hi,
-            decimal: None,
-            entry,
-            exact: Column::Absent,
-            on: Column::Absent,
-            h1: None,
-            h2: None,
-        }
     }
 }

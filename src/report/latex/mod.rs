@@ -140,7 +140,7 @@ fn parameters(input: &Map<String, Value>, columns: &[Column]) -> String {
     if all.is_empty() { String::new() } else { format!(". {}.", all.join(", ")) }
 }
 
-/// What tells tables of one input apart: their columns and digits.
+/// A checksum of columns and digits: tables of one input have different labels.
 fn form(table: &Table, digits: Option<u32>) -> String {
     let keys: Vec<&str> = table.columns().iter().map(|column| column.key.as_str()).collect();
     format!("{:04x}", checksum(&format!("{keys:?}{digits:?}")) & 0xffff)

@@ -167,7 +167,7 @@ impl Chart {
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
-        // A family is told by its hatch, too: without colours, and by eyes that see few.
+        // Each family has a hatch, too, for those who see no colours or few.
         let layer = |n: usize, belongs: &dyn Fn(f64) -> bool| {
             let mut cells = cells(&self.growing, steps, vec![palette::family(n)]);
             let found = self.growing.filled().filter(|(_, _, strength)| belongs(-strength));

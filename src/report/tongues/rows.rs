@@ -10,7 +10,7 @@ use crate::tongue::{Bounds, Law, Request, Side, Tongue, TongueEdge, Wanted};
 pub const CAPTION: &str =
     "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step";
 
-/// The same in LaTeX.
+/// The caption in LaTeX.
 pub const CAPTION_LATEX: &str = "Unstable intervals (tongues) $s_- < s < s_+$ of $s = h_1^2 \\Lambda_1$";
 
 /// Digits that people need of a number that is rounded anyway.
