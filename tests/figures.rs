@@ -339,15 +339,13 @@ fn families_differ_in_their_hatch_and_every_format_draws_it() {
     assert_ne!(plain.png(72.0).unwrap(), hatched.png(72.0).unwrap());
 }
 
-/// A gradient tells more from less by its lightness alone, for every eye; a tenth of it is more than just noticeable.
+/// The lightness of a gradient falls for every eye; a tenth of it is more than just noticeable.
 #[test]
 fn gradients_keep_their_order_for_the_colour_blind_and_in_grey() {
-    for (gradient, sign) in [(Gradient::on_white(), -1.0), (Gradient::on_white(), 1.0)] {
-        for matrix in [DEUTERANOPIA, PROTANOPIA, PRINT] {
-            let light: Vec<f64> =
-                gradient.steps(11).into_iter().map(|own| seen_through(matrix, own)[0]).collect();
-            let least = light.windows(2).map(|pair| sign * (pair[1] - pair[0])).fold(f64::INFINITY, f64::min);
-            assert!(least > 0.02, "{least}: {light:?}");
-        }
+    for matrix in [DEUTERANOPIA, PROTANOPIA, PRINT] {
+        let steps = Gradient::on_white().steps(11).into_iter();
+        let light: Vec<f64> = steps.map(|own| seen_through(matrix, own)[0]).collect();
+        let least = light.windows(2).map(|pair| pair[0] - pair[1]).fold(f64::INFINITY, f64::min);
+        assert!(least > 0.02, "{least}: {light:?}");
     }
 }

@@ -223,7 +223,7 @@ fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
         ("grid", json!({"step": "1", "h1": "1..2"})),
         ("families", json!({"a": 3})),
         ("families", json!({"samples": -1})),
-        ("max", json!("60")),
+        ("max", json!("sixty")),
         ("max_sum", json!(-1)),
         ("rho", json!([0.04])),
         ("window", json!({"h1": "1..2"})),
