@@ -57,13 +57,6 @@ pub struct Held {
     pub arrays: Arrays,
 }
 
-/// A parser of values from one that names the field: here the flag names it.
-pub fn of<T>(
-    parse: impl Fn(&str, &str) -> Result<T> + Clone + Send + Sync + 'static,
-) -> impl Fn(&str) -> std::result::Result<T, String> + Clone + Send + Sync + 'static {
-    move |text| parse("value", text).map_err(|error| error.remedy().to_string())
-}
-
 /// A parser of values whose errors name the field already.
 pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|error: Error| error.remedy().to_string())
@@ -200,7 +193,7 @@ impl Columns {
         self.columns.as_deref()
     }
 
-    /// What a map has to compute for the columns asked for.
+    /// The products that a map has to compute for the columns asked for.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [("--columns", self.columns.is_some()), ("--digits", self.digits.is_some())];
         let has_rows = matches!(format, Format::Csv | Format::Latex | Format::Text);

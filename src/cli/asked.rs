@@ -58,7 +58,7 @@ pub enum Default {
 }
 
 impl Common {
-    /// What an answer may cost; its progress is shown on a terminal.
+    /// The cost allowed to an answer; its progress is shown on a terminal.
     pub fn work(&self) -> Work<'_> {
         Work { budget: self.budget, watch: (!self.quiet).then_some(self), threads: self.threads() }
     }

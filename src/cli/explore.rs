@@ -67,7 +67,7 @@ mod ways {
     use crate::scene::{SystemScene, file};
 
     impl Args {
-        /// What the page starts on.
+        /// The session that the page starts on.
         pub(super) fn session(&self) -> Result<Session> {
             let session = match (&self.scene, &self.lambda1, &self.lambda2, self.period.as_slice()) {
                 (Some(path), ..) => of_file(path)?,

@@ -150,7 +150,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// ```
 ///
 /// # Errors
-/// What the program prints as its one line.
+/// The error that the program prints as its one line.
 pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
     answer_about(arguments, None)
 }

@@ -19,7 +19,7 @@ use crate::verdict::{Kind, decide};
 /// Kicks of all samples together.
 pub(super) const MOST_KICKS: u64 = 400_000_000;
 
-/// What is fixed.
+/// The quantity that is fixed along the line.
 enum Line {
     H1(Laurent),
     H2(Laurent),

@@ -1,4 +1,4 @@
-//! What a page starts on.
+//! The stiffnesses, window and system that a page starts on.
 
 use num_traits::Pow;
 
@@ -9,7 +9,7 @@ use crate::propagator::Oscillator;
 use crate::question::{Scene, StepRange};
 use crate::scene::SystemScene;
 
-/// What a page starts on; every question may name other stiffnesses and another window.
+/// The stiffnesses, window and system that a page starts on; every question may name others.
 #[derive(Debug)]
 pub struct Session {
     stiffnesses: Option<(Laurent, Laurent)>,
@@ -57,7 +57,7 @@ impl Session {
         Session { step: rational::ratio(1, 1000), ..session }
     }
 
-    /// What a scene shows.
+    /// The plane of a scene.
     ///
     /// # Errors
     /// A stiffness that is not there.

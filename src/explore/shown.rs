@@ -1,4 +1,4 @@
-//! What is shown, to keep: the scene file that makes it again, and its picture as for a paper.
+//! Files to keep of the plane shown: a scene that makes it again, and its picture as for a paper.
 
 use serde_json::json;
 

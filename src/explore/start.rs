@@ -1,4 +1,4 @@
-//! What the page starts on, and what it may ask.
+//! The session as the page receives it, with the limits of its questions.
 
 use serde_json::{Value, json};
 

@@ -88,7 +88,7 @@ fn expected(ratio: Ratio, [(a, b), (c, d)]: [(f64, f64); 2], root: f64) -> f64 {
     (turns(upto) - turns(from)).max(0.0) + beyond + 1.0
 }
 
-/// What is asked of the tongues in the window with a half of itself on each side.
+/// The tongues in the window with a half of itself on each side.
 fn question(
     ratios: Vec<Ratio>,
     stiffness: Stiffness,

@@ -1,4 +1,4 @@
-//! What a question is: fields, an answer, a document.
+//! Questions: fields, an answer, a document.
 
 use serde_json::{Map, Value};
 
@@ -79,13 +79,13 @@ pub trait Fields: Sized {
     fn input(&self) -> Vec<(&'static str, Value)>;
 }
 
-/// What is asked: its answer is computed, and shown in one document.
+/// A question: its answer is computed, and shown in one document.
 pub trait Question: Fields {
     /// NAME in `kickdrift/NAME/1`.
     const NAME: &'static str;
     /// Command lines that ask it.
     const EXAMPLES: &'static [&'static str] = &[];
-    /// What is computed.
+    /// The result that is computed.
     type Answer;
 
     /// Computes the answer.
@@ -120,7 +120,7 @@ pub trait Question: Fields {
     }
 }
 
-/// What an answer may cost, and who hears of long work.
+/// The cost allowed to an answer, and who hears of long work.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit

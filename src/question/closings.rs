@@ -133,7 +133,7 @@ impl Question for Closings {
 /// s or ρ of a closing: its enclosure, and its value where that is rational.
 type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
 
-/// What is written of a closing; in the short form s and ρ are one column each, exact where they are rational.
+/// The row of a closing; in the short form s and ρ are one column each, exact where they are rational.
 fn record(digits: u32, short: bool) -> Record<'static, Closing> {
     let mut record = Record::new()
         .field(Column::math("p", "p"), |of: &Closing| of.ratio.p().into())

@@ -39,7 +39,7 @@ question! {
     }
 }
 
-/// What is compared.
+/// The pairs that are compared.
 pub enum Over {
     /// All pairs of a grid.
     Grid(Grid),
@@ -64,7 +64,7 @@ impl Compare {
         Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples }
     }
 
-    /// What is said of a question that is neither, or both.
+    /// The error of a question that is neither, or both.
     pub fn mixed() -> Error {
         let remedy =
             "give --lambda1, --lambda2 and a grid (--step, --h1-range, --h2-range), or --max-sum and --rho";
@@ -145,7 +145,7 @@ fn lines(tally: &Tally, tolerance: &Rational) -> Vec<String> {
     ]
 }
 
-/// What is written of an offender.
+/// The row of an offender.
 fn record(places: [&str; 2]) -> Record<'static, Offender> {
     let [first, second] = places.map(|name| Column::math(name, formula(name)));
     let nearest = |of: &Offender| of.comparison.nearest.clone();

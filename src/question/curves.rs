@@ -79,7 +79,7 @@ fn points(curve: &Curve) -> impl Iterator<Item = Point<'_>> {
     pieces.flat_map(move |(i, piece)| piece.iter().map(move |point| (curve, i, point)))
 }
 
-/// What is written of a point, beside the curve that it is on.
+/// The columns of a point, behind those of its curve.
 fn place<'a>(record: Record<'a, Point<'a>>) -> Record<'a, Point<'a>> {
     record
         .field(Column::math("h1", "h_1"), |(_, _, point)| point.h1.into())

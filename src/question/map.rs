@@ -48,7 +48,7 @@ impl Map {
         Map { label: false, growth: false, shard: None, ..self.clone() }
     }
 
-    /// What is asked for beside the verdicts.
+    /// The products beside the verdicts.
     pub fn products(&self) -> Products {
         Products { label: self.label, growth: self.growth }
     }

@@ -1,4 +1,4 @@
-//! What kickdrift is asked, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same questions.
+//! Questions, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same ones.
 //!
 //! A question cannot be wrong in its types; it is written as the `input` of its document, and read from there again.
 //! [`Question::answer`] computes, [`Question::document`] shows what came out.

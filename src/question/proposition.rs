@@ -73,7 +73,7 @@ impl Question for Proposition {
     }
 }
 
-/// What is written of a resonant point.
+/// The row of a resonant point.
 fn record() -> Record<'static, Witness> {
     Record::new()
         .field(Column::math("p", "p"), |of: &Witness| of.ratio.p().into())

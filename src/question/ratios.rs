@@ -14,7 +14,7 @@ pub enum Ratios {
 }
 
 impl Ratios {
-    /// What two fields say, of which one is given.
+    /// The ratios of two fields, of which one is given.
     ///
     /// # Errors
     /// Neither or both.

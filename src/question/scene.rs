@@ -23,7 +23,7 @@ use crate::scene::json;
 use crate::tongue::Stiffness;
 
 question! {
-    /// What a scene file gives, and what is to be computed of it; only the fields that the products need have to be there.
+    /// The quantities of a scene file and the products that it wants; only the fields that these need have to be there.
     ///
     /// ```
     /// use kickdrift::question::{Product, Scene};

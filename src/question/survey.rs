@@ -115,7 +115,7 @@ fn lines(survey: &tongue::Survey) -> Vec<String> {
     lines
 }
 
-/// What is written of the widths of a family, in so many significant digits where a number is given.
+/// The row of a family's widths, in so many significant digits where a number is given.
 fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
     let float = move |x: f64| Cell::Float(digits.map_or(x, |digits| rounded(x, digits)));
     let titled = |key: &str, title: &str| Column::new(key).titled(title, title);
@@ -133,7 +133,7 @@ fn spreads(digits: Option<usize>) -> Record<'static, Spread> {
         .field(Column::new("largest"), move |of| float(of.largest))
 }
 
-/// What is written of a thin tongue.
+/// The row of a thin tongue.
 fn thin() -> Record<'static, Thin> {
     Record::new()
         .field(Column::math("p", "p"), |of: &Thin| of.ratio.p().into())

@@ -47,7 +47,7 @@ pub enum Colour {
 }
 
 impl Colour {
-    /// What has to be computed for the colours.
+    /// The groups that the colours need.
     pub fn needs(self) -> Wanted {
         Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
     }

@@ -119,7 +119,7 @@ pub struct Decided {
     pub growth: Growth,
     /// Tr Q, where it is rational and was asked for or is short.
     pub exact_trace: Option<Rational>,
-    /// What friction does to it, where that was asked for.
+    /// The verdict with friction, where that was asked for.
     #[cfg(feature = "system")]
     pub friction: Option<crate::system::friction::Friction>,
 }
@@ -163,7 +163,7 @@ impl Decided {
     }
 }
 
-/// What is written of an answer.
+/// The row of an answer.
 fn record() -> Record<'static, Decided> {
     type Of<'a> = &'a Decided;
     Record::new()

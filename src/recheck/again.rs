@@ -17,13 +17,13 @@ pub trait Recheck {
     const TABLE: &'static str;
     /// Values that the input does not determine.
     const LEFT: &'static [Left] = &[];
-    /// What the computation finds that the other route needs.
+    /// The answer, or the part of it that the other route needs.
     type Found;
 
     /// The document computed again from its input.
     fn again(&self, context: &Context) -> Result<(Value, Self::Found)>;
 
-    /// What another route says.
+    /// The outcome of another route.
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome>;
 }
 
@@ -40,7 +40,7 @@ macro_rules! asked {
 }
 pub(crate) use asked;
 
-/// What a comparison finds.
+/// The result of a comparison.
 pub struct Compared {
     /// One for every row that differs, then one for each part of the rest that does.
     pub failures: Vec<Failure>,

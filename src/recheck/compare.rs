@@ -66,7 +66,7 @@ impl Place for Offender {
     }
 }
 
-/// What is compared, line by line.
+/// The pairs that are compared, line by line.
 pub enum Pairs {
     Grid(Grid),
     /// All ratios at s = 4 k/(samples + 1).

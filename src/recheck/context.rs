@@ -1,4 +1,4 @@
-//! What a check is given, and what it finds.
+//! The means of a check, and its outcome.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -36,7 +36,7 @@ rows! {
     }
 }
 
-/// What is found on the way through the bands.
+/// Findings on the way through the bands.
 pub struct Found {
     grid: Grid,
     /// No pair is proven to grow faster.
@@ -154,7 +154,7 @@ fn most(grid: &Grid, options: &Options) -> u64 {
     if options.all { grid.pairs() } else { SAMPLE }
 }
 
-/// What is wrong with a pair of a band.
+/// The failure of a pair of a band, if its verdict is another one kick by kick.
 fn kick_by_kick(grid: &Grid, band: &Band, row: usize, context: &Context) -> Result<Option<Failure>> {
     let (i, j) = band.multipliers(grid, row);
     let truth = again(Tier::Refine, &grid.clocks(i, j)?, &context.limits())?.verdict;

@@ -48,7 +48,7 @@ impl Place for Claim {
     }
 }
 
-/// What the other route finds.
+/// The findings of the other route.
 struct Truth {
     verdict: Verdict,
     trace: Ball,

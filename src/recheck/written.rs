@@ -1,4 +1,4 @@
-//! What stands in documents, read once into types that cannot be wrong.
+//! The values of documents, read once into types that cannot be wrong.
 
 use std::ops::Deref;
 

@@ -34,7 +34,7 @@ pub struct Document {
     summary_only: bool,
 }
 
-/// What a person asks of the tables of a document.
+/// The columns and digits that a person asks for.
 #[derive(Clone, Debug, Default)]
 pub struct Layout {
     /// The keys of the columns of the first one; all that fit its form where none are given.

@@ -1,4 +1,4 @@
-//! What friction does, in JSON and in words.
+//! Friction in JSON and in words.
 
 use serde_json::{Value, json};
 

@@ -298,7 +298,7 @@ pub struct Choice {
     columns: Vec<Column>,
 }
 
-/// What of a cell is chosen.
+/// The part of a cell that is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Whole,

@@ -28,7 +28,7 @@ pub struct Axis {
 pub struct Tick {
     /// Where, in data units.
     pub at: f64,
-    /// What stands beside it.
+    /// The label beside it.
     pub label: Option<String>,
 }
 

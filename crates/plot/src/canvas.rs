@@ -1,4 +1,4 @@
-//! What a figure is drawn with: paths, rectangles and words, from which each file format is written.
+//! The means of drawing: paths, rectangles and words, from which each file format is written.
 //!
 //! Lengths are points (1/72 inch), y pointing down. Coordinates of paths are whole hundredths of a point (3.5
 //! micrometres), so that every format draws the very same lines.
@@ -182,7 +182,7 @@ pub(crate) struct Words {
     /// Where the baseline begins, is centred, or ends.
     pub at: [f64; 2],
     pub set: Set,
-    /// What of the label lies before that point, in em.
+    /// The part of the label before that point, in em.
     before: f64,
 }
 
@@ -216,7 +216,7 @@ pub(crate) enum Element {
     Path(Path, Paint),
     Patch(Patch),
     Words(Words),
-    /// What follows shows only inside the rectangle, up to `Close`; these do not nest.
+    /// Clips the elements up to `Close` to the rectangle; these do not nest.
     Open(Rect),
     Close,
 }

@@ -115,7 +115,7 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
     canvas.text(label.clone(), at, set(NUMBER, Anchor::Start));
 }
 
-/// What a colour bar takes at the right of a frame of the given height.
+/// The width of a colour bar at the right of a frame of the given height.
 pub(crate) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
     let label = if bar.axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     let high = height - bar.beyond.iter().filter(|beyond| **beyond).count() as f64 * ARROW;

@@ -1,4 +1,4 @@
-//! What stands in a panel: lines, dots, areas, cells of a grid.
+//! The layers of a panel: lines, dots, areas, cells of a grid.
 
 use super::palette::{Colour, INK};
 

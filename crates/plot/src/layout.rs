@@ -19,7 +19,7 @@ const BELOW: f64 = 18.0;
 /// Where a panel stands on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Site {
-    /// What the axes enclose.
+    /// The rectangle between the axes.
     pub frame: Rect,
     /// Where the row begins: all its titles hang from here.
     pub top: f64,
@@ -64,7 +64,7 @@ fn wants(track: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize) -> (f6
     members.fold((0.0, 0.0), |(a, b), (_, room)| (f64::max(a, room.0), f64::max(b, room.1)))
 }
 
-/// What the room around the frames leaves for each of them.
+/// The length that is left for each frame.
 fn share(count: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize + Copy, length: f64) -> f64 {
     let taken: f64 = (0..count).map(|track| wants(track, rooms, of)).map(|(a, b)| a + b).sum();
     // On paper too small for its labels the frames still exist, and overlap.

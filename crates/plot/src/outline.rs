@@ -3,7 +3,7 @@
 use super::canvas::{Patch, Path, Step};
 use super::font::Curve;
 
-/// What takes lines and curves.
+/// A pen that takes lines and curves.
 pub(crate) trait Outline {
     fn begin(&mut self, at: [f64; 2]);
     fn line(&mut self, to: [f64; 2]);

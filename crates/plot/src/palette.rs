@@ -30,7 +30,7 @@ pub const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
 pub const UNSTABLE: Colour = HYPERBOLIC;
 
 impl Colour {
-    /// What is seen on it: white on what is dark, ink on what is light.
+    /// A colour that is seen on it: white on dark ones, ink on light ones.
     #[must_use]
     pub fn opposite(self) -> Colour {
         let Colour(r, g, b) = self;

@@ -58,7 +58,7 @@ fn encode(pixels: &Pixmap, colours: &[u8], dpi: f64, maker: Option<&[String; 2]>
     bytes
 }
 
-/// What draws, and where it may.
+/// The pixels under the brush, and the clip that it keeps to.
 struct Brush {
     pixels: Pixmap,
     /// From points to pixels.
@@ -174,7 +174,7 @@ fn shade(Colour(r, g, b): Colour, opacity: Option<f64>) -> Shade<'static> {
     shade
 }
 
-/// What is drawn by `trace`; none where nothing is left of it.
+/// The path that `trace` draws; none where nothing is left of it.
 fn traced(trace: impl FnOnce(&mut PathBuilder)) -> Option<tiny_skia::Path> {
     let mut path = PathBuilder::new();
     trace(&mut path);

@@ -29,12 +29,12 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// What the colours stand for.
+    /// The meaning of the colours.
     pub fn colouring(&self) -> Colouring {
         self.colour.unwrap_or_default()
     }
 
-    /// What has to be computed for the drawing: nothing where none is made.
+    /// The products that the drawing needs: none where nothing is drawn.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [
             ("--colour", self.colour.is_some()),

@@ -1,4 +1,4 @@
-//! What becomes of a map: a summary, rows, arrays or a figure, each from one band at a time.
+//! A map written as a summary, rows, arrays or a figure, each from one band at a time.
 
 use std::path::Path;
 

@@ -22,7 +22,7 @@ use crate::report::{map, tongues::TongueTally};
 use crate::resonance::{Curve, Window};
 use crate::tongue::Wanted;
 
-/// What the products are made of, each part computed when first asked for.
+/// The parts that the products are made of, each computed when first asked for.
 pub struct Work<'a> {
     scene: &'a Scene,
     common: &'a Common,
@@ -34,7 +34,7 @@ pub struct Work<'a> {
     arrays: RefCell<Option<MapArrays>>,
     curves: OnceCell<Vec<Curve>>,
     documents: Made<Document>,
-    /// What stands out among the tongues, once they were written.
+    /// Counts and extremes of the tongues, once they were written.
     tongues: OnceCell<TongueTally>,
     figures: Made<Figure>,
 }
@@ -158,7 +158,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// What was made for some products, to be written in more than one format.
+/// Documents or figures of products, kept to be written in more than one format.
 struct Made<T>(RefCell<BTreeMap<Product, Rc<T>>>);
 
 impl<T> Default for Made<T> {
@@ -168,7 +168,7 @@ impl<T> Default for Made<T> {
 }
 
 impl<T> Made<T> {
-    /// What is there, or is made now.
+    /// The one that is kept, or is made now.
     fn get(&self, product: Product, make: impl FnOnce() -> Result<T>) -> Result<Rc<T>> {
         if let Some(known) = self.0.borrow().get(&product) {
             return Ok(known.clone());

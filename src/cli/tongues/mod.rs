@@ -252,7 +252,7 @@ impl Args {
         Stream::new(Asked { h1_range, h2_range, m, a, b, digits, ..all }, wanted)
     }
 
-    /// What to compute, where `--columns` says it by groups and not by the names of columns.
+    /// The groups of `--columns`, where it names groups and not columns.
     fn groups(&self) -> Option<Vec<Columns>> {
         let names = self.columns.iter().flatten();
         names.map(|name| Columns::from_str(name.trim(), false).ok()).collect()

@@ -1,4 +1,4 @@
-//! What else a row says of a tongue.
+//! The further columns of a tongue's row: growth, the predicted point, the law of first order.
 
 use std::f64::consts::{LN_10, PI};
 

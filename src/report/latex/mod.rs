@@ -107,7 +107,7 @@ fn kept(table: &Table) -> Table {
     table.choose(&kept.collect::<Vec<_>>()).expect("its own keys")
 }
 
-/// What is known as a formula: `= ` or ` in ` behind it, then the value.
+/// Inputs as formulas, ending in `=` or `in`, before the value.
 const FORMULAS: [(&str, &str); 14] = [
     ("ratio", "h_2/h_1 ="),
     ("max_sum", "p + q \\le"),

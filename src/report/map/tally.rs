@@ -46,7 +46,7 @@ impl Counts {
 /// How many families the summary for people lists.
 const FAMILIES_LISTED: usize = 6;
 
-/// What the summary reports.
+/// The numbers of the summary.
 #[derive(Clone, Debug, Default)]
 pub struct MapTally {
     pub counts: Counts,
@@ -86,7 +86,7 @@ impl MapTally {
         }
     }
 
-    /// What was asked for beside the verdicts, where some pair grows.
+    /// The entries beside the verdicts, where some pair grows.
     pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = Vec::new();
         if !self.families.is_empty() {

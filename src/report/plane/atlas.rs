@@ -23,7 +23,7 @@ pub struct Segment {
     pub closed: bool,
 }
 
-/// What is drawn.
+/// The tongues and curves that are drawn.
 #[derive(Clone, Debug)]
 pub struct Atlas<'a> {
     pub window: Window,

@@ -10,7 +10,7 @@ use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;
 
-/// What colours stand for.
+/// The meaning of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colouring {
@@ -26,7 +26,7 @@ pub enum Colouring {
 }
 
 impl Colouring {
-    /// What the map has to compute for these colours.
+    /// The products that these colours need.
     pub fn needs(self) -> Products {
         Products { label: self == Colouring::Family, growth: self.by_growth() }
     }

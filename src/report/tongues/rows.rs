@@ -1,4 +1,4 @@
-//! What is written of a tongue.
+//! The row of a tongue.
 
 use crate::error::Result;
 use crate::report::decimal::{concise, outward, rounded};
@@ -37,7 +37,7 @@ pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
     wanted(record, request, short)
 }
 
-/// What has to be computed for columns of these names, by which CSV calls them.
+/// The groups that have to be computed for columns of these names, by which CSV calls them.
 ///
 /// # Errors
 /// A name that no column has, whatever is computed.

@@ -1,4 +1,4 @@
-//! What stands out among many tongues.
+//! Counts and extremes of many tongues.
 
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ impl TongueTally {
         }
     }
 
-    /// What stands behind the rows in JSON.
+    /// The entries behind the rows in JSON.
     pub fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = vec![
             ("count", self.count.into()),
