@@ -5,7 +5,7 @@
 use serde_json::Value;
 
 use super::again::Recheck;
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::context::{Checked, Context, Fault, Outcome, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
 use super::written::{Decimal, Written, exact};
@@ -28,7 +28,7 @@ rows! {
         ratios: Vec<Searched>,
     }
 
-    struct Closing {
+    struct Closing [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
@@ -46,12 +46,6 @@ rows! {
 
     struct Searched {
         complete: bool,
-    }
-}
-
-impl Place for Closing {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 

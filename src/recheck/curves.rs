@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::again::{Left, Recheck, asked};
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::context::{Checked, Context, Fault, Outcome, holds};
 use crate::error::Result;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
 use crate::question::Curves;
@@ -20,7 +20,7 @@ rows! {
         curves: Vec<Curve>,
     }
 
-    struct Curve {
+    struct Curve [a, b] {
         a: i64,
         b: i64,
         points: Vec<Point>,
@@ -32,12 +32,6 @@ rows! {
         h2: f64,
         theta_over_pi: f64,
         piece: u64,
-    }
-}
-
-impl Place for Curve {
-    fn place(&self) -> String {
-        format!("a = {}, b = {}", self.a, self.b)
     }
 }
 

@@ -1,7 +1,7 @@
 //! A half period in numbers: its determinant, and the full period kick by kick.
 
 use super::again::{Recheck, asked};
-use super::context::{Checked, Context, Outcome, Place, holds};
+use super::context::{Checked, Context, Outcome, holds};
 use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{ExactSign, Rational, rational};
@@ -20,17 +20,11 @@ rows! {
         entries: Vec<Entry>,
     }
 
-    struct Entry {
+    struct Entry [entry] {
         entry: String,
         sign: i64,
         value: Ends,
         exact: Written<Rational>,
-    }
-}
-
-impl Place for Entry {
-    fn place(&self) -> String {
-        format!("entry = {}", self.entry)
     }
 }
 

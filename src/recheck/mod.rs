@@ -34,11 +34,11 @@
 //! ```
 
 /// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null, one of type
-/// `Option` may be missing. An input knows all of its fields.
+/// `Option` may be missing. An input knows all of its fields. A row is named by the fields in brackets.
 macro_rules! rows {
     ($(
         $(#[$row:meta])*
-        $visible:vis struct $name:ident {
+        $visible:vis struct $name:ident $([$($by:ident),*])? {
             $($(#[$attribute:meta])* $seen:vis $field:ident: $type:ty $(| $null:ident)?,)*
         }
     )*) => {
@@ -52,6 +52,12 @@ macro_rules! rows {
                     $seen $field: rows!(@type $type $(, $null)?),
                 )*
             }
+
+            $(impl $crate::recheck::context::Place for $name {
+                fn place(&self) -> String {
+                    [$(format!(concat!(stringify!($by), " = {}"), self.$by)),*].join(", ")
+                }
+            })?
         )*
     };
     (@type $type:ty) => { $type };

@@ -21,18 +21,12 @@ rows! {
     }
 
     #[derive(Copy)]
-    struct Witness {
+    struct Witness [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
         a: i64,
         b: i64,
-    }
-}
-
-impl Place for Witness {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 

@@ -27,7 +27,7 @@ rows! {
         thinnest: Vec<Thin>,
     }
 
-    struct Thin {
+    struct Thin [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
@@ -35,12 +35,6 @@ rows! {
         b: i64,
         s: f64,
         width: Ends,
-    }
-}
-
-impl Place for Thin {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 

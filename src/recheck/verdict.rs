@@ -1,7 +1,7 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder.
 
 use super::again::{Recheck, asked};
-use super::context::{Checked, Context, Outcome, Place, holds, same};
+use super::context::{Checked, Context, Outcome, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Written};
 use crate::error::Result;
@@ -16,7 +16,7 @@ const ROUTE: &str =
 
 rows! {
     /// `kickdrift/verdict/1`.
-    pub struct Claim {
+    pub struct Claim [p, q] {
         input: question::Verdict,
         p: u64,
         q: u64,
@@ -39,12 +39,6 @@ rows! {
         m: u64,
         a: i64,
         b: i64,
-    }
-}
-
-impl Place for Claim {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}", self.p, self.q)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::number::Rational;
 pub use crate::question::Tongues as Input;
-use crate::recheck::context::Place;
 use crate::recheck::written::{Column, Decimal, Ends, Written};
 use crate::tongue::{Entry, Resonance, Side};
 
@@ -14,7 +13,7 @@ rows! {
     }
 
     /// A row.
-    pub struct Tongue {
+    pub struct Tongue [p, q, m] {
         pub p: u64,
         pub q: u64,
         pub m: u64,
@@ -30,12 +29,6 @@ rows! {
         pub predicted: Column<Predicted>,
         #[serde(default)]
         pub first_order: Column<FirstOrder>,
-    }
-}
-
-impl Place for Tongue {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 
