@@ -81,8 +81,8 @@ fn asked(
     let [lambda1, lambda2] = both(["lambda1", "lambda2"], stiffness)?;
     let [step1, step2] = both(["step1", "step2"], steps)?;
     let [h1_range, h2_range] = [both(["h1", "h1"], h1)?, both(["h2", "h2"], h2)?].map(|[lo, hi]| (lo, hi));
-    let shard = None;
-    let asked = question::Map { lambda1, lambda2, step1, step2, h1_range, h2_range, label, growth, shard };
+    let products = question::Map { label, growth, ..question::Map::default() };
+    let asked = question::Map { lambda1, lambda2, step1, step2, h1_range, h2_range, ..products };
     let grid = asked.grid().map_err(|error| raised(&error))?;
     Ok((asked, grid))
 }

@@ -270,9 +270,7 @@ impl Grid {
             step2: step(&self.step2)?,
             h1_range: range("h1-range", &self.h1_range, "1/100..2/pi")?,
             h2_range: range("h2-range", &self.h2_range, "1/100..7/2")?,
-            label: false,
-            growth: false,
-            shard: None,
+            ..Map::default()
         })
     }
 }

@@ -25,8 +25,7 @@ fn map(session: &Session, query: &Query) -> Result<Map> {
     let step = query.read("step", positive)?.unwrap_or_else(|| session.step().clone());
     let step2 = query.read("step2", positive)?.unwrap_or_else(|| step.clone());
     let [step1, step2] = [step, step2].map(Laurent::from_rational);
-    let (label, growth, shard) = (false, false, None);
-    Ok(Map { lambda1, lambda2, step1, step2, h1_range, h2_range, label, growth, shard })
+    Ok(Map { lambda1, lambda2, step1, step2, h1_range, h2_range, ..Map::default() })
 }
 
 /// A scene file: `kickdrift run` makes the map and its picture from it.

@@ -15,6 +15,7 @@ use crate::resonance::compare::{Comparison, Comparisons, Offender, Tally, compar
 question! {
     /// The trace verdict against the tan criterion and against resonance: over a grid with both stiffnesses, or over all coprime
     /// p + q up to a sum at s = 4 k/(samples + 1).
+    #[derive(Default)]
     struct Compare {
         /// How near q h2 must be to a multiple of T½ to count as resonant, in units of T½.
         tolerance: Rational = "1/20",
@@ -53,15 +54,13 @@ impl Compare {
         let Map { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = map;
         let [lambda1, lambda2, step1, step2] = [lambda1, lambda2, step1, step2].map(Some);
         let [h1_range, h2_range] = [h1_range, h2_range].map(Some);
-        let (max_sum, rho, samples) = (None, None, None);
-        Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples }
+        Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, ..Compare::default() }
     }
 
     /// The comparison over all coprime p + q up to a sum.
     pub fn over_ratios(max_sum: u64, rho: Rational, samples: u64, tolerance: Rational) -> Compare {
         let (max_sum, rho, samples) = (Some(max_sum), Some(rho), Some(samples));
-        let (lambda1, lambda2, step1, step2, h1_range, h2_range) = (None, None, None, None, None, None);
-        Compare { tolerance, lambda1, lambda2, step1, step2, h1_range, h2_range, max_sum, rho, samples }
+        Compare { tolerance, max_sum, rho, samples, ..Compare::default() }
     }
 
     /// The error of a question that is neither, or both.

@@ -10,6 +10,7 @@ use crate::report::map::{MapTally, document};
 
 question! {
     /// The verdicts of all pairs of multiples of two spacings in closed ranges.
+    #[derive(Default)]
     struct Map {
         /// The stiffness of the fast force, 1/time².
         lambda1: Laurent,

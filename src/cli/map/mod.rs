@@ -7,11 +7,11 @@ mod source;
 
 use std::path::PathBuf;
 
-use super::args::{self, Columns, Common, Stiffness, from_str};
+use super::args::{self, Columns, Common, Stiffness};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Products, Shard};
-use crate::question::Map;
+use crate::question::{Map, flag};
 pub use drawing::Drawing;
 pub use output::Output;
 pub use part::Part;
@@ -38,7 +38,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
     /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
-    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = from_str::<Shard>)]
+    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
     shard: Option<Shard>,
 }
 
