@@ -5,7 +5,9 @@
 use kickdrift::error::Result;
 use kickdrift::number::Ratio;
 use kickdrift::number::rational::{ratio, to_f64};
-use kickdrift::tongue::{Question, Request, Search, Selection, Stiffness, Tongues, Wanted, Window, closings};
+use kickdrift::tongue::{
+    Listing, Request, Search, Selection, StepWindow, Stiffness, Tongues, Wanted, closings,
+};
 
 fn main() -> Result<()> {
     // h2/h1 = 5/3 and lambda2 = lambda1/25; s = h1^2 lambda1.
@@ -33,7 +35,7 @@ fn main() -> Result<()> {
     let stiffness = Stiffness::new(Some(ratio(1, 25)), None, None)?;
     let request = Request { wanted: Wanted { family: true, ..Wanted::default() }, ..Request::default() };
     let ratios = Ratio::up_to(20).collect();
-    let question = Question::new(ratios, stiffness, Window::default(), Selection::below(4.0), request)?;
+    let question = Listing::new(ratios, stiffness, StepWindow::default(), Selection::below(4.0), request)?;
     let mut widest: Option<(f64, Ratio, u64)> = None;
     question.each(&(), |tongues| {
         for tongue in tongues.iter().filter(|tongue| tongue.upper.is_some()) {

@@ -2,6 +2,7 @@
 
 /// The form of a file, of standard output, of a scene's product.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Format {
     Json,
     Csv,

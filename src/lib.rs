@@ -40,9 +40,7 @@
 //! proofs in `proofs/`.
 //!
 //! ```
-//! use kickdrift::number::parse::parse;
-//! use kickdrift::propagator::Oscillator;
-//! use kickdrift::verdict::{decide, Kind, Limits};
+//! use kickdrift::{Kind, Limits, Oscillator, decide, parse};
 //! let x = |text| parse("quantity", text).unwrap();
 //! // Just below h2 = T½ = 1: resonant.
 //! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("1/100"), x("0.98")).unwrap();
@@ -83,9 +81,9 @@
 //! | 6 | [`system`] | many clocks, many degrees of freedom |
 //! | 6 | [`avi`] | Algorithm 1 run as a simulation |
 //! | 7 | [`advise`] | units, periods and bonds, engines' notations → which steps are safe |
-//! | 8 | [`scene`] | input documents → library types |
+//! | 8 | [`scene`] | systems' files → library types |
 //! | 8 | [`report`] | results → JSON, CSV, LaTeX, text, NPZ, SVG, PDF, PNG |
-//! | 9 | [`question`] | what is asked, typed; each question with its answer and its document |
+//! | 9 | [`question`] | what is asked, typed; each question with its answer, its rows and its document |
 //! | 10 | [`recheck`] | every document's claims found again by another route |
 //! | 10 | [`explore`] | what a page asks to move in the plane, answered; the page, served |
 //! | 11 | [`cli`] | arguments → a question → the library → a report |
@@ -140,6 +138,16 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+
+// What everyone needs, without the way to it.
+pub use error::{Error, Result};
+pub use map::{Grid, Map};
+pub use number::parse::parse;
+pub use number::{Laurent, Ratio, Rational, Sign};
+pub use propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
+pub use resonance::{Families, dominant_family};
+pub use tongue::{Tongues, closings};
+pub use verdict::{Kind, Limits, Side, Verdict, decide};
 
 #[doc(hidden)]
 pub use vector::instructions::force_instructions;

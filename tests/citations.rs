@@ -67,3 +67,36 @@ fn citations_are_read_across_lines() {
     let text = "/// bounded (theorem `a_b` in proofs/), and\n/// (theorems `c`,\n/// `d` in proofs/).";
     assert_eq!(cited(text), ["a_b", "c", "d"]);
 }
+
+/// `kickdrift cite` prints one file or the other.
+#[test]
+fn the_entries_of_bibtex_say_what_the_citation_file_says() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name| std::fs::read_to_string(root.join(name)).unwrap();
+    let (cff, bib) = (read("CITATION.cff"), read("data/citation.bib"));
+    let told = [
+        "name",
+        "version",
+        "license",
+        "title",
+        "journal",
+        "year",
+        "volume",
+        "issue",
+        "doi",
+        "family-names",
+        "given-names",
+        "start",
+        "end",
+    ];
+    let mut count = 0;
+    for line in cff.lines() {
+        let Some((key, value)) = line.trim_start_matches([' ', '-']).split_once(": ") else { continue };
+        if told.contains(&key) {
+            assert!(bib.contains(value), "{key}: {value}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 18);
+    assert!(bib.contains(&format!("version = {{{}}}", env!("CARGO_PKG_VERSION"))));
+}

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use kickdrift::error::Error;
 use kickdrift::number::parse;
-use kickdrift::scene::Scene;
+use kickdrift::question::Scene;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use serde_json::Value;
@@ -163,19 +163,19 @@ proptest! {
 
     #[test]
     fn any_text_is_a_scene_or_a_refusal(text in any::<String>()) {
-        sane(|| Scene::read(&text))?;
+        sane(|| Scene::from_json(&text))?;
     }
 
     #[test]
     fn any_json_is_a_scene_or_a_refusal(value in json()) {
-        sane(|| Scene::read(&value.to_string()))?;
+        sane(|| Scene::from_json(&value.to_string()))?;
     }
 
     #[test]
     fn a_damaged_scene_is_a_scene_or_a_refusal(
         text in select(SCENES.to_vec()), all in prop::collection::vec(damage(), 0..6),
     ) {
-        sane(|| Scene::read(&damaged(text, &all)))?;
+        sane(|| Scene::from_json(&damaged(text, &all)))?;
     }
 
     #[test]
@@ -186,7 +186,7 @@ proptest! {
         let mut all = Vec::new();
         paths(&scene, String::new(), &mut all);
         *scene.pointer_mut(&all[at.index(all.len())]).unwrap() = value;
-        sane(|| Scene::read(&scene.to_string()))?;
+        sane(|| Scene::from_json(&scene.to_string()))?;
     }
 }
 

@@ -4,7 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use kickdrift::scene::{Scene, SystemScene};
+use kickdrift::question::Scene;
+use kickdrift::scene::SystemScene;
 use serde_json::{Value, json};
 
 #[path = "schema/validator.rs"]
@@ -174,7 +175,7 @@ fn every_scene_is_valid_and_read() {
         check(&scene);
         let text = fs::read_to_string(&path).unwrap();
         match name(&scene).as_str() {
-            "scene" => drop(Scene::read(&text).unwrap()),
+            "scene" => drop(Scene::from_json(&text).unwrap()),
             other => {
                 assert_eq!(other, "system");
                 SystemScene::read_in(path.parent().unwrap(), &text).unwrap();
@@ -222,7 +223,7 @@ fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
         ("grid", json!({"step": "1", "h1": "1..2"})),
         ("families", json!({"a": 3})),
         ("families", json!({"samples": -1})),
-        ("max", json!("60")),
+        ("max", json!("sixty")),
         ("max_sum", json!(-1)),
         ("rho", json!([0.04])),
         ("window", json!({"h1": "1..2"})),
@@ -235,7 +236,7 @@ fn the_schema_refuses_the_scenes_that_the_reader_refuses() {
     let validator = validator("scene");
     for scene in scenes {
         assert!(!validator.is_valid(&scene), "{scene}");
-        assert!(Scene::read(&scene.to_string()).is_err(), "{scene}");
+        assert!(Scene::from_json(&scene.to_string()).is_err(), "{scene}");
     }
 }
 

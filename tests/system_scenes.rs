@@ -811,7 +811,8 @@ fn a_key_that_stands_twice_in_a_file_is_an_error_and_a_byte_order_mark_is_none()
     assert!(SystemScene::read(&format!("\u{feff}{once}")).is_ok());
     let error = SystemScene::read(&once.replace("\"step\"", "\"st\u{202e}ep\"")).unwrap_err().to_string();
     assert!(error.contains("st\\u{202e}ep"), "{error}");
-    let scene = kickdrift::scene::Scene::read(r#"{"schema": "a", "schema": "b"}"#).unwrap_err().to_string();
+    let scene =
+        kickdrift::question::Scene::from_json(r#"{"schema": "a", "schema": "b"}"#).unwrap_err().to_string();
     assert!(scene.contains("the key \"schema\" stands twice"), "{scene}");
 }
 

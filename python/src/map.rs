@@ -4,12 +4,12 @@ use std::sync::atomic::AtomicBool;
 
 use kickdrift::error::{Result, filled};
 use kickdrift::format::Format;
-use kickdrift::map::{Band, Counters, Grid, Map as Task, Products, Resources};
+use kickdrift::map::{Band, Counters, Grid, Map as Task, Resources};
 use kickdrift::number::Laurent;
+use kickdrift::question::{self, Question};
 use kickdrift::report::figure::file;
-use kickdrift::report::map::{Rows, Tally, document, marked};
-use kickdrift::report::plane::{Chart, Colouring, command, parameters};
-use kickdrift::scene::GridRange;
+use kickdrift::report::map::{MapTally, Rows, marked};
+use kickdrift::report::plane::{Chart, Colouring};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -31,10 +31,9 @@ struct Arrays {
 /// A computed map without its arrays, which Python holds.
 #[pyclass(frozen, module = "kickdrift._native")]
 pub struct Map {
+    asked: question::Map,
     grid: Grid,
-    range: GridRange,
-    products: Products,
-    tally: Tally,
+    tally: MapTally,
 }
 
 /// The first and the last multiplier of the columns and of the rows of a grid.
@@ -44,7 +43,7 @@ pub fn multipliers(
     steps: [Bound<'_, PyAny>; 2],
     ranges: [[Bound<'_, PyAny>; 2]; 2],
 ) -> PyResult<[(u64, u64); 2]> {
-    let (grid, _) = grid(&stiffness, &steps, &ranges)?;
+    let (_, grid) = asked(&stiffness, &steps, &ranges, (false, false))?;
     Ok([grid.columns(), grid.rows()])
 }
 
@@ -59,10 +58,9 @@ pub fn map<'py>(
     budget: Option<u64>,
     threads: usize,
 ) -> PyResult<(Map, Bound<'py, PyDict>)> {
-    let (grid, range) = grid(&stiffness, &steps, &ranges)?;
-    let products = Products { label: products.0, growth: products.1 };
+    let (asked, grid) = asked(&stiffness, &steps, &ranges, products)?;
     let (map, arrays) = job::run(py, move |stopped| {
-        let mut map = Map { grid, range, products, tally: Tally::default() };
+        let mut map = Map { asked, grid, tally: MapTally::default() };
         let arrays = map.compute(threads, budget, stopped)?;
         Ok((map, arrays))
     })?;
@@ -70,27 +68,31 @@ pub fn map<'py>(
     Ok((map, arrays))
 }
 
-fn grid(
+/// The question, and its grid.
+fn asked(
     stiffness: &[Bound<'_, PyAny>; 2],
     steps: &[Bound<'_, PyAny>; 2],
     [h1, h2]: &[[Bound<'_, PyAny>; 2]; 2],
-) -> PyResult<(Grid, GridRange)> {
+    (label, growth): (bool, bool),
+) -> PyResult<(question::Map, Grid)> {
     let both = |names: [&str; 2], [x, y]: &[Bound<'_, PyAny>; 2]| -> PyResult<[Laurent; 2]> {
         Ok([quantity(names[0], x)?, quantity(names[1], y)?])
     };
     let [lambda1, lambda2] = both(["lambda1", "lambda2"], stiffness)?;
-    let steps = both(["step1", "step2"], steps)?;
-    let ranges = [both(["h1", "h1"], h1)?, both(["h2", "h2"], h2)?].map(|[lo, hi]| (lo, hi));
-    let range = GridRange::new(steps, ranges);
-    let grid = range.of(lambda1, lambda2).map_err(|error| raised(&error))?;
-    Ok((grid, range))
+    let [step1, step2] = both(["step1", "step2"], steps)?;
+    let [h1_range, h2_range] = [both(["h1", "h1"], h1)?, both(["h2", "h2"], h2)?].map(|[lo, hi]| (lo, hi));
+    let products = question::Map { label, growth, ..question::Map::default() };
+    let asked = question::Map { lambda1, lambda2, step1, step2, h1_range, h2_range, ..products };
+    let grid = asked.grid().map_err(|error| raised(&error))?;
+    Ok((asked, grid))
 }
 
 impl Map {
     fn compute(&mut self, threads: usize, budget: Option<u64>, stopped: &AtomicBool) -> Result<Arrays> {
-        let Map { grid, products, tally, .. } = self;
+        let Map { asked, grid, tally } = self;
+        let products = asked.products();
         let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped) };
-        let (pairs, task) = (grid.pairs(), Task::of(grid).with(*products).within(resources));
+        let (pairs, task) = (grid.pairs(), Task::of(grid).with(products).within(resources));
         task.allow()?;
         let mut arrays = Arrays { verdict: filled(0, pairs)?, tier: filled(0, pairs)?, ..Arrays::default() };
         if products.label {
@@ -166,15 +168,10 @@ fn shaped<'py, T: numpy::Element>(
 impl Map {
     /// The document in the form json or text; tables of many rows are the program's.
     fn render(&self, format: &str) -> PyResult<String> {
-        let rows = (self.tally.counts.marked() == 0).then(|| Rows::new(&self.grid, self.products).table(&[]));
-        let (lambda1, lambda2) = self.grid.lambdas();
-        let Products { label, growth } = self.products;
-        let asked = [("label", label), ("growth", growth)].into_iter().filter(|(_, asked)| *asked);
-        let document = document(&self.tally, rows)
-            .input("lambda1", lambda1)
-            .input("lambda2", lambda2)
-            .inputs(self.range.given())
-            .inputs(asked.map(|(name, _)| (name, "true".to_string())));
+        let mut document = self.asked.document(&self.tally);
+        if self.tally.counts.marked() == 0 {
+            document = document.long_rows(Rows::new(&self.grid, self.asked.products()).table(&[]));
+        }
         document.render(form(format)).map_err(|error| raised(&error))
     }
 
@@ -190,10 +187,9 @@ impl Map {
             let (growing, counters) = (Vec::new(), Counters::default());
             chart.add(&self.grid, &Band { first, columns: 1, rows, verdicts, tiers, growing, counters });
         }
-        let foot = parameters(self.grid.lambdas(), self.range.ranges(), self.range.steps());
-        let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&foot);
-        let command = command(self.grid.lambdas(), self.range.given());
-        let bytes = file(figure, &command, Format::Svg).map_err(|error| raised(&error))?;
+        let figure = chart.figure(&self.grid, &self.tally.counts, &[]).footed(&self.asked.foot());
+        let bytes =
+            file(figure, &self.asked.bare().command(), Format::Svg).map_err(|error| raised(&error))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 }

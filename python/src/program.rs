@@ -68,7 +68,7 @@ pub fn ask(
 ) -> PyResult<Answer> {
     job::run(py, move |_| {
         let fields = fields.into_iter().map(|(name, text)| (name, text.into())).collect();
-        question::ask(&name, &fields, &Work { budget, watch: None }).map(Answer)
+        question::ask(&name, &fields, &Work { budget, ..Work::default() }).map(Answer)
     })
 }
 

@@ -12,12 +12,12 @@ use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::Products;
 use crate::number::Laurent;
-use crate::question::flag;
+use crate::question::{Map, StepRange, flag};
 use crate::report::document::{Document, Layout};
 use crate::report::file::{is_captured, write_output};
 use crate::report::latex::Float;
 use crate::report::map::needed;
-use crate::scene::{Arrays, GridRange, StepRange};
+use crate::scene::Arrays;
 use crate::verdict::Limits;
 
 /// Flags of every command.
@@ -57,14 +57,7 @@ pub struct Held {
     pub arrays: Arrays,
 }
 
-/// A parser of values from one that names the field: here the flag names it.
-pub fn of<T>(
-    parse: impl Fn(&str, &str) -> Result<T> + Clone + Send + Sync + 'static,
-) -> impl Fn(&str) -> std::result::Result<T, String> + Clone + Send + Sync + 'static {
-    move |text| parse("value", text).map_err(|error| error.remedy().to_string())
-}
-
-/// The same for a type that is read from text and names its field by itself.
+/// A parser of values whose errors name the field already.
 pub fn from_str<T: FromStr<Err = Error>>(text: &str) -> std::result::Result<T, String> {
     text.parse().map_err(|error: Error| error.remedy().to_string())
 }
@@ -78,6 +71,12 @@ impl ValueEnum for Format {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         Some(PossibleValue::new(self.name()))
     }
+}
+
+/// That none of these flags is given, which are of no use here.
+pub fn unused(given: &[(&str, bool)], remedy: &str) -> Result<()> {
+    let found = given.iter().find(|(_, given)| *given);
+    found.map_or(Ok(()), |(flag, _)| Err(Error::input(flag, "given", remedy)))
 }
 
 /// How rows that are left out of a text are to be seen.
@@ -112,15 +111,12 @@ impl Common {
         write_output(None, document.render(Format::Text)?.as_bytes())
     }
 
-    /// The same of `--output`, where it is given.
+    /// Says on standard error that the file of `--output` is written, where there is one.
     pub fn wrote_output(&self) {
         self.output.iter().for_each(|path| self.wrote(path.display()));
     }
 
     /// `--format`, else what the extension of `--output` says, else `default`.
-    ///
-    /// # Errors
-    /// Where the extension is not that of one of the `forms` that the result has, and `--float` without a LaTeX table.
     pub fn format(&self, forms: &[Format], default: Format) -> Result<Format> {
         let format = self.form(forms, default)?;
         match self.float {
@@ -145,7 +141,7 @@ impl Common {
         })
     }
 
-    /// The same for a table, which people read as text at a terminal and programs as JSON elsewhere.
+    /// The format of a table: text at a terminal, JSON elsewhere, unless one is asked for.
     pub fn format_of_table(&self, forms: &[Format]) -> Result<Format> {
         let read = self.output.is_none() && std::io::stdout().is_terminal();
         self.format(forms, if read { Format::Text } else { Format::Json })
@@ -197,19 +193,14 @@ impl Columns {
         self.columns.as_deref()
     }
 
-    /// What a map has to compute for the columns asked for.
-    ///
-    /// # Errors
-    /// Where columns or digits are given and no rows are written.
+    /// The products that a map has to compute for the columns asked for.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [("--columns", self.columns.is_some()), ("--digits", self.digits.is_some())];
         let has_rows = matches!(format, Format::Csv | Format::Latex | Format::Text);
-        match given.into_iter().find(|(_, given)| *given && !has_rows) {
-            Some((flag, _)) => {
-                Err(Error::input(flag, "given", "is for rows: add --format csv, latex or text"))
-            }
-            None => Ok(needed(self.names().unwrap_or_default())),
+        if !has_rows {
+            unused(&given, "is for rows: add --format csv, latex or text")?;
         }
+        Ok(needed(self.names().unwrap_or_default()))
     }
 
     /// As the document takes it.
@@ -261,8 +252,8 @@ impl Grid {
             && [&self.h1_range, &self.h2_range].iter().all(|range| range.is_none())
     }
 
-    /// The grid as a library type.
-    pub fn range(&self) -> Result<GridRange> {
+    /// The question about the verdicts of the grid, for these stiffnesses.
+    pub fn map(&self, lambda1: &Laurent, lambda2: &Laurent) -> Result<Map> {
         let missing = |flag: &str, example: &str| {
             Error::missing(flag, format!("a grid needs it, as --{flag} {example}"))
         };
@@ -272,9 +263,14 @@ impl Grid {
         let range = |flag: &str, range: &Option<StepRange>, example: &str| {
             range.clone().ok_or_else(|| missing(flag, example))
         };
-        let steps = [step(&self.step1)?, step(&self.step2)?];
-        let h1 = range("h1-range", &self.h1_range, "1/100..2/pi")?;
-        let h2 = range("h2-range", &self.h2_range, "1/100..7/2")?;
-        Ok(GridRange::new(steps, [h1, h2]))
+        Ok(Map {
+            lambda1: lambda1.clone(),
+            lambda2: lambda2.clone(),
+            step1: step(&self.step1)?,
+            step2: step(&self.step2)?,
+            h1_range: range("h1-range", &self.h1_range, "1/100..2/pi")?,
+            h2_range: range("h2-range", &self.h2_range, "1/100..7/2")?,
+            ..Map::default()
+        })
     }
 }

@@ -58,9 +58,9 @@ pub enum Default {
 }
 
 impl Common {
-    /// What an answer may cost; its progress is shown on a terminal.
+    /// The cost allowed to an answer; its progress is shown on a terminal.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.budget, watch: (!self.quiet).then_some(self) }
+        Work { budget: self.budget, watch: (!self.quiet).then_some(self), threads: self.threads() }
     }
 }
 

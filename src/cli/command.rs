@@ -8,7 +8,7 @@ use crate::report::text::quoted;
 /// Flags that change no byte of a figure: where it goes, how it is computed.
 const ELSEWHERE: [&str; 7] = ["output", "threads", "quiet", "budget", "resume", "certificate", "format"];
 
-/// What a map is of.
+/// Flags that choose the pairs of a map.
 const OF_MAPS: [&str; 11] = [
     "lambda1", "lambda2", "step", "step1", "step2", "h1_range", "h2_range", "label", "growth", "shard",
     "parts",

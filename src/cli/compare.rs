@@ -44,7 +44,7 @@ impl Args {
         let tolerance = self.tolerance.clone();
         match (&self.lambda1, &self.lambda2, self.max_sum, &self.rho) {
             (Some(lambda1), Some(lambda2), None, None) => {
-                Ok(Compare::over_grid([lambda1, lambda2], &self.grid.range()?, tolerance))
+                Ok(Compare::over_grid(self.grid.map(lambda1, lambda2)?, tolerance))
             }
             (None, None, Some(max_sum), Some(rho)) if self.grid.is_absent() => {
                 Ok(Compare::over_ratios(max_sum, rho.clone(), self.samples, tolerance))

@@ -63,10 +63,11 @@ mod ways {
     use crate::error::{Error, Result};
     use crate::explore::Session;
     use crate::number::{ExactSign, Laurent, Rational, Sign};
-    use crate::scene::{Scene, SystemScene, file};
+    use crate::question::Scene;
+    use crate::scene::{SystemScene, file};
 
     impl Args {
-        /// What the page starts on.
+        /// The session that the page starts on.
         pub(super) fn session(&self) -> Result<Session> {
             let session = match (&self.scene, &self.lambda1, &self.lambda2, self.period.as_slice()) {
                 (Some(path), ..) => of_file(path)?,
@@ -108,7 +109,7 @@ mod ways {
             let folder = path.parent().unwrap_or(std::path::Path::new(""));
             return Ok(Session::of_system(SystemScene::read_in(folder, &text)?));
         }
-        Session::of_scene(&Scene::read(&text)?)
+        Session::of_scene(&Scene::from_json(&text)?)
     }
 
     /// Whether a browser was started on the address.

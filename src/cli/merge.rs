@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use super::args::{Columns, Common};
-use super::map::{Drawing, Map, Output, Part, Source};
+use super::map::{Drawing, Output, Part, Source};
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::question::Map;
 
 /// Flags of `merge`.
 #[derive(Debug, clap::Args)]
@@ -27,7 +28,7 @@ impl Args {
         self.check(format, &map)?;
         let source = Source::Joined(parts.into_iter().map(Part::into_store).collect());
         let Args { columns, drawing, .. } = self;
-        Output { map: &map, format, columns, drawing, part: None, common }.write(&source)
+        Output { map: &map, grid: &map.grid()?, format, columns, drawing, common }.write(&source)
     }
 
     /// The parts hold what the colours and the columns show.
@@ -35,10 +36,7 @@ impl Args {
         let asked =
             [("--colour", self.drawing.products(format)?), ("--columns", self.columns.products(format)?)];
         for (asking, needs) in asked {
-            let missing = [
-                ("--label", needs.label && !map.products.label),
-                ("--growth", needs.growth && !map.products.growth),
-            ];
+            let missing = [("--label", needs.label && !map.label), ("--growth", needs.growth && !map.growth)];
             if let Some((flag, _)) = missing.iter().find(|(_, missing)| *missing) {
                 let remedy = format!("the parts were computed without {flag}: compute them with it");
                 return Err(Error::input(asking, "given", remedy));

@@ -6,7 +6,6 @@ mod advise;
 mod args;
 mod asked;
 mod cite;
-mod closings;
 mod command;
 mod compare;
 mod explore;
@@ -15,9 +14,7 @@ mod help;
 mod map;
 mod merge;
 mod paper;
-mod plane;
 mod progress;
-mod ratios;
 mod run;
 mod simulate;
 mod system;
@@ -35,7 +32,7 @@ use clap::{Command as Program, CommandFactory, FromArgMatches, Parser, Subcomman
 
 use crate::error::Result;
 use crate::format::Format;
-use crate::question::{Curves, Half, Polynomial, Proposition};
+use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question};
 #[cfg(unix)]
 use crate::report::file::abandon;
 use crate::report::file::{captured, is_captured, replaceable, write_output};
@@ -77,7 +74,7 @@ enum Command {
     /// Every unstable interval (tongue) of one ratio of steps, or of all ratios p + q <= N, with certified edges.
     Tongues(tongues::Args),
     /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
-    Closings(closings::Args),
+    Closings(Closings),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
     System(system::Args),
     /// Which steps are safe for these periods or bonds, for how long, and why.
@@ -99,18 +96,10 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Cite, Closings, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Cite, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
-            Advise(_)
-                | Cite(_)
-                | Map(_)
-                | Merge(_)
-                | Tongues(_)
-                | Closings(_)
-                | System(_)
-                | Run(_)
-                | Generate(_)
+            Advise(_) | Cite(_) | Map(_) | Merge(_) | Tongues(_) | System(_) | Run(_) | Generate(_)
         )
     }
 }
@@ -162,12 +151,12 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// ```
 ///
 /// # Errors
-/// What the program prints as its one line.
+/// The error that the program prints as its one line.
 pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
     answer_about(arguments, None)
 }
 
-/// The same about a system in memory: the file that the arguments name is not read, and only its name is echoed.
+/// [`answer`] about a system in memory: the file that the arguments name is not read, and only its name is echoed.
 ///
 /// # Errors
 /// As [`answer`].
@@ -230,7 +219,10 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
         Command::Tongues(args) => args.run(common)?,
-        Command::Closings(args) => args.run(common)?,
+        Command::Closings(args) => {
+            let format = common.format_of_table(&Format::DOCUMENT)?;
+            common.write(&args.ask(&common.work())?, format)?;
+        }
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,

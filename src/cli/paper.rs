@@ -4,7 +4,7 @@ use std::path::Path;
 
 use plot::Figure;
 
-use super::args::{Common, of};
+use super::args::{Common, unused};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::report::figure::file;
@@ -15,7 +15,7 @@ use crate::report::file::write_output;
 #[command(next_help_heading = "Options of figures")]
 pub struct Paper {
     /// The width on paper, as 85mm, 17.4cm, 3.3in or 240pt; the height follows [default: 85 to 175mm].
-    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = of(millimetres))]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, value_parser = millimetres)]
     width: Option<f64>,
     /// A heading, as "Run 7 of *h*_1 = 2 fs": italics between stars, an index after _, a power after ^.
     #[arg(long, value_name = "TEXT")]
@@ -38,9 +38,6 @@ impl Paper {
     }
 
     /// That nothing is asked of a figure where none is drawn.
-    ///
-    /// # Errors
-    /// Where it is.
     pub fn check(&self, draws: bool) -> Result<()> {
         let given = [
             ("--width", self.width.is_some()),
@@ -49,16 +46,10 @@ impl Paper {
             ("--time-unit", self.time_unit.is_some()),
             ("--outlines", self.outlines),
         ];
-        match given.into_iter().find(|(_, given)| *given && !draws) {
-            Some((flag, _)) => Err(Error::input(flag, "given", "is for figures, and this draws none")),
-            None => Ok(()),
-        }
+        if draws { Ok(()) } else { unused(&given, "is for figures, and this draws none") }
     }
 
     /// The figure as the flags want it, as the bytes of a file that carries its command.
-    ///
-    /// # Errors
-    /// A unit of time for a figure without time, and as [`file`].
     pub fn bytes(&self, mut figure: Figure, format: Format, command: &str) -> Result<Vec<u8>> {
         if let Some(unit) = &self.time_unit {
             if !figure.has_time() {
@@ -82,18 +73,12 @@ impl Paper {
         file(if self.outlines { figure.outlined() } else { figure }, command, format)
     }
 
-    /// The same written to a place, or to standard output.
-    ///
-    /// # Errors
-    /// As [`Paper::bytes`], and an unwritable place.
+    /// Writes the figure to a file, or to standard output.
     pub fn write(&self, figure: Figure, format: Format, path: Option<&Path>, common: &Common) -> Result<()> {
         self.write_as(figure, format, path, (&common.command, common))
     }
 
-    /// The same, with a command of its own.
-    ///
-    /// # Errors
-    /// As [`Paper::write`].
+    /// Writes the figure with this command in it.
     pub fn write_as(
         &self,
         figure: Figure,
@@ -106,10 +91,7 @@ impl Paper {
         Ok(())
     }
 
-    /// The same written to FILE.svg, FILE.pdf or FILE.png, which a flag names.
-    ///
-    /// # Errors
-    /// Another name, and as [`Paper::write`].
+    /// Writes the figure to the FILE.svg, FILE.pdf or FILE.png that a flag names.
     pub fn draw(&self, field: &str, path: &Path, figure: Figure, common: &Common) -> Result<()> {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let format = extension.and_then(Format::of_extension).filter(|format| format.is_figure());
@@ -120,14 +102,13 @@ impl Paper {
 }
 
 /// A length on paper in millimetres: no wider than a poster, no narrower than a thumb.
-fn millimetres(field: &str, text: &str) -> Result<f64> {
-    let refused =
-        || Error::input(field, text, "write a length from 20mm to 2000mm, in mm, cm, in or pt, as 85mm");
+fn millimetres(text: &str) -> std::result::Result<f64, &'static str> {
+    const REFUSED: &str = "write a length from 20mm to 2000mm, in mm, cm, in or pt, as 85mm";
     let unit = [("mm", 1.0), ("cm", 10.0), ("in", 25.4), ("pt", 25.4 / 72.0)];
     let found = unit.into_iter().find_map(|(name, size)| Some((text.trim().strip_suffix(name)?, size)));
-    let (number, size) = found.ok_or_else(refused)?;
-    let length = number.trim().parse::<f64>().map_err(|_| refused())? * size;
-    if (20.0..=2000.0).contains(&length) { Ok(length) } else { Err(refused()) }
+    let (number, size) = found.ok_or(REFUSED)?;
+    let length = number.trim().parse::<f64>().map_err(|_| REFUSED)? * size;
+    if (20.0..=2000.0).contains(&length) { Ok(length) } else { Err(REFUSED) }
 }
 
 #[cfg(test)]
@@ -136,10 +117,9 @@ mod tests {
 
     #[test]
     fn lengths_have_units() {
-        let read = |text| millimetres("width", text).map_err(|error| error.to_string());
-        assert_eq!(["85mm", "8.5 cm", "1in", "72pt"].map(read), [85.0, 85.0, 25.4, 25.4].map(Ok));
+        assert_eq!(["85mm", "8.5 cm", "1in", "72pt"].map(millimetres), [85.0, 85.0, 25.4, 25.4].map(Ok));
         for text in ["85", "mm", "19mm", "3m", "1e9cm", "NaNmm", "-85mm"] {
-            assert!(read(text).unwrap_err().contains("write a length"), "{text}");
+            assert!(millimetres(text).is_err(), "{text}");
         }
     }
 }

@@ -225,9 +225,6 @@ pub fn limits(common: &Common) -> Limits {
 }
 
 /// The file to draw, where the output is one.
-///
-/// # Errors
-/// A name that ends otherwise than those of documents and figures.
 fn drawing(common: &Common) -> Result<Option<&Path>> {
     let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
     Ok(common.output.as_deref().filter(|_| format.is_figure()))

@@ -84,7 +84,7 @@ fn plain(error: &clap::Error) -> Error {
     Error::input("command line", first.strip_prefix("error: ").unwrap_or(first), "see kickdrift --help")
 }
 
-/// What the parser says about one aspect, its parts side by side.
+/// The parser's words on one aspect, its parts side by side.
 fn shown(error: &clap::Error, kind: ContextKind) -> Option<String> {
     match error.get(kind)? {
         ContextValue::String(text) => Some(text.clone()),

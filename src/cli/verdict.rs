@@ -78,9 +78,6 @@ const WORTH_CERTIFYING: u64 = 5000;
 pub const EDGES_WORTH_CERTIFYING: u64 = 1000;
 
 /// That a certificate of so many kicks, `most` if no budget is given, is worth its while.
-///
-/// # Errors
-/// More kicks than the budget, or than Coq checks in minutes.
 pub fn within(kicks: u64, most: u64, budget: Option<u64>) -> Result<()> {
     if kicks <= budget.unwrap_or(most) {
         return Ok(());

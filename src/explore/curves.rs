@@ -9,8 +9,8 @@ use super::session::Session;
 use crate::error::Result;
 use crate::number::parse::parse_integer_range;
 use crate::number::{Ball, Laurent, Rational, Real, rational};
+use crate::question::FAMILIES;
 use crate::resonance::{Curve, Families, Window};
-use crate::scene::FAMILIES;
 
 /// Points of a curve across a window.
 const SAMPLES: usize = 160;

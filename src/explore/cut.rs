@@ -13,13 +13,13 @@ use crate::number::parse::{parse, parse_ratio, parse_rational};
 use crate::number::{Laurent, Rational, Real};
 use crate::parallel::try_map;
 use crate::propagator::Oscillator;
-use crate::tongue::{Question, Request, Selection, Stiffness, Window};
+use crate::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
 use crate::verdict::{Kind, decide};
 
 /// Kicks of all samples together.
 pub(super) const MOST_KICKS: u64 = 400_000_000;
 
-/// What is fixed.
+/// The quantity that is fixed along the line.
 enum Line {
     H1(Laurent),
     H2(Laurent),
@@ -107,9 +107,9 @@ fn intervals(
     // Without a rational ρ ≥ 0 there are samples alone.
     let Ok(stiffness) = Stiffness::new(None, Some(lambda1), Some(lambda2)) else { return Ok(Value::Null) };
     let h1 = Some((Laurent::from_rational(lo), Laurent::from_rational(hi)));
-    let window = Window { h1, h2: None };
+    let window = StepWindow { h1, h2: None };
     let question =
-        Question::new(vec![pair.ratio()], stiffness, window, Selection::default(), Request::default());
+        Listing::new(vec![pair.ratio()], stiffness, window, Selection::default(), Request::default());
     let Ok(question) = question else { return Ok(Value::Null) };
     let mut found = Vec::new();
     question.each(&(), |part| {

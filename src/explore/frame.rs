@@ -3,7 +3,7 @@
 use num_traits::ToPrimitive;
 
 use crate::number::{Laurent, Rational, rational};
-use crate::scene::StepRange;
+use crate::question::StepRange;
 
 /// A window with rational ends; irrational ones are taken as the doubles nearest to them.
 pub(super) struct Frame {

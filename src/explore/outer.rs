@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::query::{Query, count, positive};
+use super::query::{Query, count, positive, spaced};
 use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Kind, Result};
@@ -88,10 +88,9 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
         return Err(Error::budget("two verdicts on this system", 2 * scene.model().cost()));
     }
     let samples = query.read("samples", count(2, 1000))?.unwrap_or(200).min(affordable);
-    let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
-    let steps = (0..samples).map(|k| rational::to_f64(&(&lo + &part * Rational::from_integer(k.into()))));
-    let (steps, limits) = (steps.collect::<Vec<f64>>(), Limits::default());
     let span: Span = format!("outer={lo}..{hi}").parse()?;
+    let steps: Vec<f64> = spaced(&(lo, hi), samples).iter().map(rational::to_f64).collect();
+    let limits = Limits::default();
     let rates = scene.growth_rates(&span, &steps, &limits)?;
     let analysis = scene.model().decide(Route::Cheapest, &limits)?;
     Ok(Reply::json(&json!({

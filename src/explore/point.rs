@@ -12,9 +12,8 @@ use crate::number::parse::parse;
 use crate::number::rational::{ratio, simplest};
 use crate::number::{Laurent, Rational};
 use crate::propagator::Oscillator;
-use crate::question::{Question, Verdict, Work};
+use crate::question::{Decided, Question, Verdict, Work};
 use crate::report::certificate::coq;
-use crate::report::verdict::Answer;
 use crate::verdict::Limits;
 
 /// Kicks that one tier may compose.
@@ -34,7 +33,7 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let (inside, below, above) = about(&answer)?;
     body["tongue"] = inside;
     body["nearest"] = json!({"below": below, "above": above});
-    body["command"] = command(&oscillator).into();
+    body["command"] = Verdict::of(&oscillator).command().into();
     Ok(Reply::json(&body))
 }
 
@@ -81,19 +80,19 @@ fn simplified(h1: &Laurent, h2: &Laurent, within: &Rational) -> Result<Laurent> 
     Ok(Laurent::from_rational(slope * one))
 }
 
-pub(super) fn decided(oscillator: &Oscillator) -> Result<Answer> {
-    Verdict::of(oscillator).answer(&Work { budget: Some(MOST_KICKS), watch: None })
+pub(super) fn decided(oscillator: &Oscillator) -> Result<Decided> {
+    Verdict::of(oscillator).answer(&Work { budget: Some(MOST_KICKS), ..Work::default() })
 }
 
 /// Slow steps and time until the amplitude is tenfold.
-fn tenfold(answer: &Answer) -> Value {
+fn tenfold(answer: &Decided) -> Value {
     let time = std::f64::consts::LN_10 / answer.growth_rate().0;
     let steps = time / answer.oscillator.h2().to_f64();
     if steps.is_finite() { json!({"steps": steps, "time": time}) } else { Value::Null }
 }
 
 /// The tongue that the pair is in or on the edge of, and the nearest others on its ray; null where there are none or they are not known.
-fn about(answer: &Answer) -> Result<(Value, Value, Value)> {
+fn about(answer: &Decided) -> Result<(Value, Value, Value)> {
     let (oscillator, verdict) = (&answer.oscillator, answer.decision.verdict);
     let rho = Laurent::ratio(oscillator.lambda2(), oscillator.lambda1());
     let ray = rho.and_then(|rho| Ray::new(oscillator.ratio(), &rho, oscillator.lambda1()));
@@ -103,18 +102,4 @@ fn about(answer: &Answer) -> Result<(Value, Value, Value)> {
     let around = ray.around(oscillator.clocks().fast(), stable)?;
     let value = |tongue: &Option<_>| tongue.as_ref().map_or(Value::Null, ray::value);
     Ok((value(&around.inside), value(&around.below), value(&around.above)))
-}
-
-/// The line that gives the same answer.
-fn command(oscillator: &Oscillator) -> String {
-    let quantities = [
-        ("lambda1", oscillator.lambda1()),
-        ("lambda2", oscillator.lambda2()),
-        ("h1", oscillator.h1()),
-        ("h2", oscillator.h2()),
-    ];
-    // Quotes only where a shell would see more than a word.
-    let quoted = |text: String| if text.contains(['*', ' ', '(']) { format!("'{text}'") } else { text };
-    let flags = quantities.map(|(name, x)| format!(" --{name} {}", quoted(x.to_string())));
-    format!("kickdrift verdict{}", flags.concat())
 }

@@ -8,7 +8,7 @@ use super::session::Session;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_range, parse_rational};
 use crate::number::{Laurent, Rational};
-use crate::scene::StepRange;
+use crate::question::StepRange;
 use crate::tongue::Stiffness;
 
 /// Parameters of one address, each given once.
@@ -50,7 +50,7 @@ impl Query {
         self.text(key).map(|text| parse(key, text)).transpose()
     }
 
-    /// The same of one that must be there.
+    /// What a parser makes of a parameter that must be there.
     pub fn need<T>(&self, key: &str, parse: impl Fn(&str, &str) -> Result<T>) -> Result<T> {
         self.read(key, parse)?.ok_or_else(|| Error::missing(key, format!("add {key}=... to the address")))
     }
@@ -104,6 +104,13 @@ impl Query {
 pub(super) fn positive(field: &str, text: &str) -> Result<Rational> {
     let x = parse_rational(field, text)?;
     if x > Rational::default() { Ok(x) } else { Err(Error::input(field, text, "must be positive")) }
+}
+
+/// So many evenly spaced numbers, both ends included.
+pub(super) fn spaced((lo, hi): &(Rational, Rational), samples: u64) -> Vec<Rational> {
+    let whole = |n: u64| Rational::from_integer(n.into());
+    let part = (hi - lo) / whole(samples - 1);
+    (0..samples).map(|k| lo + &part * whole(k)).collect()
 }
 
 /// A whole number in digits.

@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::number::{Laurent, Ratio, Rational, Real};
 use crate::parallel::go_on;
 use crate::report::document::enclosure;
-use crate::tongue::{Edge, Quantity, Request, Tongue, TongueEdge, Tongues};
+use crate::tongue::{Bounds, Edge, Request, Tongue, TongueEdge, Tongues};
 
 /// Masses and springs that are laid out, at most.
 const MOST: u64 = 20_000;
@@ -97,7 +97,7 @@ impl Ray {
 
 /// `p, q, m, a, b, closed`, `lower` and `upper` {`s`, `h1`, `h2`}, `width` in s; all enclosed. What has no upper edge has null there.
 pub(super) fn value(tongue: &Tongue) -> Value {
-    let pair = |quantity: &Quantity| enclosure((quantity.lo, quantity.hi));
+    let pair = |quantity: &Bounds| enclosure((quantity.lo, quantity.hi));
     let edge = |edge: &TongueEdge| {
         let steps = edge.steps.as_ref().map(|steps| steps.each_ref().map(pair));
         let [h1, h2] = steps.unwrap_or_default();

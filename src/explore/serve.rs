@@ -70,7 +70,7 @@ struct Shared {
     /// The page, with what it starts on.
     index: Reply,
     token: String,
-    /// What `Host` may be.
+    /// The values of `Host` that are served.
     hosts: [String; 3],
     /// Places of connections that have shown the token.
     places: Arc<Semaphore>,

@@ -1,4 +1,4 @@
-//! What a page starts on.
+//! The stiffnesses, window and system that a page starts on.
 
 use num_traits::Pow;
 
@@ -6,9 +6,10 @@ use crate::error::{Error, Result};
 use crate::number::parse::parse;
 use crate::number::{ExactSign, Laurent, Rational, Sign, rational};
 use crate::propagator::Oscillator;
-use crate::scene::{Scene, StepRange, SystemScene};
+use crate::question::{Scene, StepRange};
+use crate::scene::SystemScene;
 
-/// What a page starts on; every question may name other stiffnesses and another window.
+/// The stiffnesses, window and system that a page starts on; every question may name others.
 #[derive(Debug)]
 pub struct Session {
     stiffnesses: Option<(Laurent, Laurent)>,
@@ -56,21 +57,25 @@ impl Session {
         Session { step: rational::ratio(1, 1000), ..session }
     }
 
-    /// What a scene shows.
+    /// The plane of a scene.
     ///
     /// # Errors
     /// A stiffness that is not there.
     pub fn of_scene(scene: &Scene) -> Result<Session> {
-        let (lambda1, lambda2) = scene.stiffnesses()?;
-        let mut session = Session::new(lambda1, lambda2)?;
+        let known = |field: &str, given: &Option<Laurent>| {
+            given
+                .clone()
+                .ok_or_else(|| Error::missing(field, "the page needs both stiffnesses: add it to the scene"))
+        };
+        let mut session = Session::new(known("lambda1", &scene.lambda1)?, known("lambda2", &scene.lambda2)?)?;
         session.title = scene.title.clone();
-        if let Some(grid) = &scene.grid {
-            session = session.within(grid.ranges().clone());
-            session.step = grid.steps()[0].as_rational().unwrap_or(session.step);
+        if let (Some(h1), Some(h2)) = (&scene.h1_range, &scene.h2_range) {
+            session = session.within([h1.clone(), h2.clone()]);
+            session.step = scene.step1.as_ref().and_then(Laurent::as_rational).unwrap_or(session.step);
         }
-        Ok(match &scene.window {
-            Some(window) => session.within(window.clone()),
-            None => session,
+        Ok(match (&scene.window_h1, &scene.window_h2) {
+            (Some(h1), Some(h2)) => session.within([h1.clone(), h2.clone()]),
+            _ => session,
         })
     }
 
@@ -85,7 +90,7 @@ impl Session {
         session
     }
 
-    /// The same with another window; one without width, or beyond doubles, cannot be shown: then it keeps its own.
+    /// Takes another window. One without width, or beyond doubles, cannot be shown: the session keeps its own.
     #[must_use]
     pub fn within(self, window: [StepRange; 2]) -> Session {
         match spacing(&window) {
@@ -94,7 +99,7 @@ impl Session {
         }
     }
 
-    /// The same with a unit of time.
+    /// Takes a unit of time.
     #[must_use]
     pub fn in_unit(self, unit: &str) -> Session {
         Session { unit: Some(unit.into()), ..self }

@@ -1,4 +1,4 @@
-//! What is shown, to keep: the scene file that makes it again, and its picture as for a paper.
+//! Files to keep of the plane shown: a scene that makes it again, and its picture as for a paper.
 
 use serde_json::json;
 
@@ -7,42 +7,42 @@ use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::{Grid, Map, Resources};
+use crate::map::Products;
 use crate::number::Laurent;
+use crate::question::{FAMILIES, Map, Question, Scene, Work, shown_range};
 use crate::report::figure::file;
 use crate::report::map::Counts;
-use crate::report::plane::{Chart, Colouring, command, parameters, window};
-use crate::scene::{FAMILIES, GridRange, Scene, shown_range};
+use crate::report::plane::{Chart, Colouring, window};
 
 /// Pairs and kicks of a picture.
 const MOST_PAIRS: u64 = 4_000_000;
 pub(super) const MOST_KICKS: u64 = 20_000_000_000;
 
-/// The spacings, and the ranges of what is shown.
-fn range(session: &Session, query: &Query) -> Result<GridRange> {
-    let ranges = query.window(session)?;
+/// The map of what is shown.
+fn map(session: &Session, query: &Query) -> Result<Map> {
+    let (lambda1, lambda2) = query.stiffnesses(session)?;
+    let [h1_range, h2_range] = query.window(session)?;
     let step = query.read("step", positive)?.unwrap_or_else(|| session.step().clone());
     let step2 = query.read("step2", positive)?.unwrap_or_else(|| step.clone());
-    Ok(GridRange::new([step, step2].map(Laurent::from_rational), ranges))
+    let [step1, step2] = [step, step2].map(Laurent::from_rational);
+    Ok(Map { lambda1, lambda2, step1, step2, h1_range, h2_range, ..Map::default() })
 }
 
 /// A scene file: `kickdrift run` makes the map and its picture from it.
 pub(super) fn scene(session: &Session, query: &Query) -> Result<Reply> {
-    let (lambda1, lambda2) = query.stiffnesses(session)?;
-    let range = range(session, query)?;
-    let ([step1, step2], [h1, h2]) = (range.steps(), range.ranges());
+    let Map { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = map(session, query)?;
     let scene = json!({
         "schema": "kickdrift/scene/1",
         "title": if session.title().is_empty() { "Explored" } else { session.title() },
         "lambda1": lambda1.to_string(), "lambda2": lambda2.to_string(),
         "grid": {
-            "step1": step1.to_string(), "step2": step2.to_string(), "h1": shown_range(h1), "h2": shown_range(h2),
+            "step1": step1.to_string(), "step2": step2.to_string(), "h1": shown_range(&h1_range), "h2": shown_range(&h2_range),
         },
         "want": ["map.json", "overlay.svg"],
     });
     let text = format!("{scene:#}\n");
     // What is kept can be read again.
-    Scene::read(&text)?.grid()?;
+    Scene::from_json(&text)?;
     Ok(Reply::file("scene.json", "application/json", text.into_bytes()))
 }
 
@@ -50,9 +50,8 @@ pub(super) fn scene(session: &Session, query: &Query) -> Result<Reply> {
 pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let format = query.read("format", figure)?.unwrap_or(Format::Svg);
     let colouring = query.read("what", colouring)?.unwrap_or_default();
-    let (lambda1, lambda2) = query.stiffnesses(session)?;
-    let range = range(session, query)?;
-    let grid = range.of(lambda1, lambda2)?;
+    let map = map(session, query)?;
+    let grid = map.grid()?;
     if grid.pairs() > MOST_PAIRS || grid.kicks() > MOST_KICKS as f64 {
         let (pairs, kicks) = (grid.pairs(), grid.kicks());
         let message =
@@ -67,28 +66,22 @@ pub(super) fn picture(session: &Session, query: &Query) -> Result<Reply> {
     let coloured = coloured.map(|what| format!(" --colour {what}"));
     let flags =
         coloured.unwrap_or_default() + if query.text("curves") == Some("1") { " --curves" } else { "" };
-    let bytes = drawn(&grid, colouring, |chart, counts| {
-        let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
-        let figure = chart.figure(&grid, counts, &curves).footed(&foot);
-        file(figure, &(command(grid.lambdas(), range.given()) + &flags), format)
+    let (mut chart, mut counts) = (Chart::new(&grid, colouring), Counts::default());
+    let Products { label, growth } = colouring.needs();
+    let work = Work { threads: 1, ..Work::default() };
+    Map { label, growth, ..map.clone() }.each(&grid, &work, |band| {
+        chart.add(&grid, &band);
+        counts.add(&band);
+        Ok(())
     })?;
+    let figure = chart.figure(&grid, &counts, &curves).footed(&map.foot());
+    let bytes = file(figure, &(map.command() + &flags), format)?;
     let (name, media) = match format {
         Format::Png => ("map.png", "image/png"),
         Format::Pdf => ("map.pdf", "application/pdf"),
         _ => ("map.svg", "image/svg+xml"),
     };
     Ok(Reply::file(name, media, bytes))
-}
-
-fn drawn<T>(grid: &Grid, colouring: Colouring, draw: impl FnOnce(&Chart, &Counts) -> Result<T>) -> Result<T> {
-    let (mut chart, mut counts) = (Chart::new(grid, colouring), Counts::default());
-    let resources = Resources { threads: 1, ..Resources::default() };
-    Map::of(grid).with(colouring.needs()).within(resources).for_each_band(|_, band| {
-        chart.add(grid, &band);
-        counts.add(&band);
-        Ok(())
-    })?;
-    draw(&chart, &counts)
 }
 
 fn figure(field: &str, text: &str) -> Result<Format> {

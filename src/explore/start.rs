@@ -1,4 +1,4 @@
-//! What the page starts on, and what it may ask.
+//! The session as the page receives it, with the limits of its questions.
 
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use super::session::Session;
 use super::{point, tile};
 use crate::error::Result;
 use crate::number::Laurent;
-use crate::scene::shown_range;
+use crate::question::shown_range;
 
 /// The session, or the plane of other stiffnesses: exact texts, and doubles to draw by.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {

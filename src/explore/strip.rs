@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::query::{Query, count};
+use super::query::{Query, count, spaced};
 use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Result};
@@ -33,8 +33,7 @@ pub(super) fn answer(_session: &Session, query: &Query) -> Result<Reply> {
         return Err(Error::too_much(cost, format!("choose p + q up to {MOST_KICKS}")));
     }
     let samples = query.read("samples", count(2, 400))?.unwrap_or(120);
-    let part = (&hi - &lo) / Rational::from_integer((samples - 1).into());
-    let rhos = (0..samples).map(|k| &lo + &part * Rational::from_integer(k.into())).collect::<Vec<_>>();
+    let rhos = spaced(&(lo.clone(), hi.clone()), samples);
     let at = |rho: &Rational| Tongues::new(ratio, rho)?.all();
     let gaps: Vec<Vec<Gap>> = try_map(&rhos, at)?;
     let closings = match ratio.kicks() <= SEARCHED {

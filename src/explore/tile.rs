@@ -27,7 +27,7 @@ pub(super) const SIZES: (u64, u64) = (16, 512);
 /// The deepest level.
 const DEEPEST: u64 = 4096;
 
-/// What the values are.
+/// The values of a tile.
 #[derive(Clone, Copy, PartialEq)]
 enum What {
     /// A byte: 0 elliptic, 1 hyperbolic, 2 parabolic, 3 coexistence; 4 more where Tr Q < 0.

@@ -9,8 +9,8 @@ use super::reply::Reply;
 use super::session::Session;
 use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
-use crate::scene::StepRange;
-use crate::tongue::{Quantity, Question, Request, Selection, Stiffness, Tongue, TongueEdge, Window};
+use crate::question::StepRange;
+use crate::tongue::{Bounds, Listing, Request, Selection, StepWindow, Stiffness, Tongue, TongueEdge};
 
 /// Segments, about, that a page can draw while it is dragged.
 const MOST_SEGMENTS: f64 = 3000.0;
@@ -88,19 +88,19 @@ fn expected(ratio: Ratio, [(a, b), (c, d)]: [(f64, f64); 2], root: f64) -> f64 {
     (turns(upto) - turns(from)).max(0.0) + beyond + 1.0
 }
 
-/// What is asked of the tongues in the window with a half of itself on each side.
+/// The tongues in the window with a half of itself on each side.
 fn question(
     ratios: Vec<Ratio>,
     stiffness: Stiffness,
     window: [StepRange; 2],
     frame: &Frame,
-) -> Result<Question> {
+) -> Result<Listing> {
     let digits = Some(frame.depth()).filter(|&depth| depth >= DEEP).map(|depth| depth + DIGITS);
     let [h1, h2] = window.map(Some);
-    Question::new(
+    Listing::new(
         ratios,
         stiffness,
-        Window { h1, h2 },
+        StepWindow { h1, h2 },
         Selection::default(),
         Request { digits, ..Request::default() },
     )
@@ -142,7 +142,7 @@ fn segment(tongue: &Tongue, frame: &Frame) -> Option<Value> {
 
 /// The middle of an edge's enclosure in h1, by as many digits as there are.
 fn h1(edge: &TongueEdge) -> Option<Rational> {
-    let Quantity { lo, hi, precise } = &edge.steps.as_ref()?[0];
+    let Bounds { lo, hi, precise } = &edge.steps.as_ref()?[0];
     match precise {
         Some(precise) => Some(precise.middle()),
         None => rational::from_f64_exact(0.5 * lo + 0.5 * hi),

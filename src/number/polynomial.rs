@@ -18,7 +18,6 @@ mod integer;
 mod sturm;
 
 pub use display::Text;
-pub use divide::{ExactDivision, resultant};
 #[cfg(feature = "system")]
 pub(crate) use integer::{in_unit_interval, quotient};
 pub(crate) use integer::{residues, roots_within, squarefree};

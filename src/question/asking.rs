@@ -1,9 +1,10 @@
-//! What a question is: fields, an answer, a document.
+//! Questions: fields, an answer, a document.
 
 use serde_json::{Map, Value};
 
 use crate::error::Result;
 use crate::report::document::Document;
+use crate::report::text::quoted;
 use crate::tongue::Progress;
 use crate::verdict::Limits;
 
@@ -47,7 +48,7 @@ macro_rules! question {
                 Ok($Name { $($field: read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
             }
 
-            fn input(&self) -> Vec<(&'static str, String)> {
+            fn input(&self) -> Vec<(&'static str, serde_json::Value)> {
                 let given = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
                 given.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
             }
@@ -74,17 +75,17 @@ pub trait Fields: Sized {
     /// A field that is missing, unknown or not what it should be, by its name.
     fn read(input: &Map<String, Value>) -> Result<Self>;
 
-    /// The fields as documents echo them: exact texts; what is not given is not there.
-    fn input(&self) -> Vec<(&'static str, String)>;
+    /// The fields as documents echo them: exact texts, or what has parts of its own; what is not given is not there.
+    fn input(&self) -> Vec<(&'static str, Value)>;
 }
 
-/// What is asked: its answer is computed, and shown in one document.
+/// A question: its answer is computed, and shown in one document.
 pub trait Question: Fields {
     /// NAME in `kickdrift/NAME/1`.
     const NAME: &'static str;
     /// Command lines that ask it.
     const EXAMPLES: &'static [&'static str] = &[];
-    /// What is computed.
+    /// The result that is computed.
     type Answer;
 
     /// Computes the answer.
@@ -101,6 +102,15 @@ pub trait Question: Fields {
         self.show(answer).inputs(self.input())
     }
 
+    /// The command line that asks it, as a shell reads it.
+    fn command(&self) -> String {
+        let flag = |(key, value): (&str, Value)| match (key.replace('_', "-"), value.as_str()) {
+            (key, Some("true")) => format!(" --{key}"),
+            (key, text) => format!(" --{key} {}", quoted(text.unwrap_or_default())),
+        };
+        format!("kickdrift {}{}", Self::NAME, self.input().into_iter().map(flag).collect::<String>())
+    }
+
     /// Answer and document in one.
     ///
     /// # Errors
@@ -110,17 +120,19 @@ pub trait Question: Fields {
     }
 }
 
-/// What an answer may cost, and who is told of long work.
+/// The cost allowed to an answer, and who hears of long work.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit
     /// unless given.
     pub budget: Option<u64>,
-    /// Who is told; nobody unless given.
+    /// Who hears of long work; nobody unless given.
     pub watch: Option<&'a dyn Watch>,
+    /// The threads of a map, which has its own; 0 for one a core.
+    pub threads: usize,
 }
 
-/// Who is told of long work.
+/// Hears of long work: a bar of progress, as a rule.
 pub trait Watch: Sync {
     /// Work is about to begin that takes so many seconds of one core.
     fn announce(&self, work: &str, seconds: f64);
@@ -134,7 +146,7 @@ impl Work<'_> {
         self.budget.map_or_else(Limits::default, |kicks| Limits { kicks })
     }
 
-    /// Tells who watches that work is about to begin.
+    /// Announces work that is about to begin.
     pub fn announce(&self, work: &str, seconds: f64) {
         self.watch.inspect(|watch| watch.announce(work, seconds));
     }

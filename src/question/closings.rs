@@ -1,31 +1,47 @@
 //! Where tongues close.
 
 use super::asking::{Question, Work, question};
+#[cfg(feature = "cli")]
+use super::field::flag;
 use super::ratios::Ratios;
 use crate::error::{Error, Result};
 use crate::number::{Ratio, Rational};
 use crate::parallel::try_map;
-use crate::report::closings;
+use crate::report::decimal::outward;
 use crate::report::document::Document;
-use crate::tongue::{self, Found, Labels, Search};
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column};
+use crate::tongue::{self, Closing, Enclosure, Found, Labels, Search};
 
 question! {
     /// The pairs (s, ρ) at which tongues of one ratio or of all are closed.
-    struct Closings {
+    args struct Closings {
         /// h2/h1 = p/q.
+        #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_parser = flag::<Ratio>)]
         ratio: Option<Ratio>,
-        /// In place of one ratio: all coprime p + q up to this number.
+        /// All coprime p + q up to this number.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
         max_sum: Option<u64>,
-        /// Only these labels, of one ratio.
+        /// Only these labels (with --ratio), as 4 or 1,3,7..9.
+        #[arg(long, value_name = "LIST", allow_hyphen_values = true, value_parser = flag::<Labels>)]
         m: Option<Labels>,
-        /// The closed range of ρ, positive.
+        /// The closed range of rho = lambda2/lambda1, positive.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
         rho_range: (Rational, Rational) = "1/10000..100",
-        /// Values of ρ, evenly spaced in ln ρ, between which edges are seen to cross, where p + q > 24.
+        /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross, where p + q > 24.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
         samples: usize = "400",
-        /// Significant digits of s and ρ.
+        /// Significant digits of s and rho.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u32>)]
         digits: u32 = "25",
     }
 }
+
+/// Significant digits unless others are asked for: the boxes are known to 2^-100.
+pub const DIGITS: u32 = 25;
+
+const CAPTION: &str =
+    "Closed tongues, where $Q = \\pm I$, in $s = h_1^2 \\Lambda_1$ and $\\rho = \\Lambda_2/\\Lambda_1$";
 
 /// Searches cost p + q squared for each of the samples.
 const MOST_SUM: u64 = 200;
@@ -93,8 +109,79 @@ impl Question for Closings {
         })
     }
 
-    fn show(&self, answer: &Vec<Found>) -> Document {
-        let (lo, hi) = &self.rho_range;
-        closings::document(answer, self.digits, &format!("{}, rho in {lo}..{hi}", self.words()))
+    fn show(&self, found: &Vec<Found>) -> Document {
+        let ((lo, hi), digits) = (&self.rho_range, self.digits);
+        let what = format!("{}, rho in {lo}..{hi}", self.words());
+        let closings = || found.iter().flat_map(|of| &of.closings);
+        let ratios = Record::new()
+            .json("p", |of: &Found| of.ratio.p().into())
+            .json("q", |of| of.ratio.q().into())
+            .json("complete", |of| of.complete.into());
+        let table = |short| {
+            let record = record(digits, short);
+            record.table("closings", "Closed tongues: Q = I or -I", closings()).captioned(CAPTION)
+        };
+        Document::new(Self::NAME)
+            .entry("closings", record(digits, false).all(closings()))
+            .entry("ratios", ratios.all(found))
+            .long_rows(table(false))
+            .for_people(table(true))
+            .summary(&lines(found, &what))
     }
+}
+
+/// s or ρ of a closing: its enclosure, and its value where that is rational.
+type Side = fn(&Closing) -> (&Enclosure, Option<&Rational>);
+
+/// The row of a closing; in the short form s and ρ are one column each, exact where they are rational.
+fn record(digits: u32, short: bool) -> Record<'static, Closing> {
+    let mut record = Record::new()
+        .field(Column::math("p", "p"), |of: &Closing| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into());
+    let sides: [(&str, &str, Side); 2] = [
+        ("s", "s", |of| (&of.s, of.exact.as_ref().map(|(s, _)| s))),
+        ("rho", "\\rho", |of| (&of.rho, of.exact.as_ref().map(|(_, rho)| rho))),
+    ];
+    for (key, formula, side) in sides {
+        let column = Column::math(key, formula).enclosure();
+        let exact = move |of: &Closing| side(of).1.map(Cell::exact).unwrap_or(Cell::Missing);
+        let enclosed = move |of: &Closing| Cell::from(side(of).0.to_f64());
+        if short {
+            record = record.field(column, move |of| match exact(of) {
+                Cell::Missing => enclosed(of),
+                exact => exact,
+            });
+            continue;
+        }
+        let ends = move |of: &Closing| match side(of) {
+            (_, Some(x)) => outward(x, x, digits),
+            (x, None) => outward(&x.lo, &x.hi, digits),
+        };
+        let titled = |part: &str, title: &str| Column::new(&format!("{key}_{part}")).titled(title, title);
+        record = record
+            .field(column, enclosed)
+            .at(format!("{key}.exact"), titled("exact", "exact"), exact)
+            .at(format!("{key}.decimal.lo"), titled("decimal_lo", "lo"), move |of| Cell::exact(&ends(of)[0]))
+            .at(format!("{key}.decimal.hi"), titled("decimal_hi", "hi"), move |of| Cell::exact(&ends(of)[1]));
+    }
+    record.field(Column::new("below_verlet").titled("s < 4", "$s < 4$"), |of| of.below_verlet.into())
+}
+
+fn lines(found: &[Found], what: &str) -> Vec<String> {
+    let closings = || found.iter().flat_map(|of| &of.closings);
+    let count = closings().count();
+    let exact = closings().filter(|closing| closing.exact.is_some()).count();
+    let below = closings().filter(|closing| closing.below_verlet).count();
+    let complete = found.iter().filter(|of| of.complete).count();
+    let plural = if count == 1 { "" } else { "s" };
+    vec![
+        format!("{count} closed tongue{plural} of {what}"),
+        format!("  rational     {exact}: s and rho known exactly"),
+        format!("  below s = 4  {below}: the fast clock alone is stable there"),
+        format!(
+            "  complete     {complete} of {} ratios: elimination proves that there are no others",
+            found.len()
+        ),
+    ]
 }

@@ -3,12 +3,20 @@
 use serde_json::{Map, Value};
 
 use crate::error::{Error, Result};
+use crate::map::Shard;
 use crate::number::parse::{
     parse, parse_integer_range, parse_range, parse_ratio, parse_rational, parse_rational_range,
 };
 use crate::number::{Laurent, Ratio, Rational};
-use crate::scene::shown_range;
 use crate::tongue::Labels;
+
+/// A closed range of steps.
+pub type StepRange = (Laurent, Laurent);
+
+/// A closed range as it is written, exactly.
+pub fn shown_range<T: std::fmt::Display>((lo, hi): &(T, T)) -> String {
+    format!("{lo}..{hi}")
+}
 
 /// A value that is written as a text, exactly: in a question, and in documents.
 pub trait Notation: Sized {
@@ -22,24 +30,25 @@ pub trait Notation: Sized {
 macro_rules! notation {
     ($($type:ty: $parse:expr, $show:expr;)*) => {
         $(
-            impl Notation for $type {
-                fn parsed(field: &str, text: &str) -> Result<Self> {
+            impl $crate::question::Notation for $type {
+                fn parsed(field: &str, text: &str) -> $crate::error::Result<Self> {
                     $parse(field, text)
                 }
             }
 
-            impl Field for $type {
-                fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
-                    given.map(|value| parsed(name, value))
+            impl $crate::question::field::Field for $type {
+                fn of(given: Option<&serde_json::Value>, name: &str) -> Option<$crate::error::Result<Self>> {
+                    given.map(|value| $crate::question::field::parsed(name, value))
                 }
 
-                fn shown(&self) -> Option<String> {
-                    Some($show(self))
+                fn shown(&self) -> Option<serde_json::Value> {
+                    Some($show(self).into())
                 }
             }
         )*
     };
 }
+pub(super) use notation;
 
 notation! {
     Rational: parse_rational, ToString::to_string;
@@ -52,6 +61,8 @@ notation! {
     u32: whole, ToString::to_string;
     usize: whole, ToString::to_string;
     Labels: |_, text: &str| text.parse(), ToString::to_string;
+    Shard: |_, text: &str| text.parse(), ToString::to_string;
+    String: |_, text: &str| Ok(text.into()), String::clone;
 }
 
 /// A flag, which is not there where it is not set.
@@ -65,7 +76,7 @@ impl Field for bool {
         })
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.then(|| "true".into())
     }
 }
@@ -84,11 +95,11 @@ pub fn flag<T: Notation>(text: &str) -> std::result::Result<T, String> {
 
 /// A field of a question: a value, an option of one, or a flag.
 pub trait Field: Sized {
-    /// What is given; `None` where something has to be.
+    /// Reads the value that is given; `None` where a value is missing that has to be there.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
-    /// The text that documents echo; `None` where the field is not to be there.
-    fn shown(&self) -> Option<String>;
+    /// What documents echo, as a rule a text; `None` where the field is not to be there.
+    fn shown(&self) -> Option<Value>;
 }
 
 impl<T: Field> Field for Option<T> {
@@ -99,17 +110,17 @@ impl<T: Field> Field for Option<T> {
         }
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.as_ref()?.shown()
     }
 }
 
 /// A value: a text, or a number of JSON by its digits.
-fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
+pub(super) fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
     match value {
         Value::String(text) => T::parsed(name, text),
         Value::Number(number) => T::parsed(name, &number.to_string()),
-        other => Err(Error::input(name, other, "write an exact number or range as a text, as \"1/3\"")),
+        other => Err(Error::input(name, other, "write a number, or a text as \"pi^2/25\"")),
     }
 }
 

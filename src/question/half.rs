@@ -34,7 +34,7 @@ struct Entry<'a> {
     value: &'a Rational,
 }
 
-/// What is written of an entry.
+/// The row of an entry.
 fn record<'a>() -> Record<'a, Entry<'a>> {
     Record::new()
         .field(Column::new("entry").left(), |of: &Entry| of.name.into())

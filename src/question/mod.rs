@@ -1,4 +1,4 @@
-//! What kickdrift is asked, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same questions.
+//! Questions, typed: arguments, scenes, Python's keywords and the `input` of a document all become the same ones.
 //!
 //! A question cannot be wrong in its types; it is written as the `input` of its document, and read from there again.
 //! [`Question::answer`] computes, [`Question::document`] shows what came out.
@@ -23,28 +23,34 @@ mod closings;
 mod compare;
 mod curves;
 mod half;
+mod map;
 mod polynomial;
 mod proposition;
 mod ratios;
+mod scene;
 mod survey;
 mod tongues;
 mod verdict;
+mod want;
 
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
-pub use closings::Closings;
+pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
-pub use field::{Notation, flag};
+pub use field::{Field, Notation, StepRange, flag, shown_range};
 pub use half::Half;
+pub use map::Map;
 pub use polynomial::Polynomial;
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
+pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
 pub use survey::{Survey, THINNEST};
-pub use tongues::Tongues;
-pub use verdict::Verdict;
+pub use tongues::{Colour, Tongues};
+pub use verdict::{Decided, Verdict};
+pub use want::{Product, Want};
 
-use serde_json::{Map, Value};
+use serde_json::{Map as Input, Value};
 
 use crate::error::{Error, Result};
 use crate::report::document::Document;
@@ -60,13 +66,14 @@ use crate::report::document::Document;
 ///
 /// # Errors
 /// An unknown name, and those of [`Fields::read`] and [`Question::answer`].
-pub fn ask(name: &str, input: &Map<String, Value>, work: &Work) -> Result<Document> {
-    fn one<Q: Question>(input: &Map<String, Value>, work: &Work) -> Result<Document> {
+pub fn ask(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Document> {
+    fn one<Q: Question>(input: &Input<String, Value>, work: &Work) -> Result<Document> {
         Q::read(input)?.ask(work)
     }
-    type Ask = fn(&Map<String, Value>, &Work) -> Result<Document>;
-    const ALL: [(&str, Ask); 8] = [
+    type Ask = fn(&Input<String, Value>, &Work) -> Result<Document>;
+    const ALL: [(&str, Ask); 9] = [
         (Verdict::NAME, one::<Verdict>),
+        (Map::NAME, one::<Map>),
         (Curves::NAME, one::<Curves>),
         (Compare::NAME, one::<Compare>),
         (Proposition::NAME, one::<Proposition>),

@@ -5,7 +5,8 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use crate::error::{Error, Result};
 use crate::report::document::Document;
-use crate::report::proposition;
+use crate::report::record::Record;
+use crate::report::table::Column;
 use crate::resonance::proposition::{Check, Witness, check};
 
 question! {
@@ -19,6 +20,11 @@ question! {
 
 /// Witnesses beyond this bound alone would fill gigabytes.
 const LARGEST_MAX: u64 = 400;
+
+const CAPTION: &str = "Resonant points h2/h1 = p/q, p theta = m pi, and a curve (a, b) through each";
+
+/// The caption in LaTeX.
+const CAPTION_LATEX: &str = "Resonant points $h_2/h_1 = p/q$, $p\\theta = m\\pi$, and a curve $(a, b)$ with $m = ap + bq$ through each";
 
 /// Seconds for each of max³ (1 + ln max) points and curves.
 const POINT: f64 = 1.5e-6;
@@ -46,6 +52,33 @@ impl Question for Proposition {
     }
 
     fn show(&self, (check, witnesses): &Self::Answer) -> Document {
-        proposition::document(self.max, check, witnesses)
+        let (max, Check { forward, backward, failures }) = (self.max, check);
+        let verdict = if failures.is_empty() { "holds" } else { "FAILS" };
+        let lines = [
+            format!("the Proposition {verdict} for all coprime p, q <= {max}, exactly"),
+            format!("  resonant points (p, q, m), each on a curve (a, b) with b != 0   {forward:>9}"),
+            format!("  curves (a, b) at a ratio p/q, each resonant with m = a p + b q  {backward:>9}"),
+            format!(
+                "  failures                                                        {:>9}",
+                failures.len()
+            ),
+        ];
+        Document::new(Self::NAME)
+            .entry("holds", failures.is_empty())
+            .entry("resonant_points", *forward)
+            .entry("curves", *backward)
+            .entry("failures", record().all(failures))
+            .rows(record().table("witnesses", CAPTION, witnesses).captioned(CAPTION_LATEX))
+            .summary(&lines)
     }
+}
+
+/// The row of a resonant point.
+fn record() -> Record<'static, Witness> {
+    Record::new()
+        .field(Column::math("p", "p"), |of: &Witness| of.ratio.p().into())
+        .field(Column::math("q", "q"), |of| of.ratio.q().into())
+        .field(Column::math("m", "m"), |of| of.m.into())
+        .field(Column::math("a", "a"), |of| of.a.into())
+        .field(Column::math("b", "b"), |of| of.b.into())
 }

@@ -14,7 +14,7 @@ pub enum Ratios {
 }
 
 impl Ratios {
-    /// What two fields say, of which one is given.
+    /// The ratios of two fields, of which one is given.
     ///
     /// # Errors
     /// Neither or both.
@@ -37,7 +37,7 @@ impl Ratios {
         }
     }
 
-    /// The same, if there are not too many.
+    /// These ratios, if there are not too many.
     ///
     /// # Errors
     /// A sum that is not in 2..=`most`.

@@ -1,10 +1,11 @@
 //! Which tongues are asked for.
 
 use super::asking::question;
+use super::field::notation;
 use super::ratios::{MOST_SUM, Ratios};
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Ratio, Rational};
-use crate::tongue::{self, Labels, Range, Request, Selection, Stiffness, Wanted, Window};
+use crate::tongue::{self, Labels, Range, Request, Selection, StepWindow, Stiffness, Wanted};
 
 question! {
     /// Tongues of one ratio or of all, at one ρ. What else is wanted of each is seen in the document's rows.
@@ -35,6 +36,39 @@ question! {
     }
 }
 
+/// What the colours of an atlas stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Colour {
+    /// The a of the dominant family.
+    Family,
+    /// The fastest growth inside the tongue.
+    Growth,
+}
+
+impl Colour {
+    /// The groups that the colours need.
+    pub fn needs(self) -> Wanted {
+        Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Colour::Family => "family",
+            Colour::Growth => "growth",
+        }
+    }
+
+    fn read(field: &str, text: &str) -> Result<Colour> {
+        let known = [Colour::Family, Colour::Growth].into_iter().find(|own| own.name() == text);
+        known.ok_or_else(|| Error::input(field, text, "choose family or growth"))
+    }
+}
+
+notation! {
+    Colour: Colour::read, |own: &Colour| own.name().to_string();
+}
+
 /// Digits beyond this are a slip of the keyboard.
 const MOST_DIGITS: u32 = 10_000;
 
@@ -53,19 +87,27 @@ impl Tongues {
         Ratios::of(self.ratio, self.max_sum)?.within(MOST_SUM)
     }
 
+    /// The question in words.
+    ///
+    /// # Errors
+    /// As [`Tongues::ratios`].
+    pub fn words(&self) -> Result<String> {
+        Ok(format!("{} at rho = {}", self.ratios()?.words(), self.rho))
+    }
+
     /// The question about these tongues, with what is `wanted` of each beside the edges.
     ///
     /// # Errors
-    /// As [`Tongues::ratios`] and [`tongue::Question::new`]; digits out of range.
-    pub fn asked(&self, wanted: Wanted) -> Result<tongue::Question> {
+    /// As [`Tongues::ratios`] and [`tongue::Listing::new`]; digits out of range.
+    pub fn asked(&self, wanted: Wanted) -> Result<tongue::Listing> {
         if let Some(digits) = self.digits.filter(|digits| !(1..=MOST_DIGITS).contains(digits)) {
             return Err(Error::input("digits", digits, format!("choose 1 to {MOST_DIGITS}")));
         }
         let rho = self.lambda2.is_none().then(|| self.rho.clone());
         let stiffness = Stiffness::new(rho, self.lambda1.clone(), self.lambda2.clone())?;
-        let window = Window { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
+        let window = StepWindow { h1: self.h1_range.clone(), h2: self.h2_range.clone() };
         let selection = Selection { m: self.m.clone(), a: self.a, b: self.b, s: None };
         let request = Request { wanted, lambda1: None, digits: self.digits };
-        tongue::Question::new(self.ratios()?.list(), stiffness, window, selection, request)
+        tongue::Listing::new(self.ratios()?.list(), stiffness, window, selection, request)
     }
 }

@@ -1,6 +1,6 @@
 //! A document held, value by value, against the same document computed again from its input.
 //!
-//! The same input gives the same document, digit by digit, so whatever was changed afterwards differs. Values that the input
+//! One input gives one document, digit by digit, so whatever was changed afterwards differs. Values that the input
 //! does not determine are [`Left`] out, and only those: what a check names as not rechecked follows from this comparison.
 
 use serde_json::{Map, Value};
@@ -17,17 +17,30 @@ pub trait Recheck {
     const TABLE: &'static str;
     /// Values that the input does not determine.
     const LEFT: &'static [Left] = &[];
-    /// What the computation finds that the other route needs.
+    /// The answer, or the part of it that the other route needs.
     type Found;
 
     /// The document computed again from its input.
     fn again(&self, context: &Context) -> Result<(Value, Self::Found)>;
 
-    /// What another route says.
+    /// The outcome of another route.
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome>;
 }
 
-/// What a comparison finds.
+/// The part of a [`Recheck`] by which a question is asked again; its answer is at hand for the other route.
+macro_rules! asked {
+    ($question:ty) => {
+        type Found = <$question as $crate::question::Question>::Answer;
+
+        fn again(&self, context: &Context) -> Result<(serde_json::Value, Self::Found)> {
+            let answer = $crate::question::Question::answer(&self.input, &context.work())?;
+            Ok(($crate::question::Question::document(&self.input, &answer).value(), answer))
+        }
+    };
+}
+pub(crate) use asked;
+
+/// The result of a comparison.
 pub struct Compared {
     /// One for every row that differs, then one for each part of the rest that does.
     pub failures: Vec<Failure>,

@@ -5,7 +5,7 @@
 use serde_json::Value;
 
 use super::again::Recheck;
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::context::{Checked, Context, Fault, Outcome, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part, signs};
 use super::tongues::simplest;
 use super::written::{Decimal, Written, exact};
@@ -28,7 +28,7 @@ rows! {
         ratios: Vec<Searched>,
     }
 
-    struct Closing {
+    struct Closing [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
@@ -45,15 +45,7 @@ rows! {
     }
 
     struct Searched {
-        p: u64,
-        q: u64,
         complete: bool,
-    }
-}
-
-impl Place for Closing {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 
@@ -71,9 +63,8 @@ impl Recheck for Claim {
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
         let whole = self.complete(&context.limits());
-        let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, |row| {
-            row.holds(&self.input, &context.limits())
-        })?;
+        let holds = |row: &Closing| row.holds(&context.limits());
+        let mut outcome = context.outcome(ROUTE, ("the list", whole), &self.closings, holds)?;
         if self.ratios.iter().any(|ratio| !ratio.complete) {
             let remark = "ratios that are not complete: that a tongue closes there as often as it is listed, but for pairs";
             outcome.not_rechecked.push(remark.into());
@@ -83,40 +74,23 @@ impl Recheck for Claim {
 }
 
 impl Claim {
-    /// The list of ratios is that of the input, the closings are in their order, each once, and none is missing.
+    /// The closings lie in the range, and none of a ratio is missing.
     fn complete(&self, limits: &Limits) -> Checked {
-        let list = self.input.ratios()?.list();
-        let told = self.ratios.iter().map(|ratio| (ratio.p, ratio.q));
-        holds(told.eq(list.iter().map(|ratio| ratio.terms())), || {
-            "the ratios searched are not those of the input".into()
-        })?;
-        holds(self.input.m.is_none() || self.input.ratio.is_some(), || {
-            "labels are those of one ratio".into()
-        })?;
-        let (lo, hi) = self.input.rho_range.clone();
-        let key = |row: &Closing| {
-            Ok::<_, Fault>((row.p.saturating_add(row.q), row.p, row.m, row.rho.both(&self.input)?))
-        };
-        let keys = self.closings.iter().map(key).collect::<Checked<Vec<_>>>()?;
-        let increasing = keys.windows(2).all(|pair| {
-            let ((a, b, c, (_, before)), (d, e, f, (after, _))) = (&pair[0], &pair[1]);
-            (a, b, c) < (d, e, f) || ((a, b, c) == (d, e, f) && before < after)
-        });
-        holds(increasing, || "its rows are not in order, each once".into())?;
-        let within = keys.iter().all(|(.., (from, upto))| *from <= hi && lo <= *upto);
-        holds(within, || "a closing lies outside the range of rho".into())?;
-        let known = self.closings.iter().all(|row| list.iter().any(|ratio| ratio.terms() == (row.p, row.q)));
-        holds(known, || "a closing is of no ratio that was searched".into())?;
-        for (ratio, searched) in list.into_iter().zip(&self.ratios) {
+        let (lo, hi) = &self.input.rho_range;
+        for row in &self.closings {
+            let (from, upto) = row.rho.both()?;
+            holds(from <= *hi && *lo <= upto, || "a closing lies outside the range of rho".into())?;
+        }
+        for (ratio, searched) in self.input.ratios()?.list().into_iter().zip(&self.ratios) {
             let rows: Vec<&Closing> =
                 self.closings.iter().filter(|row| (row.p, row.q) == ratio.terms()).collect();
-            self.counted(ratio, searched.complete, &rows, (&lo, &hi), limits)?;
+            self.counted(ratio, searched.complete, &rows, (lo, hi), limits)?;
         }
         Ok(())
     }
 
     /// As many closings as the resultants have zeros, where the ratio is complete; else as many, but for pairs, as the
-    /// edges' orders at both ends of the range of ρ tell.
+    /// edges' orders at both ends of the range of ρ require.
     fn counted(
         &self,
         ratio: Ratio,
@@ -132,8 +106,6 @@ impl Claim {
                 self.input.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| (a..=b).contains(m)))
             })
             .collect();
-        let asked = rows.iter().all(|row| labels.contains(&row.m));
-        holds(asked, || format!("{ratio} has a closing of a label that was not asked for"))?;
         if !complete {
             let orders = [lo, hi].map(|rho| Tongues::new(ratio, rho)?.gaps(1, finite.max(1)));
             let [early, late] = orders;
@@ -170,8 +142,8 @@ impl Claim {
 
 impl Side {
     /// The doubles and the decimals both hold the value: what they have in common.
-    fn both(&self, input: &Closings) -> Checked<(Rational, Rational)> {
-        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends(Some(input.digits.into()))?);
+    fn both(&self) -> Checked<(Rational, Rational)> {
+        let ((a, b), (c, d)) = (exact(self.lo, self.hi)?, self.decimal.ends()?);
         let (lo, hi) = (a.max(c), b.min(d));
         holds(lo <= hi && lo.is_positive(), || {
             "doubles and decimals have nothing positive in common".into()
@@ -188,8 +160,8 @@ struct Interval {
 }
 
 impl Interval {
-    fn new(side: &Side, name: &str, input: &Closings) -> Checked<Self> {
-        let (lo, hi) = side.both(input)?;
+    fn new(side: &Side, name: &str) -> Checked<Self> {
+        let (lo, hi) = side.both()?;
         let exact = side.exact.as_ref().map(|x| x.0.clone());
         let inside = exact.as_ref().is_none_or(|x| lo <= *x && *x <= hi);
         holds(inside, || format!("{name} lies outside its own enclosure"))?;
@@ -203,12 +175,12 @@ impl Interval {
 }
 
 impl Closing {
-    fn holds(&self, input: &Closings, limits: &Limits) -> Checked {
+    fn holds(&self, limits: &Limits) -> Checked {
         let (p, q, m) = (self.p, self.q, self.m);
         let ratio = check_ratio(p, q, limits)?;
         holds((1..p + q - 1).contains(&m), || format!("{ratio} has the finite tongues 1 to {}", p + q - 2))?;
         let pair = Entry::of_tongue(m % 2 == 1);
-        let (s, rho) = (Interval::new(&self.s, "s", input)?, Interval::new(&self.rho, "rho", input)?);
+        let (s, rho) = (Interval::new(&self.s, "s")?, Interval::new(&self.rho, "rho")?);
         let four = fraction(4, 1);
         let below = if self.below_verlet { s.lo < four } else { s.hi >= four };
         holds(below, || "s* is on the other side of 4".into())?;

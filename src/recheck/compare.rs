@@ -1,8 +1,6 @@
 //! A comparison: every pair by the filter, every offender by the full period in exact arithmetic, and θ enclosed.
 
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Fault, Outcome, Place, holds, same};
 use super::exact::{affordable, again, full_period};
 use super::written::{Ends, Written};
@@ -11,7 +9,7 @@ use crate::map::Grid;
 use crate::number::{Ball, Laurent, Ratio, Rational};
 use crate::parallel::try_map;
 use crate::propagator::TwoClocks;
-use crate::question::{Compare, Over, Question};
+use crate::question::{Compare, Over};
 use crate::resonance::compare::Outcome as Rule;
 use crate::verdict::{Kind, Tier, Verdict};
 
@@ -68,7 +66,7 @@ impl Place for Offender {
     }
 }
 
-/// What is compared, line by line.
+/// The pairs that are compared, line by line.
 pub enum Pairs {
     Grid(Grid),
     /// All ratios at s = 4 k/(samples + 1).
@@ -96,19 +94,15 @@ impl Place for Placed<'_> {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "offenders";
-    type Found = Pairs;
+    asked!(Compare);
 
-    fn again(&self, context: &Context) -> Result<(Value, Pairs)> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let pairs = match self.input.pairs()? {
             Over::Grid(grid) => Pairs::Grid(grid),
             Over::Ratios { max_sum, rho, samples } => {
                 Pairs::Ratios { list: Ratio::up_to(max_sum).collect(), rho, samples }
             }
         };
-        Ok((self.input.ask(&context.work())?.value(), pairs))
-    }
-
-    fn check(&self, pairs: Pairs, context: &Context) -> Result<Outcome> {
         let all: Vec<usize> = (0..pairs.lines()).collect();
         let lines = try_map(&all, |&line| self.line(&pairs, line, context))?;
         let mut places = lines.iter().flat_map(|(.., places)| places.iter().copied());

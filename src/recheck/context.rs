@@ -1,4 +1,4 @@
-//! What a check is given, and what it finds.
+//! The means of a check, and its outcome.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -99,7 +99,7 @@ pub struct Context<'a> {
 impl Context<'_> {
     /// What computing an answer again may cost.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.options.budget, watch: None }
+        Work { budget: self.options.budget, ..Work::default() }
     }
 
     /// The kicks that one verdict may compose.

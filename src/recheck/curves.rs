@@ -3,13 +3,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use serde_json::Value;
-
-use super::again::{Left, Recheck};
-use super::context::{Checked, Context, Fault, Outcome, Place, holds};
+use super::again::{Left, Recheck, asked};
+use super::context::{Checked, Context, Fault, Outcome, holds};
 use crate::error::Result;
 use crate::number::{Ball, ExactSign, Laurent, Rational, Sign, rational};
-use crate::question::{Curves, Question};
+use crate::question::Curves;
 use crate::resonance::Angle;
 
 const ROUTE: &str = "theta of every h1 by an arctangent, h2 from 1/T_half = a/h1 + b/h2, both enclosed; which pieces lie \
@@ -22,7 +20,7 @@ rows! {
         curves: Vec<Curve>,
     }
 
-    struct Curve {
+    struct Curve [a, b] {
         a: i64,
         b: i64,
         points: Vec<Point>,
@@ -34,12 +32,6 @@ rows! {
         h2: f64,
         theta_over_pi: f64,
         piece: u64,
-    }
-}
-
-impl Place for Curve {
-    fn place(&self) -> String {
-        format!("a = {}, b = {}", self.a, self.b)
     }
 }
 
@@ -61,13 +53,9 @@ impl Recheck for Claim {
         ("input.step1", "curves do not depend on the spacing of a grid"),
         ("input.step2", "curves do not depend on the spacing of a grid"),
     ];
-    type Found = ();
+    asked!(Curves);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let window = Window::new(&self.input);
         let whole = self.complete(&window);
         context.outcome(ROUTE, ("the list", whole), &self.curves, |curve| {

@@ -1,16 +1,14 @@
 //! A half period in numbers: its determinant, and the full period kick by kick.
 
-use num_traits::One;
-use serde_json::Value;
-
-use super::again::Recheck;
-use super::context::{Checked, Context, Outcome, Place, holds};
+use super::again::{Recheck, asked};
+use super::context::{Checked, Context, Outcome, holds};
 use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{ExactSign, Rational, rational};
 use crate::propagator::TwoClocks;
 use crate::propagator::methods::avi;
-use crate::question::{Half, Question};
+use crate::question::Half;
+use num_traits::One;
 
 const ROUTE: &str =
     "the trace of the full period, kick by kick, is 2 (AD + BC), and AD - BC = 1, in exact arithmetic";
@@ -22,7 +20,7 @@ rows! {
         entries: Vec<Entry>,
     }
 
-    struct Entry {
+    struct Entry [entry] {
         entry: String,
         sign: i64,
         value: Ends,
@@ -30,21 +28,11 @@ rows! {
     }
 }
 
-impl Place for Entry {
-    fn place(&self) -> String {
-        format!("entry = {}", self.entry)
-    }
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "entries";
-    type Found = ();
+    asked!(Half);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         context.outcome(ROUTE, ("the entries", self.whole()), &self.entries, Entry::holds)
     }
 }

@@ -6,12 +6,13 @@ use super::again::Recheck;
 use super::context::{Checked, Context, Failure, Fault, Options, Outcome, holds};
 use super::exact::again;
 use super::sample::sample;
-use super::written::{Ends, Range, Written};
+use super::written::{Ends, Written};
 use crate::error::{Error, Result};
-use crate::map::{Band, Grid, Map, Products, Resources};
+use crate::map::{Band, Grid};
 use crate::number::{Ball, Laurent, Real};
 use crate::parallel::try_map;
-use crate::report::map::{self as report, Tally};
+use crate::question::{Map, Question};
+use crate::report::map::MapTally;
 use crate::verdict::{Tier, growth};
 
 const ROUTE: &str = "the pairs of a random sample kick by kick";
@@ -23,21 +24,8 @@ const SAMPLE: u64 = 2000;
 rows! {
     /// `kickdrift/map/1`.
     pub struct Claim {
-        input: Input,
+        input: Map,
         fastest: Option<Fastest>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        lambda1: Written<Laurent>,
-        lambda2: Written<Laurent>,
-        step1: Written<Laurent>,
-        step2: Written<Laurent>,
-        h1_range: Written<Range>,
-        h2_range: Written<Range>,
-        label: Option<Written<bool>>,
-        growth: Option<Written<bool>>,
-        shard: Option<String>,
     }
 
     struct Fastest {
@@ -48,7 +36,7 @@ rows! {
     }
 }
 
-/// What is found on the way through the bands.
+/// Findings on the way through the bands.
 pub struct Found {
     grid: Grid,
     /// No pair is proven to grow faster.
@@ -78,9 +66,6 @@ impl Recheck for Claim {
     type Found = Found;
 
     fn again(&self, context: &Context) -> Result<(Value, Found)> {
-        if let Some(shard) = &self.input.shard {
-            return Err(Error::input("shard", shard, "whole maps can be rechecked: join the parts first"));
-        }
         let grid = self.input.grid()?;
         let (pairs, limit) = (grid.pairs(), context.limits().kicks);
         if pairs > limit {
@@ -89,12 +74,10 @@ impl Recheck for Claim {
                 pairs,
             ));
         }
-        let products = Products { label: self.input.label.is_some(), growth: self.input.growth.is_some() };
         let drawn = sample(&grid.fingerprint(), pairs, most(&grid, context.options));
-        let (mut tally, mut rate, mut failures) = (Tally::default(), 0.0_f64, Vec::new());
+        let (mut tally, mut rate, mut failures) = (MapTally::default(), 0.0_f64, Vec::new());
         let (mut next, mut done) = (drawn.as_slice(), 0);
-        let resources = Resources { limits: context.limits(), ..Resources::default() };
-        Map::of(&grid).with(products).within(resources).for_each_band(|_, band| {
+        self.input.each(&grid, &context.work(), |band| {
             let pairs = band.verdicts.len() as u64;
             let (own, rest) = next.split_at(next.partition_point(|&n| n < done + pairs));
             let one = |&n: &u64| kick_by_kick(&grid, &band, (n - done) as usize, context);
@@ -109,7 +92,7 @@ impl Recheck for Claim {
             context.see.inspect(|see| see(done, grid.pairs()));
             Ok(())
         })?;
-        Ok((report::document(&tally, None).value(), Found { grid, rate, failures }))
+        Ok((self.input.document(&tally).value(), Found { grid, rate, failures }))
     }
 
     fn check(&self, found: Found, context: &Context) -> Result<Outcome> {
@@ -130,7 +113,7 @@ impl Recheck for Claim {
 impl Claim {
     /// The fastest pair grows as fast as is written, and no other one faster.
     fn fastest(&self, grid: &Grid, largest: f64, context: &Context) -> Checked {
-        let due = self.input.growth.is_some() && largest > 0.0;
+        let due = self.input.growth && largest > 0.0;
         let Some(told) = self.fastest.as_ref().filter(|_| due) else {
             return holds(!due && self.fastest.is_none(), || format!("the fastest growth is {largest}"));
         };
@@ -160,14 +143,6 @@ impl Claim {
     }
 }
 
-impl Input {
-    fn grid(&self) -> Result<Grid> {
-        let Input { lambda1, lambda2, step1, step2, h1_range, h2_range, .. } = self;
-        let steps = [step1.0.clone(), step2.0.clone()];
-        Grid::new(lambda1.0.clone(), lambda2.0.clone(), steps, h1_range.0.clone(), h2_range.0.clone())
-    }
-}
-
 /// The n-th pair, column by column.
 fn place(grid: &Grid, n: u64) -> (u64, u64) {
     let rows = grid.shape().1 as u64;
@@ -179,7 +154,7 @@ fn most(grid: &Grid, options: &Options) -> u64 {
     if options.all { grid.pairs() } else { SAMPLE }
 }
 
-/// What is wrong with a pair of a band.
+/// The failure of a pair of a band, if its verdict is another one kick by kick.
 fn kick_by_kick(grid: &Grid, band: &Band, row: usize, context: &Context) -> Result<Option<Failure>> {
     let (i, j) = band.multipliers(grid, row);
     let truth = again(Tier::Refine, &grid.clocks(i, j)?, &context.limits())?.verdict;

@@ -1,7 +1,7 @@
 //! Documents rechecked: computed again from their inputs, then held against the mathematics by another route than the one
 //! that made them.
 //!
-//! The same input gives the same document, so whatever was changed afterwards differs from the document computed again: every
+//! One input gives one document, so whatever was changed afterwards differs from the document computed again: every
 //! value is compared, and those that the input does not determine are named. What would be wrong from the start is looked
 //! for by the other route.
 //!
@@ -34,11 +34,11 @@
 //! ```
 
 /// Rows of documents: what the other route needs of them. A field `T | null` must be there and may be null, one of type
-/// `Option` may be missing. An input knows all of its fields.
+/// `Option` may be missing. An input knows all of its fields. A row is named by the fields in brackets.
 macro_rules! rows {
     ($(
         $(#[$row:meta])*
-        $visible:vis struct $name:ident {
+        $visible:vis struct $name:ident $([$($by:ident),*])? {
             $($(#[$attribute:meta])* $seen:vis $field:ident: $type:ty $(| $null:ident)?,)*
         }
     )*) => {
@@ -52,6 +52,12 @@ macro_rules! rows {
                     $seen $field: rows!(@type $type $(, $null)?),
                 )*
             }
+
+            $(impl $crate::recheck::context::Place for $name {
+                fn place(&self) -> String {
+                    [$(format!(concat!(stringify!($by), " = {}"), self.$by)),*].join(", ")
+                }
+            })?
         )*
     };
     (@type $type:ty) => { $type };
@@ -201,7 +207,7 @@ impl Claim {
         self.rows.recheck(&self.document, How::OtherRouteAlone, &Context { options, see })
     }
 
-    /// About how many kicks the slower route composes; 0 where that is not worth telling.
+    /// About how many kicks the slower route composes; 0 where these are few.
     ///
     /// # Errors
     /// An input of the document that makes no sense.

@@ -1,18 +1,16 @@
 //! Polynomials: numbers kicked and drifted at as many rational points as determine them.
 
-use num_traits::{One, Zero};
-use serde::Deserialize;
-use serde_json::Value;
-
-use super::again::Recheck;
-use super::context::{Checked, Context, Outcome, Place, holds, same};
+use super::again::{Recheck, asked};
+use super::context::{Checked, Context, Outcome, Place, holds};
 use super::exact::{check_ratio, fraction};
 use super::written::Written;
 use crate::error::Result;
 use crate::number::{Ratio, Rational};
 use crate::propagator::methods::avi;
 use crate::propagator::{TwoClocks, half_period};
-use crate::question::{Polynomial, Question};
+use crate::question::Polynomial;
+use num_traits::{One, Zero};
+use serde::Deserialize;
 
 const ROUTE: &str = "the full period, kick by kick, at more rational points than the degrees leave free";
 
@@ -20,13 +18,11 @@ rows! {
     /// `kickdrift/polynomial/1`.
     pub struct Claim {
         input: Polynomial,
-        p: u64,
-        q: u64,
         terms: Vec<Term>,
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 enum Entry {
     A,
     B,
@@ -53,26 +49,17 @@ impl Place for Entry {
 
 impl Recheck for Claim {
     const TABLE: &'static str = "terms";
-    type Found = ();
+    asked!(Polynomial);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let all = [Entry::A, Entry::B, Entry::C, Entry::D, Entry::Trace];
-        context.outcome(ROUTE, ("the terms", self.whole(context)), &all, |&entry| self.entry(entry))
+        context.outcome(ROUTE, ("the ratio", self.affordable(context)), &all, |&entry| self.entry(entry))
     }
 }
 
 impl Claim {
-    fn whole(&self, context: &Context) -> Checked {
-        let ratio = check_ratio(self.p, self.q, &context.limits())?;
-        same("its ratio", ratio, self.input.ratio)?;
-        let key = |term: &Term| (term.entry, term.s, term.rho);
-        let increasing = self.terms.windows(2).all(|pair| key(&pair[0]) < key(&pair[1]));
-        holds(increasing, || "its terms are not in order, each once".into())?;
-        holds(self.terms.iter().all(|term| !term.coefficient.is_zero()), || "a term is zero".into())
+    fn affordable(&self, context: &Context) -> Checked {
+        check_ratio(self.input.ratio.p(), self.input.ratio.q(), &context.limits()).map(drop)
     }
 
     fn entry(&self, entry: Entry) -> Checked {

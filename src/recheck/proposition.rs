@@ -1,11 +1,9 @@
 //! The Proposition's witnesses, in integers: no analysis.
 
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds, same};
 use crate::error::Result;
-use crate::question::{Proposition, Question};
+use crate::question::Proposition;
 use num_integer::Integer;
 
 const ROUTE: &str =
@@ -23,7 +21,7 @@ rows! {
     }
 
     #[derive(Copy)]
-    struct Witness {
+    struct Witness [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
@@ -32,21 +30,11 @@ rows! {
     }
 }
 
-impl Place for Witness {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
-    }
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "witnesses";
-    type Found = ();
+    asked!(Proposition);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let max = self.input.max;
         context.outcome(ROUTE, (&format!("max = {max}"), self.whole(max)), &self.witnesses, Witness::holds)
     }

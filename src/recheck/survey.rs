@@ -1,9 +1,6 @@
 //! A survey: its counts by the survey's own route again; the thin tongues, and a sample of all others, by exact signs.
 
-use num_traits::Zero;
-use serde_json::Value;
-
-use super::again::Recheck;
+use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, Place, holds};
 use super::exact::{ZeroOf, check_ratio, fraction, part};
 use super::sample::sample;
@@ -11,10 +8,12 @@ use super::tongues::Tongue;
 use super::written::Ends;
 use crate::error::Result;
 use crate::number::{Ratio, Rational, rational};
-use crate::question::{self, Question as _, Survey};
+use crate::question::{self, Survey};
+use crate::report::tongues::record;
 use crate::resonance::dominant_family;
-use crate::tongue::{Entry, Tongues};
+use crate::tongue::{Entry, Request, Tongues, Wanted};
 use crate::verdict::Limits;
+use num_traits::Zero;
 
 const ROUTE: &str = "thin tongues, and a random sample of the others, by exact signs about both edges";
 
@@ -28,7 +27,7 @@ rows! {
         thinnest: Vec<Thin>,
     }
 
-    struct Thin {
+    struct Thin [p, q, m] {
         p: u64,
         q: u64,
         m: u64,
@@ -39,21 +38,11 @@ rows! {
     }
 }
 
-impl Place for Thin {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
-    }
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "thinnest";
-    type Found = ();
+    asked!(Survey);
 
-    fn again(&self, context: &Context) -> Result<(Value, ())> {
-        Ok((self.input.ask(&context.work())?.value(), ()))
-    }
-
-    fn check(&self, (): (), context: &Context) -> Result<Outcome> {
+    fn check(&self, _: Self::Found, context: &Context) -> Result<Outcome> {
         let (list, rho): (Vec<Ratio>, _) = (Ratio::up_to(self.input.max_sum).collect(), &self.input.rho);
         let holds = |row: &Thin| row.holds(rho, &context.limits());
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), &self.thinnest, holds)?;
@@ -116,5 +105,9 @@ fn exact_signs(ratio: Ratio, rho: &Rational, limits: &Limits) -> Checked {
     let tongues = Tongues::new(ratio, rho)?;
     let below = tongues.below(4.0)?;
     let Some(gap) = below.get(below.len() / 2).filter(|gap| gap.upper.is_some()) else { return Ok(()) };
-    Tongue::bare(ratio, gap).holds(&question::Tongues { rho: rho.clone(), ..Default::default() }, limits)
+    let wanted = Wanted { family: true, ..Wanted::default() };
+    let request = Request { wanted, ..Request::default() };
+    let row = record(&request, false).entries(&request.answer(&tongues, gap)?);
+    let row: Tongue = serde_json::from_value(row).expect("a row as documents have it");
+    row.holds(&question::Tongues { rho: rho.clone(), ..Default::default() }, limits)
 }

@@ -1,17 +1,15 @@
 //! A verdict: the full period, kick by kick, in exact arithmetic; for long periods the next tier of the ladder, for very long ones
 //! return maps over the other clock.
 
-use serde_json::Value;
-
-use super::again::Recheck;
-use super::context::{Checked, Context, Outcome, Place, holds, same};
+use super::again::{Recheck, asked};
+use super::context::{Checked, Context, Outcome, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
 use super::written::{Ends, Written};
 use crate::error::{Kind as ErrorKind, Result};
 use crate::number::{Ball, Laurent, Rational, Real};
 use crate::orbit::returns;
 use crate::propagator::{Oscillator, TwoClocks};
-use crate::question::{self, Question};
+use crate::question;
 use crate::resonance::dominant_family;
 use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth};
 
@@ -19,7 +17,7 @@ const ROUTE: &str = "the full period, kick by kick, in exact arithmetic; long pe
 
 rows! {
     /// `kickdrift/verdict/1`.
-    pub struct Claim {
+    pub struct Claim [p, q] {
         input: question::Verdict,
         p: u64,
         q: u64,
@@ -45,13 +43,7 @@ rows! {
     }
 }
 
-impl Place for Claim {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}", self.p, self.q)
-    }
-}
-
-/// What the other route finds.
+/// The findings of the other route.
 struct Truth {
     verdict: Verdict,
     trace: Ball,
@@ -65,23 +57,18 @@ const BITS: u32 = 192;
 
 impl Recheck for Claim {
     const TABLE: &'static str = "";
-    type Found = Oscillator;
+    asked!(question::Verdict);
 
-    fn again(&self, context: &Context) -> Result<(Value, Oscillator)> {
-        let answer = self.input.answer(&context.work())?;
-        Ok((self.input.document(&answer).value(), answer.oscillator))
-    }
-
-    fn check(&self, oscillator: Oscillator, context: &Context) -> Result<Outcome> {
+    fn check(&self, answer: question::Decided, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let clocks = oscillator.clocks();
+        let clocks = answer.oscillator.clocks();
         let truth = match self.truth(&clocks, &context.limits()) {
             // Kicks that nobody can follow.
             Err(error) if error.kind() == ErrorKind::Budget && returns::is_worth(clocks.ratio(), 53) => None,
             truth => Some(truth?),
         };
         let holds = |row: &Claim| {
-            truth.as_ref().map_or(Ok(()), |truth| row.holds(&oscillator, truth, &context.limits()))
+            truth.as_ref().map_or(Ok(()), |truth| row.holds(&answer.oscillator, truth, &context.limits()))
         };
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
         match truth {
@@ -153,7 +140,7 @@ impl Claim {
             "the trace lies outside its enclosure".into()
         })?;
         let right = told.is_none() || told.as_deref() == truth.exact.as_ref();
-        holds(right, || "the trace is not what it is told to be exactly".into())?;
+        holds(right, || "the exact trace is another one".into())?;
         let Some(ln) = &truth.ln_multiplier else {
             let Ends { lo, hi } = self.growth_rate;
             return holds((lo, hi) == (0.0, 0.0), || "grows though it is not hyperbolic".into());

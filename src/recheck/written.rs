@@ -1,4 +1,4 @@
-//! What stands in documents, read once into types that cannot be wrong.
+//! The values of documents, read once into types that cannot be wrong.
 
 use std::ops::Deref;
 
@@ -6,13 +6,10 @@ use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Laurent, Rational, rational};
+use crate::number::{Ball, Rational, rational};
 use crate::question::Notation;
 use crate::tongue;
 use crate::verdict::{Kind, Tier};
-
-/// A closed range of exact numbers.
-pub type Range = (Laurent, Laurent);
 
 /// A value that stands in a document as a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -110,13 +107,6 @@ impl<T> Column<T> {
     pub fn value(&self) -> Option<&T> {
         if let Column::Value(value) = self { Some(value) } else { None }
     }
-
-    /// The value, which must be there exactly where `due`, unless the column is not there at all.
-    pub fn due(&self, name: &str, due: bool) -> Checked<Option<&T>> {
-        holds(due || self.value().is_none(), || format!("it has no {name}"))?;
-        holds(!due || !matches!(self, Column::Null), || format!("{name} is null, and it has one"))?;
-        Ok(self.value())
-    }
 }
 
 /// A field that must be there and may be null.
@@ -194,27 +184,10 @@ pub struct Decimal {
 }
 
 impl Decimal {
-    /// Both ends, to the significant digits that were asked for: each is a multiple of the last place, they are two of them
-    /// apart at most.
-    pub fn ends(&self, digits: Option<u64>) -> Checked<(Rational, Rational)> {
+    /// Both ends.
+    pub fn ends(&self) -> Checked<(Rational, Rational)> {
         let (lo, hi) = (self.lo.0.clone(), self.hi.0.clone());
         holds(lo <= hi, || format!("{lo}..{hi} is no enclosure"))?;
-        let Some(digits) = digits else {
-            return Err(Fault::Wrong("has decimals, for which no number of digits was asked".into()));
-        };
-        let ten = Rational::from_integer(10.into());
-        holds(hi > Rational::default() && digits <= 100_000, || "has no digits".into())?;
-        // 10^(e + 1 - digits), 10^e ≤ hi < 10^(e + 1).
-        let decade = |x: &Rational| (x.numer().to_string().len() as i32, x.denom().to_string().len() as i32);
-        let (above, below) = decade(&hi);
-        let e = if hi < ten.pow(above - below) { above - below - 1 } else { above - below };
-        let fits = |e: i32| {
-            let place = ten.pow(e + 1 - digits as i32);
-            (&lo / &place).is_integer() && (&hi / &place).is_integer() && &hi - &lo <= &place + &place
-        };
-        // An end that is rounded up to a power of ten has its place from below.
-        let written = fits(e) || (hi == ten.pow(e) && fits(e - 1));
-        holds(written, || format!("its decimals have not {digits} digits"))?;
         Ok((lo, hi))
     }
 }

@@ -16,25 +16,11 @@ const LINE_END: &str = "\r\n";
 /// The whole table as one text.
 pub fn document(table: &Table) -> String {
     let mut bytes = Vec::new();
-    write(&mut bytes, table.columns(), table.rows().iter().map(Vec::as_slice))
-        .expect("writing to memory does not fail");
+    let rows = table.rows().iter().map(Vec::as_slice);
+    let written = write_header(&mut bytes, table.columns())
+        .and_then(|()| write_rows(&mut bytes, table.columns(), rows));
+    written.expect("writing to memory does not fail");
     String::from_utf8(bytes).expect("the fields are text")
-}
-
-/// Header and rows, one after the other: memory does not grow with their number.
-///
-/// # Errors
-/// Those of `sink`.
-///
-/// # Panics
-/// If a row does not fit the columns, as in [`Table::push`].
-pub fn write<R: AsRef<[Cell]>>(
-    sink: &mut dyn Write,
-    columns: &[Column],
-    rows: impl IntoIterator<Item = R>,
-) -> Result<()> {
-    write_header(sink, columns)?;
-    write_rows(sink, columns, rows)
 }
 
 /// The header alone, for rows that come later.
@@ -55,7 +41,7 @@ pub fn write_header(sink: &mut dyn Write, columns: &[Column]) -> Result<()> {
     finish(sink, &mut line)
 }
 
-/// Rows without a header.
+/// Rows without a header, one after the other: memory does not grow with their number.
 ///
 /// # Errors
 /// Those of `sink`.

@@ -63,7 +63,7 @@ pub fn enclosure(lo: f64, hi: f64) -> Shown {
     first_that_fits(&lo, &hi, MOST_DIGITS)
 }
 
-/// The same with so many significant digits at most, of doubles.
+/// An enclosure in doubles, in so many significant digits at most.
 pub fn shortened(lo: f64, hi: f64, digits: u32) -> Shown {
     match (enclosure(lo, hi), [lo, hi].map(rational::from_f64_exact)) {
         (Shown::Concise { .. }, [Some(lo), Some(hi)]) if !lo.is_zero() => concise(&lo, &hi, digits),
@@ -198,7 +198,7 @@ pub fn rounded(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 
-/// The same in writing: plain where that is short, else with an exponent.
+/// So many significant digits in writing: plain where that is short, else with an exponent.
 pub fn few(x: f64, digits: usize) -> String {
     let x = rounded(x, digits);
     if x == 0.0 || (1e-4..1e6).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }

@@ -34,7 +34,7 @@ pub struct Document {
     summary_only: bool,
 }
 
-/// What a person asks of the tables of a document.
+/// The columns and digits that a person asks for.
 #[derive(Clone, Debug, Default)]
 pub struct Layout {
     /// The keys of the columns of the first one; all that fit its form where none are given.
@@ -82,8 +82,8 @@ impl Document {
 
     /// Echoes inputs, in order.
     #[must_use]
-    pub fn inputs<'a>(self, given: impl IntoIterator<Item = (&'a str, String)>) -> Self {
-        given.into_iter().fold(self, |document, (key, value)| document.input(key, value))
+    pub fn inputs<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.input_json(key, value.into()))
     }
 
     /// Echoes one input that has parts of its own, as JSON.
@@ -138,7 +138,7 @@ impl Document {
         self
     }
 
-    /// The same document, its tables laid out as asked for; JSON stays as it is.
+    /// Lays its tables out as asked for; JSON stays as it is.
     ///
     /// # Errors
     /// A column that the table does not have, no digits at all.
@@ -153,7 +153,7 @@ impl Document {
         Ok(self)
     }
 
-    /// The same document, its LaTeX tables in this environment [default: by their width].
+    /// Puts its LaTeX tables into this environment [default: by their width].
     #[must_use]
     pub fn floated(self, float: Option<Float>) -> Self {
         Document { float, ..self }
@@ -186,7 +186,7 @@ impl Document {
         self.render_with(format, "write them as csv, json or latex")
     }
 
-    /// The same; `to_see` says in words how rows that are too many for the text form are to be seen.
+    /// The document in one format; where rows are too many for a text, `to_see` says how to see them.
     ///
     /// # Errors
     /// As [`Document::render`].

@@ -47,7 +47,7 @@ pub fn write_with(path: Option<&Path>, content: impl FnOnce(&mut dyn Write) -> R
 }
 
 thread_local! {
-    /// What this thread would have written, while it is captured.
+    /// The bytes that this thread would have written, while it is captured.
     static CAPTURED: RefCell<Option<Vec<u8>>> = const { RefCell::new(None) };
 }
 

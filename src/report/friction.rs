@@ -1,4 +1,4 @@
-//! What friction does, in JSON and in words.
+//! Friction in JSON and in words.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use super::document::enclosure;
 use crate::system::friction::{Damping, Friction, Mask};
 
 /// The entry `friction` of a document.
-pub(super) fn value(own: &Friction) -> Value {
+pub(crate) fn value(own: &Friction) -> Value {
     let masking = match &own.masking {
         Mask::At(mask) => json!({"lo": mask.rate.0, "hi": mask.rate.1, "stays": mask.stays}),
         Mask::NotNeeded => json!("nothing grows"),
@@ -21,8 +21,8 @@ pub(super) fn value(own: &Friction) -> Value {
     })
 }
 
-/// The same for people.
-pub(super) fn lines(own: &Friction) -> Vec<String> {
+/// Lines for people.
+pub(crate) fn lines(own: &Friction) -> Vec<String> {
     let radius = match own.damping {
         Some(Damping::Damped) => "spectral radius proven below 1: means and covariances stay bounded",
         Some(Damping::Marginal) => "spectral radius 1, exactly",

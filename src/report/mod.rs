@@ -1,41 +1,46 @@
-//! Floor 5: results on their way out, as tables and as figures.
+//! Results on their way out: rows and documents, and what is drawn of them.
 //!
-//! The lower half knows no physics. A [`table::Table`] holds typed cells and each format is one file
-//! ([`csv`], [`latex`], [`text`], and JSON through `serde`), [`npz`] holds arrays too large for memory; a [`plot::Figure`] holds
-//! panels of layers; [`file`](mod@file) puts the bytes where they belong, whole or not at all. On it stand a
-//! [`document::Document`] for every kind of result, one file or folder each, and the drawings of the (h1, h2) [`plane`].
+//! A [`document::Document`] holds a result and renders every form. Beneath it, and hidden from these pages: a table of typed cells, a
+//! file for each form (CSV, LaTeX, text, NumPy's arrays), the files themselves, which appear whole or not at all, and the charts, which
+//! the crate `plot` draws.
 
 #[cfg(feature = "advise")]
 pub mod advise;
+#[doc(hidden)]
 pub mod certificate;
-pub mod closings;
-pub mod compare;
+#[doc(hidden)]
 pub mod csv;
-pub mod curves;
+#[doc(hidden)]
 pub mod decimal;
 pub mod document;
 #[cfg(feature = "figure")]
+#[doc(hidden)]
 pub mod figure;
+#[doc(hidden)]
 pub mod file;
 #[cfg(feature = "system")]
-mod friction;
+pub(crate) mod friction;
+#[doc(hidden)]
 pub mod latex;
 pub mod map;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod npz;
 #[cfg(feature = "figure")]
+#[doc(hidden)]
 pub mod plane;
-pub mod polynomial;
-pub mod proposition;
+#[doc(hidden)]
 pub mod record;
 pub mod simulate;
+#[doc(hidden)]
 pub mod stream;
 #[cfg(feature = "figure")]
+#[doc(hidden)]
 pub mod strength;
-pub mod survey;
 #[cfg(feature = "system")]
 pub mod system;
+#[doc(hidden)]
 pub mod table;
+#[doc(hidden)]
 pub mod text;
 pub mod tongues;
-pub mod verdict;

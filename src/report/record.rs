@@ -1,4 +1,4 @@
-//! What is written of one thing: named, typed cells, from which its JSON entries, its row of CSV and LaTeX and its line of
+//! Records: the named, typed cells of one thing, from which its JSON entries, its row of CSV and LaTeX and its line of
 //! text all come.
 
 use serde_json::{Map, Value};

@@ -131,7 +131,7 @@ impl Column {
         Column::new(key).titled(key, &format!("${formula}$"))
     }
 
-    /// The same column with a title for people, plain and in LaTeX.
+    /// Gives it a title for people, plain and in LaTeX.
     #[must_use]
     pub fn titled(mut self, title: &str, latex: &str) -> Self {
         self.title = title.into();
@@ -139,28 +139,28 @@ impl Column {
         self
     }
 
-    /// The same column with words for a title.
+    /// Gives it words for a title.
     #[must_use]
     pub fn in_words(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The same column with a unit.
+    /// Gives it a unit.
     #[must_use]
     pub fn in_unit(mut self, unit: &str) -> Self {
         self.unit = Some(unit.into());
         self
     }
 
-    /// The same column, its cells lined up on the left.
+    /// Lines its cells up on the left.
     #[must_use]
     pub fn left(mut self) -> Self {
         self.align = Align::Left;
         self
     }
 
-    /// The same column, left out on paper unless it is asked for.
+    /// Leaves it out on paper unless it is asked for.
     #[must_use]
     pub fn aside(mut self) -> Self {
         self.aside = true;
@@ -184,7 +184,7 @@ impl Column {
         }
     }
 
-    /// The same column for enclosures.
+    /// Makes it a column of enclosures.
     #[must_use]
     pub fn enclosure(mut self) -> Self {
         self.enclosed = true;
@@ -216,7 +216,7 @@ impl Table {
         Table { name: name.into(), caption: caption.into(), typeset: None, columns, rows: Vec::new() }
     }
 
-    /// The same table with a caption for LaTeX, typeset as it stands.
+    /// Gives it a caption for LaTeX, typeset as it stands.
     #[must_use]
     pub fn captioned(mut self, latex: &str) -> Self {
         self.typeset = Some(latex.into());
@@ -270,7 +270,7 @@ impl Table {
         &self.caption
     }
 
-    /// The same for LaTeX, where it differs.
+    /// The caption in LaTeX, where it differs.
     pub fn typeset(&self) -> Option<&str> {
         self.typeset.as_deref()
     }
@@ -298,7 +298,7 @@ pub struct Choice {
     columns: Vec<Column>,
 }
 
-/// What of a cell is chosen.
+/// The part of a cell that is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Whole,

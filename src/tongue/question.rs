@@ -22,7 +22,7 @@ pub type Range = (Laurent, Laurent);
 
 /// Closed ranges of h1 and h2.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Window {
+pub struct StepWindow {
     pub h1: Option<Range>,
     pub h2: Option<Range>,
 }
@@ -31,10 +31,10 @@ pub struct Window {
 ///
 /// ```
 /// use kickdrift::number::{Ratio, rational::ratio};
-/// use kickdrift::tongue::{Question, Request, Selection, Stiffness, Window};
+/// use kickdrift::tongue::{Listing, Request, Selection, Stiffness, StepWindow};
 /// let stiffness = Stiffness::new(Some(ratio(1, 25)), None, None).unwrap();
 /// let ratios: Vec<Ratio> = Ratio::up_to(10).collect();
-/// let asked = Question::new(ratios, stiffness, Window::default(), Selection::below(4.0), Request::default()).unwrap();
+/// let asked = Listing::new(ratios, stiffness, StepWindow::default(), Selection::below(4.0), Request::default()).unwrap();
 /// let mut widest: f64 = 0.0;
 /// asked
 ///     .each(&(), |part| {
@@ -45,10 +45,10 @@ pub struct Window {
 /// assert!(widest > 0.1);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Question {
+pub struct Listing {
     pub ratios: Vec<Ratio>,
     pub stiffness: Stiffness,
-    pub window: Window,
+    pub window: StepWindow,
     /// Conditions beside the window, which is one of steps.
     pub selection: Selection,
     pub request: Request,
@@ -95,7 +95,7 @@ impl Stiffness {
     }
 }
 
-impl Window {
+impl StepWindow {
     /// The range of s = h1² L1 for one ratio, from both ranges of steps: h1 = h2 q/p. Ends rounded outward.
     fn of_ratio(&self, ratio: Ratio, lambda1: &Laurent) -> Option<(f64, f64)> {
         let back = Laurent::from_rational(ratio.inverse().into());
@@ -114,7 +114,7 @@ impl Window {
     }
 }
 
-impl Question {
+impl Listing {
     /// The question, if it makes sense.
     ///
     /// # Errors
@@ -122,11 +122,11 @@ impl Question {
     pub fn new(
         ratios: Vec<Ratio>,
         stiffness: Stiffness,
-        window: Window,
+        window: StepWindow,
         selection: Selection,
         mut request: Request,
     ) -> Result<Self> {
-        if window != Window::default() && stiffness.lambda1.is_none() {
+        if window != StepWindow::default() && stiffness.lambda1.is_none() {
             return Err(Error::missing("lambda1", "a window of h1 or h2 needs it: s = h1^2 lambda1"));
         }
         if let Some(&first) = ratios.first() {
@@ -137,7 +137,7 @@ impl Question {
         }
         request.wanted.family = true;
         request.lambda1 = stiffness.lambda1.clone();
-        Ok(Question { ratios, stiffness, window, selection, request })
+        Ok(Listing { ratios, stiffness, window, selection, request })
     }
 
     /// Hands on the tongues in the order of the ratios and of m: in parts, computed in parallel. Ratios are counted for

@@ -20,7 +20,7 @@ pub struct Request {
 
 /// An enclosure, in doubles and to the digits that are asked for.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct Bounds {
     pub lo: f64,
     pub hi: f64,
     /// The same by rational ends, where digits are asked for.
@@ -31,9 +31,9 @@ pub struct Quantity {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TongueEdge {
     pub entry: Entry,
-    pub s: Quantity,
+    pub s: Bounds,
     /// h1 and h2.
-    pub steps: Option<[Quantity; 2]>,
+    pub steps: Option<[Bounds; 2]>,
     /// s, where it is rational.
     pub exact: Option<Rational>,
     /// The resonance it sits on exactly.
@@ -79,12 +79,12 @@ impl Request {
             (None, _) => Enclosure::from(edge),
         };
         let steps = self.lambda1.as_ref().map(|lambda1| self.steps(&precise, lambda1, tongues.ratio()));
-        let s = Quantity { lo: edge.lo, hi: edge.hi, precise: self.digits.map(|_| precise) };
+        let s = Bounds { lo: edge.lo, hi: edge.hi, precise: self.digits.map(|_| precise) };
         Ok(TongueEdge { entry: edge.entry, s, steps, exact: rational, on })
     }
 
     /// h1 = √(s/L1) and h2 = h1 p/q over an enclosure of s.
-    fn steps(&self, s: &Enclosure, lambda1: &Laurent, ratio: Ratio) -> [Quantity; 2] {
+    fn steps(&self, s: &Enclosure, lambda1: &Laurent, ratio: Ratio) -> [Bounds; 2] {
         let bits = self.digits.map_or(96, |digits| 4 * digits + 96);
         let lambda1 = lambda1.enclosure(bits);
         let h1 = |s: &Rational| {
@@ -94,7 +94,7 @@ impl Request {
         let ends = [h1(&s.lo), h1(&s.hi)];
         let ratio = Ball::from_rational(&ratio.into(), bits);
         let slow = ends.each_ref().map(|h1| h1.mul(&ratio, bits));
-        [&ends, &slow].map(|[lo, hi]| Quantity {
+        [&ends, &slow].map(|[lo, hi]| Bounds {
             lo: lo.to_f64_enclosure().0,
             hi: hi.to_f64_enclosure().1,
             precise: self.digits.map(|_| Enclosure { lo: lo.lower(), hi: hi.upper() }),

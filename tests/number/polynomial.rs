@@ -39,15 +39,6 @@ fn wilkinson() {
     assert_eq!(f.isolate_real_roots().len(), 20);
 }
 
-#[test]
-fn resultants_of_two_variables() {
-    // x² + y² = 5 and x y = 2 meet at x = ±1, ±2: eliminate y.
-    let x = |c: Vec<i64>| Q::new(c.into_iter().map(|c| ratio(c, 1)).collect());
-    let circle = Polynomial::new(vec![x(vec![-5, 0, 1]), Q::zero(), Q::one()]);
-    let hyperbola = Polynomial::new(vec![x(vec![-2]), x(vec![0, 1])]);
-    assert_eq!(resultant(&circle, &hyperbola), x(vec![4, 0, -5, 0, 1]));
-}
-
 proptest! {
     #[test]
     fn ring_laws_and_evaluation(a in any_polynomial(4), b in any_polynomial(4), c in any_polynomial(3), p in -9i64..9, q in 1i64..5) {
@@ -66,21 +57,6 @@ proptest! {
         }
         let gcd = (&a * &c).gcd(&(&b * &c));
         prop_assert_eq!(gcd.clone(), a.gcd(&b) * c.monic());
-        if !b.is_zero() {
-            prop_assert_eq!((&a * &b).divided_exactly_by(&b), a.clone());
-        }
-    }
-
-    /// Against the product over the roots.
-    #[test]
-    fn resultants_by_roots(roots in any_roots(), b in any_polynomial(4), lead in 1i64..4) {
-        let a = from_roots(&roots).scale(&ratio(lead, 1));
-        let n = b.degree().unwrap_or(0) as i32;
-        let expected = roots.iter().fold(ratio(lead, 1).pow(n), |product, root| product * b.eval(root));
-        let expected = if b.is_zero() { Rational::zero() } else { expected };
-        prop_assert_eq!(resultant(&a, &b), expected.clone());
-        let odd = roots.len() as i32 * n % 2 == 1;
-        prop_assert_eq!(resultant(&b, &a), if odd { -expected } else { expected });
     }
 
     #[test]

@@ -18,7 +18,6 @@ pub struct Axis {
     pub(crate) lo: f64,
     pub(crate) hi: f64,
     pub(crate) scale: Scale,
-    pub(crate) numbered: bool,
     pub(crate) chosen: Option<Vec<Tick>>,
     /// The power of time that its values have.
     time: i8,
@@ -29,7 +28,7 @@ pub struct Axis {
 pub struct Tick {
     /// Where, in data units.
     pub at: f64,
-    /// What stands beside it.
+    /// The label beside it.
     pub label: Option<String>,
 }
 
@@ -51,16 +50,16 @@ impl Axis {
     }
 
     fn new(label: &str, lo: f64, hi: f64, scale: Scale) -> Self {
-        Axis { label: label.into(), lo, hi, scale, numbered: true, chosen: None, time: 0 }
+        Axis { label: label.into(), lo, hi, scale, chosen: None, time: 0 }
     }
 
-    /// The same axis in units of time, which its label names.
+    /// Puts it in units of time, which its label names.
     #[must_use]
     pub fn of_time(self) -> Self {
         Axis { time: 1, ..self }
     }
 
-    /// The same axis in inverse units of time, which its label names.
+    /// Puts it in inverse units of time, which its label names.
     #[must_use]
     pub fn per_time(self) -> Self {
         Axis { time: -1, ..self }
@@ -70,7 +69,7 @@ impl Axis {
         self.time != 0
     }
 
-    /// The same axis with the unit in its label.
+    /// Writes the unit into its label.
     pub(crate) fn in_units_of(&self, unit: &str) -> Self {
         let label = match self.time {
             0 => self.label.clone(),
@@ -80,14 +79,7 @@ impl Axis {
         Axis { label, ..self.clone() }
     }
 
-    /// The same axis without numbers and label, for a panel whose neighbour shows them.
-    #[must_use]
-    pub fn unnumbered(mut self) -> Self {
-        self.numbered = false;
-        self
-    }
-
-    /// The same axis with ticks of one's own: for names, or for points that matter.
+    /// Replaces its ticks: by names, or by points that matter.
     #[must_use]
     pub fn ticks(mut self, ticks: Vec<Tick>) -> Self {
         self.chosen = Some(ticks);

@@ -1,4 +1,4 @@
-//! What a figure is drawn with: paths, rectangles, pictures and words, from which each file format is written.
+//! The means of drawing: paths, rectangles and words, from which each file format is written.
 //!
 //! Lengths are points (1/72 inch), y pointing down. Coordinates of paths are whole hundredths of a point (3.5
 //! micrometres), so that every format draws the very same lines.
@@ -131,7 +131,7 @@ impl Pen {
         Pen { colour, width, round_joins: false, round_caps: false, dashes: Vec::new() }
     }
 
-    /// The same line in a pattern.
+    /// Breaks the line into a pattern.
     pub(crate) fn dashed(mut self, dash: Dash) -> Pen {
         let width = self.width;
         match dash {
@@ -144,7 +144,7 @@ impl Pen {
         self
     }
 
-    /// The same line with round ends.
+    /// Rounds its ends.
     pub(crate) fn capped(mut self) -> Pen {
         self.round_caps = true;
         self
@@ -182,7 +182,7 @@ pub(crate) struct Words {
     /// Where the baseline begins, is centred, or ends.
     pub at: [f64; 2],
     pub set: Set,
-    /// What of the label lies before that point, in em.
+    /// The part of the label before that point, in em.
     before: f64,
 }
 
@@ -200,16 +200,6 @@ impl Words {
     }
 }
 
-/// Pixels that fill a rectangle, first row at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Image {
-    pub place: Rect,
-    pub width: u32,
-    pub pixels: Vec<Colour>,
-    /// Whether pixels are blended where they meet; else each is the square that it is.
-    pub smooth: bool,
-}
-
 /// A rectangle with its left upper corner at (x, y).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Patch {
@@ -217,10 +207,7 @@ pub(crate) struct Patch {
     pub y: f64,
     pub width: f64,
     pub height: f64,
-    /// The radius of its corners, where they are rounded.
-    pub radius: Option<f64>,
     pub colour: Colour,
-    pub opacity: Option<f64>,
 }
 
 /// A piece of a drawing; later ones cover earlier ones.
@@ -228,9 +215,8 @@ pub(crate) struct Patch {
 pub(crate) enum Element {
     Path(Path, Paint),
     Patch(Patch),
-    Image(Image),
     Words(Words),
-    /// What follows shows only inside the rectangle, up to `Close`; these do not nest.
+    /// Clips the elements up to `Close` to the rectangle; these do not nest.
     Open(Rect),
     Close,
 }

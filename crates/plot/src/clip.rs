@@ -1,4 +1,4 @@
-//! What of a line or an outline lies in a box: nothing outside costs a byte, however far away it runs.
+//! Lines and outlines clipped to a box: nothing outside costs a byte, however far away it runs.
 
 /// A point on the page.
 pub(crate) type Point = [f64; 2];

@@ -91,34 +91,26 @@ fn numbers(canvas: &mut Canvas, plane: &Plane, x_ticks: &[Tick], y_ticks: &[Tick
     let labelled = |ticks: &[Tick]| -> Vec<(f64, Label)> {
         ticks.iter().filter_map(|t| Some((t.at, Label::new(t.label.as_ref()?)))).collect()
     };
-    if plane.x.numbered {
-        let base = bottom + TICK + GAP + NUMBER * DIGIT;
-        for (at, label) in labelled(x_ticks) {
-            canvas.text(label, [plane.across(plane.x.unit(at)), base], set(NUMBER, Anchor::Middle));
-        }
+    let base = bottom + TICK + GAP + NUMBER * DIGIT;
+    for (at, label) in labelled(x_ticks) {
+        canvas.text(label, [plane.across(plane.x.unit(at)), base], set(NUMBER, Anchor::Middle));
     }
-    if plane.y.numbered {
-        for (at, label) in labelled(y_ticks) {
-            let base = plane.down(plane.y.unit(at)) + NUMBER * DIGIT / 2.0;
-            canvas.text(label, [left - TICK - GAP, base], set(NUMBER, Anchor::End));
-        }
+    for (at, label) in labelled(y_ticks) {
+        let base = plane.down(plane.y.unit(at)) + NUMBER * DIGIT / 2.0;
+        canvas.text(label, [left - TICK - GAP, base], set(NUMBER, Anchor::End));
     }
 }
 
 fn axis_labels(canvas: &mut Canvas, plane: &Plane, up: f64) {
     let [left, top, right, bottom] = plane.frame;
-    if plane.x.numbered {
-        let base = bottom + TICK + GAP + NUMBER * DIGIT + GAP + WORDS * 0.85;
-        let label = Label::new(&plane.x.label);
-        let size = fitting(&label, right - left);
-        canvas.text(label, [(left + right) / 2.0, base], set(size, Anchor::Middle));
-    }
-    if plane.y.numbered {
-        let base = left - TICK - GAP - widest_number(plane.y, up) - GAP - WORDS * (LINE - 0.85);
-        let label = Label::new(&plane.y.label);
-        let upright = Set { turn: 90.0, ..set(fitting(&label, up), Anchor::Middle) };
-        canvas.text(label, [base, (top + bottom) / 2.0], upright);
-    }
+    let base = bottom + TICK + GAP + NUMBER * DIGIT + GAP + WORDS * 0.85;
+    let label = Label::new(&plane.x.label);
+    let size = fitting(&label, right - left);
+    canvas.text(label, [(left + right) / 2.0, base], set(size, Anchor::Middle));
+    let base = left - TICK - GAP - widest_number(plane.y, up) - GAP - WORDS * (LINE - 0.85);
+    let label = Label::new(&plane.y.label);
+    let upright = Set { turn: 90.0, ..set(fitting(&label, up), Anchor::Middle) };
+    canvas.text(label, [base, (top + bottom) / 2.0], upright);
 }
 
 /// The size of the letters of an axis's label: smaller where it is longer than the axis and a third.

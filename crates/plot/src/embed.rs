@@ -36,7 +36,7 @@ struct Font {
 }
 
 impl Fonts {
-    /// What the words of a drawing need.
+    /// The glyphs that the words of a drawing need.
     pub(crate) fn new(canvas: &Canvas) -> Fonts {
         let mut fonts: BTreeMap<Face, Font> = BTreeMap::new();
         for element in &canvas.elements {

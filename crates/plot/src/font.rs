@@ -40,7 +40,7 @@ pub(crate) enum Face {
 impl Face {
     pub(crate) const ALL: [Face; 4] = [Face::Roman, Face::Italic, Face::Semibold, Face::SemiboldItalic];
 
-    /// The same weight, leaning.
+    /// The italic face of this weight.
     pub(crate) fn italic(self) -> Face {
         match self {
             Face::Roman | Face::Italic => Face::Italic,

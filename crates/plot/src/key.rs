@@ -8,8 +8,8 @@ use super::marks;
 use super::measure::{
     DIGIT, GAP, LINE, MINOR_TICK, NUMBER, Plane, TICK, WORDS, beside, set, ticks, widest_number,
 };
-use super::palette::{INK, WHITE};
-use super::panel::{ColourBar, Panel, Place};
+use super::palette::INK;
+use super::panel::{ColourBar, Panel};
 use crate::Axis;
 
 /// A sample of a line, the space to its words, the space to the next entry, the height of a line of entries.
@@ -17,8 +17,6 @@ const SAMPLE: f64 = 17.0;
 const TO_WORDS: f64 = 4.0;
 const TO_NEXT: f64 = 11.0;
 const ROW: f64 = 11.0;
-/// Between the frame and a legend in its corner.
-const INSET: f64 = 5.0;
 /// A colour bar's distance from the frame and its width.
 const BAR_GAP: f64 = 8.0;
 const BAR: f64 = 7.0;
@@ -68,42 +66,20 @@ pub(crate) fn rows_height(panel: &Panel, wide: f64, left: f64) -> f64 {
     if count == 0 { 0.0 } else { ROW * count as f64 + 3.0 }
 }
 
-/// Draws the legend where the panel wants it.
+/// Draws the legend above the frame, where the panel has one.
 pub(crate) fn legend(canvas: &mut Canvas, panel: &Panel, frame: Rect) {
-    let entries = entries(panel);
-    match panel.legend {
-        None => {}
-        Some(Place::Above) => {
-            let (wide, left) = (frame[2] - frame[0], beside(&panel.y, frame[3] - frame[1]));
-            let (height, indent) = (rows_height(panel, wide, left), indent(&entries, wide, left));
-            for (i, row) in rows(entries, wide + indent).iter().enumerate() {
-                let mut x = frame[0] - indent;
-                for entry in row {
-                    draw_entry(canvas, entry, [x, frame[1] - height + ROW * (i as f64 + 0.5)]);
-                    x += width(entry) + TO_NEXT;
-                }
-            }
-        }
-        Some(corner) => in_corner(canvas, &entries, corner, frame),
+    if panel.legend.is_none() {
+        return;
     }
-}
-
-fn in_corner(canvas: &mut Canvas, entries: &[Entry], corner: Place, [left, top, right, bottom]: Rect) {
-    let wide = entries.iter().map(width).fold(0.0, f64::max) + 2.0 * TO_WORDS;
-    let high = ROW * entries.len() as f64 + TO_WORDS;
-    let x = match corner {
-        Place::TopLeft | Place::BottomLeft => left + INSET,
-        _ => right - INSET - wide,
-    };
-    let y = match corner {
-        Place::BottomLeft | Place::BottomRight => bottom - INSET - high,
-        _ => top + INSET,
-    };
-    let veil =
-        Patch { x, y, width: wide, height: high, radius: Some(1.5), colour: WHITE, opacity: Some(0.88) };
-    canvas.elements.push(Element::Patch(veil));
-    for (i, entry) in entries.iter().enumerate() {
-        draw_entry(canvas, entry, [x + TO_WORDS, y + TO_WORDS / 2.0 + ROW * (i as f64 + 0.5)]);
+    let entries = entries(panel);
+    let (wide, left) = (frame[2] - frame[0], beside(&panel.y, frame[3] - frame[1]));
+    let (height, indent) = (rows_height(panel, wide, left), indent(&entries, wide, left));
+    for (i, row) in rows(entries, wide + indent).iter().enumerate() {
+        let mut x = frame[0] - indent;
+        for entry in row {
+            draw_entry(canvas, entry, [x, frame[1] - height + ROW * (i as f64 + 0.5)]);
+            x += width(entry) + TO_NEXT;
+        }
     }
 }
 
@@ -131,7 +107,6 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
             let colour = cells.colours.get(cells.colours.len() / 2);
             colour.and_then(|colour| swatch(*colour, 1.0)).map(|own| own.hatched(layer.hatch))
         }
-        Mark::Picture(_) => None,
     };
     if let Some(sample) = sample {
         marks::layer(canvas, &plane, &sample);
@@ -140,7 +115,7 @@ fn draw_entry(canvas: &mut Canvas, (layer, label): &Entry, [x, y]: [f64; 2]) {
     canvas.text(label.clone(), at, set(NUMBER, Anchor::Start));
 }
 
-/// What a colour bar takes at the right of a frame of the given height.
+/// The width of a colour bar at the right of a frame of the given height.
 pub(crate) fn bar_width(bar: &ColourBar, height: f64) -> f64 {
     let label = if bar.axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     let high = height - bar.beyond.iter().filter(|beyond| **beyond).count() as f64 * ARROW;
@@ -173,7 +148,7 @@ pub(crate) fn bar(canvas: &mut Canvas, bar: &ColourBar, frame: Rect) {
     for (i, colour) in bar.gradient.steps(SHADES).into_iter().enumerate() {
         // From each shade's foot up to the top: the next one covers the rest, and no seam shows.
         let (x, y, width, height) = (left, head, BAR, high * (1.0 - i as f64 / SHADES as f64));
-        let shade = Patch { x, y, width, height, radius: None, colour, opacity: None };
+        let shade = Patch { x, y, width, height, colour };
         canvas.elements.push(Element::Patch(shade));
     }
     for tick in ticks(&bar.axis, 1, high) {

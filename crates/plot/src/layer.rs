@@ -1,4 +1,4 @@
-//! What stands in a panel: lines, dots, areas, cells of a grid, pictures.
+//! The layers of a panel: lines, dots, areas, cells of a grid.
 
 use super::palette::{Colour, INK};
 
@@ -38,14 +38,14 @@ impl Stroke {
     /// 0.7 pt in dots.
     pub const DOTTED: Stroke = Stroke { colour: INK, width: 0.7, dash: Dash::Dotted };
 
-    /// The same stroke in another colour.
+    /// Changes its colour.
     #[must_use]
     pub const fn in_colour(mut self, colour: Colour) -> Self {
         self.colour = colour;
         self
     }
 
-    /// The same stroke in another width, in points.
+    /// Changes its width, in points.
     #[must_use]
     pub const fn wide(mut self, width: f64) -> Self {
         self.width = width;
@@ -114,7 +114,6 @@ pub(crate) enum Mark {
     Dots { points: Vec<[f64; 2]>, shape: Shape, size: f64, colour: Colour },
     Area { outlines: Vec<Vec<[f64; 2]>>, colour: Colour, opacity: f64 },
     Cells(Cells),
-    Picture(Picture),
 }
 
 /// One layer of a panel; later layers cover earlier ones.
@@ -146,12 +145,7 @@ impl Layer {
         Mark::Cells(cells).into()
     }
 
-    /// A picture that fills a rectangle.
-    pub fn picture(picture: Picture) -> Self {
-        Mark::Picture(picture).into()
-    }
-
-    /// The same lines with a mark of so many points at each of their points; what has no lines stays as it is.
+    /// Puts a mark of so many points at each point of its lines; a layer without lines stays as it is.
     #[must_use]
     pub fn marked(mut self, shape: Shape, size: f64) -> Self {
         if let Mark::Lines { marks, .. } = &mut self.mark {
@@ -160,14 +154,14 @@ impl Layer {
         self
     }
 
-    /// The same areas or cells with strokes over them, white on what is dark and dark on what is light.
+    /// Draws strokes over its areas or cells, white on dark colours and dark on light ones.
     #[must_use]
     pub fn hatched(mut self, hatch: Option<Hatch>) -> Self {
         self.hatch = hatch;
         self
     }
 
-    /// The same layer with an entry in the legend.
+    /// Gives it an entry in the legend.
     #[must_use]
     pub fn labelled(mut self, label: &str) -> Self {
         self.label = Some(label.into());
@@ -211,7 +205,7 @@ impl Cells {
         Cells { origin, step, colours, least: 0.35, runs: Vec::new() }
     }
 
-    /// The same grid, no cell of it drawn smaller than this many points.
+    /// Draws no cell smaller than this many points.
     #[must_use]
     pub fn at_least(mut self, points: f64) -> Self {
         self.least = points;
@@ -238,27 +232,6 @@ impl Cells {
     }
 }
 
-/// A picture of coloured pixels, its first row at the top.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture {
-    pub(crate) x: [f64; 2],
-    pub(crate) y: [f64; 2],
-    pub(crate) width: u32,
-    pub(crate) pixels: Vec<Colour>,
-}
-
-impl Picture {
-    /// `pixels` in rows of `width`, filling the rectangle `x` by `y` (edges, not centres, in data units).
-    ///
-    /// # Panics
-    /// Unless the pixels make whole rows, at least one.
-    pub fn new(x: [f64; 2], y: [f64; 2], width: u32, pixels: Vec<Colour>) -> Self {
-        let whole = width > 0 && !pixels.is_empty() && pixels.len().is_multiple_of(width as usize);
-        assert!(whole, "{} pixels in rows of {width}", pixels.len());
-        Picture { x, y, width, pixels }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -274,11 +247,5 @@ mod tests {
         let run = |i, j, across, up, class| Run { i, j, across, up, class };
         let expected = [run(0, 0, 3, 1, 0), run(2, 1, 1, 2, 0), run(2, 3, 2, 1, 1), run(3, 4, 1, 1, 1)];
         assert_eq!(cells.runs, expected);
-    }
-
-    #[test]
-    #[should_panic(expected = "5 pixels in rows of 2")]
-    fn a_ragged_picture_is_a_bug() {
-        Picture::new([0.0, 1.0], [0.0, 1.0], 2, vec![INK; 5]);
     }
 }

@@ -8,7 +8,7 @@ use super::font::Face;
 use super::key;
 use super::label::wrapped;
 use super::measure::{CAPITAL, DIGIT, GAP, LINE, NUMBER, TICK, TITLE, WORDS, beside, overhang};
-use super::panel::{Panel, Place};
+use super::panel::Panel;
 
 /// The paper's rim.
 pub(crate) const RIM: f64 = 3.0;
@@ -19,14 +19,14 @@ const BELOW: f64 = 18.0;
 /// Where a panel stands on the page.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Site {
-    /// What the axes enclose.
+    /// The rectangle between the axes.
     pub frame: Rect,
     /// Where the row begins: all its titles hang from here.
     pub top: f64,
 }
 
 impl Site {
-    /// The same place so much further down.
+    /// Moves it down.
     pub(crate) fn lowered(self, by: f64) -> Site {
         let [left, top, right, bottom] = self.frame;
         Site { frame: [left, top + by, right, bottom + by], top: self.top + by }
@@ -64,7 +64,7 @@ fn wants(track: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize) -> (f6
     members.fold((0.0, 0.0), |(a, b), (_, room)| (f64::max(a, room.0), f64::max(b, room.1)))
 }
 
-/// What the room around the frames leaves for each of them.
+/// The length that is left for each frame.
 fn share(count: usize, rooms: &[(f64, f64)], of: impl Fn(usize) -> usize + Copy, length: f64) -> f64 {
     let taken: f64 = (0..count).map(|track| wants(track, rooms, of)).map(|(a, b)| a + b).sum();
     // On paper too small for its labels the frames still exist, and overlap.
@@ -91,7 +91,7 @@ fn starts(
 
 fn above(panel: &Panel, width: f64, left: f64) -> f64 {
     let title = title_height(panel, width);
-    let legend = if panel.legend == Some(Place::Above) { key::rows_height(panel, width, left) } else { 0.0 };
+    let legend = if panel.legend.is_some() { key::rows_height(panel, width, left) } else { 0.0 };
     // The topmost number of the vertical axis reaches over the frame by half its height.
     (title + legend).max(NUMBER * DIGIT / 2.0)
 }
@@ -105,9 +105,6 @@ fn title_height(panel: &Panel, width: f64) -> f64 {
 }
 
 fn below(panel: &Panel) -> f64 {
-    if !panel.x.numbered {
-        return TICK;
-    }
     let label = if panel.x.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     TICK + GAP + NUMBER * DIGIT + 2.0 + label
 }

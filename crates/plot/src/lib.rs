@@ -10,7 +10,7 @@
 //! let panel = Panel::new(Axis::linear("*t* (s)", 0.0, 1.0), Axis::linear("*x*", -1.1, 1.1))
 //!     .titled("One oscillation")
 //!     .with(Layer::lines(vec![wave], Stroke::LINE));
-//! let figure = Figure::single_column(60.0).with(panel);
+//! let figure = Figure::new(85.0, 60.0).with(panel);
 //! assert!(figure.svg().starts_with("<svg"));
 //! assert_eq!(&figure.png(300.0).unwrap()[1..4], b"PNG");
 //! ```
@@ -19,7 +19,7 @@
 //! |---|---|
 //! | `palette` | colours and gradients |
 //! | `axis` | scales and ticks |
-//! | `layer` | lines, dots, areas, cells, pictures |
+//! | `layer` | lines, dots, areas, cells |
 //! | `panel` | axes, layers, notes, legend, colour bar |
 //! | `layout` | where everything goes |
 //! | `measure` | sizes of letters, ticks that fit, from data to the page |
@@ -30,7 +30,7 @@
 //! | `clip` | what lies in the frame |
 //! | `foot` | what stands below: the parameters |
 //! | `font`, `label` | glyphs, and words made of them |
-//! | `canvas` | paths, rectangles, pictures, words: what every format draws |
+//! | `canvas` | paths, rectangles, words: what every format draws |
 //! | `outline` | its lines and curves, for formats that draw by themselves |
 //! | `svg` | the canvas as SVG |
 //! | `png` | the canvas as pixels |
@@ -63,7 +63,7 @@ pub use axis::{Axis, Scale, Tick};
 pub use canvas::Anchor;
 pub use font::font_file;
 pub use foot::Foot;
-pub use layer::{Cells, Dash, Hatch, Layer, Picture, Shape, Stroke};
+pub use layer::{Cells, Dash, Hatch, Layer, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
 use canvas::Canvas;
@@ -116,11 +116,6 @@ impl Figure {
         }
     }
 
-    /// A figure for one column of a paper: 85 mm wide.
-    pub fn single_column(height_mm: f64) -> Self {
-        Self::new(85.0, height_mm)
-    }
-
     /// A figure for the full width of a paper: 175 mm.
     pub fn double_column(height_mm: f64) -> Self {
         Self::new(175.0, height_mm)
@@ -131,21 +126,21 @@ impl Figure {
         Figure { frame_mm: Some(frame_mm), ..Self::new(width_mm, frame_mm) }
     }
 
-    /// The same figure with at most so many panels side by side; further ones go below.
+    /// Puts at most so many panels side by side; further ones go below.
     #[must_use]
     pub fn columns(mut self, columns: usize) -> Self {
         self.columns = columns.max(1);
         self
     }
 
-    /// The same figure with a name for the SVG: shown by browsers as a hint, read aloud, never drawn.
+    /// Names the SVG: browsers show the name as a hint and read it aloud; it is never drawn.
     #[must_use]
     pub fn named(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The same figure in another width; its height follows unless it is that of rows, but no row of panels falls below 45 mm
+    /// Changes its width. Its height follows unless it is that of rows, but no row of panels falls below 45 mm
     /// that was higher.
     #[must_use]
     pub fn wide(mut self, width_mm: f64) -> Self {
@@ -156,7 +151,7 @@ impl Figure {
         self
     }
 
-    /// The same figure with a heading above all panels, in the notation of labels; it becomes the name, too, and takes the place of
+    /// Puts a heading above all panels, in the notation of labels. It becomes the name, too, and takes the place of
     /// the title of a single panel.
     #[must_use]
     pub fn headed(mut self, heading: &str) -> Self {
@@ -164,7 +159,7 @@ impl Figure {
         self.untitled().named(&Label::new(heading).words)
     }
 
-    /// The same figure without heading and foot, for papers whose caption says both; several panels keep their titles.
+    /// Leaves out heading and foot, for papers whose caption says both; several panels keep their titles.
     #[must_use]
     pub fn bare(self) -> Self {
         let [heading, foot] = [const { String::new() }; 2];
@@ -179,21 +174,21 @@ impl Figure {
         self
     }
 
-    /// The same figure, its files carrying the program that made them with its version, and the command.
+    /// Writes into its files the program that made them with its version, and the command.
     #[must_use]
     pub fn made_by(mut self, program: &str, command: &str) -> Self {
         self.maker = Some([program.into(), command.into()]);
         self
     }
 
-    /// The same figure with small words below all panels: what it was made from.
+    /// Puts small words below all panels: what it was made from.
     #[must_use]
     pub fn footed(mut self, foot: &Foot) -> Self {
         self.foot = foot.to_string();
         self
     }
 
-    /// The same figure with this unit at axes of times and rates, in place of "time".
+    /// Names this unit at axes of times and rates, in place of "time".
     #[must_use]
     pub fn in_units_of(mut self, time: &str) -> Self {
         self.time_unit = time.into();
@@ -205,14 +200,14 @@ impl Figure {
         self.panels.iter().any(Panel::has_time)
     }
 
-    /// The same figure with letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
+    /// Draws letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
     #[must_use]
     pub fn outlined(mut self) -> Self {
         self.outlined = true;
         self
     }
 
-    /// The same figure with one more panel.
+    /// Adds a panel.
     #[must_use]
     pub fn with(mut self, panel: Panel) -> Self {
         self.panels.push(panel);
@@ -244,7 +239,7 @@ impl Figure {
         (panels, sites, height)
     }
 
-    /// The same figure with these notes in its panels, in their order.
+    /// Adds notes to its panels, in their order.
     #[must_use]
     pub fn noted(mut self, notes: Vec<Vec<Note>>) -> Self {
         for (panel, notes) in self.panels.iter_mut().zip(notes) {

@@ -2,15 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::canvas::{Canvas, Element, Image, Path, Pen};
+use super::canvas::{Canvas, Path, Pen};
 use super::clip::{self, Rect};
 use super::hatch;
-use super::layer::{Cells, Hatch, Layer, Mark, Picture, Run, Shape, Stroke};
+use super::layer::{Cells, Hatch, Layer, Mark, Run, Shape, Stroke};
 use super::measure::Plane;
 use super::palette::{Colour, WHITE};
-
-/// A pixel of a picture wider than this (points) is shown as the square it is; finer ones are blended.
-const SQUARE: f64 = 0.5;
 
 /// Draws a layer.
 pub(crate) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
@@ -31,7 +28,6 @@ pub(crate) fn layer(canvas: &mut Canvas, plane: &Plane, layer: &Layer) {
             hatched(canvas, layer.hatch, &kept, *colour);
         }
         Mark::Cells(grid) => cells(canvas, plane, grid, layer.hatch),
-        Mark::Picture(pixels) => picture(canvas, plane, pixels),
     }
 }
 
@@ -170,14 +166,6 @@ fn rectangle(plane: &Plane, cells: &Cells, run: &Run) -> Option<Rect> {
         [(low - more).max(plane.frame[axis]), (high + more).min(plane.frame[axis + 2])]
     });
     (left < right && top < bottom).then_some([left, top, right, bottom])
-}
-
-fn picture(canvas: &mut Canvas, plane: &Plane, picture: &Picture) {
-    let [left, bottom] = plane.place([picture.x[0], picture.y[0]]);
-    let [right, top] = plane.place([picture.x[1], picture.y[1]]);
-    let smooth = (right - left) / f64::from(picture.width) <= SQUARE;
-    let (place, pixels) = ([left, top, right, bottom], picture.pixels.clone());
-    canvas.elements.push(Element::Image(Image { place, width: picture.width, pixels, smooth }));
 }
 
 #[cfg(test)]

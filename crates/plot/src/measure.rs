@@ -1,4 +1,4 @@
-//! What drawing and layout share: the sizes of letters, the ticks that fit an axis, the way from data to the page.
+//! Measures that drawing and layout share: the sizes of letters, the ticks that fit an axis, the way from data to the page.
 //! Lengths are points.
 
 use super::axis::{Axis, Tick};
@@ -86,11 +86,8 @@ pub(crate) fn widest_number(axis: &Axis, length: f64) -> f64 {
     ticks(axis, 1, length).iter().map(number_width).fold(0.0, f64::max)
 }
 
-/// What an upright axis so long takes to its left: ticks, numbers and its label.
+/// The room of ticks, numbers and label at the left of an upright axis so long.
 pub(crate) fn beside(axis: &Axis, length: f64) -> f64 {
-    if !axis.numbered {
-        return TICK;
-    }
     let label = if axis.label.is_empty() { 0.0 } else { GAP + WORDS * LINE };
     TICK + GAP + widest_number(axis, length) + 1.5 + label
 }

@@ -7,7 +7,7 @@ use subsetter::GlyphRemapper;
 
 use super::font::{Face, table};
 
-/// The font of the numbered glyphs; `letters` tells the letter of each glyph by its number in the face.
+/// The font of the numbered glyphs; `letters` has the letter of each glyph by its number in the face.
 pub(crate) fn font(face: Face, numbers: &GlyphRemapper, letters: &BTreeMap<u16, char>) -> Vec<u8> {
     let part = face.part(numbers);
     // The empty box stands for what the face lacks: another font of the reader's shows that better.

@@ -3,10 +3,7 @@
 use super::canvas::{Patch, Path, Step};
 use super::font::Curve;
 
-/// Control points of a quarter of a circle of radius 1, from its ends: with them a cubic is off by 0.03 %.
-const QUARTER: f64 = 0.552_285;
-
-/// What takes lines and curves.
+/// A pen that takes lines and curves.
 pub(crate) trait Outline {
     fn begin(&mut self, at: [f64; 2]);
     fn line(&mut self, to: [f64; 2]);
@@ -33,26 +30,13 @@ pub(crate) fn path(path: &Path, outline: &mut impl Outline) {
     }
 }
 
-/// A rectangle, in points; its corners are quarters of a circle where it has a radius.
+/// A rectangle, in points.
 pub(crate) fn patch(patch: &Patch, outline: &mut impl Outline) {
-    let ([left, top], radius) = ([patch.x, patch.y], patch.radius.unwrap_or(0.0));
+    let (left, top) = (patch.x, patch.y);
     let (right, bottom) = (left + patch.width, top + patch.height);
-    // Each corner with the direction in which the outline, clockwise, comes to it, and goes from it.
-    let corners = [
-        ([right, top], [1.0, 0.0], [0.0, 1.0]),
-        ([right, bottom], [0.0, 1.0], [-1.0, 0.0]),
-        ([left, bottom], [-1.0, 0.0], [0.0, -1.0]),
-        ([left, top], [0.0, -1.0], [1.0, 0.0]),
-    ];
-    outline.begin([left + radius, top]);
-    for ([x, y], [in_x, in_y], [out_x, out_y]) in corners {
-        let before = |by: f64| [x - by * in_x, y - by * in_y];
-        let behind = |by: f64| [x + by * out_x, y + by * out_y];
-        outline.line(before(radius));
-        if radius > 0.0 {
-            let near = radius * (1.0 - QUARTER);
-            outline.cubic(before(near), behind(near), behind(radius));
-        }
+    outline.begin([left, top]);
+    for corner in [[right, top], [right, bottom], [left, bottom], [left, top]] {
+        outline.line(corner);
     }
     outline.end();
 }

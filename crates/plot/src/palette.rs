@@ -30,14 +30,7 @@ pub const SAMPLED: Colour = Colour(0x8f, 0x8f, 0x9b);
 pub const UNSTABLE: Colour = HYPERBOLIC;
 
 impl Colour {
-    /// A third of the way to white.
-    #[must_use]
-    pub const fn lighter(self) -> Colour {
-        let Colour(r, g, b) = self;
-        Colour(r - r / 3 + 85, g - g / 3 + 85, b - b / 3 + 85)
-    }
-
-    /// What is seen on it: white on what is dark, ink on what is light.
+    /// A colour that is seen on it: white on dark ones, ink on light ones.
     #[must_use]
     pub fn opposite(self) -> Colour {
         let Colour(r, g, b) = self;
@@ -70,12 +63,7 @@ impl Gradient {
         Gradient { from: [0.81, 0.165, 0.225], to: [0.24, 0.115, -0.21] }
     }
 
-    /// For maps that fill the panel: from a deep blue (low) through green to a bright yellow (high).
-    pub const fn full() -> Self {
-        Gradient { from: [0.22, 0.10, 0.785], to: [0.93, 0.175, 0.295] }
-    }
-
-    /// The same colours from the other end.
+    /// Runs from the other end.
     #[must_use]
     pub const fn reversed(self) -> Self {
         Gradient { from: self.to, to: self.from }
@@ -114,7 +102,7 @@ pub fn family(index: usize) -> Colour {
     from_lch(lightness, chroma, hue)
 }
 
-/// The same hues for lines behind their families: paler, and all about as light as each other.
+/// The hue of a family for lines behind it: paler, and all about as light as each other.
 pub fn behind(index: usize) -> Colour {
     let [lightness, chroma, hue] = FAMILIES[index % FAMILIES.len()];
     from_lch(0.62 + 0.15 * lightness, 0.6 * chroma, hue)
@@ -174,8 +162,6 @@ mod tests {
     fn a_gradient_is_monotone_in_grey() {
         let falling: Vec<f64> = Gradient::on_white().steps(64).into_iter().map(luminance).collect();
         assert!(falling.windows(2).all(|pair| pair[1] < pair[0]), "{falling:?}");
-        let rising: Vec<f64> = Gradient::full().steps(64).into_iter().map(luminance).collect();
-        assert!(rising.windows(2).all(|pair| pair[1] > pair[0]), "{rising:?}");
     }
 
     #[test]

@@ -12,14 +12,6 @@ use super::palette::{Colour, Gradient, INK};
 pub enum Place {
     /// In lines between title and frame: never over the data.
     Above,
-    /// In a corner of the panel.
-    TopLeft,
-    /// In a corner of the panel.
-    TopRight,
-    /// In a corner of the panel.
-    BottomLeft,
-    /// In a corner of the panel.
-    BottomRight,
 }
 
 /// The key to a gradient, at the right of a panel.
@@ -43,7 +35,7 @@ impl ColourBar {
         ColourBar { axis, gradient, beyond: [false; 2] }
     }
 
-    /// The same bar with arrows where some of these values lie below or above it: they take its last colours.
+    /// Puts an arrow at each end beyond which some of these values lie: they take its last colours.
     #[must_use]
     pub fn over(mut self, values: impl Iterator<Item = f64>) -> Self {
         for unit in values.map(|value| self.axis.unit(value)) {
@@ -114,21 +106,21 @@ impl Note {
         NUMBER * Label::new(&self.text).width
     }
 
-    /// The same words with another side at the point, moved by so many points right and up.
+    /// Puts another side of the words at the point, moved by so many points right and up.
     #[must_use]
     pub fn anchored(mut self, anchor: Anchor, shift: [f64; 2]) -> Self {
         (self.anchor, self.shift) = (anchor, shift);
         self
     }
 
-    /// The same words, turned counterclockwise by so many degrees.
+    /// Turns the words counterclockwise by so many degrees.
     #[must_use]
     pub fn turned(mut self, degrees: f64) -> Self {
         self.turn = degrees;
         self
     }
 
-    /// The same words in another colour.
+    /// Changes the colour of the words.
     #[must_use]
     pub fn in_colour(mut self, colour: Colour) -> Self {
         self.colour = colour;
@@ -156,35 +148,35 @@ impl Panel {
         Panel { title: String::new(), x, y, layers, notes, legend: None, bar: None, grid: false }
     }
 
-    /// The same panel with a title, in the notation of labels.
+    /// Gives it a title, in the notation of labels.
     #[must_use]
     pub fn titled(mut self, title: &str) -> Self {
         self.title = title.into();
         self
     }
 
-    /// The same panel with one more layer on top.
+    /// Puts a layer on top.
     #[must_use]
     pub fn with(mut self, layer: Layer) -> Self {
         self.layers.push(layer);
         self
     }
 
-    /// The same panel with a note above all layers.
+    /// Puts a note above all layers.
     #[must_use]
     pub fn note(mut self, note: Note) -> Self {
         self.notes.push(note);
         self
     }
 
-    /// The same panel with a legend of its labelled layers.
+    /// Gives it a legend of its labelled layers.
     #[must_use]
     pub fn legend(mut self, place: Place) -> Self {
         self.legend = Some(place);
         self
     }
 
-    /// The same panel with a colour bar.
+    /// Gives it a colour bar.
     #[must_use]
     pub fn bar(mut self, bar: ColourBar) -> Self {
         self.bar = Some(bar);
@@ -195,13 +187,13 @@ impl Panel {
         [&self.x, &self.y].into_iter().chain(self.bar.as_ref().map(|bar| &bar.axis)).any(Axis::has_time)
     }
 
-    /// The same panel with the unit of time at its axes.
+    /// Names the unit of time at its axes.
     pub(crate) fn in_units_of(&self, unit: &str) -> Self {
         let bar = self.bar.clone().map(|bar| ColourBar { axis: bar.axis.in_units_of(unit), ..bar });
         Panel { x: self.x.in_units_of(unit), y: self.y.in_units_of(unit), bar, ..self.clone() }
     }
 
-    /// The same panel with faint lines at the labelled ticks.
+    /// Draws faint lines at the labelled ticks.
     #[must_use]
     pub fn gridded(mut self) -> Self {
         self.grid = true;
@@ -220,7 +212,7 @@ mod tests {
         assert_eq!(ColourBar::range_of(rates(2)).0, (0.02 + 0.1 * 19.0) / RESOLVED);
         assert_eq!(ColourBar::range_of((1..=200).map(f64::from)), (11.0, 198.0));
         assert_eq!(ColourBar::range_of(std::iter::empty()), (1.0, 1.0));
-        let bar = ColourBar::new(Axis::log("", 1.0, 2.0), Gradient::full());
+        let bar = ColourBar::new(Axis::log("", 1.0, 2.0), Gradient::on_white());
         assert_eq!(bar.clone().over([1.0, 2.0].into_iter()).beyond, [false, false]);
         assert_eq!(bar.clone().over([0.5, 1.5].into_iter()).beyond, [true, false]);
         assert_eq!(bar.over([1.0, f64::INFINITY].into_iter()).beyond, [false, true]);

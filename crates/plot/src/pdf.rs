@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as Area, Ref, Str, TextStr};
 
-use super::canvas::{Canvas, Element, HALO, Image, Paint, Pen, Words};
+use super::canvas::{Canvas, Element, HALO, Paint, Pen, Words};
 use super::embed::{Fonts, deflated};
 use super::label::Placed;
 use super::outline::{self, Outline};
@@ -31,20 +31,14 @@ pub(crate) fn document(canvas: &Canvas) -> Vec<u8> {
     let fonts = if canvas.outlined { Fonts::default() } else { Fonts::new(canvas) };
     let mut drawing = Drawing::new(&fonts, canvas);
     canvas.elements.iter().for_each(|element| drawing.draw(element));
-    let Drawing { content, images, veils, .. } = drawing;
+    let Drawing { content, veils, .. } = drawing;
     pdf.stream(stream, &deflated(content.finish().as_slice())).filter(Filter::FlateDecode);
     let fonts = fonts.write(&mut pdf, &mut fresh);
-    let images: Vec<Ref> = images.into_iter().map(|image| embedded(&mut pdf, fresh(), image)).collect();
     let mut sheet = pdf.page(page);
     sheet.parent(pages).media_box(Area::new(0.0, 0.0, canvas.width as f32, canvas.height as f32));
     sheet.contents(stream);
     let mut resources = sheet.resources();
     resources.fonts().pairs(fonts.iter().map(|(name, font)| (Name(name.as_bytes()), *font)));
-    let mut named = resources.x_objects();
-    for (i, image) in images.into_iter().enumerate() {
-        named.pair(Name(image_name(i).as_bytes()), image);
-    }
-    named.finish();
     let mut states = resources.ext_g_states();
     for (opacity, name) in &veils {
         let share = f32::from(*opacity) / 100.0;
@@ -56,27 +50,11 @@ pub(crate) fn document(canvas: &Canvas) -> Vec<u8> {
     pdf.finish()
 }
 
-fn image_name(i: usize) -> String {
-    format!("i{i}")
-}
-
-fn embedded(pdf: &mut Pdf, id: Ref, image: &Image) -> Ref {
-    let rgb: Vec<u8> = image.pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b]).collect();
-    let bytes = deflated(&rgb);
-    let mut object = pdf.image_xobject(id, &bytes);
-    object.filter(Filter::FlateDecode);
-    object.interpolate(image.smooth).bits_per_component(8);
-    object.width(image.width as i32).height((image.pixels.len() / image.width as usize) as i32);
-    object.color_space().device_rgb();
-    id
-}
-
 /// The page under construction.
 struct Drawing<'a> {
     content: Content,
     fonts: &'a Fonts,
     outlined: bool,
-    images: Vec<&'a Image>,
     /// Opacities in use, in hundredths as in the SVG, with their names.
     veils: BTreeMap<u8, String>,
 }
@@ -86,7 +64,7 @@ impl<'a> Drawing<'a> {
     fn new(fonts: &'a Fonts, canvas: &Canvas) -> Self {
         let mut content = Content::new();
         content.transform([1.0, 0.0, 0.0, -1.0, 0.0, canvas.height as f32]);
-        Drawing { content, fonts, outlined: canvas.outlined, images: Vec::new(), veils: BTreeMap::new() }
+        Drawing { content, fonts, outlined: canvas.outlined, veils: BTreeMap::new() }
     }
 
     fn draw(&mut self, element: &'a Element) {
@@ -104,15 +82,7 @@ impl<'a> Drawing<'a> {
                 self.content.stroke().restore_state();
             }
             Element::Patch(patch) => {
-                self.fill(patch.colour, patch.opacity, |content| outline::patch(patch, content));
-            }
-            Element::Image(image) => {
-                let [left, top, right, bottom] = image.place.map(|side| side as f32);
-                let place = [right - left, 0.0, 0.0, top - bottom, left, bottom];
-                let name = image_name(self.images.len());
-                self.images.push(image);
-                self.content.save_state().transform(place);
-                self.content.x_object(Name(name.as_bytes())).restore_state();
+                self.fill(patch.colour, None, |content| outline::patch(patch, content));
             }
             Element::Words(words) => self.words(words),
             Element::Open([left, top, right, bottom]) => {

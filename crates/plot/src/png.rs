@@ -2,11 +2,11 @@
 
 use png::{BitDepth, ColorType, Compression, Encoder, PixelDimensions, Unit};
 use tiny_skia::{
-    Color, ColorU8, FillRule, FilterQuality, IntSize, LineCap, LineJoin, Mask, Paint as Shade, PathBuilder,
-    Pixmap, PixmapPaint, PremultipliedColorU8, Rect as Area, Stroke, StrokeDash, Transform,
+    Color, ColorU8, FillRule, LineCap, LineJoin, Mask, Paint as Shade, PathBuilder, Pixmap,
+    PremultipliedColorU8, Rect as Area, Stroke, StrokeDash, Transform,
 };
 
-use super::canvas::{Canvas, Element, HALO, Image, Paint, Path, Pen, Words};
+use super::canvas::{Canvas, Element, HALO, Paint, Path, Pen, Words};
 use super::clip::Rect;
 use super::outline::{self, Outline};
 use super::palette::{Colour, WHITE};
@@ -28,26 +28,20 @@ pub(crate) fn raster(canvas: &Canvas, dpi: f64) -> Option<Vec<u8>> {
     let mut brush = Brush { pixels, page, clip: None };
     canvas.elements.iter().for_each(|element| brush.draw(element));
     // White below makes every pixel opaque, so premultiplied and plain colours agree.
-    let colours = brush.pixels.pixels().iter().map(|p| Colour(p.red(), p.green(), p.blue()));
-    Some(encode(brush.pixels.width(), &colours.collect::<Vec<_>>(), Some(dpi), canvas.maker.as_ref()))
+    let colours: Vec<u8> =
+        brush.pixels.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
+    Some(encode(&brush.pixels, &colours, dpi, canvas.maker.as_ref()))
 }
 
-/// Pixels in rows of `width` as a PNG file, with the program and the command that made it where they are known.
-pub(crate) fn encode(
-    width: u32,
-    pixels: &[Colour],
-    dpi: Option<f64>,
-    maker: Option<&[String; 2]>,
-) -> Vec<u8> {
+/// Pixels as a PNG file, with the program and the command that made it where they are known.
+fn encode(pixels: &Pixmap, colours: &[u8], dpi: f64, maker: Option<&[String; 2]>) -> Vec<u8> {
     let mut bytes = Vec::new();
-    let mut encoder = Encoder::new(&mut bytes, width, (pixels.len() / width as usize) as u32);
+    let mut encoder = Encoder::new(&mut bytes, pixels.width(), pixels.height());
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     encoder.set_compression(Compression::Balanced);
-    if let Some(dpi) = dpi {
-        let per_metre = (dpi / 0.0254).round() as u32;
-        encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
-    }
+    let per_metre = (dpi / 0.0254).round() as u32;
+    encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
     if let Some([program, command]) = maker {
         let text = "a keyword of the format and words without null";
         encoder.add_text_chunk("Software".into(), program.clone()).expect(text);
@@ -58,14 +52,13 @@ pub(crate) fn encode(
             false => encoder.add_itxt_chunk("Comment".into(), command).expect(text),
         }
     }
-    let data: Vec<u8> = pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b]).collect();
     let mut writer = encoder.write_header().expect("a positive size and eight bits a channel are valid");
-    writer.write_image_data(&data).expect("writing to memory does not fail");
+    writer.write_image_data(colours).expect("writing to memory does not fail");
     writer.finish().expect("writing to memory does not fail");
     bytes
 }
 
-/// What draws, and where it may.
+/// The pixels under the brush, and the clip that it keeps to.
 struct Brush {
     pixels: Pixmap,
     /// From points to pixels.
@@ -90,10 +83,9 @@ impl Brush {
             }
             Element::Patch(patch) => {
                 if let Some(path) = traced(|pen| outline::patch(patch, pen)) {
-                    self.fill(&path, &shade(patch.colour, patch.opacity), self.page);
+                    self.fill(&path, &shade(patch.colour, None), self.page);
                 }
             }
-            Element::Image(image) => self.image(image),
             Element::Words(words) => self.words(words),
             Element::Open(frame) => self.clip = self.mask(frame),
             Element::Close => self.clip = None,
@@ -146,20 +138,6 @@ impl Brush {
         Some(mask)
     }
 
-    fn image(&mut self, image: &Image) {
-        let [left, top, right, bottom] = image.place;
-        let rows = image.pixels.len() as u32 / image.width;
-        let bytes = image.pixels.iter().flat_map(|&Colour(r, g, b)| [r, g, b, 255]).collect();
-        let size = IntSize::from_wh(image.width, rows);
-        let Some(pixels) = size.and_then(|size| Pixmap::from_vec(bytes, size)) else { return };
-        let quality = if image.smooth { FilterQuality::Bicubic } else { FilterQuality::Nearest };
-        let (wide, high) = ((right - left) / f64::from(image.width), (bottom - top) / f64::from(rows));
-        let place = Transform::from_row(wide as f32, 0.0, 0.0, high as f32, left as f32, top as f32);
-        let paint = PixmapPaint { quality, ..PixmapPaint::default() };
-        let place = place.post_concat(self.page);
-        self.pixels.draw_pixmap(0, 0, pixels.as_ref(), &paint, place, self.clip.as_ref());
-    }
-
     /// Each glyph in its place; the rim of all of them first, or it would cover neighbours.
     fn words(&mut self, words: &Words) {
         let ([x, y], set) = (words.at.map(|at| at as f32), words.set);
@@ -196,7 +174,7 @@ fn shade(Colour(r, g, b): Colour, opacity: Option<f64>) -> Shade<'static> {
     shade
 }
 
-/// What is drawn by `trace`; none where nothing is left of it.
+/// The path that `trace` draws; none where nothing is left of it.
 fn traced(trace: impl FnOnce(&mut PathBuilder)) -> Option<tiny_skia::Path> {
     let mut path = PathBuilder::new();
     trace(&mut path);

@@ -6,12 +6,11 @@ use std::fmt::Write as _;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::canvas::{Canvas, Element, HALO, Image, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
+use super::canvas::{Canvas, Element, HALO, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
 use super::clip::Rect;
 use super::embed::Fonts;
 use super::font::{Curve, Face};
 use super::palette::WHITE;
-use super::png;
 
 /// The whole document, on white paper.
 pub(crate) fn document(canvas: &Canvas) -> String {
@@ -41,7 +40,6 @@ pub(crate) fn document(canvas: &Canvas) -> String {
         out.push_str(&match element {
             Element::Path(path, paint) => format!("<path {} d=\"{}\"/>", attributes(paint), data(path)),
             Element::Patch(rect) => filled(rect),
-            Element::Image(image) => picture(image),
             Element::Words(words) if canvas.outlined => shapes(words),
             Element::Words(words) => text(words),
             Element::Open(frame) => {
@@ -147,25 +145,13 @@ fn place(x: f64, y: f64, width: f64, height: f64) -> String {
     format!("x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"")
 }
 
-fn filled(&Patch { x, y, width, height, radius, colour, opacity }: &Patch) -> String {
-    let corners = radius.map_or_else(String::new, |radius| format!(" rx=\"{radius}\""));
-    format!("<rect {}{corners} fill=\"{colour}\"{}/>", place(x, y, width, height), veil(opacity))
+fn filled(&Patch { x, y, width, height, colour }: &Patch) -> String {
+    format!("<rect {} fill=\"{colour}\"/>", place(x, y, width, height))
 }
 
 fn clipped(clips: usize, [left, top, right, bottom]: &Rect) -> String {
     let frame = place(*left, *top, right - left, bottom - top);
     format!("<clipPath id=\"box{clips}\"><rect {frame}/></clipPath>\n<g clip-path=\"url(#box{clips})\">")
-}
-
-fn picture(image: &Image) -> String {
-    let [left, top, right, bottom] = image.place;
-    let rendering = if image.smooth { "optimizeQuality" } else { "optimizeSpeed" };
-    format!(
-        "<image {} preserveAspectRatio=\"none\" image-rendering=\"{rendering}\" \
-         xlink:href=\"data:image/png;base64,{}\"/>",
-        place(left, top, right - left, bottom - top),
-        STANDARD.encode(png::encode(image.width, &image.pixels, None, None))
-    )
 }
 
 /// The letters' family, and that spaces count: each letter has its place.

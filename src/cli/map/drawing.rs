@@ -1,15 +1,13 @@
 //! How a map is drawn.
 
-use super::Map;
+use crate::cli::args::unused;
 use crate::cli::paper::Paper;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::format::Format;
-use crate::map::Products;
-use crate::question::flag;
+use crate::map::{Grid, Products};
+use crate::question::{FAMILIES, flag};
 use crate::report::plane::{Colouring, window};
-use crate::resonance::Curve;
-use crate::resonance::Families;
-use crate::scene::FAMILIES;
+use crate::resonance::{Curve, Families};
 
 /// Flags of figures.
 #[derive(Debug, clap::Args)]
@@ -31,15 +29,12 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// What the colours stand for.
+    /// The meaning of the colours.
     pub fn colouring(&self) -> Colouring {
         self.colour.unwrap_or_default()
     }
 
-    /// What has to be computed for the drawing: nothing where none is made.
-    ///
-    /// # Errors
-    /// Where flags of figures are given without one, or flags of curves without these.
+    /// The products that the drawing needs: none where nothing is drawn.
     pub fn products(&self, format: Format) -> Result<Products> {
         let given = [
             ("--colour", self.colour.is_some()),
@@ -49,31 +44,22 @@ impl Drawing {
         ];
         self.paper.check(format.is_figure())?;
         if !format.is_figure() {
-            return match given.iter().find(|(_, given)| *given) {
-                None => Ok(Products::default()),
-                Some((flag, _)) => Err(Error::input(
-                    flag,
-                    "given",
-                    "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png",
-                )),
-            };
+            unused(&given, "is for figures: write one with --output FILE.svg, FILE.pdf or FILE.png")?;
+            return Ok(Products::default());
         }
-        match given[2..].iter().find(|(_, given)| *given && !self.curves) {
-            Some((flag, _)) => Err(Error::input(flag, "given", "is for curves: add --curves")),
-            None => Ok(self.colouring().needs()),
+        if !self.curves {
+            unused(&given[2..], "is for curves: add --curves")?;
         }
+        Ok(self.colouring().needs())
     }
 
     /// The curves wanted.
-    ///
-    /// # Errors
-    /// Ranges that are too large.
-    pub fn sampled(&self, map: &Map) -> Result<Vec<Curve>> {
+    pub fn sampled(&self, grid: &Grid) -> Result<Vec<Curve>> {
         if !self.curves {
             return Ok(Vec::new());
         }
-        let default = FAMILIES;
-        let families = Families { a: self.a.unwrap_or(default.a), b: self.b.unwrap_or(default.b), ..default };
-        families.curves(map.grid.lambdas().0, &window(&map.grid))
+        let families =
+            Families { a: self.a.unwrap_or(FAMILIES.a), b: self.b.unwrap_or(FAMILIES.b), ..FAMILIES };
+        families.curves(grid.lambdas().0, &window(grid))
     }
 }

@@ -7,13 +7,14 @@ mod source;
 
 use std::path::PathBuf;
 
-use super::args::{self, Columns, Common, Stiffness, from_str};
+use super::args::{self, Columns, Common, Stiffness};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::map::{Products, Shard};
+use crate::question::{Map, flag};
 pub use drawing::Drawing;
-pub use output::{Output, document};
-pub use part::{Map, Part};
+pub use output::Output;
+pub use part::Part;
 pub use source::Source;
 
 /// Flags of `map`.
@@ -37,7 +38,7 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     resume: Option<PathBuf>,
     /// Compute the K-th of N parts only, into the directory of --resume; `kickdrift merge` joins the parts.
-    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = from_str::<Shard>)]
+    #[arg(long, value_name = "K/N", allow_hyphen_values = true, value_parser = flag::<Shard>)]
     shard: Option<Shard>,
 }
 
@@ -52,11 +53,15 @@ impl Args {
             label: self.label || any(|own| own.label),
             growth: self.growth || any(|own| own.growth),
         };
-        let map = Map::new(self.stiffness.clone(), self.grid.range()?, products)?;
+        let Stiffness { lambda1, lambda2 } = &self.stiffness;
+        let (label, growth) = (products.label, products.growth);
+        let map = Map { label, growth, ..self.grid.map(lambda1, lambda2)? };
+        let grid = map.grid()?;
         let store = self.resume.as_ref().map(|directory| Part::create(directory, &map)).transpose()?;
         let source = Source::compute(common, shard, store.map(Part::into_store));
-        let Args { columns, drawing, shard: part, .. } = self;
-        Output { map: &map, format, columns, drawing, part: *part, common }.write(&source)
+        let Args { columns, drawing, shard, .. } = self;
+        let map = Map { shard: *shard, ..map };
+        Output { map: &map, grid: &grid, format, columns, drawing, common }.write(&source)
     }
 
     /// The part of the map to compute.

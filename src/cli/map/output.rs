@@ -1,28 +1,26 @@
-//! What becomes of a map: a summary, rows, arrays or a figure, each from one band at a time.
+//! A map written as a summary, rows, arrays or a figure, each from one band at a time.
 
 use std::path::Path;
 
-use super::{Drawing, Map, Source};
+use super::{Drawing, Source};
 use crate::cli::args::{Columns, Common};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::map::{Band, Grid, Products, Shard};
+use crate::map::{Band, Grid};
+use crate::question::{Fields, Map, Question};
 use crate::report::csv;
-use crate::report::document::{Document, Layout};
+use crate::report::document::Layout;
 use crate::report::file::{write_output, write_with};
-use crate::report::map::{self as report, Counts, MapArrays, Marked, Rows, Tally, marked};
-use crate::report::plane::{Chart, parameters};
-use crate::report::table::Table;
-use crate::scene::GridRange;
+use crate::report::map::{self as report, Counts, MapArrays, MapTally, Marked, Rows, marked};
+use crate::report::plane::Chart;
 
 /// A result on its way out.
 pub struct Output<'a> {
     pub map: &'a Map,
+    pub grid: &'a Grid,
     pub format: Format,
     pub columns: &'a Columns,
     pub drawing: &'a Drawing,
-    /// K/N where the map is not whole.
-    pub part: Option<Shard>,
     pub common: &'a Common,
 }
 
@@ -45,12 +43,18 @@ impl Output<'_> {
         Ok(())
     }
 
+    /// Hands on the bands.
+    fn each(&self, source: &Source, see: &mut dyn FnMut(&Band) -> Result<()>) -> Result<()> {
+        source.each(self.grid, self.map.products(), see)
+    }
+
     /// The rows, in the columns asked for.
     fn rows(&self) -> Result<Rows<'_>> {
-        let rows = Rows::new(&self.map.grid, self.map.products);
-        self.columns
-            .names()
-            .map_or(Ok(rows), |names| Rows::new(&self.map.grid, self.map.products).choosing(names))
+        let rows = Rows::new(self.grid, self.map.products());
+        match self.columns.names() {
+            Some(names) => rows.choosing(names),
+            None => Ok(rows),
+        }
     }
 
     fn document(&self, source: &Source, path: Option<&Path>) -> Result<()> {
@@ -60,11 +64,11 @@ impl Output<'_> {
             _ => MOST_ROWS,
         };
         let rows = self.rows()?;
-        let (mut tally, mut pairs) = (Tally::default(), Vec::<Marked>::new());
-        source.each(self.map, &mut |band| {
-            tally.add(&self.map.grid, band);
+        let (mut tally, mut pairs) = (MapTally::default(), Vec::<Marked>::new());
+        self.each(source, &mut |band| {
+            tally.add(self.grid, band);
             if tally.counts.marked() <= most {
-                pairs.extend(marked(&self.map.grid, band));
+                pairs.extend(marked(self.grid, band));
             }
             Ok(())
         })?;
@@ -76,7 +80,7 @@ impl Output<'_> {
         let rows = (count <= most).then(|| rows.table(&pairs));
         // The columns are chosen already.
         let layout = Layout { columns: None, ..self.columns.layout() };
-        let document = self.echo(report::document(&tally, rows)).laid_out(&layout)?;
+        let document = report::document(&tally, rows).inputs(self.map.input()).laid_out(&layout)?;
         let mut text = document.floated(self.common.float).render(self.format)?;
         if self.format == Format::Text && count > most {
             text += &format!("\n{count} rows: use --format csv or latex to see them\n");
@@ -84,58 +88,34 @@ impl Output<'_> {
         write_output(path, text.as_bytes())
     }
 
-    fn echo(&self, document: Document) -> Document {
-        let document = echo(document, &self.map.grid, &self.map.range);
-        let Products { label, growth } = self.map.products;
-        let flag = |given: bool| given.then(|| "true".to_string());
-        let part = self.part.map(|shard| shard.to_string());
-        let flags = [("label", flag(label)), ("growth", flag(growth)), ("shard", part)];
-        document.inputs(flags.into_iter().filter_map(|(key, value)| Some((key, value?))))
-    }
-
     fn csv(&self, source: &Source, path: Option<&Path>) -> Result<()> {
         let mut rows = self.rows()?;
         let columns = rows.columns();
         write_with(path, |sink| {
             csv::write_header(sink, &columns)?;
-            source.each(self.map, &mut |band| {
-                let cells = marked(&self.map.grid, band).map(|pair| rows.cells(&pair));
+            self.each(source, &mut |band| {
+                let cells = marked(self.grid, band).map(|pair| rows.cells(&pair));
                 csv::write_rows(sink, &columns, cells)
             })
         })
     }
 
     fn npz(&self, source: &Source, path: &Path) -> Result<()> {
-        let grid = &self.map.grid;
-        let mut arrays = MapArrays::new(path, grid, self.map.products)?;
-        source.each(self.map, &mut |band: &Band| arrays.add(grid, band))?;
+        let mut arrays = MapArrays::new(path, self.grid, self.map.products())?;
+        self.each(source, &mut |band| arrays.add(self.grid, band))?;
         arrays.finish()
     }
 
     fn figure(&self, source: &Source, path: Option<&Path>) -> Result<()> {
-        let curves = self.drawing.sampled(self.map)?;
-        let grid = &self.map.grid;
-        let (mut chart, mut counts) = (Chart::new(grid, self.drawing.colouring()), Counts::default());
-        source.each(self.map, &mut |band| {
-            chart.add(grid, band);
+        let curves = self.drawing.sampled(self.grid)?;
+        let (mut chart, mut counts) = (Chart::new(self.grid, self.drawing.colouring()), Counts::default());
+        self.each(source, &mut |band| {
+            chart.add(self.grid, band);
             counts.add(band);
             Ok(())
         })?;
-        let range = &self.map.range;
-        let foot = parameters(grid.lambdas(), range.ranges(), range.steps());
-        let figure = chart.figure(grid, &counts, &curves).footed(&foot);
-        let command = self.common.command.replacen("kickdrift map", &self.map.command(), 1);
+        let figure = chart.figure(self.grid, &counts, &curves).footed(&self.map.foot());
+        let command = self.common.command.replacen("kickdrift map", &self.map.bare().command(), 1);
         self.drawing.paper.write_as(figure, self.format, path, (&command, self.common))
     }
-}
-
-/// The verdicts of a scene as a document.
-pub fn document(grid: &Grid, range: &GridRange, tally: &Tally, pairs: &[Marked]) -> Document {
-    let rows: Table = Rows::new(grid, Products::default()).table(pairs);
-    echo(report::document(tally, Some(rows)), grid, range)
-}
-
-fn echo(document: Document, grid: &Grid, range: &GridRange) -> Document {
-    let (lambda1, lambda2) = grid.lambdas();
-    document.input("lambda1", lambda1).input("lambda2", lambda2).inputs(range.given())
 }

@@ -1,10 +1,9 @@
 //! Where a map's bands come from: computed, resumed, or joined from parts.
 
-use super::Map;
 use crate::cli::args::Common;
 use crate::cli::progress::progress;
 use crate::error::Result;
-use crate::map::{self, Band, Resources, Shard, Store, merge};
+use crate::map::{Band, Grid, Map, Products, Resources, Shard, Store, merge};
 use crate::verdict::Limits;
 
 /// Bands in order.
@@ -21,11 +20,12 @@ impl Source {
     }
 
     /// Hands the bands on in order.
-    ///
-    /// # Errors
-    /// As [`map::Map::for_each_band`] and [`merge`].
-    pub fn each(&self, map: &Map, see: &mut dyn FnMut(&Band) -> Result<()>) -> Result<()> {
-        let Map { grid, products, .. } = map;
+    pub fn each(
+        &self,
+        grid: &Grid,
+        products: Products,
+        see: &mut dyn FnMut(&Band) -> Result<()>,
+    ) -> Result<()> {
         match self {
             Source::Joined(stores) => merge(grid, stores, |_, band| see(&band)).map(drop),
             Source::Computed { shard, store, threads, limits, quiet } => {
@@ -36,7 +36,7 @@ impl Source {
                     Ok(())
                 };
                 let resources = Resources { threads: *threads, limits: *limits, stopped: None };
-                let whole = map::Map::of(grid).with(*products).shard(*shard).within(resources);
+                let whole = Map::of(grid).with(products).shard(*shard).within(resources);
                 let done = store.as_ref().map_or(whole, |store| whole.kept_in(store)).for_each_band(see);
                 bar.finish_and_clear();
                 done.map(drop)

@@ -1,18 +1,19 @@
 //! `kickdrift run`: the products that a scene wants, nothing else; a grid is decided once, however many products show it.
 
-mod summary;
-mod tongues;
 mod work;
 
 use std::path::{Path, PathBuf};
+
+use serde_json::json;
 
 use super::args::Common;
 use super::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::question::{Fields, LONGEST_SCENE, Scene};
+use crate::report::document::Document;
 use crate::report::file::{Folder, write_output};
-use crate::scene::{self, Scene, file};
-use summary::Summary;
+use crate::scene::file;
 use work::Work;
 
 /// Flags of `run`.
@@ -31,27 +32,35 @@ impl Args {
             let remedy = "a scene's products have their own formats, and the summary is text or json";
             return Err(Error::input("format", format.name(), remedy));
         }
-        let scene = Scene::read(&self.text()?)?;
+        let scene = Scene::from_json(&self.text()?)?;
         self.paper.check(scene.want.iter().any(|want| want.product.is_figure()))?;
         let folder = Folder::make(&common.output.clone().unwrap_or_else(|| self.default_folder()))?;
         let work = Work::new(&scene, common, &self.paper, folder.path());
         // All products before the first file: an error leaves nothing behind.
         let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
-        let mut summary = Summary::default();
+        let mut lines: Vec<String> =
+            Some(scene.title.clone()).filter(|title| !title.is_empty()).into_iter().collect();
+        let (mut products, mut told) = (Vec::new(), Vec::new());
         for (want, contents) in scene.want.iter().zip(contents) {
-            let path = folder.path().join(want.file_name());
+            let (product, path) = (want.product, folder.path().join(want.file_name()));
             work.write(contents, &path)?;
-            summary.add(*want, &path, &work);
+            lines.push(path.display().to_string());
+            // A product's summary is shown once, with its first file.
+            if let Some(summary) = work.summary(product).filter(|_| !told.contains(&product)) {
+                lines.extend(summary.lines().map(|line| format!("    {line}")));
+            }
+            told.push(product);
+            products.push(json!({"product": product.name(), "file": path.display().to_string()}));
         }
         folder.keep();
-        let document = summary.document(&scene);
+        let document = Document::new("run").inputs(scene.input()).entry("products", products).summary(&lines);
         let format = common.format.unwrap_or(Format::Text);
         write_output(None, document.render(format)?.as_bytes())
     }
 
     /// The text of the scene file; no more of it than a scene may have.
     fn text(&self) -> Result<String> {
-        file::text(&self.scene, scene::LONGEST as u64).map_err(|cause| {
+        file::text(&self.scene, LONGEST_SCENE as u64).map_err(|cause| {
             let remedy = "name a scene file, such as data/scenes/figure1.json";
             Error::io(self.scene.display(), format!("cannot read the scene ({cause}): {remedy}"))
                 .caused_by(cause)

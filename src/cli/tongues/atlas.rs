@@ -1,39 +1,21 @@
 //! The atlas of tongues in the (h1, h2) plane.
 
-use clap::ValueEnum;
 use plot::{Figure, Foot};
 
-use super::Question;
+use super::output::Stream;
 use crate::cli::args::Common;
 use crate::cli::paper::Paper;
-use crate::cli::ratios::below;
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
-use crate::question::Ratios;
+use crate::question::{Colour, Ratios};
 use crate::report::plane::{self, Segment};
 use crate::resonance::{Curve, Families, Window};
-use crate::tongue::{Quantity, Range, Tongue, TongueEdge, Wanted};
-
-/// What the colours stand for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
-    /// The a of the dominant family.
-    Family,
-    /// The fastest growth inside the tongue.
-    Growth,
-}
-
-impl Colour {
-    /// What has to be computed for the colours.
-    pub fn needs(self) -> Wanted {
-        Wanted { family: true, growth: self == Colour::Growth, ..Wanted::default() }
-    }
-}
+use crate::tongue::{Bounds, Range, Tongue, TongueEdge};
 
 /// A question whose answer is drawn.
 pub struct Atlas<'a> {
-    question: &'a Question,
+    question: &'a Stream,
     colour: Colour,
     window: Window,
     curves: Vec<Curve>,
@@ -44,10 +26,7 @@ const SAMPLES: usize = 400;
 
 impl<'a> Atlas<'a> {
     /// The window and the curves, those of the families selected unless others are given; tongues come later.
-    ///
-    /// # Errors
-    /// No L1, no window, too many curves.
-    pub fn new(question: &'a Question, colour: Colour, families: Option<Families>) -> Result<Self> {
+    pub fn new(question: &'a Stream, colour: Colour, families: Option<Families>) -> Result<Self> {
         let missing =
             |field: &str, example: &str| Error::missing(field, format!("an atlas needs it, as {example}"));
         let lambda1 =
@@ -71,17 +50,11 @@ impl<'a> Atlas<'a> {
     }
 
     /// Computes the tongues and writes the figure.
-    ///
-    /// # Errors
-    /// As [`Question::each`], and an unwritable place.
     pub fn write(&self, common: &Common, format: Format, paper: &Paper) -> Result<()> {
         paper.write(self.figure(common)?, format, common.output.as_deref(), common)
     }
 
     /// The figure.
-    ///
-    /// # Errors
-    /// As [`Question::each`].
     pub fn figure(&self, common: &Common) -> Result<Figure> {
         let mut segments = Vec::new();
         self.question.each(common, |part| {
@@ -122,7 +95,7 @@ impl<'a> Atlas<'a> {
 
     /// The last tongue has no end: it is drawn to where the window ends.
     fn segment(&self, tongue: &Tongue) -> Segment {
-        let middle = |q: &Quantity| 0.5 * (q.lo + q.hi);
+        let middle = |q: &Bounds| 0.5 * (q.lo + q.hi);
         let place = |edge: &TongueEdge| edge.steps.as_ref().expect("lambda1 is known").each_ref().map(middle);
         let ratio = tongue.row.ratio.p() as f64 / tongue.row.ratio.q() as f64;
         let from = place(&tongue.lower);
@@ -133,13 +106,18 @@ impl<'a> Atlas<'a> {
 }
 
 /// θ/π of an angle strictly between 0 and π that is a rational multiple of π.
-///
-/// # Errors
-/// Another angle.
 pub fn share_of_pi(theta: &Laurent) -> Result<crate::number::Rational> {
     use num_traits::{One, Signed};
     let share = theta.as_monomial().filter(|(power, _)| *power == 1).map(|(_, share)| share.clone());
     share.filter(|share| share.is_positive() && *share < One::one()).ok_or_else(|| {
         Error::input("theta", theta, "give a rational multiple of pi between 0 and pi, as pi/2")
     })
+}
+
+/// Below a figure.
+pub fn below(ratios: Ratios, foot: Foot) -> Foot {
+    match ratios {
+        Ratios::One(ratio) => foot.value("*h*_2/*h*_1", ratio),
+        Ratios::UpTo(max_sum) => foot.part(format!("all *h*_2/*h*_1 = *p*/*q*, *p* + *q* ≤ {max_sum}")),
+    }
 }

@@ -1,38 +1,37 @@
 //! `kickdrift tongues`: every unstable interval of one ratio or of all, with certified edges.
 
 mod atlas;
-mod diagram;
+mod figures;
 mod output;
-mod question;
-mod strength;
-mod trace;
 
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 
-use super::args::Common;
+use super::args::{Common, unused};
 use super::paper::Paper;
-use super::ratios::Flags;
 use super::verdict::{EDGES_WORTH_CERTIFYING, within};
 use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::rational::ratio;
-use crate::number::{Laurent, Rational};
-use crate::question::{MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
+use crate::number::{Laurent, Ratio, Rational};
+use crate::question::{Colour, MOST_SUM, Question as _, Ratios, Survey, THINNEST, Tongues as Asked, flag};
 use crate::report::certificate::coq_of_tongue;
 use crate::report::file::write_output;
 use crate::report::tongues::needed;
 use crate::tongue::{self, Labels, Range, Selection, Stiffness, Tongues, Wanted};
-pub use atlas::{Atlas, Colour};
-pub use output::put;
-pub use question::Question;
+pub use atlas::Atlas;
+pub use output::{Stream, put};
 
 /// Flags of `tongues`: a ratio or all of them, and rho or both stiffnesses.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    #[command(flatten)]
-    which: Flags,
+    /// h2/h1 = p/q; several, as 5/3,7/2, for a diagram.
+    #[arg(long, value_name = "P/Q", allow_hyphen_values = true, value_delimiter = ',', value_parser = flag::<Ratio>)]
+    ratio: Vec<Ratio>,
+    /// All coprime p + q up to this number.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+    max_sum: Option<u64>,
     /// rho = lambda2/lambda1, not negative.
     #[arg(long, value_name = "R", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     rho: Option<Rational>,
@@ -127,19 +126,19 @@ impl Args {
             _ if self.survey => common.write(&self.all_tongues()?.ask(&common.work())?, format),
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Strength)) => {
                 let theta = self.theta.clone().unwrap_or_else(|| Laurent::monomial(ratio(1, 2), 1));
-                put(strength::drawn(self.ratios()?, &self.stiffness()?, &theta)?)
+                put(figures::strengths(self.ratios()?, &self.stiffness()?, &theta)?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Widths)) => {
-                put(strength::widths(self.ratios()?, &self.stiffness()?)?)
+                put(figures::widths(self.ratios()?, &self.stiffness()?)?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Trace)) => {
                 let Ratios::One(ratio) = self.ratios()? else {
                     return Err(Error::missing("ratio", "traces are of one ratio: give --ratio P/Q"));
                 };
-                put(trace::drawn(ratio, &self.stiffness()?.rho, self.m.as_ref())?)
+                put(figures::trace(ratio, &self.stiffness()?.rho, self.m.as_ref())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, Some(Drawn::Diagram)) => {
-                put(diagram::drawn(self.which.several()?, &self.stiffness()?.rho, self.paper.width_mm())?)
+                put(figures::diagram(self.several()?, &self.stiffness()?.rho, self.paper.width_mm())?)
             }
             (Format::Svg | Format::Pdf | Format::Png, _) => {
                 let colour = self.colour.unwrap_or(Colour::Family);
@@ -148,7 +147,8 @@ impl Args {
             }
             _ => {
                 let names = self.columns.clone().filter(|_| self.groups().is_none());
-                let question = self.question(self.wanted(format)?)?.in_columns(names);
+                let mut question = self.question(self.wanted(format)?)?;
+                question.columns = names;
                 output::write(&question, common, format)
             }
         }
@@ -206,20 +206,13 @@ impl Args {
     /// A survey and a figure of strengths are of all tongues.
     fn check_bare(&self) -> Result<()> {
         let given = [
-            ("h1-range", self.h1_range.is_some()),
-            ("h2-range", self.h2_range.is_some()),
-            ("m", self.m.is_some() && self.figure != Some(Drawn::Trace)),
-            ("a", self.a.is_some()),
-            ("b", self.b.is_some()),
+            ("--h1-range", self.h1_range.is_some()),
+            ("--h2-range", self.h2_range.is_some()),
+            ("--m", self.m.is_some() && self.figure != Some(Drawn::Trace)),
+            ("--a", self.a.is_some()),
+            ("--b", self.b.is_some()),
         ];
-        match given.iter().find(|(_, given)| *given) {
-            Some((flag, _)) => Err(Error::input(
-                &format!("--{flag}"),
-                "given",
-                "this result is of all tongues; leave it out",
-            )),
-            None => Ok(()),
-        }
+        unused(&given, "this result is of all tongues; leave it out")
     }
 
     fn all_tongues(&self) -> Result<Survey> {
@@ -230,22 +223,36 @@ impl Args {
         Ok(Survey { max_sum, rho, thinnest })
     }
 
+    /// The ratios that were named, one or more.
+    fn several(&self) -> Result<&[Ratio]> {
+        match (&self.ratio[..], self.max_sum) {
+            (named @ [_, ..], None) => Ok(named),
+            _ => Err(Error::missing(
+                "ratio",
+                "a diagram is of ratios by name: give --ratio P/Q or --ratio P/Q,P/Q",
+            )),
+        }
+    }
+
     fn ratios(&self) -> Result<Ratios> {
-        self.which.ratios()?.within(MOST_SUM)
+        match (&self.ratio[..], self.max_sum) {
+            ([_, second, ..], None) => Err(Error::input("ratio", second, "is one too many: give one")),
+            (named, max_sum) => Ratios::of(named.first().copied(), max_sum)?.within(MOST_SUM),
+        }
     }
 
     fn stiffness(&self) -> Result<Stiffness> {
         Stiffness::new(self.rho.clone(), self.lambda1.clone(), self.lambda2.clone())
     }
 
-    fn question(&self, wanted: Wanted) -> Result<Question> {
+    fn question(&self, wanted: Wanted) -> Result<Stream> {
         let (h1_range, h2_range) = (self.h1_range.clone(), self.h2_range.clone());
         let (m, a, b, digits) = (self.m.clone(), self.a, self.b, self.digits);
         let all = Asked::of(self.ratios()?, self.stiffness()?);
-        Question::new(Asked { h1_range, h2_range, m, a, b, digits, ..all }, wanted)
+        Stream::new(Asked { h1_range, h2_range, m, a, b, digits, ..all }, wanted)
     }
 
-    /// What to compute, where `--columns` says it by groups and not by the names of columns.
+    /// The groups of `--columns`, where it names groups and not columns.
     fn groups(&self) -> Option<Vec<Columns>> {
         let names = self.columns.iter().flatten();
         names.map(|name| Columns::from_str(name.trim(), false).ok()).collect()
@@ -254,7 +261,7 @@ impl Args {
     fn wanted(&self, format: Format) -> Result<Wanted> {
         Ok(match (&self.columns, self.groups()) {
             (None, _) if format == Format::Latex => Wanted { family: true, ..Wanted::default() },
-            (None, _) => Wanted { growth: !self.which.many(), ..Wanted::all() },
+            (None, _) => Wanted { growth: self.max_sum.is_none(), ..Wanted::all() },
             (Some(names), None) => {
                 let lambda1 = self.lambda1.clone();
                 needed(

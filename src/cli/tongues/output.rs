@@ -2,29 +2,87 @@
 
 use std::io::Write;
 
-use crate::parallel::map;
+use indicatif::ProgressBar;
 
-use super::Question;
 use crate::cli::args::{Common, TO_SEE_ROWS};
+use crate::cli::progress::progress;
 use crate::error::{Error, Result};
 use crate::format::Format;
+use crate::parallel::map;
+use crate::question::{Fields, Ratios, Tongues};
 use crate::report::csv;
 use crate::report::document::{Document, Layout};
 use crate::report::file::write_with;
 use crate::report::stream::JsonRows;
 use crate::report::table::Choice;
-use crate::report::tongues::{CAPTION, CAPTION_LATEX, Tally, record};
-use crate::tongue::Tongue;
+use crate::report::tongues::{CAPTION, CAPTION_LATEX, TongueTally, record};
+use crate::tongue::{self, Progress, Selection, StepWindow, Tongue, Wanted};
 
+/// All that `tongues` asks.
+#[derive(Clone, Debug)]
+pub struct Stream {
+    tongues: Tongues,
+    pub ratios: Ratios,
+    pub asked: tongue::Listing,
+    /// The columns of tables, by the names that CSV has; those that fit the form where none are given.
+    pub columns: Option<Vec<String>>,
+}
+
+/// Rows unless a budget says otherwise: some gigabytes of text, minutes of work.
+const MOST: u64 = 30_000_000;
 /// Rows that a LaTeX table holds at most; text shows them up to a number that fits a terminal.
 const MOST_ROWS: u64 = 100_000;
 const ROWS_FOR_PEOPLE: u64 = 60;
 
+impl Progress for ProgressBar {
+    fn expect(&self, total: u64) {
+        self.set_length(total);
+    }
+
+    fn advance(&self, more: u64) {
+        self.inc(more);
+    }
+}
+
+impl Stream {
+    /// The question, if it makes sense, with what is `wanted` of each tongue.
+    pub fn new(tongues: Tongues, wanted: Wanted) -> Result<Self> {
+        let (ratios, asked) = (tongues.ratios()?, tongues.asked(wanted)?);
+        Ok(Stream { tongues, ratios, asked, columns: None })
+    }
+
+    /// That so many rows may be computed and written, where no window and no label says that they are fewer: p + q - 1 of p/q.
+    pub fn allow(&self, common: &Common) -> Result<()> {
+        let asked = &self.asked;
+        if asked.window != StepWindow::default() || asked.selection != Selection::default() {
+            return Ok(());
+        }
+        let rows = asked.ratios.iter().map(|ratio| ratio.kicks() - 1).sum::<u64>();
+        let most = common.budget.unwrap_or(MOST);
+        if rows <= most {
+            return Ok(());
+        }
+        let work = format!("the tongues of {} are {rows} rows, the budget is {most}", self.ratios.words());
+        Err(Error::budget(work, rows).or("choose a smaller --max-sum, a window, or --survey"))
+    }
+
+    /// Hands on the tongues in the order of p + q, p, m.
+    pub fn each(&self, common: &Common, see: impl FnMut(&[Tongue]) -> Result<()>) -> Result<()> {
+        let count = self.asked.ratios.len() as u64;
+        let bar = progress(common.quiet, count, if count == 1 { "tongues" } else { "ratios" });
+        self.asked.each(&bar, see)?;
+        bar.finish_and_clear();
+        Ok(())
+    }
+
+    /// Its document without rows.
+    fn document(&self) -> Document {
+        Document::new("tongues").inputs(self.tongues.input())
+    }
+}
+
 /// Computes the tongues and writes them as the flags say.
-///
-/// # Errors
-/// As [`put`] and [`Question::allow`], and an unwritable place.
-pub fn write(question: &Question, common: &Common, format: Format) -> Result<()> {
+pub fn write(question: &Stream, common: &Common, format: Format) -> Result<()> {
     question.allow(common)?;
     write_with(common.output.as_deref(), |sink| put(question, common, format, sink).map(drop))?;
     common.wrote_output();
@@ -32,15 +90,11 @@ pub fn write(question: &Question, common: &Common, format: Format) -> Result<()>
 }
 
 /// Computes the tongues and writes them to a sink, row by row where they may be many: what stands out in them.
-///
-/// # Errors
-/// As [`Question::each`], those of the sink, and too many rows for LaTeX.
-pub fn put(question: &Question, common: &Common, format: Format, sink: &mut dyn Write) -> Result<Tally> {
+pub fn put(question: &Stream, common: &Common, format: Format, sink: &mut dyn Write) -> Result<TongueTally> {
     match format {
         Format::Json => json(question, common, sink),
         Format::Csv => rows(question, common, sink),
-        Format::Text => text(question, common, sink),
-        Format::Latex => latex(question, common, sink),
+        Format::Text | Format::Latex => document(question, common, format, sink),
         Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
             unreachable!("neither a figure nor arrays are rows")
         }
@@ -48,9 +102,8 @@ pub fn put(question: &Question, common: &Common, format: Format, sink: &mut dyn 
 }
 
 /// The document `kickdrift/tongues/1`; the counts stand behind the rows.
-fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
-    let head = question.echo(Document::new("tongues"));
-    let mut out = JsonRows::begin(sink, &head, "tongues")?;
+fn json(question: &Stream, common: &Common, sink: &mut dyn Write) -> Result<TongueTally> {
+    let mut out = JsonRows::begin(sink, &question.document(), "tongues")?;
     let record = record(&question.asked.request, false);
     let row = |tongue: &Tongue| record.entries(tongue).to_string();
     let tally = each_row(question, common, row, |row| out.row(row))?;
@@ -59,7 +112,7 @@ fn json(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 }
 
 /// All columns as CSV.
-fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
+fn rows(question: &Stream, common: &Common, sink: &mut dyn Write) -> Result<TongueTally> {
     let record = record(&question.asked.request, false);
     let columns = record.columns();
     let choice = question.columns.as_ref().map(|names| Choice::new(&columns, names)).transpose()?;
@@ -76,12 +129,12 @@ fn rows(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Ta
 
 /// Renders the tongues in parallel and hands them on in order.
 fn each_row<T: Send>(
-    question: &Question,
+    question: &Stream,
     common: &Common,
     render: impl Fn(&Tongue) -> T + Sync,
     mut put: impl FnMut(&T) -> Result<()>,
-) -> Result<Tally> {
-    let mut tally = Tally::default();
+) -> Result<TongueTally> {
+    let mut tally = TongueTally::default();
     question.each(common, |part| {
         part.iter().for_each(|tongue| tally.add(tongue));
         let rendered: Vec<T> = map(part, &render);
@@ -90,34 +143,13 @@ fn each_row<T: Send>(
     Ok(tally)
 }
 
-/// A summary, and the rows where they fit a terminal.
-fn text(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
-    let (tally, document) = summed_up(question, common, ROWS_FOR_PEOPLE)?;
-    let mut text = document.render(Format::Text)?;
-    if tally.count > ROWS_FOR_PEOPLE {
-        text += &format!("\n{} rows: {TO_SEE_ROWS}\n", tally.count);
-    }
-    sink.write_all(text.as_bytes()).map_err(Error::stream)?;
-    Ok(tally)
-}
-
-/// A table for papers.
-fn latex(question: &Question, common: &Common, sink: &mut dyn Write) -> Result<Tally> {
-    let (tally, document) = summed_up(question, common, MOST_ROWS)?;
-    if tally.count > MOST_ROWS {
-        let cost = format!("{} rows are too many for a LaTeX table", tally.count);
-        return Err(Error::too_much(cost, "write csv or json"));
-    }
-    sink.write_all(document.render(Format::Latex)?.as_bytes()).map_err(Error::stream)?;
-    Ok(tally)
-}
-
-/// The summary, and the rows up to a number.
-fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, Document)> {
+/// A summary, and the rows where a terminal or a table holds them.
+fn document(question: &Stream, common: &Common, format: Format, sink: &mut dyn Write) -> Result<TongueTally> {
+    let most = if format == Format::Text { ROWS_FOR_PEOPLE } else { MOST_ROWS };
     // What is asked for by name is shown in full.
     let record = record(&question.asked.request, question.columns.is_none());
-    let (mut tally, mut table) =
-        (Tally::default(), record.table("tongues", CAPTION, []).captioned(CAPTION_LATEX));
+    let mut table = record.table("tongues", CAPTION, []).captioned(CAPTION_LATEX);
+    let mut tally = TongueTally::default();
     question.each(common, |part| {
         for tongue in part {
             tally.add(tongue);
@@ -127,14 +159,19 @@ fn summed_up(question: &Question, common: &Common, most: u64) -> Result<(Tally, 
         }
         Ok(())
     })?;
-    let mut document = question.echo(Document::new("tongues")).summary(&tally.lines(&question.words()));
-    if tally.count <= most {
-        document = document.long_rows(table);
+    let too_many = tally.count > most;
+    if too_many && format == Format::Latex {
+        let cost = format!("{} rows are too many for a LaTeX table", tally.count);
+        return Err(Error::too_much(cost, "write csv or json"));
     }
+    let document = question.document().summary(&tally.lines(&question.tongues.words()?));
+    let document = if too_many { document } else { document.long_rows(table) };
     // Places come with their digits already; what is left are widths and rounded numbers, which doubles hold.
-    let digits = question.asked.request.digits;
-    Ok((
-        tally,
-        document.laid_out(&Layout { columns: question.columns.clone(), digits })?.floated(common.float),
-    ))
+    let layout = Layout { columns: question.columns.clone(), digits: question.asked.request.digits };
+    let mut text = document.laid_out(&layout)?.floated(common.float).render(format)?;
+    if too_many {
+        text += &format!("\n{} rows: {TO_SEE_ROWS}\n", tally.count);
+    }
+    sink.write_all(text.as_bytes()).map_err(Error::stream)?;
+    Ok(tally)
 }

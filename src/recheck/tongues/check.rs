@@ -12,7 +12,7 @@ use crate::recheck::context::{Checked, Context, Outcome, holds};
 use crate::recheck::exact::{check_ratio, fraction, part, signs};
 use crate::recheck::written::Ends;
 use crate::report::document::Document;
-use crate::report::tongues::{Tally, record};
+use crate::report::tongues::{TongueTally, record};
 use crate::resonance::dominant_family;
 use crate::tongue::{Tongues, entries};
 use crate::verdict::{Kind, Limits, decide, growth};
@@ -26,7 +26,7 @@ impl Recheck for Claim {
 
     fn again(&self, context: &Context) -> Result<(Value, ())> {
         let asked = self.question(&context.limits())?;
-        let (mut tally, mut rows) = (Tally::default(), Vec::new());
+        let (mut tally, mut rows) = (TongueTally::default(), Vec::new());
         let record = record(&asked.request, false);
         asked.each(&(), |part| {
             part.iter().for_each(|tongue| tally.add(tongue));
@@ -58,11 +58,6 @@ impl Tongue {
         let lower = self.lower.zero("lower", (ratio, m), input)?;
         let finite = self.upper.is_some();
         holds(finite == (m < last), || "the last tongue has no upper edge, and no other one".into())?;
-        holds(finite == self.width.is_some(), || "it has a width where it has an upper edge".into())?;
-        let open = finite && !self.closed;
-        self.growth.due("growth", open)?;
-        self.predicted.due("predicted point", finite && m < p)?;
-        self.first_order.due("law of first order", finite && m < p && *rho != Rational::default())?;
         let (Some(upper), Some(width)) = (&self.upper, self.width) else {
             holds(!self.closed, || "the last tongue is open".into())?;
             return self.unstable(&lower, &(&lower.zero.hi * fraction(2, 1)));

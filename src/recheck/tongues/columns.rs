@@ -1,4 +1,4 @@
-//! What else a row says of a tongue.
+//! The further columns of a tongue's row: growth, the predicted point, the law of first order.
 
 use std::f64::consts::{LN_10, PI};
 
@@ -147,7 +147,7 @@ fn place(p: u64, m: u64, lower: &mut ZeroOf, upper: &mut ZeroOf) -> Checked<Side
         }
         bits += 32;
     }
-    Err(Fault::Wrong("the predicted point cannot be told from an edge".into()))
+    Err(Fault::Wrong("the predicted point and an edge do not part".into()))
 }
 
 /// The distance of the point from an edge, to ten digits.

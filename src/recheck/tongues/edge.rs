@@ -7,7 +7,7 @@ use crate::number::{Ball, Cyclotomic, Laurent, Ratio, Rational, Ring, Sign};
 use crate::propagator::TwoClocks;
 use crate::recheck::context::{Checked, Fault, holds};
 use crate::recheck::exact::{ZeroOf, fraction, resonance};
-use crate::recheck::written::exact;
+use crate::recheck::written::{Decimal, exact};
 use crate::tongue::{Entry, Resonance};
 use crate::verdict::Decidable;
 
@@ -36,11 +36,8 @@ impl Edge {
         holds(pair.contains(&entry), || format!("{name}: {} bounds no tongue m = {m}", entry.name()))?;
         holds(self.lo > 0.0, || format!("{name}: s is positive"))?;
         let mut zero = ZeroOf::new((ratio, &input.rho), entry, exact(self.lo, self.hi)?, name)?;
-        holds(self.decimal.is_some() == input.digits.is_some(), || {
-            format!("{name}: has no digits, or too many")
-        })?;
         if let Some(decimal) = &self.decimal {
-            let ends = decimal.ends(input.digits.map(u64::from))?;
+            let ends = decimal.ends()?;
             // The digits enclose the same zero.
             let (lo, hi) = (ends.0.max(zero.lo.clone()), ends.1.min(zero.hi.clone()));
             holds(lo <= hi, || format!("{name}: doubles and digits have nothing in common"))?;
@@ -85,21 +82,15 @@ impl Edge {
     /// h² L over an enclosure of a step meets the enclosure of s.
     fn steps(&self, found: &Zero, input: &Input) -> Checked {
         let (name, back) = (found.name, Rational::from(found.zero.ratio.inverse()));
-        let Some(lambda1) = &input.lambda1 else {
-            return holds(self.h1.is_none() && self.h2.is_none(), || format!("{name}: steps need lambda1"));
-        };
+        let Some(lambda1) = &input.lambda1 else { return Ok(()) };
         let [from, upto] = [&found.zero.lo, &found.zero.hi].map(|s| Laurent::from_rational(s.clone()));
         for (key, step, back) in [("h1", &self.h1, fraction(1, 1)), ("h2", &self.h2, back)] {
             let step = step.as_ref().ok_or_else(|| Fault::Wrong(format!("{name}: {key} is missing")))?;
-            holds(step.decimal.is_some() == input.digits.is_some(), || {
-                format!("{name}: {key} has no digits, or too many")
-            })?;
             let s = |h: Rational| {
                 let h = h * &back;
                 &Laurent::from_rational(&h * &h) * lambda1
             };
-            let decimal =
-                step.decimal.as_ref().map(|decimal| decimal.ends(input.digits.map(u64::from))).transpose()?;
+            let decimal = step.decimal.as_ref().map(Decimal::ends).transpose()?;
             for (lo, hi) in [exact(step.lo, step.hi)?].into_iter().chain(decimal) {
                 let meets = !lo.is_negative() && s(lo) <= upto && from <= s(hi);
                 holds(meets, || format!("{name}: {key} is not the step of s"))?;

@@ -3,11 +3,11 @@
 use super::rows::{Claim, Tongue};
 use crate::error::Result;
 use crate::number::{Laurent, Ratio, Rational};
+use crate::question::StepRange;
 use crate::recheck::context::{Checked, Fault, Place, holds};
 use crate::recheck::exact::check_ratio;
-use crate::recheck::written::Range;
 use crate::resonance::dominant_family;
-use crate::tongue::{Question, Selection, Tongues, Wanted};
+use crate::tongue::{Listing, Selection, Tongues, Wanted};
 use crate::verdict::Limits;
 
 /// The label of the last tongue, which has no upper edge.
@@ -52,7 +52,7 @@ impl Claim {
 
 impl Claim {
     /// The question, within the limits.
-    pub(super) fn question(&self, limits: &Limits) -> Result<Question> {
+    pub(super) fn question(&self, limits: &Limits) -> Result<Listing> {
         if let Some(longest) = self.input.ratios()?.list().iter().max_by_key(|ratio| ratio.kicks()) {
             check_ratio(longest.p(), longest.q(), limits).map_err(Fault::refused)?;
         }
@@ -96,7 +96,7 @@ impl Claim {
         let back = Laurent::from_rational(ratio.inverse().into());
         let of_h1 = self.input.h1_range.clone();
         let of_h2 = self.input.h2_range.as_ref().map(|(lo, hi)| (lo * &back, hi * &back));
-        let (lo, hi): Range = match (of_h1, of_h2) {
+        let (lo, hi): StepRange = match (of_h1, of_h2) {
             (Some((a, b)), Some((c, d))) => (a.max(c), b.min(d)),
             (one, other) => one.or(other)?,
         };

@@ -1,11 +1,9 @@
 //! The rows of a document of tongues.
 
-use crate::number::{Ratio, Rational};
+use crate::number::Rational;
 pub use crate::question::Tongues as Input;
-use crate::recheck::context::Place;
 use crate::recheck::written::{Column, Decimal, Ends, Written};
-use crate::resonance::dominant_family;
-use crate::tongue::{self, Entry, Gap, Resonance, Side};
+use crate::tongue::{Entry, Resonance, Side};
 
 rows! {
     /// `kickdrift/tongues/1`.
@@ -15,7 +13,7 @@ rows! {
     }
 
     /// A row.
-    pub struct Tongue {
+    pub struct Tongue [p, q, m] {
         pub p: u64,
         pub q: u64,
         pub m: u64,
@@ -31,12 +29,6 @@ rows! {
         pub predicted: Column<Predicted>,
         #[serde(default)]
         pub first_order: Column<FirstOrder>,
-    }
-}
-
-impl Place for Tongue {
-    fn place(&self) -> String {
-        format!("p = {}, q = {}, m = {}", self.p, self.q, self.m)
     }
 }
 
@@ -88,44 +80,5 @@ rows! {
         pub centre_error: f64,
         pub width_error: f64,
         pub width_ratio: f64,
-    }
-}
-
-impl Tongue {
-    /// A tongue as it is computed, without further columns.
-    pub fn bare(ratio: Ratio, gap: &Gap) -> Tongue {
-        let ((p, q), family) = (ratio.terms(), dominant_family(ratio, gap.m));
-        let width = gap.upper.map(|_| Ends { lo: gap.width.0, hi: gap.width.1 });
-        Tongue {
-            p,
-            q,
-            m: gap.m,
-            a: Some(family.0),
-            b: Some(family.1),
-            lower: Edge::bare(&gap.lower),
-            upper: gap.upper.as_ref().map(Edge::bare),
-            closed: gap.closed,
-            width,
-            growth: Column::Absent,
-            predicted: Column::Absent,
-            first_order: Column::Absent,
-        }
-    }
-}
-
-impl Edge {
-    /// An edge as it is computed.
-    pub fn bare(edge: &tongue::Edge) -> Edge {
-        let entry = Written(edge.entry);
-        Edge {
-            lo: edge.lo,
-            hi: edge.hi,
-            decimal: None,
-            entry,
-            exact: Column::Absent,
-            on: Column::Absent,
-            h1: None,
-            h2: None,
-        }
     }
 }

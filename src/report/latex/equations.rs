@@ -11,13 +11,13 @@ use crate::error::{Error, Result};
 pub struct Equation {
     /// The left side in LaTeX.
     pub name: String,
-    /// What the label begins with.
+    /// The beginning of the label.
     pub key: String,
     /// As ` + \tfrac{7}{2} s`.
     pub terms: Vec<String>,
 }
 
-/// What is left of a column of two beside the left side and the number of the equation, in points.
+/// The room of a column of two between the left side and the number of the equation, in points.
 const LINE: f64 = 150.0;
 
 /// The equations as one `align`, broken before terms that a column of two has no room for; pages may be broken too.

@@ -92,7 +92,7 @@ impl Body {
         }
     }
 
-    /// The same with its place, where it fits.
+    /// The table with its place, where it fits.
     pub fn placed(self, is_long: bool, float: Option<Float>) -> Option<(Place, Body)> {
         Some((self.place(is_long, float)?, self))
     }

@@ -107,7 +107,7 @@ fn kept(table: &Table) -> Table {
     table.choose(&kept.collect::<Vec<_>>()).expect("its own keys")
 }
 
-/// What is known as a formula: `= ` or ` in ` behind it, then the value.
+/// Inputs as formulas, ending in `=` or `in`, before the value.
 const FORMULAS: [(&str, &str); 14] = [
     ("ratio", "h_2/h_1 ="),
     ("max_sum", "p + q \\le"),
@@ -140,7 +140,7 @@ fn parameters(input: &Map<String, Value>, columns: &[Column]) -> String {
     if all.is_empty() { String::new() } else { format!(". {}.", all.join(", ")) }
 }
 
-/// What tells tables of one input apart: their columns and digits.
+/// A checksum of columns and digits: tables of one input have different labels.
 fn form(table: &Table, digits: Option<u32>) -> String {
     let keys: Vec<&str> = table.columns().iter().map(|column| column.key.as_str()).collect();
     format!("{:04x}", checksum(&format!("{keys:?}{digits:?}")) & 0xffff)

@@ -11,14 +11,14 @@ use serde_json::json;
 #[cfg(feature = "cli")]
 pub use arrays::MapArrays;
 pub use rows::{Found, Marked, Rows, marked, needed};
-pub use tally::{Counts, Tally};
+pub use tally::{Counts, MapTally};
 
 use super::document::Document;
 use super::table::Table;
 use crate::verdict::Tier;
 
 /// The document `kickdrift/map/1`, with rows where the form is to show them. The caller adds the input.
-pub fn document(tally: &Tally, rows: Option<Table>) -> Document {
+pub fn document(tally: &MapTally, rows: Option<Table>) -> Document {
     let counts = &tally.counts;
     let [filter, refine, exact] = counts.decided_by;
     let tiers = Tier::ALL.map(Tier::name);

@@ -16,7 +16,7 @@ pub struct Marked {
     /// h1, within two roundings.
     pub h1: f64,
     pub decision: Decision,
-    /// What was asked for of a pair that grows exponentially.
+    /// Label and growth of a pair that grows exponentially, as far as they were asked for.
     pub growing: Option<Growing>,
 }
 
@@ -33,7 +33,7 @@ pub fn marked<'a>(grid: &'a Grid, band: &'a Band) -> impl Iterator<Item = Marked
     })
 }
 
-/// What was asked for of one pair.
+/// Label, family and growth of one pair, as far as they were asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
     /// The tongue's label.
@@ -47,7 +47,7 @@ pub struct Found {
 }
 
 impl Marked {
-    /// What was asked for.
+    /// Its label, family and growth, as far as they were asked for.
     pub fn found(&self) -> Found {
         let Some(growing) = self.growing else { return Found::default() };
         Found {
@@ -111,7 +111,7 @@ fn record(products: Products) -> Record<'static, Written> {
     record
 }
 
-/// What a map has to compute for columns of these names.
+/// The products that columns of these names need.
 pub fn needed(names: &[String]) -> Products {
     let has = |products: Products| {
         let more = record(products).columns().split_off(record(Products::default()).columns().len());

@@ -46,9 +46,9 @@ impl Counts {
 /// How many families the summary for people lists.
 const FAMILIES_LISTED: usize = 6;
 
-/// What the summary reports.
+/// The numbers of the summary.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct MapTally {
     pub counts: Counts,
     pub(super) counters: Counters,
     /// Pairs by the a of their dominant family, where labels were asked for.
@@ -64,7 +64,7 @@ struct Fastest {
     tenfold: Enclosure,
 }
 
-impl Tally {
+impl MapTally {
     /// Counts a band in.
     pub fn add(&mut self, grid: &Grid, band: &Band) {
         self.counts.add(band);
@@ -86,7 +86,7 @@ impl Tally {
         }
     }
 
-    /// What was asked for beside the verdicts, where some pair grows.
+    /// The entries beside the verdicts, where some pair grows.
     pub(super) fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = Vec::new();
         if !self.families.is_empty() {

@@ -23,7 +23,7 @@ pub struct Segment {
     pub closed: bool,
 }
 
-/// What is drawn.
+/// The tongues and curves that are drawn.
 #[derive(Clone, Debug)]
 pub struct Atlas<'a> {
     pub window: Window,
@@ -39,7 +39,7 @@ const WIDTH: f64 = 0.55;
 const ACROSS: f64 = 320.0;
 /// A line in the legend, wide enough to show its colour.
 const SAMPLE: f64 = 2.0;
-/// What tells the families without colours, on the middle of each segment that is longer than so many points; the strongest
+/// The families' marks, for those who see no colours: on the middle of each segment that is longer than so many points; the strongest
 /// family is the one without.
 const SHAPES: [Option<Shape>; FAMILIES] = [
     None,
@@ -52,7 +52,7 @@ const SHAPES: [Option<Shape>; FAMILIES] = [
 ];
 const MARKED: f64 = 1.6;
 const MARK: f64 = 2.0;
-/// The same in the legend.
+/// The size of a mark in the legend.
 const SAMPLED: f64 = 4.0;
 /// Curves, behind the tongues.
 const PALE: Colour = Colour(0xc2, 0xc5, 0xcc);

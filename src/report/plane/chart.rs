@@ -10,7 +10,7 @@ use crate::report::map::{Counts, Found, marked};
 use crate::resonance::{Curve, Window};
 use crate::verdict::Kind;
 
-/// What colours stand for.
+/// The meaning of colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Colouring {
@@ -26,7 +26,7 @@ pub enum Colouring {
 }
 
 impl Colouring {
-    /// What the map has to compute for these colours.
+    /// The products that these colours need.
     pub fn needs(self) -> Products {
         Products { label: self == Colouring::Family, growth: self.by_growth() }
     }
@@ -167,7 +167,7 @@ impl Chart {
         ranks.sort_unstable_by(f64::total_cmp);
         ranks.dedup();
         let (own, others) = ranks.split_at(ranks.len().min(FAMILIES));
-        // A family is told by its hatch, too: without colours, and by eyes that see few.
+        // Each family has a hatch, too, for those who see no colours or few.
         let layer = |n: usize, belongs: &dyn Fn(f64) -> bool| {
             let mut cells = cells(&self.growing, steps, vec![palette::family(n)]);
             let found = self.growing.filled().filter(|(_, _, strength)| belongs(-strength));

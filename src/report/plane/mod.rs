@@ -9,10 +9,8 @@ pub use atlas::{Atlas, Segment};
 pub use chart::{Chart, Colouring, window};
 use lines::{lines, lines_in};
 use plot::palette::{Colour, GREY};
-use plot::{Axis, Cells, Figure, Foot, Layer, Panel};
+use plot::{Axis, Cells, Figure, Layer, Panel};
 
-use super::text::quoted;
-use crate::number::Laurent;
 use crate::resonance::{Curve, Window};
 
 /// Unstable pairs as cells of a grid: (i, j) is centred at (i D1, j D2).
@@ -33,27 +31,6 @@ pub fn side_by_side(window: &Window, cloud: &Cloud, curves: &[Curve], title: &st
     let left = panel(window).titled("(a) Unstable pairs").with(cells(cloud, UNSTABLE));
     let right = lines(panel(window).titled("(b) Curves 1/*T*_{1/2} = *a*/*h*_1 + *b*/*h*_2"), curves);
     Figure::double_column(110.0).named(title).with(left).with(right)
-}
-
-/// What a grid's figure is made from: stiffnesses, ranges, spacings.
-pub fn parameters(
-    (lambda1, lambda2): (&Laurent, &Laurent),
-    ranges: &[(Laurent, Laurent); 2],
-    steps: &[Laurent; 2],
-) -> Foot {
-    let of_clock = |foot: Foot, (n, stiffness): (usize, _)| {
-        let ((lo, hi), step) = (&ranges[n - 1], &steps[n - 1]);
-        foot.value(&format!("*Λ*_{n}"), stiffness).grid(&format!("*h*_{n}"), [lo, hi, step])
-    };
-    [(1, lambda1), (2, lambda2)].into_iter().fold(Foot::default(), of_clock)
-}
-
-/// The command that asks for the pairs of a grid, the same whether they are computed or joined from parts.
-pub fn command((lambda1, lambda2): (&Laurent, &Laurent), given: [(&str, String); 4]) -> String {
-    let stiffness = [("lambda1", lambda1.to_string()), ("lambda2", lambda2.to_string())];
-    let flag = |(key, value): (&str, String)| format!(" --{} {}", key.replace('_', "-"), quoted(&value));
-    let flags: String = stiffness.into_iter().chain(given).map(flag).collect();
-    format!("kickdrift map{flags}")
 }
 
 /// The curves over the unstable pairs.

@@ -147,12 +147,12 @@ impl Page<'_> {
         scaled.reduce(|a, b| [fold[0](a[0], b[0]), fold[1](a[1], b[1])])
     }
 
-    /// What a tongue covers anywhere over a span of heights.
+    /// The interval that a tongue covers somewhere in a span of heights.
     fn around(&self, band: &Band, span: [f64; 2]) -> Option<[f64; 2]> {
         self.edges(band, span, [f64::min, f64::max])
     }
 
-    /// What it covers all over a span of heights.
+    /// The interval that it covers all over a span of heights.
     fn within(&self, band: &Band, span: [f64; 2]) -> Option<[f64; 2]> {
         self.edges(band, span, [f64::max, f64::min]).map(|[lower, upper]| [lower, upper.min(self.size[0])])
     }

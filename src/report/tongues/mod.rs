@@ -18,4 +18,4 @@ mod tally;
 pub mod trace;
 
 pub use rows::{CAPTION, CAPTION_LATEX, needed, record};
-pub use tally::Tally;
+pub use tally::TongueTally;

@@ -1,16 +1,16 @@
-//! What is written of a tongue.
+//! The row of a tongue.
 
 use crate::error::Result;
 use crate::report::decimal::{concise, outward, rounded};
 use crate::report::record::Record;
 use crate::report::table::{Cell, Choice, Column};
-use crate::tongue::{Law, Quantity, Request, Side, Tongue, TongueEdge, Wanted};
+use crate::tongue::{Bounds, Law, Request, Side, Tongue, TongueEdge, Wanted};
 
 /// The caption of a table of tongues.
 pub const CAPTION: &str =
     "Unstable intervals (tongues) in s, the fast stiffness times the square of the fast step";
 
-/// The same in LaTeX.
+/// The caption in LaTeX.
 pub const CAPTION_LATEX: &str = "Unstable intervals (tongues) $s_- < s < s_+$ of $s = h_1^2 \\Lambda_1$";
 
 /// Digits that people need of a number that is rounded anyway.
@@ -37,7 +37,7 @@ pub fn record(request: &Request, short: bool) -> Record<'_, Tongue> {
     wanted(record, request, short)
 }
 
-/// What has to be computed for columns of these names, by which CSV calls them.
+/// The groups that have to be computed for columns of these names, by which CSV calls them.
 ///
 /// # Errors
 /// A name that no column has, whatever is computed.
@@ -63,12 +63,12 @@ struct Edge {
 }
 
 impl Edge {
-    fn s(self, of: &Tongue) -> Option<&Quantity> {
+    fn s(self, of: &Tongue) -> Option<&Bounds> {
         (self.find)(of).map(|edge| &edge.s)
     }
 
     /// h1 (0) or h2 (1).
-    fn step(self, of: &Tongue, n: usize) -> Option<&Quantity> {
+    fn step(self, of: &Tongue, n: usize) -> Option<&Bounds> {
         (self.find)(of)?.steps.as_ref().map(|steps| &steps[n])
     }
 
@@ -132,18 +132,18 @@ impl Edge {
     }
 }
 
-fn ends(quantity: &Quantity) -> (f64, f64) {
+fn ends(quantity: &Bounds) -> (f64, f64) {
     (quantity.lo, quantity.hi)
 }
 
 /// A place to the digits that are asked for, its error in the last of them.
-fn told(quantity: Option<&Quantity>, request: &Request) -> Option<Cell> {
+fn told(quantity: Option<&Bounds>, request: &Request) -> Option<Cell> {
     let (x, digits) = quantity.and_then(|quantity| quantity.precise.as_ref()).zip(request.digits)?;
     Some(Cell::Decimal(concise(&x.lo, &x.hi, digits).to_string()))
 }
 
 /// The lower (0) or the upper (1) end in writing, to the digits that are asked for.
-fn decimal(quantity: Option<&Quantity>, request: &Request, end: usize) -> Cell {
+fn decimal(quantity: Option<&Bounds>, request: &Request, end: usize) -> Cell {
     let precise = quantity.and_then(|quantity| quantity.precise.as_ref()).zip(request.digits);
     precise.map_or(Cell::Missing, |(x, digits)| Cell::exact(&outward(&x.lo, &x.hi, digits)[end]))
 }

@@ -1,4 +1,4 @@
-//! What stands out among many tongues.
+//! Counts and extremes of many tongues.
 
 use serde_json::{Value, json};
 
@@ -8,7 +8,7 @@ use crate::tongue::Tongue;
 
 /// Counts and extremes, in the order in which the tongues come.
 #[derive(Clone, Debug, Default)]
-pub struct Tally {
+pub struct TongueTally {
     pub count: u64,
     pub closed: u64,
     /// Inside, on the edge, outside: predicted points.
@@ -19,7 +19,7 @@ pub struct Tally {
     ratios: Option<(f64, f64)>,
 }
 
-impl Tally {
+impl TongueTally {
     /// Counts a tongue in.
     pub fn add(&mut self, tongue: &Tongue) {
         let row = &tongue.row;
@@ -43,7 +43,7 @@ impl Tally {
         }
     }
 
-    /// What stands behind the rows in JSON.
+    /// The entries behind the rows in JSON.
     pub fn entries(&self) -> Vec<(&'static str, Value)> {
         let mut entries = vec![
             ("count", self.count.into()),

@@ -128,23 +128,43 @@ fn integers(f: &Polynomial<Polynomial<Rational>>) -> InRho {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::polynomial::resultant;
+    use crate::number::rational::ratio;
 
-    /// By the subresultants in Z\[ρ\]\[s\], another way.
+    /// By Euclid's algorithm over ℚ.
+    fn resultant(a: &Polynomial<Rational>, b: &Polynomial<Rational>) -> Rational {
+        let (m, n) = (a.degree().unwrap(), b.degree().unwrap());
+        let leading = b.coefficients()[n].clone();
+        if n == 0 {
+            return leading.pow(m as i32);
+        }
+        let (_, rest) = a.div_rem(b).unwrap();
+        let Some(d) = rest.degree() else { return Rational::zero() };
+        let sign = ratio(if m * n % 2 == 1 { -1 } else { 1 }, 1);
+        sign * leading.pow((m - d) as i32) * resultant(b, &rest)
+    }
+
     #[test]
     fn eliminants_are_resultants() {
         for (p, q) in [(1, 2), (3, 2), (2, 5), (5, 3), (1, 6), (4, 3)] {
             for odd in [true, false] {
-                let (ratio, pair) = (Ratio::new(p, q).unwrap(), Entry::of_tongue(odd));
-                let Some(found) = eliminant(ratio, pair) else { continue };
-                let s = Polynomial::<Polynomial<Rational>>::variable();
-                let rho = Polynomial::constant(Polynomial::variable());
-                let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(ratio, s, rho)));
-                let entries = [a, b, Polynomial::new(c.coefficients()[1..].to_vec()), d];
-                let slow = resultant(&entries[pair[0] as usize], &entries[pair[1] as usize]);
+                let (own, pair) = (Ratio::new(p, q).unwrap(), Entry::of_tongue(odd));
+                let Some(found) = eliminant(own, pair) else { continue };
                 let found = Polynomial::new(found.into_iter().map(Rational::from_integer).collect());
-                let shift = slow.degree().unwrap() - found.degree().unwrap();
-                assert_eq!(found.shift(shift).monic(), slow.monic(), "{ratio} {odd}");
+                let slow = |rho: i64| {
+                    let s = Polynomial::<Rational>::variable();
+                    let rho = Polynomial::constant(ratio(rho, 1));
+                    let [a, b, c, d] = of_half(&half_period(&TwoClocks::with_rho(own, s, rho)));
+                    let entries = [a, b, Polynomial::new(c.coefficients()[1..].to_vec()), d];
+                    resultant(&entries[pair[0] as usize], &entries[pair[1] as usize])
+                };
+                // A power of ρ and a factor are left out: both follow from two values.
+                let share = |rho: i64| slow(rho) / found.eval(&ratio(rho, 1));
+                let (factor, power) = (share(1), share(2) / share(1));
+                let shift = (0..99).find(|&k| ratio(2, 1).pow(k) == power).expect("a power of 2");
+                for rho in 3..40 {
+                    let fast = &factor * ratio(rho, 1).pow(shift) * found.eval(&ratio(rho, 1));
+                    assert_eq!(slow(rho), fast, "{own} {odd} {rho}");
+                }
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use kickdrift::number::rational::{from_f64_exact, ratio};
 use kickdrift::number::{Ratio, Rational};
-use kickdrift::plot::palette::{Colour, GREY};
+use kickdrift::plot::palette::Colour;
 use kickdrift::plot::{Axis, Cells, Figure, Layer, Panel};
 use kickdrift::propagator::TwoClocks;
 use kickdrift::tongue::Tongues;
@@ -14,6 +14,8 @@ use crate::methods::Method;
 /// Doubles to either side.
 const AROUND: i64 = 50;
 const RATIO: (u64, u64, u64) = (61, 39, 40);
+/// A pale grey.
+const PALE: Colour = Colour(0xb5, 0xb7, 0xbb);
 const RED: Colour = Colour(0xc8, 0x2c, 0x3c);
 
 pub struct Picture {
@@ -29,7 +31,7 @@ pub fn picture() -> Picture {
     let edge = tongues.gap(m).expect("a tongue").lower.lo;
     let neighbour = |x: f64, n: i64| f64::from_bits((x.to_bits() as i64 + n) as u64);
     let side = (2 * AROUND + 1) as u32;
-    let cells = || Cells::new([-AROUND as f64; 2], [1.0; 2], vec![GREY.lighter(), RED]);
+    let cells = || Cells::new([-AROUND as f64; 2], [1.0; 2], vec![PALE, RED]);
     let (mut naive, mut certified, mut wrong) = (cells(), cells(), 0);
     for i in 0..side {
         for j in 0..side {

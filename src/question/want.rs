@@ -1,10 +1,14 @@
 //! The products that a scene can want.
 
+use serde_json::Value;
+
+use super::field::Field;
 use crate::error::{Error, Result};
 use crate::format::Format;
 
 /// A product of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum Product {
     /// The verdicts of the grid.
     Map,
@@ -56,7 +60,7 @@ impl Want {
     ///
     /// # Errors
     /// An unknown product or format, or a format that the product does not have.
-    pub(super) fn new(text: &str) -> Result<Want> {
+    fn new(text: &str) -> Result<Want> {
         let (name, format) = text.split_once('.').map_or((text, None), |(name, format)| (name, Some(format)));
         let product =
             find(&PRODUCTS, name).ok_or_else(|| unknown(text, "the products are", &names(&PRODUCTS)))?;
@@ -95,6 +99,21 @@ impl Product {
     /// Whether it is drawn.
     pub fn is_figure(self) -> bool {
         matches!(self, Product::Figure | Product::Overlay | Product::Atlas)
+    }
+}
+
+/// A list of texts in a scene, one text in documents.
+impl Field for Vec<Want> {
+    fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
+        let texts =
+            given?.as_array().and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>());
+        let refused =
+            || Error::input(name, given.unwrap_or(&Value::Null), "list the products, as [\"map.csv\"]");
+        Some(texts.ok_or_else(refused).and_then(|all| all.into_iter().map(Want::new).collect()))
+    }
+
+    fn shown(&self) -> Option<Value> {
+        Some(self.iter().map(Want::file_name).collect::<Vec<_>>().join(", ").into())
     }
 }
 
