@@ -11,10 +11,9 @@ use super::work::LANES;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
 use crate::orbit::strengths::Strengths;
-use crate::propagator::{Oscillator, TwoClocks};
 use crate::vector::each;
 use crate::vector::instructions::{Instructions, Task};
-use crate::verdict::{Decision, Limits, decide};
+use crate::verdict::{Decision, Limits, decide_steps};
 
 /// The quantities' names, and what those must hear that are not positive.
 const FIELDS: [(&str, Option<&str>); 4] = [
@@ -95,7 +94,7 @@ impl Pairs {
         Pairs::new([vec![lambda1], vec![lambda2], first, second], [one.clone(), one, each.clone(), each])
     }
 
-    /// The verdicts in the order of the pairs: those of [`decide`], with pairs of about the same number of updates run side
+    /// The verdicts in the order of the pairs: those of [`decide_steps`], with pairs of about the same number of updates run side
     /// by side.
     ///
     /// # Errors
@@ -109,10 +108,8 @@ impl Pairs {
         std::array::from_fn(|k| &self.known[k][self.picked[k][n]])
     }
 
-    fn clocks(&self, n: usize) -> Result<TwoClocks<Laurent>> {
-        let [lambda1, lambda2, h1, h2] =
-            std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone());
-        Ok(Oscillator::new(lambda1, lambda2, h1, h2)?.clocks())
+    fn quantities(&self, n: usize) -> [Laurent; 4] {
+        std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone())
     }
 }
 
@@ -132,7 +129,7 @@ impl Source for Pairs {
     }
 
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
-        decide(&self.clocks(n)?, limits).map(|answer| answer.decision())
+        decide_steps(self.quantities(n), limits)
     }
 }
 

@@ -17,7 +17,7 @@ use crate::verdict::{Limits, decide};
 pub(super) const LANES: usize = 32;
 
 /// Longer pairs are left to the ladder, whose return maps cost less than so many updates in a group (tests/bench/README.md).
-pub(super) const MOST_TOGETHER: u64 = 1 << 16;
+pub(super) const MOST_TOGETHER: u64 = 1 << 15;
 
 /// Decides the pairs at these positions in groups, `decide` returning those that the groups' bound does not certify, and these
 /// again where there are enough: long ones, for which a look at every update is the sharpest bound, and still many times

@@ -41,15 +41,7 @@ impl Oscillator {
     /// # Errors
     /// Names the quantity that is out of range; a budget error where p or q reaches 2^62.
     pub fn new(lambda1: Laurent, lambda2: Laurent, h1: Laurent, h2: Laurent) -> Result<Self> {
-        positive("lambda1", &lambda1, "the fast stiffness must be positive")?;
-        positive("h1", &h1, "a step must be positive")?;
-        positive("h2", &h2, "a step must be positive")?;
-        let irrational = || {
-            let remedy =
-                "the ratio is irrational, so the clocks never meet again; choose commensurable steps";
-            Error::input("h2/h1", format!("({h2})/({h1})"), remedy)
-        };
-        let ratio = Laurent::ratio(&h2, &h1).ok_or_else(irrational)?;
+        let ratio = ratio(&lambda1, &h1, &h2)?;
         let ratio = Ratio::try_from(&ratio).map_err(|_| endless())?;
         Ok(Oscillator { lambda1, lambda2, h1, h2, ratio })
     }
@@ -164,12 +156,84 @@ impl<S: Real> TwoClocks<S> {
     }
 }
 
+/// Two clocks whose period may hold any number of kicks, as that of two steps that are doubles does: 2^100 and more.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LongClocks<S> {
+    ratio: Rational,
+    fast: S,
+    slow: S,
+}
+
+impl LongClocks<Laurent> {
+    /// Of an oscillator: L1, L2, h1, h2 as in [`Oscillator::new`].
+    ///
+    /// # Errors
+    /// As there, but for long periods.
+    pub fn new(lambda1: &Laurent, lambda2: &Laurent, h1: &Laurent, h2: &Laurent) -> Result<Self> {
+        let ratio = ratio(lambda1, h1, h2)?;
+        let [first, second] = [h1, h2].map(|h| Laurent::product(h1, h));
+        Ok(LongClocks {
+            ratio,
+            fast: Laurent::product(&first, lambda1),
+            slow: Laurent::product(&second, lambda2),
+        })
+    }
+}
+
+impl<S: Ring> LongClocks<S> {
+    /// h2/h1.
+    pub fn ratio(&self) -> &Rational {
+        &self.ratio
+    }
+
+    /// s = h1² L1.
+    pub fn fast(&self) -> &S {
+        &self.fast
+    }
+
+    /// h1 h2 L2.
+    pub fn slow(&self) -> &S {
+        &self.slow
+    }
+
+    /// How many binary digits the number of kicks of the clock has that strikes less often.
+    pub fn shorter_bits(&self) -> u64 {
+        self.ratio.numer().bits().min(self.ratio.denom().bits())
+    }
+
+    /// As [`TwoClocks::swapped`].
+    #[must_use]
+    pub fn swapped(&self) -> Self {
+        let ratio = S::from_rational(&self.ratio);
+        let (fast, slow) = (S::product(&self.slow, &ratio), S::product(&self.fast, &ratio));
+        LongClocks { ratio: self.ratio.recip(), fast, slow }
+    }
+}
+
+impl<S: Ring> From<&TwoClocks<S>> for LongClocks<S> {
+    fn from(clocks: &TwoClocks<S>) -> Self {
+        let TwoClocks { ratio, fast, slow } = clocks.clone();
+        LongClocks { ratio: ratio.into(), fast, slow }
+    }
+}
+
 impl TwoClocks<Laurent> {
     /// The pair over the rationals, where both strengths are rational.
     pub fn as_rational(&self) -> Option<TwoClocks<Rational>> {
         let (fast, slow) = (self.fast.as_rational()?.clone(), self.slow.as_rational()?.clone());
         Some(TwoClocks { ratio: self.ratio, fast, slow })
     }
+}
+
+/// h2/h1, where the quantities are in range.
+fn ratio(lambda1: &Laurent, h1: &Laurent, h2: &Laurent) -> Result<Rational> {
+    positive("lambda1", lambda1, "the fast stiffness must be positive")?;
+    positive("h1", h1, "a step must be positive")?;
+    positive("h2", h2, "a step must be positive")?;
+    Laurent::ratio(h2, h1).ok_or_else(|| {
+        let remedy = "the ratio is irrational, so the clocks never meet again; choose commensurable steps";
+        Error::input("h2/h1", format!("({h2})/({h1})"), remedy)
+    })
 }
 
 fn positive(field: &str, x: &Laurent, remedy: &str) -> Result<()> {

@@ -30,7 +30,7 @@ pub mod methods;
 mod signs;
 
 pub use builder::OscillatorBuilder;
-pub use clocks::{Oscillator, TwoClocks};
+pub use clocks::{LongClocks, Oscillator, TwoClocks};
 pub use elementary::{apply_drift, apply_kick, drift, kick};
 pub use half::{HalfPeriod, full_period, half_period};
 pub use signs::{HalfSigns, PartialSigns};

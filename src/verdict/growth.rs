@@ -131,7 +131,7 @@ impl Runs {
             if best.as_ref().is_some_and(|best| best.is_enough) {
                 break;
             }
-            let Some(ends) = returns::run(clocks, bits, wanted) else { continue };
+            let Some(ends) = returns::run(&clocks.into(), bits, wanted) else { continue };
             let found = of(&ends, bits);
             best = Some(Returned { label: found.label.or(best.and_then(|best| best.label)), ..found });
         }

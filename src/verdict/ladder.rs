@@ -3,18 +3,21 @@
 use std::ops::RangeInclusive;
 use std::sync::OnceLock;
 
-use super::answer::Answer;
+use num_bigint::BigInt;
+
+use super::answer::{Answer, Decision};
 use super::exact::Decidable;
 use super::growth::Runs;
 use super::kind::Verdict;
 use super::lone;
 use super::tier::{Limits, Tier};
-use crate::error::Result;
+use crate::error::{Error, Kind as ErrorKind, Result};
+use crate::number::Laurent;
 use crate::orbit::floquet::Floquet;
 use crate::orbit::returns::{self, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::parallel::go_on;
-use crate::propagator::TwoClocks;
+use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
 
 /// The precisions of the refine tier in bits, as far as the exact tier is expected to cost more.
@@ -66,16 +69,69 @@ pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<
     }
     let [_, middle, most] = returns::PRECISIONS;
     let routes = [(true, middle), (false, most)];
+    let long = clocks.into();
     for (over_other, bits) in routes {
         go_on()?;
         let run = if over_other { returns::run_over_other } else { returns::run };
-        let Some(ends) = run(clocks, bits, Wanted::Entries) else { continue };
+        let Some(ends) = run(&long, bits, Wanted::Entries) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             let runs = Runs { refined: Some((ends, bits)), ..Runs::default() };
             return Ok(Some(answer(verdict, Tier::Refine, clocks, &Limits::default(), runs)));
         }
     }
     go_on().map(|()| None)
+}
+
+/// Decides a pair whose period may hold any number of kicks, as that of two steps that are doubles does, by return maps alone.
+///
+/// ```
+/// use kickdrift::number::{Laurent, Rational};
+/// use kickdrift::propagator::LongClocks;
+/// use kickdrift::verdict::{Kind, decide_long};
+/// let exact = |x: f64| Laurent::from_rational(Rational::from_float(x).unwrap());
+/// // The doubles 0.001 and 0.9: a period of 10^19 fast kicks.
+/// let clocks = LongClocks::new(&exact(10.0), &exact(0.4), &exact(0.001), &exact(0.9))?;
+/// assert_eq!(decide_long(&clocks)?.verdict.kind(), Kind::Elliptic);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
+///
+/// # Errors
+/// A budget error where return maps tell no verdict: on an edge of a tongue exactly, or nearer to one than 10^-60 or so, which only
+/// exact arithmetic would decide. `Stopped`.
+pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
+    for bits in returns::PRECISIONS {
+        go_on()?;
+        if let Some(verdict) = returns::signs(clocks, bits).and_then(|signs| signs.verdict()) {
+            let decided_by = if bits == 53 { Tier::Filter } else { Tier::Refine };
+            return Ok(Decision { verdict, decided_by });
+        }
+    }
+    go_on()?;
+    let kicks = clocks.ratio().numer() + clocks.ratio().denom();
+    let work = format!(
+        "the pair lies on an edge of a tongue, or too near one for 256 bits, and its period has {} kicks",
+        short(&kicks)
+    );
+    Err(Error::too_much(work, "move a step by a hair, or choose steps with a simpler ratio"))
+}
+
+/// A whole number, or its power of two.
+fn short(n: &BigInt) -> String {
+    if n.bits() < 64 { n.to_string() } else { format!("some 2^{}", n.bits()) }
+}
+
+/// Decides the pair by [`decide`], or by [`decide_long`] where its period is too long for that.
+///
+/// # Errors
+/// Quantities out of range, an irrational ratio of the steps, and those of both.
+pub fn decide_steps(quantities: [Laurent; 4], limits: &Limits) -> Result<Decision> {
+    let [lambda1, lambda2, h1, h2] = &quantities;
+    match Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2.clone()) {
+        Err(error) if error.kind() == ErrorKind::Budget => {
+            decide_long(&LongClocks::new(lambda1, lambda2, h1, h2)?)
+        }
+        oscillator => decide(&oscillator?.clocks(), limits).map(|answer| answer.decision()),
+    }
 }
 
 fn answer<S: Decidable>(
@@ -95,9 +151,10 @@ fn by_returns<S: Decidable>(
     precisions: RangeInclusive<u32>,
     runs: &mut Runs,
 ) -> Result<Option<(Verdict, u32)>> {
+    let long = clocks.into();
     for bits in returns::PRECISIONS.into_iter().filter(|bits| precisions.contains(bits)) {
         go_on()?;
-        let Some(ends) = returns::run(clocks, bits, Wanted::Entries) else { continue };
+        let Some(ends) = returns::run(&long, bits, Wanted::Entries) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             runs.refined = Some((ends, bits));
             return Ok(Some((verdict, bits)));

@@ -33,5 +33,5 @@ pub use exact::{Decidable, exact_trace};
 pub use growth::{Growth, filter_trace, growth};
 pub use kind::{Kind, Side, Verdict};
 pub(crate) use label::label;
-pub use ladder::{decide, decide_anew, decide_from};
+pub use ladder::{decide, decide_anew, decide_from, decide_long, decide_steps};
 pub use tier::{Limits, Tier};

@@ -127,9 +127,7 @@ fn figure(all: &[Times]) -> Figure {
     .with(ladder.marked(Shape::Disc, 3.4).labelled("kickdrift, median"))
     .with(slowest.labelled("slowest of 60"))
     .with(filter.marked(Shape::Square, 3.4).labelled("every kick, in doubles"));
-    Figure::single_column(75.0)
-        .named("The time of a verdict over its period")
-        .with(panel.legend(Place::Above))
+    Figure::new(90.0, 75.0).named("The time of a verdict over its period").with(panel.legend(Place::Above))
 }
 
 fn main() {

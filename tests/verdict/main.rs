@@ -1,6 +1,7 @@
 //! The ladder: every tier right, every tier's certificate honest.
 
 mod kind;
+mod long;
 
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Ratio, Rational, Real, Sign, parse};

@@ -8,28 +8,27 @@ use crate::parallel::go_on;
 #[derive(Clone)]
 pub struct Branch<T> {
     pub map: Map<T>,
-    pub start: i64,
-    pub length: i64,
-    pub stride: i64,
+    pub start: i128,
+    pub length: i128,
+    pub stride: i128,
     /// The slow kicks that it holds.
-    pub height: u64,
+    pub height: u128,
 }
 
 impl<T: Coefficient> Branch<T> {
     /// On a part of the interval, or at a point, a part of length 0.
-    pub fn on(&self, start: i64, length: i64) -> Map<T> {
+    pub fn on(&self, start: i128, length: i128) -> Map<T> {
         if (start, length) == (self.start, self.length) {
             return self.map.clone();
         }
-        // The difference of the middles is less than half the length, though twice the one of the starts may be too long.
-        let alpha = (start - self.start).wrapping_mul(2).wrapping_sub(self.length - length);
-        let divisor = self.length as u64;
+        let alpha = 2 * (start - self.start) - (self.length - length);
+        let divisor = self.length as u128;
         let alpha = T::quotient(alpha, divisor);
         if length == 0 { self.map.at(&alpha) } else { self.map.part(&alpha, &T::quotient(length, divisor)) }
     }
 
     /// With the same function on a part of its interval.
-    pub fn restricted(&self, start: i64, length: i64) -> Self {
+    pub fn restricted(&self, start: i128, length: i128) -> Self {
         Branch { map: self.on(start, length), start, length, ..self.clone() }
     }
 }

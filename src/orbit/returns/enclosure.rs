@@ -7,7 +7,7 @@ pub trait Enclosure: Clone {
     /// `None` where this kind of number does not hold x well.
     fn of<S: Real>(x: &S, bits: u32) -> Option<Self>;
     /// n/d.
-    fn quotient(n: i64, d: u64, bits: u32) -> Self;
+    fn quotient(n: i128, d: u128, bits: u32) -> Self;
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
     /// `None` where the divisor may be zero.
@@ -18,6 +18,8 @@ pub trait Enclosure: Clone {
     fn scale2(&self, k: i32) -> Self;
     /// Doubles below and above.
     fn ends(&self) -> (f64, f64);
+    /// About log₂ |x|, however far from doubles.
+    fn log2(&self) -> i32;
     fn ball(&self) -> Ball;
 
     fn minus(&self, other: &Self) -> Self {
@@ -65,7 +67,7 @@ impl Enclosure for Wide {
         Some(Wide::new(x.enclosure(bits), bits))
     }
 
-    fn quotient(n: i64, d: u64, bits: u32) -> Self {
+    fn quotient(n: i128, d: u128, bits: u32) -> Self {
         Wide::new(Ball::from_rational(&Rational::new(n.into(), d.into()), bits), bits)
     }
 
@@ -96,6 +98,10 @@ impl Enclosure for Wide {
 
     fn ends(&self) -> (f64, f64) {
         self.ball.to_f64_enclosure()
+    }
+
+    fn log2(&self) -> i32 {
+        self.ball.top().map_or(0, |top| top.clamp(-(1 << 30), 1 << 30) as i32)
     }
 
     fn sign(&self) -> Option<Sign> {
@@ -152,7 +158,7 @@ impl Enclosure for Close {
         (1.0 / FARTHEST..FARTHEST).contains(&size).then(|| Close::new(middle, unit(99) * size))
     }
 
-    fn quotient(n: i64, d: u64, _: u32) -> Self {
+    fn quotient(n: i128, d: u128, _: u32) -> Self {
         let middle = quotient(n, d);
         Close::new(middle, 3.0 * unit(101) * middle.hi.abs())
     }
@@ -201,6 +207,11 @@ impl Enclosure for Close {
         ((middle - error).next_down(), (middle + error).next_up())
     }
 
+    fn log2(&self) -> i32 {
+        let size = self.size();
+        if size > FLOOR && size.is_finite() { size.log2() as i32 } else { 0 }
+    }
+
     fn ball(&self) -> Ball {
         let Twofold { hi, lo } = self.middle;
         let unit = Ball::one().neg().union(&Ball::one(), 64);
@@ -208,23 +219,15 @@ impl Enclosure for Close {
     }
 }
 
-/// n/d within 3 2^-101 relatively.
-pub fn quotient(n: i64, d: u64) -> Twofold {
-    if n == 0 {
-        return Twofold::ZERO;
-    }
-    // n/d = 2^-shift (first + second 2^-64) 2^-64 within 2^-128 relatively.
-    let shift = n.unsigned_abs().leading_zeros().saturating_sub(d.leading_zeros());
-    let dividend = u128::from(n.unsigned_abs()) << shift;
-    let (d, above) = (u128::from(d), dividend / u128::from(d));
-    let first = (dividend % d) << 64;
-    let second = (first % d) << 64;
-    let [first, second] = [(above << 64) | (first / d), second / d];
-    let hi = first as f64;
-    let lo = (first as i128 - hi as i128) as f64;
-    let unit = 2f64.powi(-64 - shift as i32).copysign(n as f64);
-    let sum = Twofold::sum(hi, lo + second as f64 * 2f64.powi(-64));
-    Twofold { hi: sum.hi * unit, lo: sum.lo * unit }
+/// n/d within 3 2^-101 relatively, |n| and d below 2^127.
+pub fn quotient(n: i128, d: u128) -> Twofold {
+    // Each within 2^-105, and 2^-100 of the quotient.
+    let two = |n: u128| {
+        let hi = n as f64;
+        Twofold::sum(hi, n.wrapping_sub(hi as u128) as i128 as f64)
+    };
+    let size = two(n.unsigned_abs()).divided_by(two(d));
+    if n < 0 { size.negative() } else { size }
 }
 
 /// A double, exactly.
@@ -236,15 +239,29 @@ pub fn exact(x: f64) -> Ball {
     if x < 0.0 { ball.neg() } else { ball }
 }
 
-/// One step's matrix to the n-th power, n as its binary digits, the highest first.
+/// Entries farther from 1 than 2^±this are scaled.
+const LARGE: i32 = 64;
+
+/// The exponent of the largest of these, and all of them without it, exactly.
+pub fn balanced<E: Enclosure, const N: usize>(terms: [Matrix<E>; N]) -> ([Matrix<E>; N], i32) {
+    let largest = terms.iter().flatten().map(E::log2).max().unwrap_or(0);
+    if largest.abs() <= LARGE {
+        return (terms, 0);
+    }
+    (terms.map(|term| term.map(|x| x.scale2(-largest))), largest)
+}
+
+/// One step's matrix to the n-th power, n as its binary digits, the highest first, and the power of two that it is to be multiplied by.
 pub fn power<E: Enclosure>(
     step: &Matrix<E>,
     one: &Matrix<E>,
     digits: impl Iterator<Item = bool>,
-) -> Matrix<E> {
-    digits.fold(one.clone(), |own, digit| {
+) -> (Matrix<E>, i128) {
+    digits.fold((one.clone(), 0), |(own, exponent), digit| {
         let square = product(&own, &own);
-        if digit { product(&square, step) } else { square }
+        let next = if digit { product(&square, step) } else { square };
+        let ([next], scaled) = balanced([next]);
+        (next, 2 * exponent + i128::from(scaled))
     })
 }
 
@@ -258,7 +275,7 @@ mod tests {
         /// Every operation's enclosure holds the exact result, and is not much wider than two doubles are.
         #[test]
         fn enclosures_hold_what_they_enclose(a in 1i64..1 << 50, b in 1u64..1 << 50, c in -1i64 << 50..1 << 50, d in 1u64..1 << 50) {
-            let [x, y] = [(a, b), (c, d)].map(|(n, d)| Close::quotient(n, d, 0));
+            let [x, y] = [(a, b), (c, d)].map(|(n, d)| Close::quotient(n.into(), d.into(), 0));
             let [exact_x, exact_y] = [ratio(a, b as i64), ratio(c, d as i64)];
             let holds = |close: &Close, exact: &Rational| {
                 let (lower, upper) = close.ends();

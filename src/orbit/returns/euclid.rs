@@ -30,9 +30,9 @@ struct Level<T> {
 pub fn walk<T: Coefficient>(
     left: Branch<T>,
     right: Branch<T>,
-    n: u64,
+    n: u128,
     budget: &mut Budget,
-) -> Option<(Map<T>, i64)> {
+) -> Option<(Map<T>, i128)> {
     if n == 0 {
         return Some((Map::identity(), 0));
     }
@@ -45,7 +45,7 @@ pub fn walk<T: Coefficient>(
             if !product.is_useful() {
                 return None;
             }
-            x += stride * steps as i64;
+            x += stride * steps as i128;
             n -= height * steps;
         }
         if let Some(back) = level.back {
@@ -61,7 +61,7 @@ pub fn walk<T: Coefficient>(
 fn descend<T: Coefficient>(
     mut left: Branch<T>,
     mut right: Branch<T>,
-    n: u64,
+    n: u128,
     budget: &mut Budget,
 ) -> Option<(Vec<Level<T>>, Map<T>)> {
     let (mut levels, mut entered) = (Vec::new(), Map::identity());
@@ -78,13 +78,13 @@ fn descend<T: Coefficient>(
         if a >= b {
             let k = a / b;
             let rest = a - k * b;
-            let height = right.height.saturating_add((k as u64).saturating_mul(left.height));
+            let height = right.height.saturating_add((k as u128).saturating_mul(left.height));
             if height > n {
                 levels.push(level);
                 break;
             }
             let map = {
-                let first = level.left.product(k as u64, rest, b, budget)?;
+                let first = level.left.product(k as u128, rest, b, budget)?;
                 budget.product(&right.map, &first)?
             };
             right = Branch { map, start: rest, length: b, stride: -rest, height };
@@ -92,13 +92,13 @@ fn descend<T: Coefficient>(
         } else {
             let k = (b - 1) / a;
             let rest = b - k * a;
-            let height = left.height.saturating_add((k as u64).saturating_mul(right.height));
+            let height = left.height.saturating_add((k as u128).saturating_mul(right.height));
             if height > n {
                 levels.push(level);
                 break;
             }
             let map = {
-                let then = level.right.product(k as u64, b, a, budget)?;
+                let then = level.right.product(k as u128, b, a, budget)?;
                 budget.product(&then, &left.map)?
             };
             left = Branch { map, start: 0, length: a, stride: rest, height };
@@ -110,26 +110,26 @@ fn descend<T: Coefficient>(
 }
 
 impl<T: Coefficient> Level<T> {
-    fn is_left(&self, x: i64) -> bool {
+    fn is_left(&self, x: i128) -> bool {
         x < self.left.branch.length
     }
 
     /// The stride and the height of the branch that holds x.
-    fn moves(&self, x: i64) -> (i64, u64) {
+    fn moves(&self, x: i128) -> (i128, u128) {
         let run = if self.is_left(x) { &self.left } else { &self.right };
         (run.branch.stride, run.branch.height)
     }
 
     /// As many steps of the branch that holds x as stay in it and fit into n maps; `None` where none does.
     #[allow(clippy::type_complexity)]
-    fn next(&mut self, x: i64, n: u64, budget: &mut Budget) -> Option<Option<(Map<T>, u64)>> {
+    fn next(&mut self, x: i128, n: u128, budget: &mut Budget) -> Option<Option<(Map<T>, u128)>> {
         let (a, b) = (self.left.branch.length, self.right.branch.length);
         let (run, stay) = if self.is_left(x) {
             (&mut self.left, (a - x + b - 1) / b)
         } else {
             (&mut self.right, (x - a) / a + 1)
         };
-        let steps = (n / run.branch.height).min(stay as u64);
+        let steps = (n / run.branch.height).min(stay as u128);
         if steps == 0 {
             return Some(None);
         }

@@ -3,17 +3,18 @@
 use std::f64::consts::PI;
 
 use num_bigint::BigUint;
+use num_integer::Integer;
 use num_traits::ToPrimitive;
 
 use super::branch::{Branch, Budget};
-use super::enclosure::{Enclosure, Matrix, power, product};
+use super::enclosure::{Enclosure, Matrix, balanced, power, product};
 use super::euclid;
 use super::map::Map;
 use super::number::{Coefficient, exact};
 use super::turn::{Turn, direction, principal};
-use crate::number::{Ball, Ratio, Real, Sign};
+use crate::number::{Ball, Rational, Real, Sign};
 use crate::orbit::ends::{End, Ends};
-use crate::propagator::TwoClocks;
+use crate::propagator::{LongClocks, PartialSigns};
 
 /// Bits of a base's angle beside those of the number of its steps.
 const ANGLE: u32 = 50;
@@ -25,18 +26,24 @@ const LEAST_UNIT: f64 = 1e-3;
 #[derive(Clone, Debug)]
 pub struct Beat {
     pub whole: BigUint,
-    pub rest: u64,
-    pub q: u64,
+    pub rest: u128,
+    pub q: u128,
 }
 
-impl From<Ratio> for Beat {
-    fn from(ratio: Ratio) -> Self {
-        let (p, q) = ratio.terms();
-        Beat { whole: (p / q).into(), rest: p % q, q }
-    }
-}
+/// Lengths in units of 1/q, doubled, are numbers of 128 bits.
+const LONGEST: u64 = 124;
 
 impl Beat {
+    /// `None` where the other clock's kicks are too many for a number.
+    pub fn of(ratio: &Rational) -> Option<Beat> {
+        let [p, q] = [ratio.numer(), ratio.denom()].map(|n| n.magnitude());
+        if q.bits() > LONGEST {
+            return None;
+        }
+        let (whole, rest) = p.div_rem(q);
+        Some(Beat { whole, rest: rest.to_u128()?, q: q.to_u128()? })
+    }
+
     fn p(&self) -> BigUint {
         &self.whole * self.q + self.rest
     }
@@ -64,18 +71,35 @@ enum Turning {
     Not,
 }
 
+/// What a run finds.
+pub struct Found {
+    pub signs: PartialSigns,
+    /// `None` where their logarithms are too large for the exponents of balls.
+    pub ends: Option<Ends>,
+}
+
+/// A, B, C, D without their common power of two, and the sign changes of the even solution.
+struct Half<E> {
+    entries: Matrix<E>,
+    exponent: i128,
+    nodes: Option<u64>,
+}
+
 /// A power of the base's step: cos nθ, sin nθ, and the lift.
 struct Rotation<E> {
     matrix: Matrix<E>,
+    /// Of the power of two that the matrix is to be multiplied by.
+    exponent: i128,
     turn: Option<Turn>,
 }
 
 impl<T: Coefficient> Frame<T> {
     /// `None` where these numbers do not tell on which side of its own limit the base is. Turns are followed where they are `wanted`.
-    pub fn new<S: Real>(clocks: &TwoClocks<S>, beat: Beat, wanted: bool) -> Option<Self> {
-        // Powers of a step lose as many bits as their exponent has.
+    pub fn new<S: Real>(clocks: &LongClocks<S>, wanted: bool) -> Option<Self> {
+        let beat = Beat::of(clocks.ratio())?;
+        // Each squaring doubles the radius, and adds four of them: it loses a bit and a half.
         let lost = beat.whole.bits() as u32;
-        let bits = T::BITS + 34 + lost;
+        let bits = T::BITS + 34 + 2 * lost;
         let [s, k] = [T::Enclosure::of(clocks.fast(), bits)?, T::Enclosure::of(clocks.slow(), bits)?];
         let square = s.minus(&s.times(&s).scale2(-2));
         let elliptic = square.sign()? == Sign::Positive;
@@ -99,7 +123,7 @@ impl<T: Coefficient> Frame<T> {
         Some(Frame { beat, s, k, unit, turning, bits })
     }
 
-    fn quotient(&self, n: i64, d: u64) -> T::Enclosure {
+    fn quotient(&self, n: i128, d: u128) -> T::Enclosure {
         T::Enclosure::quotient(n, d, self.bits)
     }
 
@@ -122,9 +146,9 @@ impl<T: Coefficient> Frame<T> {
     fn rotation(&self, n: &BigUint) -> Option<Rotation<T::Enclosure>> {
         let one = [self.one(), self.zero(), self.zero(), self.one()];
         let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
-        let matrix = power(&self.step()?, &one, digits);
+        let (matrix, exponent) = power(&self.step()?, &one, digits);
         let turn = self.towards(&matrix[0], &matrix[2]).and_then(|angle| self.turned(n, angle));
-        Some(Rotation { matrix, turn })
+        Some(Rotation { matrix, exponent, turn })
     }
 
     /// The direction of (x, y); `None` where nobody asks for turns.
@@ -190,12 +214,14 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// K(x) after a power of the base's step, x from middle − half to middle + half, both in units of 1/2q.
-    fn branch(&self, middle: u64, half: u64, steps: &Rotation<T::Enclosure>) -> Map<T> {
-        let unit = |n: u64| self.quotient(n as i64, self.beat.q).scale2(-1);
+    fn branch(&self, middle: u128, half: u128, steps: &Rotation<T::Enclosure>) -> Map<T> {
+        let unit = |n: u128| self.quotient(n as i128, self.beat.q).scale2(-1);
         let terms = self.shear(&self.nilpotent(&unit(middle), &unit(half)), &self.k);
-        let terms = terms.map(|term| product(&term, &steps.matrix));
+        let (terms, exponent) = balanced(terms.map(|term| product(&term, &steps.matrix)));
         let turn = steps.turn.zip(self.towards(&terms[0][0], &terms[0][2]));
-        Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle)))
+        let mut map = Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle)));
+        map.exponent += steps.exponent + i128::from(exponent);
+        map
     }
 
     /// A positive kick turns clockwise, between a drift and its inverse, too.
@@ -208,7 +234,7 @@ impl<T: Coefficient> Frame<T> {
         let (a, b) = (q - b, *b);
         let left = self.branch(2 * b + a, a, &self.rotation(whole)?);
         let right = self.branch(b, b, &self.rotation(&(whole + 1u32))?);
-        let [a, b] = [a as i64, b as i64];
+        let [a, b] = [a as i128, b as i128];
         Some([
             Branch { map: left, start: 0, length: a, stride: b, height: 1 },
             Branch { map: right, start: a, length: b, stride: -a, height: 1 },
@@ -216,7 +242,21 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// The even and the odd solution at T/2.
-    pub fn ends(&self) -> Option<Ends> {
+    pub fn found(&self) -> Option<Found> {
+        let Half { entries: [a, b, c, d], exponent, nodes } = self.half()?;
+        let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
+        let exponent = i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 54);
+        let ends = exponent.map(|exponent| {
+            let end = |x: &T::Enclosure, v: &T::Enclosure, signs, nodes| {
+                let of = |x: &T::Enclosure| x.ball().scale2(exponent);
+                End { signs, x: of(x), v: of(v), nodes }
+            };
+            Ends { even: end(&a, &c, (signs.a, signs.c), nodes), odd: end(&b, &d, (signs.b, signs.d), None) }
+        });
+        Some(Found { signs, ends })
+    }
+
+    fn half(&self) -> Option<Half<T::Enclosure>> {
         let n = self.beat.q / 2;
         let mut budget = Budget(T::PRODUCTS);
         let middle = if n == 0 {
@@ -225,9 +265,6 @@ impl<T: Coefficient> Frame<T> {
             let [left, right] = self.branches()?;
             euclid::walk(left, right, n, &mut budget)?.0
         };
-        if middle.exponent.unsigned_abs() > 1 << 54 {
-            return None;
-        }
         let (zero, one) = (self.zero(), self.one());
         // Half a kick of the other clock at t = 0.
         let start = self.k.over(&self.unit)?.scale2(-1).negative();
@@ -235,31 +272,29 @@ impl<T: Coefficient> Frame<T> {
             frame: self,
             turn: self.towards(&one, &start).map(|angle| Turn { whole: 0, angle }),
             product: [one.clone(), zero, start, one],
+            exponent: middle.exponent,
         };
         journey.go(&middle.enclosures(self.bits), |turn, angle| turn.then(middle.turn?, angle));
         self.close(&mut journey)?;
-        let [a, b, c, d] = &journey.product;
+        let exponent = journey.exponent;
+        let [a, b, c, d] = journey.product;
         let nodes = journey.turn.and_then(|turn| nodes(turn, a.sign()?));
         let (c, b) = (c.times(&self.unit), b.over(&self.unit)?);
-        let end = |x: &T::Enclosure, v: &T::Enclosure, nodes| {
-            let of = |x: &T::Enclosure| x.ball().scale2(middle.exponent);
-            End { signs: (certain(x), certain(v)), x: of(x), v: of(v), nodes }
-        };
-        Some(Ends { even: end(a, &c, nodes), odd: end(&b, d, None) })
+        Some(Half { entries: [a, b, c, d], exponent, nodes })
     }
 
     /// What is left from the last kick of the other clock up to T/2, or half a kick less.
     fn close(&self, journey: &mut Journey<T>) -> Option<()> {
         let Beat { whole, rest, q } = &self.beat;
         let p = self.beat.p();
-        if q.is_multiple_of(2) {
+        if q % 2 == 0 {
             let [undo, ..] = self.nilpotent(&self.one().scale2(-1), &self.zero());
             let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
             journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
         } else {
-            let offset = u128::from(q / 2) * u128::from(*rest) / u128::from(*q);
-            let passed = whole * (q / 2) + offset;
+            let passed = whole * (q / 2) + BigUint::from(q / 2) * *rest / *q;
             let rotation = self.rotation(&((&p >> 1u32) - passed))?;
+            journey.exponent += rotation.exponent;
             journey.go(&rotation.matrix, |turn, angle| {
                 let by = rotation.turn?;
                 let turned = turn.on(by.angle, angle);
@@ -285,6 +320,7 @@ impl<T: Coefficient> Frame<T> {
 struct Journey<'a, T: Coefficient> {
     frame: &'a Frame<T>,
     product: Matrix<T::Enclosure>,
+    exponent: i128,
     turn: Option<Turn>,
 }
 

@@ -46,7 +46,7 @@ pub struct Map<T> {
     /// ε.
     error: f64,
     /// e.
-    pub exponent: i64,
+    pub exponent: i128,
     /// Of (1, 0) at t = 0.
     pub turn: Option<Turn>,
 }
@@ -145,7 +145,7 @@ impl<T: Coefficient> Map<T> {
     }
 
     /// Without a turn, balanced.
-    fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i64) -> Self {
+    fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i128) -> Self {
         let mut map = Map { norm: largest(&terms), terms, error, exponent, turn: None };
         map.balance();
         map
@@ -318,7 +318,7 @@ impl<T: Coefficient> Map<T> {
             self.terms.iter_mut().flatten().for_each(|x| *x = x.scale2(k));
             self.norm *= 2f64.powi(k);
             self.error = self.error * 2f64.powi(k) * UP + FLOOR;
-            self.exponent -= i64::from(k);
+            self.exponent -= i128::from(k);
         }
     }
 
@@ -394,7 +394,7 @@ impl<T: Coefficient> Task for Part<'_, T> {
 }
 
 /// 2^e as far as doubles reach.
-fn power_of_two(e: i64) -> f64 {
+fn power_of_two(e: i128) -> f64 {
     2f64.powi(e.clamp(-2000, 2000) as i32)
 }
 

@@ -27,9 +27,9 @@ mod slow;
 mod turn;
 
 use super::ends::Ends;
-use crate::number::{Ball, Ratio, Real, Twofold};
-use crate::propagator::TwoClocks;
-use frame::Frame;
+use crate::number::{Ball, Ratio, Rational, Real, Twofold};
+use crate::propagator::{LongClocks, PartialSigns};
+use frame::{Found, Frame};
 use number::{Coefficient, Long};
 
 /// The precisions, in bits.
@@ -41,8 +41,8 @@ const LONG: u64 = 1 << 14;
 /// From so many on, return maps in two doubles are cheaper than kicks in 128 bits.
 const LONG_FOR_BITS: u64 = 1 << 9;
 
-/// From so many on, doubles have no digits left.
-const TOO_LONG_FOR_DOUBLES: u64 = 1 << 44;
+/// Where the fewer kicks are a number of more bits than this, doubles have no digits left.
+const TOO_LONG_FOR_DOUBLES: u64 = 46;
 
 /// Whether the period is so long that its return maps are to be tried before its kicks, in doubles or in more bits.
 pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
@@ -62,20 +62,36 @@ pub enum Wanted {
 /// quotient asks for too many products, and where the work was stopped.
 ///
 /// The base is the clock by which the other one's kicks distort less, or the other where that fails.
-pub fn run<S: Real>(clocks: &TwoClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
-    let fast = distortion(clocks) <= distortion(&clocks.swapped());
-    over(clocks, fast, bits, wanted).or_else(|| over(clocks, !fast, bits, wanted))
+pub fn run<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
+    better(clocks, bits, wanted)?.ends
+}
+
+/// The signs alone: of entries, too, whose logarithms no exponent of a ball holds.
+pub fn signs<S: Real>(clocks: &LongClocks<S>, bits: u32) -> Option<PartialSigns> {
+    Some(better(clocks, bits, Wanted::Entries)?.signs)
 }
 
 /// As [`run`], over the clock that distorts more alone: another route to the same numbers.
-pub fn run_over_other<S: Real>(clocks: &TwoClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
-    over(clocks, distortion(clocks) > distortion(&clocks.swapped()), bits, wanted)
+pub fn run_over_other<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
+    over(clocks, distortion(clocks) > distortion(&clocks.swapped()), bits, wanted)?.ends
+}
+
+/// Over the one base, and where that does not tell the verdict, over the other.
+fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
+    let fast = distortion(clocks) <= distortion(&clocks.swapped());
+    let decides = |found: &Option<Found>| found.as_ref().is_some_and(|found| found.signs.verdict().is_some());
+    let first = over(clocks, fast, bits, wanted);
+    if decides(&first) {
+        return first;
+    }
+    let second = over(clocks, !fast, bits, wanted);
+    if decides(&second) { second } else { first.or(second) }
 }
 
 /// With the fast or the slow clock as the base.
-fn over<S: Real>(clocks: &TwoClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Ends> {
+fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
     match bits {
-        0..=53 if clocks.p().min(clocks.q()) > TOO_LONG_FOR_DOUBLES => None,
+        0..=53 if clocks.shorter_bits() > TOO_LONG_FOR_DOUBLES => None,
         0..=53 => over_in::<S, f64>(clocks, fast, wanted),
         54..=106 => over_in::<S, Twofold>(clocks, fast, wanted),
         107..=256 => over_in::<S, Long<256>>(clocks, fast, wanted),
@@ -83,25 +99,26 @@ fn over<S: Real>(clocks: &TwoClocks<S>, fast: bool, bits: u32, wanted: Wanted) -
     }
 }
 
-fn over_in<S: Real, T: Coefficient>(clocks: &TwoClocks<S>, fast: bool, wanted: Wanted) -> Option<Ends> {
-    let ends = |clocks: &TwoClocks<S>| {
-        Frame::<T>::new(clocks, clocks.ratio().into(), wanted == Wanted::Nodes)?.ends()
-    };
-    if fast { ends(clocks) } else { Some(in_first_unit(ends(&clocks.swapped())?, clocks.ratio(), T::BITS)) }
+fn over_in<S: Real, T: Coefficient>(clocks: &LongClocks<S>, fast: bool, wanted: Wanted) -> Option<Found> {
+    let found = |clocks: &LongClocks<S>| Frame::<T>::new(clocks, wanted == Wanted::Nodes)?.found();
+    if fast {
+        return found(clocks);
+    }
+    let Found { signs, ends } = found(&clocks.swapped())?;
+    Some(Found { signs, ends: ends.map(|ends| in_first_unit(ends, clocks.ratio(), T::BITS)) })
 }
 
 /// The norm of the other clock's kick in the base's coordinates, about; far more where the base is beyond its own limit.
-fn distortion<S: Real>(clocks: &TwoClocks<S>) -> f64 {
+fn distortion<S: Real>(clocks: &LongClocks<S>) -> f64 {
     let [s, k] = [clocks.fast(), clocks.slow()].map(|x| x.enclosure(53).mid_f64());
     let square = s * (1.0 - 0.25 * s);
     if square > 0.0 { k.abs() / square.sqrt() } else { 1e6 + k.abs() }
 }
 
 /// From the unit of time h2 to h1.
-fn in_first_unit(mut ends: Ends, ratio: Ratio, bits: u32) -> Ends {
-    let of = |ratio: Ratio| Ball::from_rational(&ratio.into(), bits);
-    ends.even.v = ends.even.v.mul(&of(ratio.inverse()), bits);
-    ends.odd.x = ends.odd.x.mul(&of(ratio), bits);
+fn in_first_unit(mut ends: Ends, ratio: &Rational, bits: u32) -> Ends {
+    ends.even.v = ends.even.v.mul(&Ball::from_rational(&ratio.recip(), bits), bits);
+    ends.odd.x = ends.odd.x.mul(&Ball::from_rational(ratio, bits), bits);
     ends
 }
 

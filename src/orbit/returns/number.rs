@@ -40,7 +40,7 @@ pub trait Coefficient: Clone {
     fn enclosed(&self, error: f64, bits: u32) -> Self::Enclosure;
 
     /// n/d within 3 UNIT relatively.
-    fn quotient(n: i64, d: u64) -> Self {
+    fn quotient(n: i128, d: u128) -> Self {
         let exact = Rational::new(n.into(), d.into());
         Self::of_ball(&Ball::from_rational(&exact, Self::BITS))
     }
@@ -100,7 +100,7 @@ impl Coefficient for f64 {
         Close::new(Twofold { hi: *self, lo: 0.0 }, error)
     }
 
-    fn quotient(n: i64, d: u64) -> Self {
+    fn quotient(n: i128, d: u128) -> Self {
         n as f64 / d as f64
     }
 }
@@ -149,7 +149,7 @@ impl Coefficient for Twofold {
         Twofold::sum(hi, ball.sub(&exact(hi), Self::BITS).mid_f64())
     }
 
-    fn quotient(n: i64, d: u64) -> Self {
+    fn quotient(n: i128, d: u128) -> Self {
         quotient(n, d)
     }
 
@@ -177,7 +177,7 @@ impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
     const UNIT: f64 = f64::from_bits((1023 + 2 - LENGTH as u64) << 52);
     const BITS: u32 = LENGTH + 32;
     const TERMS: usize = 8 + LENGTH as usize / 7;
-    const PRODUCTS: u64 = 600;
+    const PRODUCTS: u64 = 10_000;
     const CLOSE: f64 = 1e-40;
 
     fn zero() -> Self {
@@ -243,10 +243,11 @@ mod tests {
 
     #[test]
     fn quotients_of_two_doubles_are_near() {
-        let places = [1u64, 2, 3, 10, 12345, 1 << 31, (1 << 53) + 1, (1 << 62) - 1, (1 << 62) - 57];
+        let places =
+            [1u128, 2, 3, 10, 12345, 1 << 31, (1 << 53) + 1, (1 << 62) - 57, (1 << 106) + 1, (1 << 124) - 57];
         for n in places {
             for d in places {
-                for n in [n as i64, -(n as i64)] {
+                for n in [n as i128, -(n as i128)] {
                     let near = <Twofold as Coefficient>::quotient(n, d).ball();
                     let exact = Ball::from_rational(&Rational::new(n.into(), d.into()), 300);
                     let lost = near.sub(&exact, 300).div(&exact, 300).unwrap().abs().to_f64_enclosure().1;

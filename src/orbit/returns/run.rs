@@ -14,7 +14,7 @@ use super::slow::{self, Slow};
 pub struct Run<T> {
     pub branch: Branch<T>,
     /// By the logarithm of n and the place: some dozens.
-    pieces: Vec<((u32, i64), Branch<T>)>,
+    pieces: Vec<((u32, i128), Branch<T>)>,
     /// What very long products are made of.
     slow: Option<Slow<T>>,
 }
@@ -25,13 +25,13 @@ impl<T: Coefficient> Run<T> {
     }
 
     /// P_n on start..start + length, or at a point; `None` where the budget or the bound does not last.
-    pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+    pub fn product(&mut self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         if n >= slow::WORTH {
             let slow = self.slow.get_or_insert_with(|| Slow::new(self.branch.clone()));
             return slow.product(n, start, length, budget);
         }
         let (mut product, mut from) = (None, start);
-        for log2 in (0..64 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
+        for log2 in (0..128 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
             let next = self.power(log2, from, length, budget)?;
             product = Some(match product {
                 Some(product) => budget.product(&next, &product)?,
@@ -43,7 +43,7 @@ impl<T: Coefficient> Run<T> {
     }
 
     /// P_n for n = 2^log2.
-    fn power(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+    fn power(&mut self, log2: u32, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         if log2 == 0 {
             return Some(self.branch.on(start, length));
         }
@@ -53,18 +53,19 @@ impl<T: Coefficient> Run<T> {
         self.twice(log2, start, length, budget)
     }
 
-    fn twice(&mut self, log2: u32, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+    fn twice(&mut self, log2: u32, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         let first = self.power(log2 - 1, start, length, budget)?;
         let second = self.power(log2 - 1, start + (self.branch.stride << (log2 - 1)), length, budget)?;
         budget.product(&second, &first)
     }
 
     /// The piece of length L/n that holds x and half a piece beyond it, as far as P_n is defined.
-    fn piece(&mut self, log2: u32, x: i64, budget: &mut Budget) -> Option<&Branch<T>> {
+    fn piece(&mut self, log2: u32, x: i128, budget: &mut Budget) -> Option<&Branch<T>> {
         let Branch { start, length, stride, .. } = self.branch;
         let long = length >> log2;
         let place = (x - start) / (long / 2);
-        let known = |pieces: &[((u32, i64), Branch<T>)]| pieces.iter().position(|own| own.0 == (log2, place));
+        let known =
+            |pieces: &[((u32, i128), Branch<T>)]| pieces.iter().position(|own| own.0 == (log2, place));
         if known(&self.pieces).is_none() {
             // All of x, x + d, ..., x + (n − 1) d lie in the branch's interval.
             let reach = stride * ((1 << log2) - 1);

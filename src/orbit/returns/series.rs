@@ -176,7 +176,7 @@ impl<T: Coefficient> Series<T> {
             // k c_k = Σ j l_j c_(k - j).
             let passed = (1..k).map(|j| scaled(&times(&known[j], &self.term(k - j)), &T::of(j as f64)));
             let sum = passed.fold([T::zero(), T::zero()], |sum, x| plus(&sum, &x));
-            let mean = scaled(&sum, &T::quotient(1, k as u64));
+            let mean = scaled(&sum, &T::quotient(1, k as u128));
             times(&plus(&self.term(k), &negative(&mean)), &inverse)
         }))
     }

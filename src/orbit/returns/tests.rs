@@ -1,9 +1,10 @@
 //! Against the tiers that follow every kick.
 
 use super::*;
+use crate::number::Sign;
 use crate::number::rational::ratio;
-use crate::number::{Rational, Sign};
 use crate::orbit::refine;
+use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
 
 /// Enclosures that meet, signs and sign changes that do not contradict each other.
@@ -33,7 +34,7 @@ fn tally<const N: usize>(precisions: [u32; N], p: u64, q: u64, s: Rational, k: R
     let (clocks, schedule) = pair(p, q, s, k);
     let reference = refine::run(&clocks, &schedule, 700).unwrap();
     precisions.map(|bits| {
-        let Some(found) = run(&clocks, bits, Wanted::Nodes) else { return [false; 2] };
+        let Some(found) = run(&(&clocks).into(), bits, Wanted::Nodes) else { return [false; 2] };
         agree(&found, &reference, &format!("{name}, {bits} bits"));
         let has_zero = reference.signs().complete().is_none();
         [has_zero || found.signs().complete().is_some(), has_zero || found.even.nodes.is_some()]
@@ -139,7 +140,7 @@ fn return_maps_hold_on_ten_thousand_pairs() {
         let weak = 10i64.pow(next(7) as u32);
         let (clocks, schedule) = pair(p, q, ratio(s, 1000), ratio(k, 100 * weak));
         let name = format!("p/q = {p}/{q}, s = {s}/1000, k = {k}/{}", 100 * weak);
-        let Some(found) = run(&clocks, 106, Wanted::Nodes) else {
+        let Some(found) = run(&(&clocks).into(), 106, Wanted::Nodes) else {
             eprintln!("undecided: {name}");
             continue;
         };

@@ -18,10 +18,10 @@ use near::Near;
 use normal::{Normal, roundings};
 
 /// From so many factors on, pieces are cheaper than doubling.
-pub const WORTH: u64 = 1 << 10;
+pub const WORTH: u128 = 1 << 10;
 
 /// A piece of so few steps is left to its single factors.
-const FEW: i64 = 32;
+const FEW: i128 = 32;
 
 /// What an attempt to find a normal form costs, in products of functions.
 const ATTEMPT: u64 = 20;
@@ -40,7 +40,7 @@ enum Form<T> {
 pub struct Slow<T> {
     branch: Branch<T>,
     /// By start and length; `None` is halved.
-    forms: HashMap<(i64, i64), Option<Rc<Form<T>>>>,
+    forms: HashMap<(i128, i128), Option<Rc<Form<T>>>>,
 }
 
 /// The product so far, in the coordinates of the last piece, and what leads out of these.
@@ -90,7 +90,7 @@ impl<T: Coefficient> Slow<T> {
     ///
     /// In the coordinates of each piece its factors have norms near 1. So what leads from those of one piece to those of the next, as
     /// near to 1, is multiplied first, and no bound grows by what coordinates distort.
-    pub fn product(&mut self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
+    pub fn product(&mut self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         if roundings::<T>(n) > HOPELESS {
             return None;
         }
@@ -105,8 +105,8 @@ impl<T: Coefficient> Slow<T> {
             } else {
                 (x + length <= from + long).then(|| (x - from) / -stride)
             };
-            let steps = (within.unwrap_or(0).max(0) as u64).min(left);
-            let end = x + stride * steps as i64;
+            let steps = (within.unwrap_or(0).max(0) as u128).min(left);
+            let end = x + stride * steps as i128;
             let steps = match (&*form, steps) {
                 (Form::Normal(normal), 2..) => {
                     let product = normal.product(steps, x, length)?;
@@ -123,14 +123,14 @@ impl<T: Coefficient> Slow<T> {
                     1
                 }
             };
-            x += stride * steps as i64;
+            x += stride * steps as i128;
             left -= steps;
         }
         chain.end(budget)
     }
 
     /// The piece on which the step from x lies, with its form.
-    fn form(&mut self, x: i64, budget: &mut Budget) -> Option<(i64, i64, Rc<Form<T>>)> {
+    fn form(&mut self, x: i128, budget: &mut Budget) -> Option<(i128, i128, Rc<Form<T>>)> {
         let (mut from, mut long) = (self.branch.start, self.branch.length);
         loop {
             if !self.forms.contains_key(&(from, long)) {
@@ -148,19 +148,19 @@ impl<T: Coefficient> Slow<T> {
 
     /// The form on a piece; within `Some`, `None` where it has none and is to be halved.
     #[allow(clippy::option_option)]
-    fn found(&self, from: i64, long: i64, budget: &mut Budget) -> Option<Option<Form<T>>> {
+    fn found(&self, from: i128, long: i128, budget: &mut Budget) -> Option<Option<Form<T>>> {
         let steps = long / self.branch.stride.abs();
         if steps < FEW {
             return Some(Some(Form::Rough));
         }
         let piece = self.branch.restricted(from, long);
-        if let Some(near) = Near::new(&piece, steps as u64, budget)? {
+        if let Some(near) = Near::new(&piece, steps as u128, budget)? {
             return Some(Some(Form::Near(Box::new(near))));
         }
         if !normal::is_apart(&piece.map) {
             return Some(None);
         }
         budget.spend(ATTEMPT)?;
-        Some(Normal::new(&piece, steps as u64).map(|normal| Form::Normal(Box::new(normal))))
+        Some(Normal::new(&piece, steps as u128).map(|normal| Form::Normal(Box::new(normal))))
     }
 }

@@ -22,7 +22,7 @@ pub struct Near<T> {
     from: Map<T>,
     /// The products of 2^i factors, where all of these lie on the piece.
     powers: Vec<Branch<T>>,
-    stride: i64,
+    stride: i128,
 }
 
 /// Entries of the middle, near.
@@ -64,7 +64,7 @@ fn fit<T: Coefficient>(map: &Map<T>) -> Option<[f64; 4]> {
 impl<T: Coefficient> Near<T> {
     /// Within `Some`, `None` where the factors of the piece do too much; `None` where the budget does not last.
     #[allow(clippy::option_option)]
-    pub fn new(piece: &Branch<T>, steps: u64, budget: &mut Budget) -> Option<Option<Self>> {
+    pub fn new(piece: &Branch<T>, steps: u128, budget: &mut Budget) -> Option<Option<Self>> {
         let Some(entries) = fit(&piece.map) else { return Some(None) };
         let Some((to, from)) = inverses(Map::of(vec![entries.map(T::of)])) else { return Some(None) };
         let map = to.after(&piece.map).after(&from);
@@ -77,7 +77,7 @@ impl<T: Coefficient> Near<T> {
         let mut powers = vec![Branch { map, ..piece.clone() }];
         loop {
             let last = &powers[powers.len() - 1];
-            let factors = 1i64 << powers.len();
+            let factors = 1i128 << powers.len();
             // 2^i more factors behind: less of the piece is left, at least half of it.
             let length = last.length - reach * (factors / 2);
             if distance * factors as f64 > POWER || 2 * length < piece.length {
@@ -102,8 +102,8 @@ impl<T: Coefficient> Near<T> {
     }
 
     /// G P_n G⁻¹ from start..start + length, or a point, as long as all of it lies on the piece.
-    pub fn product(&self, n: u64, start: i64, length: i64, budget: &mut Budget) -> Option<Map<T>> {
-        let (mut product, mut x, mut left): (Option<Map<T>>, i64, u64) = (None, start, n);
+    pub fn product(&self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
+        let (mut product, mut x, mut left): (Option<Map<T>>, i128, u128) = (None, start, n);
         for (log2, power) in self.powers.iter().enumerate().rev() {
             while left >> log2 > 0 {
                 let next = power.on(x, length);

@@ -23,7 +23,7 @@ use num_traits::ToPrimitive;
 use std::f64::consts::PI;
 
 /// What rounding adds to the bound of a product of n factors, about.
-pub fn roundings<T: Coefficient>(n: u64) -> f64 {
+pub fn roundings<T: Coefficient>(n: u128) -> f64 {
     1000.0 * T::UNIT * n as f64
 }
 
@@ -50,12 +50,12 @@ pub struct Normal<T> {
     /// |R W⁻¹|/|e^L| at most.
     error: f64,
     /// A factor is 2^exponent times what has been brought to normal form.
-    exponent: i64,
+    exponent: i128,
     /// Hyperbolic, and both multipliers are negative.
     is_negative: bool,
     /// What a factor turns beside e^L: whole turns, elliptic; half turns, hyperbolic.
     turns: Option<i128>,
-    stride: i64,
+    stride: i128,
 }
 
 /// The entries of a function, without its power of two, as series.
@@ -80,7 +80,7 @@ pub fn is_apart<T: Coefficient>(map: &Map<T>) -> bool {
 /// z with (1, z(t + τ)) A(t) = μ(t) (1, z(t)), near the root of that sign; det A = 2^-2e.
 fn row<T: Coefficient>(
     entries: &[Series<T>; 4],
-    exponent: i64,
+    exponent: i128,
     tau: &T,
     positive: bool,
 ) -> Option<Series<T>> {
@@ -129,7 +129,7 @@ fn part<T: Coefficient>(series: &Series<T>, imaginary: bool) -> Series<T> {
     Series::real((0..series.0.len()).map(|i| if imaginary { series.im(i) } else { series.re(i) }))
 }
 
-fn elliptic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i64, tau: &T) -> Option<Guess<T>> {
+fn elliptic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i128, tau: &T) -> Option<Guess<T>> {
     // Im z > 0: W keeps the orientation, and the direction of (1, 0).
     let z = row(entries, exponent, tau, entries[2].first().re > 0.0)?;
     let logarithm = multiplier(entries, &z, tau).logarithm()?;
@@ -154,7 +154,7 @@ fn between([a, b, c, d]: [f64; 4]) -> [f64; 2] {
     [x / size, y / size]
 }
 
-fn hyperbolic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i64, tau: &T) -> Option<Guess<T>> {
+fn hyperbolic<T: Coefficient>(entries: &[Series<T>; 4], exponent: i128, tau: &T) -> Option<Guess<T>> {
     let [cos, sin] = between(entries.each_ref().map(|x| x.first().re));
     if !(cos.is_finite() && sin.is_finite()) {
         return None;
@@ -233,9 +233,9 @@ impl Kind {
 
     /// e^S, for S known up to `error`.
     fn exponential<T: Coefficient>(self, exponent: &Map<T>) -> Option<Map<T>> {
-        let error = exponent.error();
+        let (error, scale) = (exponent.error(), i64::try_from(exponent.exponent).ok()?);
         let bits = T::BITS + 80;
-        let [a, b] = self.numbers(&exponent.terms()[0]).map(|x| x.ball().scale2(exponent.exponent));
+        let [a, b] = self.numbers(&exponent.terms()[0]).map(|x| x.ball().scale2(scale));
         let log2 = a.div(&Ball::ln2(bits), bits)?.to_f64_enclosure().0.round() as i64;
         let ln2 = Ball::ln2(bits);
         let without = |x: &Ball| x.sub(&ln2.mul(&Ball::from_integer(&log2.into()), bits), bits);
@@ -248,7 +248,7 @@ impl Kind {
             Kind::Hyperbolic => [exp(&without(&a)), exp(&without(&b))],
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
-        first.exponent += log2;
+        first.exponent += i128::from(log2);
         // e^R, R = S without its constant term.
         let mut terms = exponent.terms().to_vec();
         terms[0] = std::array::from_fn(|_| T::zero());
@@ -301,12 +301,12 @@ pub fn inverses<T: Coefficient>(given: Map<T>) -> Option<(Map<T>, Map<T>)> {
 
 impl<T: Coefficient> Normal<T> {
     /// `None` where none is found that is near enough.
-    pub fn new(piece: &Branch<T>, steps: u64) -> Option<Self> {
+    pub fn new(piece: &Branch<T>, steps: u128) -> Option<Self> {
         let Branch { start, length, stride, .. } = *piece;
         let mut factor = piece.map.clone();
         let exponent = std::mem::take(&mut factor.exponent);
         let entries = series(&factor);
-        let tau = T::quotient(2 * stride, length as u64);
+        let tau = T::quotient(2 * stride, length as u128);
         let [_, square] = discriminant(&entries);
         let guess = if square.first().re < 0.0 { elliptic } else { hyperbolic };
         let Guess { kind, rows, logarithms, is_negative } = guess(&entries, exponent, &tau)?;
@@ -341,25 +341,25 @@ impl<T: Coefficient> Normal<T> {
     }
 
     /// The coordinates W at places of the piece.
-    pub fn enter(&self, start: i64, length: i64) -> Map<T> {
+    pub fn enter(&self, start: i128, length: i128) -> Map<T> {
         self.rows.on(start, length)
     }
 
     /// W⁻¹.
-    pub fn leave(&self, start: i64, length: i64) -> Map<T> {
+    pub fn leave(&self, start: i128, length: i128) -> Map<T> {
         self.columns.on(start, length)
     }
 
     /// W P_n W⁻¹ from start..start + length, or a point, as long as all of it lies on the piece.
-    pub fn product(&self, n: u64, start: i64, length: i64) -> Option<Map<T>> {
-        let end = start + self.stride * n as i64;
+    pub fn product(&self, n: u128, start: i128, length: i128) -> Option<Map<T>> {
+        let end = start + self.stride * n as i128;
         let sum = self.sum.on(end, length).plus(&self.sum.on(start, length).negative());
         let error = (self.error * n as f64).exp_m1() * (1.0 + 1e-9);
         let mut product = self.kind.exponential(&sum)?.widened(error);
-        product.exponent += self.exponent * n as i64;
+        product.exponent += self.exponent.checked_mul(n.try_into().ok()?)?;
         product.turn = self.turns.and_then(|turns| {
-            let turns = turns.checked_mul(n.into())?;
-            let own = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent);
+            let turns = turns.checked_mul(n.try_into().ok()?)?;
+            let own = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent.try_into().ok()?);
             self.kind.turn(&own, turns)
         });
         Some(if self.is_negative && n % 2 == 1 { product.negative() } else { product })
@@ -386,8 +386,8 @@ impl<T: Coefficient> Normal<T> {
 fn summed<T: Coefficient>(
     kind: Kind,
     logarithms: &[Series<T>; 2],
-    stride: i64,
-    length: i64,
+    stride: i128,
+    length: i128,
 ) -> Option<Map<T>> {
     let bits = T::BITS + 64;
     let tau = Ball::from_rational(&Rational::new(stride.into(), length.into()), bits).scale2(1);
