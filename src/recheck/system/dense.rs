@@ -30,8 +30,9 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let q: DMatrix<f64> = full_period(scene.model().system());
-    let (norm, n) = (q.norm(), scene.model().system().size() as f64);
+    let system = scene.model().moving()?;
+    let q: DMatrix<f64> = full_period(&system);
+    let (norm, n) = (q.norm(), system.size() as f64);
     let sums = [
         (q.trace(), turns.iter().sum::<Complex64>(), norm),
         ((&q * &q).trace(), turns.iter().map(|turn| turn * turn - 2.0).sum(), norm * norm),

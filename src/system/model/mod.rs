@@ -11,6 +11,8 @@ mod measured;
 mod oscillator;
 mod projected;
 
+use std::borrow::Cow;
+
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::propagator;
@@ -101,6 +103,17 @@ impl Model {
         }
     }
 
+    /// The rational system that moves: of measured stiffnesses without rigid motions and held distances.
+    ///
+    /// # Errors
+    /// Where measured stiffnesses have another null space than that of rigid motions.
+    pub fn moving(&self) -> Result<Cow<'_, System>> {
+        match self {
+            Model::Measured(own) => own.moving(),
+            _ => Ok(Cow::Borrowed(self.system())),
+        }
+    }
+
     /// The kind by exact arithmetic alone: by characteristic polynomials over ℚ or power sums over ℚ\[π\], part by part; of an
     /// oscillator with π by the four signs.
     ///
@@ -110,7 +123,8 @@ impl Model {
         match self {
             Model::Pi(own) => own.exact_kind(limits),
             Model::Oscillator(own) => own.exact_kind(limits),
-            Model::Rational(_) | Model::Measured(_) => exact_kind(self.system(), limits),
+            Model::Rational(own) => exact_kind(own, limits),
+            Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
     }
 

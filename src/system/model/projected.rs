@@ -1,5 +1,7 @@
 //! Measured stiffnesses on any clocks: the doubles given, or what is left of them when rigid motions and held distances are projected out.
 
+use std::borrow::Cow;
+
 use faer::{Mat, MatRef};
 use nalgebra::DMatrix;
 
@@ -32,9 +34,14 @@ impl MeasuredSystem {
 
     /// What friction does to these doubles as a rational system.
     pub(super) fn friction_projected(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        damped_system(self.moving()?.as_ref(), rate, limits)
+    }
+
+    /// These doubles as a rational system, rigid motions and held distances projected out where there are any.
+    pub(super) fn moving(&self) -> Result<Cow<'_, System>> {
         match self.hessians()?.basis() {
-            Some(basis) => damped_system(&self.projected(basis), rate, limits),
-            None => self.refuse_constraints().and_then(|()| damped_system(self.system(), rate, limits)),
+            Some(basis) => Ok(Cow::Owned(self.projected(basis))),
+            None => self.refuse_constraints().map(|()| Cow::Borrowed(self.system())),
         }
     }
 
