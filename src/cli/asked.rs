@@ -60,7 +60,7 @@ pub enum Default {
 impl Common {
     /// What an answer may cost; its progress is shown on a terminal.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.budget, watch: (!self.quiet).then_some(self) }
+        Work { budget: self.budget, watch: (!self.quiet).then_some(self), ..Work::default() }
     }
 }
 
@@ -69,7 +69,7 @@ impl Watch for Common {
         announce(self.quiet, work, seconds);
     }
 
-    fn count(&self, length: u64, things: &str) -> Box<dyn Progress> {
+    fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
         Box::new(progress(self.quiet, length, things))
     }
 }

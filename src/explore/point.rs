@@ -82,7 +82,7 @@ fn simplified(h1: &Laurent, h2: &Laurent, within: &Rational) -> Result<Laurent> 
 }
 
 pub(super) fn decided(oscillator: &Oscillator) -> Result<Answer> {
-    Verdict::of(oscillator).answer(&Work { budget: Some(MOST_KICKS), watch: None })
+    Verdict::of(oscillator).answer(&Work { budget: Some(MOST_KICKS), ..Work::default() })
 }
 
 /// Slow steps and time until the amplitude is tenfold.

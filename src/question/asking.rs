@@ -47,7 +47,7 @@ macro_rules! question {
                 Ok($Name { $($field: read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
             }
 
-            fn input(&self) -> Vec<(&'static str, String)> {
+            fn input(&self) -> Vec<(&'static str, serde_json::Value)> {
                 let given = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
                 given.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
             }
@@ -74,8 +74,8 @@ pub trait Fields: Sized {
     /// A field that is missing, unknown or not what it should be, by its name.
     fn read(input: &Map<String, Value>) -> Result<Self>;
 
-    /// The fields as documents echo them: exact texts; what is not given is not there.
-    fn input(&self) -> Vec<(&'static str, String)>;
+    /// The fields as documents echo them: exact texts, or what has parts of its own; what is not given is not there.
+    fn input(&self) -> Vec<(&'static str, Value)>;
 }
 
 /// What is asked: its answer is computed, and shown in one document.
@@ -101,6 +101,15 @@ pub trait Question: Fields {
         self.show(answer).inputs(self.input())
     }
 
+    /// The answer drawn; `None` where this is nothing to draw.
+    ///
+    /// # Errors
+    /// Those of what is computed for the figure alone.
+    #[cfg(feature = "figure")]
+    fn figure(&self, _: &Self::Answer, _: &Work) -> Result<Option<plot::Figure>> {
+        Ok(None)
+    }
+
     /// Answer and document in one.
     ///
     /// # Errors
@@ -110,7 +119,7 @@ pub trait Question: Fields {
     }
 }
 
-/// What an answer may cost, and who is told of long work.
+/// What an answer may cost, who is told of long work, and what a question refers to.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit
@@ -118,6 +127,9 @@ pub struct Work<'a> {
     pub budget: Option<u64>,
     /// Who is told; nobody unless given.
     pub watch: Option<&'a dyn Watch>,
+    /// Where the arrays are that a system refers to; here unless given.
+    #[cfg(feature = "system")]
+    pub arrays: Option<&'a crate::scene::Arrays>,
 }
 
 /// Who is told of long work.
@@ -125,7 +137,7 @@ pub trait Watch: Sync {
     /// Work is about to begin that takes so many seconds of one core.
     fn announce(&self, work: &str, seconds: f64);
     /// So many `things` are about to be done; what is returned hears of each.
-    fn count(&self, length: u64, things: &str) -> Box<dyn Progress>;
+    fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_>;
 }
 
 impl Work<'_> {
@@ -140,7 +152,7 @@ impl Work<'_> {
     }
 
     /// Who hears of each of so many things that are done.
-    pub fn count(&self, length: u64, things: &str) -> Box<dyn Progress> {
+    pub fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
         self.watch.map_or_else(|| Box::new(()) as Box<dyn Progress>, |watch| watch.count(length, things))
     }
 }

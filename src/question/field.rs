@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::number::parse::{
     parse, parse_integer_range, parse_range, parse_ratio, parse_rational, parse_rational_range,
 };
+use crate::number::rational::to_f64;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::scene::shown_range;
 use crate::tongue::Labels;
@@ -22,24 +23,25 @@ pub trait Notation: Sized {
 macro_rules! notation {
     ($($type:ty: $parse:expr, $show:expr;)*) => {
         $(
-            impl Notation for $type {
-                fn parsed(field: &str, text: &str) -> Result<Self> {
+            impl $crate::question::Notation for $type {
+                fn parsed(field: &str, text: &str) -> $crate::error::Result<Self> {
                     $parse(field, text)
                 }
             }
 
-            impl Field for $type {
-                fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
-                    given.map(|value| parsed(name, value))
+            impl $crate::question::field::Field for $type {
+                fn of(given: Option<&serde_json::Value>, name: &str) -> Option<$crate::error::Result<Self>> {
+                    given.map(|value| $crate::question::field::parsed(name, value))
                 }
 
-                fn shown(&self) -> Option<String> {
-                    Some($show(self))
+                fn shown(&self) -> Option<serde_json::Value> {
+                    Some($show(self).into())
                 }
             }
         )*
     };
 }
+pub(super) use notation;
 
 notation! {
     Rational: parse_rational, ToString::to_string;
@@ -52,6 +54,8 @@ notation! {
     u32: whole, ToString::to_string;
     usize: whole, ToString::to_string;
     Labels: |_, text: &str| text.parse(), ToString::to_string;
+    f64: |field: &str, text: &str| Ok(to_f64(&parse_rational(field, text)?)), ToString::to_string;
+    String: |_, text: &str| Ok(text.to_string()), String::clone;
 }
 
 /// A flag, which is not there where it is not set.
@@ -65,7 +69,7 @@ impl Field for bool {
         })
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.then(|| "true".into())
     }
 }
@@ -87,8 +91,8 @@ pub trait Field: Sized {
     /// What is given; `None` where something has to be.
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>>;
 
-    /// The text that documents echo; `None` where the field is not to be there.
-    fn shown(&self) -> Option<String>;
+    /// What documents echo, as a rule a text; `None` where the field is not to be there.
+    fn shown(&self) -> Option<Value>;
 }
 
 impl<T: Field> Field for Option<T> {
@@ -99,13 +103,13 @@ impl<T: Field> Field for Option<T> {
         }
     }
 
-    fn shown(&self) -> Option<String> {
+    fn shown(&self) -> Option<Value> {
         self.as_ref()?.shown()
     }
 }
 
 /// A value: a text, or a number of JSON by its digits.
-fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
+pub(super) fn parsed<T: Notation>(name: &str, value: &Value) -> Result<T> {
     match value {
         Value::String(text) => T::parsed(name, text),
         Value::Number(number) => T::parsed(name, &number.to_string()),

@@ -82,8 +82,8 @@ impl Document {
 
     /// Echoes inputs, in order.
     #[must_use]
-    pub fn inputs<'a>(self, given: impl IntoIterator<Item = (&'a str, String)>) -> Self {
-        given.into_iter().fold(self, |document, (key, value)| document.input(key, value))
+    pub fn inputs<'a, V: Into<Value>>(self, given: impl IntoIterator<Item = (&'a str, V)>) -> Self {
+        given.into_iter().fold(self, |document, (key, value)| document.input_json(key, value.into()))
     }
 
     /// Echoes one input that has parts of its own, as JSON.

@@ -38,7 +38,7 @@ pub use grid::{GridRange, shown_range};
 #[cfg(feature = "advise")]
 pub use system::of_archive;
 #[cfg(feature = "system")]
-pub use system::{Array, Arrays, Axis, Displacement, RunRequest, Scan, Span, SystemScene};
+pub use system::{Array, Arrays, Axis, Scan, Span, SystemFile, SystemScene};
 pub use want::{Product, Want};
 
 /// What is to be computed: what the file gives, read once, and checked as far as it can be without computing.
