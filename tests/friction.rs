@@ -297,3 +297,101 @@ fn a_friction_that_stops_all_velocities_is_answered() {
         assert_ne!(found.damping, Some(Damping::Growing));
     }
 }
+
+/// Friction on two levels.
+mod levels {
+    use kickdrift::number::Rational;
+    use kickdrift::number::rational::from_f64_exact;
+    use kickdrift::system::friction::{Damping, Mask};
+    use kickdrift::system::friction::{damped, damped_system};
+    use kickdrift::system::levels::Hessians;
+    use kickdrift::system::levels::{Kernel, Outer};
+    use kickdrift::system::{ManyClocks, Potential, Symmetric, System};
+    use nalgebra::DMatrix;
+
+    use kickdrift::number::rational::ratio;
+
+    /// One mode, whose own route is exact: near the friction that masks, and on both sides of it.
+    #[test]
+    fn one_mode_is_damped_as_by_the_exact_route() {
+        let one = |x: f64| DMatrix::from_element(1, 1, x);
+        let mut told = 0;
+        for p in [1u64, 2, 3, 8] {
+            for turn in [0.9, 0.98, 1.01] {
+                // p θ = turn π, h = 1: a resonance of the outer step.
+                let fast = 4.0 * (turn * std::f64::consts::PI / (2 * p) as f64).sin().powi(2);
+                let slow = 0.05 * fast;
+                let kernel = Kernel::new(&Hessians::new(&one(fast), &one(slow), 0.0).unwrap()).unwrap();
+                let outer = Outer::new(p as f64, p).unwrap();
+                let exact = |x: f64| from_f64_exact(x).unwrap();
+                let whole = |n: u64| Rational::from_integer(n.into());
+                let strengths = vec![exact(fast), exact(slow) * whole(p)];
+                let clocks =
+                    ManyClocks::new(&[whole(1), whole(p)], &[ratio(0, 1), ratio(0, 1)], strengths).unwrap();
+                let mask = kernel.masking_friction(&outer).unwrap_or(0.1);
+                for off in [-0.5, -1e-3, -1e-10, 0.0, 1e-10, 1e-3, 0.5] {
+                    let friction = mask * (1.0 + off);
+                    let truth = damped(&clocks, &exact(friction)).unwrap().damping;
+                    let found = kernel.damping(&outer, friction);
+                    assert!(
+                        found.is_none_or(|found| found == truth),
+                        "{p} {turn} {off}: {found:?} {truth:?}"
+                    );
+                    assert!(found.is_some() || off.abs() < 1e-6, "{p} {turn} {off}");
+                    told += usize::from(found == Some(Damping::Growing));
+                }
+            }
+        }
+        assert!(told > 3, "{told}");
+    }
+
+    /// Three modes against the whole period composed event by event.
+    #[test]
+    fn three_modes_are_damped_as_by_the_composed_period() {
+        let fast = [[3, 1, 0], [1, 2, 1], [0, 1, 1]];
+        let slow = [[1, 0, 2], [0, 1, 1], [2, 1, 3]];
+        let dense = |rows: &[[i64; 3]; 3], c: f64| DMatrix::from_fn(3, 3, |i, j| c * rows[i][j] as f64);
+        let exact = |rows: &[[i64; 3]; 3], c: Rational| {
+            let mut own = Symmetric::zero(3);
+            for (i, row) in rows.iter().enumerate() {
+                (0..=i).for_each(|j| own.add(i, j, &(&c * ratio(row[j], 1))));
+            }
+            own
+        };
+        let (mut told, mut growing, mut masked) = (0, 0, 0);
+        for tenths in 4..24 {
+            let h = f64::from(tenths) / 16.0;
+            let kernel =
+                Kernel::new(&Hessians::new(&dense(&fast, 1.0), &dense(&slow, 1.0 / 16.0), 0.0).unwrap())
+                    .unwrap();
+            let (inner, outer) = (ratio(tenths.into(), 16), ratio(tenths.into(), 4));
+            let potentials = vec![
+                Potential::new(exact(&fast, ratio(1, 1)), inner.clone()),
+                Potential::new(exact(&slow, ratio(1, 16)), outer),
+            ];
+            let system =
+                System::new(Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1), ratio(1, 1)]), potentials)
+                    .unwrap();
+            for friction in [1.0 / 128.0, 1.0 / 8.0] {
+                let rate = from_f64_exact(friction).unwrap();
+                let truth = damped_system(&system, &rate, &Default::default()).unwrap();
+                let found = kernel.friction(&Outer::new(4.0 * h, 4).unwrap(), &rate);
+                if let (Mask::At(truth), Mask::At(found)) = (truth.masking, found.masking) {
+                    let ((a, b), (c, d)) = (truth.rate, found.rate);
+                    assert!(c <= b && a <= d && d < 1.01 * c, "{h}: {truth:?} {found:?}");
+                    masked += 1;
+                }
+                if let (Some((a, b)), Some((c, d))) = (truth.growth, found.growth) {
+                    assert!(c <= b && a <= d, "{h} {friction}: {truth:?} {found:?}");
+                }
+                let (truth, found) = (truth.damping, found.damping);
+                if let (Some(truth), Some(found)) = (truth, found) {
+                    assert_eq!(found, truth, "{h} {friction}");
+                    told += 1;
+                    growing += usize::from(found == Damping::Growing);
+                }
+            }
+        }
+        assert!(told >= 36 && growing > 3 && growing < told - 3 && masked > 3, "{told} {growing} {masked}");
+    }
+}

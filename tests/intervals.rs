@@ -195,3 +195,53 @@ fn chains_beyond_the_exact_budget_are_unstable_where_counts_prove_it_and_every_n
         }
     }
 }
+
+/// The search alone, on intervals that are known.
+mod nearest {
+    use kickdrift::system::Holds;
+    use kickdrift::system::nearest::{Nearest, Unstable};
+    use kickdrift::system::stretches::{Stretch, merged};
+
+    /// Unstable in the given intervals and untold in the last, cells of one piece each.
+    fn covered(unstable: &[(f64, f64)], untold: &[(f64, f64)], (lo, hi): (f64, f64)) -> Vec<Stretch> {
+        let mut marks: Vec<f64> = unstable.iter().chain(untold).flat_map(|(a, b)| [*a, *b]).collect();
+        marks.extend([lo, hi]);
+        marks.retain(|x| (lo..=hi).contains(x));
+        marks.sort_by(f64::total_cmp);
+        marks.dedup();
+        let holds = |x: f64| {
+            let is_in = |all: &[(f64, f64)]| all.iter().any(|(a, b)| *a < x && x < *b);
+            match (is_in(unstable), is_in(untold)) {
+                (true, _) => Holds::Unstable,
+                (_, true) => Holds::NotTold,
+                _ => Holds::Stable,
+            }
+        };
+        let stretch =
+            |ends: &[f64]| Stretch { lo: ends[0], hi: ends[1], verdict: holds((ends[0] + ends[1]) / 2.0) };
+        merged(marks.windows(2).map(stretch))
+    }
+
+    #[test]
+    fn the_next_intervals_are_found_whole_and_what_holds_the_number_is_no_neighbour() {
+        let unstable = [(0.6, 0.7), (1.5, 1.6), (1.8, 1.85)];
+        let untold = [(0.59, 0.6), (0.7, 0.71), (1.49, 1.5), (1.6, 1.61), (1.2, 1.21)];
+        let found =
+            Nearest::search((1.0, Holds::Stable), |range| Ok(covered(&unstable, &untold, range))).unwrap();
+        let below = Unstable { proven: (0.6, 0.7), within: (Some(0.59), Some(0.71)) };
+        let above = Unstable { proven: (1.5, 1.6), within: (Some(1.49), Some(1.61)) };
+        assert_eq!((found.own, found.below, found.above), (None, Some(below), Some(above)));
+        assert_eq!(found.untold, [(1.2, 1.21)]);
+        assert!(found.searched.0 < 0.59 && found.searched.1 > 1.61 && found.searched.1 <= 2.0, "{found:?}");
+        let inside =
+            Nearest::search((1.55, Holds::Unstable), |range| Ok(covered(&unstable, &untold, range))).unwrap();
+        assert_eq!(inside.own, Some(above));
+        assert_eq!(inside.above.unwrap().proven, (1.8, 1.85));
+        // 0.6 is below half of it.
+        assert!(inside.below.is_none() && inside.searched.0 == 1.55 / 2.0, "{inside:?}");
+        let alone =
+            Nearest::search((1.0, Holds::Stable), |range| Ok(covered(&[(1.7, 3.0)], &[], range))).unwrap();
+        assert_eq!(alone.above, Some(Unstable { proven: (1.7, 2.0), within: (Some(1.7), None) }));
+        assert_eq!((alone.below, alone.searched), (None, (0.5, 2.0)));
+    }
+}

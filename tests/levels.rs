@@ -554,3 +554,60 @@ fn a_file_in_which_two_potentials_of_one_step_cancel_does_not_promise_what_movin
     assert!(analysis.is_stable() && told.holds == Holds::NotTold, "{told:?}");
     assert!(told.margin.unwrap() < 5e-8, "{told:?}");
 }
+
+/// The chord below the first region's action.
+mod chord {
+    use kickdrift::system::levels::{Hessians, Kernel, Outer};
+    use nalgebra::DMatrix;
+
+    /// A symmetric matrix with the eigenvalues given, in a basis of reflections.
+    fn turned(values: &[f64], seed: u64) -> DMatrix<f64> {
+        let n = values.len();
+        let v = DMatrix::from_fn(n, 1, |i, _| ((i as u64 * 37 + seed * 101) % 17) as f64 - 7.5);
+        let reflection = DMatrix::identity(n, n) - &v * v.transpose() * (2.0 / v.norm_squared());
+        let m = &reflection * DMatrix::from_diagonal(&values.to_vec().into()) * &reflection;
+        (&m + m.transpose()) * 0.5
+    }
+
+    #[test]
+    fn what_the_chord_proves_the_eigenbasis_proves_too_and_little_more() {
+        let (mut by_chord, mut by_basis) = (0, 0);
+        for seed in 0..12_u64 {
+            let n = 3 + seed as usize;
+            let fast: Vec<f64> = (0..n).map(|i| (i * i) as f64 / (n * n) as f64).collect();
+            let slow: Vec<f64> = (0..n).map(|i| 0.02 + 0.03 * ((i * 7 + 3) % n) as f64 / n as f64).collect();
+            let hessians = Hessians::new(&turned(&fast, seed), &turned(&slow, seed + 5), 1e-9).unwrap();
+            let kernel = Kernel::new(&hessians).unwrap();
+            for p in [1, 2, 3, 4, 9] {
+                let last = 2.2 * p as f64;
+                for k in 1..=40 {
+                    let outer = Outer::new(last * f64::from(k) / 40.0, p).unwrap();
+                    let (chord, basis) =
+                        (hessians.is_stable_by_chord(&outer), kernel.is_in_first_region(&outer, 0.0));
+                    assert!(basis || !chord, "n {n} p {p} k {k}");
+                    assert_eq!(hessians.verdict(&outer).unwrap(), kernel.verdict_within(&outer, 0.0));
+                    by_chord += usize::from(chord);
+                    by_basis += usize::from(basis);
+                }
+            }
+        }
+        assert!(10 * by_chord > 8 * by_basis, "{by_chord} of {by_basis}");
+    }
+
+    #[test]
+    fn beyond_its_conditions_the_chord_proves_nothing() {
+        let outer = |step: f64| Outer::new(step, 4).unwrap();
+        let proves = |fast: &[f64], slow: &[f64], step: f64| {
+            Hessians::new(&turned(fast, 1), &turned(slow, 2), 1e-9).unwrap().is_stable_by_chord(&outer(step))
+        };
+        assert!(proves(&[0.1, 0.5, 1.0], &[0.05, 0.02, 0.01], 1.0));
+        // No minimum; at rest; past p θ = π; a slow one too stiff for its step.
+        assert!(!proves(&[0.1, 0.5, 1.0], &[-0.6, -0.6, -0.6], 1.0));
+        assert!(!proves(&[0.0, 0.0, 0.0], &[0.0, 0.0, 0.0], 1.0));
+        assert!(!proves(&[0.1, 0.5, 1.0], &[0.05, 0.02, 0.01], 3.3));
+        assert!(!proves(&[0.1, 0.5, 1.0], &[9.0, 9.0, 9.0], 1.0));
+        // Soft modes that the slow stiffness alone holds, and a fast one below 0 that it lifts.
+        assert!(proves(&[0.0, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
+        assert!(proves(&[-0.04, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
+    }
+}

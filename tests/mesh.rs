@@ -157,3 +157,77 @@ fn what_is_no_mesh_is_refused_by_name() {
     assert_eq!(refused("\"courant\": \"87/100\"", "\"step\": 0"), "potentials[0].step");
     assert_eq!(refused("\"mesh\"", "\"masses\": [1], \"mesh\""), "mesh");
 }
+
+/// Single elements.
+mod elements {
+    use std::collections::BTreeSet;
+
+    use kickdrift::number::Rational;
+    use kickdrift::system::mesh::{Material, Mesh};
+
+    use kickdrift::number::rational::ratio;
+
+    fn material() -> Material {
+        let [young, poisson, density, thickness] = [ratio(7, 2), ratio(3, 10), ratio(2, 1), ratio(1, 5)];
+        Material { young, poisson, density, thickness, is_plane_strain: false }
+    }
+
+    fn integers(x: &[i64]) -> Vec<Rational> {
+        x.iter().map(|&x| ratio(x, 1)).collect()
+    }
+
+    /// A free mesh of one element has the rigid motions of its space, and as its elastic energy that of a stretch.
+    #[test]
+    fn rigid_motions_cost_no_energy_and_a_uniaxial_stretch_costs_that_of_its_stress() {
+        let meshes = [
+            (vec![vec![0, 0], vec![3, 1], vec![1, 2]], 3),
+            (vec![vec![0, 0, 0], vec![3, 1, 0], vec![1, 2, 1], vec![0, 1, 4]], 6),
+        ];
+        for (nodes, rigid) in meshes {
+            let nodes: Vec<_> = nodes.iter().map(|x| integers(x)).collect();
+            let elements = vec![((0..nodes.len()).collect(), ratio(1, 10))];
+            let mesh = Mesh { nodes: nodes.clone(), elements, fixed: BTreeSet::new(), material: material() };
+            let (system, moving) = mesh.system().unwrap();
+            assert_eq!(system.rigid_modes().len(), rigid);
+            // ε_xx = 1, ε_yy (= ε_zz) = −ν: the stress is E in x alone, energy E V/2.
+            let stretch = |&(node, axis): &(usize, usize)| {
+                &nodes[node][axis] * if axis == 0 { ratio(1, 1) } else { -&mesh.material.poisson }
+            };
+            let x: Vec<_> = moving.iter().map(stretch).collect();
+            let forces = system.total_stiffness().times(&x);
+            let twice: Rational = x.iter().zip(&forces).map(|(x, force)| x * force).sum();
+            let mass: Rational = (0..system.size()).map(|i| system.mass().get(i, i)).sum();
+            let volume = mass / ratio(nodes[0].len() as i64, 1) / &mesh.material.density;
+            assert_eq!(twice, &mesh.material.young * volume);
+        }
+    }
+
+    #[test]
+    fn a_slanted_bar_is_exact_where_its_length_is_rational() {
+        let nodes = vec![integers(&[0, 0]), integers(&[3, 4])];
+        let fixed = BTreeSet::from([(0, 0), (0, 1)]);
+        let elements = vec![(vec![0, 1], ratio(1, 10))];
+        let (system, moving) = Mesh { nodes, elements, fixed, material: material() }.system().unwrap();
+        assert_eq!(moving, [(1, 0), (1, 1)]);
+        // E A/L = (7/2)(1/5)/5, the direction (3, 4)/5.
+        let k = ratio(7, 50);
+        assert_eq!(system.total_stiffness().get(0, 1), k * ratio(12, 25));
+        assert_eq!(system.mass().get(0, 0), ratio(2 * 5, 5 * 2));
+    }
+
+    #[test]
+    fn what_is_no_mesh_is_refused_by_name() {
+        let square = || vec![integers(&[0, 0]), integers(&[1, 0]), integers(&[0, 1]), integers(&[2, 0])];
+        let mesh = |elements: Vec<Vec<usize>>| Mesh {
+            nodes: square(),
+            elements: elements.into_iter().map(|own| (own, ratio(1, 10))).collect(),
+            fixed: BTreeSet::new(),
+            material: material(),
+        };
+        let field = |elements| mesh(elements).system().unwrap_err().field().to_string();
+        assert_eq!(field(vec![vec![0, 1, 2], vec![0, 1, 3]]), "mesh.elements[1]");
+        assert_eq!(field(vec![vec![0, 1, 9]]), "mesh.elements[0]");
+        assert_eq!(field(vec![vec![0, 1, 2]]), "mesh.nodes[3]");
+        assert_eq!(field(vec![vec![0, 1, 2, 3]]), "mesh.elements[0]");
+    }
+}

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -14,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_checkable
 
 from kickdrift import _plot
-from kickdrift._document import Document, Row, ask, fields, frame, given
+from kickdrift._document import Asked, Document, Row, fields, frame
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, text
@@ -120,7 +118,7 @@ class Advice(Advised):
     ('caution', Number('3'), ['caution', 'island'])
     """
 
-    _svg: str
+    _asked: Asked
 
     @cached_property
     def modes(self) -> tuple[Row, ...]:
@@ -129,7 +127,7 @@ class Advice(Advised):
 
     def to_svg(self) -> str:
         """The program's figure: the outer step across, each mode a row."""
-        return self._svg
+        return self._asked.svg()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw what is proven stable and unstable over the outer step of the first scheme, a row a mode.
@@ -143,7 +141,7 @@ class Advice(Advised):
         return _plot.advice(self.data, ax)
 
     def _repr_html_(self) -> str:
-        return f"{super()._repr_html_()}{self._svg}"
+        return f"{super()._repr_html_()}{self.to_svg()}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -250,36 +248,58 @@ def advise(
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes and masses of its own")
         return periods.advise(steps, engine=engine, band=band, length=length)
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in periods)
-    arguments = ["advise", *common(band, length), *given(hmr=_mass(hmr))]
+    given: dict[str, list[str]] = {"period": [], "bond": [], "on": []}
     for name, value in named:
-        own = _time("periods", value)
-        arguments.append(f"--period={own}" if name is None else f"--period={_name('periods', name)}={own}")
-    arguments += [f"--bond={_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
-    arguments += [f"--on={_name('on', name)}={clock}" for name, clock in (on or {}).items()]
-    with asked(steps, engine) as more:
-        return Advice(*(ask([*arguments, *more], form) for form in ("json", "text", "svg")))
+        own = str(_time("periods", value))
+        given["period"].append(own if name is None else f"{_name('periods', name)}={own}")
+    given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
+    given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
+    found = asked(given, steps, engine, band, length, hmr)
+    return Advice(found.render("json"), found.render("text"), found)
 
 
-def common(band: Exact, length: Time | None) -> list[str]:
-    """What all advice is asked with."""
-    return given(band=band if isinstance(band, str) else text("band", band), length=_time("length", length))
+def asked(
+    given: Mapping[str, str | list[str]],
+    steps: str | Sequence[Any],
+    engine: Engine | None,
+    band: Exact,
+    length: Time | None,
+    hmr: Exact | None = None,
+    place: str | Mapping[str, Any] = "",
+) -> Asked:
+    """The question about what is given, and what all advice is asked with."""
+    engines = [engine] if isinstance(engine, str | PathLike) else list(engine or ())
+    texts = [_text(own) for own in engines]
+    rest = {
+        "steps": _schemes(steps),
+        "engine": texts,
+        "band": band if isinstance(band, str) else text("band", band),
+        "length": _time("length", length),
+        "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
+    }
+    names = [
+        f"engine{n}" if own == fspath(path) else fspath(path)
+        for n, (path, own) in enumerate(zip(engines, texts, strict=True))
+    ]
+    every = {name: value for name, value in {**given, **rest}.items() if value}
+    return Asked("advise", every, None, place, {"engine": names} if names else {})
 
 
-@contextmanager
-def asked(steps: str | Sequence[Any], engine: Engine | None) -> Iterator[list[str]]:
-    """The schemes and the engine's files as flags, for as long as the files are there."""
-    with _files(engine) as paths:
-        yield [f"--steps={scheme}" for scheme in _schemes(steps)] + [f"--engine={path}" for path in paths]
+def _text(engine: str | PathLike[str]) -> str:
+    """An engine's input: it itself where it has several lines, or what stands in the file."""
+    own = fspath(engine)
+    if "\n" in own:
+        return own
+    try:
+        return Path(own).read_text()
+    except (OSError, ValueError) as cause:
+        raise KickdriftError(own, "not read", f"{cause}: name an engine's input") from cause
 
 
 def _time(field: str, value: Time | None) -> str | None:
     if value is None or isinstance(value, str):
         return value
     return f"{text(field, value)}fs"
-
-
-def _mass(value: Exact | None) -> str | None:
-    return value if value is None or isinstance(value, str) else text("hmr", value)
 
 
 def _name(field: str, name: str) -> str:
@@ -295,18 +315,3 @@ def _schemes(steps: str | Sequence[Any]) -> list[str]:
     several = len(steps) > 0 and isinstance(steps[0], list | tuple)
     schemes = steps if several else [steps] if len(steps) else []
     return [",".join(str(_time("steps", step)) for step in scheme) for scheme in schemes]
-
-
-@contextmanager
-def _files(engine: Engine | None) -> Iterator[list[str]]:
-    """The paths of an engine's files; texts are put into files for as long."""
-    given = [] if engine is None else [engine] if isinstance(engine, str | PathLike) else list(engine)
-    with tempfile.TemporaryDirectory(prefix="kickdrift-") as folder:
-        paths = []
-        for place, own in enumerate(given):
-            path = fspath(own)
-            if "\n" in path:
-                path = str(Path(folder) / f"engine{place}")
-                Path(path).write_text(fspath(own))
-            paths.append(path)
-        yield paths

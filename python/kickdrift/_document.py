@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import html
 import json
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from dataclasses import fields as parts
 from functools import cached_property
 from types import MappingProxyType
@@ -27,16 +28,10 @@ Row = Mapping[str, Any]
 _SHOWN = 20
 
 
-def ask(
-    arguments: Sequence[str],
-    form: str = "json",
-    held: str | None = None,
-    arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
-) -> str:
-    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg; about a system in
-    memory where its text and arrays are given."""
+def ask(arguments: Sequence[str], form: str = "json") -> str:
+    """What the program writes for the arguments in one of its forms: json, csv, latex, text, or svg."""
     target = ["--output", "answer.svg"] if form == "svg" else ["--format", form]
-    return _native.answer([*arguments, *target, "--quiet"], held, arrays).decode()
+    return _native.answer([*arguments, *target, "--quiet"]).decode()
 
 
 def given(**options: str | int | None) -> list[str]:
@@ -70,6 +65,50 @@ def _held(value: Any) -> Any:
                 frozen(own)
         return MappingProxyType(value)
     return frozen(value) if isinstance(value, np.ndarray) else value
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Asked(Frozen):
+    """A question of the library, which is answered once; a copy from another process asks again."""
+
+    name: str
+    #: A text each, or the texts of its parts.
+    fields: Mapping[str, str | list[str]]
+    budget: int | None = None
+    #: Where the arrays are that a system refers to: the folder, or they themselves.
+    place: str | Mapping[str, npt.NDArray[np.float64]] = ""
+    #: Names of the files whose texts are fields.
+    files: Mapping[str, list[str]] = field(default_factory=dict)
+
+    @cached_property
+    def _answer(self) -> _native.Answer:
+        return _native.ask(self.name, *self._given())
+
+    def _given(self) -> tuple[dict[str, str | list[str]], int | None, str | dict[str, npt.NDArray[np.float64]]]:
+        place = self.place if isinstance(self.place, str) else dict(self.place)
+        return dict(self.fields), self.budget, place
+
+    def render(self, form: str) -> str:
+        """The answer as json, csv, latex or text."""
+        return self._answer.render(form)
+
+    def svg(self) -> str:
+        """The answer as the program draws it."""
+        words = ["kickdrift", self.name]
+        for name, value in {**self.fields, **self.files}.items():
+            flag = "--" + {"width": "resolution"}.get(name, name.replace("_", "-"))
+            several = [value] if isinstance(value, str) else value
+            if name == "file":
+                words += several
+            elif name != "system":
+                words += [word for own in several for word in ([flag] if own == "true" else [flag, own])]
+        return _native.draw(self.name, *self._given(), shlex.join(words))
+
+
+def question(name: str, budget: int | None = None, **fields: str | int | float | bool | None) -> Asked:
+    """A question with fields; those that are None or False are not given."""
+    given = ((field, value) for field, value in fields.items() if value is not None and value is not False)
+    return Asked(name, {field: "true" if value is True else str(value) for field, value in given}, budget)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -197,31 +236,19 @@ class Table(Document, Sequence[Row]):
 class Answer(Table):
     """Rows that answer one question of the library; its other forms are written from the same answer."""
 
-    _question: str
-    _fields: tuple[tuple[str, str], ...]
-    _budget: int | None
-
-    @cached_property
-    def _answer(self) -> _native.Answer:
-        # A copy from another process has its document alone.
-        return _native.ask(self._question, dict(self._fields), self._budget)
+    _asked: Asked
 
     def _again(self, form: str) -> str:
-        return self._answer.render(form)
+        return self._asked.render(form)
 
 
 _Kind = TypeVar("_Kind", bound=Answer)
 
 
-def answered(
-    kind: type[_Kind], question: str, rows: str, budget: int | None = None, **fields: str | int | None
-) -> _Kind:
+def answered(kind: type[_Kind], name: str, rows: str, budget: int | None = None, **fields: str | int | None) -> _Kind:
     """The answer to a question; fields that are None are not given."""
-    given = tuple((name, str(value)) for name, value in fields.items() if value is not None)
-    answer = _native.ask(question, dict(given), budget)
-    table = kind(answer.render("json"), (), rows, question, given, budget)
-    table.__dict__["_answer"] = answer
-    return table
+    asked = question(name, budget, **fields)
+    return kind(asked.render("json"), (), rows, asked)
 
 
 def frame(rows: Iterable[Mapping[str, Any]]) -> pandas.DataFrame:

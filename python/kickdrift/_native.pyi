@@ -104,16 +104,25 @@ def map(
 def multipliers(
     stiffness: Sequence[Any], steps: Sequence[Any], ranges: Sequence[Sequence[Any]]
 ) -> list[tuple[int, int]]: ...
-def answer(
-    arguments: Sequence[str],
-    text: str | None = None,
-    arrays: Mapping[str, npt.NDArray[np.float64]] | None = None,
-) -> bytes: ...
+def answer(arguments: Sequence[str]) -> bytes: ...
+
 @final
 class Answer:
     def render(self, form: str) -> str: ...
 
-def ask(name: str, fields: Mapping[str, str], budget: int | None = None) -> Answer: ...
+def ask(
+    name: str,
+    fields: Mapping[str, str | list[str]],
+    budget: int | None = None,
+    place: str | Mapping[str, npt.NDArray[np.float64]] | None = None,
+) -> Answer: ...
+def draw(
+    name: str,
+    fields: Mapping[str, str | list[str]],
+    budget: int | None,
+    place: str | Mapping[str, npt.NDArray[np.float64]] | None,
+    command: str,
+) -> str: ...
 def palette() -> tuple[dict[str, str], list[str], list[str]]: ...
 def main(arguments: Sequence[str]) -> int: ...
 def recheck(

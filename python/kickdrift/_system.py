@@ -6,7 +6,7 @@ import json
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from os import PathLike
@@ -18,8 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _plot
-from kickdrift._advise import Engine, SystemAdvice, Time, asked, common
-from kickdrift._document import Document, Frozen, Table, ask, frame, given
+from kickdrift._advise import Engine, SystemAdvice, Time, asked
+from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
@@ -61,6 +61,7 @@ class System(Frozen):
     arrays: Mapping[str, npt.NDArray[Any]] = field(default_factory=dict)
     notes: Sequence[str] = ()
     _path: Path | None = None
+    _source: str = ""
 
     def __post_init__(self) -> None:
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
@@ -94,10 +95,11 @@ class System(Frozen):
         """
         own = Path(path)
         try:
-            document = json.loads(own.read_text(), parse_float=str)
+            source = own.read_text()
+            document = json.loads(source, parse_float=str)
         except (OSError, ValueError) as cause:
             raise KickdriftError(str(path), "not read", f"{cause}: name a system file") from cause
-        return System(MappingProxyType(document), _path=own)
+        return System(MappingProxyType(document), _path=own, _source=source)
 
     @staticmethod
     def from_hessians(
@@ -190,10 +192,17 @@ class System(Frozen):
         with tempfile.TemporaryDirectory(prefix="kickdrift-") as folder:
             yield str(self.save(folder))
 
-    def _ask(self, command: str, options: Sequence[str], form: str = "json") -> str:
+    def _fields(self) -> dict[str, str | list[str]]:
         if self._path is not None:
-            return ask([command, str(self._path), *options], form)
-        return ask([command, _FILE, *options], form, self._text(), dict(self.arrays))
+            return {"file": self._path.name, "system": self._source}
+        return {"file": _FILE, "system": self._text()}
+
+    def _place(self) -> str | Mapping[str, npt.NDArray[Any]]:
+        return self.arrays if self._path is None else str(self._path.parent)
+
+    def _about(self, asked: Asked) -> Asked:
+        """The question about this system."""
+        return replace(asked, fields=self._fields() | dict(asked.fields), place=self._place())
 
     def decide(
         self,
@@ -225,13 +234,10 @@ class System(Frozen):
         KickdriftError, BudgetError
             A system that makes no sense; more work than the budget allows.
         """
-        options = given(
-            accuracy=None if accuracy is None else str(accuracy),
-            friction=None if friction is None else text("friction", friction),
-            budget=budget,
-        )
-        options += [flag for flag, asked in (("--exact", exact), ("--keep-rigid", keep_rigid)) if asked]
-        return SystemVerdict(self._ask("system", options), self, tuple(options))
+        damped = None if friction is None else text("friction", friction)
+        asked = question("system", budget, exact=exact, keep_rigid=keep_rigid, friction=damped, accuracy=accuracy)
+        asked = self._about(asked)
+        return SystemVerdict(asked.render("json"), self, asked)
 
     def intervals(self, outer: Range, *, resolution: float = 1e-4, accuracy: float | None = None) -> Intervals:
         """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
@@ -245,12 +251,9 @@ class System(Frozen):
         accuracy : float, optional
             How well the Hessians are known.
         """
-        options = given(
-            intervals=f"outer={range_text('outer', outer)}",
-            resolution=str(resolution),
-            accuracy=None if accuracy is None else str(accuracy),
-        )
-        return Intervals(self._ask("system", options), tuple(options), "stretches", self)
+        over = f"outer={range_text('outer', outer)}"
+        asked = self._about(question("system", intervals=over, width=resolution, accuracy=accuracy))
+        return Intervals(asked.render("json"), (), "stretches", asked)
 
     def advise(
         self,
@@ -287,11 +290,9 @@ class System(Frozen):
         >>> system.advise(steps=[("0.5fs", "6fs")])
         SystemAdvice(4 fs caution, 6 fs island)
         """
-        with asked(steps, engine) as more:
-            options = [*common(band, length), *more]
-            asked_for = self._ask("advise", options), self._ask("advise", options, "text")
+        found = asked(self._fields(), steps, engine, band, length, place=self._place())
         warnings = self.decide().warnings
-        return SystemAdvice(asked_for[0], _warned(warnings) + asked_for[1], warnings)
+        return SystemAdvice(found.render("json"), _warned(warnings) + found.render("text"), warnings)
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
@@ -325,7 +326,7 @@ def _exact(value: Any) -> Any:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Intervals(Table):
+class Intervals(Answer):
     """Stretches of the outer step, ``lo`` to ``hi``: ``stable``, ``unstable``, or ``the data do not tell``.
 
     Examples
@@ -338,18 +339,13 @@ class Intervals(Table):
     (['stable', 'the data do not tell', 'unstable', 'the data do not tell', 'stable'], 'outer step')
     """
 
-    system: System
-
-    def _again(self, form: str) -> str:
-        return self.system._ask("system", self._arguments, form)
-
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the stretches over the outer step."""
         return _plot.intervals(self.rows, ax)
 
     def to_svg(self) -> str:
         """The program's figure: the stretches, and growth where it is unstable."""
-        return self._again("svg")
+        return self._asked.svg()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -367,7 +363,7 @@ class SystemVerdict(Document):
     """
 
     system: System
-    _options: tuple[str, ...]
+    _asked: Asked
 
     @property
     def stable(self) -> bool:
@@ -435,7 +431,7 @@ class SystemVerdict(Document):
 
     def to_svg(self) -> str:
         """The program's figure: multipliers, and shapes of growing modes."""
-        return self.system._ask("system", self._options, "svg")
+        return self._asked.svg()
 
     def _repr_svg_(self) -> str:
         return self.to_svg()
@@ -452,7 +448,7 @@ class SystemVerdict(Document):
         return f"SystemVerdict({words}, {self.kind}{told})"
 
     def __str__(self) -> str:
-        return _warned(self.system.notes) + self.system._ask("system", self._options, "text").rstrip()
+        return _warned(self.system.notes) + self._asked.render("text").rstrip()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -517,5 +513,6 @@ def simulate(
     """
     parts = list(displace) if isinstance(displace, list | tuple | np.ndarray) else [displace]
     moved = ",".join(text("displace", part) for part in parts)
-    options = given(periods=periods, displace=moved, budget=budget) + (["--staggered"] if staggered else [])
-    return Run(system._ask("simulate", options))
+    form = "staggered" if staggered else "symmetric"
+    asked = question("simulate", budget, periods=periods, displace=moved, form=form)
+    return Run(system._about(asked).render("json"))

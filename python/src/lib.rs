@@ -28,5 +28,5 @@ mod _native {
     #[pymodule_export]
     use crate::palette::palette;
     #[pymodule_export]
-    use crate::program::{Answer, answer, ask, main, recheck};
+    use crate::program::{Answer, answer, ask, draw, main, recheck};
 }

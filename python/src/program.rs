@@ -11,6 +11,7 @@ use kickdrift::format::Format;
 use kickdrift::question::{self, Work};
 use kickdrift::recheck::{Claim, Options};
 use kickdrift::report::document::Document;
+use kickdrift::report::figure::file;
 use kickdrift::scene::{Array, Arrays};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -25,20 +26,11 @@ pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| cli::program(arguments))
 }
 
-/// What the program would write for the arguments; about a system in memory, the text of its file and its arrays by name, where
-/// one is given.
+/// What the program would write for the arguments.
 #[pyfunction]
-#[pyo3(signature = (arguments, text = None, arrays = None))]
-pub fn answer<'py>(
-    py: Python<'py>,
-    arguments: Vec<OsString>,
-    text: Option<String>,
-    arrays: Option<BTreeMap<String, PyReadonlyArrayDyn<'py, f64>>>,
-) -> PyResult<Bound<'py, PyBytes>> {
+pub fn answer(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Bound<'_, PyBytes>> {
     let name = OsString::from("kickdrift");
-    let arrays = held(arrays.unwrap_or_default())?;
-    let held = text.map(|text| cli::Held { text, arrays });
-    let bytes = job::run(py, move |_| cli::answer_about(std::iter::once(name).chain(arguments), held))?;
+    let bytes = job::run(py, move |_| cli::answer(std::iter::once(name).chain(arguments)))?;
     Ok(PyBytes::new(py, &bytes))
 }
 
@@ -57,18 +49,68 @@ impl Answer {
     }
 }
 
-/// Answers a question: its name, and its fields as texts.
+/// A field of a question: its text, or the texts of its parts.
+#[derive(FromPyObject)]
+pub enum Given {
+    One(String),
+    Several(Vec<String>),
+}
+
+/// Where the arrays are that a system refers to: in memory by name, or in a folder.
+#[derive(FromPyObject)]
+pub enum Place<'py> {
+    Held(BTreeMap<String, PyReadonlyArrayDyn<'py, f64>>),
+    Folder(PathBuf),
+}
+
+type Fields = serde_json::Map<String, serde_json::Value>;
+
+fn read(fields: BTreeMap<String, Given>, place: Option<Place<'_>>) -> PyResult<(Fields, Arrays)> {
+    let field = |(name, own)| match own {
+        Given::One(text) => (name, text.into()),
+        Given::Several(all) => (name, all.into()),
+    };
+    let arrays = match place {
+        Some(Place::Held(arrays)) => held(arrays)?,
+        Some(Place::Folder(folder)) => folder.as_path().into(),
+        None => Arrays::from(""),
+    };
+    Ok((fields.into_iter().map(field).collect(), arrays))
+}
+
+/// Answers a question: its name, its fields, and where the arrays are that it refers to.
 #[pyfunction]
-#[pyo3(signature = (name, fields, budget = None))]
+#[pyo3(signature = (name, fields, budget = None, place = None))]
 pub fn ask(
     py: Python<'_>,
     name: String,
-    fields: BTreeMap<String, String>,
+    fields: BTreeMap<String, Given>,
     budget: Option<u64>,
+    place: Option<Place<'_>>,
 ) -> PyResult<Answer> {
+    let (fields, arrays) = read(fields, place)?;
     job::run(py, move |_| {
-        let fields = fields.into_iter().map(|(name, text)| (name, text.into())).collect();
-        question::ask(&name, &fields, &Work { budget, ..Work::default() }).map(Answer)
+        let work = Work { budget, arrays: Some(&arrays), ..Work::default() };
+        question::ask(&name, &fields, &work).map(Answer)
+    })
+}
+
+/// Draws the same answer, as the text of a file of SVG that carries a command.
+#[pyfunction]
+pub fn draw(
+    py: Python<'_>,
+    name: String,
+    fields: BTreeMap<String, Given>,
+    budget: Option<u64>,
+    place: Option<Place<'_>>,
+    command: String,
+) -> PyResult<String> {
+    let (fields, arrays) = read(fields, place)?;
+    job::run(py, move |_| {
+        let work = Work { budget, arrays: Some(&arrays), ..Work::default() };
+        let nothing = || Error::input("figure", &name, "has nothing to draw");
+        let figure = question::draw(&name, &fields, &work)?.ok_or_else(nothing)?;
+        Ok(String::from_utf8_lossy(&file(figure, &command, Format::Svg)?).into_owned())
     })
 }
 

@@ -17,7 +17,6 @@ use crate::report::document::{Document, Layout};
 use crate::report::file::{is_captured, write_output};
 use crate::report::latex::Float;
 use crate::report::map::needed;
-use crate::scene::Arrays;
 use crate::verdict::Limits;
 
 /// Flags of every command.
@@ -45,16 +44,6 @@ pub struct Common {
     /// The command as figures carry it.
     #[arg(skip)]
     pub command: String,
-    /// What a host holds in place of the file of a system.
-    #[arg(skip)]
-    pub held: Option<Held>,
-}
-
-/// A system in memory: the text of its file, and the arrays that it refers to.
-#[derive(Clone, Debug)]
-pub struct Held {
-    pub text: String,
-    pub arrays: Arrays,
 }
 
 /// A parser of values whose errors name the field already.

@@ -60,7 +60,12 @@ pub enum Default {
 impl Common {
     /// The cost allowed to an answer; its progress is shown on a terminal.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.budget, watch: (!self.quiet).then_some(self), threads: self.threads() }
+        Work {
+            budget: self.budget,
+            watch: (!self.quiet).then_some(self),
+            threads: self.threads(),
+            ..Work::default()
+        }
     }
 }
 
@@ -69,7 +74,7 @@ impl Watch for Common {
         announce(self.quiet, work, seconds);
     }
 
-    fn count(&self, length: u64, things: &str) -> Box<dyn Progress> {
+    fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
         Box::new(progress(self.quiet, length, things))
     }
 }

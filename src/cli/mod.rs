@@ -37,7 +37,6 @@ use crate::question::{Closings, Curves, Half, Polynomial, Proposition, Question}
 use crate::report::file::abandon;
 use crate::report::file::{captured, is_captured, replaceable, write_output};
 use args::Common;
-pub use args::Held;
 use asked::{Asked, Default};
 use progress::Patience;
 
@@ -153,16 +152,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// # Errors
 /// The error that the program prints as its one line.
 pub fn answer(arguments: impl IntoIterator<Item = OsString>) -> Result<Vec<u8>> {
-    answer_about(arguments, None)
-}
-
-/// [`answer`] about a system in memory: the file that the arguments name is not read, and only its name is echoed.
-///
-/// # Errors
-/// As [`answer`].
-pub fn answer_about(arguments: impl IntoIterator<Item = OsString>, held: Option<Held>) -> Result<Vec<u8>> {
-    let mut cli = parsed(arguments).map_err(|error| usage::explained(&error, &whole()))?;
-    cli.common.held = held;
+    let cli = parsed(arguments).map_err(|error| usage::explained(&error, &whole()))?;
     captured(|| run(&cli).map(drop))
 }
 

@@ -2,17 +2,13 @@
 
 use std::path::PathBuf;
 
-use plot::Foot;
-
 use super::args::{Columns, Common};
 use super::paper::Paper;
-use super::system::{limits, read};
+use super::system::{arrays, source};
 use crate::avi::Ends;
 use crate::error::Result;
 use crate::format::Format;
-use crate::question::flag;
-use crate::report::simulate as report;
-use crate::scene::{Displacement, RunRequest};
+use crate::question::{Displacement, Question, Simulate, Work, flag};
 
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]
@@ -24,7 +20,7 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 200, allow_negative_numbers = true, value_parser = flag::<u32>)]
     periods: u32,
     /// The starting displacement of each degree of freedom, as 1/10,0,0; one number moves the first alone.
-    #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X", default_value = "1/10", allow_hyphen_values = true, value_parser = flag::<Displacement>)]
     displace: Displacement,
     /// Algorithm 1 as it stands: whole kicks at the start of a period, none at its end [default: halves at both]
     #[arg(long)]
@@ -42,32 +38,20 @@ impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         self.paper.check(self.figure.is_some())?;
         self.figure.as_ref().map_or(Ok(()), |path| common.apart_from_output("figure", path))?;
-        let (ends, form) =
-            if self.staggered { (Ends::Staggered, "staggered") } else { (Ends::Symmetric, "symmetric") };
-        let request = RunRequest { periods: self.periods, displacement: self.displace.clone(), ends };
-        let scene = read(&self.file, common)?;
-        let run = scene.run(&request, &limits(common))?;
-        if let Some(path) = &self.figure {
-            let foot = Foot::default()
-                .words(scene.title())
-                .value("periods", request.periods)
-                .value("displaced by", &request.displacement)
-                .words(form);
-            let figure = report::figure(&run, scene.title()).footed(&foot);
-            self.paper.draw(
-                "figure",
-                path,
-                figure.in_units_of(scene.time_unit().unwrap_or("time")),
-                common,
-            )?;
+        let (system, arrays) = (source(&self.file)?, arrays(&self.file));
+        let asked = Simulate {
+            file: self.file.file_name().unwrap_or_default().to_string_lossy().into(),
+            title: None,
+            system,
+            periods: self.periods,
+            displace: self.displace.clone(),
+            form: if self.staggered { Ends::Staggered } else { Ends::Symmetric },
+        };
+        let work = Work { arrays: Some(&arrays), ..common.work() };
+        let answer = asked.answer(&work)?;
+        if let Some((path, figure)) = self.figure.as_ref().zip(asked.figure(&answer, &work)?) {
+            self.paper.draw("figure", path, figure, common)?;
         }
-        let document = report::document(&run)
-            .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
-            .input("title", scene.title())
-            .input_json("system", scene.source().clone())
-            .input("periods", request.periods)
-            .input("displace", &request.displacement)
-            .input("form", form);
-        common.write(&self.columns.of(document)?, Format::Text)
+        common.write(&self.columns.of(asked.document(&answer))?, Format::Text)
     }
 }

@@ -2,20 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use plot::{Figure, Foot};
-
 use super::args::{Columns, Common, from_str};
 use super::paper::Paper;
-use super::progress::{announce, progress};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Rational;
-use crate::question::flag;
-use crate::report::document::Document;
-use crate::report::system::{self as report, Beside, Colouring, SystemMap};
-use crate::scene::{Arrays, Axis, Scan, Span, SystemScene, file};
-use crate::system::scan::scan;
-use crate::system::{Analysis, Holds, Limits, Route};
+use crate::question::{Found, Question, System, Work, flag};
+use crate::report::system::Colouring;
+use crate::scene::{Arrays, Axis, Span, SystemFile, file};
+use crate::system::Holds;
 
 /// Flags of `system`.
 ///
@@ -64,164 +59,74 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
+        let drawing = drawing(common)?;
         // Refused before the work, not after it.
-        self.paper.check(drawing(common)?.is_some())?;
-        let (text, arrays) = source(&self.file, common)?;
-        let scene = SystemScene::read_in(arrays, &text)?;
-        let scene = scene.asked(self.accuracy, self.keep_rigid, self.friction.as_ref())?;
-        if let Some(span) = &self.intervals {
-            return self.intervals(&scene, span, common).map(|()| 0);
+        self.paper.check(drawing.is_some())?;
+        let (system, arrays) = (source(&self.file)?, arrays(&self.file));
+        let asked = self.asked(system)?;
+        let work = Work { arrays: Some(&arrays), ..common.work() };
+        if self.exit_code && common.quiet && common.output.is_none() {
+            return self.code(asked.scene(&work)?.model().verdict(asked.route(), &work.products())?);
         }
-        if let Some(width) = self.resolution.filter(|_| !self.nearest) {
+        let answer = asked.answer(&work)?;
+        match drawing {
+            Some(path) => {
+                let figure = asked.drawn(&answer, self.colour.unwrap_or_default(), &work)?;
+                self.paper.draw("output", path, figure, common)?;
+            }
+            None => {
+                let format = match &answer.found {
+                    Found::Map(_) => common.format_of_table(&Format::DOCUMENT)?,
+                    _ => Format::Text,
+                };
+                common.write(&self.columns.of(asked.document(&answer))?, format)?;
+            }
+        }
+        match &answer.found {
+            Found::Verdict(own) if self.exit_code => self.code(own.analysis.holds()),
+            _ => Ok(0),
+        }
+    }
+
+    /// 0 or 1.
+    fn code(&self, holds: Holds) -> Result<u8> {
+        let remedy = "doubles do not prove whether it is stable: decide it with --exact";
+        let stable = holds.is_stable().ok_or_else(|| Error::input("file", self.file.display(), remedy))?;
+        Ok(u8::from(!stable))
+    }
+
+    fn asked(&self, system: SystemFile) -> Result<System> {
+        if let Some(width) = self.resolution.filter(|_| !self.nearest && self.intervals.is_none()) {
             let remedy = "is the width of intervals: add --intervals PATH=LO..HI or --nearest";
             return Err(Error::input("--resolution", width, remedy));
         }
-        match self.scan.as_slice() {
-            [] if self.colour.is_some() => {
-                Err(Error::input("--colour", "given", "is for maps: add --scan twice"))
-            }
-            [] if self.exit_code => self.exit_code(&scene, common),
-            [] => self.verdict(&scene, common).map(|_| 0),
-            [x] | [x, _] => {
-                let axes = Scan::new(scene.clone(), x.clone(), self.scan.get(1).cloned())?;
-                self.map(&scene, &axes, common).map(|()| 0)
-            }
-            other => {
-                Err(Error::input("--scan", format!("given {} times", other.len()), "a map has two axes"))
-            }
+        if self.colour.is_some() && self.scan.is_empty() {
+            return Err(Error::input("--colour", "given", "is for maps: add --scan twice"));
         }
-    }
-
-    fn route(&self) -> Route {
-        if self.exact { Route::Exact } else { Route::Cheapest }
-    }
-
-    fn width(&self) -> f64 {
-        self.resolution.unwrap_or(1e-4)
-    }
-
-    fn intervals(&self, scene: &SystemScene, span: &Span, common: &Common) -> Result<()> {
-        let (width, limits) = (self.width(), limits(common));
-        let found = scene.intervals(span, width, &limits)?;
-        if let Some(path) = drawing(common)? {
-            let rates = scene.growth_rates(span, &report::sampled(&found.stretches), &limits)?;
-            let foot = Foot::default().words(&span.to_string());
-            let figure =
-                report::intervals_figure(&found, &rates, scene.title(), &scene.number(&found.number));
-            return self.draw(scene, path, figure, foot, common);
-        }
-        let document = report::intervals(&found).input("intervals", span).input("width", width);
-        common.write(&self.columns.of(self.echo(document, scene))?, Format::Text)
-    }
-
-    /// 0 or 1; nothing but the verdict is computed where nothing is shown.
-    fn exit_code(&self, scene: &SystemScene, common: &Common) -> Result<u8> {
-        let silent = common.quiet && common.output.is_none();
-        let holds = if silent {
-            scene.model().verdict(self.route(), &limits(common))?
-        } else {
-            self.verdict(scene, common)?.holds()
+        let [scan_x, scan_y] = match self.scan.as_slice() {
+            [] => [None, None],
+            [x] => [Some(x.clone()), None],
+            [x, y] => [Some(x.clone()), Some(y.clone())],
+            more => {
+                let given = format!("given {} times", more.len());
+                return Err(Error::input("--scan", given, "a map has two axes"));
+            }
         };
-        match holds {
-            Holds::Stable => Ok(0),
-            Holds::Unstable => Ok(1),
-            Holds::NotTold => {
-                let remedy = "doubles do not prove whether it is stable: decide it with --exact";
-                Err(Error::input("file", self.file.display(), remedy))
-            }
-        }
+        Ok(System {
+            file: self.file.file_name().unwrap_or_default().to_string_lossy().into(),
+            title: None,
+            system,
+            exact: self.exact,
+            keep_rigid: self.keep_rigid,
+            friction: self.friction.clone(),
+            accuracy: self.accuracy,
+            scan_x,
+            scan_y,
+            intervals: self.intervals.clone(),
+            nearest: self.nearest,
+            width: self.resolution,
+        })
     }
-
-    fn verdict(&self, scene: &SystemScene, common: &Common) -> Result<Analysis> {
-        let words = format!("a verdict on {} degrees of freedom", scene.model().size());
-        announce(common.quiet, &words, scene.model().seconds());
-        let analysis = scene.model().decide(self.route(), &limits(common))?;
-        match drawing(common)? {
-            Some(path) => {
-                self.draw(scene, path, report::figure(&analysis, scene.title()), Foot::default(), common)?
-            }
-            None => {
-                let limits = limits(common);
-                let friction = scene.friction(&limits)?;
-                let (orbit, is_orbit_missing) = match scene.own_orbit(&limits) {
-                    Err(error) if error.kind() == Kind::Input => (None, true),
-                    found => (found?, false),
-                };
-                let nearest =
-                    self.nearest.then(|| scene.nearest_unstable(self.width(), &limits)).transpose()?;
-                let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
-                let (unit, labels) = (scene.time_unit(), scene.labels());
-                let beside = Beside { unit, friction, orbit, is_orbit_missing, labels, nearest };
-                let document = self.echo(report::document(&analysis, &beside), scene);
-                let document = match self.nearest {
-                    true => document.input("nearest", "true").input("width", self.width()),
-                    false => document,
-                };
-                common.write(&self.columns.of(document)?, Format::Text)?;
-            }
-        }
-        Ok(analysis)
-    }
-
-    fn map(&self, scene: &SystemScene, axes: &Scan, common: &Common) -> Result<()> {
-        let (xs, ys, limits) = (axes.x.values(), axes.ys(), limits(common));
-        let bar = progress(common.quiet, (xs.len() * ys.len()) as u64, "points");
-        let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(self.route(), &limits);
-        let points = scan(&xs, &ys, decide, |done| bar.inc(done as u64));
-        bar.finish_and_clear();
-        let time_unit = scene.time_unit().map(String::from);
-        let map = SystemMap { names: axes.names(), xs, ys, points: points?, time_unit };
-        if let Some(path) = drawing(common)? {
-            let numbers: Vec<_> = map.names.iter().map(|path| scene.number(path)).collect();
-            let ranges = Foot::default().words(&axes.x.to_string());
-            let ranges = axes.y.iter().fold(ranges, |foot, axis| foot.words(&axis.to_string()));
-            return self.draw(
-                scene,
-                path,
-                map.figure(self.colour.unwrap_or_default(), scene.title(), &numbers),
-                ranges,
-                common,
-            );
-        }
-        let document = self.echo(map.document(), scene).input("scan_x", &axes.x);
-        let document = match &axes.y {
-            Some(y) => document.input("scan_y", y),
-            None => document,
-        };
-        common.write(&self.columns.of(document)?, common.format_of_table(&Format::DOCUMENT)?)
-    }
-
-    /// In the system's unit of time, and with its title and what was varied below.
-    fn draw(
-        &self,
-        scene: &SystemScene,
-        path: &Path,
-        figure: Figure,
-        varied: Foot,
-        common: &Common,
-    ) -> Result<()> {
-        let foot = Foot::default().words(scene.title()).part(varied.to_string());
-        let figure = figure.in_units_of(scene.time_unit().unwrap_or("time")).footed(&foot);
-        self.paper.draw("output", path, figure, common)
-    }
-
-    fn echo(&self, document: Document, scene: &SystemScene) -> Document {
-        let document = document
-            .input("file", self.file.file_name().unwrap_or_default().to_string_lossy())
-            .input("title", scene.title())
-            .input_json("system", scene.source().clone());
-        let document = if self.exact { document.input("exact", "true") } else { document };
-        let document = if self.keep_rigid { document.input("keep_rigid", "true") } else { document };
-        let document = match &self.friction {
-            Some(rate) => document.input("friction", rate),
-            None => document,
-        };
-        self.accuracy.map_or(document.clone(), |accuracy| document.input("accuracy", accuracy))
-    }
-}
-
-pub fn limits(common: &Common) -> Limits {
-    common.budget.map_or_else(Limits::default, |products| Limits { products, ..Limits::default() })
 }
 
 /// The file to draw, where the output is one.
@@ -237,25 +142,12 @@ fn text(path: &Path) -> Result<String> {
     })
 }
 
-/// The text of a system file and where the arrays are that it refers to; or what the host holds in its place.
-fn source(path: &Path, common: &Common) -> Result<(String, Arrays)> {
-    match &common.held {
-        Some(held) => Ok((held.text.clone(), held.arrays.clone())),
-        None => Ok((text(path)?, folder(path))),
-    }
+/// A system file.
+pub fn source(path: &Path) -> Result<SystemFile> {
+    SystemFile::of_text(&text(path)?)
 }
 
 /// Where the arrays are that a file refers to.
-pub fn arrays(path: &Path, common: &Common) -> Arrays {
-    common.held.as_ref().map_or_else(|| folder(path), |held| held.arrays.clone())
-}
-
-fn folder(path: &Path) -> Arrays {
+pub fn arrays(path: &Path) -> Arrays {
     Arrays::from(path.parent().unwrap_or(Path::new("")))
-}
-
-/// A system file, read.
-pub fn read(path: &Path, common: &Common) -> Result<SystemScene> {
-    let (text, arrays) = source(path, common)?;
-    SystemScene::read_in(arrays, &text)
 }

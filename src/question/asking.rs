@@ -111,6 +111,15 @@ pub trait Question: Fields {
         format!("kickdrift {}{}", Self::NAME, self.input().into_iter().map(flag).collect::<String>())
     }
 
+    /// The answer drawn; `None` where this is nothing to draw.
+    ///
+    /// # Errors
+    /// Those of what is computed for the figure alone.
+    #[cfg(feature = "figure")]
+    fn figure(&self, _: &Self::Answer, _: &Work) -> Result<Option<plot::Figure>> {
+        Ok(None)
+    }
+
     /// Answer and document in one.
     ///
     /// # Errors
@@ -120,7 +129,7 @@ pub trait Question: Fields {
     }
 }
 
-/// The cost allowed to an answer, and who hears of long work.
+/// The cost allowed to an answer, who hears of long work, and what a question refers to.
 #[derive(Clone, Copy, Default)]
 pub struct Work<'a> {
     /// The most kicks that one tier composes for one pair, and each question's own measure of what it costs; its own limit
@@ -130,6 +139,9 @@ pub struct Work<'a> {
     pub watch: Option<&'a dyn Watch>,
     /// The threads of a map, which has its own; 0 for one a core.
     pub threads: usize,
+    /// Where the arrays are that a system refers to; here unless given.
+    #[cfg(feature = "system")]
+    pub arrays: Option<&'a crate::scene::Arrays>,
 }
 
 /// Hears of long work: a bar of progress, as a rule.
@@ -137,7 +149,7 @@ pub trait Watch: Sync {
     /// Work is about to begin that takes so many seconds of one core.
     fn announce(&self, work: &str, seconds: f64);
     /// So many `things` are about to be done; what is returned hears of each.
-    fn count(&self, length: u64, things: &str) -> Box<dyn Progress>;
+    fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_>;
 }
 
 impl Work<'_> {
@@ -152,7 +164,7 @@ impl Work<'_> {
     }
 
     /// Who hears of each of so many things that are done.
-    pub fn count(&self, length: u64, things: &str) -> Box<dyn Progress> {
+    pub fn count(&self, length: u64, things: &str) -> Box<dyn Progress + '_> {
         self.watch.map_or_else(|| Box::new(()) as Box<dyn Progress>, |watch| watch.count(length, things))
     }
 }

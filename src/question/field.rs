@@ -7,6 +7,7 @@ use crate::map::Shard;
 use crate::number::parse::{
     parse, parse_integer_range, parse_range, parse_ratio, parse_rational, parse_rational_range,
 };
+use crate::number::rational::to_f64;
 use crate::number::{Laurent, Ratio, Rational};
 use crate::tongue::Labels;
 
@@ -62,7 +63,8 @@ notation! {
     usize: whole, ToString::to_string;
     Labels: |_, text: &str| text.parse(), ToString::to_string;
     Shard: |_, text: &str| text.parse(), ToString::to_string;
-    String: |_, text: &str| Ok(text.into()), String::clone;
+    f64: |field: &str, text: &str| Ok(to_f64(&parse_rational(field, text)?)), ToString::to_string;
+    String: |_, text: &str| Ok(text.to_string()), String::clone;
 }
 
 /// A flag, which is not there where it is not set.

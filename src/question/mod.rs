@@ -16,6 +16,8 @@
 //! A new question is a file of its own here, with its fields declared once by `question!`, and a line in each list of those who ask:
 //! [`ask`] for Python and the page, the program's commands, the documents that `verify` reads.
 
+#[cfg(feature = "advise")]
+mod advise;
 mod asking;
 mod field;
 
@@ -28,11 +30,17 @@ mod polynomial;
 mod proposition;
 mod ratios;
 mod scene;
+#[cfg(feature = "system")]
+mod simulate;
 mod survey;
+#[cfg(feature = "system")]
+mod system;
 mod tongues;
 mod verdict;
 mod want;
 
+#[cfg(feature = "advise")]
+pub use advise::{Advise, Advised, Safe};
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
 pub use closings::{Closings, DIGITS};
@@ -45,7 +53,11 @@ pub use polynomial::Polynomial;
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
+#[cfg(feature = "system")]
+pub use simulate::{Answer as Simulated, Displacement, Simulate};
 pub use survey::{Survey, THINNEST};
+#[cfg(feature = "system")]
+pub use system::{Answer as SystemAnswer, Found, System};
 pub use tongues::{Colour, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
@@ -67,26 +79,60 @@ use crate::report::document::Document;
 /// # Errors
 /// An unknown name, and those of [`Fields::read`] and [`Question::answer`].
 pub fn ask(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Document> {
-    fn one<Q: Question>(input: &Input<String, Value>, work: &Work) -> Result<Document> {
-        Q::read(input)?.ask(work)
-    }
-    type Ask = fn(&Input<String, Value>, &Work) -> Result<Document>;
-    const ALL: [(&str, Ask); 9] = [
-        (Verdict::NAME, one::<Verdict>),
-        (Map::NAME, one::<Map>),
-        (Curves::NAME, one::<Curves>),
-        (Compare::NAME, one::<Compare>),
-        (Proposition::NAME, one::<Proposition>),
-        (Polynomial::NAME, one::<Polynomial>),
-        (Half::NAME, one::<Half>),
-        (Closings::NAME, one::<Closings>),
-        (Survey::NAME, one::<Survey>),
-    ];
-    match ALL.iter().find(|(known, _)| *known == name) {
-        Some((_, answer)) => answer(input, work),
-        None => {
-            let names = ALL.map(|(name, _)| name).join(", ");
-            Err(Error::input("question", name, format!("there are {names}")))
+    (named(name)?.ask)(input, work)
+}
+
+/// The figure of the same answer; `None` where this is nothing to draw.
+///
+/// # Errors
+/// As [`ask`], and those of [`Question::figure`].
+#[cfg(feature = "figure")]
+pub fn draw(name: &str, input: &Input<String, Value>, work: &Work) -> Result<Option<plot::Figure>> {
+    (named(name)?.draw)(input, work)
+}
+
+/// A question that is read from its fields.
+struct Named {
+    name: &'static str,
+    ask: fn(&Input<String, Value>, &Work) -> Result<Document>,
+    #[cfg(feature = "figure")]
+    draw: fn(&Input<String, Value>, &Work) -> Result<Option<plot::Figure>>,
+}
+
+impl Named {
+    const fn of<Q: Question>() -> Named {
+        Named {
+            name: Q::NAME,
+            ask: |input, work| Q::read(input)?.ask(work),
+            #[cfg(feature = "figure")]
+            draw: |input, work| {
+                let question = Q::read(input)?;
+                question.figure(&question.answer(work)?, work)
+            },
         }
     }
+}
+
+fn named(name: &str) -> Result<&'static Named> {
+    const ALL: &[Named] = &[
+        Named::of::<Verdict>(),
+        Named::of::<Map>(),
+        Named::of::<Curves>(),
+        Named::of::<Compare>(),
+        Named::of::<Proposition>(),
+        Named::of::<Polynomial>(),
+        Named::of::<Half>(),
+        Named::of::<Closings>(),
+        Named::of::<Survey>(),
+        #[cfg(feature = "system")]
+        Named::of::<System>(),
+        #[cfg(feature = "system")]
+        Named::of::<Simulate>(),
+        #[cfg(feature = "advise")]
+        Named::of::<Advise>(),
+    ];
+    ALL.iter().find(|known| known.name == name).ok_or_else(|| {
+        let names: Vec<&str> = ALL.iter().map(|known| known.name).collect();
+        Error::input("question", name, format!("there are {}", names.join(", ")))
+    })
 }

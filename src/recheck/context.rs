@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Error, Result};
 use crate::parallel::try_map;
-use crate::question::Work;
+use crate::question::{Watch, Work};
+use crate::tongue::Progress;
 use crate::verdict::Limits;
 
 /// What to do with a document that cannot be read.
@@ -90,6 +91,28 @@ pub trait Place: Sync {
     fn place(&self) -> String;
 }
 
+/// What is computed again shows its progress as the rows that are checked do.
+impl Watch for Context<'_> {
+    fn announce(&self, _: &str, _: f64) {}
+
+    fn count(&self, length: u64, _: &str) -> Box<dyn Progress + '_> {
+        Box::new(Done { see: self.see, done: AtomicU64::new(0), of: length })
+    }
+}
+
+struct Done<'a> {
+    see: Option<See<'a>>,
+    done: AtomicU64,
+    of: u64,
+}
+
+impl Progress for Done<'_> {
+    fn advance(&self, more: u64) {
+        let done = self.done.fetch_add(more, Ordering::Relaxed) + more;
+        self.see.inspect(|see| see(done, self.of));
+    }
+}
+
 /// A check at work.
 pub struct Context<'a> {
     pub options: &'a Options,
@@ -99,7 +122,7 @@ pub struct Context<'a> {
 impl Context<'_> {
     /// What computing an answer again may cost.
     pub fn work(&self) -> Work<'_> {
-        Work { budget: self.options.budget, ..Work::default() }
+        Work { budget: self.options.budget, watch: Some(self), ..Work::default() }
     }
 
     /// The kicks that one verdict may compose.

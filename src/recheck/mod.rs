@@ -146,9 +146,9 @@ claims! {
     "advise" Advise advise::Claim;
     #[cfg(feature = "advise")]
     "advise-system" AdviseSystem advise::Molecule;
-    #[cfg(feature = "system")] "system-verdict" System system::Verdict;
-    #[cfg(feature = "system")] "system-map" SystemMap system::Points;
-    #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Intervals;
+    #[cfg(feature = "system")] "system-verdict" System system::Claim;
+    #[cfg(feature = "system")] "system-map" SystemMap system::Claim;
+    #[cfg(feature = "system")] "system-intervals" SystemIntervals system::Claim;
     #[cfg(feature = "system")] "simulate" Simulate system::Simulated;
 }
 

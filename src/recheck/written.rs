@@ -50,19 +50,20 @@ named! {
     tongue::Side: "position", SIDES;
 }
 
+const SIDES: [tongue::Side; 5] = {
+    use tongue::Side::{Above, Below, Inside, OnLower, OnUpper};
+    [Below, OnLower, Inside, OnUpper, Above]
+};
+
+/// A flag, which stands in a document only where it is set.
 impl Notation for bool {
     fn parsed(_: &str, text: &str) -> Result<Self> {
         one_of("flag", text, [true], |_| "true")
     }
 }
 
-const SIDES: [tongue::Side; 5] = {
-    use tongue::Side::{Above, Below, Inside, OnLower, OnUpper};
-    [Below, OnLower, Inside, OnUpper, Above]
-};
-
 /// One of some values, by its name.
-pub fn one_of<T: Copy, const N: usize>(
+fn one_of<T: Copy, const N: usize>(
     field: &str,
     text: &str,
     all: [T; N],
@@ -70,18 +71,6 @@ pub fn one_of<T: Copy, const N: usize>(
 ) -> Result<T> {
     let found = all.into_iter().find(|&value| name(value) == text);
     found.ok_or_else(|| Error::input(field, text, format!("is none of {}", all.map(name).join(", "))))
-}
-
-/// A rate or a length that an input may have.
-///
-/// # Errors
-/// One that is not positive.
-#[cfg(feature = "system")]
-pub fn positive<'a>(field: &str, given: Option<&'a Written<Rational>>) -> Result<Option<&'a Rational>> {
-    match given.map(|given| &given.0) {
-        Some(value) if *value <= Rational::default() => Err(Error::input(field, value, "must be positive")),
-        value => Ok(value),
-    }
 }
 
 /// A column that a document may have or not, and in which a row may have a value or null.

@@ -365,12 +365,14 @@ fn an_input_that_makes_no_sense_is_an_error_that_names_its_field() {
     };
     type Change = fn(&mut Value);
     let cases: [(&str, Change); 6] = [
-        ("input.friction = -1/1000", |d| d["input"]["friction"] = json!("-1/1000")),
-        ("input.length = -7", |d| d["input"]["length"] = json!("-7")),
-        ("input.constrained", |d| d["input"]["constrained"][0]["stiffness"] = json!("1/7466200x")),
-        ("stiffness = -1", |d| d["input"]["constrained"][0]["stiffness"] = json!("-1")),
+        ("friction = -1/1000", |d| d["input"]["friction"] = json!("-1/1000")),
+        ("length = -7", |d| d["input"]["length"] = json!("-7")),
+        ("constrained[0].stiffness = 1/7466200x", |d| {
+            d["input"]["constrained"][0]["stiffness"] = json!("1/7466200x")
+        }),
+        ("constrained[0].stiffness = -1", |d| d["input"]["constrained"][0]["stiffness"] = json!("-1")),
         ("kickdrift = null", |d| drop(d.as_object_mut().unwrap().shift_remove("kickdrift"))),
-        ("input.length = null", |d| d["input"]["length"] = json!(null)),
+        ("length = null", |d| d["input"]["length"] = json!(null)),
     ];
     for (part, change) in cases {
         let told = told(&change);

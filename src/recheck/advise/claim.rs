@@ -4,15 +4,14 @@ use num_traits::One;
 use serde_json::Value;
 
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
-use crate::advise::{self, Origin, Question, Scheme};
-use crate::error::{Error, Result};
+use crate::advise::Mode;
+use crate::error::Result;
 use crate::number::rational::to_f64;
-use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign};
-use crate::question::Notation;
+use crate::number::{Ball, Laurent, Rational, Real, Sign};
+use crate::question::{Advised, Question};
 use crate::recheck::again::{Left, Recheck};
-use crate::recheck::context::{Checked, Context, Outcome, Place, holds};
-use crate::recheck::written::{Ends, Written, one_of, positive};
-use crate::report::advise as report;
+use crate::recheck::context::{Checked, Context, Fault, Outcome, Place, holds};
+use crate::recheck::written::{Ends, Written};
 use crate::verdict::Kind;
 
 const ROUTE: &str =
@@ -21,29 +20,12 @@ const ROUTE: &str =
 rows! {
     /// `kickdrift/advise/1`.
     pub struct Claim {
-        pub input: Input,
+        pub input: Advised,
         pub modes: Vec<ModeRow>,
         pub schemes: Vec<SchemeRow>,
         pub rows: Vec<Row>,
         pub intervals: Vec<Interval>,
         pub pairs: Vec<Pair>,
-    }
-
-    #[serde(deny_unknown_fields)]
-    pub struct Input {
-        pub band: Written<Rational>,
-        pub modes: Vec<Mode>,
-        pub schemes: Vec<Vec<Written<Rational>>>,
-        pub length: Option<Written<Rational>>,
-        pub friction: Option<Written<Rational>>,
-        pub constrained: Option<Vec<Mode>>,
-    }
-
-    pub struct Mode {
-        pub name: String,
-        pub from: Written<Origin>,
-        pub clock: u64 | null,
-        pub stiffness: Written<Laurent>,
     }
 
     pub struct ModeRow {
@@ -117,51 +99,6 @@ impl Place for Row {
     }
 }
 
-impl Notation for Origin {
-    fn parsed(_: &str, text: &str) -> Result<Origin> {
-        let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
-        one_of("from", text, all, Origin::name)
-    }
-}
-
-impl Mode {
-    fn asked(&self) -> Result<advise::Mode> {
-        if self.stiffness.sign() != Sign::Positive {
-            return Err(Error::input("stiffness", &self.stiffness.0, "a mode vibrates: it must be positive"));
-        }
-        let clock = self.clock.map(|clock| {
-            let place = clock.checked_sub(1).and_then(|place| usize::try_from(place).ok());
-            place.ok_or_else(|| Error::input("clock", clock, "clocks are counted from 1"))
-        });
-        Ok(advise::Mode {
-            name: self.name.clone(),
-            origin: self.from.0,
-            stiffness: self.stiffness.0.clone(),
-            clock: clock.transpose()?,
-            is_bond_with_hydrogen: None,
-            before: None,
-        })
-    }
-}
-
-impl Input {
-    fn question(&self) -> Result<Question> {
-        let asked = |modes: &[Mode]| modes.iter().map(Mode::asked).collect::<Result<Vec<_>>>();
-        let scheme =
-            |own: &Vec<Written<Rational>>| Scheme::new(own.iter().map(|step| step.0.clone()).collect());
-        let schemes = self.schemes.iter().map(scheme).collect::<Result<_>>()?;
-        let held = asked(self.constrained.as_deref().unwrap_or_default())?;
-        let mut question = Question::new(asked(&self.modes)?, schemes, self.band.0.clone())?.holding(held);
-        if let Some(length) = positive("input.length", self.length.as_ref())? {
-            question = question.of_length(length.clone())?;
-        }
-        match positive("input.friction", self.friction.as_ref())? {
-            Some(rate) => question.with_friction(rate.clone()),
-            None => Ok(question),
-        }
-    }
-}
-
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = &[
@@ -171,8 +108,8 @@ impl Recheck for Claim {
     ];
     type Found = ();
 
-    fn again(&self, _: &Context) -> Result<(Value, ())> {
-        Ok((report::document(&self.input.question()?.answer()?, None, true).value(), ()))
+    fn again(&self, context: &Context) -> Result<(Value, ())> {
+        Ok((self.input.ask(&context.work())?.value(), ()))
     }
 
     fn check(&self, (): (), context: &Context) -> Result<Outcome> {
@@ -183,16 +120,11 @@ impl Recheck for Claim {
 impl Claim {
     /// The stiffest mode on each clock, or this one on its own.
     pub fn mass(&self, scheme: usize, mode: Option<&Mode>) -> Checked<Mass> {
-        let steps: Vec<Rational> = match self.input.schemes.get(scheme) {
-            Some(steps) => steps.iter().map(|step| step.0.clone()).collect(),
-            None => {
-                return holds(false, || format!("there is no scheme {}", scheme.wrapping_add(1)))
-                    .map(|()| unreachable!());
-            }
-        };
+        let missing = || Fault::Wrong(format!("there is no scheme {}", scheme.wrapping_add(1)));
+        let steps = self.input.schemes.get(scheme).ok_or_else(missing)?.steps().to_vec();
         let of = |clock: usize| {
-            let own = mode.filter(|mode| mode.clock == Some(clock as u64 + 1));
-            let on = self.input.modes.iter().filter(move |mode| mode.clock == Some(clock as u64 + 1));
+            let own = mode.filter(|mode| mode.clock == Some(clock));
+            let on = self.modes_asked().filter(move |mode| mode.clock == Some(clock));
             let stiffest = own.or_else(|| on.max_by(|a, b| a.stiffness.cmp(&b.stiffness)));
             stiffest.map_or_else(Ball::zero, |mode| mode.stiffness.enclosure(BITS))
         };
@@ -200,10 +132,14 @@ impl Claim {
         Ok(Mass { steps, stiffness })
     }
 
+    pub fn modes_asked(&self) -> impl Iterator<Item = &Mode> {
+        self.input.modes.iter().flatten()
+    }
+
     /// The stiffest modes with the shortest periods of the band.
     pub fn corner(&self, scheme: usize) -> Checked<Mass> {
         let mut mass = self.mass(scheme, None)?;
-        let shorter = Ball::from_rational(&(Rational::one() - &self.input.band.0), BITS);
+        let shorter = Ball::from_rational(&(Rational::one() - &self.input.band), BITS);
         let square = shorter.square(BITS);
         for stiffness in &mut mass.stiffness {
             *stiffness = stiffness.div(&square, BITS).unwrap_or_else(|| stiffness.clone());
@@ -238,7 +174,7 @@ impl Claim {
 
     /// The shortest period on any clock but the outermost.
     pub fn fastest(&self) -> Checked<&ModeRow> {
-        let last = self.input.schemes.first().map_or(0, Vec::len) as u64;
+        let last = self.input.schemes.first().map_or(0, |own| own.steps().len()) as u64;
         let inner = self.modes.iter().filter(|mode| last == 1 || mode.clock < last);
         let by = |a: &&ModeRow, b: &&ModeRow| a.stiffness.cmp(&b.stiffness);
         let found = inner.max_by(by).or_else(|| self.modes.iter().max_by(by));
@@ -248,7 +184,7 @@ impl Claim {
 
     /// An interval that is listed: both ends are such, and what lies between is unstable.
     fn interval(&self, own: &Interval) -> Checked {
-        let mode = self.input.modes.iter().find(|mode| mode.name == own.mode);
+        let mode = self.modes_asked().find(|mode| mode.name == own.mode);
         let mass = self.mass((own.scheme as usize).wrapping_sub(1), mode)?;
         let outer = mass.steps.last().cloned().unwrap_or_default();
         let at = |step: f64| mass.scaled(&(exact(step) / &outer));
@@ -271,11 +207,10 @@ impl Claim {
     }
 
     fn pair(&self, pair: &Pair) -> Checked {
-        let steps = self.input.schemes.get((pair.scheme as usize).wrapping_sub(1));
-        let Some((inner, outer)) = steps.and_then(|steps| steps.first().zip(steps.last())) else {
+        let Some(scheme) = self.input.schemes.get((pair.scheme as usize).wrapping_sub(1)) else {
             return holds(false, || format!("there is no scheme {}", pair.scheme));
         };
-        let parts = crate::number::rational::to_f64(&(&outer.0 / &inner.0));
+        let parts = to_f64(&(scheme.outer() / scheme.inner()));
         let turns = |mode: &ModeRow| {
             // s = 2 − 2 cos θ, so the angle by its cosine and not by the sine of its half.
             let s = (2.0 * std::f64::consts::PI * pair.near / (parts * mode.period.lo)).powi(2);

@@ -2,15 +2,13 @@
 
 use serde_json::Value;
 
-use crate::advise::{Finding, Findings, Scheme};
-use crate::error::Result;
-use crate::number::Rational;
+use crate::advise::Finding;
+use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
+use crate::question::{Advised, Question, Safe, Work};
 use crate::recheck::again::{Left, Recheck};
-use crate::recheck::context::{Checked, Context, Outcome, holds};
-use crate::recheck::written::{Written, positive};
-use crate::report::advise::of_molecule;
-use crate::scene::SystemScene;
+use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
+use crate::scene::{Arrays, SystemScene};
 use crate::system::levels::{Hessians, Near};
 
 /// The action and the full period, in the coordinates of the Hessians.
@@ -76,24 +74,10 @@ impl Other {
     }
 }
 
-rows! {
-    #[serde(deny_unknown_fields)]
-    struct Input {
-        #[serde(rename = "file")]
-        _file: String,
-        system: Value,
-        band: Written<Rational>,
-        schemes: Vec<Vec<Written<Rational>>>,
-        length: Option<Written<Rational>>,
-        friction: Option<Written<Rational>>,
-    }
-}
-
-rows! {
-    /// `kickdrift/advise-system/1`.
-    pub struct Claim {
-        input: Input,
-    }
+/// `kickdrift/advise-system/1`.
+#[derive(Clone, Debug, serde::Deserialize)]
+pub struct Claim {
+    input: Advised,
 }
 
 const ROUTE: &str = "the ends of the first region and of the band by the action as one matrix over the paths, growth by the full \
@@ -103,21 +87,17 @@ impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] =
         &[("input.file", "a name"), ("engine", "the text that it was read from is not part of the document")];
-    type Found = (SystemScene, Findings);
+    type Found = Safe;
 
-    fn again(&self, context: &Context) -> Result<(Value, Self::Found)> {
-        let Input { system, band, schemes, length, friction, .. } = &self.input;
-        let scene = SystemScene::from_json_in(&context.options.folder, system.clone())?;
-        let steps =
-            |own: &Vec<Written<Rational>>| Scheme::new(own.iter().map(|step| step.0.clone()).collect());
-        let schemes = schemes.iter().map(steps).collect::<Result<Vec<_>>>()?;
-        let length = positive("input.length", length.as_ref())?;
-        let friction = positive("input.friction", friction.as_ref())?;
-        let findings = scene.molecule()?.0.advise(&schemes, band, length, friction)?;
-        Ok((of_molecule(&findings, None, &[]).value(), (scene, findings)))
+    fn again(&self, context: &Context) -> Result<(Value, Safe)> {
+        let arrays = Arrays::from(&context.options.folder);
+        let safe = self.input.answer(&Work { arrays: Some(&arrays), ..context.work() })?;
+        Ok((self.input.document(&safe).value(), safe))
     }
 
-    fn check(&self, (scene, findings): Self::Found, context: &Context) -> Result<Outcome> {
+    fn check(&self, safe: Safe, context: &Context) -> Result<Outcome> {
+        let Safe::Hessians(own) = safe else { return Err(Error::missing("input.system", REMEDY)) };
+        let (scene, findings) = *own;
         let other = Other::new(&scene, to_f64(&self.input.band))?;
         let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
         for (row, own) in (1..).zip(&findings.schemes) {

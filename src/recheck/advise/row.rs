@@ -11,7 +11,7 @@ impl Claim {
     /// Every field of a row.
     pub fn row(&self, row: &Row) -> Checked {
         let scheme = (row.scheme as usize).wrapping_sub(1);
-        let mode = self.input.modes.iter().find(|mode| mode.name == row.mode);
+        let mode = self.modes_asked().find(|mode| mode.name == row.mode);
         holds(mode.is_some(), || format!("there is no mode {}", row.mode))?;
         let mass = self.mass(scheme, mode)?;
         let outer = mass.steps.last().cloned().unwrap_or_default();

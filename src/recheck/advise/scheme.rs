@@ -19,7 +19,7 @@ impl Claim {
         // The lowest first edge, times 1 − band.
         let edges: Vec<Ends> = self.of(n).filter_map(|row| row.first_lower).collect();
         let least = |pick: fn(&Ends) -> f64| edges.iter().map(pick).fold(f64::INFINITY, f64::min);
-        let shrink = |x: f64| Ball::from_rational(&(exact(x) * (Rational::one() - &self.input.band.0)), BITS);
+        let shrink = |x: f64| Ball::from_rational(&(exact(x) * (Rational::one() - &self.input.band)), BITS);
         let (lo, hi) = (shrink(least(|e| e.lo)), shrink(least(|e| e.hi)));
         holds(exact(row.band_edge.lo) <= lo.upper() && hi.lower() <= exact(row.band_edge.hi), || {
             "band_edge is not that of the rows".into()
@@ -42,7 +42,7 @@ impl Claim {
         let Some(needs) = row.needs else { return Ok(()) };
         let with = |period: f64| -> Checked<Option<bool>> {
             let turn = Ball::pi(BITS).scale2(1);
-            let shorter = exact(period) * (Rational::one() - &self.input.band.0);
+            let shorter = exact(period) * (Rational::one() - &self.input.band);
             let frequency = turn.div(&Ball::from_rational(&shorter, BITS), BITS).unwrap_or_else(Ball::zero);
             let mut stiffness = corner.stiffness.clone();
             *stiffness.last_mut().expect("a clock") = frequency.square(BITS);

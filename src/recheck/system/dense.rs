@@ -5,8 +5,9 @@ use num_complex::Complex64;
 
 use crate::avi::Run;
 use crate::number::{Laurent, Rational};
+use crate::question::Displacement;
 use crate::recheck::context::{Checked, Fault, holds};
-use crate::scene::{RunRequest, SystemScene};
+use crate::scene::SystemScene;
 use crate::system::{Analysis, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
@@ -61,11 +62,11 @@ pub fn growth(scene: &SystemScene, analysis: &Analysis) -> Checked {
 }
 
 /// The series of a linear run by powers of the full period: z after k periods is Qᵏ z₀.
-pub fn linear_run(scene: &SystemScene, request: &RunRequest, run: &Run) -> Checked {
+pub fn linear_run(scene: &SystemScene, displace: &Displacement, run: &Run) -> Checked {
     let (system, centre) = (scene.model().system(), scene.equilibrium());
     let n = system.size();
     let q: DMatrix<f64> = full_period(system);
-    let shift = request.displacement.of(n)?;
+    let shift = displace.of(n)?;
     let mut state = DVector::from_fn(2 * n, |i, _| shift.get(i).copied().unwrap_or(0.0));
     // The amplitude of what moves about an equilibrium far from 0 has its roundoff.
     let far = centre.map_or(0.0, |x| x.iter().fold(0.0, |a: f64, x| a.max(x.abs())));

@@ -11,6 +11,7 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::system::levels::Growing;
 
+use super::View;
 use super::words::{nearest, percent, told};
 
 /// A row's share of the height, in mm, and half the height of its bars in rows.
@@ -84,8 +85,16 @@ fn blocks<'a, T>(
     found
 }
 
-/// Each mode and each pair of modes at each scheme's own ratio, and the schemes' outer steps as lines through their rows.
-pub fn figure(advice: &Advice, title: &str) -> Figure {
+/// Each mode and each pair of modes, or the molecule and each group of its fast modes, at each scheme's own ratio, and the schemes' outer
+/// steps as lines through their rows.
+pub fn figure(of: View, title: &str) -> Figure {
+    match of {
+        View::Periods(advice) => of_periods(advice, title),
+        View::Hessians(findings) => of_molecule(findings, title),
+    }
+}
+
+fn of_periods(advice: &Advice, title: &str) -> Figure {
     let lines = |answer: &Answer| {
         let modes = answer.rows.iter().map(|row| mode(advice, answer, row));
         modes.chain(answer.pairs.iter().map(|own| pair(advice, answer, own))).collect()
@@ -132,8 +141,7 @@ fn pair(advice: &Advice, answer: &Answer, own: &Pair) -> Line {
     }
 }
 
-/// The molecule and each group of its fast modes at each scheme's own ratio.
-pub fn figure_of_molecule(findings: &Findings, title: &str) -> Figure {
+fn of_molecule(findings: &Findings, title: &str) -> Figure {
     let of = |own| (molecule(findings, own), own.status, &own.safe);
     let far =
         |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));

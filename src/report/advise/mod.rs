@@ -4,105 +4,60 @@
 mod chart;
 mod lines;
 mod molecule;
+mod tables;
 mod words;
-
-use serde_json::{Value, json};
 
 use super::document::Document;
 use super::record::Record;
 use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Caution, Mode, PUBLISHED, Pair, Row, Scheme, Unstable};
-use crate::number::Rational;
+use crate::advise::{Advice, Answer, Findings, Mode, Pair, Row, Unstable};
 
 #[cfg(feature = "figure")]
-pub use chart::{figure, figure_of_molecule};
-pub use molecule::document as of_molecule;
+pub use chart::figure;
+use tables::{enclosed, engine, for_people, published};
 pub use words::nearest;
 
-/// The document `kickdrift/advise/1`, its input included; the rows with all columns, or with those that fit paper;
-/// with what an engine's text says, where the steps are those of one.
-pub fn document(advice: &Advice, reading: Option<&Reading>, all_columns: bool) -> Document {
+/// What advice is about.
+#[derive(Clone, Copy)]
+pub enum View<'a> {
+    /// Periods and bonds.
+    Periods(&'a Advice),
+    /// The Hessians of a molecule.
+    Hessians(&'a Findings),
+}
+
+/// The document `kickdrift/advise/1`, or `kickdrift/advise-system/1`, but for the input; with what an engine's text says, where the steps are
+/// those of one; for people with `notes` on how it was read.
+pub fn document(of: View, reading: Option<&Reading>, notes: &[String]) -> Document {
+    match of {
+        View::Periods(advice) => of_periods(advice, reading),
+        View::Hessians(findings) => molecule::document(findings, reading, notes),
+    }
+}
+
+/// JSON and CSV have all columns of the rows, people those that fit paper.
+fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
     let (modes, pairs, fastest) = (mode_table(advice), pair_table(advice), &advice.modes[advice.fastest]);
-    let document = echo(Document::new("advise"), advice)
+    let rows = row_table(advice, true);
+    let document = Document::new("advise")
         .entry("modes", modes.to_json_rows())
         .entry("schemes", scheme_table(advice).to_json_rows())
-        .entry("rows", row_table(advice, true).to_json_rows())
+        .entry("rows", rows.to_json_rows())
         .entry("intervals", interval_table(advice).to_json_rows())
         .entry("pairs", pairs.to_json_rows())
         .entry("published", published(&fastest.name, |parts| fastest.part(parts).into()))
         .entry("unknown", lines::UNKNOWN.to_vec());
     let changed = advice.modes.iter().any(|mode| mode.before.is_some());
     let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
-    let document = document.long_rows(row_table(advice, all_columns)).and_rows(modes);
+    let document = document.long_rows(rows).for_people(row_table(advice, false)).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let document = match reading {
         Some(reading) => document.entry("engine", engine(lines::of_answer(&advice.schemes[0]), reading)),
         None => document,
     };
     document.summary(&lines::of(advice, reading))
-}
-
-/// What was read of an engine's text, and its lines rewritten with the outer step that is advised.
-fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
-    let rewritten = advised.and_then(|outer| reading.changed_lines(outer).ok());
-    json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
-}
-
-fn echo(document: Document, advice: &Advice) -> Document {
-    let mode = |mode: &Mode| json!({"name": mode.name, "from": mode.origin.name(), "clock": mode.clock.map(|k| k + 1), "stiffness": mode.stiffness.to_string()});
-    let document = document
-        .input("band", &advice.band)
-        .input_json("modes", advice.modes.iter().map(mode).collect())
-        .input_json("schemes", schemes(advice.schemes.iter().map(|own| &own.scheme)));
-    let document = document
-        .input_given("length", advice.length.as_ref())
-        .input_given("friction", advice.friction.as_ref());
-    if advice.held.is_empty() {
-        return document;
-    }
-    document.input_json("constrained", advice.held.iter().map(mode).collect())
-}
-
-/// The published statements for the fastest mode, with their limits in fs: `part` of its period.
-fn published(mode: &str, part: impl Fn(u64) -> Cell + Send + Sync) -> Value {
-    let record = Record::new()
-        .field(Column::new("mode"), |_: &Caution| mode.into())
-        .field(Column::new("parts"), |of| of.parts.into())
-        .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
-        .field(Column::new("limit"), |of| part(of.parts))
-        .field(Column::new("statement"), |of| of.statement.into())
-        .field(Column::new("source"), |of| of.source.into());
-    record.all(&PUBLISHED).into()
-}
-
-/// The steps of schemes, from the innermost on.
-fn schemes<'a>(all: impl Iterator<Item = &'a Scheme>) -> Value {
-    all.map(|own| own.steps().iter().map(ToString::to_string).collect::<Value>()).collect()
-}
-
-/// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
-fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
-    let kept = || full.columns().iter().map(|column| shown(&column.key));
-    let columns = full.columns().iter().zip(kept()).filter(|(_, kept)| *kept);
-    let columns = columns.map(|(column, _)| Column { enclosed: false, ..column.clone() }).collect();
-    let mut table = Table::new(full.name(), full.caption(), columns);
-    for row in full.rows() {
-        let cell = |(cell, kept): (&Cell, bool)| match *cell {
-            _ if !kept => None,
-            Cell::Float(x) => Some(Cell::Exact(nearest((x, x), 5))),
-            Cell::Enclosure { lo, hi } => Some(Cell::Exact(nearest((lo, hi), 5))),
-            _ => Some(cell.clone()),
-        };
-        table.push(row.iter().zip(kept()).filter_map(cell).collect());
-    }
-    table
-}
-
-/// An enclosure, in fs unless it is said otherwise.
-fn enclosed(key: &str, title: &str) -> Column {
-    Column::new(key).in_words(title).enclosure()
 }
 
 fn mode_table(advice: &Advice) -> Table {

@@ -1,8 +1,8 @@
 //! What is told of a molecule's Hessians: lines to act on, then tables.
 
 use super::lines::{self, advised, read_from};
+use super::tables::{self, enclosed, for_people, published};
 use super::words::{choice, down, fs, nearest, percent, within};
-use super::{enclosed, for_people, published, schemes};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
 use crate::advise::{Finding, Findings, Group, Status};
@@ -13,17 +13,12 @@ use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
 use crate::system::levels::Growing;
 
-/// The document `kickdrift/advise-system/1`, but for the input; for people with `notes` on how it was read.
-pub fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
+/// The document `kickdrift/advise-system/1`.
+pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Document {
     let removed = findings.removed.as_ref();
-    let document = Document::new("advise-system")
-        .input("band", &findings.band)
-        .input_json("schemes", schemes(findings.schemes.iter().map(|own| &own.scheme)));
     let fastest = &findings.groups[0];
     let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
-    let document = document
-        .input_given("length", findings.length.as_ref())
-        .input_given("friction", findings.friction.as_ref())
+    let document = Document::new("advise-system")
         .entry("rigid_motions.count", removed.map(|own| own.count))
         .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
         .entry("accuracy", findings.accuracy)
@@ -35,7 +30,7 @@ pub fn document(findings: &Findings, reading: Option<&Reading>, notes: &[String]
         .entry("unknown", UNKNOWN.to_vec());
     let best = &findings.schemes[0];
     let document = match reading {
-        Some(reading) => document.entry("engine", super::engine(advised_step(best), reading)),
+        Some(reading) => document.entry("engine", tables::engine(advised_step(best), reading)),
         None => document,
     };
     document

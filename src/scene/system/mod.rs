@@ -44,7 +44,6 @@
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `held` | their constraints, heavy hydrogens |
 //! | `molecule` | two measured levels, to be advised on |
-//! | `run` | Algorithm 1 run on it |
 //! | `scan`, `intervals` | one file, many systems: any number of it over a range; its unstable intervals |
 
 mod array;
@@ -60,7 +59,6 @@ mod mesh;
 mod molecule;
 mod oscillator;
 mod pi;
-mod run;
 mod scan;
 
 use serde::Deserialize;
@@ -79,7 +77,6 @@ use document::{Document, no_system};
 pub use intervals::Span;
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
-pub use run::{Displacement, RunRequest};
 pub use scan::{Axis, Scan};
 
 /// The schema that this version reads.
@@ -103,6 +100,61 @@ fn spread(labels: &[String], n: usize) -> Result<Vec<String>> {
     }
 }
 
+/// A system as it is written, not read yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SystemFile {
+    source: Value,
+    /// For errors to name their lines, where there is one.
+    text: Option<String>,
+}
+
+impl From<Value> for SystemFile {
+    /// From JSON that was parsed already, such as that which a document echoes.
+    fn from(source: Value) -> Self {
+        SystemFile { source, text: None }
+    }
+}
+
+impl SystemFile {
+    /// From the text of a file.
+    ///
+    /// # Errors
+    /// A text that is too long, or no JSON.
+    pub fn of_text(text: &str) -> Result<SystemFile> {
+        if text.len() > LONGEST {
+            let remedy = "a system has at most 16 MiB; is this the right file?";
+            return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
+        }
+        Ok(SystemFile { source: json::from_str(text).map_err(no_system)?, text: Some(text.into()) })
+    }
+
+    /// The same with other texts in some of its fields, where they are given.
+    #[must_use]
+    pub fn with<const N: usize>(&self, fields: [(&str, Option<String>); N]) -> SystemFile {
+        fields.into_iter().filter_map(|(key, own)| Some((key, own?))).fold(
+            self.clone(),
+            |mut file, (key, own)| {
+                file.source[key] = own.into();
+                SystemFile { text: None, ..file }
+            },
+        )
+    }
+
+    /// What was written.
+    pub fn source(&self) -> &Value {
+        &self.source
+    }
+
+    /// Reads it with the folder that the files it refers to are in, or with these arrays in memory.
+    ///
+    /// # Errors
+    /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
+    /// [`System::new`] refuses; each by the entry's name. An I/O error of the files that it refers to.
+    pub fn read(&self, arrays: impl Into<Arrays>) -> Result<SystemScene> {
+        SystemScene::parsed(arrays.into(), self.source.clone(), self.text.as_deref())
+    }
+}
+
 /// A system file, read and checked.
 #[derive(Clone, Debug)]
 pub struct SystemScene {
@@ -122,32 +174,25 @@ impl SystemScene {
     /// Reads a system from the text of its file.
     ///
     /// # Errors
-    /// JSON that is no system, an unknown field, a quantity that does not parse, an index out of range, and whatever
-    /// [`System::new`] refuses; each by the entry's name.
+    /// As [`SystemFile::of_text`] and [`SystemFile::read`].
     pub fn read(text: &str) -> Result<SystemScene> {
         SystemScene::read_in("", text)
     }
 
-    /// The same with the folder that the files it refers to are in, or with these arrays in memory.
+    /// The same, as [`SystemFile::read`].
     ///
     /// # Errors
-    /// As [`SystemScene::read`]; an I/O error of these files.
+    /// As [`SystemScene::read`].
     pub fn read_in(arrays: impl Into<Arrays>, text: &str) -> Result<SystemScene> {
-        if text.len() > LONGEST {
-            let remedy = "a system has at most 16 MiB; is this the right file?";
-            return Err(Error::input("system", format!("{} bytes", text.len()), remedy));
-        }
-        let source: Value = json::from_str(text).map_err(no_system)?;
-        SystemScene::parsed(arrays.into(), source, Some(text))
+        SystemFile::of_text(text)?.read(arrays)
     }
 
-    /// Reads a system from JSON that was parsed already, such as the one that a document echoes, with the folder that the files it refers to
-    /// are in, or with these arrays in memory.
+    /// The same from JSON.
     ///
     /// # Errors
-    /// As [`SystemScene::read_in`].
+    /// As [`SystemFile::read`].
     pub fn from_json_in(arrays: impl Into<Arrays>, source: Value) -> Result<SystemScene> {
-        SystemScene::parsed(arrays.into(), source, None)
+        SystemFile::from(source).read(arrays)
     }
 
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {

@@ -23,13 +23,21 @@ impl SystemScene {
     /// The molecule with the scheme of steps of its file, in fs.
     ///
     /// # Errors
-    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::two_levels`](crate::system::Model::two_levels).
+    /// As [`SystemScene::scheme`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
-        let (levels, unit) = (self.model.two_levels()?, self.femtoseconds()?);
+        let (scheme, levels) = (self.scheme()?, self.model.two_levels()?);
         let labels = self.source().get("labels").map(Vec::<String>::deserialize);
         let names = labels.and_then(std::result::Result::ok).unwrap_or_default();
-        let scheme = Scheme::new([levels.inner, levels.outer].map(|step| step * &unit).to_vec())?;
-        Ok((Molecule::new(levels.kernel.clone(), unit, names, levels.accuracy), scheme))
+        Ok((Molecule::new(levels.kernel.clone(), self.femtoseconds()?, names, levels.accuracy), scheme))
+    }
+
+    /// The steps of two measured levels, in fs.
+    ///
+    /// # Errors
+    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::two_steps`](crate::system::Model::two_steps).
+    pub fn scheme(&self) -> Result<Scheme> {
+        let (steps, unit) = (self.model.two_steps()?, self.femtoseconds()?);
+        Scheme::new(steps.map(|step| step * &unit).to_vec())
     }
 
     /// The file's unit of time in fs.

@@ -169,16 +169,6 @@ impl SystemScene {
         (words.replace('_', " "), time)
     }
 
-    /// The same file with other texts in some of its fields.
-    ///
-    /// # Errors
-    /// As [`SystemScene::read_in`].
-    pub fn with_fields(&self, fields: impl Iterator<Item = (&'static str, String)>) -> Result<SystemScene> {
-        let mut file = self.source.clone();
-        fields.for_each(|(key, value)| file[key] = value.into());
-        SystemScene::from_json_in(self.arrays.clone(), file)
-    }
-
     /// The same file with other numbers at some of its paths; `field` is what errors name.
     pub(super) fn with(&self, field: &str, numbers: &[(&str, &Rational)]) -> Result<SystemScene> {
         let mut file = self.source.clone();

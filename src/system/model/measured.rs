@@ -238,10 +238,15 @@ impl MeasuredSystem {
 
     /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
     pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        let [inner, outer] = self.two_steps()?;
+        Ok(TwoLevels { kernel: self.kernel()?, inner, outer, accuracy: self.accuracy })
+    }
+
+    /// The inner and the outer step.
+    pub(super) fn two_steps(&self) -> Result<[Rational; 2]> {
         let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(self.not_two()) };
         self.outer().ok_or_else(|| self.not_two())?;
-        let [inner, outer] = [inner, outer].map(Clone::clone);
-        Ok(TwoLevels { kernel: self.kernel()?, inner, outer, accuracy: self.accuracy })
+        Ok([inner.clone(), outer.clone()])
     }
 
     fn not_two(&self) -> Error {

@@ -158,9 +158,20 @@ impl Model {
     /// # Errors
     /// Where the stiffnesses are not measured, and where the steps are others than an inner and an outer one.
     pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
+        self.of_two()?.two_levels()
+    }
+
+    /// Their steps alone, the inner one first.
+    ///
+    /// # Errors
+    /// As [`Model::two_levels`].
+    pub fn two_steps(&self) -> Result<[Rational; 2]> {
+        self.of_two()?.two_steps()
+    }
+
+    fn of_two(&self) -> Result<&MeasuredSystem> {
         let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
-        let exact = || Error::input("stiffness", "given in place", remedy);
-        self.measured().ok_or_else(exact)?.two_levels()
+        self.measured().ok_or_else(|| Error::input("stiffness", "given in place", remedy))
     }
 
     /// The matrices of [`Model::two_levels`], rigid motions projected out.
@@ -168,8 +179,8 @@ impl Model {
     /// # Errors
     /// As [`Model::two_levels`].
     pub fn hessians(&self) -> Result<Hessians> {
-        self.two_levels()?;
-        self.measured().expect("measured, as two levels are").hessians()
+        self.two_steps()?;
+        self.of_two()?.hessians()
     }
 
     /// The largest ln |λ|/T of two levels of measured stiffnesses by the dense full period, rounded; `None` of any other system.

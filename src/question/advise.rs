@@ -1,0 +1,425 @@
+//! Which steps are safe for these periods, bonds or Hessians, for how long, and why.
+
+#[cfg(feature = "figure")]
+use plot::Figure;
+use serde_json::{Map, Value, json};
+
+use super::asking::{Fields, Question, Work, question};
+use super::field::{Field, notation, read};
+use crate::advise::engine::{self, Reading};
+use crate::advise::unit::{self, Dimension, decimal};
+use crate::advise::{self, Advice, Constraints, Findings, Mode, Molecule, Origin, Scheme};
+use crate::error::{Error, Result};
+use crate::number::parse::parse_rational;
+use crate::number::{ExactSign, Rational, Sign};
+use crate::report::advise as report;
+use crate::report::document::Document;
+use crate::scene::{SystemFile, SystemScene, of_archive};
+
+question! {
+    /// Which steps are safe, in the words of those who ask.
+    args struct Advise {
+        /// A period or wavenumber of a force, as OH=10fs or 3700/cm; the last ones are on the slower clocks
+        #[arg(long, value_name = "[NAME=]T")]
+        period: Vec<String>,
+        /// A bond: k of E = k x^2/2 or K of E = K x^2, two masses in amu, the heavy atom's hydrogens if not 1
+        #[arg(long, value_name = "NAME:k=X,M1,M2[,N]")]
+        bond: Vec<String>,
+        /// The clocks of modes, 1 the fastest, as OH=1,bend=2.
+        #[arg(long, value_name = "NAME=CLOCK,...", value_delimiter = ',')]
+        on: Vec<String>,
+        /// The steps from the innermost to the outermost one; again for another scheme.
+        #[arg(long, value_name = "0.5fs,4fs")]
+        steps: Vec<String>,
+        /// An input of OpenMM, LAMMPS, GROMACS, NAMD, Tinker or i-PI, for its steps; twice with an OpenMM system
+        #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::AnyPath)]
+        engine: Vec<String>,
+        /// How far every period may be off.
+        #[arg(long, value_name = "PART")]
+        band: String = "5%",
+        /// The length of the run, as 10ns.
+        #[arg(long, value_name = "TIME")]
+        length: Option<String>,
+        /// The friction of the thermostat, as 1/ps: does it mask what grows?
+        #[arg(long, value_name = "RATE")]
+        friction: Option<String>,
+        /// Bonds that do not vibrate: h-bonds, all-bonds, or modes, as OH,NH [default: as the engine's text says]
+        ///
+        /// Of Hessians h-bonds only, with the force of each potential in the file.
+        #[arg(long, value_name = "WHICH")]
+        constraints: Option<String>,
+        /// Hydrogens of this mass in amu, taken from their heavy atoms.
+        #[arg(long, value_name = "MASS")]
+        hmr: Option<String>,
+        /// The file of Hessians in place of periods: one of a system, or FILE.npz.
+        #[arg(skip)]
+        file: Option<String>,
+        /// What stands in a system's file.
+        #[arg(skip)]
+        system: Option<SystemFile>,
+    }
+}
+
+question! {
+    /// The same exactly: modes on their clocks or a system, and schemes of steps; lengths of time in fs.
+    struct Advised {
+        /// How far every period may be off, relatively.
+        band: Rational,
+        /// What vibrates.
+        modes: Option<Vec<Mode>>,
+        /// The steps, from the innermost to the outermost one.
+        schemes: Vec<Scheme>,
+        /// The length of the run.
+        length: Option<Rational>,
+        /// The friction of the thermostat, 1/fs.
+        friction: Option<Rational>,
+        /// Modes that are held, on no clock.
+        constrained: Option<Vec<Mode>>,
+        /// The name of a system's file.
+        file: Option<String>,
+        /// What stands in it, in place of modes.
+        system: Option<SystemFile>,
+    }
+}
+
+/// One of several that make a field.
+trait Item: Sized {
+    fn of(name: &str, value: &Value) -> Result<Self>;
+    fn shown(&self) -> Value;
+}
+
+impl<T: Item> Field for Vec<T> {
+    fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
+        let one = |(k, value): (usize, &Value)| T::of(&format!("{name}[{k}]"), value);
+        Some(match given {
+            None => Ok(Vec::new()),
+            Some(Value::Array(all)) => all.iter().enumerate().map(one).collect(),
+            Some(other) => Err(Error::input(name, other, "write a list")),
+        })
+    }
+
+    fn shown(&self) -> Option<Value> {
+        (!self.is_empty()).then(|| self.iter().map(T::shown).collect())
+    }
+}
+
+impl Item for String {
+    fn of(name: &str, value: &Value) -> Result<Self> {
+        let text = value.as_str().map(Into::into);
+        text.ok_or_else(|| Error::input(name, value, "write a text"))
+    }
+
+    fn shown(&self) -> Value {
+        self.as_str().into()
+    }
+}
+
+impl Item for Scheme {
+    fn of(name: &str, value: &Value) -> Result<Self> {
+        let steps = Vec::<String>::of(Some(value), name).transpose()?.unwrap_or_default();
+        Scheme::new(steps.iter().map(|step| parse_rational(name, step)).collect::<Result<_>>()?)
+    }
+
+    fn shown(&self) -> Value {
+        self.steps().iter().map(ToString::to_string).collect()
+    }
+}
+
+notation! {
+    Origin: origin, |own: &Origin| own.name();
+}
+
+fn origin(field: &str, text: &str) -> Result<Origin> {
+    let all = [Origin::Period, Origin::Wavenumber, Origin::Half, Origin::Whole];
+    let names = all.map(Origin::name).join(", ");
+    let found = all.into_iter().find(|own| own.name() == text);
+    found.ok_or_else(|| Error::input(field, text, format!("is none of {names}")))
+}
+
+impl Item for Mode {
+    fn of(name: &str, value: &Value) -> Result<Self> {
+        let given = value.as_object().ok_or_else(|| Error::input(name, value, "write an object"))?;
+        let at = |error: Error| {
+            let field = format!("{name}.{}", error.field());
+            error.at(field)
+        };
+        Mode::of_fields(given).map_err(at)
+    }
+
+    fn shown(&self) -> Value {
+        json!({"name": self.name, "from": self.origin.name(), "clock": self.clock.map(|k| k + 1), "stiffness": self.stiffness.to_string()})
+    }
+}
+
+impl Mode {
+    fn of_fields(given: &Map<String, Value>) -> Result<Mode> {
+        super::field::known(given, &["name", "from", "clock", "stiffness"])?;
+        let clock = match given.get("clock") {
+            None | Some(Value::Null) => None,
+            Some(own) => {
+                let place = own.as_u64().and_then(|own| usize::try_from(own).ok()?.checked_sub(1));
+                let counted = || Error::input("clock", own, "clocks are counted from 1");
+                Some(place.ok_or_else(counted)?)
+            }
+        };
+        let mode = Mode {
+            name: read("name", given, None)?,
+            origin: read("from", given, None)?,
+            stiffness: read("stiffness", given, None)?,
+            clock,
+            is_bond_with_hydrogen: None,
+            before: None,
+        };
+        match mode.stiffness.sign() {
+            Sign::Positive => Ok(mode),
+            _ => Err(Error::input("stiffness", &mode.stiffness, "a mode vibrates: it must be positive")),
+        }
+    }
+}
+
+/// What is found.
+pub enum Safe {
+    /// Of periods and bonds.
+    Periods(Box<Advice>),
+    /// Of the Hessians of a system.
+    Hessians(Box<(SystemScene, Findings)>),
+}
+
+/// What is found, and how the question was read.
+pub struct Answer {
+    pub asked: Advised,
+    pub safe: Safe,
+    /// What an engine's texts say.
+    reading: Option<Reading>,
+    /// For people.
+    notes: Vec<String>,
+}
+
+/// Kicks a second that advice on periods follows, and products a second of advice on Hessians, as measured.
+const KICKS_A_SECOND: f64 = 5e6;
+const PRODUCTS_A_SECOND: f64 = 1e10;
+
+/// Fastest periods of molecules, in fs.
+const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
+
+impl Question for Advised {
+    const NAME: &'static str = "advised";
+    type Answer = Safe;
+
+    fn answer(&self, work: &Work) -> Result<Safe> {
+        let Some(file) = &self.system else {
+            let modes = self.modes.clone().unwrap_or_default();
+            let held = self.constrained.clone().unwrap_or_default();
+            let question = advise::Question::new(modes, self.schemes.clone(), self.band.clone())?;
+            let mut question = question.holding(held).within(work.limits());
+            if let Some(length) = &self.length {
+                question = question.of_length(length.clone())?;
+            }
+            if let Some(rate) = &self.friction {
+                question = question.with_friction(rate.clone())?;
+            }
+            work.announce("advice on these steps", question.cost() as f64 / KICKS_A_SECOND);
+            return Ok(Safe::Periods(Box::new(question.answer()?)));
+        };
+        let scene = work.read(file)?;
+        let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
+        let size = scene.model().size();
+        let cost = Molecule::allow(size, self.schemes.len(), friction.is_some(), work.budget)?;
+        let seconds = cost as f64 / PRODUCTS_A_SECOND;
+        work.announce(&format!("advice on {size} degrees of freedom"), seconds);
+        let findings = scene.molecule()?.0.advise(&self.schemes, &self.band, length, friction)?;
+        Ok(Safe::Hessians(Box::new((scene, findings))))
+    }
+
+    fn show(&self, safe: &Safe) -> Document {
+        report::document(safe.view(), None, &[])
+    }
+
+    /// With the clocks that modes are on by their places.
+    fn document(&self, safe: &Safe) -> Document {
+        self.show(safe).inputs(self.placed(safe).input())
+    }
+}
+
+impl Safe {
+    fn view(&self) -> report::View<'_> {
+        match self {
+            Safe::Periods(advice) => report::View::Periods(advice),
+            Safe::Hessians(own) => report::View::Hessians(&own.1),
+        }
+    }
+}
+
+impl Advised {
+    fn placed(&self, safe: &Safe) -> Advised {
+        match safe {
+            Safe::Periods(advice) => Advised { modes: Some(advice.modes.clone()), ..self.clone() },
+            Safe::Hessians(_) => self.clone(),
+        }
+    }
+}
+
+impl Question for Advise {
+    const NAME: &'static str = "advise";
+    type Answer = Answer;
+
+    fn answer(&self, work: &Work) -> Result<Answer> {
+        let reading = self.reading()?;
+        let archive = self.file.as_ref().filter(|file| self.system.is_none() && file.ends_with(".npz"));
+        let system = match archive {
+            Some(name) => Some(self.archive(name, reading.as_ref())?),
+            None => self.system.clone(),
+        };
+        let asked = match &system {
+            Some(file) => self.of_system(file, reading.as_ref(), work)?,
+            None => self.of_periods(reading.as_ref())?,
+        };
+        let safe = asked.answer(work)?;
+        let mut notes = Vec::new();
+        if let (Safe::Hessians(own), Some(_)) = (&safe, archive) {
+            let fastest = own.1.groups[0].period.0;
+            if !PLAUSIBLE.contains(&fastest) {
+                let given = format!("a fastest period of {fastest:.1e} fs");
+                let remedy = "an archive is read as mass-weighted, in 1/ps^2: write a system file that says what it is";
+                return Err(Error::input("fast", given, remedy));
+            }
+            notes.push("fast and slow as mass-weighted, in 1/ps^2, known to 1e-6 of their norms".into());
+        }
+        if let Some(mass) = self.hmr.as_ref().filter(|_| system.is_some()) {
+            notes.push(format!("hydrogens of {mass}, their nearest heavy atoms lighter"));
+        }
+        Ok(Answer { asked, safe, reading, notes })
+    }
+
+    fn show(&self, Answer { safe, reading, notes, .. }: &Answer) -> Document {
+        report::document(safe.view(), reading.as_ref(), notes)
+    }
+
+    /// Echoes what was read of the words.
+    fn document(&self, answer: &Answer) -> Document {
+        self.show(answer).inputs(answer.asked.placed(&answer.safe).input())
+    }
+
+    #[cfg(feature = "figure")]
+    fn figure(&self, answer: &Answer, _: &Work) -> Result<Option<Figure>> {
+        Ok(Some(report::figure(answer.safe.view(), "Which outer steps are safe")))
+    }
+}
+
+impl Advise {
+    /// What the engine's texts say.
+    fn reading(&self) -> Result<Option<Reading>> {
+        if self.engine.is_empty() {
+            return Ok(None);
+        }
+        let outer = self.steps.first().map(|steps| scheme(steps)).transpose()?;
+        let texts: Vec<&str> = self.engine.iter().map(String::as_str).collect();
+        engine::read(&texts, outer.as_ref().map(Scheme::outer)).map(Some)
+    }
+
+    /// The schemes that are given; beside an engine's a step alone is the outer one that its text lacks.
+    fn given(&self, reading: Option<&Reading>) -> Result<Vec<Scheme>> {
+        let given = self.steps.iter().map(|steps| scheme(steps)).collect::<Result<Vec<_>>>()?;
+        Ok(given.into_iter().filter(|scheme| reading.is_none() || scheme.steps().len() > 1).collect())
+    }
+
+    fn hydrogen(&self) -> Result<Option<Rational>> {
+        self.hmr.as_deref().map(heavy_hydrogen).transpose()
+    }
+
+    /// The question about these schemes, still of nothing.
+    fn of_schemes(&self, schemes: Vec<Scheme>) -> Result<Advised> {
+        let rational = |field: &str, text: &Option<String>, dimension| {
+            text.as_deref().map(|text| unit::rational(field, text, dimension)).transpose()
+        };
+        let (modes, constrained, file, system) = (None, None, None, None);
+        let band = part("band", &self.band)?;
+        let length = rational("length", &self.length, Dimension::Time)?;
+        let friction = rational("friction", &self.friction, Dimension::Rate)?;
+        Ok(Advised { band, modes, schemes, length, friction, constrained, file, system })
+    }
+
+    fn of_periods(&self, reading: Option<&Reading>) -> Result<Advised> {
+        let hydrogen = self.hydrogen()?;
+        if hydrogen.is_some() && self.bond.is_empty() {
+            return Err(Error::input(
+                "hmr",
+                "given without a bond",
+                "a period has no masses: give the bond, as CH:K=340kcal/mol/A^2,12.011,1.008",
+            ));
+        }
+        let bonds = self.bond.iter().map(|text| Mode::from_bond(text, hydrogen.as_ref()));
+        let periods = self.period.iter().map(|text| Mode::from_period(text));
+        let mut modes = bonds.chain(periods).collect::<Result<Vec<_>>>()?;
+        self.on.iter().try_for_each(|entry| place(&mut modes, entry))?;
+        // The engine's own scheme first.
+        let own = reading.map(|reading| reading.scheme.clone());
+        let schemes = own.into_iter().chain(self.given(reading)?).collect();
+        let constraints = self.constraints.as_deref().map(Constraints::parse);
+        let (modes, held) = match constraints.or_else(|| reading.and_then(|own| own.constraints.clone())) {
+            Some(constraints) => constraints.split(modes)?,
+            None => (modes, Vec::new()),
+        };
+        let constrained = (!held.is_empty()).then_some(held);
+        Ok(Advised { modes: Some(modes), constrained, ..self.of_schemes(schemes)? })
+    }
+
+    /// Of the system's own steps first, or the engine's; with the hydrogens and the constraints asked for.
+    fn of_system(&self, file: &SystemFile, reading: Option<&Reading>, work: &Work) -> Result<Advised> {
+        let mass = self.hydrogen()?.map(|mass| decimal(&mass));
+        let held = self.constraints.as_deref().map(|which| which.trim().to_string());
+        let file = file.with([("hydrogen_mass", mass), ("constraints", held)]);
+        let own = match reading {
+            Some(reading) => reading.scheme.clone(),
+            None => work.read(&file)?.scheme()?,
+        };
+        // Those of an archive were given.
+        let given = self.given(reading)?.into_iter();
+        let given = given.filter(|scheme| self.system.is_some() || *scheme != own);
+        let asked = self.of_schemes([own.clone()].into_iter().chain(given).collect())?;
+        Ok(Advised { file: self.file.clone(), system: Some(file), ..asked })
+    }
+
+    /// The arrays of an archive, with the steps given.
+    fn archive(&self, name: &str, reading: Option<&Reading>) -> Result<SystemFile> {
+        let own = reading.map(|reading| reading.scheme.clone());
+        let scheme = own.or(self.given(reading)?.into_iter().next());
+        let needed = || Error::missing("steps", "give the inner and the outer step, as 0.5fs,4fs");
+        let scheme = scheme.ok_or_else(needed)?;
+        let [inner, outer] = scheme.steps() else { return Err(needed()) };
+        Ok(of_archive(name, [inner, outer]).into())
+    }
+}
+
+fn heavy_hydrogen(text: &str) -> Result<Rational> {
+    let with_unit = unit::dimension(text).map_or_else(|| format!("{text}amu"), |_| text.into());
+    unit::rational("hmr", &with_unit, Dimension::Mass)
+}
+
+/// `OH=2`: the mode OH on the second clock.
+fn place(modes: &mut [Mode], entry: &str) -> Result<()> {
+    let form = || Error::input("on", entry, "write NAME=CLOCK, as OH=1; 1 is the fastest clock");
+    let (name, clock) = entry.rsplit_once('=').ok_or_else(form)?;
+    let clock = clock.trim().parse::<usize>().ok().and_then(|clock| clock.checked_sub(1)).ok_or_else(form)?;
+    let names: Vec<String> = modes.iter().map(|mode| mode.name.clone()).collect();
+    let found = modes.iter_mut().find(|mode| mode.name == name.trim());
+    let mode = found.ok_or_else(|| {
+        Error::input("on", entry, format!("there is no mode of this name, but {}", names.join(", ")))
+    })?;
+    mode.clock = Some(clock);
+    Ok(())
+}
+
+fn scheme(text: &str) -> Result<Scheme> {
+    Scheme::new(
+        text.split(',').map(|step| unit::rational("steps", step, Dimension::Time)).collect::<Result<_>>()?,
+    )
+}
+
+/// `5%` or `1/20`.
+fn part(field: &str, text: &str) -> Result<Rational> {
+    match text.trim().strip_suffix('%') {
+        Some(percent) => Ok(parse_rational(field, percent)? / Rational::from_integer(100.into())),
+        None => parse_rational(field, text),
+    }
+}

@@ -1,0 +1,51 @@
+//! Tables that all advice has.
+
+use serde_json::{Value, json};
+
+use super::words::nearest;
+use crate::advise::engine::Reading;
+use crate::advise::{Caution, PUBLISHED};
+use crate::number::Rational;
+use crate::report::record::Record;
+use crate::report::table::{Cell, Column, Table};
+
+/// What was read of an engine's text, and its lines rewritten with the outer step that is advised.
+pub fn engine(advised: Option<&Rational>, reading: &Reading) -> Value {
+    let rewritten = advised.and_then(|outer| reading.changed_lines(outer).ok());
+    json!({"name": reading.engine.name(), "dt": reading.engine.dt(), "forces": reading.forces, "used": reading.used, "remarks": reading.remarks, "rewritten": rewritten})
+}
+
+/// The published statements for the fastest mode, with their limits in fs: `part` of its period.
+pub fn published(mode: &str, part: impl Fn(u64) -> Cell + Send + Sync) -> Value {
+    let record = Record::new()
+        .field(Column::new("mode"), |_: &Caution| mode.into())
+        .field(Column::new("parts"), |of| of.parts.into())
+        .field(Column::new("step"), |of| if of.inner { "inner" } else { "outer" }.into())
+        .field(Column::new("limit"), |of| part(of.parts))
+        .field(Column::new("statement"), |of| of.statement.into())
+        .field(Column::new("source"), |of| of.source.into());
+    record.all(&PUBLISHED).into()
+}
+
+/// A table for people: of its columns those that are to be shown, numbers rounded to five digits.
+pub fn for_people(full: &Table, shown: impl Fn(&str) -> bool) -> Table {
+    let kept = || full.columns().iter().map(|column| shown(&column.key));
+    let columns = full.columns().iter().zip(kept()).filter(|(_, kept)| *kept);
+    let columns = columns.map(|(column, _)| Column { enclosed: false, ..column.clone() }).collect();
+    let mut table = Table::new(full.name(), full.caption(), columns);
+    for row in full.rows() {
+        let cell = |(cell, kept): (&Cell, bool)| match *cell {
+            _ if !kept => None,
+            Cell::Float(x) => Some(Cell::Exact(nearest((x, x), 5))),
+            Cell::Enclosure { lo, hi } => Some(Cell::Exact(nearest((lo, hi), 5))),
+            _ => Some(cell.clone()),
+        };
+        table.push(row.iter().zip(kept()).filter_map(cell).collect());
+    }
+    table
+}
+
+/// An enclosure, in fs unless it is said otherwise.
+pub fn enclosed(key: &str, title: &str) -> Column {
+    Column::new(key).in_words(title).enclosure()
+}
