@@ -19,6 +19,7 @@
 mod asking;
 mod field;
 
+mod bands;
 mod closings;
 mod compare;
 mod curves;
@@ -32,6 +33,7 @@ mod verdict;
 
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
+pub use bands::Bands;
 pub use closings::Closings;
 pub use compare::{Compare, Over};
 pub use curves::Curves;
@@ -65,7 +67,7 @@ pub fn ask(name: &str, input: &Map<String, Value>, work: &Work) -> Result<Docume
         Q::read(input)?.ask(work)
     }
     type Ask = fn(&Map<String, Value>, &Work) -> Result<Document>;
-    const ALL: [(&str, Ask); 8] = [
+    const ALL: [(&str, Ask); 9] = [
         (Verdict::NAME, one::<Verdict>),
         (Curves::NAME, one::<Curves>),
         (Compare::NAME, one::<Compare>),
@@ -74,6 +76,7 @@ pub fn ask(name: &str, input: &Map<String, Value>, work: &Work) -> Result<Docume
         (Half::NAME, one::<Half>),
         (Closings::NAME, one::<Closings>),
         (Survey::NAME, one::<Survey>),
+        (Bands::NAME, one::<Bands>),
     ];
     match ALL.iter().find(|(known, _)| *known == name) {
         Some((_, answer)) => answer(input, work),

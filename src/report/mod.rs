@@ -7,6 +7,7 @@
 
 #[cfg(feature = "advise")]
 pub mod advise;
+pub mod bands;
 pub mod certificate;
 pub mod closings;
 pub mod compare;
