@@ -75,7 +75,7 @@ mod drawn {
     /// Pixels of a side.
     const SIDE: usize = 600;
 
-    const OPEN: Colour = Colour(0xd2, 0xd4, 0xd9);
+    const UNDECIDED: Colour = Colour(0xd2, 0xd4, 0xd9);
 
     /// How much of each pixel some boxes cover.
     fn covered(cells: &[Cell]) -> Vec<f32> {
@@ -96,7 +96,7 @@ mod drawn {
         pixels
     }
 
-    /// The boxes in the plane of steps: a pixel is filled where half of it is certified, and grey where half of it is certified or open.
+    /// The boxes in the plane of steps: a pixel is filled where half of it is certified, and grey elsewhere.
     pub fn figure(bands: &Bands) -> Figure {
         let ends = [0, 1].map(|step| bands.window.range(&Cell::WHOLE, step));
         let range = |step: usize| (ends[step].0.to_f64(), ends[step].1.to_f64());
@@ -108,12 +108,12 @@ mod drawn {
             places.for_each(|place| cells.push((place / SIDE) as u32, (place % SIDE) as u32, 0));
             Layer::cells(cells)
         };
-        let (certified, open) = (covered(&bands.certified), covered(&bands.open));
+        let certified = covered(&bands.certified);
         let axis = |label: &str, step: usize| Axis::linear(label, range(step).0, range(step).1).of_time();
         let share = rational::to_f64(&bands.share());
         let panel = Panel::new(axis("*h*_1", 0), axis("*h*_2", 1))
             .titled(&format!("Every ratio is unstable in {:.3} % of the window", 100.0 * share))
-            .with(layer(OPEN, &|n| certified[n] < 0.5 && certified[n] + open[n] >= 0.5).labelled("undecided"))
+            .with(layer(UNDECIDED, &|n| certified[n] < 0.5).labelled("undecided"))
             .with(layer(HYPERBOLIC, &|n| certified[n] >= 0.5).labelled("every ratio unstable"))
             .legend(Place::Above);
         let [first, second] = bands.window.lambdas();
