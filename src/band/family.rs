@@ -173,7 +173,7 @@ impl Family {
         norm(&self.slopes[direction][0])
     }
 
-    /// No trace at t = 0 is larger in the box.
+    /// About the largest trace at t = 0 in the box; no proof rests on it.
     pub fn largest_trace(&self) -> f64 {
         let trace = |m: &Matrix| (m[0] + m[3]).abs();
         trace(&self.values[0]) + trace(&self.slopes[0][0]) + trace(&self.slopes[1][0]) + self.error
@@ -232,20 +232,20 @@ impl Task for Product<'_> {
                     dropped += norms[0][i] * norms[1][j];
                 }
             }
-            for j in 0..earlier.lengths[1] {
+            for (j, (first, second)) in earlier.slopes(0).iter().zip(earlier.slopes(1)).enumerate() {
                 if i + j < SLOPES {
-                    add_product(&mut product.slopes[0][i + j], m, &earlier.slopes[0][j]);
-                    add_product(&mut product.slopes[1][i + j], m, &earlier.slopes[1][j]);
+                    add_product(&mut product.slopes[0][i + j], m, first);
+                    add_product(&mut product.slopes[1][i + j], m, second);
                 } else {
                     dropped += norms[0][i] * slope_norms[1][j];
                 }
             }
         }
-        for i in 0..later.lengths[1] {
+        for (i, (first, second)) in later.slopes(0).iter().zip(later.slopes(1)).enumerate() {
             for (j, n) in earlier.values().iter().enumerate() {
                 if i + j < SLOPES {
-                    add_product(&mut product.slopes[0][i + j], &later.slopes[0][i], n);
-                    add_product(&mut product.slopes[1][i + j], &later.slopes[1][i], n);
+                    add_product(&mut product.slopes[0][i + j], first, n);
+                    add_product(&mut product.slopes[1][i + j], second, n);
                 } else {
                     dropped += slope_norms[0][i] * norms[1][j];
                 }

@@ -139,7 +139,7 @@ impl Frame {
         }
         let [kick, _] = all.maps;
         let maps = |share: &Affine, _| Some([kick.part(Cut::Last, share), kick.part(Cut::Before, share)]);
-        let proven = self.from_first_level(&mut trial, maps);
+        let proven = self.down_from_first(&mut trial, maps);
         (!proven).then_some(trial)
     }
 
@@ -148,7 +148,7 @@ impl Frame {
         let is_slow = self.turning.is_some() && self.tau.slopes[1].abs() > self.tau.slopes[0].abs();
         let mut trial = Trial::new(ENOUGH_WHERE_STRONG, usize::from(is_slow));
         let Some([kick, step]) = self.plain() else { return Some(trial) };
-        let proven = self.from_first_level(&mut trial, |share, n| {
+        let proven = self.down_from_first(&mut trial, |share, n| {
             let before = (n <= MOST_STEPS)
                 .then(|| (0..n).fold(Family::identity(), |product, _| step.after(&product)))?;
             let after = step.after(&before);
@@ -158,11 +158,7 @@ impl Frame {
     }
 
     /// From the first level on, for all n = ⌊τ⌋ of the box: kicks that arrive at f..1, a share 1 − f of all offsets, and at 0..f.
-    fn from_first_level(
-        &self,
-        trial: &mut Trial,
-        maps: impl Fn(&Affine, u32) -> Option<[Family; 2]>,
-    ) -> bool {
+    fn down_from_first(&self, trial: &mut Trial, maps: impl Fn(&Affine, u32) -> Option<[Family; 2]>) -> bool {
         let (tau, reach) = (self.tau.center, self.tau.reach());
         let (low, high) = ((tau - reach) * (1.0 - 4.0 * U), (tau + reach) * (1.0 + 4.0 * U));
         if !(low > 0.0 && high < 1e6) {
