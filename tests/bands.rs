@@ -87,6 +87,12 @@ fn strong_kicks_equal_stiffnesses_and_negative_ones() {
 fn no_stable_pair_lies_in_a_box() {
     let window = figure1();
     let bands = search(&window, 60_000);
+    let ends = |cell: &Cell, step: usize| {
+        let (lo, hi) = window.range(cell, step);
+        (lo.to_f64(), hi.to_f64())
+    };
+    let boxes: Vec<[(f64, f64); 2]> =
+        bands.certified.iter().map(|cell| [ends(cell, 0), ends(cell, 1)]).collect();
     // All pairs of a coarse grid: h1 = 2 i/(97 pi), h2/h1 = j/23.
     let mut stable = 0;
     for i in 1..97 {
@@ -98,12 +104,9 @@ fn no_stable_pair_lies_in_a_box() {
                 continue;
             }
             stable += 1;
-            let holds = |cell: &Cell, step: usize, h: f64| {
-                let (lo, hi) = window.range(cell, step);
-                lo.to_f64() <= h && h <= hi.to_f64()
-            };
-            let inside =
-                bands.certified.iter().find(|cell| holds(cell, 0, h1.to_f64()) && holds(cell, 1, h2));
+            let holds = |(lo, hi): &(f64, f64), h: f64| *lo <= h && h <= *hi;
+            let at = h1.to_f64();
+            let inside = boxes.iter().find(|own| holds(&own[0], at) && holds(&own[1], h2));
             assert_eq!(inside, None, "h1 = {h1}, h2/h1 = {ratio}");
         }
     }
