@@ -12,7 +12,9 @@
     - [last_period]      where the left interval has shrunk to nothing, the right branch at 0 is the period;
     - [walk_product]     any walk over levels that uses up n kicks multiplies to the product of the next n kicks;
     - [band_growth]      determinant-one matrices that map one cone into its interior by a margin multiply to exponential growth,
-                         in whatever order they come: so every offset, and every ratio of the steps, rational or not. *)
+                         in whatever order they come: so every offset, and every ratio of the steps, rational or not;
+    - [band_unstable]    a period of such returns is hyperbolic;
+    - [turning_along]    in a frame that turns with the offset the products are the same, turned at both ends. *)
 
 From Kickdrift Require Import Vocabulary Algebra Stability Plane Cone.
 From Coq Require Import Reals Lra Lia Psatz.
@@ -200,4 +202,75 @@ Proof.
         [now rewrite det_opp|].
       exists (- s), x2, y2; split; [lra|]; split; [exact X2|]; split; [exact Y2|]; split; [now apply Grown|].
       rewrite act_mul, E, act_smul, <- E2; apply vec_ext; coordinates; simpl; ring.
+Qed.
+
+Lemma inside_product d u w M N :
+  0 <= d -> cross u w <> 0 -> det M = 1 -> inside_by d u w M -> inside_by d u w N -> inside_by d u w (N ** M).
+Proof.
+  intros D C DM (a & b & c & e & A & B & G & F & BC & U & W) (a' & b' & c' & e' & A' & B' & G' & F' & BC' & U' & W').
+  assert (Dt : a * e - b * c = 1).
+  { assert (T : cross u w * det M = cross u w * (a * e - b * c)).
+    { transitivity (cross (M @ u) (M @ w)); [coordinates; ring | rewrite U, W; coordinates; ring]. }
+    apply Rmult_eq_reg_l in T; [lra | exact C]. }
+  exists (a * a' + c * b'), (b * a' + e * b'), (a * c' + c * e'), (b * c' + e * e').
+  assert (E : (b * a' + e * b') * (a * c' + c * e')
+              = a * e * (b' * c') + b * a' * (a * c') + b * a' * (c * e') + e * b' * (c * e')) by ring.
+  assert (P1 : 0 < b * a' * (a * c')) by (repeat apply Rmult_lt_0_compat; assumption).
+  assert (P2 : 0 < b * a' * (c * e')) by (repeat apply Rmult_lt_0_compat; assumption).
+  assert (P3 : 0 < e * b' * (c * e')) by (repeat apply Rmult_lt_0_compat; assumption).
+  assert (P4 : 0 < b * c) by now apply Rmult_lt_0_compat.
+  assert (P5 : d <= a * e * (b' * c')).
+  { replace (a * e) with (1 + b * c) by lra; assert (0 <= b * c * (b' * c')) by nra; lra. }
+  repeat split; try (apply Rplus_lt_0_compat; apply Rmult_lt_0_compat; assumption).
+  - rewrite E; lra.
+  - rewrite act_mul, U, act_combination, U', W'; apply vec_ext; coordinates; ring.
+  - rewrite act_mul, W, act_combination, U', W'; apply vec_ext; coordinates; ring.
+Qed.
+
+(** A period is a product of returns: where all of them take one cone into its interior or into the opposite one, it is hyperbolic. *)
+Theorem band_unstable M u w d n :
+  cross u w <> 0 -> 0 <= d ->
+  (forall k, det (M k) = 1 /\ (inside_by d u w (M k) \/ inside_by d u w (opp (M k)))) ->
+  2 < Rabs (tr (Cone.product M (S n))) /\ exponential_growth (Cone.product M (S n)).
+Proof.
+  intros C D H.
+  assert (Twice : forall A B, opp A ** B = opp (A ** B) /\ A ** opp B = opp (A ** B) /\ opp (opp A) = A).
+  { intros A B; repeat split; matrix_ring. }
+  assert (P : det (Cone.product M (S n)) = 1 /\
+              (inside_by d u w (Cone.product M (S n)) \/ inside_by d u w (opp (Cone.product M (S n))))).
+  { induction n as [|n [E I]].
+    - destruct (H O) as [E I]; change (Cone.product M 1) with (M O ** one); rewrite mul_one_r; auto.
+    - destruct (H (S n)) as [F J]; change (Cone.product M (S (S n))) with (M (S n) ** Cone.product M (S n)).
+      set (Q := Cone.product M (S n)) in *; set (N := M (S n)) in *.
+      split; [rewrite det_mul, E, F; ring|].
+      destruct (Twice N Q) as (L & R & _).
+      assert (EO : det (opp Q) = 1) by now rewrite det_opp.
+      destruct I as [I|I], J as [J|J].
+      + left; now apply inside_product.
+      + right; rewrite <- L; now apply inside_product.
+      + right; rewrite <- R; now apply inside_product.
+      + left; replace (N ** Q) with (opp N ** opp Q); [now apply inside_product|].
+        destruct (Twice N (opp Q)) as (L' & _ & _); rewrite L', R; apply (proj2 (proj2 (Twice (N ** Q) Q))). }
+  destruct P as [E I]; apply (cone_hyperbolic _ u w E C).
+  assert (In : forall Q, inside_by d u w Q -> inside u w (Q @ u) /\ inside u w (Q @ w)).
+  { intros Q (a & b & c & e & A & B & G & F & _ & U & W); split.
+    - exists a, c; auto.
+    - exists b, e; auto. }
+  destruct I as [I|I]; [left; now apply In|right].
+  destruct (In _ I) as [A B].
+  assert (Neg : forall v, smul (-1) (Cone.product M (S n) @ v) = opp (Cone.product M (S n)) @ v)
+    by (intros; apply vec_ext; simpl; ring).
+  now rewrite !Neg.
+Qed.
+
+(** In a frame that turns by an angle phi of the offset the products are the same, turned at both ends. *)
+Lemma turning_along (T T' : R -> mat) a b kicked n x :
+  (forall y, T' y ** T y = one) -> (forall y, T y ** T' y = one) ->
+  along a b (fun y => T (turn a b y) ** kicked y ** T' y) n x
+  = T (turns a b n x) ** along a b kicked n x ** T' x.
+Proof.
+  intros I J; revert x; induction n as [|n IH]; intros x; simpl.
+  - now rewrite mul_one_r, J.
+  - rewrite IH; rewrite <- !mul_assoc; f_equal; f_equal.
+    rewrite !mul_assoc, I, mul_one_l; reflexivity.
 Qed.

@@ -21,12 +21,14 @@ from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
 from kickdrift._system import Intervals, Run, System, SystemVerdict, simulate
 from kickdrift._tables import (
+    Bands,
     Closings,
     Comparison,
     Curves,
     Half,
     Proposition,
     Tongues,
+    bands,
     closings,
     compare,
     curves,
@@ -38,6 +40,7 @@ from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
 
 __all__ = [
     "Advice",
+    "Bands",
     "BudgetError",
     "Closings",
     "Comparison",
@@ -63,6 +66,7 @@ __all__ = [
     "Verdict",
     "Verdicts",
     "advise",
+    "bands",
     "closings",
     "compare",
     "curves",

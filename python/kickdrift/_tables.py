@@ -429,3 +429,68 @@ def half(ratio: Exact, *, s: Exact, rho: Exact, budget: int | None = None) -> Ha
     return answered(
         Half, "half", "entries", budget, ratio=_text("ratio", ratio), s=_text("s", s), rho=_text("rho", rho)
     )
+
+
+class Bands(Answer):
+    """Boxes of steps in which every ratio h2/h1, rational or not, is proven unstable.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", boxes=500)
+    >>> found.data["share"]["value"]["lo"] > 0.3
+    True
+    """
+
+
+def bands(
+    *,
+    lambda1: Exact,
+    lambda2: Exact,
+    h1: Range,
+    h2: Range,
+    area: Exact | None = None,
+    boxes: int | None = None,
+    budget: int | None = None,
+) -> Bands:
+    """Find boxes of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
+
+    Nothing is claimed of steps in no box: they may be stable or not.
+
+    Parameters
+    ----------
+    lambda1, lambda2 : Exact
+        The stiffnesses of the fast and of the slow force.
+    h1, h2 : Range
+        The closed ranges of both steps.
+    area : Exact, optional
+        End where this share of the window is certified.
+    boxes : int, optional
+        The most boxes that are tried; 100000 unless given.
+    budget : int, optional
+        The largest number of boxes that may be asked for.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input; more boxes than the budget allows.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.bands(lambda1="pi^2", lambda2="pi^2/25", h1="1/5..1/4", h2="9/10..1", boxes=500)
+    >>> found[0]["h1_lower"]
+    '1/5'
+    """
+    return answered(
+        Bands,
+        "bands",
+        "boxes",
+        budget,
+        lambda1=_text("lambda1", lambda1),
+        lambda2=_text("lambda2", lambda2),
+        h1_range=_range("h1", h1),
+        h2_range=_range("h2", h2),
+        area=_text("area", area),
+        boxes=boxes,
+    )

@@ -2,6 +2,8 @@
 
 use clap::Command;
 
+use crate::question::{Bands, Question};
+
 const EXIT_CODES: &str = "Exit codes:
   0  done
   2  error: one line on standard error tells the field, its value and a remedy; nothing is half-written";
@@ -20,7 +22,7 @@ const USAGES: [(&str, &str); 6] = [
 ];
 
 /// Those of commands that are no question of their own.
-const EXAMPLES: [(&str, &[&str]); 14] = [
+const EXAMPLES: [(&str, &[&str]); 15] = [
     (
         "verdict",
         &[
@@ -53,6 +55,7 @@ const EXAMPLES: [(&str, &[&str]); 14] = [
             "tongues --survey --max-sum 12 --rho 1/25 --format latex",
         ],
     ),
+    ("bands", Bands::EXAMPLES),
     ("closings", &["closings --max-sum 8", "closings --ratio 5/3 --format latex --digits 8"]),
     (
         "system",

@@ -5,6 +5,7 @@
 mod advise;
 mod args;
 mod asked;
+mod bands;
 mod cite;
 mod command;
 mod compare;
@@ -72,6 +73,8 @@ enum Command {
     Merge(merge::Args),
     /// Every unstable interval (tongue) of one ratio of steps, or of all ratios p + q <= N, with certified edges.
     Tongues(tongues::Args),
+    /// Boxes of steps in which every ratio, rational or not, is proven unstable.
+    Bands(bands::Args),
     /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
     Closings(Closings),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
@@ -95,10 +98,18 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Cite, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Bands, Cite, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
-            Advise(_) | Cite(_) | Map(_) | Merge(_) | Tongues(_) | System(_) | Run(_) | Generate(_)
+            Advise(_)
+                | Bands(_)
+                | Cite(_)
+                | Map(_)
+                | Merge(_)
+                | Tongues(_)
+                | System(_)
+                | Run(_)
+                | Generate(_)
         )
     }
 }
@@ -209,6 +220,7 @@ fn run(cli: &Cli) -> Result<u8> {
         Command::Merge(args) => args.run(common)?,
         Command::Run(args) => args.run(common)?,
         Command::Tongues(args) => args.run(common)?,
+        Command::Bands(args) => args.run(common)?,
         Command::Closings(args) => {
             let format = common.format_of_table(&Format::DOCUMENT)?;
             common.write(&args.ask(&common.work())?, format)?;

@@ -21,6 +21,7 @@ mod advise;
 mod asking;
 mod field;
 
+mod bands;
 mod closings;
 mod compare;
 mod curves;
@@ -43,6 +44,7 @@ mod want;
 pub use advise::{Advise, Advised, Safe};
 pub(crate) use asking::question;
 pub use asking::{Fields, Question, Watch, Work};
+pub use bands::Bands;
 pub use closings::{Closings, DIGITS};
 pub use compare::{Compare, Over};
 pub use curves::Curves;
@@ -124,6 +126,7 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Half>(),
         Named::of::<Closings>(),
         Named::of::<Survey>(),
+        Named::of::<Bands>(),
         #[cfg(feature = "system")]
         Named::of::<System>(),
         #[cfg(feature = "system")]

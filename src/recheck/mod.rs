@@ -17,6 +17,7 @@
 //! | polynomial | products of polynomials | the full period at rational points |
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
 //! | system-intervals | signs | none |
+//! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
@@ -67,6 +68,7 @@ macro_rules! rows {
 #[cfg(feature = "advise")]
 mod advise;
 mod again;
+mod bands;
 mod closings;
 mod compare;
 mod context;
@@ -142,6 +144,7 @@ claims! {
     "polynomial" Polynomial polynomial::Claim;
     "proposition" Proposition proposition::Claim;
     "half" Half half::Claim;
+    "bands" Bands bands::Claim;
     #[cfg(feature = "advise")]
     "advise" Advise advise::Claim;
     #[cfg(feature = "advise")]

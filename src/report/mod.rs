@@ -6,6 +6,7 @@
 
 #[cfg(feature = "advise")]
 pub mod advise;
+pub mod bands;
 #[doc(hidden)]
 pub mod certificate;
 #[doc(hidden)]

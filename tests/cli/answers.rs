@@ -314,6 +314,7 @@ fn every_command_explains_itself() {
         "run",
         "tongues",
         "closings",
+        "bands",
         "verify",
         "system",
         "simulate",

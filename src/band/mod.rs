@@ -1,0 +1,49 @@
+//! Bands: boxes of steps in which every ratio h2/h1, rational or not, is unstable (proofs/BANDS.md).
+//!
+//! Between two kicks of the other clock the state moves by a matrix that depends on one offset alone, and the offset moves by an
+//! exchange of two intervals. Euclid's algorithm on their lengths leads from level to level; each has two return maps. Where both of
+//! one level, for all offsets and all steps of a box, take one cone of directions into its interior, products of them grow in
+//! whatever order they come: **every ratio of the box is unstable**.
+//!
+//! ```text
+//!     box -> constants, affine in the box -> one kick in a turning frame -> two return maps, level by level -> a common cone
+//! ```
+//!
+//! | file | what is there |
+//! |---|---|
+//! | `affine` | numbers that depend on a box: affine in it, with a bound on the rest |
+//! | `trig` | sine, cosine and arcsine of doubles with proven bounds |
+//! | `family` | matrix functions of an offset that depend on a box |
+//! | `frame` | a box in the units of its base, and one kick in the frame of a family (a, b) |
+//! | `walk` | Euclid's algorithm on a box |
+//! | `cone` | the common cone |
+//! | `search` | a window, bisected where the first-order law expects a band |
+//!
+//! Nothing is said of what is not certified: it may be stable or not.
+//!
+//! ```
+//! use kickdrift::band::Window;
+//! use kickdrift::number::parse::parse;
+//! let x = |text| parse("quantity", text).unwrap();
+//! // Below h2 = 1: half a period of the fast force.
+//! let window = Window::new([x("pi^2"), x("pi^2/25")], [(x("1/5"), x("1/4")), (x("9/10"), x("1"))]).unwrap();
+//! let bands = window.search(2000, None, &|_| ()).unwrap();
+//! // At least a third of it is unstable for every ratio.
+//! assert!(bands.share() > kickdrift::number::rational::ratio(1, 3));
+//! ```
+
+mod affine;
+mod cone;
+mod family;
+mod frame;
+mod search;
+mod trig;
+mod walk;
+
+pub use search::{Bands, Cell, Window};
+
+/// Some hundreds of roundings of positive numbers.
+const UP: f64 = 1.0 + 1e-12;
+
+/// More than any number of underflows adds.
+const FLOOR: f64 = 1e-150;

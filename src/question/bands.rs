@@ -1,0 +1,76 @@
+//! Boxes of steps in which every ratio is unstable.
+
+use super::asking::{Question, Work, question};
+use super::field::StepRange;
+#[cfg(feature = "cli")]
+use super::field::flag;
+use crate::band::{self, Window};
+use crate::error::{Error, Result};
+use crate::number::{Laurent, Rational};
+use crate::report::bands;
+use crate::report::document::Document;
+
+question! {
+    /// Boxes of (h1, h2) in which every ratio h2/h1, rational or not, is proven unstable.
+    args struct Bands {
+        /// The stiffness of the fast force.
+        #[arg(long, value_name = "X", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        lambda1: Laurent,
+        /// The stiffness of the slow force.
+        #[arg(long, value_name = "Y", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        lambda2: Laurent,
+        /// The closed range of h1.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
+        h1_range: StepRange,
+        /// The closed range of h2.
+        #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
+        h2_range: StepRange,
+        /// End where this share of the window is certified, as 17/200.
+        #[arg(long, value_name = "A", allow_hyphen_values = true, value_parser = flag::<Rational>)]
+        area: Option<Rational>,
+        /// The most boxes that are tried: each costs some tens of microseconds.
+        #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<u64>)]
+        boxes: u64 = "100000",
+    }
+}
+
+/// The most boxes unless a budget says otherwise: the half of an hour on two cores, and some gigabytes.
+const MOST_BOXES: u64 = 100_000_000;
+
+/// Seconds of one core that a box costs, about.
+const BOX: f64 = 3e-5;
+
+impl Bands {
+    /// The window.
+    ///
+    /// # Errors
+    /// As [`Window::new`].
+    pub fn window(&self) -> Result<Window> {
+        let ranges = [self.h1_range.clone(), self.h2_range.clone()];
+        Window::new([self.lambda1.clone(), self.lambda2.clone()], ranges)
+    }
+}
+
+impl Question for Bands {
+    const NAME: &'static str = "bands";
+    const EXAMPLES: &'static [&'static str] = &[
+        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --boxes 2000",
+        "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/25 --output bands.png",
+    ];
+    type Answer = band::Bands;
+
+    fn answer(&self, work: &Work) -> Result<band::Bands> {
+        if self.boxes > work.budget.unwrap_or(MOST_BOXES) {
+            let cost = format!("{} boxes are too many", self.boxes);
+            return Err(Error::budget(cost, self.boxes).or(format!("choose --boxes {MOST_BOXES} at most")));
+        }
+        let window = self.window()?;
+        work.announce("the bands", self.boxes as f64 * BOX);
+        let bar = work.count(self.boxes, "boxes");
+        window.search(self.boxes, self.area.as_ref(), &|more| bar.advance(more))
+    }
+
+    fn show(&self, answer: &band::Bands) -> Document {
+        bands::document(answer)
+    }
+}
