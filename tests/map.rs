@@ -370,9 +370,9 @@ fn the_cost_is_told_before_the_work_begins() {
         let (told, counters) = (grid.kicks(), Map::of(&grid).for_each_band(|_, _| Ok(())).unwrap());
         assert!((told / counters.kicks as f64 - 1.0).abs() < 0.02, "{told} for {}", counters.kicks);
     }
-    // 2.2 million pairs take 2.45e8 kicks, a million times as many 2.4e17, and 1.1e17 where none counts more than 2^16.
+    // 2.2 million pairs take 2.45e8 kicks, a million times as many 2.4e17, and 6.2e16 where none counts more than 2^15.
     let fine = figure_1("1/1000000");
-    assert!((fine.kicks() / 1.098e17 - 1.0).abs() < 0.02, "{:e}", fine.kicks());
+    assert!((fine.kicks() / 6.2e16 - 1.0).abs() < 0.02, "{:e}", fine.kicks());
     let refused = Map::of(&fine).for_each_band(|_, _| panic!("no band is computed")).unwrap_err();
     assert_eq!(refused.kind(), ErrorKind::Budget);
     assert!(refused.to_string().contains("2228166500000 pairs"), "{refused}");

@@ -16,7 +16,7 @@ from kickdrift._errors import BudgetError, KickdriftError
 from kickdrift._explore import explore
 from kickdrift._map import Map, map
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Labels, Range, exact, number
+from kickdrift._numbers import Exact, Labels, Range, exact, number, simplest
 from kickdrift._program import main
 from kickdrift._recheck import Recheck, recheck
 from kickdrift._system import Intervals, Run, System, SystemVerdict, simulate
@@ -79,6 +79,7 @@ __all__ = [
     "number",
     "proposition",
     "recheck",
+    "simplest",
     "simulate",
     "tongues",
     "verdicts",

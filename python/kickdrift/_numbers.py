@@ -66,12 +66,17 @@ def number(value: Exact) -> Number:
     return _native.number("number", value)
 
 
-def exact(value: SupportsRatio) -> Number:
+def exact(value: Any) -> Any:
     """Return the number that a float is to its last bit.
 
     Parameters
     ----------
-    value : float, or a float of NumPy's
+    value : float, a float of NumPy's, or an array of such
+
+    Returns
+    -------
+    Number, or an array of them of the same shape
+        What :func:`decide` and :func:`verdicts` take: two doubles have a period of some 10^16 kicks, and a verdict all the same.
 
     Raises
     ------
@@ -85,7 +90,17 @@ def exact(value: SupportsRatio) -> Number:
     Fraction(3602879701896397, 36028797018963968)
     >>> kd.exact(0.5) == kd.number(0.5)
     True
+    >>> kd.decide(lambda1=1, lambda2="1/25", h1=kd.exact(0.1), h2=kd.exact(0.3)).stable
+    True
     """
+    if isinstance(value, np.ndarray):
+        all_of_them = np.empty(value.shape, dtype=object)
+        all_of_them.ravel()[:] = [_exact(one) for one in value.ravel()]
+        return all_of_them
+    return _exact(value)
+
+
+def _exact(value: SupportsRatio) -> Number:
     try:
         above, below = value.as_integer_ratio()
     except (AttributeError, OverflowError, ValueError):
@@ -158,12 +173,31 @@ def _decimal(value: Fraction) -> str:
     return f"{float(value):.6g}"
 
 
-def simplest(value: float) -> Fraction:
-    """The simplest rational within two units in the last place of a positive double.
+def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
+    """Return the simplest rational beside a positive double: the one that it most likely stands for.
 
-    So far off is a short decimal that was multiplied by a rounded factor: half a unit of each, and one of the product.
+    Parameters
+    ----------
+    value : float
+        Positive.
+    ulps : Fraction or int
+        How many units in the last place it may be off: a half after one rounding. A short decimal that was multiplied by a
+        rounded factor is off by two at most: half a unit of each, and one of the product.
+
+    Raises
+    ------
+    KickdriftError
+        Where the value is not positive and finite.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> kd.simplest(0.1), kd.simplest(0.1 * 3, ulps=2), kd.simplest(1 / 3)
+    (Fraction(1, 10), Fraction(3, 10), Fraction(1, 3))
     """
-    width = 2 * Fraction(float(np.spacing(value)))
+    if not 0 < value < np.inf:
+        raise KickdriftError("number", repr(value), "give a positive finite float")
+    width = ulps * Fraction(float(np.spacing(value)))
     return _between(Fraction(value) - width, Fraction(value) + width)
 
 

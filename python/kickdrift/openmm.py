@@ -348,7 +348,7 @@ def _plain(value: Any) -> Exact:
     """A quantity as a text in ps: its number as it prints, and the unit's factor, a power of ten or near one."""
     if not unit.is_quantity(value):
         return value
-    factor = simplest(value.unit.conversion_factor_to(unit.picosecond))
+    factor = simplest(value.unit.conversion_factor_to(unit.picosecond), ulps=2)
     return f"{rational('steps', value._value) * factor}ps"
 
 
@@ -357,7 +357,7 @@ _KICK = re.compile(r"v\+(?P<half>0?\.5\*)?\(?dt(?:/(?P<parts>\d+))?\)?\*f(?P<gro
 
 
 def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
-    step = simplest(integrator.getStepSize()._value)
+    step = simplest(integrator.getStepSize()._value, ulps=2)
     plain = (mm.VerletIntegrator, mm.LangevinIntegrator, mm.LangevinMiddleIntegrator)
     if isinstance(integrator, plain):
         mask = integrator.getIntegrationForceGroups()

@@ -138,3 +138,28 @@ def test_ctrl_c_is_heard_within_a_second(call: str) -> None:
         # The work itself has ended too, but for that of a single verdict.
         if call != "decide":
             assert float(child.stdout.readline()) < 0.1
+
+
+def test_any_two_doubles_have_a_verdict() -> None:
+    rng = np.random.default_rng(7)
+    h1, h2 = rng.uniform(0.01, 0.63, 300), rng.uniform(0.01, 3.5, 300)
+    # Far apart, and subnormal.
+    h1[:20] *= 2.0**-200
+    h1[20], h2[20] = 5e-324, 0.75
+    found = kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(h1), h2=kd.exact(h2))
+    assert found.code.shape == (300,)
+    assert set(found.kind) == {"elliptic", "hyperbolic"}
+    # Where the fast step is next to nothing, the slow one is that of a Verlet scheme beside a rotation: impulse's windows.
+    phase = np.pi * h2[:21]
+    kappa = np.pi / 25 * h2[:21]
+    unstable = np.abs(2 * np.cos(phase) - kappa * np.sin(phase)) > 2
+    assert found.stable[:21].tolist() == (~unstable).tolist()
+
+
+def test_the_verdict_of_doubles_has_its_growth_and_label() -> None:
+    # 3 - 4.4e-16, and beside 98: inside the tongue of 98/1.
+    stable = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.1), h2=kd.exact(0.3))
+    assert stable.stable and stable.p > 10**16
+    beside = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.01), h2=kd.exact(0.98))
+    printed = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=0.01, h2=0.98)
+    assert not beside.stable and beside.growth_rate[0] == pytest.approx(printed.growth_rate[0], rel=1e-9)

@@ -2,7 +2,7 @@
 
 use super::asking::{Question, Work, question};
 use crate::error::{Error, Result};
-use crate::number::{Ball, Laurent, Rational, Real};
+use crate::number::{Ball, Laurent, Ratio, Rational, Real, rational};
 use crate::propagator::{Oscillator, TwoClocks};
 use crate::report::decimal;
 use crate::report::document::Document;
@@ -11,7 +11,7 @@ use crate::report::friction;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
 use crate::resonance::dominant_family;
-use crate::verdict::{Decision, Growth, Kind, Tier, decide_from, exact_trace};
+use crate::verdict::{Decision, Growth, Kind, Limits, Tier, decide, decide_from, exact_trace};
 
 question! {
     /// One pair of steps of one oscillator.
@@ -131,6 +131,9 @@ const CAPTION_LATEX: &str =
 /// A rational trace is shown unasked where the period has at most so many kicks.
 const SHORT_PERIOD: u64 = 40;
 
+/// A ratio is much simpler whose period holds so many times fewer kicks.
+const MUCH: u64 = 1000;
+
 /// A rational trace is shown unasked where it has at most so many characters.
 const SHORT_TEXT: usize = 60;
 
@@ -203,6 +206,7 @@ impl Decided {
             ),
             format!("  trace        {}", shown(self.growth.trace.to_f64_enclosure())),
         ];
+        lines.splice(2..2, self.simpler());
         if let Some(exact) = &self.exact_trace {
             lines.push(format!("               = {exact} exactly"));
         }
@@ -225,6 +229,28 @@ impl Decided {
         lines
     }
 
+    /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it, as a rule.
+    fn simpler(&self) -> Option<String> {
+        let (own, ratio) = (self.oscillator.ratio(), Rational::from(self.oscillator.ratio()));
+        let off = &ratio / Rational::from_integer(1_000_000_000.into());
+        let near = rational::simplest(&(&ratio - &off), &(&ratio + &off));
+        let simple = Ratio::try_from(&near).ok().filter(|near| near.kicks() < own.kicks() / MUCH)?;
+        let [lambda1, lambda2, h1] =
+            [self.oscillator.lambda1(), self.oscillator.lambda2(), self.oscillator.h1()];
+        let h2 = h1 * &Laurent::from_rational(near.clone());
+        let there = Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2).ok()?;
+        let there = decide(&there.clocks(), &Limits::default()).ok()?.verdict;
+        let difference = rational::to_f64(&(&ratio - &near));
+        let sign = if difference < 0.0 { '-' } else { '+' };
+        let (word, too) =
+            (stability(there.is_stable()), there.is_stable() == self.decision.verdict.is_stable());
+        let too = if too { ", too" } else { "" };
+        Some(format!(
+            "               {simple} {sign} {:.1e}; at {simple} itself: {word}{too}",
+            difference.abs()
+        ))
+    }
+
     fn headline(&self) -> String {
         let verdict = self.decision.verdict;
         match verdict.kind() {
@@ -234,6 +260,10 @@ impl Decided {
             Kind::Hyperbolic => format!("unstable: {verdict}; exponential growth"),
         }
     }
+}
+
+fn stability(is_stable: bool) -> &'static str {
+    if is_stable { "stable" } else { "unstable" }
 }
 
 /// An enclosure as the digits that are certain.
