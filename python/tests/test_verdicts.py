@@ -157,7 +157,7 @@ def test_any_two_doubles_have_a_verdict() -> None:
 
 
 def test_the_verdict_of_doubles_has_its_growth_and_label() -> None:
-    # 3 - 4.4e-16, and beside 98: inside the tongue of 98/1.
+    # 3 - 2.8e-16, and beside 98: inside the tongue of 98/1.
     stable = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.1), h2=kd.exact(0.3))
     assert stable.stable and stable.p > 10**16
     beside = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.01), h2=kd.exact(0.98))

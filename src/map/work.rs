@@ -149,13 +149,17 @@ impl<'a> Work<'a> {
             positions.clear();
             for n in group.iter().map(|&n| n as usize) {
                 let (place, gcd) = (self.multipliers(n), u64::from(self.gcds[n]));
-                let pair = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd);
-                if let Some(pair) = pair.filter(|pair| pair.updates() <= most) {
+                if let Some(pair) = self.bases.pair(|i| self.first(i), |j| self.second(j), place, gcd) {
                     pairs.push(pair);
                     positions.push(n);
                 }
             }
             // The last one has the most.
+            if pairs.last().is_some_and(|pair| pair.updates() > most) {
+                let fit = pairs.partition_point(|pair| pair.updates() <= most);
+                pairs.truncate(fit);
+                positions.truncate(fit);
+            }
             if pairs.last().is_some_and(|pair| pair.updates() >= self.limits().kicks) {
                 pairs.iter().try_for_each(|pair| self.allow(pair.updates() + 1))?;
             }

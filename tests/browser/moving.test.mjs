@@ -114,7 +114,7 @@ test("where no cell can be decided a click takes the simplest ratio within half 
   await page.fill("#go-h2", "1.4142");
   await page.click("text=Go to this pair");
   await page.focus("canvas");
-  for (let k = 0; k < 16; k++) await page.keyboard.press("+");
+  for (let k = 0; k < 24; k++) await page.keyboard.press("+");
   await settled(page);
   await page.waitForFunction(() => window.kickdrift.status.costly && !window.kickdrift.status.cells && window.kickdrift.map.vectors.tongues);
   // A pixel of no line.
