@@ -15,6 +15,7 @@ __all__ = [
     "answer",
     "ask",
     "decide",
+    "draw",
     "main",
     "map",
     "multipliers",

@@ -76,7 +76,8 @@ def exact(value: Any) -> Any:
     Returns
     -------
     Number, or an array of them of the same shape
-        What :func:`decide` and :func:`verdicts` take: two doubles have a period of some 10^16 kicks, and a verdict all the same.
+        What :func:`decide` and :func:`verdicts` take: two doubles have a period of some 10^16 kicks, and a verdict
+        all the same.
 
     Raises
     ------
@@ -181,8 +182,8 @@ def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
     value : float
         Positive.
     ulps : Fraction or int
-        How many units in the last place it may be off: a half after one rounding. A short decimal that was multiplied by a
-        rounded factor is off by two at most: half a unit of each, and one of the product.
+        How many units in the last place it may be off: a half after one rounding. A short decimal that was
+        multiplied by a rounded factor is off by two at most: half a unit of each, and one of the product.
 
     Raises
     ------

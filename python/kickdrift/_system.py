@@ -160,7 +160,7 @@ class System(Frozen):
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
         document: dict[str, Any] = {"accuracy": float(accuracy), **{name: _at(name) for name in arrays}}
-        named = {"title": title, "time_unit": time_unit, "labels": list(labels)}
+        named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = [

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlencode
+from urllib.parse import parse_qsl
 
 import numpy as np
 import pytest
@@ -66,9 +66,12 @@ def test_files_of_the_page_are_answers_too(front: Front) -> None:
     assert front.answer("a-2")[0]["status"] == 404
 
 
+#: A tile of 65,536 long periods: some seconds, if nobody stops it.
+LONG = "unit=1/4&level=15&x=65536&y=65536"
+
+
 def test_a_question_that_is_stopped_has_no_answer_and_ends_soon(front: Front) -> None:
-    # Half a minute for the trace, if nobody stops it.
-    front.say(id="a-1", path="point", query="h1=1/999999&h2=1/999983")
+    front.say(id="a-1", path="tile", query=LONG)
     time.sleep(0.2)
     front.say(stop="a-1")
     front.say(stop="a-1")
@@ -81,25 +84,22 @@ def test_a_question_that_is_stopped_has_no_answer_and_ends_soon(front: Front) ->
 def test_what_takes_too_long_is_cut_off_and_ends(front: Front, monkeypatch: pytest.MonkeyPatch) -> None:
     assert _widget._LONGEST == 30
     monkeypatch.setattr(_widget, "_LONGEST", 0.2)
-    # Half a minute for the trace, if nobody ended it.
-    long = {"h1": "1/999999", "h2": "1/999983"}
     start = time.monotonic()
-    front.say(id="a-1", path="point", query=urlencode(long))
+    front.say(id="a-1", path="tile", query=LONG)
     content, data = front.answer("a-1")
     assert content["status"] == 422
     assert json.loads(data)["too_costly"]["message"] == "this takes longer than half a minute"
     front.page._workers.shutdown(wait=True)
     with pytest.raises(kd.KickdriftError, match="longer than half a minute"):
-        front.page.ask("point", **long)
+        front.page.ask("tile", **dict(parse_qsl(LONG)))
     assert time.monotonic() - start < 25
     # One answer to a question.
     assert list(front.answers) == ["a-1"]
 
 
 def test_closing_ends_all_work(front: Front) -> None:
-    # Two minutes of two cores, if nobody stops them.
     for number in range(12):
-        front.say(id=f"a-{number}", path="point", query="h1=1/999999&h2=1/999983")
+        front.say(id=f"a-{number}", path="tile", query=LONG)
     time.sleep(0.2)
     front.page.close()
     start = time.monotonic()
