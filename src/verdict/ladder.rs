@@ -96,8 +96,8 @@ pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<
 /// ```
 ///
 /// # Errors
-/// A budget error where return maps tell no verdict: on an edge of a tongue exactly, or nearer to one than 10^-60 or so, which only
-/// exact arithmetic would decide. `Stopped`.
+/// A budget error where return maps in 256 bits tell no verdict: on an edge of a tongue exactly or next to it, and where kicks are so
+/// strong that the bound exceeds the entries (proofs/RETURNS.md). `Stopped`.
 pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     for bits in returns::PRECISIONS {
         go_on()?;
@@ -109,7 +109,7 @@ pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
     go_on()?;
     let kicks = clocks.ratio().numer() + clocks.ratio().denom();
     let work = format!(
-        "the pair lies on an edge of a tongue, or too near one for 256 bits, and its period has {} kicks",
+        "256 bits do not tell the verdict, and the period has {} kicks: the pair is on an edge of a tongue or next to one, or its kicks are very strong",
         short(&kicks)
     );
     Err(Error::too_much(work, "move a step by a hair, or choose steps with a simpler ratio"))
