@@ -17,7 +17,7 @@ const LARGEST: f64 = 1e30;
 
 /// hi + lo, |lo| ≤ ulp(hi)/2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Twofold {
+pub struct Twofold {
     pub hi: f64,
     pub lo: f64,
 }

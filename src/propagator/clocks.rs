@@ -196,6 +196,12 @@ impl<S: Ring> LongClocks<S> {
         &self.slow
     }
 
+    /// The same strengths at another ratio.
+    #[cfg(test)]
+    pub(crate) fn with_ratio(self, ratio: Rational) -> Self {
+        LongClocks { ratio, ..self }
+    }
+
     /// How many binary digits the number of kicks of the clock has that strikes less often.
     pub fn shorter_bits(&self) -> u64 {
         self.ratio.numer().bits().min(self.ratio.denom().bits())

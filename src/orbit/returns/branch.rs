@@ -31,24 +31,39 @@ impl<T: Coefficient> Branch<T> {
     pub fn restricted(&self, start: i128, length: i128) -> Self {
         Branch { map: self.on(start, length), start, length, ..self.clone() }
     }
+
+    /// In other numbers.
+    pub fn rounded<P: Coefficient>(&self) -> Branch<P> {
+        let Branch { ref map, start, length, stride, height } = *self;
+        Branch { map: map.rounded(), start, length, stride, height }
+    }
 }
 
-/// Products of functions that may still be made; `None` from whatever needs more.
-pub struct Budget(pub u64);
+/// The products of functions in doubles that may still be made, or as much work; `None` from whatever needs more.
+pub struct Budget(u64);
 
 impl Budget {
+    /// What a run may cost whose first levels are known in these numbers.
+    pub fn of<T: Coefficient>() -> Self {
+        Budget(T::PRODUCTS * T::COST)
+    }
+
     /// Pays for as much work as so many products.
-    pub fn spend(&mut self, products: u64) -> Option<()> {
-        self.0 = self.0.checked_sub(products)?;
+    pub fn spend<T: Coefficient>(&mut self, products: u64) -> Option<()> {
+        self.0 = self.0.checked_sub(products * T::COST)?;
         go_on().ok()
     }
 
     /// `later` after `earlier`.
     pub fn product<T: Coefficient>(&mut self, later: &Map<T>, earlier: &Map<T>) -> Option<Map<T>> {
-        self.0 = self.0.checked_sub(1)?;
-        if self.0.is_multiple_of(64) {
+        let before = self.0;
+        self.0 = before.checked_sub(T::COST)?;
+        if before / HEARD != self.0 / HEARD {
             go_on().ok()?;
         }
         Some(later.after(earlier)).filter(Map::is_useful)
     }
 }
+
+/// After so much work it is asked whether to go on.
+const HEARD: u64 = 64;

@@ -11,6 +11,9 @@
 //! and k such steps at once are a [`Run`]. Heights times widths sum to q throughout, so all branches vary alike over their
 //! intervals. The first n maps from x = 0 are a few returns of the deepest level whose heights fit, then of the next, and so on
 //! (Ostrowski's numeration). All lengths and heights are exact.
+//!
+//! An orbit of n maps passes through a level's branches some (a + b)/2 times, each of which adds its rounding. So the levels above,
+//! of many passes, want more bits than those below, and a branch is rounded as soon as what is left is known well enough so.
 
 use super::branch::{Branch, Budget};
 use super::fit;
@@ -22,94 +25,93 @@ use super::run::Run;
 struct Level<T> {
     left: Run<T>,
     right: Run<T>,
-    /// From its coordinates to those of the level above.
-    back: Option<Map<T>>,
 }
 
-/// The product of the first n maps from x = 0, and the place reached; `None` where the budget or a bound does not last.
-pub fn walk<T: Coefficient>(
-    left: Branch<T>,
-    right: Branch<T>,
-    n: u128,
-    budget: &mut Budget,
-) -> Option<(Map<T>, i128)> {
-    if n == 0 {
-        return Some((Map::identity(), 0));
-    }
-    let (mut levels, mut product) = descend(left, right, n, budget)?;
-    let (mut x, mut n) = (0, n);
-    while let Some(mut level) = levels.pop() {
-        while let Some((value, steps)) = level.next(x, n, budget)? {
-            let (stride, height) = level.moves(x);
-            product = value.after(&product);
-            if !product.is_useful() {
-                return None;
-            }
-            x += stride * steps as i128;
-            n -= height * steps;
-        }
-        if let Some(back) = level.back {
-            product = back.after(&product);
-        }
-    }
-    debug_assert_eq!(n, 0);
-    Some((product, x))
+/// The product of the maps so far, the place reached, and how many maps are left.
+pub struct Reached<P> {
+    pub product: Map<P>,
+    pub x: i128,
+    pub left: u128,
 }
 
-/// The levels as far as their returns fit into n < q maps, and what leads into the coordinates of the last: beyond, of the new
-/// branch's factors only some are needed, which its level has. (The last return of all holds q of them.)
-fn descend<T: Coefficient>(
+/// What the roundings of all passes through a level may add up to: a result that is known less well has few digits.
+const ROUNDINGS: f64 = 1.0 / 32768.0;
+
+/// Whether a level's branches may be known to these numbers' digits, where the product is wanted to those of P.
+fn suffices<T: Coefficient, P: Coefficient>(passes: i128) -> bool {
+    passes as f64 * T::UNIT <= ROUNDINGS * (P::UNIT / f64::UNIT).sqrt()
+}
+
+/// The first n maps from x = 0 after `entered`, to the digits of P; `None` where the budget or a bound does not last.
+pub fn walk<T: Coefficient, P: Coefficient>(
     mut left: Branch<T>,
     mut right: Branch<T>,
     n: u128,
+    mut entered: Map<P>,
     budget: &mut Budget,
-) -> Option<(Vec<Level<T>>, Map<T>)> {
-    let (mut levels, mut entered) = (Vec::new(), Map::identity());
-    loop {
-        let (a, b) = (left.length, right.length);
-        let back = fit::coordinates(&left.map, &right.map).map(|(there, back)| {
-            for branch in [&mut left, &mut right] {
-                branch.map = there.after(&branch.map).after(&back);
-            }
-            entered = there.after(&entered);
-            back
-        });
-        let mut level = Level { left: Run::new(left.clone()), right: Run::new(right.clone()), back };
-        if a >= b {
-            let k = a / b;
-            let rest = a - k * b;
-            let height = right.height.saturating_add((k as u128).saturating_mul(left.height));
-            if height > n {
-                levels.push(level);
-                break;
-            }
-            let map = {
-                let first = level.left.product(k as u128, rest, b, budget)?;
-                budget.product(&right.map, &first)?
-            };
-            right = Branch { map, start: rest, length: b, stride: -rest, height };
-            left = left.restricted(0, rest);
-        } else {
-            let k = (b - 1) / a;
-            let rest = b - k * a;
-            let height = left.height.saturating_add((k as u128).saturating_mul(right.height));
-            if height > n {
-                levels.push(level);
-                break;
-            }
-            let map = {
-                let then = level.right.product(k as u128, b, a, budget)?;
-                budget.product(&then, &left.map)?
-            };
-            left = Branch { map, start: 0, length: a, stride: rest, height };
-            right = right.restricted(a, rest);
-        }
-        levels.push(level);
+) -> Option<Reached<P>> {
+    if T::BITS > P::BITS && suffices::<T::Lower, P>(left.length + right.length) {
+        return walk::<T::Lower, P>(left.rounded(), right.rounded(), n, entered, budget);
     }
-    Some((levels, entered))
+    let back = fit::coordinates(&left.map, &right.map).map(|(there, back)| {
+        for branch in [&mut left, &mut right] {
+            branch.map = there.after(&branch.map).after(&back);
+        }
+        entered = there.rounded().after(&entered);
+        back
+    });
+    // So often, and oftener than any branch below, is the next level's new one passed through.
+    let allowed = P::CLOSE / left.length.min(right.length) as f64;
+    let mut level = Level { left: Run::new(left, allowed), right: Run::new(right, allowed) };
+    let mut reached = match level.induced(n, budget)? {
+        Some([left, right]) => walk(left, right, n, entered, budget)?,
+        None => Reached { product: entered, x: 0, left: n },
+    };
+    while let Some((value, steps)) = level.next(&reached, budget)? {
+        let (stride, height) = level.moves(reached.x);
+        let product = value.rounded().after(&reached.product);
+        if !product.is_useful() {
+            return None;
+        }
+        reached =
+            Reached { product, x: reached.x + stride * steps as i128, left: reached.left - height * steps };
+    }
+    if let Some(back) = back {
+        reached.product = back.rounded().after(&reached.product);
+    }
+    Some(reached)
 }
 
 impl<T: Coefficient> Level<T> {
+    /// The branches of the next level; within `Some`, `None` where the new one's return does not fit into n < q maps: beyond, only
+    /// some of its factors are needed, which this level has. (The last return of all holds q of them.)
+    #[allow(clippy::option_option, clippy::type_complexity)]
+    fn induced(&mut self, n: u128, budget: &mut Budget) -> Option<Option<[Branch<T>; 2]>> {
+        let Level { left, right } = self;
+        let (a, b) = (left.branch.length, right.branch.length);
+        let height = |own: &Run<T>, k: i128, other: &Run<T>| {
+            Some(own.branch.height.saturating_add((k as u128).saturating_mul(other.branch.height)))
+                .filter(|&height| height <= n)
+        };
+        if a >= b {
+            let k = a / b;
+            let rest = a - k * b;
+            let Some(height) = height(right, k, left) else { return Some(None) };
+            let first = left.product(k as u128, rest, b, budget)?;
+            let map = budget.product(&right.branch.map, &first)?;
+            let right = Branch { map, start: rest, length: b, stride: -rest, height };
+            Some(Some([left.branch.restricted(0, rest), right]))
+        } else {
+            let k = (b - 1) / a;
+            let rest = b - k * a;
+            let Some(height) = height(left, k, right) else { return Some(None) };
+            let then = right.product(k as u128, b, a, budget)?;
+            let map = budget.product(&then, &left.branch.map)?;
+            let left = Branch { map, start: 0, length: a, stride: rest, height };
+            Some(Some([left, right.branch.restricted(a, rest)]))
+        }
+    }
+
     fn is_left(&self, x: i128) -> bool {
         x < self.left.branch.length
     }
@@ -120,9 +122,10 @@ impl<T: Coefficient> Level<T> {
         (run.branch.stride, run.branch.height)
     }
 
-    /// As many steps of the branch that holds x as stay in it and fit into n maps; `None` where none does.
+    /// As many steps of the branch that holds the place reached as stay in it and fit into the maps left; `None` where none does.
     #[allow(clippy::type_complexity)]
-    fn next(&mut self, x: i128, n: u128, budget: &mut Budget) -> Option<Option<(Map<T>, u128)>> {
+    fn next<P>(&mut self, reached: &Reached<P>, budget: &mut Budget) -> Option<Option<(Map<T>, u128)>> {
+        let &Reached { x, left: n, .. } = reached;
         let (a, b) = (self.left.branch.length, self.right.branch.length);
         let (run, stay) = if self.is_left(x) {
             (&mut self.left, (a - x + b - 1) / b)

@@ -63,13 +63,14 @@ fn metric(mut both: [Real; 2]) -> Real {
     let mut all = [1.0, 0.0, 0.0, 1.0];
     for _ in 0..STEPS {
         let Some(next) = step(&both) else { break };
+        let further = product(next, all);
+        if further.iter().map(|x| x * x).sum::<f64>() > 2.0 * FAR.cosh() {
+            break;
+        }
         let [a, b, c, d] = next;
         let back = [d, -b, -c, a];
         both = both.map(|own| product(product(next, own), back));
-        all = product(next, all);
-        if all.iter().any(|x| x.abs() > FAR.exp()) {
-            break;
-        }
+        all = further;
     }
     all
 }

@@ -242,8 +242,8 @@ impl<T: Coefficient> Frame<T> {
     }
 
     /// The even and the odd solution at T/2.
-    pub fn found(&self) -> Option<Found> {
-        let Half { entries: [a, b, c, d], exponent, nodes } = self.half()?;
+    pub fn found<P: Coefficient>(&self) -> Option<Found> {
+        let Half { entries: [a, b, c, d], exponent, nodes } = self.half::<P>()?;
         let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
         let exponent = i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 54);
         let ends = exponent.map(|exponent| {
@@ -256,15 +256,13 @@ impl<T: Coefficient> Frame<T> {
         Some(Found { signs, ends })
     }
 
-    fn half(&self) -> Option<Half<T::Enclosure>> {
+    fn half<P: Coefficient>(&self) -> Option<Half<T::Enclosure>> {
         let n = self.beat.q / 2;
-        let mut budget = Budget(T::PRODUCTS);
-        let middle = if n == 0 {
-            Map::identity()
-        } else {
+        let mut middle = Map::<P>::identity();
+        if n > 0 {
             let [left, right] = self.branches()?;
-            euclid::walk(left, right, n, &mut budget)?.0
-        };
+            middle = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?.product;
+        }
         let (zero, one) = (self.zero(), self.one());
         // Half a kick of the other clock at t = 0.
         let start = self.k.over(&self.unit)?.scale2(-1).negative();
@@ -274,7 +272,7 @@ impl<T: Coefficient> Frame<T> {
             product: [one.clone(), zero, start, one],
             exponent: middle.exponent,
         };
-        journey.go(&middle.enclosures(self.bits), |turn, angle| turn.then(middle.turn?, angle));
+        journey.go(&middle.enclosures::<T>(self.bits), |turn, angle| turn.then(middle.turn?, angle));
         self.close(&mut journey)?;
         let exponent = journey.exponent;
         let [a, b, c, d] = journey.product;

@@ -18,6 +18,7 @@
 //! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
 //! [`FLOOR`] what is lost where numbers underflow.
 
+use super::lanes::Lanes;
 use super::number::{Coefficient, near_ball};
 use super::turn::{Turn, direction, principal};
 use crate::number::Ball;
@@ -161,6 +162,11 @@ impl<T: Coefficient> Map<T> {
         self.error * power_of_two(self.exponent)
     }
 
+    /// ε over the norm of the middle.
+    pub fn relative_error(&self) -> f64 {
+        self.error / norm(&self.terms[0])
+    }
+
     /// What no value exceeds in norm, with the power of two.
     pub fn size(&self) -> f64 {
         (self.norm + self.error) * power_of_two(self.exponent) * UP
@@ -187,6 +193,15 @@ impl<T: Coefficient> Map<T> {
             self.norm = (self.norm + lost) * UP;
         }
         self
+    }
+
+    /// In other numbers, each within two of their units.
+    pub fn rounded<P: Coefficient>(&self) -> Map<P> {
+        let (kept, dropped) = self.terms.split_at(self.terms.len().min(P::TERMS));
+        let size = |terms: &[Entries<T>]| terms.iter().map(norm).sum::<f64>();
+        let error = (self.error + size(dropped) + 3.0 * P::UNIT * size(kept)) * UP + FLOOR;
+        let terms: Vec<_> = kept.iter().map(|m| m.each_ref().map(T::to)).collect();
+        Map { norm: largest(&terms), terms, error, exponent: self.exponent, turn: self.turn }
     }
 
     pub fn negative(mut self) -> Self {
@@ -322,9 +337,9 @@ impl<T: Coefficient> Map<T> {
         }
     }
 
-    /// The entries at t = 0 without the power of two.
-    pub fn enclosures(&self, bits: u32) -> Entries<T::Enclosure> {
-        self.terms[0].each_ref().map(|x| x.enclosed(self.error, bits))
+    /// The entries at t = 0 without the power of two, in numbers that hold them exactly.
+    pub fn enclosures<P: Coefficient>(&self, bits: u32) -> Entries<P::Enclosure> {
+        self.terms[0].each_ref().map(|x| x.to::<P>().enclosed(self.error, bits))
     }
 }
 
@@ -340,22 +355,20 @@ impl<T: Coefficient> Task for Product<'_, T> {
 
     #[inline(always)]
     fn run(self) -> Vec<Entries<T>> {
+        let of = T::Lanes::of;
+        let later = |[a, b, c, d]: &Entries<T>| [of([a, a, c, c]), of([b, b, d, d])];
+        let earlier = |[e, f, g, h]: &Entries<T>| [of([e, f, e, f]), of([g, h, g, h])];
+        let later: Vec<_> = self.later.iter().map(later).collect();
+        let earlier: Vec<_> = self.earlier.iter().map(earlier).collect();
         let mut terms: Vec<Entries<T>> = Vec::with_capacity(self.terms);
         for m in 0..self.terms {
-            let first = (m + 1).saturating_sub(self.earlier.len());
-            let mut sum = [T::zero(), T::zero(), T::zero(), T::zero()];
-            for i in first..self.later.len().min(m + 1) {
-                let ([a, b, c, d], [e, f, g, h]) = (&self.later[i], &self.earlier[m - i]);
-                let products = [
-                    a.times(e).plus(&b.times(g)),
-                    a.times(f).plus(&b.times(h)),
-                    c.times(e).plus(&d.times(g)),
-                    c.times(f).plus(&d.times(h)),
-                ];
-                let [p, q, r, s] = products;
-                sum = [sum[0].plus(&p), sum[1].plus(&q), sum[2].plus(&r), sum[3].plus(&s)];
+            let first = (m + 1).saturating_sub(earlier.len());
+            let mut sum = T::Lanes::splat(&T::zero());
+            for i in first..later.len().min(m + 1) {
+                let ([x, y], [e, g]) = (&later[i], &earlier[m - i]);
+                sum = sum.plus(&x.times(e).plus(&y.times(g)));
             }
-            terms.push(sum);
+            terms.push(sum.entries());
         }
         terms
     }
@@ -373,23 +386,20 @@ impl<T: Coefficient> Task for Part<'_, T> {
 
     #[inline(always)]
     fn run(self) -> Vec<Entries<T>> {
-        let Part { mut terms, alpha, beta } = self;
+        let lanes = |term: Entries<T>| T::Lanes::of(term.each_ref());
+        let mut terms: Vec<_> = self.terms.into_iter().map(lanes).collect();
+        let [alpha, beta] = [self.alpha, self.beta].map(T::Lanes::splat);
         for i in 0..terms.len() {
             for j in (i..terms.len() - 1).rev() {
-                let [term, next] = &mut terms[j..j + 2] else { unreachable!("two in a row") };
-                for (entry, next) in term.iter_mut().zip(next) {
-                    *entry = entry.plus(&alpha.times(next));
-                }
+                terms[j] = terms[j].plus(&alpha.times(&terms[j + 1]));
             }
         }
         let mut power = beta.clone();
         for term in &mut terms[1..] {
-            for entry in term {
-                *entry = entry.times(&power);
-            }
-            power = power.times(beta);
+            *term = term.times(&power);
+            power = power.times(&beta);
         }
-        terms
+        terms.into_iter().map(T::Lanes::entries).collect()
     }
 }
 

@@ -19,6 +19,7 @@ mod enclosure;
 mod euclid;
 mod fit;
 mod frame;
+mod lanes;
 mod map;
 mod number;
 mod run;
@@ -41,9 +42,6 @@ const LONG: u64 = 1 << 14;
 /// From so many on, return maps in two doubles are cheaper than kicks in 128 bits.
 const LONG_FOR_BITS: u64 = 1 << 9;
 
-/// Where the fewer kicks are a number of more bits than this, doubles have no digits left.
-const TOO_LONG_FOR_DOUBLES: u64 = 46;
-
 /// Whether the period is so long that its return maps are to be tried before its kicks, in doubles or in more bits.
 pub fn is_worth(ratio: Ratio, bits: u32) -> bool {
     ratio.p().min(ratio.q()) >= if bits > 53 { LONG_FOR_BITS } else { LONG }
@@ -58,7 +56,7 @@ pub enum Wanted {
     Nodes,
 }
 
-/// The half period in numbers of so many bits, or more; `None` where the bound loses all digits, where a partial
+/// The half period to the digits of numbers of so many bits; `None` where the bound loses all digits, where a partial
 /// quotient asks for too many products, and where the work was stopped.
 ///
 /// The base is the clock by which the other one's kicks distort less, or the other where that fails.
@@ -88,19 +86,26 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
     if decides(&second) { second } else { first.or(second) }
 }
 
-/// With the fast or the slow clock as the base.
+/// With the fast or the slow clock as the base; the kicks of the rarer one tell in which numbers its first levels are known well
+/// enough (`euclid::suffices`).
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
-    match bits {
-        0..=53 if clocks.shorter_bits() > TOO_LONG_FOR_DOUBLES => None,
-        0..=53 => over_in::<S, f64>(clocks, fast, wanted),
-        54..=106 => over_in::<S, Twofold>(clocks, fast, wanted),
-        107..=256 => over_in::<S, Long<256>>(clocks, fast, wanted),
+    match (bits, clocks.shorter_bits()) {
+        (0..=53, 0..=38) => over_in::<S, f64, f64>(clocks, fast, wanted),
+        (0..=53, 39..=86) => over_in::<S, Twofold, f64>(clocks, fast, wanted),
+        (0..=53, _) => over_in::<S, Long<256>, f64>(clocks, fast, wanted),
+        (54..=106, 0..=62) => over_in::<S, Twofold, Twofold>(clocks, fast, wanted),
+        (54..=106, _) => over_in::<S, Long<256>, Twofold>(clocks, fast, wanted),
+        (107..=256, _) => over_in::<S, Long<256>, Long<256>>(clocks, fast, wanted),
         _ => None,
     }
 }
 
-fn over_in<S: Real, T: Coefficient>(clocks: &LongClocks<S>, fast: bool, wanted: Wanted) -> Option<Found> {
-    let found = |clocks: &LongClocks<S>| Frame::<T>::new(clocks, wanted == Wanted::Nodes)?.found();
+fn over_in<S: Real, T: Coefficient, P: Coefficient>(
+    clocks: &LongClocks<S>,
+    fast: bool,
+    wanted: Wanted,
+) -> Option<Found> {
+    let found = |clocks: &LongClocks<S>| Frame::<T>::new(clocks, wanted == Wanted::Nodes)?.found::<P>();
     if fast {
         return found(clocks);
     }

@@ -3,6 +3,7 @@
 use super::enclosure::{Close, Enclosure, Wide, quotient};
 
 pub use super::enclosure::exact;
+use super::lanes::{Lanes, Twofolds};
 use crate::number::{Ball, Rational, Twofold, U};
 
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
@@ -10,14 +11,19 @@ use crate::number::{Ball, Rational, Twofold, U};
 pub trait Coefficient: Clone {
     /// What a pair's constants are enclosed in.
     type Enclosure: Enclosure;
+    /// The next shorter numbers; of the shortest themselves.
+    type Lower: Coefficient;
+    type Lanes: Lanes<Self>;
     const UNIT: f64;
     /// The precision at which balls serve it.
     const BITS: u32;
     /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as small as UNIT.
     const TERMS: usize;
-    /// The most products of functions that one run may cost: a fraction of a second, or about one.
+    /// What a product of functions costs, in those of doubles, about.
+    const COST: u64;
+    /// The most products of functions that one run may cost: a fraction of a second, or some seconds.
     const PRODUCTS: u64;
-    /// The error that a product of many factors may have, where rounding leaves it so small.
+    /// The error that all products of many factors may have together, where rounding leaves it so small.
     const CLOSE: f64;
 
     fn zero() -> Self;
@@ -34,6 +40,8 @@ pub trait Coefficient: Clone {
     fn of_ball(ball: &Ball) -> Self;
     /// The number, exactly.
     fn ball(&self) -> Ball;
+    /// Within two units of those numbers, relatively.
+    fn to<P: Coefficient>(&self) -> P;
     /// A number this near to the enclosed one, at most.
     fn near_enclosure(enclosure: &Self::Enclosure) -> (Self, f64);
     /// What lies within `error` of it.
@@ -48,11 +56,14 @@ pub trait Coefficient: Clone {
 
 impl Coefficient for f64 {
     type Enclosure = Close;
+    type Lower = f64;
+    type Lanes = [f64; 4];
     const UNIT: f64 = U;
     const BITS: u32 = 80;
     const TERMS: usize = 13;
+    const COST: u64 = 1;
     const PRODUCTS: u64 = 50_000;
-    const CLOSE: f64 = 1e-8;
+    const CLOSE: f64 = 1e-7;
 
     fn zero() -> Self {
         0.0
@@ -92,6 +103,10 @@ impl Coefficient for f64 {
         exact(*self)
     }
 
+    fn to<P: Coefficient>(&self) -> P {
+        P::of(*self)
+    }
+
     fn near_enclosure(enclosure: &Close) -> (Self, f64) {
         enclosure.double()
     }
@@ -107,11 +122,14 @@ impl Coefficient for f64 {
 
 impl Coefficient for Twofold {
     type Enclosure = Wide;
+    type Lower = f64;
+    type Lanes = Twofolds;
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
     const BITS: u32 = 130;
     const TERMS: usize = 22;
+    const COST: u64 = 5;
     const PRODUCTS: u64 = 20_000;
-    const CLOSE: f64 = 1e-13;
+    const CLOSE: f64 = 1e-18;
 
     fn zero() -> Self {
         Twofold::ZERO
@@ -158,6 +176,10 @@ impl Coefficient for Twofold {
         exact(self.hi).add(&exact(self.lo), 2200)
     }
 
+    fn to<P: Coefficient>(&self) -> P {
+        P::of(self.hi).plus(&P::of(self.lo))
+    }
+
     fn near_enclosure(enclosure: &Wide) -> (Self, f64) {
         near_ball(&enclosure.ball())
     }
@@ -174,10 +196,13 @@ pub struct Long<const LENGTH: u32>(Ball);
 
 impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
     type Enclosure = Wide;
+    type Lower = Twofold;
+    type Lanes = [Self; 4];
     const UNIT: f64 = f64::from_bits((1023 + 2 - LENGTH as u64) << 52);
     const BITS: u32 = LENGTH + 32;
     const TERMS: usize = 8 + LENGTH as usize / 7;
-    const PRODUCTS: u64 = 10_000;
+    const COST: u64 = 500;
+    const PRODUCTS: u64 = 4_000;
     const CLOSE: f64 = 1e-40;
 
     fn zero() -> Self {
@@ -214,6 +239,10 @@ impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
 
     fn ball(&self) -> Ball {
         self.0.clone()
+    }
+
+    fn to<P: Coefficient>(&self) -> P {
+        P::of_ball(&self.0)
     }
 
     fn near_enclosure(enclosure: &Wide) -> (Self, f64) {

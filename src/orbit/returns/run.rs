@@ -13,6 +13,8 @@ use super::slow::{self, Slow};
 /// A branch and what is known of its products.
 pub struct Run<T> {
     pub branch: Branch<T>,
+    /// What a very long product may lack beside roundings, relatively.
+    allowed: f64,
     /// By the logarithm of n and the place: some dozens.
     pieces: Vec<((u32, i128), Branch<T>)>,
     /// What very long products are made of.
@@ -20,14 +22,14 @@ pub struct Run<T> {
 }
 
 impl<T: Coefficient> Run<T> {
-    pub fn new(branch: Branch<T>) -> Self {
-        Run { branch, pieces: Vec::new(), slow: None }
+    pub fn new(branch: Branch<T>, allowed: f64) -> Self {
+        Run { branch, allowed, pieces: Vec::new(), slow: None }
     }
 
     /// P_n on start..start + length, or at a point; `None` where the budget or the bound does not last.
     pub fn product(&mut self, n: u128, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
         if n >= slow::WORTH {
-            let slow = self.slow.get_or_insert_with(|| Slow::new(self.branch.clone()));
+            let slow = self.slow.get_or_insert_with(|| Slow::new(self.branch.clone(), self.allowed));
             return slow.product(n, start, length, budget);
         }
         let (mut product, mut from) = (None, start);

@@ -118,6 +118,38 @@ fn return_maps_are_what_kicks_give_beyond_the_limit() {
     assert!(10 * labels > 9 * pairs, "{labels} of {pairs}");
 }
 
+/// Periods of 2^39 to 2^120 kicks, which no tier follows: levels that are rounded on the way down say what long numbers throughout say,
+/// and with nearly all digits of the numbers asked for.
+#[test]
+fn levels_in_fewer_bits_are_what_long_numbers_give() {
+    let mut state = 3u64;
+    let mut next = |n: u64| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) % n
+    };
+    let (mut pairs, mut decided) = (0, [0; 2]);
+    for bits in [40, 50, 62, 70, 90, 120] {
+        for _ in 0..2 {
+            let mut long = || {
+                (0..bits / 30 + 1).fold(1u128, |n, _| n << 30 | u128::from(next(1 << 30))) >> (30 - bits % 30)
+            };
+            let ratio_of_steps = Rational::new(long().into(), long().into());
+            let (s, k) = (ratio(1 + next(3998) as i64, 1000), ratio(next(2000) as i64 - 300, 1000));
+            let kicks = TwoClocks::new(Ratio::new(1, 1).unwrap(), s, k);
+            let clocks = LongClocks::from(&kicks).with_ratio(ratio_of_steps);
+            // Of strong kicks, entries so large that no ball holds their exponents.
+            let Some(reference) = run(&clocks, 256, Wanted::Nodes) else { continue };
+            pairs += 1;
+            for (decided, bits) in decided.iter_mut().zip(PRECISIONS) {
+                let Some(found) = run(&clocks, bits, Wanted::Nodes) else { continue };
+                agree(&found, &reference, &format!("{clocks:?}, {bits} bits"));
+                *decided += u32::from(found.signs().complete().is_some());
+            }
+        }
+    }
+    assert!(pairs >= 10 && decided.iter().all(|decided| decided + 1 >= pairs), "{decided:?} of {pairs}");
+}
+
 /// Pairs of all lengths, of ratios of all kinds: with small partial quotients, and beside simple ones.
 #[test]
 #[ignore = "ten minutes"]

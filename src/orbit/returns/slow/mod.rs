@@ -39,6 +39,8 @@ enum Form<T> {
 /// A branch and the forms of its pieces.
 pub struct Slow<T> {
     branch: Branch<T>,
+    /// What a piece's product may lack beside roundings, relatively.
+    allowed: f64,
     /// By start and length; `None` is halved.
     forms: HashMap<(i128, i128), Option<Rc<Form<T>>>>,
 }
@@ -82,8 +84,8 @@ impl<T: Coefficient> Chain<T> {
 }
 
 impl<T: Coefficient> Slow<T> {
-    pub fn new(branch: Branch<T>) -> Self {
-        Slow { branch, forms: HashMap::new() }
+    pub fn new(branch: Branch<T>, allowed: f64) -> Self {
+        Slow { branch, allowed, forms: HashMap::new() }
     }
 
     /// P_n on start..start + length, which is not longer than a stride; at a point where the length is 0.
@@ -160,7 +162,7 @@ impl<T: Coefficient> Slow<T> {
         if !normal::is_apart(&piece.map) {
             return Some(None);
         }
-        budget.spend(ATTEMPT)?;
-        Some(Normal::new(&piece, steps as u128).map(|normal| Form::Normal(Box::new(normal))))
+        budget.spend::<T>(ATTEMPT)?;
+        Some(Normal::new(&piece, steps as u128, self.allowed).map(|normal| Form::Normal(Box::new(normal))))
     }
 }

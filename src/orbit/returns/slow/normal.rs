@@ -27,6 +27,9 @@ pub fn roundings<T: Coefficient>(n: u128) -> f64 {
     1000.0 * T::UNIT * n as f64
 }
 
+/// A normal form may lack so many times what its factor does.
+const KNOWN: f64 = 64.0;
+
 /// The most corrections: more of them gain less than rounding takes.
 const CORRECTIONS: usize = 24;
 
@@ -301,9 +304,10 @@ pub fn inverses<T: Coefficient>(given: Map<T>) -> Option<(Map<T>, Map<T>)> {
 
 impl<T: Coefficient> Normal<T> {
     /// `None` where none is found that is near enough.
-    pub fn new(piece: &Branch<T>, steps: u128) -> Option<Self> {
+    pub fn new(piece: &Branch<T>, steps: u128, allowed: f64) -> Option<Self> {
         let Branch { start, length, stride, .. } = *piece;
         let mut factor = piece.map.clone();
+        let factor_error = factor.relative_error();
         let exponent = std::mem::take(&mut factor.exponent);
         let entries = series(&factor);
         let tau = T::quotient(2 * stride, length as u128);
@@ -329,7 +333,9 @@ impl<T: Coefficient> Normal<T> {
         let rest = moved.plus(&kept.negative()).size();
         let error = rest * columns.map.size() * (varied - first).exp() * (1.0 + 1e-9);
         let lost = error * steps as f64;
-        if lost.is_nan() || lost > T::CLOSE.max(roundings::<T>(steps)) {
+        // Shorter pieces do not know their factors better.
+        let known = KNOWN * factor_error * steps as f64;
+        if lost.is_nan() || lost > allowed.max(roundings::<T>(steps)).max(known) {
             return None;
         }
         let sum = on(summed(kind, &logarithms, stride, length)?);
