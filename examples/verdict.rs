@@ -11,7 +11,7 @@ fn main() -> Result<()> {
     for slow_step in ["0.9", "0.98", "1", "1.02"] {
         let oscillator =
             Oscillator::builder().lambda1("pi^2").lambda2("pi^2/25").h1("1/100").h2(slow_step).build()?;
-        let answer = decide(&oscillator.clocks(), &Limits::default())?;
+        let answer = decide(&oscillator.clocks()?, &Limits::default())?;
         let stable = if answer.verdict.is_stable() { "stable" } else { "unstable" };
         println!(
             "h2 = {slow_step}: {stable}; {}; proven by the {} tier",

@@ -40,11 +40,11 @@
 //! proofs in `proofs/`.
 //!
 //! ```
-//! use kickdrift::{Kind, Limits, Oscillator, decide, parse};
+//! use kickdrift::{Kind, Limits, Oscillator, decide_steps, parse};
 //! let x = |text| parse("quantity", text).unwrap();
 //! // Just below h2 = T½ = 1: resonant.
 //! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("1/100"), x("0.98")).unwrap();
-//! let decision = decide(&oscillator.clocks(), &Limits::default()).unwrap();
+//! let decision = decide_steps(&oscillator, &Limits::default()).unwrap();
 //! assert_eq!(decision.verdict.kind(), Kind::Hyperbolic);
 //! ```
 //!
@@ -149,7 +149,7 @@ pub use number::{Laurent, Ratio, Rational, Sign};
 pub use propagator::{HalfPeriod, Oscillator, TwoClocks, half_period};
 pub use resonance::{Families, dominant_family};
 pub use tongue::{Tongues, closings};
-pub use verdict::{Kind, Limits, Side, Verdict, decide};
+pub use verdict::{Kind, Limits, Side, Verdict, decide, decide_steps};
 
 #[doc(hidden)]
 pub use vector::instructions::force_instructions;

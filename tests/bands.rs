@@ -21,7 +21,7 @@ fn search(window: &Window, tries: u64) -> Bands {
 fn kind(window: &Window, h1: &Laurent, ratio: &Rational) -> Kind {
     let [lambda1, lambda2] = window.lambdas().clone();
     let h2 = h1 * &Laurent::from_rational(ratio.clone());
-    let clocks = Oscillator::new(lambda1, lambda2, h1.clone(), h2).unwrap().clocks();
+    let clocks = Oscillator::new(lambda1, lambda2, h1.clone(), h2).unwrap().clocks().unwrap();
     decide(&clocks, &Limits::default()).unwrap().verdict.kind()
 }
 

@@ -457,7 +457,7 @@ fn pairs_made_of_few_quantities_are_decided_as_each_alone() {
     let lists = [lambda1, lambda2, steps.clone(), steps];
     let exact = |lists: &[Vec<Laurent>; 4], picked: &[Vec<usize>; 4], n: usize| {
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| lists[k][picked[k][n]].clone());
-        Oscillator::new(a, b, c, d).unwrap().clocks()
+        Oscillator::new(a, b, c, d).unwrap().clocks().unwrap()
     };
     let found = Pairs::new(lists.clone(), picked.clone()).unwrap().verdicts(&Resources::default()).unwrap();
     assert_eq!(found.len(), 800);

@@ -227,7 +227,8 @@ def map(
     steps = [step if own is None else own for own in (step1, step2)]
     for name, own in zip(("step", "step2"), steps, strict=True):
         if own is None:
-            raise KickdriftError(name, None, "a grid needs a spacing, as step='1/100'")
+            remedy = "a grid needs a spacing, as step='1/100'; verdicts(h1=xs[:, None], h2=ys) takes axes of any steps"
+            raise KickdriftError(name, None, remedy)
     ends = [_ends("h1", h1), _ends("h2", h2)]
     made, arrays = _native.map([lambda1, lambda2], steps, ends, (label, growth), budget, threads or 0)
     arguments = ["map"] + given(

@@ -304,8 +304,7 @@ def verdicts(
     lambda1, lambda2, h1, h2 : Exact, or arrays or nested lists of such
         As for :func:`decide`; arrays broadcast as NumPy's do. Each value is read once, however often it is broadcast.
         Floats mean what they print, alone or in arrays of any precision; :func:`exact` gives the doubles themselves.
-        Their periods have any number of kicks, 10^30 and more: such a pair has a verdict here, where :func:`decide`,
-        which knows growth and label as well, stops at 2^62.
+        Their periods have any number of kicks, 10^30 and more.
     budget : int, optional
         The most kicks that one pair may compose; 10^8 unless given.
     threads : int, optional

@@ -1,13 +1,16 @@
 //! One pair of steps, decided; trace, growth and label when they are asked for.
 
+use std::sync::OnceLock;
+
 use kickdrift::error::Result;
 use kickdrift::format::Format;
 use kickdrift::number::{Laurent, Rational};
-use kickdrift::propagator::Oscillator;
+use kickdrift::propagator::{LongClocks, Oscillator, TwoClocks};
 use kickdrift::question::{Decided as Report, Question, Verdict};
 use kickdrift::report::document::Document;
 use kickdrift::system::friction::damped_pair;
-use kickdrift::verdict::{Answer, Decision, Growth, Limits, Tier, decide_from};
+use kickdrift::verdict::{Answer, Decision, Growth, Limits, Tier, decide_from, decide_long, long_growth};
+use num_bigint::BigInt;
 use pyo3::prelude::*;
 
 use crate::error::raised;
@@ -17,6 +20,8 @@ use crate::number::{Number, quantity, rational};
 enum Found {
     Rational(Answer<Rational>),
     Pi(Answer<Laurent>),
+    /// Of a period that no machine follows kick by kick.
+    Long(LongClocks<Laurent>, Decision, OnceLock<Growth>),
 }
 
 impl Found {
@@ -24,6 +29,7 @@ impl Found {
         match self {
             Found::Rational(answer) => answer.decision(),
             Found::Pi(answer) => answer.decision(),
+            Found::Long(_, decision, _) => *decision,
         }
     }
 
@@ -31,6 +37,13 @@ impl Found {
         match self {
             Found::Rational(answer) => answer.growth(),
             Found::Pi(answer) => answer.growth(),
+            Found::Long(clocks, decision, growth) => {
+                if growth.get().is_none() {
+                    // Another thread that was quicker found the same.
+                    let _ = growth.set(long_growth(clocks, decision.verdict)?);
+                }
+                Ok(growth.get().expect("just set"))
+            }
         }
     }
 }
@@ -65,11 +78,18 @@ pub fn decide(
         Oscillator::new(quantities.0, quantities.1, steps.0, steps.1).map_err(|error| raised(&error))?;
     let first = if exact { Tier::Exact } else { Tier::Filter };
     job::run(py, move |_| {
-        let (clocks, limits) = (oscillator.clocks(), limits(budget));
-        // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
-        let found = match clocks.as_rational() {
-            Some(rational) => Found::Rational(decide_from(first, &rational, &limits)?),
-            None => Found::Pi(decide_from(first, &clocks, &limits)?),
+        let limits = limits(budget);
+        let found = match oscillator.clocks() {
+            Err(_) if !exact => {
+                let clocks = oscillator.long_clocks();
+                let decision = decide_long(&clocks)?;
+                Found::Long(clocks, decision, OnceLock::new())
+            }
+            // Rational strengths make every tier cheaper, whatever the stiffnesses and steps look like.
+            clocks => match clocks.as_ref().map(TwoClocks::as_rational) {
+                Ok(Some(rational)) => Found::Rational(decide_from(first, &rational, &limits)?),
+                _ => Found::Pi(decide_from(first, &clocks?, &limits)?),
+            },
         };
         Ok(Pair { oscillator, found, exact, friction, budget })
     })
@@ -103,8 +123,8 @@ impl Pair {
     }
 
     #[getter]
-    fn terms(&self) -> (u64, u64) {
-        self.oscillator.ratio().terms()
+    fn terms(&self) -> (BigInt, BigInt) {
+        (self.oscillator.ratio().numer().clone(), self.oscillator.ratio().denom().clone())
     }
 
     /// lambda1, lambda2, h1, h2 and the period.
@@ -132,7 +152,7 @@ impl Pair {
 impl Pair {
     fn document(&self) -> Result<Document> {
         let (decision, growth) = (self.found.decision(), self.found.growth()?.clone());
-        let exact_trace = Report::exact_trace(&self.oscillator.clocks(), self.exact);
+        let exact_trace = Report::exact_trace(&self.oscillator, self.exact);
         let limits = limits(self.budget);
         let friction =
             self.friction.as_ref().map(|rate| damped_pair(&self.oscillator, rate, &limits)).transpose()?;

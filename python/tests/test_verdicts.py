@@ -153,6 +153,21 @@ def test_any_two_doubles_have_a_verdict() -> None:
     assert found.stable[:21].tolist() == (~unstable).tolist()
 
 
+def test_a_period_beyond_every_machine_is_decided_alone_as_among_others() -> None:
+    rng = np.random.default_rng(3)
+    h1, h2 = kd.exact(rng.uniform(0.01, 0.02, 40) / 64), kd.exact(rng.uniform(0.9, 1.0, 40))
+    together = kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1=h1, h2=h2)
+    found = [kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=a, h2=b) for a, b in zip(h1, h2, strict=True)]
+    assert [one.stable for one in found] == together.stable.tolist()
+    longest = max(found, key=lambda one: max(one.ratio))
+    assert max(longest.ratio) > 2**63 and longest.to_dict()["p"] == str(longest.ratio[0])
+    assert {one.stable for one in found} == {True, False}
+    for one in found:
+        assert one.stable == (one.growth_rate == (0.0, 0.0))
+    with pytest.raises(kd.BudgetError, match="18 digits"):
+        kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=longest.h1, h2=longest.h2, exact=True)
+
+
 def test_the_verdict_of_doubles_has_its_growth_and_label() -> None:
     # 3 - 2.8e-16.
     stable = kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=kd.exact(0.1), h2=kd.exact(0.3))

@@ -10,7 +10,7 @@ use crate::propagator::Oscillator;
 use crate::question::{self, Question, flag};
 use crate::report::certificate;
 use crate::report::file::write_output;
-use crate::verdict::{Verdict, decide_from};
+use crate::verdict::Verdict;
 
 /// Flags of `verdict`.
 #[derive(Debug, clap::Args)]
@@ -53,7 +53,7 @@ impl Args {
         let asked = question::Verdict { lambda1, lambda2, h1, h2, friction: friction.clone(), exact: *exact };
         let oscillator = asked.oscillator()?;
         if self.exit_code && common.quiet && common.output.is_none() {
-            let verdict = decide_from(asked.first_tier(), &oscillator.clocks(), &common.limits())?.verdict;
+            let verdict = asked.decision(&oscillator, &common.work())?.verdict;
             return self.certified(&oscillator, verdict, common);
         }
         let answer = asked.answer(&common.work())?;
@@ -86,7 +86,7 @@ pub fn within(kicks: u64, most: u64, budget: Option<u64>) -> Result<()> {
 }
 
 fn certify(oscillator: &Oscillator, verdict: Verdict, path: &Path, budget: Option<u64>) -> Result<()> {
-    within(oscillator.ratio().kicks(), WORTH_CERTIFYING, budget)?;
+    within(oscillator.clocks()?.ratio().kicks(), WORTH_CERTIFYING, budget)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let text = certificate::coq(oscillator, verdict, &name)?;
     write_output(Some(path), text.as_bytes())

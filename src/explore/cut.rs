@@ -14,10 +14,7 @@ use crate::number::{Laurent, Rational, Real};
 use crate::parallel::try_map;
 use crate::propagator::Oscillator;
 use crate::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
-use crate::verdict::{Kind, decide};
-
-/// Kicks of all samples together.
-pub(super) const MOST_KICKS: u64 = 400_000_000;
+use crate::verdict::{Decision, Tier, decide_with_growth};
 
 /// The quantity that is fixed along the line.
 enum Line {
@@ -64,11 +61,6 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
         Oscillator::new(lambda1.clone(), lambda2.clone(), h1, h2)
     };
     let pairs = xs.iter().map(pair).collect::<Result<Vec<_>>>()?;
-    let kicks: f64 = pairs.iter().map(|pair| pair.ratio().p().min(pair.ratio().q()) as f64 / 2.0 + 1.0).sum();
-    if kicks > MOST_KICKS as f64 {
-        let message = format!("{samples} verdicts along this line would compose about {kicks:.1e} kicks");
-        return Ok(Reply::too_costly(Some(kicks), MOST_KICKS, &message));
-    }
     let found = try_map(&pairs, sample)?;
     let intervals = match &line {
         Line::Ratio(_) => intervals(&pairs[0], lambda1, lambda2, (lo, hi))?,
@@ -86,15 +78,11 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
 /// The verdict's code, as in tiles, and the growth rate.
 fn sample(pair: &Oscillator) -> Result<(u8, f64)> {
     const BITS: u32 = 96;
-    let clocks = pair.clocks();
-    let answer = decide(&clocks, &LIMITS)?;
-    if answer.verdict.kind() != Kind::Hyperbolic {
-        return Ok((code(answer.verdict), 0.0));
-    }
-    let ln = answer.growth()?.ln_multiplier.as_ref();
+    let (Decision { verdict, .. }, growth) = decide_with_growth(pair, Tier::Filter, &LIMITS)?;
+    let ln = growth.ln_multiplier.as_ref();
     let rate =
         ln.and_then(|ln| ln.div(&pair.period().enclosure(BITS), BITS)).map_or(0.0, |rate| rate.mid_f64());
-    Ok((code(answer.verdict), rate))
+    Ok((code(verdict), rate))
 }
 
 /// The tongues of the line's ratio, certified.
@@ -108,8 +96,13 @@ fn intervals(
     let Ok(stiffness) = Stiffness::new(None, Some(lambda1), Some(lambda2)) else { return Ok(Value::Null) };
     let h1 = Some((Laurent::from_rational(lo), Laurent::from_rational(hi)));
     let window = StepWindow { h1, h2: None };
-    let question =
-        Listing::new(vec![pair.ratio()], stiffness, window, Selection::default(), Request::default());
+    let question = Listing::new(
+        vec![pair.clocks()?.ratio()],
+        stiffness,
+        window,
+        Selection::default(),
+        Request::default(),
+    );
     let Ok(question) = question else { return Ok(Value::Null) };
     let mut found = Vec::new();
     question.each(&(), |part| {

@@ -76,7 +76,7 @@ const QUESTIONS: [Question; 14] = [
     question("point", true, point::MOST_KICKS, point::answer),
     question("document", true, point::MOST_KICKS, point::document),
     question("certificate", true, point::MOST_CERTIFIED, point::certificate),
-    question("cut", false, cut::MOST_KICKS, cut::answer),
+    question("cut", false, point::MOST_KICKS, cut::answer),
     question("strip", false, strip::MOST_KICKS, strip::answer),
     question("system", false, outer::MOST_PRODUCTS, outer::answer),
     question("stretches", false, outer::MOST_PRODUCTS, outer::stretches),

@@ -47,7 +47,7 @@ pub(super) fn document(session: &Session, query: &Query) -> Result<Reply> {
 /// The verdict as a Coq proof, a file to keep.
 pub(super) fn certificate(session: &Session, query: &Query) -> Result<Reply> {
     let oscillator = oscillator(session, query)?;
-    let kicks = oscillator.ratio().kicks();
+    let kicks = oscillator.clocks()?.ratio().kicks();
     if kicks > MOST_CERTIFIED {
         let cost = format!("checking a certificate of {kicks} kicks would take minutes");
         return Err(Error::too_much(cost, "choose steps with a simpler ratio"));
@@ -95,11 +95,12 @@ fn tenfold(answer: &Decided) -> Value {
 fn about(answer: &Decided) -> Result<(Value, Value, Value)> {
     let (oscillator, verdict) = (&answer.oscillator, answer.decision.verdict);
     let rho = Laurent::ratio(oscillator.lambda2(), oscillator.lambda1());
-    let ray = rho.and_then(|rho| Ray::new(oscillator.ratio(), &rho, oscillator.lambda1()));
+    let Ok(clocks) = oscillator.clocks() else { return Ok(Default::default()) };
+    let ray = rho.and_then(|rho| Ray::new(clocks.ratio(), &rho, oscillator.lambda1()));
     let Some(ray) = ray else { return Ok(Default::default()) };
     // On an edge, and where a tongue is closed, the tongue is that one.
     let stable = verdict.kind() == crate::verdict::Kind::Elliptic;
-    let around = ray.around(oscillator.clocks().fast(), stable)?;
+    let around = ray.around(clocks.fast(), stable)?;
     let value = |tongue: &Option<_>| tongue.as_ref().map_or(Value::Null, ray::value);
     Ok((value(&around.inside), value(&around.below), value(&around.above)))
 }

@@ -102,7 +102,7 @@ impl Grid {
     /// A budget error where p or q is too large, which no grid of this size reaches.
     pub fn clocks(&self, column: u64, row: u64) -> Result<TwoClocks<Laurent>> {
         let (lambda1, lambda2) = (self.lambda1.clone(), self.lambda2.clone());
-        Ok(Oscillator::new(lambda1, lambda2, self.h1(column), self.h2(row))?.clocks())
+        Oscillator::new(lambda1, lambda2, self.h1(column), self.h2(row))?.clocks()
     }
 
     /// The trace condition against the resonance predictions at every pair, column by column.

@@ -11,6 +11,7 @@ use super::work::LANES;
 use crate::error::{Error, Result};
 use crate::number::{ExactSign, Laurent, Rational, Real, Sign, Twofold};
 use crate::orbit::strengths::Strengths;
+use crate::propagator::Oscillator;
 use crate::vector::each;
 use crate::vector::instructions::{Instructions, Task};
 use crate::verdict::{Decision, Limits, decide_steps};
@@ -108,8 +109,10 @@ impl Pairs {
         std::array::from_fn(|k| &self.known[k][self.picked[k][n]])
     }
 
-    fn quantities(&self, n: usize) -> [Laurent; 4] {
-        std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone())
+    fn oscillator(&self, n: usize) -> Result<Oscillator> {
+        let [lambda1, lambda2, h1, h2] =
+            std::array::from_fn(|k| self.quantities[k][self.picked[k][n]].clone());
+        Oscillator::new(lambda1, lambda2, h1, h2)
     }
 }
 
@@ -129,7 +132,7 @@ impl Source for Pairs {
     }
 
     fn decide(&self, n: usize, limits: &Limits) -> Result<Decision> {
-        decide_steps(self.quantities(n), limits)
+        decide_steps(&self.oscillator(n)?, limits)
     }
 }
 

@@ -222,6 +222,11 @@ impl Ball {
         if lower.is_finite() { lower } else { upper }
     }
 
+    /// n and e of the midpoint n 2^e.
+    pub(crate) fn middle(&self) -> (&BigInt, i64) {
+        (&self.mid, self.exp)
+    }
+
     /// The least t with radius ≤ 2^t; `None` for an exact ball.
     pub fn radius_log2(&self) -> Option<i64> {
         let units = self.rad.checked_sub(1)?;

@@ -5,7 +5,7 @@
 //! use kickdrift::propagator::Oscillator;
 //! let x = |text| parse("x", text).unwrap();
 //! let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), x("0.4"), x("1")).unwrap();
-//! let clocks = oscillator.clocks();
+//! let clocks = oscillator.clocks().unwrap();
 //! assert_eq!((clocks.p(), clocks.q()), (5, 2));
 //! assert_eq!(clocks.fast().to_string(), "4*pi^2/25"); // s = h1² L1
 //! assert_eq!(clocks.slow().to_string(), "2*pi^2/125"); // h1 h2 L2
@@ -22,7 +22,7 @@ pub struct Oscillator {
     lambda2: Laurent,
     h1: Laurent,
     h2: Laurent,
-    ratio: Ratio,
+    ratio: Rational,
 }
 
 /// The same without dimension, all that a verdict depends on: with h1 as the unit of time a fast kick
@@ -39,18 +39,27 @@ impl Oscillator {
     /// clocks never meet again and there is no propagator over a period). L2 may have any sign.
     ///
     /// # Errors
-    /// Names the quantity that is out of range; a budget error where p or q reaches 2^62.
+    /// Names the quantity that is out of range.
     pub fn new(lambda1: Laurent, lambda2: Laurent, h1: Laurent, h2: Laurent) -> Result<Self> {
         let ratio = ratio(&lambda1, &h1, &h2)?;
-        let ratio = Ratio::try_from(&ratio).map_err(|_| endless())?;
         Ok(Oscillator { lambda1, lambda2, h1, h2, ratio })
     }
 
     /// The dimensionless pair.
-    pub fn clocks(&self) -> TwoClocks<Laurent> {
-        let fast = Laurent::product(&Laurent::product(&self.h1, &self.h1), &self.lambda1);
-        let slow = Laurent::product(&Laurent::product(&self.h1, &self.h2), &self.lambda2);
-        TwoClocks { ratio: self.ratio, fast, slow }
+    ///
+    /// # Errors
+    /// A budget error where p or q reaches 2^62.
+    pub fn clocks(&self) -> Result<TwoClocks<Laurent>> {
+        let ratio = Ratio::try_from(&self.ratio).map_err(|_| endless())?;
+        let LongClocks { fast, slow, .. } = self.long_clocks();
+        Ok(TwoClocks { ratio, fast, slow })
+    }
+
+    /// The same for a period of any number of kicks.
+    pub fn long_clocks(&self) -> LongClocks<Laurent> {
+        let [fast, slow] = [(&self.h1, &self.lambda1), (&self.h2, &self.lambda2)]
+            .map(|(h, lambda)| Laurent::product(&Laurent::product(&self.h1, h), lambda));
+        LongClocks { ratio: self.ratio.clone(), fast, slow }
     }
 
     /// The fast stiffness L1.
@@ -74,13 +83,14 @@ impl Oscillator {
     }
 
     /// h2/h1 = p/q.
-    pub fn ratio(&self) -> Ratio {
-        self.ratio
+    pub fn ratio(&self) -> &Rational {
+        &self.ratio
     }
 
     /// T = p h1 = q h2.
     pub fn period(&self) -> Laurent {
-        Laurent::product(&self.h1, &Laurent::from_rational(Rational::from_integer(self.ratio.p().into())))
+        let p = Rational::from_integer(self.ratio.numer().clone());
+        Laurent::product(&self.h1, &Laurent::from_rational(p))
     }
 }
 
@@ -162,22 +172,6 @@ pub struct LongClocks<S> {
     ratio: Rational,
     fast: S,
     slow: S,
-}
-
-impl LongClocks<Laurent> {
-    /// Of an oscillator: L1, L2, h1, h2 as in [`Oscillator::new`].
-    ///
-    /// # Errors
-    /// As there, but for long periods.
-    pub fn new(lambda1: &Laurent, lambda2: &Laurent, h1: &Laurent, h2: &Laurent) -> Result<Self> {
-        let ratio = ratio(lambda1, h1, h2)?;
-        let [first, second] = [h1, h2].map(|h| Laurent::product(h1, h));
-        Ok(LongClocks {
-            ratio,
-            fast: Laurent::product(&first, lambda1),
-            slow: Laurent::product(&second, lambda2),
-        })
-    }
 }
 
 impl<S: Ring> LongClocks<S> {

@@ -1,9 +1,11 @@
 //! Is this pair of steps stable?
 
+use num_bigint::BigInt;
+
 use super::asking::{Question, Work, question};
 use crate::error::{Error, Result};
 use crate::number::{Ball, Laurent, Ratio, Rational, Real, rational};
-use crate::propagator::{Oscillator, TwoClocks};
+use crate::propagator::Oscillator;
 use crate::report::decimal;
 use crate::report::document::Document;
 #[cfg(feature = "system")]
@@ -11,7 +13,9 @@ use crate::report::friction;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column};
 use crate::resonance::dominant_family;
-use crate::verdict::{Decision, Growth, Kind, Limits, Tier, decide, decide_from, exact_trace};
+use crate::verdict::{
+    Decision, Growth, Kind, Limits, Tier, decide_from, decide_steps, decide_with_growth, exact_trace,
+};
 
 question! {
     /// One pair of steps of one oscillator.
@@ -53,8 +57,19 @@ impl Verdict {
     }
 
     /// The tier at which the decision begins.
-    pub fn first_tier(&self) -> Tier {
+    fn first_tier(&self) -> Tier {
         if self.exact { Tier::Exact } else { Tier::Filter }
+    }
+
+    /// The verdict alone.
+    ///
+    /// # Errors
+    /// As [`Question::answer`].
+    pub fn decision(&self, oscillator: &Oscillator, work: &Work) -> Result<Decision> {
+        if !self.exact {
+            return decide_steps(oscillator, &work.limits());
+        }
+        decide_from(Tier::Exact, &oscillator.clocks()?, &work.limits()).map(|answer| answer.decision())
     }
 
     #[cfg(feature = "system")]
@@ -67,7 +82,7 @@ impl Verdict {
         if *rate <= Rational::default() {
             return Err(Error::input("friction", rate, "a rate of friction must be positive"));
         }
-        let kicks = oscillator.ratio().kicks();
+        let kicks = oscillator.clocks()?.ratio().kicks();
         work.announce(&format!("friction over {kicks} kicks"), kicks as f64 * DAMPED_KICK);
         crate::system::friction::damped_pair(oscillator, rate, &work.limits()).map(Some)
     }
@@ -79,16 +94,15 @@ impl Question for Verdict {
 
     fn answer(&self, work: &Work) -> Result<Decided> {
         let oscillator = self.oscillator()?;
-        let clocks = oscillator.clocks();
-        let decided = decide_from(self.first_tier(), &clocks, &work.limits())?;
+        let (decision, growth) = decide_with_growth(&oscillator, self.first_tier(), &work.limits())?;
         #[cfg(not(feature = "system"))]
         if let Some(rate) = &self.friction {
             return Err(Error::input("friction", rate, "is not built in: build with the feature system"));
         }
         Ok(Decided {
-            decision: decided.decision(),
-            growth: decided.growth()?.clone(),
-            exact_trace: Decided::exact_trace(&clocks, self.exact),
+            decision,
+            growth,
+            exact_trace: Decided::exact_trace(&oscillator, self.exact),
             #[cfg(feature = "system")]
             friction: self.damped(&oscillator, work)?,
             oscillator,
@@ -134,14 +148,17 @@ const SHORT_PERIOD: u64 = 40;
 /// A ratio is much simpler whose period holds so many times fewer kicks.
 const MUCH: u64 = 1000;
 
+/// A ratio is simple whose period holds fewer kicks: that one lies within 10^-9 of another is no chance.
+const SIMPLE: u64 = 1000;
+
 /// A rational trace is shown unasked where it has at most so many characters.
 const SHORT_TEXT: usize = 60;
 
 impl Decided {
     /// The exact trace: always where `wanted`, otherwise where it is short. `None` where a stiffness or step
     /// makes it irrational.
-    pub fn exact_trace(clocks: &TwoClocks<Laurent>, wanted: bool) -> Option<Rational> {
-        let clocks = clocks.as_rational()?;
+    pub fn exact_trace(oscillator: &Oscillator, wanted: bool) -> Option<Rational> {
+        let clocks = oscillator.clocks().ok()?.as_rational()?;
         if !wanted && clocks.p() + clocks.q() > SHORT_PERIOD {
             return None;
         }
@@ -159,9 +176,8 @@ impl Decided {
 
     /// m and its dominant family.
     fn resonance(&self) -> Option<(u64, i64, i64)> {
-        let clocks = self.oscillator.clocks();
         let m = self.growth.label?;
-        let (a, b) = dominant_family(clocks.ratio(), m);
+        let (a, b) = dominant_family(self.oscillator.clocks().ok()?.ratio(), m);
         Some((m, a, b))
     }
 }
@@ -172,8 +188,8 @@ fn record() -> Record<'static, Decided> {
     Record::new()
         .column(Column::math("h1", "h_1").aside(), |of: Of| Cell::exact(of.oscillator.h1()))
         .column(Column::math("h2", "h_2").aside(), |of| Cell::exact(of.oscillator.h2()))
-        .field(Column::math("p", "p"), |of| of.oscillator.clocks().p().into())
-        .field(Column::math("q", "q"), |of| of.oscillator.clocks().q().into())
+        .field(Column::math("p", "p"), |of| Cell::whole(of.oscillator.ratio().numer()))
+        .field(Column::math("q", "q"), |of| Cell::whole(of.oscillator.ratio().denom()))
         .field(Column::new("kind").left(), |of| of.decision.verdict.kind().name().into())
         .field(Column::new("stable").aside(), |of| of.decision.verdict.is_stable().into())
         .field(Column::new("side").aside(), |of| i64::from(of.decision.verdict.side()).into())
@@ -195,8 +211,7 @@ fn record() -> Record<'static, Decided> {
 impl Decided {
     /// Five to seven lines; the one row of the table would only repeat them.
     fn lines(&self) -> Vec<String> {
-        let clocks = self.oscillator.clocks();
-        let (p, q) = (clocks.p(), clocks.q());
+        let (p, q) = (self.oscillator.ratio().numer(), self.oscillator.ratio().denom());
         let verdict = self.decision.verdict;
         let mut lines = vec![
             self.headline(),
@@ -231,16 +246,18 @@ impl Decided {
 
     /// The verdict at a much simpler ratio, where one lies within 10^-9: steps that are doubles stand for it, as a rule.
     fn simpler(&self) -> Option<String> {
-        let (own, ratio) = (self.oscillator.ratio(), Rational::from(self.oscillator.ratio()));
-        let off = &ratio / Rational::from_integer(1_000_000_000.into());
-        let near = rational::simplest(&(&ratio - &off), &(&ratio + &off));
-        let simple = Ratio::try_from(&near).ok().filter(|near| near.kicks() < own.kicks() / MUCH)?;
+        let ratio = self.oscillator.ratio();
+        let off = ratio / Rational::from_integer(1_000_000_000.into());
+        let near = rational::simplest(&(ratio - &off), &(ratio + &off));
+        let kicks = ratio.numer() + ratio.denom();
+        let is_simpler = |near: &Ratio| near.kicks() < SIMPLE && BigInt::from(near.kicks()) * MUCH < kicks;
+        let simple = Ratio::try_from(&near).ok().filter(is_simpler)?;
         let [lambda1, lambda2, h1] =
             [self.oscillator.lambda1(), self.oscillator.lambda2(), self.oscillator.h1()];
         let h2 = h1 * &Laurent::from_rational(near.clone());
         let there = Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2).ok()?;
-        let there = decide(&there.clocks(), &Limits::default()).ok()?.verdict;
-        let difference = rational::to_f64(&(&ratio - &near));
+        let there = decide_steps(&there, &Limits::default()).ok()?.verdict;
+        let difference = rational::to_f64(&(ratio - &near));
         let sign = if difference < 0.0 { '-' } else { '+' };
         let (word, too) =
             (stability(there.is_stable()), there.is_stable() == self.decision.verdict.is_stable());

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::number::{Laurent, Rational, Real, rational};
 use crate::propagator::Oscillator;
 use crate::question::{Bands, Fields, Question};
-use crate::verdict::{Kind, decide};
+use crate::verdict::{Kind, decide_steps};
 
 const ROUTE: &str = "nine pairs of steps in each box, worst placed, with ratios as simple as there are: all are hyperbolic by the ladder";
 
@@ -103,8 +103,8 @@ impl Claim {
             for ratio in ratios(&h1, &row.h2_lower.0, &row.h2_upper.0)? {
                 let h2 = &h1 * &Laurent::from_rational(ratio.clone());
                 let Bands { lambda1, lambda2, .. } = self.input.clone();
-                let clocks = Oscillator::new(lambda1, lambda2, h1.clone(), h2)?.clocks();
-                let kind = decide(&clocks, &context.limits())?.verdict.kind();
+                let oscillator = Oscillator::new(lambda1, lambda2, h1.clone(), h2)?;
+                let kind = decide_steps(&oscillator, &context.limits())?.verdict.kind();
                 holds(kind == Kind::Hyperbolic, || format!("h1 = {h1}, h2/h1 = {ratio} is {}", kind.name()))?;
             }
         }

@@ -4,11 +4,11 @@
 use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, holds, same};
 use super::exact::{FullPeriod, affordable, again, full_period, ln_multiplier};
-use super::written::{Ends, Written};
+use super::written::{Ends, Whole, Written};
 use crate::error::{Kind as ErrorKind, Result};
-use crate::number::{Ball, Laurent, Rational, Real};
+use crate::number::{Ball, Rational, Real};
 use crate::orbit::returns;
-use crate::propagator::{Oscillator, TwoClocks};
+use crate::propagator::Oscillator;
 use crate::question;
 use crate::resonance::dominant_family;
 use crate::verdict::{Growth, Kind, Limits, Tier, Verdict, decide_anew, exact_trace, growth};
@@ -19,8 +19,8 @@ rows! {
     /// `kickdrift/verdict/1`.
     pub struct Claim [p, q] {
         input: question::Verdict,
-        p: u64,
-        q: u64,
+        p: Whole,
+        q: Whole,
         kind: Written<Kind>,
         stable: bool,
         side: i8,
@@ -61,14 +61,15 @@ impl Recheck for Claim {
 
     fn check(&self, answer: question::Decided, context: &Context) -> Result<Outcome> {
         let row = std::slice::from_ref(self);
-        let clocks = answer.oscillator.clocks();
-        let truth = match self.truth(&clocks, &context.limits()) {
+        let oscillator = &answer.oscillator;
+        let is_long = oscillator.clocks().map_or(true, |clocks| returns::is_worth(clocks.ratio(), 53));
+        let truth = match self.truth(oscillator, is_long, &context.limits()) {
             // Kicks that nobody can follow.
-            Err(error) if error.kind() == ErrorKind::Budget && returns::is_worth(clocks.ratio(), 53) => None,
+            Err(error) if error.kind() == ErrorKind::Budget && is_long => None,
             truth => Some(truth?),
         };
         let holds = |row: &Claim| {
-            truth.as_ref().map_or(Ok(()), |truth| row.holds(&answer.oscillator, truth, &context.limits()))
+            truth.as_ref().map_or(Ok(()), |truth| row.holds(oscillator, truth, &context.limits()))
         };
         let mut outcome = context.outcome(ROUTE, ("", Ok(())), row, holds)?;
         match truth {
@@ -89,17 +90,19 @@ impl Recheck for Claim {
 
 impl Claim {
     fn holds(&self, oscillator: &Oscillator, truth: &Truth, limits: &Limits) -> Checked {
-        let clocks = oscillator.clocks();
-        let ratio = (self.p, self.q);
-        holds(ratio == (clocks.p(), clocks.q()), || format!("h2/h1 is {}/{}", clocks.p(), clocks.q()))?;
+        let ratio = oscillator.ratio();
+        holds((&self.p.0, &self.q.0) == (ratio.numer(), ratio.denom()), || format!("h2/h1 is {ratio}"))?;
         self.against(truth)?;
         self.numbers(oscillator, truth)?;
-        self.label(&clocks, truth, limits)
+        self.label(oscillator, truth, limits)
     }
 
     /// The full period where that is affordable, else return maps or a tier that did not decide.
-    fn truth(&self, clocks: &TwoClocks<Laurent>, limits: &Limits) -> Result<Truth> {
-        if affordable(clocks) {
+    fn truth(&self, oscillator: &Oscillator, is_long: bool, limits: &Limits) -> Result<Truth> {
+        let clocks = oscillator.clocks();
+        if let Ok(clocks) = &clocks
+            && affordable(clocks)
+        {
             let FullPeriod { verdict, trace } = full_period(clocks);
             let grows = verdict.kind() == Kind::Hyperbolic;
             let ln_multiplier = grows.then(|| ln_multiplier(&trace, BITS).expect("|Tr| > 2"));
@@ -111,12 +114,18 @@ impl Claim {
                 label: None,
             });
         }
-        let (verdict, Growth { trace, ln_multiplier, label }, is_long) = match decide_anew(clocks)? {
-            Some(answer) => (answer.verdict, answer.growth()?.clone(), true),
+        let anew = if is_long { decide_anew(&oscillator.long_clocks())? } else { None };
+        if let (Some((verdict, growth)), true) = (&anew, self.trace.exact.is_none()) {
+            let Growth { trace, ln_multiplier, label } = growth.clone();
+            return Ok(Truth { verdict: *verdict, trace, ln_multiplier, exact: None, label: Some(label) });
+        }
+        let clocks = clocks?;
+        let (verdict, Growth { trace, ln_multiplier, label }, is_long) = match anew {
+            Some((verdict, growth)) => (verdict, growth, true),
             None => {
                 let tier = if *self.decided_by == Tier::Filter { Tier::Refine } else { Tier::Exact };
-                let verdict = again(tier, clocks, limits)?.verdict;
-                (verdict, growth(clocks, verdict, limits)?, false)
+                let verdict = again(tier, &clocks, limits)?.verdict;
+                (verdict, growth(&clocks, verdict, limits)?, false)
             }
         };
         let rational = clocks.as_rational().filter(|_| self.trace.exact.is_some());
@@ -150,19 +159,22 @@ impl Claim {
     }
 
     /// The label m of what grows exponentially, and its dominant family, m = a p + b q.
-    fn label(&self, clocks: &TwoClocks<Laurent>, truth: &Truth, limits: &Limits) -> Checked {
-        // Return maps need not tell a label.
-        let due = truth.label.map_or(*self.kind == Kind::Hyperbolic, |label| label.is_some());
+    fn label(&self, oscillator: &Oscillator, truth: &Truth, limits: &Limits) -> Checked {
+        let clocks = oscillator.clocks();
+        // Return maps need not tell a label, and the families of a longer period are not told.
+        let due =
+            truth.label.map_or(*self.kind == Kind::Hyperbolic, |label| label.is_some()) && clocks.is_ok();
         let Some(Resonance { m, a, b }) = self.resonance else {
             return holds(!due, || "what grows has a label".into());
         };
         holds(*self.kind == Kind::Hyperbolic && m < 1 << 62, || "has no label".into())?;
+        let clocks = clocks?;
         let family = dominant_family(clocks.ratio(), m);
         holds((a, b) == family, || format!("the dominant family of m = {m} is {family:?}"))?;
         let turns = match truth.label {
             Some(None) => return Ok(()),
             Some(turns) => turns,
-            None => growth(clocks, again(Tier::Refine, clocks, limits)?.verdict, limits)?.label,
+            None => growth(&clocks, again(Tier::Refine, &clocks, limits)?.verdict, limits)?.label,
         };
         holds(turns == Some(m), || format!("the growing solution turns {turns:?} times"))
     }

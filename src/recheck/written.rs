@@ -1,7 +1,9 @@
 //! The values of documents, read once into types that cannot be wrong.
 
+use std::fmt;
 use std::ops::Deref;
 
+use num_bigint::BigInt;
 use serde::de::{Deserialize, Deserializer, Error as _};
 
 use super::context::{Checked, Fault, holds};
@@ -29,6 +31,35 @@ impl<'de, T: Notation> Deserialize<'de> for Written<T> {
         T::parsed("value", &String::deserialize(deserializer)?)
             .map(Written)
             .map_err(|own| D::Error::custom(own.remedy()))
+    }
+}
+
+/// A whole number, beyond doubles' reach as a text.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(try_from = "RawWhole")]
+pub struct Whole(pub BigInt);
+
+impl fmt::Display for Whole {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+#[derive(serde::Deserialize)]
+#[serde(untagged)]
+enum RawWhole {
+    Short(u64),
+    Long(String),
+}
+
+impl TryFrom<RawWhole> for Whole {
+    type Error = String;
+
+    fn try_from(raw: RawWhole) -> std::result::Result<Self, String> {
+        match raw {
+            RawWhole::Short(n) => Ok(Whole(n.into())),
+            RawWhole::Long(text) => text.parse().map(Whole).map_err(|_| format!("{text} is no whole number")),
+        }
     }
 }
 

@@ -11,7 +11,7 @@
 //! use kickdrift::verdict::{decide, Limits};
 //! let x = |text| parse("x", text).unwrap();
 //! let oscillator = Oscillator::new(x("11/4"), x("57/10"), x("1"), x("5/3")).unwrap();
-//! let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+//! let verdict = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
 //! let file = coq(&oscillator, verdict, "closing.v").unwrap();
 //! assert!(file.contains("verdict (Coexistence Plus) 5 3 (1 / 1) (11 / 4) (5 / 3) (57 / 10)."));
 //! ```
@@ -35,7 +35,7 @@ const LONGEST_EXACT: u64 = 500;
 /// module's.
 pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result<String> {
     check_name(file_name)?;
-    let clocks = oscillator.clocks();
+    let clocks = oscillator.clocks()?;
     let given = [
         ("h1", oscillator.h1()),
         ("lambda1", oscillator.lambda1()),

@@ -3,6 +3,8 @@
 //! A cell says what its number *is*: exact text, the double nearest to a value, or an enclosure that contains
 //! it. The formats differ in how they show that, never in what they claim.
 
+use num_bigint::BigInt;
+use num_traits::ToPrimitive;
 use serde::ser::{Serialize, SerializeMap, SerializeSeq, Serializer};
 
 use super::decimal;
@@ -38,6 +40,11 @@ impl Cell {
     /// An exact number, from its text.
     pub fn exact(number: impl ToString) -> Self {
         Cell::Exact(number.to_string())
+    }
+
+    /// A whole number: beyond 2^63 as an exact text.
+    pub fn whole(n: &BigInt) -> Self {
+        n.to_i64().map_or_else(|| Cell::exact(n), Cell::Integer)
     }
 }
 

@@ -13,13 +13,13 @@ use super::exact::Decidable;
 use super::kind::{Side, Verdict};
 use super::label::{from_nodes, label};
 use super::tier::{Limits, Tier};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::{Ball, Rational, Real};
 use crate::orbit::floquet::Floquet;
 use crate::orbit::returns::{self, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::parallel::go_on;
-use crate::propagator::TwoClocks;
+use crate::propagator::{LongClocks, TwoClocks};
 use crate::schedule::Schedule;
 
 /// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value between them,
@@ -50,6 +50,14 @@ const ACCURACY_OF_RETURNS: i64 = 34;
 /// A budget error where more kicks would have to be composed than `limits` allows.
 pub fn growth<S: Decidable>(clocks: &TwoClocks<S>, verdict: Verdict, limits: &Limits) -> Result<Growth> {
     Runs::default().growth(clocks, verdict, limits)
+}
+
+/// As [`growth`], by return maps alone: the period may hold any number of kicks.
+///
+/// # Errors
+/// A budget error where entries have more than 2^58 binary digits. `Stopped`.
+pub fn long_growth<S: Real>(clocks: &LongClocks<S>, verdict: Verdict) -> Result<Growth> {
+    Runs::default().long_growth(clocks, verdict)
 }
 
 /// The runs through the half period that a decision has made.
@@ -83,7 +91,7 @@ impl Runs {
         if (self.refined.is_some() || self.filtered.is_none())
             && returns::is_worth(ratio, 53)
             && let Some(Returned { products, label, .. }) =
-                self.returned(clocks, verdict, ACCURACY_OF_RETURNS)
+                self.returned(&clocks.into(), u32::MAX, verdict, ACCURACY_OF_RETURNS)
         {
             go_on()?;
             return Ok(from_products(products, verdict, label));
@@ -95,7 +103,10 @@ impl Runs {
             return Ok(from_products(products(&ends), verdict, label));
         }
         if returns::is_worth(ratio, 106) {
-            let found = self.returned(clocks, verdict, ACCURACY).filter(|found| found.is_enough);
+            // Where kicks are few, 128 bits of them cost less than return maps in 256.
+            let most = if returns::is_worth(ratio, 53) { u32::MAX } else { 106 };
+            let found = self.returned(&clocks.into(), most, verdict, ACCURACY);
+            let found = found.filter(|found| found.is_enough);
             go_on()?;
             if let Some(Returned { products, label: nodes, .. }) = found {
                 return Ok(from_products(products, verdict, label.or(nodes)));
@@ -106,10 +117,25 @@ impl Runs {
         Ok(from_products(products, verdict, label.or(nodes)))
     }
 
-    /// By the known run, then by return maps in more bits, until `least` bits are known, and the label.
-    fn returned<S: Decidable>(
+    /// As [`long_growth`], from these runs as far as they reach.
+    pub fn long_growth<S: Real>(&self, clocks: &LongClocks<S>, verdict: Verdict) -> Result<Growth> {
+        let found = self.returned(clocks, u32::MAX, verdict, ACCURACY_OF_RETURNS);
+        go_on()?;
+        let Returned { products, label, .. } = found.ok_or_else(|| {
+            let work = format!(
+                "the pair is {}, but its trace has more digits than can be counted",
+                verdict.kind().name()
+            );
+            Error::too_much(work, "choose steps with a simpler ratio")
+        })?;
+        Ok(from_products(products, verdict, label))
+    }
+
+    /// By the known run, then by return maps in more bits, at most in `most`, until `least` bits are known, and the label.
+    fn returned<S: Real>(
         &self,
-        clocks: &TwoClocks<S>,
+        clocks: &LongClocks<S>,
+        most: u32,
         verdict: Verdict,
         least: i64,
     ) -> Option<Returned> {
@@ -125,13 +151,11 @@ impl Runs {
         let wanted = if verdict.side() == 0 { Wanted::Entries } else { Wanted::Nodes };
         let known = self.refined.as_ref().map_or(0, |(_, bits)| *bits);
         let from = if wanted == Wanted::Nodes { known } else { known + 1 };
-        // Where kicks are few, 128 bits of them cost less than return maps in 256.
-        let most = if returns::is_worth(clocks.ratio(), 53) { u32::MAX } else { 106 };
         for bits in returns::PRECISIONS.into_iter().filter(|&bits| bits >= from && bits <= most) {
             if best.as_ref().is_some_and(|best| best.is_enough) {
                 break;
             }
-            let Some(ends) = returns::run(&clocks.into(), bits, wanted) else { continue };
+            let Some(ends) = returns::run(clocks, bits, wanted) else { continue };
             let found = of(&ends, bits);
             best = Some(Returned { label: found.label.or(best.and_then(|best| best.label)), ..found });
         }

@@ -7,12 +7,11 @@ use num_bigint::BigInt;
 
 use super::answer::{Answer, Decision};
 use super::exact::Decidable;
-use super::growth::Runs;
+use super::growth::{Growth, Runs, long_growth};
 use super::kind::Verdict;
 use super::lone;
 use super::tier::{Limits, Tier};
-use crate::error::{Error, Kind as ErrorKind, Result};
-use crate::number::Laurent;
+use crate::error::{Error, Result};
 use crate::orbit::floquet::Floquet;
 use crate::orbit::returns::{self, Wanted};
 use crate::orbit::{filter, plain, refine};
@@ -58,25 +57,20 @@ pub fn decide_from<S: Decidable>(first: Tier, clocks: &TwoClocks<S>, limits: &Li
     unreachable!("the exact tier decides every pair")
 }
 
-/// Decides a long period by another route than [`decide`]: return maps over the other clock, or in more bits. `None` where the period
-/// is short, and where neither decides.
+/// Decides a long period by another route than [`decide`]: return maps over the other clock, or in more bits. `None` where neither
+/// decides.
 ///
 /// # Errors
 /// `Stopped`.
-pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<S>>> {
-    if !returns::is_worth(clocks.ratio(), 53) {
-        return Ok(None);
-    }
+pub fn decide_anew<S: Decidable>(clocks: &LongClocks<S>) -> Result<Option<(Verdict, Growth)>> {
     let [_, middle, most] = returns::PRECISIONS;
-    let routes = [(true, middle), (false, most)];
-    let long = clocks.into();
-    for (over_other, bits) in routes {
+    for (over_other, bits) in [(true, middle), (false, most)] {
         go_on()?;
         let run = if over_other { returns::run_over_other } else { returns::run };
-        let Some(ends) = run(&long, bits, Wanted::Entries) else { continue };
+        let Some(ends) = run(clocks, bits, Wanted::Entries) else { continue };
         if let Some(verdict) = ends.signs().verdict() {
             let runs = Runs { refined: Some((ends, bits)), ..Runs::default() };
-            return Ok(Some(answer(verdict, Tier::Refine, clocks, &Limits::default(), runs)));
+            return runs.long_growth(clocks, verdict).map(|growth| Some((verdict, growth)));
         }
     }
     go_on().map(|()| None)
@@ -86,12 +80,12 @@ pub fn decide_anew<S: Decidable>(clocks: &TwoClocks<S>) -> Result<Option<Answer<
 ///
 /// ```
 /// use kickdrift::number::{Laurent, Rational};
-/// use kickdrift::propagator::LongClocks;
+/// use kickdrift::propagator::Oscillator;
 /// use kickdrift::verdict::{Kind, decide_long};
 /// let exact = |x: f64| Laurent::from_rational(Rational::from_float(x).unwrap());
 /// // The doubles 0.001 and 0.9: a period of 10^19 fast kicks.
-/// let clocks = LongClocks::new(&exact(10.0), &exact(0.4), &exact(0.001), &exact(0.9))?;
-/// assert_eq!(decide_long(&clocks)?.verdict.kind(), Kind::Elliptic);
+/// let oscillator = Oscillator::new(exact(10.0), exact(0.4), exact(0.001), exact(0.9))?;
+/// assert_eq!(decide_long(&oscillator.long_clocks())?.verdict.kind(), Kind::Elliptic);
 /// # Ok::<(), kickdrift::error::Error>(())
 /// ```
 ///
@@ -123,14 +117,33 @@ fn short(n: &BigInt) -> String {
 /// Decides the pair by [`decide`], or by [`decide_long`] where its period is too long for that.
 ///
 /// # Errors
-/// Quantities out of range, an irrational ratio of the steps, and those of both.
-pub fn decide_steps(quantities: [Laurent; 4], limits: &Limits) -> Result<Decision> {
-    let [lambda1, lambda2, h1, h2] = &quantities;
-    match Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2.clone()) {
-        Err(error) if error.kind() == ErrorKind::Budget => {
-            decide_long(&LongClocks::new(lambda1, lambda2, h1, h2)?)
+/// Those of both.
+pub fn decide_steps(oscillator: &Oscillator, limits: &Limits) -> Result<Decision> {
+    match oscillator.clocks() {
+        Ok(clocks) => decide(&clocks, limits).map(|answer| answer.decision()),
+        Err(_) => decide_long(&oscillator.long_clocks()),
+    }
+}
+
+/// As [`decide_steps`], from the tier `first` on, with trace, growth and label.
+///
+/// # Errors
+/// As there; where a long period is to be decided in exact arithmetic, and where its entries have more than 2^58 binary digits.
+pub fn decide_with_growth(
+    oscillator: &Oscillator,
+    first: Tier,
+    limits: &Limits,
+) -> Result<(Decision, Growth)> {
+    match oscillator.clocks() {
+        Err(_) if first != Tier::Exact => {
+            let clocks = oscillator.long_clocks();
+            let decision = decide_long(&clocks)?;
+            Ok((decision, long_growth(&clocks, decision.verdict)?))
         }
-        oscillator => decide(&oscillator?.clocks(), limits).map(|answer| answer.decision()),
+        clocks => {
+            let answer = decide_from(first, &clocks?, limits)?;
+            Ok((answer.decision(), answer.growth()?.clone()))
+        }
     }
 }
 

@@ -23,7 +23,7 @@ fn least(rounds: u32, work: impl FnMut()) -> f64 {
 fn clocks() -> TwoClocks<Rational> {
     let x = |text| parse("quantity", text).expect("a number");
     let oscillator = Oscillator::new(x("10"), x("2/5"), x("0.631"), x("3.499")).expect("an oscillator");
-    oscillator.clocks().as_rational().expect("rational strengths")
+    oscillator.clocks().unwrap().as_rational().expect("rational strengths")
 }
 
 /// The whole process, from start to exit.

@@ -80,7 +80,12 @@ fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
     let desk = Desk::new();
     // Both clocks are beyond their own limits, so every kick would be followed; few of them are slow, so no return map helps.
     refused(&desk, &verdict("1000", "10", "0.12345", "100003"), &["kicks", "--budget", " s;"]);
-    refused(&desk, &verdict("10", "1", "1", "1.000000000000000000000001"), &["h2/h1"]);
+    // Its verdict is known, and its growth over a period has 2^84 digits.
+    refused(
+        &desk,
+        &verdict("10", "1", "1", "1.000000000000000000000001"),
+        &["hyperbolic", "digits", "simpler ratio"],
+    );
     let frugal = [&verdict("10", "1", "0.01", "1.01")[..], &["--exact", "--budget", "50"]].concat();
     refused(&desk, &frugal, &["kicks", "--budget 77"]);
     let exact = [&verdict("1", "1/10", "1", "300003")[..], &["--exact"]].concat();

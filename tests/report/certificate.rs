@@ -27,7 +27,7 @@ fn the_examples_are_what_the_command_writes() {
             continue;
         }
         let oscillator = Oscillator::new(x("--lambda1"), x("--lambda2"), x("--h1"), x("--h2")).unwrap();
-        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        let verdict = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
         assert_eq!(coq(&oscillator, verdict, value("--certificate")).unwrap(), text, "{}", path.display());
         kinds.insert((verdict.kind(), verdict.side()));
     }
@@ -58,8 +58,8 @@ fn what_is_allowed_is_proven() {
         ("hyperbolic.v", "10", "2/5", "631/1000", "4369/1000"),
     ] {
         let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
-        assert_eq!(oscillator.clocks().p() + oscillator.clocks().q(), 5000, "{name}");
-        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        assert_eq!(oscillator.clocks().unwrap().p() + oscillator.clocks().unwrap().q(), 5000, "{name}");
+        let verdict = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
         proven(name, coq(&oscillator, verdict, name).unwrap());
     }
     let (ratio, rho) = ("667/333".parse().unwrap(), x("1/25").as_rational().unwrap());
@@ -73,7 +73,7 @@ fn sums_with_pi_edges_with_pi_and_bad_names_are_refused() {
     let x = |text: &str| parse("x", text).unwrap();
     let file = |[lambda1, lambda2, h1, h2]: [&str; 4], name: &str| {
         let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
-        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        let verdict = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
         coq(&oscillator, verdict, name)
     };
     assert!(file(["1 + pi", "1", "1/4", "1"], "a.v").unwrap_err().to_string().contains("lambda1"));
@@ -90,7 +90,7 @@ fn many_kicks_are_proven_by_intervals_and_edges_never() {
     let x = |text: &str| parse("x", text).unwrap();
     let file = |[lambda1, lambda2, h1, h2]: [&str; 4]| {
         let oscillator = Oscillator::new(x(lambda1), x(lambda2), x(h1), x(h2)).unwrap();
-        let verdict = decide(&oscillator.clocks(), &Limits::default()).unwrap().verdict;
+        let verdict = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
         coq(&oscillator, verdict, "a.v").unwrap()
     };
     assert!(file(["10", "2/5", "249/1000", "251/1000"]).contains("Proof. certify (249 # 1000) (10 # 1)"));

@@ -69,7 +69,8 @@ fn units_of_time_do_not_matter() {
             let unit = x(&format!("10^{exponent}"));
             let stiffness = |l: &str| Ring::product(&x(l), &x(&format!("10^{}", -2 * exponent)));
             let (h1, h2) = (Ring::product(&x(h1), &unit), Ring::product(&x(h2), &unit));
-            let clocks = Oscillator::new(stiffness("10"), stiffness("2/5"), h1, h2).unwrap().clocks();
+            let clocks =
+                Oscillator::new(stiffness("10"), stiffness("2/5"), h1, h2).unwrap().clocks().unwrap();
             decide(&clocks, &Limits::default()).unwrap().decision()
         };
         let here = decide_at(0);
@@ -130,7 +131,7 @@ fn decimals_mean_what_they_say() {
     let x = |text: &str| parse::parse("x", text).unwrap();
     // 5e-324 is no double's business: exactly 4 units of time² make the limit.
     let verlet = |lambda1: &str, h: &str| {
-        let clocks = Oscillator::new(x(lambda1), x("0"), x(h), x(h)).unwrap().clocks();
+        let clocks = Oscillator::new(x(lambda1), x("0"), x(h), x(h)).unwrap().clocks().unwrap();
         decide(&clocks, &Limits::default()).unwrap().verdict.kind()
     };
     assert_eq!(verlet("4e648", "1e-324"), Kind::Parabolic);

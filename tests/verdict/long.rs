@@ -2,7 +2,7 @@
 
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Laurent, Ratio, Rational};
-use kickdrift::propagator::{LongClocks, TwoClocks};
+use kickdrift::propagator::{LongClocks, Oscillator, TwoClocks};
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Kind, Limits, Tier, decide_from, decide_long};
 
@@ -113,7 +113,7 @@ fn every_pair_of_doubles_is_decided() {
         // s = h1² L1 between 0 and 4, h1 h2 L2 between 0 and 3.
         let lambda1 = over(ratio(1 + numbers.next(399) as i64, 100), &(&h1 * &h1));
         let lambda2 = over(ratio(1 + numbers.next(3000) as i64, 1000), &(&h1 * &h2));
-        let clocks = LongClocks::new(&lambda1, &lambda2, &h1, &h2).unwrap();
+        let clocks = Oscillator::new(lambda1, lambda2, h1.clone(), h2.clone()).unwrap().long_clocks();
         let found = decide_long(&clocks);
         assert!(found.is_ok(), "{n}: {h1}, {h2}: {found:?}");
     }

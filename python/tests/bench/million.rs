@@ -16,7 +16,7 @@ fn main() -> Result<()> {
     let pair = |n: i64| -> Result<TwoClocks<Rational>> {
         let (h1, h2) = (step(n / SIDE + 1), step(n % SIDE + 1));
         let oscillator = Oscillator::new(lambda1.clone(), lambda2.clone(), h1, h2)?;
-        Ok(oscillator.clocks().as_rational().expect("no pi"))
+        Ok(oscillator.clocks()?.as_rational().expect("no pi"))
     };
     let start = Instant::now();
     let pairs = (0..SIDE * SIDE).into_par_iter().map(pair).collect::<Result<Vec<_>>>()?;

@@ -245,7 +245,7 @@ impl<T: Coefficient> Frame<T> {
     pub fn found<P: Coefficient>(&self) -> Option<Found> {
         let Half { entries: [a, b, c, d], exponent, nodes } = self.half::<P>()?;
         let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
-        let exponent = i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 54);
+        let exponent = i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 58);
         let ends = exponent.map(|exponent| {
             let end = |x: &T::Enclosure, v: &T::Enclosure, signs, nodes| {
                 let of = |x: &T::Enclosure| x.ball().scale2(exponent);

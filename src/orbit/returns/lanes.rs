@@ -1,6 +1,5 @@
 //! Four numbers side by side: the entries of a matrix, in one register.
 
-use super::number::Coefficient;
 use crate::number::Twofold;
 use crate::vector::each;
 
@@ -15,28 +14,6 @@ pub trait Lanes<T>: Clone {
     #[inline(always)]
     fn splat(x: &T) -> Self {
         Self::of([x; 4])
-    }
-}
-
-impl<T: Coefficient> Lanes<T> for [T; 4] {
-    #[inline(always)]
-    fn of(x: [&T; 4]) -> Self {
-        x.map(Clone::clone)
-    }
-
-    #[inline(always)]
-    fn entries(self) -> [T; 4] {
-        self
-    }
-
-    #[inline(always)]
-    fn plus(&self, other: &Self) -> Self {
-        std::array::from_fn(|i| self[i].plus(&other[i]))
-    }
-
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        std::array::from_fn(|i| self[i].times(&other[i]))
     }
 }
 

@@ -20,6 +20,7 @@ mod euclid;
 mod fit;
 mod frame;
 mod lanes;
+mod long;
 mod map;
 mod number;
 mod run;
@@ -92,10 +93,10 @@ fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) 
     match (bits, clocks.shorter_bits()) {
         (0..=53, 0..=38) => over_in::<S, f64, f64>(clocks, fast, wanted),
         (0..=53, 39..=86) => over_in::<S, Twofold, f64>(clocks, fast, wanted),
-        (0..=53, _) => over_in::<S, Long<256>, f64>(clocks, fast, wanted),
+        (0..=53, _) => over_in::<S, Long, f64>(clocks, fast, wanted),
         (54..=106, 0..=62) => over_in::<S, Twofold, Twofold>(clocks, fast, wanted),
-        (54..=106, _) => over_in::<S, Long<256>, Twofold>(clocks, fast, wanted),
-        (107..=256, _) => over_in::<S, Long<256>, Long<256>>(clocks, fast, wanted),
+        (54..=106, _) => over_in::<S, Long, Twofold>(clocks, fast, wanted),
+        (107..=256, _) => over_in::<S, Long, Long>(clocks, fast, wanted),
         _ => None,
     }
 }

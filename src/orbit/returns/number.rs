@@ -4,6 +4,8 @@ use super::enclosure::{Close, Enclosure, Wide, quotient};
 
 pub use super::enclosure::exact;
 use super::lanes::{Lanes, Twofolds};
+use super::long;
+pub use super::long::Long;
 use crate::number::{Ball, Rational, Twofold, U};
 
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
@@ -51,6 +53,28 @@ pub trait Coefficient: Clone {
     fn quotient(n: i128, d: u128) -> Self {
         let exact = Rational::new(n.into(), d.into());
         Self::of_ball(&Ball::from_rational(&exact, Self::BITS))
+    }
+}
+
+impl<T: Coefficient> Lanes<T> for [T; 4] {
+    #[inline(always)]
+    fn of(x: [&T; 4]) -> Self {
+        x.map(Clone::clone)
+    }
+
+    #[inline(always)]
+    fn entries(self) -> [T; 4] {
+        self
+    }
+
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
+        std::array::from_fn(|i| self[i].plus(&other[i]))
+    }
+
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
+        std::array::from_fn(|i| self[i].times(&other[i]))
     }
 }
 
@@ -189,60 +213,57 @@ impl Coefficient for Twofold {
     }
 }
 
-/// A number of `LENGTH` bits: a ball without a radius. The sum of two exact balls is within 2^-LENGTH+2 of the sum of their
-/// magnitudes, the product within 2^-LENGTH+1.
-#[derive(Clone)]
-pub struct Long<const LENGTH: u32>(Ball);
-
-impl<const LENGTH: u32> Coefficient for Long<LENGTH> {
+impl Coefficient for Long {
     type Enclosure = Wide;
     type Lower = Twofold;
     type Lanes = [Self; 4];
-    const UNIT: f64 = f64::from_bits((1023 + 2 - LENGTH as u64) << 52);
-    const BITS: u32 = LENGTH + 32;
-    const TERMS: usize = 8 + LENGTH as usize / 7;
-    const COST: u64 = 500;
-    const PRODUCTS: u64 = 4_000;
+    const UNIT: f64 = f64::from_bits((1023 + 2 - long::LENGTH as u64) << 52);
+    const BITS: u32 = long::LENGTH + 32;
+    const TERMS: usize = 8 + long::LENGTH as usize / 7;
+    const COST: u64 = 100;
+    const PRODUCTS: u64 = 10_000;
     const CLOSE: f64 = 1e-40;
 
     fn zero() -> Self {
-        Long(Ball::zero())
+        Long::ZERO
     }
 
     fn of(x: f64) -> Self {
-        Long(exact(x))
+        Long::of(x)
     }
 
     fn negative(&self) -> Self {
-        Long(self.0.neg())
+        Long::negative(*self)
     }
 
     fn plus(&self, other: &Self) -> Self {
-        Long(self.0.add(&other.0, LENGTH).midpoint())
+        Long::plus(self, other)
     }
 
     fn times(&self, other: &Self) -> Self {
-        Long(self.0.mul(&other.0, LENGTH).midpoint())
+        Long::times(self, other)
     }
 
     fn scale2(&self, k: i32) -> Self {
-        Long(self.0.scale2(k.into()))
+        Long::scale2(self, k)
     }
 
     fn near(&self) -> f64 {
-        self.0.mid_f64()
+        Long::near(self)
     }
 
     fn of_ball(ball: &Ball) -> Self {
-        Long(ball.round(LENGTH).midpoint())
+        let (n, exponent) = ball.middle();
+        Long::of_dyadic(n, exponent)
     }
 
     fn ball(&self) -> Ball {
-        self.0.clone()
+        let (n, exponent) = self.dyadic();
+        Ball::from_integer(&n).scale2(exponent)
     }
 
     fn to<P: Coefficient>(&self) -> P {
-        P::of_ball(&self.0)
+        self.doubles().fold(P::zero(), |sum, half| sum.plus(&P::of(half)))
     }
 
     fn near_enclosure(enclosure: &Wide) -> (Self, f64) {

@@ -124,7 +124,7 @@ fn damped_part(part: &System, ticking: &System, rate: &Rational, limits: &Limits
 /// # Errors
 /// As [`damped`]; a period of more kicks than the limits allow.
 pub fn damped_pair(oscillator: &Oscillator, rate: &Rational, limits: &verdict::Limits) -> Result<Friction> {
-    let two = oscillator.clocks();
+    let two = oscillator.clocks()?;
     limits.allow(two.ratio().kicks(), Tier::Refine)?;
     let steps = [Rational::from_integer(1.into()), Rational::new(two.p().into(), two.q().into())];
     let strengths = vec![two.fast().clone(), two.slow().clone()];

@@ -239,9 +239,9 @@ impl Kind {
         let (error, scale) = (exponent.error(), i64::try_from(exponent.exponent).ok()?);
         let bits = T::BITS + 80;
         let [a, b] = self.numbers(&exponent.terms()[0]).map(|x| x.ball().scale2(scale));
-        let log2 = a.div(&Ball::ln2(bits), bits)?.to_f64_enclosure().0.round() as i64;
+        let log2 = a.div(&Ball::ln2(bits), bits)?.lower().round().to_integer();
         let ln2 = Ball::ln2(bits);
-        let without = |x: &Ball| x.sub(&ln2.mul(&Ball::from_integer(&log2.into()), bits), bits);
+        let without = |x: &Ball| x.sub(&ln2.mul(&Ball::from_integer(&log2), bits), bits);
         let exp = |x: &Ball| x.exp(bits);
         let first = match self {
             Kind::Elliptic => {
@@ -251,7 +251,7 @@ impl Kind {
             Kind::Hyperbolic => [exp(&without(&a)), exp(&without(&b))],
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
-        first.exponent += i128::from(log2);
+        first.exponent += log2.to_i128()?;
         // e^R, R = S without its constant term.
         let mut terms = exponent.terms().to_vec();
         terms[0] = std::array::from_fn(|_| T::zero());
