@@ -27,6 +27,7 @@ from kickdrift._tables import (
     Curves,
     Half,
     Proposition,
+    State,
     Tongues,
     bands,
     closings,
@@ -34,6 +35,7 @@ from kickdrift._tables import (
     curves,
     half,
     proposition,
+    state,
     tongues,
 )
 from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
@@ -58,6 +60,7 @@ __all__ = [
     "Recheck",
     "Row",
     "Run",
+    "State",
     "System",
     "SystemAdvice",
     "SystemVerdict",
@@ -81,6 +84,7 @@ __all__ = [
     "recheck",
     "simplest",
     "simulate",
+    "state",
     "tongues",
     "verdicts",
 ]

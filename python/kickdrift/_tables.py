@@ -431,6 +431,72 @@ def half(ratio: Exact, *, s: Exact, rho: Exact, budget: int | None = None) -> Ha
     )
 
 
+class State(Answer):
+    """Position and velocity after any number of steps.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> far = kd.state(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2="0.333", steps=10**18)
+    >>> far[0]["x"]["hi"] - far[0]["x"]["lo"] < 1e-15
+    True
+    """
+
+
+def state(
+    *,
+    lambda1: Exact,
+    lambda2: Exact,
+    h1: Exact,
+    h2: Exact,
+    steps: int,
+    x: Exact = 1,
+    v: Exact = 0,
+) -> State:
+    """Compute the state after n steps of the slow clock, without following them: n may be 10^18.
+
+    All kicks at the first and at the last time count half. The row has the time, x, v and the propagator
+    [[xx, xv], [vx, vv]] that leads there, as enclosures in the units of what was asked.
+
+    Parameters
+    ----------
+    lambda1, lambda2 : Exact
+        The stiffnesses of the fast and of the slow force, 1/time².
+    h1, h2 : Exact
+        The steps, time; h2/h1 is rational, its period of any length.
+    steps : int
+        The number of steps of the slow clock, below 2^64.
+    x, v : Exact
+        Position and velocity at the start, rational.
+
+    Raises
+    ------
+    KickdriftError, BudgetError
+        Bad input; kicks so strong that 256 bits do not enclose the state.
+
+    Examples
+    --------
+    Verlet at s = 1 is a turn by 60 degrees:
+
+    >>> import kickdrift as kd
+    >>> row = kd.state(lambda1=1, lambda2=0, h1=1, h2=1, steps=10**18 + 2)[0]
+    >>> row["x"]["lo"] <= 1 <= row["x"]["hi"]
+    True
+    """
+    return answered(
+        State,
+        "state",
+        "states",
+        lambda1=_text("lambda1", lambda1),
+        lambda2=_text("lambda2", lambda2),
+        h1=_text("h1", h1),
+        h2=_text("h2", h2),
+        steps=steps,
+        x=_text("x", x),
+        v=_text("v", v),
+    )
+
+
 class Bands(Answer):
     """Boxes of steps in which every ratio h2/h1, rational or not, is proven unstable.
 

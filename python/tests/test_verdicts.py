@@ -160,7 +160,7 @@ def test_a_period_beyond_every_machine_is_decided_alone_as_among_others() -> Non
     found = [kd.decide(lambda1="pi^2", lambda2="pi^2/25", h1=a, h2=b) for a, b in zip(h1, h2, strict=True)]
     assert [one.stable for one in found] == together.stable.tolist()
     longest = max(found, key=lambda one: max(one.ratio))
-    assert max(longest.ratio) > 2**63 and longest.to_dict()["p"] == str(longest.ratio[0])
+    assert max(longest.ratio) > 2**63 and longest.document.data["p"] == str(longest.ratio[0])
     assert {one.stable for one in found} == {True, False}
     for one in found:
         assert one.stable == (one.growth_rate == (0.0, 0.0))

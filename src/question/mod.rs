@@ -33,6 +33,7 @@ mod ratios;
 mod scene;
 #[cfg(feature = "system")]
 mod simulate;
+mod state;
 mod survey;
 #[cfg(feature = "system")]
 mod system;
@@ -57,6 +58,7 @@ pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
 #[cfg(feature = "system")]
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
+pub use state::State;
 pub use survey::{Survey, THINNEST};
 #[cfg(feature = "system")]
 pub use system::{Answer as SystemAnswer, Found, System};
@@ -124,6 +126,7 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Proposition>(),
         Named::of::<Polynomial>(),
         Named::of::<Half>(),
+        Named::of::<State>(),
         Named::of::<Closings>(),
         Named::of::<Survey>(),
         Named::of::<Bands>(),

@@ -19,6 +19,7 @@
 //! | system-intervals | signs | none |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
+//! | state | a power of the period and return maps | kick by kick |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
@@ -79,6 +80,7 @@ mod map;
 mod polynomial;
 mod proposition;
 mod sample;
+mod state;
 mod survey;
 #[cfg(feature = "system")]
 mod system;
@@ -144,6 +146,7 @@ claims! {
     "polynomial" Polynomial polynomial::Claim;
     "proposition" Proposition proposition::Claim;
     "half" Half half::Claim;
+    "state" State state::Claim;
     "bands" Bands bands::Claim;
     #[cfg(feature = "advise")]
     "advise" Advise advise::Claim;

@@ -310,6 +310,7 @@ fn every_command_explains_itself() {
         "proposition",
         "polynomial",
         "half",
+        "state",
         "map",
         "run",
         "tongues",

@@ -245,7 +245,7 @@ impl<T: Coefficient> Frame<T> {
     pub fn found<P: Coefficient>(&self) -> Option<Found> {
         let Half { entries: [a, b, c, d], exponent, nodes } = self.half::<P>()?;
         let signs = PartialSigns { a: certain(&a), b: certain(&b), c: certain(&c), d: certain(&d) };
-        let exponent = i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 58);
+        let exponent = exponent_of_balls(exponent);
         let ends = exponent.map(|exponent| {
             let end = |x: &T::Enclosure, v: &T::Enclosure, signs, nodes| {
                 let of = |x: &T::Enclosure| x.ball().scale2(exponent);
@@ -257,11 +257,21 @@ impl<T: Coefficient> Frame<T> {
     }
 
     fn half<P: Coefficient>(&self) -> Option<Half<T::Enclosure>> {
-        let n = self.beat.q / 2;
-        let mut middle = Map::<P>::identity();
+        let (mut journey, _) = self.kicked::<P>(self.beat.q / 2)?;
+        self.close(&mut journey)?;
+        let (exponent, turn) = (journey.exponent, journey.turn);
+        let entries = journey.entries()?;
+        let nodes = turn.and_then(|turn| nodes(turn, entries[0].sign()?));
+        Some(Half { entries, exponent, nodes })
+    }
+
+    /// From t = 0 through the first n kicks of the other clock, the last one whole, and the place reached.
+    fn kicked<P: Coefficient>(&self, n: u128) -> Option<(Journey<'_, T>, i128)> {
+        let (mut middle, mut place) = (Map::<P>::identity(), 0);
         if n > 0 {
             let [left, right] = self.branches()?;
-            middle = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?.product;
+            let reached = euclid::walk(left, right, n, middle, &mut Budget::of::<T>())?;
+            (middle, place) = (reached.product, reached.x);
         }
         let (zero, one) = (self.zero(), self.one());
         // Half a kick of the other clock at t = 0.
@@ -273,12 +283,34 @@ impl<T: Coefficient> Frame<T> {
             exponent: middle.exponent,
         };
         journey.go(&middle.enclosures::<T>(self.bits), |turn, angle| turn.then(middle.turn?, angle));
-        self.close(&mut journey)?;
-        let exponent = journey.exponent;
-        let [a, b, c, d] = journey.product;
-        let nodes = journey.turn.and_then(|turn| nodes(turn, a.sign()?));
-        let (c, b) = (c.times(&self.unit), b.over(&self.unit)?);
-        Some(Half { entries: [a, b, c, d], exponent, nodes })
+        Some((journey, place))
+    }
+
+    /// From the middle of the kicks at t = 0 to the middle of the other clock's kick after n steps, and the power of two that the
+    /// entries are to be multiplied by: whole periods as a power, and the rest.
+    pub fn after(&self, n: &BigUint) -> Option<(Matrix<T::Enclosure>, i128)> {
+        let (periods, rest) = n.div_rem(&BigUint::from(self.beat.q));
+        let rest = rest.to_u128()?;
+        let Half { entries: [a, b, c, d], exponent, .. } = self.half::<T>()?;
+        // The second half is the first one backwards.
+        let period = product(&[d.clone(), b.clone(), c.clone(), a.clone()], &[a, b, c, d]);
+        let one = [self.one(), self.zero(), self.zero(), self.one()];
+        let digits = (0..periods.bits()).rev().map(|bit| periods.bit(bit));
+        let (whole, scaled) = power(&period, &one, digits);
+        let exponent = exponent.checked_mul(2)?.checked_mul(periods.to_i128()?)?.checked_add(scaled)?;
+        if rest == 0 {
+            return Some((whole, exponent));
+        }
+        let (mut journey, place) = self.kicked::<T>(rest)?;
+        let at = self.quotient(place, self.beat.q);
+        let [undo, ..] = self.nilpotent(&at, &self.zero());
+        let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
+        journey.go(&undo, |_, _| None);
+        let kick = self.s.over(&self.unit)?.scale2(-1).negative();
+        journey.go(&[self.one(), self.zero(), kick, self.one()], |_, _| None);
+        journey.go(&[self.one(), self.unit.times(&at), self.zero(), self.one()], |_, _| None);
+        let exponent = exponent.checked_add(journey.exponent)?;
+        Some((product(&journey.entries()?, &whole), exponent))
     }
 
     /// What is left from the last kick of the other clock up to T/2, or half a kick less.
@@ -328,6 +360,12 @@ impl<T: Coefficient> Journey<'_, T> {
         let angle = self.frame.towards(&self.product[0], &self.product[2]);
         self.turn = self.turn.zip(angle).and_then(|(turn, angle)| turned(turn, angle));
     }
+
+    /// In the base's step as the unit of time.
+    fn entries(self) -> Option<Matrix<T::Enclosure>> {
+        let [a, b, c, d] = self.product;
+        Some([a, b.over(&self.frame.unit)?, c.times(&self.frame.unit), d])
+    }
 }
 
 /// How often x changed its sign: at the odd quarters of the clockwise turn, which each of the steps passes in one sense.
@@ -340,6 +378,11 @@ fn nodes(turn: Turn, sign: Sign) -> Option<u64> {
         1
     };
     u64::try_from(beside - 2 * turn.whole).ok()
+}
+
+/// Where balls with this exponent, and their products, stay within what balls hold.
+pub fn exponent_of_balls(exponent: i128) -> Option<i64> {
+    i64::try_from(exponent).ok().filter(|e| e.unsigned_abs() <= 1 << 58)
 }
 
 /// A sign; enclosures of zero have none.
