@@ -10,7 +10,7 @@ use super::session::Session;
 use super::tile::code;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse, parse_ratio, parse_rational};
-use crate::number::{Laurent, Rational, Real};
+use crate::number::{Laurent, Rational};
 use crate::parallel::try_map;
 use crate::propagator::Oscillator;
 use crate::tongue::{Listing, Request, Selection, StepWindow, Stiffness};
@@ -77,11 +77,8 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
 
 /// The verdict's code, as in tiles, and the growth rate.
 fn sample(pair: &Oscillator) -> Result<(u8, f64)> {
-    const BITS: u32 = 96;
     let (Decision { verdict, .. }, growth) = decide_with_growth(pair, Tier::Filter, &LIMITS)?;
-    let ln = growth.ln_multiplier.as_ref();
-    let rate =
-        ln.and_then(|ln| ln.div(&pair.period().enclosure(BITS), BITS)).map_or(0.0, |rate| rate.mid_f64());
+    let rate = growth.rate(pair);
     Ok((code(verdict), rate))
 }
 

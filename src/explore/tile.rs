@@ -1,21 +1,25 @@
 //! Tiles: the certified verdicts of a map, by the kernel that makes maps.
 //!
 //! Level l and place (x, y) mean the `size`² pairs h1 = (x size + i + 1) d1, h2 = (y size + j + 1) d2 with d1 = unit/(size 2^l): some of the
-//! pairs that a map of the whole plane with these spacings has. What a tile costs doubles with each level, since p and q grow; it is known
-//! before the work begins, by the map's own law.
+//! pairs that a map of the whole plane with these spacings has. p and q double with each level; from 2^15 kicks on a verdict's cost grows
+//! with their logarithm alone, and no tile is refused before they have 84 binary digits.
 
 use num_bigint::{BigInt, BigUint};
 use num_traits::ToPrimitive;
 
+use super::point::LIMITS;
 use super::query::{Query, count, positive, whole};
 use super::reply::Reply;
 use super::session::Session;
 use crate::error::{Error, Result};
 use crate::map::{Band, Enclosure, Grid, Map, Products, Resources};
 use crate::number::{Laurent, Rational};
-use crate::verdict::{Kind, Verdict};
+use crate::parallel::try_map;
+use crate::propagator::Oscillator;
+use crate::resonance::dominant_family;
+use crate::verdict::{Kind, Tier, Verdict, decide_steps, decide_with_growth};
 
-/// Kicks side by side that the verdicts of a tile may compose: about two seconds of a core.
+/// Kicks side by side that a tile of verdicts kick by kick may take as long as: about two seconds of a core.
 pub(super) const MOST_KICKS: u64 = 4_000_000_000;
 
 /// Multiples of a spacing that a grid can have.
@@ -26,6 +30,13 @@ pub(super) const SIZES: (u64, u64) = (16, 512);
 
 /// The deepest level.
 const DEEPEST: u64 = 4096;
+
+/// Binary digits of the multiples up to which pairs are decided: return maps begin in two doubles there, and in numbers that are twenty
+/// times as slow beyond.
+const DEEPEST_DECIDED: u64 = 84;
+
+/// Binary digits of the multiples up to which a pair's return maps are in doubles.
+const IN_DOUBLES: u64 = 38;
 
 /// The values of a tile.
 #[derive(Clone, Copy, PartialEq)]
@@ -59,13 +70,27 @@ impl What {
 }
 
 /// 16 bytes, `KDT1`, the size and what as u32, the largest growth as f32; then the values, row by row from the lowest h2. All little endian.
+///
+/// Where multiples are beyond a grid's, pairs are decided one by one, and a tile has fewer of them on the same piece of the plane.
 pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     let place = Place::read(query)?;
     let what = query.read("what", What::read)?.unwrap_or(What::Verdict);
     let (lambda1, lambda2) = query.stiffnesses(session)?;
-    let Some([columns, rows]) = place.multiples() else {
-        return Ok(refused(place.cost()));
+    let tile = match place.multiples() {
+        Some(multiples) => of_grid(&place, multiples, what, lambda1, lambda2)?,
+        None if place.bits() <= DEEPEST_DECIDED => of_pairs(&place.thinned(), what, lambda1, lambda2)?,
+        None => return Ok(refused(place.cost())),
     };
+    Ok(Reply::new("application/octet-stream", tile.bytes()))
+}
+
+fn of_grid(
+    place: &Place,
+    [columns, rows]: [(u64, u64); 2],
+    what: What,
+    lambda1: Laurent,
+    lambda2: Laurent,
+) -> Result<Tile> {
     let steps = place.steps().map(Laurent::from_rational);
     let range = |(first, last): (u64, u64), step: &Laurent| {
         let times = |n: u64| step * &Laurent::from_rational(Rational::from_integer(n.into()));
@@ -73,27 +98,37 @@ pub(super) fn answer(session: &Session, query: &Query) -> Result<Reply> {
     };
     let ranges = (range(columns, &steps[0]), range(rows, &steps[1]));
     let grid = Grid::new(lambda1, lambda2, steps, ranges.0, ranges.1)?;
-    let pace = pace(grid.longest() as f64);
-    // Most tiles need no estimate.
-    if grid.pairs() as f64 * grid.longest() as f64 * pace > MOST_KICKS as f64 {
-        let kicks = grid.kicks() * pace;
-        if kicks > MOST_KICKS as f64 {
-            return Ok(refused(kicks));
-        }
-    }
     let mut tile = Tile::new(what, place.size as usize);
     let resources = Resources { threads: 1, ..Resources::default() };
     Map::of(&grid).with(what.products()).within(resources).for_each_band(|_, band| {
         tile.add(&grid, &band);
         Ok(())
     })?;
-    Ok(Reply::new("application/octet-stream", tile.bytes()))
+    Ok(tile)
 }
 
-/// How much longer a kick takes than in runs side by side: in half periods of more updates than this their common bound leaves most pairs
-/// undecided, and each is run again alone, 24 times as slow (measured in Figure 1 at h1 = 1/2, h2 = 9/10).
-fn pace(longest: f64) -> f64 {
-    if longest > 32_768.0 { 24.0 } else { 1.0 }
+/// Pair by pair, for periods of any number of kicks.
+fn of_pairs(place: &Place, what: What, lambda1: Laurent, lambda2: Laurent) -> Result<Tile> {
+    let [columns, rows] = place.multiples_of_steps();
+    let pairs = rows
+        .iter()
+        .flat_map(|h2| columns.iter().map(move |h1| (h1, h2)))
+        .map(|(h1, h2)| Oscillator::new(lambda1.clone(), lambda2.clone(), h1.clone(), h2.clone()));
+    let pairs = pairs.collect::<Result<Vec<_>>>()?;
+    let mut tile = Tile::new(what, place.size as usize);
+    if what == What::Verdict {
+        let verdicts = try_map(&pairs, |pair| decide_steps(pair, &LIMITS))?;
+        tile.values = verdicts.iter().map(|found| code(found.verdict)).collect();
+        return Ok(tile);
+    }
+    let grown = try_map(&pairs, |pair| decide_with_growth(pair, Tier::Filter, &LIMITS))?;
+    for (n, ((_, growth), pair)) in grown.iter().zip(&pairs).enumerate() {
+        let rate = growth.rate(pair);
+        let family =
+            growth.label.zip(pair.clocks().ok()).map(|(m, clocks)| dominant_family(clocks.ratio(), m));
+        tile.put(n, rate, family);
+    }
+    Ok(tile)
 }
 
 fn refused(kicks: f64) -> Reply {
@@ -135,6 +170,28 @@ impl Place {
         Some([x?, y?])
     }
 
+    /// Binary digits of the larger of the multiples.
+    fn bits(&self) -> u64 {
+        self.at.iter().map(|at| (at * self.size + self.size).bits()).max().unwrap_or(0)
+    }
+
+    /// With so many fewer points that they are decided within about a second of a core.
+    fn thinned(&self) -> Place {
+        let by = if self.bits() <= IN_DOUBLES { 2 } else { 4 };
+        let size = (self.size / by).max(SIZES.0);
+        Place { size, units: self.units.clone(), at: self.at.clone(), level: self.level }
+    }
+
+    /// All h1 and all h2.
+    fn multiples_of_steps(&self) -> [Vec<Laurent>; 2] {
+        let steps = self.steps();
+        std::array::from_fn(|axis| {
+            let first = BigInt::from(&self.at[axis] * self.size);
+            let multiple = |i: u64| Rational::from_integer(&first + BigInt::from(i + 1)) * &steps[axis];
+            (0..self.size).map(|i| Laurent::from_rational(multiple(i))).collect()
+        })
+    }
+
     /// Σ (min(p, q)/2 + 1) where the multiples i, j are so large that they have a common factor as numbers drawn at random have:
     /// the mean of 1/gcd is ζ(3)/ζ(2) = 0.7308.
     fn cost(&self) -> f64 {
@@ -142,7 +199,7 @@ impl Place {
         let [x, y] =
             self.at.each_ref().map(|at| (at.to_f64().unwrap_or(f64::INFINITY) + 0.5) * self.size as f64);
         let least = x.min(y * d2 / d1);
-        (self.size * self.size) as f64 * (0.7308 * least / 2.0 + 1.0) * pace(least / 2.0)
+        (self.size * self.size) as f64 * (0.7308 * least / 2.0 + 1.0)
     }
 }
 
@@ -165,8 +222,8 @@ impl Tile {
 
     /// Bands come column by column; a tile is written row by row.
     fn add(&mut self, grid: &Grid, band: &Band) {
-        let first = (band.first - grid.columns().0) as usize;
-        let at = |n: usize| (n % band.rows) * self.size + first + n / band.rows;
+        let (first, size) = ((band.first - grid.columns().0) as usize, self.size);
+        let at = |n: usize| (n % band.rows) * size + first + n / band.rows;
         if self.what == What::Verdict {
             for (n, &verdict) in band.verdicts.iter().enumerate() {
                 self.values[at(n)] = code(Verdict::ALL[usize::from(verdict)]);
@@ -178,23 +235,23 @@ impl Tile {
             let n = growing.position as usize;
             let (i, j) = band.multipliers(grid, n);
             let ratio = grid.ratio(i, j);
-            let value = match self.what {
-                What::Family => {
-                    let (a, b) = growing.family(ratio).unwrap_or((i64::from(i16::MIN), 0));
-                    let [a, b] = [a, b].map(|x| x.clamp(-32768, 32767) as i16);
-                    (u32::from(b as u16) << 16 | u32::from(a as u16)).to_le_bytes()
-                }
-                _ => {
-                    // T = p h1.
-                    let rate =
-                        growing.rate(ratio.p() as f64 * (i as f64 * step)).map_or(0.0, Enclosure::middle);
-                    self.largest = self.largest.max(rate as f32);
-                    (rate as f32).to_le_bytes()
-                }
-            };
-            let place = 4 * at(n);
-            self.values[place..place + 4].copy_from_slice(&value);
+            // T = p h1.
+            let rate = growing.rate(ratio.p() as f64 * (i as f64 * step)).map_or(0.0, Enclosure::middle);
+            self.put(at(n), rate, growing.family(ratio));
         }
+    }
+
+    /// The rate or the family of the n-th pair, whichever is shown.
+    fn put(&mut self, n: usize, rate: f64, family: Option<(i64, i64)>) {
+        let value = if self.what == What::Family {
+            let (a, b) = family.unwrap_or((i64::from(i16::MIN), 0));
+            let [a, b] = [a, b].map(|x| x.clamp(-32768, 32767) as i16);
+            (u32::from(b as u16) << 16 | u32::from(a as u16)).to_le_bytes()
+        } else {
+            self.largest = self.largest.max(rate as f32);
+            (rate as f32).to_le_bytes()
+        };
+        self.values[4 * n..4 * n + 4].copy_from_slice(&value);
     }
 
     fn bytes(self) -> Vec<u8> {

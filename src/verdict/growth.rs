@@ -19,7 +19,7 @@ use crate::orbit::floquet::Floquet;
 use crate::orbit::returns::{self, Wanted};
 use crate::orbit::{filter, plain, refine};
 use crate::parallel::go_on;
-use crate::propagator::{LongClocks, TwoClocks};
+use crate::propagator::{LongClocks, Oscillator, TwoClocks};
 use crate::schedule::Schedule;
 
 /// How a pair moves over one synchronization period. As JSON its enclosures are two doubles with the value between them,
@@ -33,6 +33,16 @@ pub struct Growth {
     pub ln_multiplier: Option<Ball>,
     /// m, the tongue's label: half turns of the growing solution over one period. `None` unless hyperbolic.
     pub label: Option<u64>,
+}
+
+impl Growth {
+    /// ln μ / T per unit time, near the middle of its enclosure; 0 where nothing grows exponentially.
+    pub fn rate(&self, oscillator: &Oscillator) -> f64 {
+        const BITS: u32 = 96;
+        let period = oscillator.period().enclosure(BITS);
+        let rate = self.ln_multiplier.as_ref().and_then(|ln| ln.div(&period, BITS));
+        rate.map_or(0.0, |rate| rate.mid_f64())
+    }
 }
 
 /// Above this many kicks the enclosures come from the filter and are as tight as doubles allow.

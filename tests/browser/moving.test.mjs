@@ -108,13 +108,29 @@ async function clickTongue(page) {
   return line.ratio;
 }
 
+test("sixty levels down every cell is decided, as the program decides its pair", async () => {
+  const page = await opened();
+  await page.fill("#go-h1", "0.3127");
+  await page.fill("#go-h2", "1.4142");
+  await page.click("text=Go to this pair");
+  await page.focus("canvas");
+  for (let k = 0; k < 60; k++) await page.keyboard.press("+");
+  await settled(page);
+  await page.waitForFunction(() => window.kickdrift.status.cells && !window.kickdrift.status.waiting, null, { timeout: 120_000 });
+  const { level, thin, costly } = await page.evaluate(() => ({ level: window.kickdrift.map.view.level, ...window.kickdrift.status }));
+  assert.ok(level >= 60 && thin > 0 && !costly, `${level} ${thin}`);
+  await page.mouse.click(...(await spot(page, 40, 30)));
+  const { shown, told } = await agreesWithTheProgram(page);
+  assert.ok(BigInt(told.q) > 1n << 50n, `${shown.h1} ${told.q}`);
+});
+
 test("where no cell can be decided a click takes the simplest ratio within half a cell", async () => {
   const page = await opened();
   await page.fill("#go-h1", "0.3127");
   await page.fill("#go-h2", "1.4142");
   await page.click("text=Go to this pair");
   await page.focus("canvas");
-  for (let k = 0; k < 24; k++) await page.keyboard.press("+");
+  for (let k = 0; k < 110; k++) await page.keyboard.press("+");
   await settled(page);
   await page.waitForFunction(() => window.kickdrift.status.costly && !window.kickdrift.status.cells && window.kickdrift.map.vectors.tongues);
   // A pixel of no line.

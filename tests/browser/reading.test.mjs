@@ -90,7 +90,7 @@ test("the grid that is sampled is said, and where it would cost too much, what i
   await page.fill("#go-h2", "1.12");
   await page.click("text=Go to this pair");
   await page.focus("canvas");
-  for (let k = 0; k < 20; k++) await page.keyboard.press("+");
+  for (let k = 0; k < 110; k++) await page.keyboard.press("+");
   await settled(page);
   await page.waitForFunction(() => /Shown instead/.test(document.querySelector(".said").textContent), null, { timeout: 60_000 });
   const words = await said();

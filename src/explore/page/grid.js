@@ -4,7 +4,7 @@ import { grouped, number, spacing } from "./writing.js";
 
 /** Sentences on a picture's status; names of quantities are set by `formulas` in dom.js. */
 export function told(status, view) {
-  const [d1, d2] = [0, 1].map((axis) => spacing(view.unit(axis), status.level));
+  const [d1, d2] = [0, 1].map((axis) => spacing(view.unit(axis), status.level - (status.thin ?? 0)));
   const { costly, vectors, sum, asked, pale, refused, fault } = status;
   const said = [];
   if (!costly || status.cells) said.push(`Every cell is one exact verdict: multiples of d₁\u00a0=\u00a0${d1} and d₂\u00a0=\u00a0${d2}.`);

@@ -5,7 +5,7 @@ import { css } from "./colours.js";
 import { parse, text } from "./exact.js";
 import { layerKey, Tiles } from "./tiles.js";
 import { drawLabels, Vectors } from "./vectors.js";
-import { View } from "./view.js";
+import { SIZE, View } from "./view.js";
 
 /** Rising strokes, a pattern that joins at its edges. */
 function hatch(context, { paper, faint }) {
@@ -123,7 +123,9 @@ export class StabilityMap {
     const ring = lacking === 0 && !this.moving && tiles.quick ? view.tiles(level, 1) : [];
     tiles.want(now.layer, lacking ? [...shown, ...coarser] : ring);
     this.bare = here.map((tile, k) => (tile ? null : view.tileBox(shown[k]))).filter(Boolean);
-    return { costly, cells: lacking < shown.length, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
+    // Of so many cells along an axis, as a power of two, one is decided.
+    const thin = Math.max(0, ...here.map((tile) => (tile ? Math.log2(SIZE / tile.size) : 0)));
+    return { costly, thin, cells: lacking < shown.length, waiting: lacking > costs.filter(Boolean).length, fault: lacking ? this.fault : null };
   }
 
   /** The tiles of the finest level at most four above that no refusal is known of: pale, they show where one is. */

@@ -115,12 +115,14 @@ export class Tiles {
   #keep(layer, place, bytes) {
     const head = new DataView(bytes);
     const [Kind, each] = ARRAYS[layer.what];
-    if (String.fromCharCode(...new Uint8Array(bytes, 0, 4)) !== "KDT1" || head.getUint32(4, true) !== SIZE) {
+    // Deep down a tile has fewer cells.
+    const size = head.getUint32(4, true);
+    if (String.fromCharCode(...new Uint8Array(bytes, 0, 4)) !== "KDT1" || SIZE % size !== 0) {
       throw new Error("a tile of a kind that this page does not know");
     }
-    const values = new Kind(bytes, HEADER, SIZE * SIZE * each);
+    const values = new Kind(bytes, HEADER, size * size * each);
     const { tiles } = this.#layer(layer);
-    tiles.set(placeKey(place), { place, values, each, picture: null, colours: null, used: ++this.clock });
+    tiles.set(placeKey(place), { place, values, each, size, picture: null, colours: null, used: ++this.clock });
     this.#forget();
   }
 
@@ -132,21 +134,26 @@ export class Tiles {
     all.sort((a, b) => a[0] - b[0]).slice(0, all.length - KEPT + KEPT / 10).forEach(([, tiles, key]) => tiles.delete(key));
   }
 
-  /** The value of a cell of a level, or undefined where its tile is not here. */
+  /** The value of a cell of a level, or undefined where its tile is not here or has no such cell. */
   value(layer, level, [i, j]) {
     const [a, b] = [i - 1n, j - 1n];
     const tile = this.#layer(layer).tiles.get(placeKey({ level, x: a >> 8n, y: b >> 8n }));
     if (!tile) return undefined;
-    const at = (Number(b & 255n) * SIZE + Number(a & 255n)) * tile.each;
+    // Of k cells the last one stands for all.
+    const k = SIZE / tile.size;
+    const [column, row] = [a, b].map((n) => (Number(n & 255n) + 1) / k - 1);
+    if (!Number.isInteger(column) || !Number.isInteger(row)) return undefined;
+    const at = (row * tile.size + column) * tile.each;
     return tile.each === 1 ? tile.values[at] : [tile.values[at], tile.values[at + 1]];
   }
 
   /** A tile as a picture, its lowest row at the bottom; painted once for each palette. */
   picture(tile, layer, colours) {
     if (tile.picture && tile.colours === colours) return tile.picture;
-    const image = new ImageData(SIZE, SIZE);
-    painter(layer.what, colours, layer.frequency)(tile.values, new Uint32Array(image.data.buffer), SIZE);
-    tile.picture ??= Object.assign(document.createElement("canvas"), { width: SIZE, height: SIZE });
+    const { size } = tile;
+    const image = new ImageData(size, size);
+    painter(layer.what, colours, layer.frequency)(tile.values, new Uint32Array(image.data.buffer), size);
+    tile.picture ??= Object.assign(document.createElement("canvas"), { width: size, height: size });
     tile.picture.getContext("2d").putImageData(image, 0, 0);
     tile.colours = colours;
     return tile.picture;

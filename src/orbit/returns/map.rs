@@ -18,6 +18,8 @@
 //! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
 //! [`FLOOR`] what is lost where numbers underflow.
 
+use std::ops::Deref;
+
 use super::lanes::Lanes;
 use super::number::{Coefficient, near_ball};
 use super::turn::{Turn, direction, principal};
@@ -50,6 +52,21 @@ pub struct Map<T> {
     pub exponent: i128,
     /// Of (1, 0) at t = 0.
     pub turn: Option<Turn>,
+}
+
+/// The norms of a function's terms.
+struct Norms {
+    all: [f64; MOST_TERMS],
+    count: usize,
+}
+
+impl Deref for Norms {
+    type Target = [f64];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f64] {
+        &self.all[..self.count]
+    }
 }
 
 /// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
@@ -232,8 +249,11 @@ impl<T: Coefficient> Map<T> {
         self.error < 0.1 * norm(&self.terms[0])
     }
 
-    fn norms(&self) -> Vec<f64> {
-        self.terms.iter().map(norm).collect()
+    /// |M_j|.
+    fn norms(&self) -> Norms {
+        let mut norms = Norms { all: [0.0; MOST_TERMS], count: self.terms.len().min(MOST_TERMS) };
+        norms.all.iter_mut().zip(&self.terms).for_each(|(own, term)| *own = norm(term));
+        norms
     }
 
     /// `self` after `earlier`, on the same interval.
@@ -241,10 +261,10 @@ impl<T: Coefficient> Map<T> {
         let (b, a) = (self.norms(), earlier.norms());
         let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
         // Σ |B_i| |A_j|, i + j = m.
-        let mut sizes = vec![0.0; b.len() + a.len() - 1];
-        b.iter().enumerate().for_each(|(i, b)| sizes[i..].iter_mut().zip(&a).for_each(|(m, a)| *m += b * a));
+        let mut sizes = [0.0; 2 * MOST_TERMS];
+        b.iter().enumerate().for_each(|(i, b)| sizes[i..].iter_mut().zip(&*a).for_each(|(m, a)| *m += b * a));
         // What is far below the rounding is left out.
-        let (mut n, mut dropped, least) = (sizes.len(), 0.0, 0.25 * T::UNIT * sum_b * sum_a);
+        let (mut n, mut dropped, least) = (b.len() + a.len() - 1, 0.0, 0.25 * T::UNIT * sum_b * sum_a);
         while n > T::TERMS || n > 1 && dropped + sizes[n - 1] < least {
             n -= 1;
             dropped += sizes[n];
@@ -356,17 +376,15 @@ impl<T: Coefficient> Task for Product<'_, T> {
     #[inline(always)]
     fn run(self) -> Vec<Entries<T>> {
         let of = T::Lanes::of;
-        let later = |[a, b, c, d]: &Entries<T>| [of([a, a, c, c]), of([b, b, d, d])];
-        let earlier = |[e, f, g, h]: &Entries<T>| [of([e, f, e, f]), of([g, h, g, h])];
-        let later: Vec<_> = self.later.iter().map(later).collect();
-        let earlier: Vec<_> = self.earlier.iter().map(earlier).collect();
         let mut terms: Vec<Entries<T>> = Vec::with_capacity(self.terms);
         for m in 0..self.terms {
-            let first = (m + 1).saturating_sub(earlier.len());
+            let first = (m + 1).saturating_sub(self.earlier.len());
             let mut sum = T::Lanes::splat(&T::zero());
-            for i in first..later.len().min(m + 1) {
-                let ([x, y], [e, g]) = (&later[i], &earlier[m - i]);
-                sum = sum.plus(&x.times(e).plus(&y.times(g)));
+            for i in first..self.later.len().min(m + 1) {
+                let ([a, b, c, d], [e, f, g, h]) = (&self.later[i], &self.earlier[m - i]);
+                let (first, second) =
+                    (of([a, a, c, c]).times(&of([e, f, e, f])), of([b, b, d, d]).times(&of([g, h, g, h])));
+                sum = sum.plus(&first.plus(&second));
             }
             terms.push(sum.entries());
         }

@@ -252,11 +252,12 @@ impl Kind {
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
         first.exponent += log2.to_i128()?;
-        // e^R, R = S without its constant term.
+        // e^R, R = S without its constant term: of a long sum a small part, whose own power of two is none of S.
+        let scale = i32::try_from(scale).ok()?;
         let mut terms = exponent.terms().to_vec();
         terms[0] = std::array::from_fn(|_| T::zero());
-        let mut rest = Map::of(terms);
-        rest.exponent = exponent.exponent;
+        terms.iter_mut().flatten().for_each(|x| *x = x.scale2(scale));
+        let rest = Map::of(terms);
         let size = rest.size();
         if size.is_nan() || size > 4.0 || error > 1.0 {
             return None;
