@@ -2,6 +2,7 @@
 
 mod kind;
 mod long;
+mod nodes;
 
 use kickdrift::number::rational::ratio;
 use kickdrift::number::{Ratio, Rational, Real, Sign, parse};
