@@ -48,8 +48,14 @@ fn scene(source: &Value) -> SystemScene {
 fn with(source: &Value, path: &str, value: &Rational) -> SystemScene {
     let mut file = source.clone();
     if path != "outer" {
-        let pointer = format!("/{}", path.replace('.', "/"));
-        *file.pointer_mut(&pointer).unwrap() = value.to_string().into();
+        let keys: Vec<&str> = path.split('.').collect();
+        let mut turned = keys.clone();
+        if keys[0] == "mass_matrix" {
+            turned.swap(1, 2);
+        }
+        for keys in [keys, turned] {
+            *file.pointer_mut(&format!("/{}", keys.join("/"))).unwrap() = value.to_string().into();
+        }
         return scene(&file);
     }
     let steps: Vec<Rational> =
@@ -154,6 +160,111 @@ fn an_edge_that_is_a_double_belongs_to_the_stretch_whose_verdict_it_has() {
         scene(&source).intervals(&"potentials.1.scale=-1/4..1/4".parse().unwrap(), 1e-2, &Limits::default());
     let found = found.unwrap().stretches;
     assert_true(&source, "potentials.1.scale", &found, 10, &mut Numbers(5));
+}
+
+/// diag(own, rest), the first coordinate turned by (3, 4, 5) into the third last, so that no zero parts them.
+fn turned(own: &[&[i64]], rest: [[i64; 2]; 2], denominator: i64) -> Value {
+    let (m, n) = (own.len(), own.len() + 2);
+    let entry = |i: usize, j: usize| match (i < m, j < m) {
+        (true, true) => own[i][j],
+        (false, false) => rest[i - m][j - m],
+        _ => 0,
+    };
+    let turn = |i: usize, k: usize| match (i == 0 || i == m, k == 0 || k == m) {
+        (true, true) if i == k => 3,
+        (true, true) => {
+            if i == 0 {
+                4
+            } else {
+                -4
+            }
+        }
+        _ => {
+            if i == k {
+                5
+            } else {
+                0
+            }
+        }
+    };
+    let product = |i: usize, j: usize| -> i64 {
+        (0..n)
+            .flat_map(|k| (0..n).map(move |l| (k, l)))
+            .map(|(k, l)| turn(i, k) * entry(k, l) * turn(j, l))
+            .sum()
+    };
+    (0..n)
+        .map(|i| (0..n).map(|j| format!("{}/{}", product(i, j), 25 * denominator)).collect::<Vec<_>>())
+        .collect()
+}
+
+/// Modes that do not change with the number, some of their multipliers at 1 or −1 or twice on the circle, with Jordan blocks or without:
+/// beside two modes that do change and that no rational direction parts from them.
+#[test]
+fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
+    let mut numbers = Numbers(17);
+    // Stiffnesses in tenths under both clocks, and the longer step.
+    let edges: [(&str, &[&[i64]], &[&[i64]], &str); 9] = [
+        ("kicks that cancel over the period: a block at 1", &[&[10]], &[&[-15]], "2"),
+        ("Verlet's limit: a block at 1", &[&[40]], &[&[0]], "2"),
+        ("an edge: a block at −1", &[&[10]], &[&[5]], "2"),
+        ("−1 twice", &[&[20]], &[&[0]], "2"),
+        ("1 twice", &[&[30]], &[&[0]], "3"),
+        ("1 twice and −1 twice", &[&[30, 0], &[0, 10]], &[&[0, 0], &[0, 0]], "3"),
+        ("a block at 1, −1 twice", &[&[10, 0], &[0, 20]], &[&[-15, 0], &[0, 0]], "2"),
+        ("two pairs alike on the circle", &[&[20, 5], &[5, 20]], &[&[-5, -5], &[-5, -5]], "2"),
+        ("two pairs that meet: blocks on the circle", &[&[2, 0], &[0, 38]], &[&[0, 1], &[1, 2]], "2"),
+    ];
+    for (what, first, second, step) in edges {
+        let n = first.len() + 2;
+        let zero = vec![vec![0; first.len()]; first.len()];
+        let zero: Vec<&[i64]> = zero.iter().map(Vec::as_slice).collect();
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": vec!["1"; n], "potentials": [
+                {"step": "1", "stiffness": turned(first, [[3, 1], [1, 7]], 10)},
+                {"step": step, "stiffness": turned(second, [[2, -1], [-1, 1]], 10)},
+                {"step": step, "scale": "1", "stiffness": turned(&zero, [[4, 2], [2, 1]], 10)},
+            ],
+        });
+        let mass = format!("masses.{}", n - 1);
+        for (path, range, ends) in
+            [("potentials.2.scale", "-1..4", (-1.0, 4.0)), (mass.as_str(), "1/4..3", (0.25, 3.0))]
+        {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{what}, {path}"));
+            assert_true(&source, path, &found.stretches, 4, &mut numbers);
+        }
+    }
+}
+
+/// One entry of a mass matrix that is not diagonal, on the diagonal and off it.
+#[test]
+fn intervals_of_masses_off_the_diagonal_leave_nothing_open_and_agree_with_exact_verdicts() {
+    let (mut numbers, mut changes) = (Numbers(23), 0);
+    for _ in 0..12 {
+        let mut source = numbers.system();
+        let n = source["masses"].as_array().unwrap().len();
+        if n == 1 {
+            continue;
+        }
+        // Rows that their diagonal exceeds.
+        let entry = |i: usize, j: usize| if i == j { 2 + n as i64 } else { 1 };
+        let rows: Vec<Vec<String>> =
+            (0..n).map(|i| (0..n).map(|j| format!("{}/2", entry(i, j))).collect()).collect();
+        source.as_object_mut().unwrap().remove("masses");
+        source["mass_matrix"] = json!(rows);
+        for (path, range, ends) in
+            [("mass_matrix.0.0", "3/2..4", (1.5, 4.0)), ("mass_matrix.1.0", "-3/4..5/4", (-0.75, 1.25))]
+        {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
+            changes += found.stretches.len() - 1;
+            assert_true(&source, path, &found.stretches, 2, &mut numbers);
+        }
+    }
+    assert!(changes > 5, "{changes}");
 }
 
 /// Fast frequencies of 1 and of √−0.001, both in the slow field: stable at seven and a half, unstable a little below.

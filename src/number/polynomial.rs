@@ -19,6 +19,8 @@ mod sturm;
 
 pub use display::Text;
 #[cfg(feature = "system")]
+pub(crate) use integer::common;
+#[cfg(feature = "system")]
 pub(crate) use integer::{in_unit_interval, quotient};
 pub(crate) use integer::{residues, roots_within, squarefree};
 pub(crate) use sturm::RootInterval;

@@ -12,19 +12,28 @@ use super::sturm::{RootInterval, primitive, sign_at};
 use crate::number::{Lift, PrimeField, Rational, Sign, prime_fields, rational};
 
 /// The primitive polynomial with the roots of f ≠ 0, each simple; its leading coefficient has the sign of f's.
-///
-/// A divisor modulo p has at least the degree of the true one, and the latter times l/(its leading coefficient), l that of
-/// f, has integer coefficients (Gauss): that is what the residues of least degree, scaled, lift to.
 pub(crate) fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
     let f = primitive(f.to_vec());
     let derivative: Vec<BigInt> = f.iter().enumerate().skip(1).map(|(k, c)| c * k).collect();
+    match common(&f, &derivative) {
+        divisor if divisor.len() == 1 => f,
+        divisor => quotient(&f, &divisor).expect("a divisor"),
+    }
+}
+
+/// The primitive greatest common divisor of f ≠ 0 and g, its leading coefficient positive.
+///
+/// A divisor modulo p has at least the degree of the true one, and the latter times l/(its leading coefficient), l that of
+/// f, has integer coefficients (Gauss): that is what the residues of least degree, scaled, lift to.
+pub(crate) fn common(f: &[BigInt], g: &[BigInt]) -> Vec<BigInt> {
+    let f = primitive(f.to_vec());
     let leading = f.last().expect("not 0");
     let mut lift: Option<Lift> = None;
     let mut degree = usize::MAX;
     for field in prime_fields().filter(|field| field.of_big(leading) != 0) {
-        let gcd = field.gcd(residues(&field, &f), residues(&field, &derivative));
+        let gcd = field.gcd(residues(&field, &f), residues(&field, g));
         if gcd.len() == 1 {
-            return f;
+            return vec![BigInt::one()];
         }
         if gcd.len() > degree {
             continue;
@@ -43,9 +52,8 @@ pub(crate) fn squarefree(f: &[BigInt]) -> Vec<BigInt> {
         if divisor.last().is_some_and(Signed::is_negative) {
             divisor.iter_mut().for_each(|c| *c = -&*c);
         }
-        let divides_derivative = quotient(&derivative, &divisor).is_some();
-        if let Some(squarefree) = quotient(&f, &divisor).filter(|_| divides_derivative) {
-            return squarefree;
+        if [&f[..], g].iter().all(|own| quotient(own, &divisor).is_some()) {
+            return divisor;
         }
     }
     unreachable!("there are primes enough")

@@ -1,7 +1,8 @@
 //! One file, many systems: any number of it replaced by the values of a range.
 //!
 //! A path names the number as it stands in the file: `potentials.1.step`, `build.steps.0`, `potentials.bond.scale` (a
-//! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`).
+//! potential by its name), `potentials.0.springs.2.2`. A last key that is not there yet is added (`scale`, `phase`). An entry of a symmetric
+//! matrix off its diagonal is both: `mass_matrix.0.1` is `mass_matrix.1.0`, too.
 
 use std::fmt::{Display, Formatter};
 use std::str::FromStr;
@@ -174,6 +175,9 @@ impl SystemScene {
         let mut file = self.source.clone();
         for (path, value) in numbers {
             *place(&mut file, path, field)? = Value::String(value.to_string());
+            if let Some(mirrored) = mirrored(path) {
+                *place(&mut file, &mirrored, field)? = Value::String(value.to_string());
+            }
         }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
         if let (Model::Measured(own), Model::Measured(old)) = (&mut scene.model, &self.model) {
@@ -181,6 +185,15 @@ impl SystemScene {
         }
         Ok(scene)
     }
+}
+
+/// The path of the entry (j, i) of a symmetric matrix for that of (i, j), i ≠ j.
+fn mirrored(path: &str) -> Option<String> {
+    let mut keys: Vec<&str> = path.split('.').collect();
+    let k = keys.len().checked_sub(3)?;
+    let is_apart = keys[k + 1..].iter().all(|key| key.parse::<usize>().is_ok()) && keys[k + 1] != keys[k + 2];
+    keys.swap(k + 1, k + 2);
+    (is_apart && ["mass_matrix", "stiffness"].contains(&keys[k])).then(|| keys.join("."))
 }
 
 /// An item by its place or its name; nothing where there is none.

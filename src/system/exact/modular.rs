@@ -35,6 +35,33 @@ pub(in crate::system) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize 
     rank
 }
 
+/// 1/m and det m; `None` where that is 0. Gauss and Jordan.
+pub(in crate::system) fn inverse(field: &PrimeField, mut m: DMatrix<u64>) -> Option<(DMatrix<u64>, u64)> {
+    let n = m.nrows();
+    let mut inverse = DMatrix::from_fn(n, n, |i, j| field.of(u64::from(i == j)));
+    let mut determinant = field.of(1);
+    for k in 0..n {
+        let pivot = (k..n).find(|&i| m[(i, k)] != 0)?;
+        if pivot != k {
+            m.swap_rows(k, pivot);
+            inverse.swap_rows(k, pivot);
+            determinant = field.sub(0, determinant);
+        }
+        determinant = field.mul(determinant, m[(k, k)]);
+        let scale = field.invert(m[(k, k)]);
+        for own in [&mut m, &mut inverse] {
+            own.row_mut(k).iter_mut().for_each(|x| *x = field.mul(*x, scale));
+        }
+        for i in (0..n).filter(|&i| i != k) {
+            let factor = m[(i, k)];
+            for own in [&mut m, &mut inverse] {
+                (0..n).for_each(|j| own[(i, j)] = field.sub(own[(i, j)], field.mul(factor, own[(k, j)])));
+            }
+        }
+    }
+    Some((inverse, determinant))
+}
+
 /// The coefficients of det(z − m), lowest first, monic; by reduction to Hessenberg's form.
 pub(in crate::system) fn characteristic(field: &PrimeField, mut m: DMatrix<u64>) -> Vec<u64> {
     reduce_to_hessenberg(field, &mut m);

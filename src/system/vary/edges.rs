@@ -63,7 +63,7 @@ impl Family<'_> {
         let [(a, first), middle, (b, last)] = self.three(lo, hi)?;
         verify_line([&first, &middle.1, &last])?;
         let line = Line::new([first, last]);
-        let fraction = |x: f64| (self.linear.of(&exact(x)) - &a) / (&b - &a);
+        let fraction = |x: &Rational| (self.linear.of(x) - &a) / (&b - &a);
         let Some(gaps) = gaps(&line, (lo, hi), &fraction, limits)? else { return Ok(None) };
         let verdict = |x: &Rational| Ok(decide_system(&(self.at)(&self.linear.of(x))?, limits)?.holds());
         self.over_cells(|cells| {
@@ -107,7 +107,7 @@ fn between(
     let mut at = lo;
     for gap in gaps {
         found.extend(free(at, gap.lo)?);
-        if let Some(x) = gap.exact {
+        if let Some(x) = gap.double() {
             found.extend(free(x, x)?);
         }
         at = gap.hi;
@@ -120,10 +120,13 @@ fn between(
             continue;
         };
         // Two doubles without one between them: either a gap lies there, or nothing can change.
-        let gap = gaps.iter().find(|gap| gap.exact.is_none() && gap.lo == last.hi);
-        if gap
-            .map_or(Ok(true), |gap| Ok(is_same(gap, own.verdict) || cell(gap.lo, gap.hi)? == own.verdict))?
-        {
+        let gap = gaps.iter().find(|gap| gap.double().is_none() && gap.lo == last.hi);
+        let holds = |gap: &Gap| match &gap.exact {
+            _ if is_same(gap, own.verdict) => Ok(own.verdict),
+            Some(x) => verdict(x),
+            None => cell(gap.lo, gap.hi),
+        };
+        if gap.map_or(Ok(true), |gap| Ok(holds(gap)? == own.verdict))? {
             all.last_mut().expect("just seen").hi = own.hi;
         } else {
             all.extend([Stretch { lo: last.hi, hi: own.lo, verdict: Holds::NotTold }, own]);

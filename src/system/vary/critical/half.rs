@@ -1,8 +1,9 @@
 //! The half period of systems on a line, modulo a prime, with bounds on its invariants.
 //!
 //! *Degree.* Minors of size k of a product are sums of products of minors of its factors (Cauchy and Binet). Those of a kick K₀ + s K₁ have
-//! a degree of at most min(k, rank K₁). Those of a drift, times δ(s) = Π (masses that vary), have at most the degree of δ, since
-//! minors of M⁻¹ are those of M over det M (Jacobi). The coefficients c_k of χ are such sums over S = Bᵀ C, two half periods.
+//! a degree of at most min(k, rank K₁). Those of a drift, times δ(s) = Π det (islands of M that vary), have at most the rank of M₁ as
+//! theirs, since minors of M⁻¹ are those of M over det M (Jacobi). The coefficients c_k of χ are such sums over S = Bᵀ C, two half
+//! periods.
 //!
 //! *Length.* On |s| = 1 no entry of kicks and drifts exceeds the sum of its coefficients' sizes, so no product of their row sums is
 //! exceeded by a row sum of H or Hᵀ. A polynomial that is at most b on |s| = 1 has no coefficient beyond b (Cauchy).
@@ -19,6 +20,7 @@ use crate::error::Result;
 use crate::number::rational::{ratio, to_f64};
 use crate::number::{PrimeField, Rational};
 use crate::schedule::Weight;
+use crate::system::exact::modular;
 use crate::system::half::compose::{Kick, Program, Row, State};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
@@ -27,10 +29,11 @@ use crate::system::linear::system::{Potential, System};
 /// x₀ + s x₁.
 type Linear<T> = [T; 2];
 
-/// A mass (or what stands for it): c (α + β s), α and β whole numbers without a common factor.
-struct Mass {
+/// The masses of an island that vary: c (A + s B), A and B of whole numbers without a common factor.
+struct Masses {
+    dofs: Vec<usize>,
     c: Rational,
-    line: Linear<BigInt>,
+    line: DMatrix<Linear<BigInt>>,
 }
 
 /// The half period on a line.
@@ -39,25 +42,26 @@ pub(super) struct Half {
     generic: System,
     frame: Frame,
     program: Program<Linear<Rational>>,
-    /// Where masses vary; then the mass matrix is diagonal.
-    masses: Option<Vec<Mass>>,
+    /// The islands whose masses vary; `program` has no rows of M⁻¹ there.
+    masses: Vec<Masses>,
+    /// The rank of what M gains with s.
+    rank_of_masses: usize,
     /// The ranks of what each clock's kick gains with s.
     ranks: Vec<usize>,
-    /// Integer multiples: the eigenvalues of `scale` δ^E S are integral over ℤ\[s\].
+    /// A common denominator e of M⁻¹, but for δ.
+    unit: BigInt,
+    /// Integer multiples: the entries of `scale` δ^E S are in ℤ\[s\], and those of `scale` e δ^E H.
     pub scale: BigInt,
     /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
     pub is_selfadjoint: bool,
 }
 
 impl Half {
-    /// `None` where masses off the diagonal vary.
+    /// That of a line.
     ///
     /// # Errors
     /// As [`Line::at`].
-    pub fn new(line: &Line) -> Result<Option<Half>> {
-        if line.varies_mass() && !line.ends.iter().all(|own| own.mass().is_diagonal()) {
-            return Ok(None);
-        }
+    pub fn new(line: &Line) -> Result<Half> {
         let (frame, generic) = (line.frame()?, generic(line)?);
         let mut program = Program::new(&generic).map(|x| [x.clone(), Rational::zero()]);
         let mut ranks = Vec::new();
@@ -72,15 +76,20 @@ impl Half {
             let islands: BTreeSet<_> = rows.iter().map(|(i, _)| program.island_of[*i]).collect();
             program.kicks[k] = Kick { rows, islands: islands.into_iter().collect() };
         }
-        let masses = line.varies_mass().then(|| {
-            let [lo, hi] = line.ends.each_ref().map(System::mass);
-            (0..lo.size()).map(|i| Mass::between(lo.get(i, i), hi.get(i, i))).collect::<Vec<_>>()
-        });
-        let scale = BigInt::one();
+        let [lo, hi] = line.ends.each_ref().map(System::mass);
+        let mut gained = hi.clone();
+        gained.add_all(&lo.scaled(&ratio(-1, 1)));
+        let rank_of_masses = gained.size() - gained.null_space().len();
+        let varying = program.islands.iter().filter(|own| own.iter().any(|&i| !gained.row(i).is_empty()));
+        let masses: Vec<_> =
+            varying.map(|own| Masses::between(own, [lo.restricted(own), gained.restricted(own)])).collect();
+        masses.iter().flat_map(|own| &own.dofs).for_each(|&i| program.inverse_mass[i].clear());
         let is_selfadjoint = line.commutes;
-        let mut half = Half { generic, frame, program, masses, ranks, scale, is_selfadjoint };
-        half.scale = half.common();
-        Ok(Some(half))
+        let [unit, scale] = [BigInt::one(), BigInt::one()];
+        let mut half =
+            Half { generic, frame, program, masses, rank_of_masses, ranks, unit, scale, is_selfadjoint };
+        (half.unit, half.scale) = half.common();
+        Ok(half)
     }
 
     /// m, the size of S.
@@ -101,14 +110,18 @@ impl Half {
     /// The operations of one evaluation, roughly.
     pub fn cost(&self) -> f64 {
         let (n, m) = (self.program.size() as f64, self.size() as f64);
-        let entries = self.program.entries().count() as f64;
-        (self.kicks() as f64 + 1.0) * 2.0 * m * (entries + n) + 12.0 * m.powi(3) + 200.0 * m.powi(2)
+        let varying: f64 = self.masses.iter().map(|own| (own.dofs.len() as f64).powi(2)).sum();
+        let entries = self.program.entries().count() as f64 + varying;
+        let eliminations: f64 = self.masses.iter().map(|own| 2.0 * (own.dofs.len() as f64).powi(3)).sum();
+        (self.kicks() as f64 + 1.0) * 2.0 * m * (entries + n)
+            + eliminations
+            + 12.0 * m.powi(3)
+            + 200.0 * m.powi(2)
     }
 
     /// The degree of δ^E.
-    fn degree_of_masses(&self) -> usize {
-        let varying = |own: &&Mass| !own.line[1].is_zero();
-        self.drifts() * self.masses.iter().flatten().filter(varying).count()
+    pub fn degree_of_masses(&self) -> usize {
+        self.drifts() * self.rank_of_masses
     }
 
     /// The most that δ^E c_k can have as its degree.
@@ -117,8 +130,8 @@ impl Half {
         2 * kicks.map(|clock| self.ranks[clock].min(k)).sum::<usize>() + self.degree_of_masses()
     }
 
-    /// More than log₂ of the eigenvalues of scale δ^E S on |s| = 1, and of scale δ^E itself there.
-    pub fn bits(&self) -> [f64; 2] {
+    /// More than log₂ of row sums on |s| = 1: of scale δ^E S, of scale δ^E itself, and how much more of scale e δ^E H.
+    pub fn bits(&self) -> [f64; 3] {
         let size = |x: &BigInt| to_f64(&Rational::from_integer(x.abs()));
         let row = |row: &Row<Linear<Rational>>| {
             row.iter().flat_map(|(_, x)| x).map(|x| to_f64(&x.abs())).sum::<f64>()
@@ -130,17 +143,14 @@ impl Half {
             .iter()
             .map(|own| largest(&mut own.rows.iter().map(|(_, own)| row(own))))
             .collect();
-        let (inverse, masses) = match &self.masses {
-            None => (largest(&mut self.program.inverse_mass.iter().map(row)), 0.0),
-            Some(own) => {
-                let length = |own: &Mass| size(&own.line[0]) + size(&own.line[1]);
-                let varying = own.iter().filter(|own| !own.line[1].is_zero());
-                (
-                    largest(&mut own.iter().map(|own| 1.0 / (to_f64(&own.c) * length(own)))),
-                    varying.map(|own| length(own).log2()).sum(),
-                )
-            }
-        };
+        // An entry of the adjugate is at most the product of the sums of the other rows.
+        let (mut inverse, mut masses) = (largest(&mut self.program.inverse_mass.iter().map(row)), 0.0);
+        for own in &self.masses {
+            let sums = own.line.row_iter().map(|row| row.iter().flatten().map(size).sum::<f64>());
+            let sums: Vec<f64> = sums.collect();
+            inverse = inverse.max(sums.iter().map(|x| 1.0 / x).sum::<f64>() / to_f64(&own.c));
+            masses += sums.iter().map(|x| x.log2()).sum::<f64>();
+        }
         let events: Vec<(f64, f64)> = self
             .generic
             .schedule()
@@ -154,28 +164,27 @@ impl Half {
         let rigid: f64 = self.frame.rigid.iter().flat_map(|(_, n)| n).map(|x| to_f64(&x.abs())).sum();
         let framed = 4.0 * (1.0 + rigid).log2();
         let scale = self.scale.bits() as f64 + self.drifts() as f64 * masses;
-        [1.001 * (scale + 2.0 * path + framed) + 4.0, 1.001 * scale + 1.0]
+        let more = self.unit.bits() as f64 + unit.log2().abs();
+        [1.001 * (scale + 2.0 * path + framed) + 4.0, 1.001 * scale + 1.0, 1.001 * more + 1.0]
     }
 
-    /// f^(2 kicks) with a common denominator f, and that of the frame squared: over momenta p/e every kick is 1/f of an integer one, every
-    /// drift an integer one over δ.
-    fn common(&self) -> BigInt {
+    /// e, and f^(2 kicks) with a common denominator f, times that of the frame squared: over momenta p/e every kick is 1/f of an integer
+    /// one, every drift an integer one over δ.
+    fn common(&self) -> (BigInt, BigInt) {
         let lcm = |lcm: BigInt, x: &Rational| lcm.lcm(x.denom());
-        let e = match &self.masses {
-            None => self.program.inverse_mass.iter().flatten().map(|(_, x)| &x[0]).fold(BigInt::one(), lcm),
-            Some(own) => own.iter().map(|own| own.c.recip()).fold(BigInt::one(), |e, x| lcm(e, &x)),
-        };
-        let twice = Rational::from_integer(e * 2);
+        let e = self.program.inverse_mass.iter().flatten().map(|(_, x)| &x[0]).fold(BigInt::one(), lcm);
+        let e = self.masses.iter().map(|own| own.c.recip()).fold(e, |e, x| lcm(e, &x));
+        let twice = Rational::from_integer(&e * 2);
         let entries = self.program.kicks.iter().flat_map(|own| &own.rows).flat_map(|(_, row)| row);
         let f = entries.flat_map(|(_, x)| x).fold(BigInt::one(), |f, x| lcm(f, &(x / &twice)));
         let delta = self.frame.denominator();
-        num_traits::pow(f, 2 * self.kicks()) * &delta * &delta
+        (e, num_traits::pow(f, 2 * self.kicks()) * &delta * &delta)
     }
 
     /// The program modulo a prime; `None` where that divides a denominator.
     pub fn residues(&self, field: &PrimeField) -> Option<Program<Linear<u64>>> {
         let constants = self.frame.rigid.iter().flat_map(|(_, n)| n);
-        let masses = self.masses.iter().flatten().map(|own| &own.c);
+        let masses = self.masses.iter().map(|own| &own.c);
         let all = self.program.entries().flatten().chain(constants);
         let sound = all.into_iter().all(|x| field.of_rational(x).is_some())
             && masses.into_iter().all(|c| field.of_rational(&c.recip()).is_some());
@@ -183,38 +192,30 @@ impl Half {
         sound.then(|| self.program.map(|x| x.each_ref().map(of)))
     }
 
-    /// scale S at s modulo the prime, and δ^E; `None` where a mass vanishes.
-    pub fn product(
-        &self,
-        field: &PrimeField,
-        program: &Program<Linear<u64>>,
-        s: u64,
-    ) -> Option<(DMatrix<u64>, u64)> {
+    /// What S and H are at s modulo the prime; `None` where M is singular.
+    pub fn at(&self, field: &PrimeField, program: &Program<Linear<u64>>, s: u64) -> Option<At> {
         let at = |x: &Linear<u64>| field.add(x[0], field.mul(s, x[1]));
         let mut program = program.map(at);
         let mut delta = field.of(1);
-        for (i, own) in self.masses.iter().flatten().enumerate() {
-            let line = at(&own.line.each_ref().map(|x| field.of_big(x)));
-            if line == 0 {
-                return None;
-            }
-            if !own.line[1].is_zero() {
-                delta = field.mul(delta, line);
-            }
+        for own in &self.masses {
+            let line = own.line.map(|x| at(&x.each_ref().map(|x| field.of_big(x))));
+            let (inverse, determinant) = modular::inverse(field, line)?;
+            delta = field.mul(delta, determinant);
             let c = field.of_rational(&own.c.recip())?;
-            program.inverse_mass[i] = vec![(i, field.mul(c, field.invert(line)))];
+            for (a, &i) in own.dofs.iter().enumerate() {
+                let entry = |(b, &j): (usize, &usize)| (j, field.mul(c, inverse[(a, b)]));
+                program.inverse_mass[i] = own.dofs.iter().enumerate().map(entry).collect();
+            }
         }
         let rows = self.run(field, &program);
         let m = self.size();
+        let block = |rows: &[Vec<u64>], first: usize| DMatrix::from_fn(m, m, |i, j| rows[i][first + j]);
+        let [a, b, c, d] = [block(&rows.x, 0), block(&rows.x, m), block(&rows.p, 0), block(&rows.p, m)];
         let scale = field.of_big(&self.scale);
-        let entry = |i: usize, j: usize| {
-            let sum = (0..m).fold(0, |sum, k| {
-                let (b, c) = (rows.x[k][m + i], rows.p[k][j]);
-                field.add(sum, field.mul(b, c))
-            });
-            field.mul(scale, sum)
-        };
-        Some((DMatrix::from_fn(m, m, entry), field.power(delta, self.drifts() as u64)))
+        let product = modular::times(field, &b.transpose(), &c).map(|x| field.mul(scale, x));
+        let unit = field.mul(scale, field.of_big(&self.unit));
+        let blocks = [a, b, c, d].map(|own| own.map(|x| field.mul(unit, x)));
+        Some(At { product, blocks, delta: field.power(delta, self.drifts() as u64) })
     }
 
     /// The half period in the frame's coordinates: A and B as rows of positions, C and D as those of momenta.
@@ -243,7 +244,17 @@ impl Half {
     }
 }
 
-/// A system of the line with all clocks that any of them has.
+/// A place on the line modulo a prime.
+pub(super) struct At {
+    /// scale S.
+    pub product: DMatrix<u64>,
+    /// A, B, C, D, times scale e.
+    pub blocks: [DMatrix<u64>; 4],
+    /// δ^E.
+    pub delta: u64,
+}
+
+/// A system of the line with all clocks and all entries of M that any of them has.
 fn generic(line: &Line) -> Result<System> {
     let [lo, hi] = &line.ends;
     let acts = |own: &&Potential| !sum(lo, own).is_zero() || !sum(hi, own).is_zero();
@@ -251,15 +262,16 @@ fn generic(line: &Line) -> Result<System> {
         lo.potentials().iter().filter(acts).map(|own| (own.step.clone(), own.phase.clone())).collect();
     clocks.sort();
     clocks.dedup();
-    // A sum that is linear in s and not 0 vanishes at one s at most.
-    let mut found = line.at(&ratio(1, 2))?;
-    for k in 0..clocks.len() as i64 {
-        if found.clocks().len() == clocks.len() {
-            break;
+    let masses: BTreeSet<_> = line.ends.iter().flat_map(|own| own.mass().places()).collect();
+    // What is linear in s and not 0 vanishes at one s at most.
+    let mut k = 2;
+    loop {
+        let found = line.at(&ratio(1, k))?;
+        if found.clocks().len() == clocks.len() && found.mass().places().count() == masses.len() {
+            return Ok(found);
         }
-        found = line.at(&ratio(1, 3 + k))?;
+        k += 1;
     }
-    Ok(found)
 }
 
 /// The stiffness of all potentials with the clock of one.
@@ -281,14 +293,16 @@ fn rows(constant: &Symmetric, gained: &Symmetric, factor: &Rational) -> Vec<(usi
     (0..constant.size()).map(|i| (i, row(i))).filter(|(_, row)| !row.is_empty()).collect()
 }
 
-impl Mass {
-    fn between(lo: Rational, hi: Rational) -> Mass {
-        let gained = &hi - &lo;
-        let denominator = lo.denom().lcm(gained.denom());
+impl Masses {
+    /// Of these degrees of freedom, from M₀ and what it gains.
+    fn between(dofs: &[usize], line: [Symmetric; 2]) -> Masses {
+        let entries = || line.iter().flat_map(|own| own.places().map(|(i, j)| own.get(i, j)));
+        let denominator = entries().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
         let whole = |x: &Rational| (x * Rational::from_integer(denominator.clone())).to_integer();
-        let (a, b) = (whole(&lo), whole(&gained));
-        let common = a.gcd(&b);
-        Mass { c: Rational::new(common.clone(), denominator), line: [a / &common, b / &common] }
+        let common = entries().fold(BigInt::zero(), |gcd, x| gcd.gcd(&whole(&x)));
+        let n = dofs.len();
+        let line = DMatrix::from_fn(n, n, |i, j| line.each_ref().map(|own| whole(&own.get(i, j)) / &common));
+        Masses { dofs: dofs.to_vec(), c: Rational::new(common, denominator), line }
     }
 }
 

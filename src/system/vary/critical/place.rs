@@ -6,16 +6,17 @@ use num_traits::{One, Zero};
 use super::polynomials::Critical;
 use crate::error::Result;
 use crate::number::polynomial::{RootInterval, in_unit_interval, sign_at};
+use crate::number::rational::{from_f64_exact, simplest, to_f64};
 use crate::number::{Ball, Rational, Sign};
 use crate::parallel::try_map;
 
 /// Between `lo` and `hi`, neither of them, lies a place where the verdict can change.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(in crate::system) struct Gap {
     pub lo: f64,
     pub hi: f64,
-    /// That place, where it is a double and the only one.
-    pub exact: Option<f64>,
+    /// That place, where it is rational, of a small denominator or a double, and the only one.
+    pub exact: Option<Rational>,
     /// Whether there is but one, a simple root of one polynomial.
     pub is_simple: bool,
 }
@@ -30,7 +31,7 @@ const BITS: u32 = 256;
 pub(super) fn gaps(
     polynomials: &[Critical],
     ends: (f64, f64),
-    place: &(impl Fn(f64) -> Rational + Sync),
+    place: &(impl Fn(&Rational) -> Rational + Sync),
 ) -> Result<Vec<Gap>> {
     let found = try_map(polynomials, |own| {
         let multiple = roots(&own.multiple, ends, place);
@@ -42,7 +43,7 @@ pub(super) fn gaps(
 }
 
 /// Those of one that is squarefree.
-fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(f64) -> Rational) -> Vec<Gap> {
+fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(&Rational) -> Rational) -> Vec<Gap> {
     if f.len() < 2 {
         return Vec::new();
     }
@@ -55,7 +56,12 @@ fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(f64) -> Rational) -> Ve
 
 impl Gap {
     fn at(x: f64) -> Gap {
-        Gap { lo: x.next_down(), hi: x.next_up(), exact: Some(x), is_simple: true }
+        Gap { lo: x.next_down(), hi: x.next_up(), exact: from_f64_exact(x), is_simple: true }
+    }
+
+    /// The double strictly between its ends, where that is the place.
+    pub fn double(&self) -> Option<f64> {
+        self.exact.as_ref().map(to_f64).filter(|x| self.lo < *x && *x < self.hi)
     }
 }
 
@@ -67,7 +73,7 @@ pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
         match all.last_mut() {
             Some(last) if own.lo < last.hi => {
                 // The same double twice is still alone.
-                let exact = last.exact.filter(|_| own.exact == last.exact);
+                let exact = last.exact.take().filter(|x| own.exact.as_ref() == Some(x));
                 *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, is_simple: false };
             }
             _ => all.push(own),
@@ -94,17 +100,25 @@ impl Own<'_> {
         &self,
         (a, b): &RootInterval,
         (mut lo, mut hi): (f64, f64),
-        place: &impl Fn(f64) -> Rational,
+        place: &impl Fn(&Rational) -> Rational,
     ) -> Gap {
         let above = self.sign(b);
         loop {
             let middle = lo / 2.0 + hi / 2.0;
+            let is_root = |s: &Rational| {
+                if a == b { s == a } else { a < s && s < b && self.sign(s) == Sign::Zero }
+            };
             if middle <= lo || middle >= hi {
-                return Gap { lo, hi, exact: None, is_simple: true };
+                let [least, most] = [lo, hi].map(|x| from_f64_exact(x).expect("finite"));
+                let exact = match lo < 0.0 {
+                    true => -simplest(&-most, &-least),
+                    false => simplest(&least, &most),
+                };
+                let exact = Some(exact).filter(|x| is_root(&place(x)));
+                return Gap { lo, hi, exact, is_simple: true };
             }
-            let s = place(middle);
-            let is_root = if a == b { s == *a } else { *a < s && s < *b && self.sign(&s) == Sign::Zero };
-            if is_root {
+            let s = place(&from_f64_exact(middle).expect("finite"));
+            if is_root(&s) {
                 return Gap::at(middle);
             }
             let is_below = s <= *a || s < *b && self.sign(&s) != above;
@@ -116,11 +130,10 @@ impl Own<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::rational::from_f64_exact;
 
     #[test]
     fn roots_lie_between_neighbouring_doubles_or_are_one() {
-        let place = |x: f64| from_f64_exact(x).unwrap() / Rational::from_integer(2.into());
+        let place = |x: &Rational| x / Rational::from_integer(2.into());
         // (8 s² − 1) (4 s − 1) (s − 1), whose 1/4 is double: x = 2 s = 1/√2, 1/2 and 2.
         let f: Vec<BigInt> = [-1, 5, 4, -40, 32].map(BigInt::from).into();
         let f = Critical { simple: f, multiple: [-1, 4].map(BigInt::from).into() };
@@ -129,8 +142,12 @@ mod tests {
         assert!(root.lo.powi(2) < 0.5 && root.hi.powi(2) > 0.5 && root.hi == root.lo.next_up());
         assert!(root.is_simple && root.exact.is_none());
         let [a, b] = [0.7, 0.8].map(Gap::at);
-        assert_eq!(united(vec![b, a, b]), [a, Gap { is_simple: false, ..b }]);
+        assert_eq!(united(vec![b.clone(), a.clone(), b.clone()]), [a.clone(), Gap { is_simple: false, ..b }]);
         let near = Gap { lo: 0.7, hi: 0.7f64.next_up(), exact: None, is_simple: true };
-        assert_eq!(united(vec![near, a]), [Gap { exact: None, is_simple: false, ..a }]);
+        assert_eq!(united(vec![near, a.clone()]), [Gap { exact: None, is_simple: false, ..a }]);
+        // 3 s − 1: x = 2/3 is no double.
+        let f = Critical { simple: [-1, 3].map(BigInt::from).into(), multiple: vec![BigInt::one()] };
+        let [third] = &gaps(&[f], (0.0, 2.0), &place).unwrap()[..] else { panic!("one") };
+        assert!(third.exact == Some(Rational::new(2.into(), 3.into())) && third.double().is_none());
     }
 }
