@@ -138,8 +138,29 @@ impl System {
             found => (found?, false),
         };
         let width = self.width().filter(|_| self.nearest);
-        let nearest = width.map(|width| scene.nearest_unstable(width, &limits)).transpose()?;
+        let nearest = |width| {
+            let cost = scene.cost_of_nearest(width, &limits)?;
+            System::begin("the unstable steps next to its own", cost, scene, work)?;
+            scene.nearest_unstable(width, &limits)
+        };
+        let nearest = width.map(nearest).transpose()?;
         Ok(Verdict { analysis, friction: scene.friction(&limits)?, orbit, is_orbit_missing, nearest })
+    }
+
+    fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
+        let limits = work.products();
+        let cost = scene.cost_of_intervals(span, width, &limits)?;
+        System::begin(&format!("intervals of {span}"), cost, scene, work)?;
+        scene.intervals(span, width, &limits)
+    }
+
+    /// That work of at most so many products may begin; and it is announced.
+    fn begin(what: &str, cost: f64, scene: &SystemScene, work: &Work) -> Result<()> {
+        let remedy = "choose a shorter range or a larger --resolution";
+        let allowed = work.products().allow(cost.min(1e19) as u64, || what.to_string());
+        allowed.map_err(|error| error.or(remedy))?;
+        work.announce(&format!("{what}, at most"), scene.model().seconds_of(cost));
+        Ok(())
     }
 
     fn map(&self, scene: &SystemScene, axes: &Scan, work: &Work) -> Result<SystemMap> {
@@ -174,9 +195,7 @@ impl Question for System {
         let scene = self.scene(work)?;
         let found = match (self.scan(&scene)?, &self.intervals, self.width()) {
             (Some(axes), ..) => Found::Map(self.map(&scene, &axes, work)?),
-            (_, Some(span), Some(width)) => {
-                Found::Intervals(scene.intervals(span, width, &work.products())?)
-            }
+            (_, Some(span), Some(width)) => Found::Intervals(System::intervals(span, width, &scene, work)?),
             _ => Found::Verdict(Box::new(self.verdict(&scene, work)?)),
         };
         Ok(Answer { scene, found })

@@ -109,27 +109,51 @@ impl SystemScene {
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
     /// [`Model::stretches`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
+        let (role, inner_steps) = (span.role()?, self.model.inner_steps());
+        let stretches = match role {
+            Role::Step => {
+                self.allow_intervals("intervals", limits).and_then(|()| self.multiples(span, limits))?
+            }
+            _ => {
+                self.over(span, limits, |number| self.model.stretches(number, span.ends(), width, limits))?
+            }
+        };
+        let inner_steps = inner_steps.filter(|_| role == Role::Outer);
+        Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
+    }
+
+    /// The products that these cost, roughly, at the most.
+    ///
+    /// # Errors
+    /// As [`SystemScene::intervals`].
+    pub fn cost_of_intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<f64> {
+        match span.role()? {
+            Role::Step => {
+                self.allow_intervals("intervals", limits)?;
+                Ok(self.multiples_of(span)?.len() as f64 * self.model.cost() as f64)
+            }
+            _ => self.over(span, limits, |number| {
+                self.model.cost_of_stretches(number, span.ends(), width, limits)
+            }),
+        }
+    }
+
+    /// What `ask` finds of a number that is no step.
+    fn over<T>(&self, span: &Span, limits: &Limits, ask: impl FnOnce(&Number) -> Result<T>) -> Result<T> {
         self.allow_intervals("intervals", limits)?;
         let role = span.role()?;
         if role == Role::Outer && span.lo <= Rational::default() {
             return Err(Error::input("intervals", span, "steps are positive"));
         }
         let at = |x: &Rational| Ok(self.with("intervals", &[(&span.path, x)])?.model);
-        let number = match role {
-            Role::Outer => Number::Outer,
+        match role {
+            Role::Outer => ask(&Number::Outer),
             Role::Linear if self.model.inner_steps().is_some() && span.path.ends_with(".scale") => {
                 let (level, factor) = self.scale(&span.path)?;
-                Number::Scale(level, factor)
+                ask(&Number::Scale(level, factor))
             }
-            Role::Step | Role::Linear => Number::Linear(&at),
-        };
-        let (is_discrete, inner_steps) = (role == Role::Step, self.model.inner_steps());
-        let stretches = match role {
-            Role::Step => self.multiples(span, limits)?,
-            _ => self.model.stretches(&number, span.ends(), width, limits)?,
-        };
-        let inner_steps = inner_steps.filter(|_| role == Role::Outer);
-        Ok(Intervals { number: span.path.clone(), is_discrete, inner_steps, stretches })
+            Role::Step | Role::Linear => ask(&Number::Linear(&at)),
+        }
     }
 
     /// Which of two measured levels the scale at a path is of, 0 the fast one, and its present value.
@@ -182,6 +206,15 @@ impl SystemScene {
         self.model.nearest_unstable(width, limits)
     }
 
+    /// The products that this costs, roughly, at the most.
+    ///
+    /// # Errors
+    /// As [`SystemScene::nearest_unstable`].
+    pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
+        self.allow_intervals("nearest", limits)?;
+        self.model.cost_of_nearest(width, limits)
+    }
+
     /// What has no intervals is refused, and what costs too much.
     fn allow_intervals(&self, field: &str, limits: &Limits) -> Result<()> {
         let refused = |what: &str, remedy: &str| Err(Error::input(field, what, remedy));
@@ -195,8 +228,8 @@ impl SystemScene {
         limits.allow(self.model.cost(), work)
     }
 
-    /// The multiples of the shortest of the other steps, each alone: stretches from one multiple to another.
-    fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
+    /// The multiples of the shortest of the other steps.
+    fn multiples_of(&self, span: &Span) -> Result<Vec<Rational>> {
         let longest = self.model.steps().into_iter().max().unwrap_or_default();
         // A step that no other has: with it in place, the shortest of the rest.
         let far = longest * Rational::from_integer(2.into());
@@ -211,7 +244,12 @@ impl SystemScene {
             return Err(Error::input("intervals", span, remedy));
         }
         let next = |k: &Rational| Some(k + Rational::from_integer(1.into())).filter(|k| *k <= last);
-        let values: Vec<_> = std::iter::successors(Some(first), next).map(|k| k * &inner).collect();
+        Ok(std::iter::successors(Some(first), next).map(|k| k * &inner).collect())
+    }
+
+    /// The verdict at each of them alone: stretches from one to another.
+    fn multiples(&self, span: &Span, limits: &Limits) -> Result<Vec<Stretch>> {
+        let values = self.multiples_of(span)?;
         // One eigenbasis serves them all.
         if let (Model::Measured(own), Some(_)) = (&self.model, self.model.inner_steps()) {
             own.kernel()?;

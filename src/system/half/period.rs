@@ -64,6 +64,24 @@ pub(in crate::system) fn follow<'a>(
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
 ) -> Propagated {
+    followed(drifts, events, kick, |_| false).expect("never given up")
+}
+
+/// The same with a bound; `None` as soon as there can be none.
+pub(in crate::system) fn follow_proven<'a>(
+    drifts: &Drifts,
+    events: impl Iterator<Item = Event>,
+    kick: impl Fn(usize, usize) -> &'a Stiff,
+) -> Option<Propagated> {
+    followed(drifts, events, kick, Account::is_lost).filter(|state| state.error.is_some())
+}
+
+fn followed<'a>(
+    drifts: &Drifts,
+    events: impl Iterator<Item = Event>,
+    kick: impl Fn(usize, usize) -> &'a Stiff,
+    gives_up: impl Fn(&Account) -> bool,
+) -> Option<Propagated> {
     let n = drifts.inverse_mass.len();
     let unit = |first: usize| {
         (0..2 * n * n).map(|k| f64::from(u8::from(k % (2 * n) == first + k / (2 * n)))).collect()
@@ -82,9 +100,12 @@ pub(in crate::system) fn follow<'a>(
             let error = state.kick(kick(k, clock), event.weight);
             account.add(error, &state);
         }
+        if gives_up(&account) {
+            return None;
+        }
     }
     state.error = account.bound(state.size());
-    state
+    Some(state)
 }
 
 /// exp(−decay ticks), to the nearest double but for 2^-60.
@@ -94,11 +115,16 @@ pub(in crate::system) fn decayed(decay: &Rational, ticks: u64) -> f64 {
 }
 
 impl Account {
+    /// Whether the bound's condition fails, as it does then for good: both factors only grow.
+    fn is_lost(&self) -> bool {
+        // 1.01: as in the bound. A sum that is no number fails the comparison, too.
+        !(8.0 * (1.01 * self.largest) * (1.01 * self.rho) <= 1.0)
+    }
+
     fn bound(&self, end: f64) -> Option<f64> {
         // 1.01: the roundings of norms, of d_k and of the sums.
         let (rho, sigma, largest) = (1.01 * self.rho, 1.01 * self.sigma, 1.01 * self.largest);
-        // An `is_nan` sum fails the comparison, too.
-        (8.0 * largest * rho <= 1.0).then(|| {
+        (!self.is_lost()).then(|| {
             let s = sigma + 2.0 * largest * sigma * rho;
             1.02 * end * s / (1.0 - s)
         })

@@ -7,7 +7,7 @@ use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
 use nalgebra::DMatrix;
-use num_traits::{Signed, Zero};
+use num_traits::{One, Signed, Zero};
 
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, product_to_f64};
@@ -16,7 +16,7 @@ use crate::system::half::norm;
 use crate::system::signs::inertia::{Inertia, proven};
 
 /// A symmetric n x n matrix over ℚ. Clones share their entries until one of them is changed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Symmetric {
     entries: Arc<Entries>,
 }
@@ -26,14 +26,16 @@ pub struct Symmetric {
 /// Invariant: `rows[i][j] == rows[j][i]`, and no stored entry is 0.
 #[derive(Clone, Debug)]
 struct Entries {
-    rows: Vec<BTreeMap<usize, Rational>>,
+    rows: OnceLock<Vec<BTreeMap<usize, Rational>>>,
+    /// The matrix that it is a multiple of, and the factor, not 0: products are computed once someone asks for them.
+    multiple: Option<(Symmetric, Rational)>,
     /// The same in two doubles, once they are asked for: rounding them costs more than a small system's verdict.
     doubles: OnceLock<Vec<Vec<(usize, Twofold)>>>,
 }
 
-impl PartialEq for Entries {
+impl PartialEq for Symmetric {
     fn eq(&self, other: &Self) -> bool {
-        self.rows == other.rows
+        Arc::ptr_eq(&self.entries, &other.entries) || self.rows() == other.rows()
     }
 }
 
@@ -44,18 +46,29 @@ impl Symmetric {
     }
 
     fn of_rows(rows: Vec<BTreeMap<usize, Rational>>) -> Self {
-        Symmetric { entries: Arc::new(Entries { rows, doubles: OnceLock::new() }) }
+        let entries = Entries { rows: rows.into(), multiple: None, doubles: OnceLock::new() };
+        Symmetric { entries: Arc::new(entries) }
     }
 
     fn rows(&self) -> &[BTreeMap<usize, Rational>] {
-        &self.entries.rows
+        self.entries.rows.get_or_init(|| {
+            let (own, c) = self.entries.multiple.as_ref().expect("rows or what they are a multiple of");
+            let scaled = |row: &BTreeMap<usize, Rational>| row.iter().map(|(&j, x)| (j, x * c)).collect();
+            own.rows().iter().map(scaled).collect()
+        })
+    }
+
+    /// Rows whose entries are those of the matrix but for a factor that is not 0.
+    fn pattern(&self) -> &[BTreeMap<usize, Rational>] {
+        self.entries.multiple.as_ref().map_or_else(|| self.rows(), |(own, _)| own.rows())
     }
 
     /// To be changed.
     fn rows_mut(&mut self) -> &mut [BTreeMap<usize, Rational>] {
+        self.rows();
         let entries = Arc::make_mut(&mut self.entries);
-        entries.doubles.take();
-        &mut entries.rows
+        (entries.multiple, entries.doubles) = (None, OnceLock::new());
+        entries.rows.get_mut().expect("just seen")
     }
 
     /// The entries by rows, in two doubles.
@@ -139,17 +152,22 @@ impl Symmetric {
         }
     }
 
-    /// c times the matrix.
+    /// c times the matrix; its entries are computed when they are asked for.
     pub fn scaled(&self, c: &Rational) -> Self {
-        let scaled = |row: &BTreeMap<usize, Rational>| {
-            row.iter().map(|(&j, x)| (j, x * c)).filter(|(_, x)| !x.is_zero()).collect()
+        if c.is_zero() {
+            return Symmetric::zero(self.size());
+        }
+        let multiple = match &self.entries.multiple {
+            Some((own, factor)) => (own.clone(), factor * c),
+            None => (self.clone(), c.clone()),
         };
-        Symmetric::of_rows(self.rows().iter().map(scaled).collect())
+        let entries = Entries { rows: OnceLock::new(), multiple: Some(multiple), doubles: OnceLock::new() };
+        Symmetric { entries: Arc::new(entries) }
     }
 
     /// n.
     pub fn size(&self) -> usize {
-        self.rows().len()
+        self.pattern().len()
     }
 
     /// The entries of row i that are not 0, by column.
@@ -159,7 +177,7 @@ impl Symmetric {
 
     /// (i, j) of the entries that are not 0.
     pub(in crate::system) fn places(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.rows().iter().enumerate().flat_map(|(i, row)| row.keys().map(move |&j| (i, j)))
+        self.pattern().iter().enumerate().flat_map(|(i, row)| row.keys().map(move |&j| (i, j)))
     }
 
     /// The entry (i, j).
@@ -169,21 +187,24 @@ impl Symmetric {
 
     /// The rows that are not 0.
     pub fn support(&self) -> Vec<usize> {
-        (0..self.size()).filter(|&i| !self.rows()[i].is_empty()).collect()
+        (0..self.size()).filter(|&i| !self.pattern()[i].is_empty()).collect()
     }
 
     /// Whether all entries are 0.
     pub fn is_zero(&self) -> bool {
-        self.rows().iter().all(BTreeMap::is_empty)
+        self.pattern().iter().all(BTreeMap::is_empty)
     }
 
     /// Whether all entries off the diagonal are 0.
     pub fn is_diagonal(&self) -> bool {
-        self.rows().iter().enumerate().all(|(i, row)| row.keys().all(|&j| i == j))
+        self.pattern().iter().enumerate().all(|(i, row)| row.keys().all(|&j| i == j))
     }
 
     /// The rows and columns in `indices`.
     pub fn restricted(&self, indices: &[usize]) -> Self {
+        if let Some((own, c)) = &self.entries.multiple {
+            return own.restricted(indices).scaled(c);
+        }
         let place: BTreeMap<usize, usize> =
             indices.iter().enumerate().map(|(new, &old)| (old, new)).collect();
         let row = |&i: &usize| {
@@ -238,28 +259,30 @@ impl Symmetric {
     /// The entries, each rounded.
     pub(in crate::system) fn rounded(&self) -> Mat<f64> {
         let mut rounded = Mat::<f64>::zeros(self.size(), self.size());
-        for (i, row) in self.doubles().iter().enumerate() {
-            row.iter().for_each(|(j, x)| rounded[(i, *j)] = x.hi);
+        for (i, row) in self.rounded_products(&Rational::one()) {
+            row.into_iter().for_each(|(j, x)| rounded[(i, j)] = x);
         }
         rounded
     }
 
     /// The entries on the diagonal, each rounded.
     pub(in crate::system) fn rounded_diagonal(&self) -> Vec<f64> {
-        let entry = |(i, row): (usize, &Vec<(usize, Twofold)>)| {
-            row.iter().find(|(j, _)| *j == i).map_or(0.0, |(_, x)| x.hi)
-        };
-        self.doubles().iter().enumerate().map(entry).collect()
+        let rounded = self.rounded();
+        (0..self.size()).map(|i| rounded[(i, i)]).collect()
     }
 
     /// The rows that are not 0, c times each entry, rounded once.
     pub(in crate::system) fn rounded_products(&self, c: &Rational) -> Vec<(usize, Vec<(usize, f64)>)> {
+        if let Some((own, factor)) = &self.entries.multiple {
+            return own.rounded_products(&(factor * c));
+        }
         let factor = Twofold::from_rational(c);
         let rows = self.rows().iter().zip(self.doubles()).enumerate();
         rows.filter(|(_, (row, _))| !row.is_empty())
             .map(|(i, (row, doubles))| {
                 let entry = |((&j, x), (_, double)): ((&usize, &Rational), &(usize, Twofold))| {
-                    (j, double.nearest_product(factor).unwrap_or_else(|| product_to_f64(x, c)))
+                    let product = if c.is_one() { Some(double.hi) } else { double.nearest_product(factor) };
+                    (j, product.unwrap_or_else(|| product_to_f64(x, c)))
                 };
                 (i, row.iter().zip(doubles).map(entry).collect())
             })
@@ -290,7 +313,7 @@ impl Symmetric {
     /// A basis of the null space in reduced form, each vector with the coordinate of its own where it is 1
     /// and all others are 0.
     pub fn null_space(&self) -> Vec<(usize, Vec<Rational>)> {
-        null_space(self.rows().to_vec(), self.size())
+        null_space(self.pattern().to_vec(), self.size())
     }
 }
 
@@ -322,7 +345,7 @@ pub(in crate::system) fn is_sum_semidefinite(parts: &[&Symmetric], sum: impl FnO
 pub(in crate::system) fn inertia_of_sum(parts: &[&Symmetric]) -> Inertia {
     const SMALL: usize = 64;
     let n = parts.first().map_or(0, |own| own.size());
-    let entries: usize = parts.iter().flat_map(|own| own.rows()).map(BTreeMap::len).sum();
+    let entries: usize = parts.iter().flat_map(|own| own.pattern()).map(BTreeMap::len).sum();
     let unknown = Inertia { unknown: n, ..Inertia::default() };
     if n > SMALL && entries < 5 * n {
         return unknown;

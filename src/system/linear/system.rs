@@ -118,7 +118,12 @@ impl System {
             step: &own.step * slower,
             phase: own.phase.clone(),
         };
-        System::new(self.mass.clone(), self.potentials.iter().map(changed).collect())
+        let (mass, potentials) = (self.mass.clone(), self.potentials.iter().map(changed).collect());
+        if stiffer.is_zero() || !slower.is_positive() {
+            return System::new(mass, potentials);
+        }
+        // Sums of equal clocks are multiples, too.
+        System::on(self.clocks.iter().map(changed).collect(), mass, potentials)
     }
 
     /// The same with every clock, also those whose sum vanishes: with friction a kick of strength 0 parts a drift in two.

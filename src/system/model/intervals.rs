@@ -9,7 +9,7 @@ use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::spectrum::rate::middle;
 use crate::system::vary::edges::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
-use crate::system::vary::stretches::Stretch;
+use crate::system::vary::stretches::{Stretch, most_cells};
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::decide_by;
 use crate::system::verdict::limits::{Limits, Route};
@@ -49,6 +49,40 @@ impl Model {
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
             },
         }
+    }
+
+    /// The products of doubles that these cost, roughly, at the most.
+    ///
+    /// # Errors
+    /// As [`Family::cost`].
+    pub fn cost_of_stretches(
+        &self,
+        number: &Number,
+        range: (f64, f64),
+        width: f64,
+        limits: &Limits,
+    ) -> Result<f64> {
+        // A factorization or two in the eigenbasis.
+        let measured = |n: usize| self.cost() as f64 + most_cells(range, width) * (n as f64).powi(3);
+        match number {
+            _ if self.inner_steps().is_some() && !matches!(number, Number::Linear(_)) => {
+                Ok(measured(self.size()))
+            }
+            Number::Linear(at) => {
+                let at = |x: &Rational| Ok(at(x)?.system().clone());
+                Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
+            }
+            _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
+        }
+    }
+
+    /// Those of [`Model::nearest_unstable`].
+    ///
+    /// # Errors
+    /// As [`Family::cost`].
+    pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
+        let range = Nearest::reach(to_f64(&self.outer_step()));
+        self.cost_of_stretches(&Number::Outer, range, width, limits)
     }
 
     /// What `ask` finds of the systems of all outer steps.

@@ -76,7 +76,12 @@ impl Model {
 
     /// The seconds of one core that these take, as measured on two machines: dense products go side by side.
     pub fn seconds(&self) -> f64 {
-        self.cost() as f64 / if self.measured().is_some() { DENSE_PACE } else { PACE }
+        self.seconds_of(self.cost() as f64)
+    }
+
+    /// Those that so many products take.
+    pub fn seconds_of(&self, products: f64) -> f64 {
+        products / if self.measured().is_some() { DENSE_PACE } else { PACE }
     }
 
     /// The verdict with everything that is known beside it.

@@ -17,7 +17,7 @@ use crate::number::{Rational, U};
 use crate::system::half::compose::inverted;
 use crate::system::half::float::scaled_program;
 use crate::system::half::norm;
-use crate::system::half::period::{Drifts, Stiff, follow};
+use crate::system::half::period::{Drifts, Stiff, follow_proven};
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
@@ -60,8 +60,10 @@ pub(in crate::system) struct Cells<'a> {
     at: &'a (dyn Fn(f64) -> Result<System> + Sync),
     /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which needs no check then.
     is_scaled: bool,
-    /// Of such, how each stiffness moves.
+    /// Of such, how each stiffness moves, the rigid modes, and whether Σ K_k is proven positive definite but for these.
     courses: OnceLock<Vec<Course>>,
+    frame: OnceLock<Frame>,
+    is_definite: OnceLock<bool>,
     /// Counts at ends of cells, which neighbours share, by the bits of the number.
     counts: Mutex<BTreeMap<u64, Arc<Option<Counts>>>>,
 }
@@ -74,7 +76,8 @@ const MOST_ENDS: usize = 128;
 
 impl<'a> Cells<'a> {
     pub fn new(at: &'a (dyn Fn(f64) -> Result<System> + Sync), is_scaled: bool) -> Cells<'a> {
-        Cells { at, is_scaled, courses: OnceLock::new(), counts: Mutex::default() }
+        let (courses, frame, is_definite) = Default::default();
+        Cells { at, is_scaled, courses, frame, is_definite, counts: Mutex::default() }
     }
 
     /// What is proven of all systems of numbers between two: those of both ends and their mean are given, masses and stiffnesses
@@ -100,7 +103,9 @@ impl<'a> Cells<'a> {
             pairs.map(|(a, b)| Course::of(&a.stiffness, &b.stiffness)).collect()
         };
         let courses = if self.is_scaled { self.courses.get_or_init(courses).clone() } else { courses() };
-        let cell = Cell { ends, systems, frame: Frame::new(middle), courses, cells: self };
+        let frame = || Frame::new(middle);
+        let frame = if self.is_scaled { self.frame.get_or_init(frame).clone() } else { frame() };
+        let cell = Cell { ends, systems, frame, courses, cells: self };
         Ok(match cell.by_action()? {
             Holds::NotTold => cell.by_half_period()?,
             told => told,
@@ -281,7 +286,7 @@ impl Cell<'_> {
         }
         let Some(stiffer) = action::signs(more) else { return Ok(Holds::NotTold) };
         if stiffer == [Some(Sign::Positive); 2] {
-            let is_stable = is_total_definite(less, &self.frame);
+            let is_stable = self.is_definite(less);
             return Ok(if is_stable { Holds::Stable } else { Holds::NotTold });
         }
         let softer = action::signs(less).unwrap_or_default();
@@ -292,10 +297,16 @@ impl Cell<'_> {
         Ok(if is_unstable { Holds::Unstable } else { Holds::NotTold })
     }
 
+    /// Whether Σ K_k is proven positive definite modulo the rigid modes.
+    fn is_definite(&self, system: &System) -> bool {
+        let found = || is_total_definite(system, &self.frame);
+        if self.cells.is_scaled { *self.cells.is_definite.get_or_init(found) } else { found() }
+    }
+
     /// Whether counts at the least and the greatest kicks prove a real multiplier off the circle for all between; where every kick grows
     /// from one end of the cell to the other, piece by piece.
     fn has_real_unstable_mode(&self, kicks: [&System; 2], rises: Option<bool>) -> Result<bool> {
-        let n = self.frame.rigid.is_empty() && is_total_definite(kicks[0], &self.frame);
+        let n = self.frame.rigid.is_empty() && self.is_definite(kicks[0]);
         let n = n.then(|| kicks[0].size());
         if let Some(rises) = rises {
             return self.cells.differ_throughout(self.ends, rises, n, HALVINGS);
@@ -314,17 +325,20 @@ impl Cell<'_> {
         let m = reduced.size();
         let (program, scales) = scaled_program(&reduced, &Frame::whole(m));
         let tick = reduced.tick();
+        // Sums of equal clocks, where none vanishes at an end.
+        let are_all = [middle, hi].iter().all(|own| own.clocks().len() == self.clocks());
+        let kicks = |own: &'_ System| if are_all { own.clocks().to_vec() } else { own.potentials().to_vec() };
         let stiff = |(k, clock): (usize, &Potential)| {
             let ticks = Rational::from_integer(reduced.schedule().clocks()[k].step().into());
             let factor = to_f64(&(tick * tick * ticks));
             let mut moved = Mat::<f64>::zeros(m, m);
-            for (from, to) in middle.potentials().iter().zip(hi.potentials()) {
+            for (from, to) in kicks(middle).iter().zip(kicks(hi)) {
                 if (&from.step, &from.phase) == (&clock.step, &clock.phase) {
-                    for (a, &i) in self.frame.kept.iter().enumerate() {
-                        for (b, &j) in self.frame.kept.iter().enumerate() {
-                            let change = to_f64(&(to.stiffness.get(i, j) - from.stiffness.get(i, j)));
-                            moved[(a, b)] += change * factor / (scales[a] * scales[b]);
-                        }
+                    let mut change = to.stiffness.clone();
+                    change.add_all(&from.stiffness.scaled(&ratio(-1, 1)));
+                    for (a, row) in change.restricted(&self.frame.kept).rounded_products(&ratio(1, 1)) {
+                        row.into_iter()
+                            .for_each(|(b, x)| moved[(a, b)] += x * factor / (scales[a] * scales[b]));
                     }
                 }
             }
@@ -353,11 +367,11 @@ impl Cell<'_> {
         let all = (0..if varies { middle.size() } else { 0 }).map(moved);
         let off = if self.frame.rigid.is_empty() { all.fold(0.0, f64::max) } else { all.sum::<f64>() };
         let drifts = Drifts { inverse_mass: &program.inverse_mass, decay: &Rational::zero(), off };
-        let blocks =
-            follow(&drifts, reduced.schedule().half_period(), |_, clock| &kicks[clock]).blocks(scales);
-        if blocks.error.is_none() {
+        let events = reduced.schedule().half_period();
+        let Some(state) = follow_proven(&drifts, events, |_, clock| &kicks[clock]) else {
             return Ok(Holds::NotTold);
-        }
+        };
+        let blocks = state.blocks(scales);
         let proven = signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks));
         Ok(proven.into())
     }

@@ -8,10 +8,11 @@
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, ratio, simplest};
+use crate::system::half::compose;
 use crate::system::linear::system::System;
 use crate::system::vary::between::{Cells, verify_line};
-use crate::system::vary::critical::{Gap, Line, gaps};
-use crate::system::vary::stretches::{Stretch, cover};
+use crate::system::vary::critical::{Gap, Line, Plan};
+use crate::system::vary::stretches::{Stretch, cover, most_cells};
 use crate::system::verdict::decide::decide_system;
 use crate::system::verdict::limits::Limits;
 use crate::system::verdict::measured::Holds;
@@ -60,15 +61,34 @@ impl Family<'_> {
     /// # Errors
     /// Where masses and stiffnesses are not linear or steps differ; as `at` and [`decide_system`].
     pub fn exactly(&self, (lo, hi): (f64, f64), limits: &Limits) -> Result<Option<Vec<Stretch>>> {
-        let [(a, first), middle, (b, last)] = self.three(lo, hi)?;
-        verify_line([&first, &middle.1, &last])?;
-        let line = Line::new([first, last]);
+        let [a, b] = [lo, hi].map(|x| self.linear.of(&exact(x)));
         let fraction = |x: &Rational| (self.linear.of(x) - &a) / (&b - &a);
-        let Some(gaps) = gaps(&line, (lo, hi), &fraction, limits)? else { return Ok(None) };
+        let Some(plan) = self.plan((lo, hi), limits)? else { return Ok(None) };
+        let Some(gaps) = plan.gaps((lo, hi), &fraction)? else { return Ok(None) };
         let verdict = |x: &Rational| Ok(decide_system(&(self.at)(&self.linear.of(x))?, limits)?.holds());
         self.over_cells(|cells| {
             between((lo, hi), &gaps, &verdict, &|lo, hi| self.cell(cells, lo, hi)).map(Some)
         })
+    }
+
+    fn plan(&self, (lo, hi): (f64, f64), limits: &Limits) -> Result<Option<Plan>> {
+        let [(_, first), (_, middle), (_, last)] = self.three(lo, hi)?;
+        verify_line([&first, &middle, &last])?;
+        Plan::new(&Line::new([first, last]), limits)
+    }
+
+    /// The products that the stretches of a range cost, roughly: those of the polynomials, else of as many cells as there can be.
+    ///
+    /// # Errors
+    /// As [`Family::exactly`].
+    pub fn cost(&self, (lo, hi): (f64, f64), width: f64, limits: &Limits) -> Result<f64> {
+        if let Some(plan) = self.plan((lo, hi), limits)? {
+            return Ok(plan.cost());
+        }
+        let [_, (_, middle), _] = self.three(lo, hi)?;
+        // The half period with its norms, and some eliminations.
+        let own = 2.0 * compose::cost(&middle) as f64 + 4.0 * (middle.size() as f64).powi(3);
+        Ok(most_cells((lo, hi), width) * own)
     }
 
     /// What `ask` finds of the cells of these systems.

@@ -50,6 +50,11 @@ pub fn cover(
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
 }
 
+/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it.
+pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
+    2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS)
+}
+
 /// Cells that sharpen one end.
 const MOST_CELLS: usize = 64;
 

@@ -39,26 +39,50 @@ mod polynomials;
 use half::Half;
 pub(super) use line::Line;
 pub(super) use place::Gap;
+use polynomials::Shape;
 
 use crate::error::Result;
 use crate::number::Rational;
 use crate::system::verdict::limits::Limits;
 
-/// The gaps between doubles from `lo` to `hi` that hold all places where the verdict can change, increasing; `place` takes a number to
-/// its s, an increasing map of \[lo, hi\] onto \[0, 1\]. `None` where the polynomials would cost too much.
-///
-/// # Errors
-/// Where the work is stopped.
-pub(super) fn gaps(
-    line: &Line,
-    ends: (f64, f64),
-    place: &(impl Fn(&Rational) -> Rational + Sync),
-    limits: &Limits,
-) -> Result<Option<Vec<Gap>>> {
-    let mut gaps = Vec::new();
-    for part in line.parts().iter().filter(|part| !part.is_constant()) {
-        let Some(found) = polynomials::critical(&Half::new(part)?, limits)? else { return Ok(None) };
-        gaps.extend(place::gaps(&found, ends, place)?);
+/// The half periods of all parts that change, and what is to be found of each.
+pub(super) struct Plan(Vec<(Half, Shape)>);
+
+impl Plan {
+    /// `None` where the polynomials would cost too much.
+    ///
+    /// # Errors
+    /// As [`Line::at`].
+    pub fn new(line: &Line, limits: &Limits) -> Result<Option<Plan>> {
+        let mut parts = Vec::new();
+        for part in line.parts().iter().filter(|part| !part.is_constant()) {
+            let half = Half::new(part)?;
+            let Some(shape) = polynomials::shape(&half, limits) else { return Ok(None) };
+            parts.push((half, shape));
+        }
+        Ok(Some(Plan(parts)))
     }
-    Ok(Some(place::united(gaps)))
+
+    /// Products of machine words, roughly.
+    pub fn cost(&self) -> f64 {
+        self.0.iter().map(|(half, shape)| shape.cost(half)).sum()
+    }
+
+    /// The gaps between doubles from `lo` to `hi` that hold all places where the verdict can change, increasing; `place` takes a number to
+    /// its s, an increasing map of \[lo, hi\] onto \[0, 1\]. `None` where the polynomials are of another kind than they seemed to be.
+    ///
+    /// # Errors
+    /// Where the work is stopped.
+    pub fn gaps(
+        &self,
+        ends: (f64, f64),
+        place: &(impl Fn(&Rational) -> Rational + Sync),
+    ) -> Result<Option<Vec<Gap>>> {
+        let mut gaps = Vec::new();
+        for (half, shape) in &self.0 {
+            let Some(found) = polynomials::critical(half, shape)? else { return Ok(None) };
+            gaps.extend(place::gaps(&found, ends, place)?);
+        }
+        Ok(Some(place::united(gaps)))
+    }
 }

@@ -26,7 +26,7 @@ struct Kind {
 }
 
 /// What is to be found, and how large.
-struct Shape {
+pub(super) struct Shape {
     kind: Kind,
     /// Whether no multiplier has a Jordan block.
     is_semisimple: bool,
@@ -44,21 +44,22 @@ pub(super) struct Critical {
     pub multiple: Vec<BigInt>,
 }
 
-/// The polynomials in s, those without a root left out; `None` where they cost too much.
-///
-/// # Errors
-/// Where the work is stopped.
-pub(super) fn critical(half: &Half, limits: &Limits) -> Result<Option<Vec<Critical>>> {
+/// What is to be found of a half period; `None` where it costs too much.
+pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
     let (field, program) =
         prime_fields().find_map(|field| Some((field, half.residues(&field)?))).expect("primes enough");
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
     let at = |k| Some(Own::new(half, &field, &half.at(&field, &program, field.of(k))?));
     let found = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b].into_iter().filter_map(at);
-    let Some(own) = found.max_by_key(|own| (own.kind.count, Reverse(own.kind.ends))) else { return Ok(None) };
-    let shape = Shape::new(half, &own);
-    if shape.cost(half) > MOST_WORK.min(limits.products as f64) {
-        return Ok(None);
-    }
+    let own = found.max_by_key(|own| (own.kind.count, Reverse(own.kind.ends)))?;
+    Some(Shape::new(half, &own)).filter(|own| own.cost(half) <= MOST_WORK.min(limits.products as f64))
+}
+
+/// The polynomials in s, those without a root left out; `None` where the kind turns out to be another.
+///
+/// # Errors
+/// Where the work is stopped.
+pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical>>> {
     let count = (shape.bits / 61.0) as usize + 1;
     let fields: Vec<PrimeField> =
         prime_fields().filter(|field| half.residues(field).is_some()).take(count).collect();
@@ -146,7 +147,7 @@ impl Shape {
     }
 
     /// Evaluations, interpolations, and isolation of the roots: some hundred times the additions of a shift by 1.
-    fn cost(&self, half: &Half) -> f64 {
+    pub fn cost(&self, half: &Half) -> f64 {
         let primes = self.bits / 61.0 + 1.0;
         let degree = self.degrees.iter().copied().max().unwrap_or(0) as f64;
         let (places, words) = (self.places as f64, (self.bits + degree) / 64.0 + 16.0);
