@@ -154,9 +154,9 @@ fn cells_have_no_seams() {
 }
 
 #[test]
-fn the_words_of_an_svg_are_text_unless_shapes_are_asked_for() {
+fn the_words_of_an_svg_are_shapes_unless_text_is_asked_for() {
     let figure = tiny().headed("*h*_1 & more").footed(&Foot::default().part("made of *λ*_2".into()));
-    let svg = figure.svg();
+    let svg = figure.clone().in_text().svg();
     // The heading stands in the place of the title of a single panel.
     assert!(!svg.contains(">Tiny</tspan>"));
     for words in [">line</tspan>", ">h</tspan>", "> &amp; more</tspan>", ">made of </tspan>", ">λ</tspan>"] {
@@ -164,7 +164,7 @@ fn the_words_of_an_svg_are_text_unless_shapes_are_asked_for() {
     }
     assert!(svg.contains("<title>h1 &amp; more</title>") && svg.contains("data:font/otf;base64,"));
     assert!(!svg.contains("<use ") && !svg.contains("<path id="));
-    let svg = figure.outlined().svg();
+    let svg = figure.svg();
     assert!(svg.contains("aria-label=\"line\"") && svg.contains("<use "));
     assert!(!svg.contains("<text") && !svg.contains("font"));
 }
@@ -246,15 +246,16 @@ fn a_figure_takes_the_width_and_the_unit_asked_for() {
     let axes = (Axis::linear("*h*_1", 0.0, 1.0).of_time(), Axis::log("growth", 0.1, 1.0).per_time());
     let figure = Figure::new(160.0, 80.0).with(Panel::new(axes.0, axes.1)).wide(85.0);
     let svg = figure.svg();
+    let shows = |svg: &str, words: &str| svg.contains(&format!("aria-label=\"{words}\""));
     assert!(figure.has_time() && !tiny().has_time());
     // Half as high would be too low for a row: 45 mm at least.
     assert!(
         svg.contains("width=\"85mm\" height=\"45mm\"")
-            && svg.contains("> (time)<")
-            && svg.contains(">growth (1/time)<")
+            && shows(&svg, "h1 (time)")
+            && shows(&svg, "growth (1/time)")
     );
     let svg = figure.in_units_of("fs").headed("A").svg();
-    assert!(svg.contains("> (fs)<") && svg.contains(">growth (1/fs)<"), "{svg}");
+    assert!(shows(&svg, "h1 (fs)") && shows(&svg, "growth (1/fs)"), "{svg}");
     assert!(!svg.contains("height=\"45mm\""), "a heading takes no room from the panels");
     assert!(tiny().wide(80.0).svg().contains("width=\"80mm\" height=\"60mm\""));
 }

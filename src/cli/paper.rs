@@ -26,9 +26,12 @@ pub struct Paper {
     /// The unit of times and rates at the axes, as fs [default: the system's, else the word time].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
-    /// Letters of SVG and PDF as shapes, for programs that read no embedded fonts [default: text, searchable]
+    /// Letters of PDF as shapes, as those of SVG are [default: text, searchable]
     #[arg(long)]
     outlines: bool,
+    /// Letters of SVG as text, searchable; programs that ignore fonts in a document, as Inkscape, misplace them [default: shapes]
+    #[arg(long, conflicts_with = "outlines")]
+    text: bool,
 }
 
 impl Paper {
@@ -45,6 +48,7 @@ impl Paper {
             ("--bare", self.bare),
             ("--time-unit", self.time_unit.is_some()),
             ("--outlines", self.outlines),
+            ("--text", self.text),
         ];
         if draws { Ok(()) } else { unused(&given, "is for figures, and this draws none") }
     }
@@ -70,7 +74,12 @@ impl Paper {
         if self.bare {
             figure = figure.bare();
         }
-        file(if self.outlines { figure.outlined() } else { figure }, command, format)
+        let figure = match (self.outlines, self.text) {
+            (true, _) => figure.outlined(),
+            (_, true) => figure.in_text(),
+            _ => figure,
+        };
+        file(figure, command, format)
     }
 
     /// Writes the figure to a file, or to standard output.

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of `kickdrift explore` in a real browser. Installs what is missing, builds the program unless KICKDRIFT names one,
+# The page of `kickdrift explore` and figures in a real browser. Installs what is missing, builds the program unless KICKDRIFT names one,
 # runs the tests, and leaves screenshots of the main states in the folder $SCREENSHOTS, if that is given.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -12,6 +12,7 @@ missing=()
 command -v chromium >/dev/null || missing+=(chromium)
 command -v node >/dev/null || missing+=(nodejs)
 command -v npm >/dev/null || missing+=(npm)
+command -v rsvg-convert >/dev/null || missing+=(librsvg2-bin)
 if [ ${#missing[@]} -gt 0 ]; then
     as_root apt-get update -qq
     as_root apt-get install -qq -y --no-install-recommends "${missing[@]}"

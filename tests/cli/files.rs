@@ -237,7 +237,8 @@ fn packagers_get_a_page_of_each_command_and_completions_for_each_shell() {
 #[test]
 fn figures_take_the_width_the_title_and_the_unit_asked_for() {
     let desk = Desk::new();
-    let flags = ["--width", "85mm", "--title", "Run of *h*_1", "--time-unit", "fs", "--output", "m.svg"];
+    let flags =
+        ["--width", "85mm", "--title", "Run of *h*_1", "--time-unit", "fs", "--text", "--output", "m.svg"];
     let ended = desk.run(&words(MAP, &flags));
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let svg = String::from_utf8(desk.read("m.svg")).unwrap();
@@ -246,7 +247,7 @@ fn figures_take_the_width_the_title_and_the_unit_asked_for() {
     {
         assert!(svg.contains(piece), "no {piece} in {svg}");
     }
-    desk.run(&words(MAP, &["--outlines", "--output", "m.svg"]));
+    desk.run(&words(MAP, &["--output", "m.svg"]));
     assert!(!String::from_utf8(desk.read("m.svg")).unwrap().contains("<text"));
     let diagram = "tongues --ratio 2/1 --rho 1 --figure diagram --output d.svg";
     for (line, flags, field) in [

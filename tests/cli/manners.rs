@@ -27,7 +27,7 @@ fn whoever_names_a_file_reads_that_it_is_written() {
         ("tongues --ratio 7/3 --rho 1/25 --output t.csv".into(), "kickdrift: wrote t.csv\n"),
         ("closings --max-sum 6 --output c.json".into(), "kickdrift: wrote c.json\n"),
         (certificate.into(), "kickdrift: wrote v.v\n"),
-        ("generate man".into(), "kickdrift: wrote 20 files to out/man\n"),
+        ("generate man".into(), "kickdrift: wrote 21 files to out/man\n"),
         (format!("{MAP} --output m.svg --quiet"), ""),
     ] {
         let ended = desk.run(&words(&line, &[]));
@@ -115,7 +115,7 @@ fn a_figure_carries_the_version_and_the_command_that_made_it() {
 fn a_figure_for_a_paper_has_no_words_around_it_or_one_heading() {
     let desk = Desk::new();
     let drawn = |flags: &[&str]| {
-        let ended = desk.run(&words(MAP, &[flags, &["--output", "m.svg"]].concat()));
+        let ended = desk.run(&words(MAP, &[flags, &["--text", "--output", "m.svg"]].concat()));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         String::from_utf8(desk.read("m.svg")).unwrap()
     };
@@ -156,7 +156,7 @@ fn the_axes_of_a_scan_are_named_in_words_with_their_units() {
     let desk = Desk::new();
     let system = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-tether.json");
     let drawn = |flags: &[&str]| {
-        let ended = desk.run(&[&["system", system], flags, &["--output", "s.svg"]].concat());
+        let ended = desk.run(&[&["system", system], flags, &["--text", "--output", "s.svg"]].concat());
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let svg = String::from_utf8(desk.read("s.svg")).unwrap();
         // The foot repeats what was typed; the axes do not.

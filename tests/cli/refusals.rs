@@ -326,12 +326,31 @@ const SYSTEM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/diatomic-
 fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
     let desk = Desk::new();
     desk.write("n2.namd", "structure a.psf\ntimestep 1\nnonbondedFreq 2\nfullElectFrequency 99999\n");
+    desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
+    let advised = desk.run(&words("advise tiny.json --steps 2.2fs,4.4fs --quiet --output advice.json"));
+    assert_eq!((advised.code, advised.stderr.as_str()), (Some(0), ""));
     for line in [
         "verdict --lambda1 pi^2 --lambda2 1 --h1 1 --h2 1000001/1000000 --friction 1 --budget 1500000",
         "proposition --max 30 --budget 1000",
         "closings --ratio 501/499 --budget 1000000",
         "advise --period 10fs --period 40fs --steps 3fs,3.0001fs --budget 1000000",
         "advise --period 10fs --period 20fs --period 40fs --engine n2.namd",
+        concat!(
+            "system ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/chain200.json --intervals outer=7/20..1"
+        ),
+        concat!(
+            "system ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/bar-resonant.json --nearest --resolution 1e-7"
+        ),
+        concat!(
+            "system ",
+            env!("CARGO_MANIFEST_DIR"),
+            "/data/scenes/water4.json --intervals outer=0.001..0.005 --budget 30000000"
+        ),
+        "verify advice.json --budget 100",
         concat!("advise ", env!("CARGO_MANIFEST_DIR"), "/data/scenes/water4.json --budget 1000000"),
         concat!(
             "advise ",

@@ -258,7 +258,7 @@ fn the_atlas_beside_the_readme_is_what_its_scene_writes() {
 #[test]
 fn traces_and_widths_are_drawn() {
     let desk = Desk::new();
-    let draw = |line: &str| desk.run(&words(line, &["--quiet", "--output", "f.svg"]));
+    let draw = |line: &str| desk.run(&words(line, &["--quiet", "--text", "--output", "f.svg"]));
     let text = || String::from_utf8(desk.read("f.svg")).unwrap();
     let ended = draw("tongues --ratio 5/3 --rho 1/25 --m 4 --figure trace");
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));

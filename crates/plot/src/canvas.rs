@@ -221,6 +221,16 @@ pub(crate) enum Element {
     Close,
 }
 
+/// How letters are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// As shapes in SVG, whose readers often ignore embedded fonts, as text in PDF, whose readers know them.
+    #[default]
+    Usual,
+    Shapes,
+    Text,
+}
+
 /// A sheet of paper with a drawing.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Canvas {
@@ -229,15 +239,21 @@ pub(crate) struct Canvas {
     pub title: String,
     /// The program that made it with its version, and its command, where they are known.
     pub maker: Option<[String; 2]>,
-    /// Whether letters are drawn as shapes, for readers that know no embedded fonts.
-    pub outlined: bool,
+    pub letters: Letters,
     pub elements: Vec<Element>,
 }
 
 impl Canvas {
     /// An empty sheet.
     pub(crate) fn new(width: f64, height: f64, title: &str) -> Canvas {
-        Canvas { width, height, title: title.into(), maker: None, outlined: false, elements: Vec::new() }
+        Canvas {
+            width,
+            height,
+            title: title.into(),
+            maker: None,
+            letters: Letters::default(),
+            elements: Vec::new(),
+        }
     }
 
     /// Adds a path; an empty one is left out.

@@ -66,7 +66,7 @@ pub use foot::Foot;
 pub use layer::{Cells, Dash, Hatch, Layer, Shape, Stroke};
 pub use panel::{ColourBar, Note, Panel, Place};
 
-use canvas::Canvas;
+use canvas::{Canvas, Letters};
 use font::Face;
 use label::{Label, wrapped};
 pub use label::{literal, typeset};
@@ -92,7 +92,7 @@ pub struct Figure {
     foot: String,
     time_unit: String,
     maker: Option<[String; 2]>,
-    outlined: bool,
+    letters: Letters,
     panels: Vec<Panel>,
 }
 
@@ -100,7 +100,7 @@ impl Figure {
     /// A figure of the given size on paper, its panels side by side; a heading and a foot make it taller.
     pub fn new(width_mm: f64, height_mm: f64) -> Self {
         let [title, heading, foot] = [const { String::new() }; 3];
-        let (columns, outlined, panels) = (usize::MAX, false, Vec::new());
+        let (columns, letters, panels) = (usize::MAX, Letters::default(), Vec::new());
         Figure {
             width_mm,
             height_mm,
@@ -111,7 +111,7 @@ impl Figure {
             foot,
             time_unit: "time".into(),
             maker: None,
-            outlined,
+            letters,
             panels,
         }
     }
@@ -200,10 +200,18 @@ impl Figure {
         self.panels.iter().any(Panel::has_time)
     }
 
-    /// Draws letters as shapes in SVG and PDF, for readers that know no embedded fonts; nobody can search them.
+    /// Draws letters as shapes in PDF, too; nobody can search them.
     #[must_use]
     pub fn outlined(mut self) -> Self {
-        self.outlined = true;
+        self.letters = Letters::Shapes;
+        self
+    }
+
+    /// Writes letters as text in SVG, too, with their font: in place where fonts in a document are read, as in browsers, and not where
+    /// they are ignored (librsvg, Inkscape, LibreOffice).
+    #[must_use]
+    pub fn in_text(mut self) -> Self {
+        self.letters = Letters::Text;
         self
     }
 
@@ -279,7 +287,7 @@ impl Figure {
         };
         let (above, below) = (rows(&head, TITLE), rows(&foot, FOOT));
         let mut canvas = Canvas::new(width, above + height + below, &self.title);
-        canvas.outlined = self.outlined;
+        canvas.letters = self.letters;
         canvas.maker.clone_from(&self.maker);
         draw::lines(&mut canvas, head, [left, layout::RIM], TITLE);
         for (panel, site) in panels.iter().zip(sites) {

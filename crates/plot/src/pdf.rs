@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect as Area, Ref, Str, TextStr};
 
-use super::canvas::{Canvas, Element, HALO, Paint, Pen, Words};
+use super::canvas::{Canvas, Element, HALO, Letters, Paint, Pen, Words};
 use super::embed::{Fonts, deflated};
 use super::label::Placed;
 use super::outline::{self, Outline};
@@ -28,7 +28,7 @@ pub(crate) fn document(canvas: &Canvas) -> Vec<u8> {
     }
     about.finish();
     pdf.pages(pages).kids([page]).count(1);
-    let fonts = if canvas.outlined { Fonts::default() } else { Fonts::new(canvas) };
+    let fonts = if canvas.letters == Letters::Shapes { Fonts::default() } else { Fonts::new(canvas) };
     let mut drawing = Drawing::new(&fonts, canvas);
     canvas.elements.iter().for_each(|element| drawing.draw(element));
     let Drawing { content, veils, .. } = drawing;
@@ -64,7 +64,7 @@ impl<'a> Drawing<'a> {
     fn new(fonts: &'a Fonts, canvas: &Canvas) -> Self {
         let mut content = Content::new();
         content.transform([1.0, 0.0, 0.0, -1.0, 0.0, canvas.height as f32]);
-        Drawing { content, fonts, outlined: canvas.outlined, veils: BTreeMap::new() }
+        Drawing { content, fonts, outlined: canvas.letters == Letters::Shapes, veils: BTreeMap::new() }
     }
 
     fn draw(&mut self, element: &'a Element) {

@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::canvas::{Canvas, Element, HALO, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
+use super::canvas::{Canvas, Element, HALO, Letters, MM, Paint, Patch, Path, Pen, Step, Words, hundredths};
 use super::clip::Rect;
 use super::embed::Fonts;
 use super::font::{Curve, Face};
@@ -16,7 +16,8 @@ use super::palette::WHITE;
 pub(crate) fn document(canvas: &Canvas) -> String {
     let (w, h) = (number(canvas.width), number(canvas.height));
     let (w_mm, h_mm) = (number(canvas.width / MM), number(canvas.height / MM));
-    let letters = if canvas.outlined { "" } else { SERIF };
+    let is_outlined = canvas.letters != Letters::Text;
+    let letters = if is_outlined { "" } else { SERIF };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
          width=\"{w_mm}mm\" height=\"{h_mm}mm\" viewBox=\"0 0 {w} {h}\"{letters}>\n<title>{}</title>\n",
@@ -26,7 +27,7 @@ pub(crate) fn document(canvas: &Canvas) -> String {
         out.push_str(&format!("<metadata>{program}: {}</metadata>\n", escaped(command)));
     }
     out.push_str("<defs>\n");
-    if canvas.outlined {
+    if is_outlined {
         for (face, glyph) in canvas.glyphs() {
             let (name, data) = (glyph_name(face, glyph), outline(face, glyph));
             out.push_str(&format!("<path id=\"{name}\" d=\"{data}\"/>\n"));
@@ -40,7 +41,7 @@ pub(crate) fn document(canvas: &Canvas) -> String {
         out.push_str(&match element {
             Element::Path(path, paint) => format!("<path {} d=\"{}\"/>", attributes(paint), data(path)),
             Element::Patch(rect) => filled(rect),
-            Element::Words(words) if canvas.outlined => shapes(words),
+            Element::Words(words) if is_outlined => shapes(words),
             Element::Words(words) => text(words),
             Element::Open(frame) => {
                 clips += 1;
