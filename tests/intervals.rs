@@ -204,7 +204,8 @@ fn turned(own: &[&[i64]], rest: [[i64; 2]; 2], denominator: i64) -> Value {
 fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
     let mut numbers = Numbers(17);
     // Stiffnesses in tenths under both clocks, and the longer step.
-    let edges: [(&str, &[&[i64]], &[&[i64]], &str); 9] = [
+    type Rows<'a> = &'a [&'a [i64]];
+    let edges: [(&str, Rows, Rows, &str); 9] = [
         ("kicks that cancel over the period: a block at 1", &[&[10]], &[&[-15]], "2"),
         ("Verlet's limit: a block at 1", &[&[40]], &[&[0]], "2"),
         ("an edge: a block at −1", &[&[10]], &[&[5]], "2"),

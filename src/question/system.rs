@@ -154,12 +154,12 @@ impl System {
         scene.intervals(span, width, &limits)
     }
 
-    /// That work of at most so many products may begin; and it is announced.
+    /// That work of so many products, roughly, may begin; and it is announced.
     fn begin(what: &str, cost: f64, scene: &SystemScene, work: &Work) -> Result<()> {
         let remedy = "choose a shorter range or a larger --resolution";
         let allowed = work.products().allow(cost.min(1e19) as u64, || what.to_string());
         allowed.map_err(|error| error.or(remedy))?;
-        work.announce(&format!("{what}, at most"), scene.model().seconds_of(cost));
+        work.announce(what, scene.model().seconds_of(cost));
         Ok(())
     }
 

@@ -122,7 +122,7 @@ impl SystemScene {
         Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
     }
 
-    /// The products that these cost, roughly, at the most.
+    /// The products that these cost, roughly, where cells are narrow throughout.
     ///
     /// # Errors
     /// As [`SystemScene::intervals`].
@@ -206,7 +206,7 @@ impl SystemScene {
         self.model.nearest_unstable(width, limits)
     }
 
-    /// The products that this costs, roughly, at the most.
+    /// The products that this costs, roughly, where cells are narrow throughout.
     ///
     /// # Errors
     /// As [`SystemScene::nearest_unstable`].

@@ -73,7 +73,7 @@ pub(in crate::system) fn follow_proven<'a>(
     events: impl Iterator<Item = Event>,
     kick: impl Fn(usize, usize) -> &'a Stiff,
 ) -> Option<Propagated> {
-    followed(drifts, events, kick, Account::is_lost).filter(|state| state.error.is_some())
+    followed(drifts, events, kick, |account| !account.holds()).filter(|state| state.error.is_some())
 }
 
 fn followed<'a>(
@@ -115,16 +115,16 @@ pub(in crate::system) fn decayed(decay: &Rational, ticks: u64) -> f64 {
 }
 
 impl Account {
-    /// Whether the bound's condition fails, as it does then for good: both factors only grow.
-    fn is_lost(&self) -> bool {
+    /// The bound's condition; once it fails it fails for good, as both factors only grow.
+    fn holds(&self) -> bool {
         // 1.01: as in the bound. A sum that is no number fails the comparison, too.
-        !(8.0 * (1.01 * self.largest) * (1.01 * self.rho) <= 1.0)
+        8.0 * (1.01 * self.largest) * (1.01 * self.rho) <= 1.0
     }
 
     fn bound(&self, end: f64) -> Option<f64> {
         // 1.01: the roundings of norms, of d_k and of the sums.
         let (rho, sigma, largest) = (1.01 * self.rho, 1.01 * self.sigma, 1.01 * self.largest);
-        (!self.is_lost()).then(|| {
+        self.holds().then(|| {
             let s = sigma + 2.0 * largest * sigma * rho;
             1.02 * end * s / (1.0 - s)
         })

@@ -51,7 +51,7 @@ impl Model {
         }
     }
 
-    /// The products of doubles that these cost, roughly, at the most.
+    /// The products of doubles that these cost, roughly, where cells are narrow throughout.
     ///
     /// # Errors
     /// As [`Family::cost`].

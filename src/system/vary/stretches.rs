@@ -50,7 +50,8 @@ pub fn cover(
     Ok(merged(try_map(&coarse, shrink)?.into_iter().flatten()))
 }
 
-/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it.
+/// The most cells that [`cover`] asks about, roughly: each as narrow as they get, and a wider one tried before it. Those that sharpen the
+/// ends of what is not told come on top.
 pub fn most_cells((lo, hi): (f64, f64), width: f64) -> f64 {
     2.0 * (hi - lo) / (width * lo.abs().max(hi.abs())) + f64::from(PARTS)
 }
