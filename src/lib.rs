@@ -140,6 +140,7 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+pub mod word;
 
 // What everyone needs, without the way to it.
 pub use error::{Error, Result};
