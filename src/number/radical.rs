@@ -106,7 +106,10 @@ impl Radical {
                 factor *= BigInt::from(prime);
             }
         }
-        Some(RadicalField::new(c, degree).element(Polynomial::monomial(factor, 1)))
+        // 4^(1/3) = (2^(1/3))²: the generator is the root of no power.
+        let power = (2..=c.bits() as u32).rev().find_map(|k| Some((exact_root(&Rational::from_integer(c.clone()), k)?, k)));
+        let (c, k) = power.map_or((c, 1), |(e, k)| (e.to_integer(), k));
+        Some(RadicalField::new(c, degree).element(Polynomial::monomial(factor, k as usize)))
     }
 
     /// Both numbers in one field; `None` where that is not one that a single root generates which either of them is written in.

@@ -17,6 +17,8 @@ pub(super) struct Reader {
     pub characters: Vec<char>,
     pub at: usize,
     pub depth: u32,
+    /// A number of the largest field so far.
+    pub known: Radical,
 }
 
 pub(super) type Read<T> = Result<T, (usize, String)>;
@@ -57,6 +59,16 @@ impl Reader {
         }
         let value = inside(self)?;
         self.depth -= 1;
+        Ok(value)
+    }
+
+    /// A sum in the field of the coefficients before it.
+    pub fn coefficient(&mut self) -> Read<Radical> {
+        self.skip(' ');
+        let at = self.at;
+        let value = self.sum()?;
+        let Some((own, known)) = Radical::together(&value, &self.known) else { return self.wrong(at, TWO_FIELDS) };
+        self.known = if known.field().is_some() { known } else { own };
         Ok(value)
     }
 

@@ -25,7 +25,7 @@ impl FromStr for Word {
         if text.chars().nth(MAX_CHARACTERS).is_some() {
             return Err(Error::input("word", text, format!("write it in {MAX_CHARACTERS} characters at most")));
         }
-        let mut reader = Reader { characters: text.chars().collect(), at: 0, depth: 0 };
+        let mut reader = Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero() };
         let items = reader.items().and_then(|items| match reader.peek() {
             None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
             None => Ok(items),
@@ -79,9 +79,9 @@ impl Reader {
             _ => return self.wrong(at, format!("{name} is no letter; {LETTERS}")),
         };
         self.expect('(', &format!("after {name}"))?;
-        let mut powers = vec![self.sum()?];
+        let mut powers = vec![self.coefficient()?];
         while self.skip(',') {
-            powers.push(self.sum()?);
+            powers.push(self.coefficient()?);
         }
         self.expect(')', &format!("after the coefficient of {name}"))?;
         match (name.as_bytes()[0], powers.len()) {

@@ -316,6 +316,7 @@ fn every_command_explains_itself() {
         "tongues",
         "closings",
         "bands",
+        "word",
         "verify",
         "system",
         "simulate",
