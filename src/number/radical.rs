@@ -93,12 +93,14 @@ impl Radical {
             return None;
         }
         // The largest d | n of which x is a power leaves no p-th power for a prime p | n/d.
-        let (e, degree) = (1..=n).rev().filter(|d| n.is_multiple_of(*d)).find_map(|d| Some((exact_root(x, d)?, n / d)))?;
+        let (e, degree) =
+            (1..=n).rev().filter(|d| n.is_multiple_of(*d)).find_map(|d| Some((exact_root(x, d)?, n / d)))?;
         if degree == 1 || e.is_zero() {
             return Some(Radical::from_rational(&e));
         }
         // (p/q)^(1/n) = (p q^(n−1))^(1/n)/q; small n-th powers come out of the radicand.
-        let (mut c, mut factor) = (e.numer() * e.denom().pow(degree - 1), Rational::new(BigInt::one(), e.denom().clone()));
+        let (mut c, mut factor) =
+            (e.numer() * e.denom().pow(degree - 1), Rational::new(BigInt::one(), e.denom().clone()));
         for prime in [2u32, 3, 5, 7, 11, 13] {
             let power = BigInt::from(prime).pow(degree);
             while c.is_multiple_of(&power) {
@@ -107,7 +109,9 @@ impl Radical {
             }
         }
         // 4^(1/3) = (2^(1/3))²: the generator is the root of no power.
-        let power = (2..=c.bits() as u32).rev().find_map(|k| Some((exact_root(&Rational::from_integer(c.clone()), k)?, k)));
+        let power = (2..=c.bits() as u32)
+            .rev()
+            .find_map(|k| Some((exact_root(&Rational::from_integer(c.clone()), k)?, k)));
         let (c, k) = power.map_or((c, 1), |(e, k)| (e.to_integer(), k));
         Some(RadicalField::new(c, degree).element(Polynomial::monomial(factor, k as usize)))
     }

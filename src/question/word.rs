@@ -76,7 +76,10 @@ impl Word {
         match (&self.word, &self.method) {
             (Some(word), None) => Ok(word.clone()),
             (None, Some(name)) => Ok(method(name)?.word()),
-            (None, None) => Err(Error::missing("word", "write a word such as \"K(1/2) D(1) K(1/2)\", or --method NAME; --list shows names")),
+            (None, None) => Err(Error::missing(
+                "word",
+                "write a word such as \"K(1/2) D(1) K(1/2)\", or --method NAME; --list shows names",
+            )),
             (Some(word), Some(_)) => Err(Error::input("word", word, "give a word or a method, not both")),
         }
     }
@@ -87,23 +90,32 @@ impl Word {
             return Err(Error::input("lambda1", lambda1, "the stiffness must be positive"));
         }
         match (&self.lambda1, &self.lambda2, word.names_forces()) {
-            (_, Some(lambda2), false) => {
-                Err(Error::input("lambda2", lambda2, "the word names no second force: write K1 and K2, or leave it out"))
-            }
+            (_, Some(lambda2), false) => Err(Error::input(
+                "lambda2",
+                lambda2,
+                "the word names no second force: write K1 and K2, or leave it out",
+            )),
             (_, None, false) => Ok(Some(Rational::zero())),
             (Some(lambda1), Some(lambda2), true) => match Laurent::ratio(lambda2, lambda1) {
                 Some(rho) => Ok(Some(rho)),
-                None => Err(Error::input("lambda2", lambda2, "choose a rational multiple of lambda1: the word's entries are polynomials over Q then")),
+                None => Err(Error::input(
+                    "lambda2",
+                    lambda2,
+                    "choose a rational multiple of lambda1: the word's entries are polynomials over Q then",
+                )),
             },
             (None, None, true) => Ok(None),
             (None, ..) => Err(Error::missing("lambda1", "the word names two forces: give both stiffnesses")),
-            (_, None, _) => Err(Error::missing("lambda2", "the word names two forces: give both stiffnesses")),
+            (_, None, _) => {
+                Err(Error::missing("lambda2", "the word names two forces: give both stiffnesses"))
+            }
         }
     }
 
     /// h² Λ1, for a step that is given.
     fn s(&self, h: &Laurent, field: &str) -> Result<Laurent> {
-        let lambda1 = self.lambda1.as_ref().ok_or_else(|| Error::missing("lambda1", "a step needs the stiffness"))?;
+        let lambda1 =
+            self.lambda1.as_ref().ok_or_else(|| Error::missing("lambda1", "a step needs the stiffness"))?;
         if h.sign() != Sign::Positive {
             return Err(Error::input(field, h, "a step must be positive"));
         }
@@ -139,13 +151,16 @@ impl Question for Word {
             let lo = if lo.sign() == Sign::Zero { Ok(Laurent::zero()) } else { self.s(lo, "h_range") };
             Ok::<_, Error>((lo?, self.s(hi, "h_range")?))
         });
-        let range = range.transpose()?.map(|(lo, hi)| (lo.enclosure(BITS).lower(), hi.enclosure(BITS).upper()));
+        let range =
+            range.transpose()?.map(|(lo, hi)| (lo.enclosure(BITS).lower(), hi.enclosure(BITS).upper()));
         let s = self.h.as_ref().map(|h| self.s(h, "h")).transpose()?;
         let (mut stability, mut found) = (None, None);
         if let Some(rho) = &rho {
             let product = word.polynomials(&Forces::ratio(rho));
             stability = Some(Stability::of(&product));
-            let pole = |h: &Laurent| Error::input("h", h, "a midpoint has no solution at this step: its force is negative");
+            let pole = |h: &Laurent| {
+                Error::input("h", h, "a midpoint has no solution at this step: its force is negative")
+            };
             found = match (&s, &self.h) {
                 (Some(s), Some(h)) => Some(at(&product, s).ok_or_else(|| pole(h))?),
                 _ => None,
@@ -184,7 +199,8 @@ const BITS: u32 = 96;
 /// Whether an interval meets [lo, hi].
 fn meets(own: &Interval, lo: &Rational, hi: &Rational) -> bool {
     let after = |edge: &Edge, x: &Rational| edge.compare(x) == Sign::Positive;
-    own.lower.as_ref().is_none_or(|lower| !after(lower, hi)) && own.upper.as_ref().is_none_or(|upper| after(upper, lo))
+    own.lower.as_ref().is_none_or(|lower| !after(lower, hi))
+        && own.upper.as_ref().is_none_or(|upper| after(upper, lo))
 }
 
 /// √s as an enclosure: h √Λ1.
@@ -229,20 +245,40 @@ impl Linted {
             None => lower.then(Ball::zero),
         };
         let (one, two) = (root.clone(), root);
-        let over = |x: Option<Ball>, root: &Option<Ball>| Some(x?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
-        let exact = |edge: &Option<Edge>| edge.as_ref().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        let over =
+            |x: Option<Ball>, root: &Option<Ball>| Some(x?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
+        let exact =
+            |edge: &Option<Edge>| edge.as_ref().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
         let record = Record::new()
             .field(Column::new("stable").left(), |of: Of| of.stable.into())
-            .field(Column::new("lower").titled(&format!("{} from", self.unit()), if self.word.names_forces() { "$\\sqrt{\\Lambda_1}\\,h$ from" } else { "$\\omega h$ from" }).enclosure(), move |of| {
-                end(&of.lower, true).map(|x| x.to_f64_enclosure()).into()
-            })
+            .field(
+                Column::new("lower")
+                    .titled(
+                        &format!("{} from", self.unit()),
+                        if self.word.names_forces() {
+                            "$\\sqrt{\\Lambda_1}\\,h$ from"
+                        } else {
+                            "$\\omega h$ from"
+                        },
+                    )
+                    .enclosure(),
+                move |of| end(&of.lower, true).map(|x| x.to_f64_enclosure()).into(),
+            )
             .field(Column::new("upper").titled("to", "to").enclosure(), move |of| {
                 end(&of.upper, false).map(|x| x.to_f64_enclosure()).into()
             })
-            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |of| exact(&of.lower))
-            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |of| exact(&of.upper))
-            .field(Column::new("lower_included").in_words("with lower end").aside(), |of| of.includes[0].into())
-            .field(Column::new("upper_included").in_words("with upper end").aside(), |of| of.includes[1].into())
+            .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |of| {
+                exact(&of.lower)
+            })
+            .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |of| {
+                exact(&of.upper)
+            })
+            .field(Column::new("lower_included").in_words("with lower end").aside(), |of| {
+                of.includes[0].into()
+            })
+            .field(Column::new("upper_included").in_words("with upper end").aside(), |of| {
+                of.includes[1].into()
+            })
             .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), move |of| {
                 over(end(&of.lower, true), &one).into()
             })
@@ -259,15 +295,22 @@ impl Linted {
         let mut lines = vec![self.word.to_string()];
         let unit = self.unit();
         let mut line = |name: &str, text: String| lines.push(format!("  {name:<12} {text}"));
-        let sums: Vec<String> = self.sums.iter().map(|(name, sum)| format!("{name} {}", shown(sum))).collect();
+        let sums: Vec<String> =
+            self.sums.iter().map(|(name, sum)| format!("{name} {}", shown(sum))).collect();
         let consistent = if self.word.is_consistent() { "yes" } else { "no" };
         line("consistent", format!("{consistent}: the coefficients sum to {}", sums.join(", ")));
-        line("palindrome", match self.word.asymmetry() {
-            None => "yes".into(),
-            Some(place) => {
-                format!("no: letter {} is {}, its mirror image {}", place.letter, place.there, place.mirrored)
-            }
-        });
+        line(
+            "palindrome",
+            match self.word.asymmetry() {
+                None => "yes".into(),
+                Some(place) => {
+                    format!(
+                        "no: letter {} is {}, its mirror image {}",
+                        place.letter, place.there, place.mirrored
+                    )
+                }
+            },
+        );
         let rounded = if self.order.nominal > self.order.order {
             format!("; {} but for errors below 1e-9, as rounded coefficients have them", self.order.nominal)
         } else {
@@ -277,26 +320,37 @@ impl Linted {
         for (name, term) in [("frequency", &self.order.frequency), ("impedance", &self.order.impedance)] {
             if let Some((k, c)) = term {
                 let text = shown(c);
-                let term = text.strip_prefix('-').map_or_else(|| format!("+ {text}"), |rest| format!("- {rest}"));
+                let term =
+                    text.strip_prefix('-').map_or_else(|| format!("+ {text}"), |rest| format!("- {rest}"));
                 let sum = text.contains(' ');
-                line(name, format!("omega (1 {} (omega h)^{k} + ...)", if sum { format!("+ ({text})") } else { term }));
+                line(
+                    name,
+                    format!(
+                        "omega (1 {} (omega h)^{k} + ...)",
+                        if sum { format!("+ ({text})") } else { term }
+                    ),
+                );
             }
         }
         if let Some(stability) = &self.stability {
-            line("stable", match (stability.first_edge(), stability.begins_stable()) {
-                (Some(edge), _) => {
-                    let exact = edge.rational().map_or(String::new(), |s| format!(" = sqrt({s})"));
-                    let end = if edge.coexistence { "<=" } else { "<" };
-                    let ends = omega_h(edge).to_f64_enclosure();
-                    let nominal = self.nominal_edge().map(|own| own.to_f64_enclosure()).filter(|own| *own != ends);
-                    let nominal = nominal.map_or(String::new(), |own| {
+            line(
+                "stable",
+                match (stability.first_edge(), stability.begins_stable()) {
+                    (Some(edge), _) => {
+                        let exact = edge.rational().map_or(String::new(), |s| format!(" = sqrt({s})"));
+                        let end = if edge.coexistence { "<=" } else { "<" };
+                        let ends = omega_h(edge).to_f64_enclosure();
+                        let nominal =
+                            self.nominal_edge().map(|own| own.to_f64_enclosure()).filter(|own| *own != ends);
+                        let nominal = nominal.map_or(String::new(), |own| {
                         format!("; {} but for unstable intervals below 1e-9, as rounded coefficients open them", enclosed(own))
                     });
-                    format!("0 < {unit} {end} {}{exact}{nominal}", enclosed(ends))
-                }
-                (None, true) => "at every step".into(),
-                (None, false) => "not at small steps".into(),
-            });
+                        format!("0 < {unit} {end} {}{exact}{nominal}", enclosed(ends))
+                    }
+                    (None, true) => "at every step".into(),
+                    (None, false) => "not at small steps".into(),
+                },
+            );
         }
         let cost = self.cost;
         let counts = match (self.word.names_forces(), cost.evaluations) {
@@ -304,15 +358,27 @@ impl Linted {
             (true, [fast, slow]) => format!("{} of force 1, {slow} of force 2", counted(fast, "evaluation")),
         };
         let more = [(cost.gradients, "gradient"), (cost.solves, "linear solve")];
-        let more: String = more.iter().filter(|(n, _)| *n > 0).map(|(n, of)| format!(", {}", counted(*n, of))).collect();
+        let more: String =
+            more.iter().filter(|(n, _)| *n > 0).map(|(n, of)| format!(", {}", counted(*n, of))).collect();
         line("cost", format!("{counts}{more} a step"));
         if let Some((most, least)) = self.efficiency().zip(self.per_unit()) {
-            let text = format!("{unit} = {} for each of them at most, {} of them per unit", enclosed(most), enclosed(least));
+            let text = format!(
+                "{unit} = {} for each of them at most, {} of them per unit",
+                enclosed(most),
+                enclosed(least)
+            );
             line("efficiency", text);
         }
         if let (Some(found), Some(h)) = (&self.at, &question.h) {
             let stable = if found.is_stable() { "stable" } else { "unstable" };
-            line("verdict", format!("{stable} at h = {h}: {}, trace {}", found.kind, enclosed(found.trace.to_f64_enclosure())));
+            line(
+                "verdict",
+                format!(
+                    "{stable} at h = {h}: {}, trace {}",
+                    found.kind,
+                    enclosed(found.trace.to_f64_enclosure())
+                ),
+            );
             if let Some(rate) = rate(&found.ln_multiplier, h) {
                 line("growth rate", format!("{} per unit time", enclosed(rate)));
             }
@@ -388,8 +454,12 @@ fn record(question: &Word) -> Record<'_, Linted> {
     record = record
         .json("palindrome", |of| of.word.asymmetry().is_none().into())
         .json("differs.letter", |of| of.word.asymmetry().map(|place| place.letter as u64).into())
-        .json("differs.there", |of| of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there)))
-        .json("differs.mirrored", |of| of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored)))
+        .json("differs.there", |of| {
+            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.there))
+        })
+        .json("differs.mirrored", |of| {
+            of.word.asymmetry().map_or(Cell::Missing, |place| Cell::Text(place.mirrored))
+        })
         .json("order", |of| of.order.order.into())
         .json("nominal_order", |of| of.order.nominal.into());
     for (i, name) in ["A", "B", "C", "D"].into_iter().enumerate() {
@@ -437,7 +507,14 @@ impl Question for Methods {
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         let lint = |method: &'static Method| {
-            let none = Word { word: None, method: Some(method.name.into()), lambda1: None, lambda2: None, h: None, h_range: None };
+            let none = Word {
+                word: None,
+                method: Some(method.name.into()),
+                lambda1: None,
+                lambda2: None,
+                h: None,
+                h_range: None,
+            };
             Ok((method, none.answer(work)?))
         };
         METHODS.iter().map(lint).collect()
@@ -461,9 +538,16 @@ impl Question for Methods {
             .field(Column::new("efficiency").enclosure(), |of| of.1.efficiency().into())
             .field(Column::new("word").left().aside(), |of| Cell::exact(&of.1.word))
             .field(Column::new("source").left().aside(), |of| of.0.source.into())
-            .table("methods", "Published integrators: order on oscillators, cost a step, stable steps, efficiency", all);
+            .table(
+                "methods",
+                "Published integrators: order on oscillators, cost a step, stable steps, efficiency",
+                all,
+            );
         let line = format!("{} integrators; kickdrift word --method NAME tells more of one", all.len());
-        let people = chosen(&table, &["name", "order", "evaluations", "palindrome", "edge", "nominal_edge", "efficiency"]);
+        let people = chosen(
+            &table,
+            &["name", "order", "evaluations", "palindrome", "edge", "nominal_edge", "efficiency"],
+        );
         Document::new(Self::NAME).rows(table).for_people(people).summary(&[line])
     }
 }

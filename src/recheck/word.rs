@@ -46,32 +46,42 @@ rows! {
 fn product(word: &crate::word::Word, s: &Rational, rho: &Rational) -> Matrix2<Radical> {
     let (zero, one) = (Radical::zero(), Radical::one());
     let number = |x: &Rational| Radical::from_rational(x);
-    let force = |force: Force| number(&match force {
-        Force::First => s.clone(),
-        Force::Second => s * rho,
-        Force::All => s * (Rational::one() + rho),
-    });
-    word.letters().iter().fold(Matrix2::new(one.clone(), zero.clone(), zero.clone(), one.clone()), |product, letter| {
-        let matrix = match letter {
-            Letter::Drift(time) => Matrix2::new(one.clone(), time.clone(), zero.clone(), one.clone()),
-            Letter::Kick { force: named, powers } => {
-                let force = force(*named);
-                let (mut power, mut strength) = (one.clone(), zero.clone());
-                for c in powers {
-                    power *= force.clone();
-                    strength += &power * c;
+    let force = |force: Force| {
+        number(&match force {
+            Force::First => s.clone(),
+            Force::Second => s * rho,
+            Force::All => s * (Rational::one() + rho),
+        })
+    };
+    word.letters().iter().fold(
+        Matrix2::new(one.clone(), zero.clone(), zero.clone(), one.clone()),
+        |product, letter| {
+            let matrix = match letter {
+                Letter::Drift(time) => Matrix2::new(one.clone(), time.clone(), zero.clone(), one.clone()),
+                Letter::Kick { force: named, powers } => {
+                    let force = force(*named);
+                    let (mut power, mut strength) = (one.clone(), zero.clone());
+                    for c in powers {
+                        power *= force.clone();
+                        strength += &power * c;
+                    }
+                    Matrix2::new(one.clone(), zero.clone(), -strength, one.clone())
                 }
-                Matrix2::new(one.clone(), zero.clone(), -strength, one.clone())
-            }
-            Letter::Midpoint { force: named, time } => {
-                let quarter = &(&force(*named) * &(time * time)) * &number(&rational::ratio(1, 4));
-                let over = (&one + &quarter).inverse().unwrap_or_else(Radical::zero);
-                let diagonal = &(&one - &quarter) * &over;
-                Matrix2::new(diagonal.clone(), time * &over, -(&(&force(*named) * time) * &over), diagonal)
-            }
-        };
-        matrix * product
-    })
+                Letter::Midpoint { force: named, time } => {
+                    let quarter = &(&force(*named) * &(time * time)) * &number(&rational::ratio(1, 4));
+                    let over = (&one + &quarter).inverse().unwrap_or_else(Radical::zero);
+                    let diagonal = &(&one - &quarter) * &over;
+                    Matrix2::new(
+                        diagonal.clone(),
+                        time * &over,
+                        -(&(&force(*named) * time) * &over),
+                        diagonal,
+                    )
+                }
+            };
+            matrix * product
+        },
+    )
 }
 
 /// Whether |trace| < 2 (`Less`), or more, or 2.
@@ -123,7 +133,8 @@ fn order(word: &crate::word::Word, rho: &Rational) -> u64 {
         let off = |i: usize, j: usize, flow: &Rational| &product[(i, j)] - &Radical::from_rational(flow);
         let unit = Radical::from_rational(&h);
         let over = Radical::from_rational(&h.recip());
-        let errors = [off(0, 0, &cos), off(1, 1, &cos), &off(0, 1, &sinc) * &unit, &off(1, 0, &(-&x * &sinc)) * &over];
+        let errors =
+            [off(0, 0, &cos), off(1, 1, &cos), &off(0, 1, &sinc) * &unit, &off(1, 0, &(-&x * &sinc)) * &over];
         let size = |c: &Radical| c.enclosure(64).abs();
         errors.iter().map(size).map(|ball| ball.upper()).max().unwrap_or_default()
     };
@@ -149,7 +160,11 @@ impl Row {
         let sign = inside(word, &(&omega_h * &omega_h), rho);
         let stable = sign == Sign::Positive;
         holds(sign == Sign::Zero || stable == self.stable, || {
-            format!("at omega h = {} it is {}", rational::to_f64(&omega_h), if stable { "stable" } else { "unstable" })
+            format!(
+                "at omega h = {} it is {}",
+                rational::to_f64(&omega_h),
+                if stable { "stable" } else { "unstable" }
+            )
         })
     }
 }

@@ -67,7 +67,9 @@ impl Reader {
         self.skip(' ');
         let at = self.at;
         let value = self.sum()?;
-        let Some((own, known)) = Radical::together(&value, &self.known) else { return self.wrong(at, TWO_FIELDS) };
+        let Some((own, known)) = Radical::together(&value, &self.known) else {
+            return self.wrong(at, TWO_FIELDS);
+        };
         self.known = if known.field().is_some() { known } else { own };
         Ok(value)
     }
@@ -146,7 +148,9 @@ impl Reader {
                 self.wrong(at, "the root of a number that is too long")
             }
             Some(x) => Ok(Radical::root(&x, n).expect("a root of small degree of x >= 0")),
-            None => self.wrong(at, "a root of a root is not supported; write it as one root, or as a decimal"),
+            None => {
+                self.wrong(at, "a root of a root is not supported; write it as one root, or as a decimal")
+            }
         }
     }
 
@@ -173,14 +177,17 @@ impl Reader {
             Some(c) if c.is_alphabetic() => {
                 let name = self.taken(char::is_alphabetic);
                 if name != "sqrt" {
-                    return self.wrong(at, format!("{name} is no number; there are decimals, sqrt(c) and c^(1/n)"));
+                    return self
+                        .wrong(at, format!("{name} is no number; there are decimals, sqrt(c) and c^(1/n)"));
                 }
                 self.expect('(', "after sqrt")?;
                 let value = self.nested(Self::sum)?;
                 self.expect(')', "after a sum")?;
                 self.root(at, value, 2)
             }
-            Some(c) => self.wrong(at, format!("unexpected {c:?}; write a number such as 1/6, 0.193 or sqrt(3)/6")),
+            Some(c) => {
+                self.wrong(at, format!("unexpected {c:?}; write a number such as 1/6, 0.193 or sqrt(3)/6"))
+            }
             None => self.wrong(at, "the text ends where a number should stand"),
         }
     }
@@ -197,7 +204,9 @@ impl Reader {
             text += &self.taken(|c| c.is_ascii_digit());
         }
         match parse_rational("word", &text) {
-            Ok(value) if value.numer().bits() + value.denom().bits() <= MAX_BITS => Ok(Radical::from_rational(&value)),
+            Ok(value) if value.numer().bits() + value.denom().bits() <= MAX_BITS => {
+                Ok(Radical::from_rational(&value))
+            }
             Ok(_) => self.wrong(at, "this number is too long"),
             Err(error) => self.wrong(at, error.remedy()),
         }

@@ -23,15 +23,21 @@ impl FromStr for Word {
     /// A text that is no word: the place, and what stands there.
     fn from_str(text: &str) -> Result<Word> {
         if text.chars().nth(MAX_CHARACTERS).is_some() {
-            return Err(Error::input("word", text, format!("write it in {MAX_CHARACTERS} characters at most")));
+            return Err(Error::input(
+                "word",
+                text,
+                format!("write it in {MAX_CHARACTERS} characters at most"),
+            ));
         }
-        let mut reader = Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero() };
+        let mut reader =
+            Reader { characters: text.chars().collect(), at: 0, depth: 0, known: Radical::zero() };
         let items = reader.items().and_then(|items| match reader.peek() {
             None if items.is_empty() => reader.wrong(0, "a word has letters, as K(1/2) D(1) K(1/2)"),
             None => Ok(items),
             Some(c) => reader.wrong(reader.at, format!("unexpected {c:?}; {LETTERS}")),
         });
-        let items = items.map_err(|(at, why)| Error::input("word", text, format!("character {}: {why}", at + 1)))?;
+        let items =
+            items.map_err(|(at, why)| Error::input("word", text, format!("character {}: {why}", at + 1)))?;
         Word::new(items).ok_or_else(|| Error::input("word", text, TWO_FIELDS))
     }
 }

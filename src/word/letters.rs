@@ -174,7 +174,9 @@ impl Word {
         for letter in self.letters() {
             let parts = match letter {
                 Letter::Kick { force: Force::All, powers } if named && powers.len() == 1 => {
-                    [Force::First, Force::Second].map(|force| Letter::Kick { force, powers: powers.clone() }).to_vec()
+                    [Force::First, Force::Second]
+                        .map(|force| Letter::Kick { force, powers: powers.clone() })
+                        .to_vec()
                 }
                 other => vec![other.clone()],
             };
@@ -186,7 +188,8 @@ impl Word {
     /// Σ of the drifts, and of the kicks of each force that the word names (midpoints are both); consistent iff each is 1.
     pub fn sums(&self) -> Vec<(&'static str, Radical)> {
         let names = if self.names_forces() { &["D", "K1", "K2"][..] } else { &["D", "K"] };
-        let mut sums: Vec<(&'static str, Radical)> = names.iter().map(|name| (*name, Radical::zero())).collect();
+        let mut sums: Vec<(&'static str, Radical)> =
+            names.iter().map(|name| (*name, Radical::zero())).collect();
         for letter in self.letters() {
             let (drift, force, c) = match letter {
                 Letter::Drift(time) => (true, None, time),

@@ -35,7 +35,7 @@ mod point;
 mod product;
 mod stability;
 
-pub use catalogue::{Method, METHODS, method};
+pub use catalogue::{METHODS, Method, method};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::Order;
 pub use point::{At, at};

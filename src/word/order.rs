@@ -72,7 +72,9 @@ impl Word {
             })
         };
         // No rational function of s is the exact flow, so both are found.
-        let first = |counts: &dyn Fn(&InRho) -> bool| (1..).find(|&power| errors(power).iter().any(counts)).expect("found");
+        let first = |counts: &dyn Fn(&InRho) -> bool| {
+            (1..).find(|&power| errors(power).iter().any(counts)).expect("found")
+        };
         let (order, nominal) = (first(&|f| !f.is_zero()) - 1, first(&|f| !is_small(f)) - 1);
         let half = Radical::from_rational(&rational::ratio(1, 2));
         let halved = |c: InRho| &c.coefficient(0) * &half;

@@ -60,9 +60,10 @@ impl<S: Ring> Product<S> {
             Letter::Kick { force, powers } => {
                 let force = forces.of(*force);
                 // (c + d F + ...) F by Horner's rule.
-                let strength = powers.iter().rev().fold(S::zero(), |sum, c| {
-                    S::product(&(sum + (forces.embed)(c)), &force)
-                });
+                let strength = powers
+                    .iter()
+                    .rev()
+                    .fold(S::zero(), |sum, c| S::product(&(sum + (forces.embed)(c)), &force));
                 apply_kick(&mut self.matrix, &strength);
             }
             Letter::Midpoint { force, time } => {

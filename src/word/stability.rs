@@ -130,7 +130,9 @@ fn zeros(f: &Poly) -> Zeros {
         let turned = Polynomial::new(f.coefficients().iter().rev().cloned().collect());
         let found = polynomial::roots_within(&simple, &turned.root_bound().recip(), &f.root_bound());
         let over = |f: &[BigInt]| {
-            Polynomial::new(f.iter().map(|c| Radical::from_rational(&Rational::from_integer(c.clone()))).collect())
+            Polynomial::new(
+                f.iter().map(|c| Radical::from_rational(&Rational::from_integer(c.clone()))).collect(),
+            )
         };
         Zeros { squarefree: over(&simple), repeated: over(&repeated), all: found }
     };
@@ -162,12 +164,17 @@ fn sign_at(f: &Poly, x: &Rational) -> Sign {
 impl Stability {
     /// Every interval of s > 0. Where a midpoint's force is negative, its poles lie in unstable intervals.
     pub fn of(product: &Polynomials) -> Stability {
-        let (trace, twice) = (product.trace(), product.denominator.scale(&Radical::from_rational(&Rational::from_integer(2.into()))));
+        let (trace, twice) = (
+            product.trace(),
+            product.denominator.scale(&Radical::from_rational(&Rational::from_integer(2.into()))),
+        );
         let mut sides = [(1, &trace - &twice), (-1, &trace + &twice)];
         // A zero of both is one of q and of T: a pole of a midpoint that the word cancels.
         if product.denominator.degree() > Some(0) {
             let common = sides[0].1.gcd(&sides[1].1);
-            sides.iter_mut().for_each(|(_, f)| *f = f.div_rem(&common).map_or_else(Poly::zero, |(quotient, _)| quotient));
+            sides
+                .iter_mut()
+                .for_each(|(_, f)| *f = f.div_rem(&common).map_or_else(Poly::zero, |(quotient, _)| quotient));
         }
         let off = [&product.matrix[(0, 1)], &product.matrix[(1, 0)]];
         if sides.iter().any(|(_, f)| f.is_zero()) {
@@ -176,17 +183,21 @@ impl Stability {
             return Stability { intervals: vec![all] };
         }
         // In integers, where they are rational: signs are found faster so, and a positive factor does not change them.
-        let sides = sides.map(|(side, f)| (side, f.rational().map_or(f, |f| f.primitive().map(Radical::from_rational))));
+        let sides = sides
+            .map(|(side, f)| (side, f.rational().map_or(f, |f| f.primitive().map(Radical::from_rational))));
         let mut edges: Vec<Edge> = Vec::new();
         for (side, f) in &sides {
             let Zeros { squarefree, repeated, all } = zeros(f);
             // tr(X) = 0 for X in the tangent space at ±I, so the trace has a repeated zero there.
-            let common = off.iter().fold(repeated, |common, f| if common.degree() > Some(0) { common.gcd(f) } else { common });
+            let common = off
+                .iter()
+                .fold(repeated, |common, f| if common.degree() > Some(0) { common.gcd(f) } else { common });
             let common = common.squarefree();
-            let identity = |(lo, hi): &(Rational, Rational)| match (sign_at(&common, lo), sign_at(&common, hi)) {
-                (Sign::Zero, _) => lo == hi,
-                (below, above) => below != above,
-            };
+            let identity =
+                |(lo, hi): &(Rational, Rational)| match (sign_at(&common, lo), sign_at(&common, hi)) {
+                    (Sign::Zero, _) => lo == hi,
+                    (below, above) => below != above,
+                };
             edges.extend(all.into_iter().map(|ends| Edge {
                 side: *side,
                 polynomial: squarefree.clone(),
@@ -239,7 +250,9 @@ fn apart(edges: &mut [Edge]) {
 /// The intervals between edges and the edges themselves, those of one answer joined.
 fn joined(edges: Vec<Edge>, inside: impl Fn(&Rational) -> bool) -> Vec<Interval> {
     let two = Rational::from_integer(2.into());
-    let first = edges.first().map_or_else(Rational::one, |edge| rational::simplest(&(&edge.ends.0 / &two), &edge.ends.0));
+    let first = edges
+        .first()
+        .map_or_else(Rational::one, |edge| rational::simplest(&(&edge.ends.0 / &two), &edge.ends.0));
     let mut open = Interval { lower: None, upper: None, stable: inside(&first), includes: [false; 2] };
     let mut all = Vec::new();
     for (i, edge) in edges.iter().enumerate() {
@@ -257,7 +270,12 @@ fn joined(edges: Vec<Edge>, inside: impl Fn(&Rational) -> bool) -> Vec<Interval>
             includes: [interval.includes[0], here == interval.stable],
             ..interval
         };
-        let begin = |stable: bool| Interval { lower: Some(edge.clone()), upper: None, stable, includes: [here == stable, false] };
+        let begin = |stable: bool| Interval {
+            lower: Some(edge.clone()),
+            upper: None,
+            stable,
+            includes: [here == stable, false],
+        };
         if open.stable == after {
             // A point of the other answer.
             all.push(end(open));

@@ -72,7 +72,8 @@ impl<F: NumberField> Sturm<Element<F>> {
         // 1 + max |c_k|, f being monic (Cauchy).
         let size = |c: &Element<F>| c.enclosure(32).abs().upper();
         let largest = f.coefficients().iter().map(size).max().unwrap_or_default();
-        let bound = Rational::from_integer(BigInt::one() << (largest + Rational::one()).ceil().to_integer().bits());
+        let bound =
+            Rational::from_integer(BigInt::one() << (largest + Rational::one()).ceil().to_integer().bits());
         Sturm { chain: chain.into_iter().map(|f| f.coefficients().to_vec()).collect(), bound }
     }
 }
