@@ -9,7 +9,7 @@ use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use crate::question::{Methods, Word};
-use crate::word::{Force, Letter};
+use crate::word::{Force, Letter, method};
 
 const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the order by halving a step";
 
@@ -37,7 +37,7 @@ rows! {
 
     struct Entry [name] {
         name: String,
-        edge: Ends | null,
+        nominal_edge: Ends | null,
         word: Written<crate::word::Word>,
     }
 }
@@ -95,18 +95,20 @@ impl Recheck for Claim {
     asked!(Word);
 
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome> {
-        let rho = found.rho.unwrap_or_default();
-        context.outcome(ROUTE, ("the word", self.whole()), &self.intervals, |row| row.holds(&self.word, &rho))
+        // Whose length is within the budget.
+        let (word, rho) = (&found.word, found.rho.unwrap_or_default());
+        context.outcome(ROUTE, ("the word", self.whole(word)), &self.intervals, |row| row.holds(word, &rho))
     }
 }
 
 impl Claim {
-    fn whole(&self) -> Checked {
+    fn whole(&self, word: &crate::word::Word) -> Checked {
+        holds(self.word.0 == *word, || format!("the word is {word}"))?;
         // The order is the least one over all ρ.
-        let names = self.word.names_forces();
+        let names = word.names_forces();
         let rhos = [rational::ratio(0, 1), rational::ratio(1, 1), rational::ratio(-1, 2)];
         let rhos = if names { &rhos[..] } else { &rhos[..1] };
-        let orders = rhos.iter().map(|rho| order(&self.word, rho));
+        let orders = rhos.iter().map(|rho| order(word, rho));
         let order = orders.min().unwrap_or_default();
         same("order", self.order, order)?;
         holds(self.consistent || order == 0, || "it has an order, so it is consistent".into())
@@ -179,10 +181,11 @@ impl Recheck for Listed {
 }
 
 impl Entry {
-    /// Some doubles below the edge it is stable, some above it is not.
+    /// Just below the edge it is stable, just above it is not: the interval there is no narrower than 2^-30 of its size.
     fn holds(&self) -> Checked {
-        let Some(Ends { lo, hi }) = self.edge else { return Ok(()) };
-        for (factor, stable) in [(1.0 - 4e-15, Sign::Positive), (1.0 + 4e-15, Sign::Negative)] {
+        holds(method(&self.name)?.word() == self.word.0, || "its word is another one".into())?;
+        let Some(Ends { lo, hi }) = self.nominal_edge else { return Ok(()) };
+        for (factor, stable) in [(1.0 - 1e-10, Sign::Positive), (1.0 + 1e-10, Sign::Negative)] {
             let x = if stable == Sign::Positive { lo * factor } else { hi * factor };
             let Some(x) = rational::from_f64_exact(x) else { return Ok(()) };
             let sign = inside(&self.word, &(&x * &x), &Rational::zero());

@@ -9,6 +9,9 @@ use crate::number::{Radical, Rational, Ring};
 /// The deepest nesting of parentheses.
 pub(super) const MAX_DEPTH: u32 = 50;
 
+/// The largest |k| of a power.
+const MAX_POWER: u32 = 1000;
+
 /// The most bits that the numerators and denominators of a coefficient may have together.
 const MAX_BITS: u64 = 4000;
 
@@ -155,7 +158,7 @@ impl Reader {
     }
 
     fn raised(&self, at: usize, base: &Radical, k: i32) -> Read<Radical> {
-        if size(base) * u64::from(k.unsigned_abs()) > MAX_BITS {
+        if k.unsigned_abs() > MAX_POWER || size(base) * u64::from(k.unsigned_abs()) > MAX_BITS {
             return self.wrong(at, "this power is too large");
         }
         let mut power = Radical::from_rational(&Rational::from_integer(1.into()));

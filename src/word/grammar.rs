@@ -100,19 +100,3 @@ impl Reader {
         }
     }
 }
-
-/// All numbers in one field; `None` where no single root generates it.
-pub(super) fn in_one_field(numbers: &mut [&mut Radical]) -> Option<()> {
-    // Twice: the largest field is known only after the first pass.
-    let mut largest = Radical::zero();
-    for _ in 0..2 {
-        for number in numbers.iter_mut() {
-            let (own, known) = Radical::together(number, &largest)?;
-            (**number, largest) = (own, known);
-            if largest.field().is_none() {
-                largest = number.clone();
-            }
-        }
-    }
-    Some(())
-}

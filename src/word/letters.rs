@@ -4,7 +4,6 @@ use std::fmt;
 
 use num_traits::{One, Zero};
 
-use super::grammar::in_one_field;
 use crate::number::{Radical, Rational};
 
 /// The forces that a letter names.
@@ -98,6 +97,22 @@ impl Letter {
             Letter::Kick { force, .. } | Letter::Midpoint { force, .. } => Some(*force),
         }
     }
+}
+
+/// All numbers in one field; `None` where no single root generates it.
+fn in_one_field(numbers: &mut [&mut Radical]) -> Option<()> {
+    // Twice: the largest field is known only after the first pass.
+    let mut largest = Radical::zero();
+    for _ in 0..2 {
+        for number in numbers.iter_mut() {
+            let (own, known) = Radical::together(number, &largest)?;
+            (**number, largest) = (own, known);
+            if largest.field().is_none() {
+                largest = number.clone();
+            }
+        }
+    }
+    Some(())
 }
 
 fn each<'a>(items: &'a mut [Item], all: &mut Vec<&'a mut Radical>) {
