@@ -322,6 +322,19 @@ fn ten_thousand_random_words_are_what_their_letters_do() {
     random_words(10_000, 2);
 }
 
+/// An edge that is rational is no step between edges.
+#[test]
+fn stable_intervals_beside_rational_edges_are_found() {
+    let own = word("K2(3) K(-1) K2(8/9) C1(2/3) D(-8/5) C1(2/3) K2(8/9) K(-1) K2(3)");
+    let all = Stability::of(&own.polynomials(&Forces::ratio(&ratio(2, 3))));
+    let (below, above) = (ratio(25, 2), ratio(13, 1));
+    let holds = |own: &&kickdrift::word::Interval| {
+        own.lower.as_ref().is_some_and(|edge| edge.compare(&below) == Sign::Negative)
+            && own.upper.as_ref().is_none_or(|edge| edge.compare(&above) == Sign::Positive)
+    };
+    assert!(all.intervals.iter().any(|own| own.stable && holds(&own)));
+}
+
 /// Texts that are nearly words: no panic, and one line that says where.
 #[test]
 fn mutated_texts_are_words_or_one_line() {

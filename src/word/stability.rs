@@ -247,17 +247,20 @@ fn apart(edges: &mut [Edge]) {
     }
 }
 
+/// The simplest number in the middle half of (lo, hi), whose ends may be zeros.
+fn between(lo: &Rational, hi: &Rational) -> Rational {
+    let quarter = (hi - lo) / Rational::from_integer(4.into());
+    rational::simplest(&(lo + &quarter), &(hi - &quarter))
+}
+
 /// The intervals between edges and the edges themselves, those of one answer joined.
 fn joined(edges: Vec<Edge>, inside: impl Fn(&Rational) -> bool) -> Vec<Interval> {
-    let two = Rational::from_integer(2.into());
-    let first = edges
-        .first()
-        .map_or_else(Rational::one, |edge| rational::simplest(&(&edge.ends.0 / &two), &edge.ends.0));
+    let first = edges.first().map_or_else(Rational::one, |edge| between(&Rational::zero(), &edge.ends.0));
     let mut open = Interval { lower: None, upper: None, stable: inside(&first), includes: [false; 2] };
     let mut all = Vec::new();
     for (i, edge) in edges.iter().enumerate() {
         let point = match edges.get(i + 1) {
-            Some(next) => rational::simplest(&edge.ends.1, &next.ends.0),
+            Some(next) => between(&edge.ends.1, &next.ends.0),
             None => (&edge.ends.1 + Rational::one()).ceil(),
         };
         let after = inside(&point);
