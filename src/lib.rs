@@ -73,6 +73,7 @@
 //! | 0 | [`number`] | signs, rings, rationals, ℚ\[π\], cyclotomic fields, polynomials, balls, parsing |
 //! | 1 | [`schedule`] | which clocks kick when, over the period or its first half |
 //! | 2 | [`propagator`] | kick, drift, full and half period and its signs, the methods |
+//! | 3 | [`word`] | integrators as their authors write them: order, stable intervals, the catalogue |
 //! | 3 | `orbit` | orbits followed with proven bounds: Floquet coordinates, filter, refine, leaps over long runs, return maps of long periods |
 //! | 4 | [`verdict`] | four signs → verdict, and the ladder filter → refine → exact |
 //! | 5 | [`resonance`] | θ, tan criterion, Proposition, (a, b) families and curves, strength, comparison |
@@ -140,6 +141,7 @@ pub mod system;
 pub mod tongue;
 mod vector;
 pub mod verdict;
+pub mod word;
 
 // What everyone needs, without the way to it.
 pub use error::{Error, Result};

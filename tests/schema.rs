@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 51] = [
+const LINES: [&str; 56] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -104,6 +104,11 @@ const LINES: [&str; 51] = [
     "tongues --max-sum 5 --rho 0",
     "tongues --survey --max-sum 12 --rho 1/25",
     "closings --ratio 5/3 --m 4",
+    "word --method forest-ruth",
+    "word --method respa-4",
+    "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+    "word --list",
+    "word --method symplectic-euler --lambda1 1 --h 3",
     "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/200 --boxes 9000",
     "closings --max-sum 9 --samples 50",
     "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",

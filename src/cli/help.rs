@@ -2,14 +2,14 @@
 
 use clap::Command;
 
-use crate::question::{Bands, Question};
+use crate::question::{Bands, Question, Word};
 
 const EXIT_CODES: &str = "Exit codes:
   0  done
   2  error: one line on standard error tells the field, its value and a remedy; nothing is half-written";
 
 /// What a command requires, where the flags that are required depend on each other.
-const USAGES: [(&str, &str); 6] = [
+const USAGES: [(&str, &str); 7] = [
     ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
     (
         "compare",
@@ -19,10 +19,11 @@ const USAGES: [(&str, &str); 6] = [
     ("closings", "(--ratio <P/Q> | --max-sum <N>)"),
     ("advise", "(FILE | --period <NAME=T>... | --bond <NAME:K=..>... | --engine <FILE>) [--steps <A,B>]..."),
     ("proposition", "[--max <N>]"),
+    ("word", "(WORD | --method <NAME> | --list) [--lambda1 <X>] [--lambda2 <Y>] [--h <H>]"),
 ];
 
 /// Those of commands that are no question of their own.
-const EXAMPLES: [(&str, &[&str]); 15] = [
+const EXAMPLES: [(&str, &[&str]); 16] = [
     (
         "verdict",
         &[
@@ -56,6 +57,7 @@ const EXAMPLES: [(&str, &[&str]); 15] = [
         ],
     ),
     ("bands", Bands::EXAMPLES),
+    ("word", Word::EXAMPLES),
     ("closings", &["closings --max-sum 8", "closings --ratio 5/3 --format latex --digits 8"]),
     (
         "system",

@@ -23,6 +23,7 @@ mod tongues;
 mod usage;
 mod verdict;
 mod verify;
+mod word;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -79,6 +80,8 @@ enum Command {
     Bands(bands::Args),
     /// Where tongues close: the pairs (s, rho) at which a resonance does not destabilize.
     Closings(Closings),
+    /// An integrator as its author writes it: consistency, order, stable steps, cost; its verdict at one step.
+    Word(word::Args),
     /// Many clocks, many degrees of freedom: is the system stable, and what grows?
     System(system::Args),
     /// Which steps are safe for these periods or bonds, for how long, and why.
@@ -228,6 +231,7 @@ fn run(cli: &Cli) -> Result<u8> {
             let format = common.format_of_table(&Format::DOCUMENT)?;
             common.write(&args.ask(&common.work())?, format)?;
         }
+        Command::Word(args) => args.run(common)?,
         Command::Verify(args) => args.run(common)?,
         Command::System(args) => return args.run(common),
         Command::Advise(args) => args.run(common)?,

@@ -97,7 +97,12 @@ fn shown(error: &clap::Error, kind: ContextKind) -> Option<String> {
 fn names(flags: &str) -> String {
     let words = flags.split_whitespace();
     let flags: Vec<&str> = words.clone().filter_map(|word| word.strip_prefix("--")).collect();
-    if flags.is_empty() { words.collect::<Vec<_>>().join(" ") } else { flags.join(", ") }
+    // An argument without a flag, `[WORD]`, is the field of its name.
+    let argument = |word: &str| match word.strip_prefix('[').and_then(|word| word.strip_suffix(']')) {
+        Some(name) => name.to_lowercase(),
+        None => word.into(),
+    };
+    if flags.is_empty() { words.map(argument).collect::<Vec<_>>().join(" ") } else { flags.join(", ") }
 }
 
 fn commands(program: &clap::Command) -> String {

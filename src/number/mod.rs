@@ -5,6 +5,7 @@
 //! | [`Rational`] | ℚ | inspection |
 //! | [`Laurent`] | ℚ[π, 1/π] | coefficients if all vanish (π is transcendental), else balls of growing precision |
 //! | [`Cyclotomic`] | ℚ(2cos(π/n)) | reduced polynomial if it vanishes, else balls of growing precision |
+//! | [`Radical`] | ℚ(c^(1/n)), c rational | as of a cyclotomic number |
 //! | [`Ball`] | an interval that contains a real number | inspection; may be unable to decide |
 //! | [`Polynomial`] | R\[x\] over any ring R | not at all: a [`Ring`] only; real roots by Sturm chains |
 //! | `f64` | doubles | not at all: a [`Ring`] only |
@@ -30,6 +31,7 @@ mod bisect;
 pub mod cyclotomic;
 #[cfg(feature = "system")]
 mod domain;
+mod element;
 mod enclosed;
 mod float;
 pub mod laurent;
@@ -38,6 +40,7 @@ pub mod parse;
 pub mod polynomial;
 mod prime_field;
 mod quantity;
+pub mod radical;
 mod ratio;
 pub mod rational;
 mod ring;
@@ -50,6 +53,7 @@ pub(crate) use bisect::bisected;
 pub use cyclotomic::{Cyclotomic, CyclotomicField};
 #[cfg(feature = "system")]
 pub(crate) use domain::Domain;
+pub use element::{Element, NumberField};
 pub(crate) use enclosed::Enclosed;
 pub use laurent::Laurent;
 #[cfg(feature = "system")]
@@ -58,6 +62,7 @@ pub use polynomial::Polynomial;
 pub(crate) use prime_field::Lift;
 pub use prime_field::{PrimeField, prime_fields};
 pub use quantity::Quantity;
+pub use radical::{Radical, RadicalField};
 pub use ratio::Ratio;
 pub use ring::{ExactSign, Real, Ring};
 pub use sign::Sign;

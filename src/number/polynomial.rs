@@ -15,6 +15,7 @@
 mod display;
 mod divide;
 mod integer;
+mod over_field;
 mod sturm;
 
 pub use display::Text;

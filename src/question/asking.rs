@@ -44,12 +44,11 @@ macro_rules! question {
 
             fn read(input: &serde_json::Map<String, serde_json::Value>) -> $crate::error::Result<Self> {
                 $crate::question::field::known(input, Self::FIELDS)?;
-                use $crate::question::field::read;
-                Ok($Name { $($field: read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
+                Ok($Name { $($field: $crate::question::field::read(stringify!($field), input, None$(.or(Some($default)))?)?,)* })
             }
 
             fn input(&self) -> Vec<(&'static str, serde_json::Value)> {
-                let given = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
+                let given: [(&'static str, Option<serde_json::Value>); Self::FIELDS.len()] = [$((stringify!($field), $crate::question::field::Field::shown(&self.$field)),)*];
                 given.into_iter().filter_map(|(name, text)| Some((name, text?))).collect()
             }
         }

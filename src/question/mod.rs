@@ -40,6 +40,7 @@ mod system;
 mod tongues;
 mod verdict;
 mod want;
+mod word;
 
 #[cfg(feature = "advise")]
 pub use advise::{Advise, Advised, Safe};
@@ -65,6 +66,7 @@ pub use system::{Answer as SystemAnswer, Found, System};
 pub use tongues::{Colour, Tongues};
 pub use verdict::{Decided, Verdict};
 pub use want::{Product, Want};
+pub use word::{Linted, Methods, Word};
 
 use serde_json::{Map as Input, Value};
 
@@ -130,6 +132,8 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Closings>(),
         Named::of::<Survey>(),
         Named::of::<Bands>(),
+        Named::of::<Word>(),
+        Named::of::<Methods>(),
         #[cfg(feature = "system")]
         Named::of::<System>(),
         #[cfg(feature = "system")]

@@ -18,6 +18,7 @@
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
 //! | system-intervals | signs | none |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
+//! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | state | a power of the period and return maps | kick by kick |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
@@ -86,6 +87,7 @@ mod survey;
 mod system;
 mod tongues;
 mod verdict;
+mod word;
 mod written;
 
 use serde::de::DeserializeOwned;
@@ -148,6 +150,8 @@ claims! {
     "half" Half half::Claim;
     "state" State state::Claim;
     "bands" Bands bands::Claim;
+    "word" Word word::Claim;
+    "methods" Methods word::Listed;
     #[cfg(feature = "advise")]
     "advise" Advise advise::Claim;
     #[cfg(feature = "advise")]

@@ -149,6 +149,7 @@ impl Document {
         self.digits = layout.digits;
         if let (Some(keys), Some(table)) = (&layout.columns, &self.table) {
             self.table = Some(table.choose(keys)?);
+            self.for_people = None;
         }
         Ok(self)
     }
@@ -233,6 +234,7 @@ impl Document {
             "system-verdict" | "system-map" | "system-intervals" => "system",
             "advise-system" => "advise",
             "survey" => "tongues",
+            "methods" => "word",
             name => name,
         }
     }

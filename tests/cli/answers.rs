@@ -316,6 +316,7 @@ fn every_command_explains_itself() {
         "tongues",
         "closings",
         "bands",
+        "word",
         "verify",
         "system",
         "simulate",
@@ -330,4 +331,13 @@ fn every_command_explains_itself() {
     let all = stdout(&["--help"]);
     assert!(all.contains("verdict") && all.contains("--budget"));
     assert!(stdout(&["--version"]).starts_with("kickdrift "));
+}
+
+/// The table of integrators is the program's own.
+#[test]
+fn the_readme_shows_the_catalogue_as_it_is() {
+    let readme = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap();
+    let table = stdout(&["word", "--list", "--digits", "6"]);
+    let rows: Vec<&str> = table.lines().skip(4).map(str::trim_end).collect();
+    assert!(rows.len() > 25 && readme.contains(&rows.join("\n")), "{table}");
 }

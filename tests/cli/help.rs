@@ -13,7 +13,7 @@ fn every_command_has_examples_that_run_and_tells_its_exit_codes() {
         .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
         .filter(|name| !name.is_empty() && *name != "help")
         .collect();
-    assert_eq!(commands.len(), 20, "{commands:?}");
+    assert_eq!(commands.len(), 21, "{commands:?}");
     let desk = Desk::new();
     for command in commands {
         let help = stdout(&[command, "--help"]);
@@ -27,7 +27,12 @@ fn every_command_has_examples_that_run_and_tells_its_exit_codes() {
         // The parts that merge joins come from other machines; a page is served until it is interrupted.
         let runs = |example: &&String| !["merge", "explore"].iter().any(|name| example.starts_with(name));
         for example in examples.iter().filter(runs) {
-            let ended = desk.run(&example.split(' ').collect::<Vec<_>>());
+            // What stands in double quotes is one argument.
+            let parts = example.split('"').enumerate();
+            let arguments: Vec<&str> = parts
+                .flat_map(|(n, part)| if n % 2 == 1 { vec![part] } else { part.split_whitespace().collect() })
+                .collect();
+            let ended = desk.run(&arguments);
             assert_eq!(ended.code, Some(0), "{example}: {}", ended.stderr);
         }
     }

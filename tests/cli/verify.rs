@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::support::{Desk, words};
 
 /// One document of every kind that can be rechecked, with all columns.
-const DOCUMENTS: [&str; 27] = [
+const DOCUMENTS: [&str; 30] = [
     "tongues --ratio 7/3 --rho 1/25",
     "tongues --max-sum 12 --lambda1 pi^2 --lambda2 pi^2/25",
     "tongues --ratio 5/3 --rho 114/55 --digits 40",
@@ -34,6 +34,9 @@ const DOCUMENTS: [&str; 27] = [
     "advise --period 19.45fs --steps 2fs,4fs",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs",
     "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 1/5..1/4 --h2-range 9/10..1 --boxes 200",
+    "word --method avi-3-2 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
+    "word --method forest-ruth",
+    "word --list",
 ];
 
 fn write(desk: &Desk, line: &str, name: &str) -> Value {

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::number::{
-    Ball, Cyclotomic, CyclotomicField, ExactSign, Polynomial, Rational, Real, Ring, Sign,
+    Ball, Cyclotomic, CyclotomicField, ExactSign, NumberField, Polynomial, Rational, Real, Ring, Sign,
 };
 use num_traits::{One, Zero};
 

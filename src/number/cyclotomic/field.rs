@@ -5,7 +5,8 @@ use std::sync::Arc;
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use crate::number::{Ball, Polynomial, Rational};
+use crate::number::Ball;
+use crate::number::element::NumberField;
 
 /// The field ℚ(c), c = 2cos(π/n); cheap to clone.
 #[derive(Clone, Debug)]
@@ -33,39 +34,27 @@ impl CyclotomicField {
     pub fn n(&self) -> u32 {
         self.shared.n
     }
+}
 
-    /// The degree of the field over ℚ.
-    pub fn degree(&self) -> usize {
-        self.shared.minimal.len() - 1
+impl PartialEq for CyclotomicField {
+    fn eq(&self, other: &CyclotomicField) -> bool {
+        self.n() == other.n()
+    }
+}
+
+impl NumberField for CyclotomicField {
+    fn minimal(&self) -> &[BigInt] {
+        &self.shared.minimal
     }
 
-    /// The minimal polynomial of 2cos(π/n): monic, with integer coefficients.
-    pub fn minimal_polynomial(&self) -> Polynomial<Rational> {
-        Polynomial::new(self.shared.minimal.iter().cloned().map(Rational::from_integer).collect())
-    }
-
-    /// f modulo ψ: of least degree among the polynomials of the same value at 2cos(π/n).
-    pub(super) fn reduce(&self, f: Polynomial<Rational>) -> Polynomial<Rational> {
-        let (mut rest, degree) = (f.coefficients().to_vec(), self.degree());
-        while rest.len() > degree {
-            let top = rest.pop().expect("not empty");
-            if top.is_zero() {
-                continue;
-            }
-            // c^k = −Σ ψ_j c^(k − degree + j), ψ being monic.
-            let at = rest.len() - degree;
-            for (own, c) in rest[at..].iter_mut().zip(&self.shared.minimal).filter(|(_, c)| !c.is_zero()) {
-                *own -= &top * c;
-            }
-        }
-        Polynomial::new(rest)
-    }
-
-    /// A ball about 2cos(π/n).
-    pub(super) fn generator(&self, bits: u32) -> Ball {
+    fn generator(&self, bits: u32) -> Ball {
         let n = Ball::from_integer(&self.n().into());
         let angle = Ball::pi(bits + 8).div(&n, bits + 8).expect("n > 0");
         angle.cos(bits).scale2(1)
+    }
+
+    fn names(&self) -> (&'static str, String) {
+        ("c", format!("2cos(pi/{})", self.n()))
     }
 }
 

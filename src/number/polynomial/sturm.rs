@@ -15,11 +15,23 @@ use crate::number::{ExactSign, Rational, Sign};
 /// A closed interval that holds one root: either a point, or one with a sign change and roots at no end.
 pub type RootInterval = (Rational, Rational);
 
+/// Coefficients of which the sign of a polynomial is decided.
+pub trait SignAt: Sized {
+    /// The sign of Σ f_k x^k.
+    fn sign_at(f: &[Self], x: &Rational) -> Sign;
+}
+
+impl SignAt for BigInt {
+    fn sign_at(f: &[Self], x: &Rational) -> Sign {
+        sign_at(f, x)
+    }
+}
+
 /// The Sturm chain of a polynomial's squarefree part: f, f', and negated remainders.
 #[derive(Clone, Debug)]
-pub struct Sturm {
-    chain: Vec<Vec<BigInt>>,
-    bound: Rational,
+pub struct Sturm<C = BigInt> {
+    pub(super) chain: Vec<Vec<C>>,
+    pub(super) bound: Rational,
 }
 
 impl Sturm {
@@ -37,7 +49,9 @@ impl Sturm {
         chain.retain(|f| !f.is_empty());
         Sturm { chain, bound: f.root_bound() }
     }
+}
 
+impl<C: SignAt> Sturm<C> {
     /// The number of distinct real roots in the closed interval [lo, hi]; 0 if it is empty.
     pub fn count(&self, lo: &Rational, hi: &Rational) -> usize {
         if lo > hi {
@@ -112,12 +126,12 @@ impl Sturm {
 
     /// The sign of the squarefree part at x.
     pub fn sign_at(&self, x: &Rational) -> Sign {
-        sign_at(&self.chain[0], x)
+        C::sign_at(&self.chain[0], x)
     }
 
     /// The number of sign changes along the chain at x, zeros left out.
     fn variations(&self, x: &Rational) -> usize {
-        let signs = self.chain.iter().map(|f| sign_at(f, x)).filter(|sign| *sign != Sign::Zero);
+        let signs = self.chain.iter().map(|f| C::sign_at(f, x)).filter(|sign| *sign != Sign::Zero);
         let signs: Vec<Sign> = signs.collect();
         signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
     }

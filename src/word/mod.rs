@@ -1,0 +1,43 @@
+//! Words: integrators as their authors write them, x'' + (Λ1 + Λ2) x = 0 by kicks, drifts and implicit midpoints.
+//!
+//! A word is read from left to right, in the order of time. In units of the step h, with F the force h² Λ that a letter names:
+//!
+//! | letter | meaning |
+//! |---|---|
+//! | `D(c)` | drift: x += c v |
+//! | `K(c)`, `K1(c)`, `K2(c)` | kick by both forces, or by one: v −= c F x |
+//! | `K(c, d, ...)` | kick by a polynomial of the force (force gradients): v −= (c F + d F² + ...) x |
+//! | `C(c)`, `C1(c)`, `C2(c)` | implicit midpoint rule over c h (Cayley's transform) |
+//! | `n*( ... )` | the letters in parentheses n times |
+//!
+//! Coefficients are sums, products, quotients and powers of rationals and of the roots `sqrt(c)`, `c^(1/n)`; all of them
+//! are exact numbers of one field ℚ(c^(1/n)) ([`Radical`](crate::number::Radical)). So the product of the letters has entries
+//! that are polynomials in s = h² Λ1 over this field, up to a common denominator that is positive, and everything here is
+//! decided exactly: order, edges of stability, verdicts. Doubles appear only as outward rounded enclosures.
+//!
+//! ```
+//! use kickdrift::word::{Forces, Stability, Word};
+//! // Chin 4A: a kick of strength (2/3) s (1 - s/24) in the middle.
+//! let word: Word = "K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)".parse()?;
+//! assert_eq!(word.to_string(), "K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)");
+//! assert_eq!(word.order().order, 4);
+//! let edge = Stability::of(&word.polynomials(&Forces::one())).first_edge().unwrap();
+//! assert_eq!(edge.rational(), Some(12.into())); // omega h = 2 sqrt 3
+//! # Ok::<(), kickdrift::error::Error>(())
+//! ```
+
+mod catalogue;
+mod coefficient;
+mod grammar;
+mod letters;
+mod order;
+mod point;
+mod product;
+mod stability;
+
+pub use catalogue::{METHODS, Method, method};
+pub use letters::{Cost, Force, Item, Letter, Place, Word};
+pub use order::Order;
+pub use point::{At, at};
+pub use product::{Forces, Polynomials, Product};
+pub use stability::{Edge, Interval, Stability};

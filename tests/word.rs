@@ -1,0 +1,416 @@
+//! Words: what is known of published integrators, and random words against products of the test's own.
+
+use kickdrift::number::{Laurent, Radical, Rational, Ring, Sign, rational::ratio};
+use kickdrift::word::{Forces, METHODS, Stability, Word, at, method};
+use num_traits::{One, Signed, Zero};
+
+fn word(text: &str) -> Word {
+    text.parse().unwrap_or_else(|error| panic!("{text}: {error}"))
+}
+
+fn of(name: &str) -> Word {
+    method(name).unwrap().word()
+}
+
+fn stability(word: &Word) -> Stability {
+    Stability::of(&word.polynomials(&Forces::one()))
+}
+
+const LAMBDA: &str = "-0.2123418310626054";
+
+/// PEFRL's drifts with these kicks.
+fn pefrl_with(kicks: [&str; 4]) -> Word {
+    let (xi, chi) = ("0.1786178958448091", "-0.06626458266981849");
+    let [a, b, c, d] = kicks;
+    word(&format!("D({xi}) K({a}) D({chi}) K({b}) D(1-2*({chi}+{xi})) K({c}) D({chi}) K({d}) D({xi})"))
+}
+
+/// The first edge of ω h is within `off` of the figure; and the test's own product says so.
+fn has_edge(word: &Word, figure: f64, off: f64) {
+    let all = stability(word);
+    let edge = all.nominal_edge().unwrap_or_else(|| panic!("{word} has no edge"));
+    let (lo, hi) = edge.s().sqrt(96).unwrap().to_f64_enclosure();
+    assert!(hi - lo < 1e-14 && (lo - figure).abs() < off, "{word}: {lo}..{hi}, not {figure}");
+    let (lo, hi) = edge.ends.clone();
+    let off = ratio(1, 1_000_000_000_000);
+    assert!(own_verdict(word, &(lo - &off), &Rational::zero()) == Some(true), "{word}");
+    assert!(own_verdict(word, &(hi + &off), &Rational::zero()) == Some(false), "{word}");
+}
+
+/// The width of the grid on which the figures were found.
+const GRID: f64 = 1e-4;
+
+#[test]
+fn first_edges_are_those_known() {
+    has_edge(&of("2mn-velocity"), 2.5532, GRID);
+    has_edge(&of("2mn-position"), 2.5532, GRID);
+    has_edge(&word("K(0.21178) D(1/2) K(1-2*0.21178) D(1/2) K(0.21178)"), 2.6343, GRID);
+    has_edge(&of("bcss-3"), 4.6619, GRID);
+    has_edge(&of("forest-ruth"), 1.5735, GRID);
+    has_edge(&of("pefrl"), 2.9895, GRID);
+    has_edge(&of("4mn5fv"), 3.1421, GRID);
+    has_edge(&of("bcss-4"), 5.35, 5e-3);
+    // The published decimals of these two open unstable intervals, which exact coefficients close.
+    for (name, strict) in [("bcss-3-decimals", 2.97632), ("bcss-4", 3.04299)] {
+        let edge = stability(&of(name)).first_edge().unwrap().s().sqrt(96).unwrap().mid_f64();
+        assert!((edge - strict).abs() < 2e-5, "{name}: {edge}");
+    }
+    assert!(stability(&of("bcss-3")).first_edge().unwrap().compare(&ratio(21, 1)) == Sign::Positive);
+    let chin = stability(&of("chin-4a"));
+    assert_eq!(chin.first_edge().unwrap().rational(), Some(ratio(12, 1)));
+}
+
+/// 6 a b - 2 a - b + 1/2 = 0 makes a zero of A and one of D coincide; b rounded to 14 digits opens an unstable interval there.
+#[test]
+fn rounding_opens_an_unstable_interval_of_bcss_3() {
+    let (exact, rounded) = (stability(&of("bcss-3")), stability(&of("bcss-3-decimals")));
+    assert!(exact.intervals[0].stable && exact.intervals.len() + 2 == rounded.intervals.len());
+    let ends = |edge: &Option<kickdrift::word::Edge>| edge.as_ref().unwrap().s().sqrt(96).unwrap().mid_f64();
+    let (from, to) = (ends(&rounded.intervals[1].lower), ends(&rounded.intervals[1].upper));
+    assert!(!rounded.intervals[1].stable && (2.97632..2.97633).contains(&from));
+    assert!((9e-14..1e-13).contains(&(to - from)), "{from}..{to}");
+}
+
+/// github.com/SPECFEM/specfem3d/issues/1863, kicks as posted there.
+#[test]
+fn a_word_that_was_asked_about_is_not_consistent() {
+    let posted = pefrl_with([LAMBDA, LAMBDA, &format!("1-2*({LAMBDA})"), LAMBDA]);
+    let sums = posted.sums();
+    assert!(sums[0].1.is_one() && sums[1].0 == "K");
+    assert_eq!(
+        sums[1].1.as_rational(),
+        Some(Rational::one() + "-0.2123418310626054".parse::<Laurent>().unwrap().as_rational().unwrap())
+    );
+    assert!(!posted.is_consistent() && posted.order().order == 0);
+    let place = posted.asymmetry().unwrap();
+    assert_eq!(
+        (place.letter, place.there.as_str(), place.mirrored.as_str()),
+        (4, "K(-0.2123418310626054)", "K(1.4246836621252108)")
+    );
+    has_edge(&posted, 1.958, 5e-4);
+}
+
+#[test]
+fn the_catalogue_is_what_its_sources_say() {
+    let asymmetric = ["symplectic-euler", "mclachlan-atela-2", "mclachlan-atela-4"];
+    for method in METHODS {
+        let word = method.word();
+        let order = word.order();
+        // Decimals sum to 1 by construction, or to 18 digits of them.
+        let sums_to_one = |(_, sum): &(&str, Radical)| {
+            let off = (sum - &Radical::one()).as_rational().unwrap();
+            off.abs() < ratio(1, 1_000_000_000_000_000)
+        };
+        assert!(word.sums().iter().all(sums_to_one), "{}", method.name);
+        assert!(order.nominal >= method.order, "{}: {} {}", method.name, order.nominal, method.order);
+        assert_eq!(word.asymmetry().is_none(), !asymmetric.contains(&method.name), "{}", method.name);
+        assert_eq!(word.to_string().parse::<Word>().unwrap(), word);
+    }
+    // Exact coefficients have their order exactly.
+    for (name, order) in [
+        ("forest-ruth", 4),
+        ("suzuki-4", 4),
+        ("chin-4a", 4),
+        ("chin-4c", 4),
+        ("bcss-2", 2),
+        ("midpoint", 2),
+        ("avi-3-2", 2),
+    ] {
+        let own = of(name).order();
+        assert_eq!((own.order, own.nominal), (order, order), "{name}");
+    }
+    let (verlet, evaluations) = (of("velocity-verlet").order(), |name: &str| of(name).cost().evaluations);
+    let c = |n, d| Radical::from_rational(&ratio(n, d));
+    assert_eq!((verlet.frequency, verlet.impedance), (Some((2, c(1, 24))), Some((2, c(-1, 8)))));
+    assert_eq!(verlet.error.map(|c| c.coefficient(0)), [c(0, 1), c(1, 6), c(1, 12), c(0, 1)]);
+    assert_eq!(
+        [evaluations("velocity-verlet"), evaluations("respa-4"), evaluations("avi-3-2")],
+        [[1, 0], [4, 1], [3, 2]]
+    );
+    assert!(stability(&of("midpoint")).begins_stable() && stability(&of("midpoint")).first_edge().is_none());
+}
+
+/// r-RESPA and AVI as words are the project's own.
+#[test]
+fn words_of_two_forces_decide_as_the_ladder_does() {
+    use kickdrift::propagator::Oscillator;
+    use kickdrift::verdict::{Limits, decide};
+    let x = |n: i64, d: i64| Laurent::from_rational(ratio(n, d));
+    let mut unstable = 0;
+    for (name, fast, slow) in [("respa-4", 4, 1), ("avi-3-2", 3, 2)] {
+        for (i, rho) in (1..60).flat_map(|i| [(i, ratio(1, 25)), (i, ratio(2, 1)), (i, ratio(-1, 9))]) {
+            let product = of(name).polynomials(&Forces::ratio(&rho));
+            let h = x(i, 7);
+            let [h1, h2] = [fast, slow].map(|n| &h * &x(1, n));
+            let oscillator = Oscillator::new(x(1, 1), Laurent::from_rational(rho.clone()), h1, h2).unwrap();
+            let wanted = decide(&oscillator.clocks().unwrap(), &Limits::default()).unwrap().verdict;
+            let found = at(&product, &(&h * &h)).unwrap();
+            assert_eq!((found.kind, found.side), (wanted.kind().name(), wanted.side()), "{name} {i} {rho}");
+            unstable += u32::from(!found.is_stable());
+        }
+    }
+    assert!(unstable > 50, "{unstable}");
+    // With transcendental steps.
+    let product = of("respa-4").polynomials(&Forces::ratio(&ratio(1, 25)));
+    let found = at(&product, &"pi^2".parse().unwrap()).unwrap();
+    assert!(found.trace.mid_f64().is_finite() && found.kind != "parabolic");
+}
+
+/// Numbers that look random.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        // Knuth's linear congruence; its high bits.
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 33) % n
+    }
+
+    fn fraction(&mut self) -> Rational {
+        ratio(self.below(25) as i64 - 9, self.below(9) as i64 + 1)
+    }
+}
+
+/// A letter as the test has it: what, which force, coefficients.
+type Own = (char, u64, Vec<Rational>);
+
+fn written(letters: &[Own]) -> String {
+    let one = |(name, force, c): &Own| {
+        let force = if *force == 0 { String::new() } else { force.to_string() };
+        let numbers: Vec<String> = c.iter().map(Rational::to_string).collect();
+        format!("{name}{force}({})", numbers.join(","))
+    };
+    letters.iter().map(one).collect::<Vec<_>>().join(" ")
+}
+
+/// The images of (1, 0) and (0, 1) at h² Λ1 = s, kicked and drifted one by one: A, B, C, D.
+fn kicked(letters: &[Own], s: &Rational, rho: &Rational) -> Option<[Rational; 4]> {
+    let image = |mut x: Rational, mut v: Rational| {
+        for (name, force, c) in letters {
+            let force = match force {
+                0 => s + s * rho,
+                1 => s.clone(),
+                _ => s * rho,
+            };
+            match name {
+                'D' => x += &c[0] * &v,
+                'K' => {
+                    let strength = c.iter().rev().fold(Rational::zero(), |sum, c| (sum + c) * &force);
+                    v -= strength * &x;
+                }
+                _ => {
+                    // x' = x + c (v + v')/2, v' = v - c F (x + x')/2.
+                    let c = &c[0] / ratio(2, 1);
+                    let below = Rational::one() + &c * &c * &force;
+                    if below.is_zero() {
+                        return None;
+                    }
+                    let new_v =
+                        (&v * (Rational::one() - &c * &c * &force) - &c * &force * &x * ratio(2, 1)) / below;
+                    x += c * (&v + &new_v);
+                    v = new_v;
+                }
+            }
+        }
+        Some((x, v))
+    };
+    let ((a, c), (b, d)) =
+        (image(Rational::one(), Rational::zero())?, image(Rational::zero(), Rational::one())?);
+    Some([a, b, c, d])
+}
+
+fn verdict_of([a, b, c, d]: &[Rational; 4]) -> bool {
+    let size = (a + d).abs();
+    size < ratio(2, 1) || size == ratio(2, 1) && b.is_zero() && c.is_zero()
+}
+
+/// Letters with rational coefficients of a word, or balls' midpoints of irrational ones, which is enough 1e-12 away from an edge.
+fn own_verdict(word: &Word, s: &Rational, rho: &Rational) -> Option<bool> {
+    use kickdrift::number::Real;
+    use kickdrift::word::{Force, Letter};
+    let number = |x: &Radical| x.as_rational().unwrap_or_else(|| x.enclosure(200).lower());
+    let force = |force: &Force| match force {
+        Force::All => 0,
+        Force::First => 1,
+        Force::Second => 2,
+    };
+    let own = |letter: &&Letter| match letter {
+        Letter::Drift(time) => ('D', 0, vec![number(time)]),
+        Letter::Kick { force: named, powers } => ('K', force(named), powers.iter().map(number).collect()),
+        Letter::Midpoint { force: named, time } => ('C', force(named), vec![number(time)]),
+    };
+    let letters: Vec<Own> = word.letters().iter().map(own).collect();
+    Some(verdict_of(&kicked(&letters, s, rho)?))
+}
+
+/// Random words against their letters, one by one in numbers: entries, verdicts, intervals, sums, symmetry.
+fn random_words(count: u64, seed: u64) {
+    let mut random = Random(seed);
+    let (mut inside, mut stable, mut palindromes) = (0, 0, 0);
+    for case in 0..count {
+        let (named, length) = (random.below(2) == 1, 1 + random.below(40));
+        let mut letters: Vec<Own> = (0..length)
+            .map(|_| {
+                let force = if named { random.below(3) } else { 0 };
+                match random.below(12) {
+                    0 => ('C', force, vec![random.fraction()]),
+                    1 => ('K', force, vec![random.fraction(), random.fraction()]),
+                    2..=6 => ('K', force, vec![random.fraction()]),
+                    _ => ('D', 0, vec![random.fraction()]),
+                }
+            })
+            .collect();
+        let mirrored = random.below(3) == 0;
+        if mirrored {
+            letters.truncate(20);
+            letters.extend(letters.clone().into_iter().rev());
+        }
+        let text = written(&letters);
+        let own = word(&text);
+        assert_eq!(own.to_string().parse::<Word>().unwrap(), own, "{text}");
+        if mirrored {
+            assert!(own.asymmetry().is_none(), "{text}: {:?}", own.asymmetry());
+            palindromes += 1;
+        }
+        let drifts: Rational = letters.iter().filter(|(name, ..)| *name != 'K').map(|(.., c)| &c[0]).sum();
+        assert_eq!(own.sums()[0].1.as_rational(), Some(drifts), "{text}");
+        let rho = if own.names_forces() { random.fraction() } else { Rational::zero() };
+        let product = own.polynomials(&Forces::ratio(&rho));
+        let all = Stability::of(&product);
+        for _ in 0..4 {
+            let s = ratio(random.below(400) as i64 + 1, random.below(40) as i64 + 1);
+            let Some(wanted) = kicked(&letters, &s, &rho) else {
+                assert!(at(&product, &Laurent::from_rational(s)).is_none(), "{case}: {text}");
+                continue;
+            };
+            let here = Radical::from_rational(&s);
+            let value = |f: &kickdrift::number::Polynomial<Radical>| f.eval(&here).as_rational().unwrap();
+            let q = value(&product.denominator);
+            let entries = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|at| value(&product.matrix[at]) / &q);
+            assert_eq!(entries, wanted, "{case}: {text} at s = {s}, rho = {rho}");
+            let found = at(&product, &Laurent::from_rational(s.clone())).unwrap();
+            assert_eq!(found.is_stable(), verdict_of(&wanted), "{case}: {text} at s = {s}, rho = {rho}");
+            let trace = &wanted[0] + &wanted[3];
+            assert!(found.trace.contains(&trace), "{case}: {text}");
+            let holds = |own: &&kickdrift::word::Interval| {
+                let lower = own.lower.as_ref().map_or(Sign::Negative, |edge| edge.compare(&s));
+                let upper = own.upper.as_ref().map_or(Sign::Positive, |edge| edge.compare(&s));
+                (lower == Sign::Negative || lower == Sign::Zero && own.includes[0])
+                    && (upper == Sign::Positive || upper == Sign::Zero && own.includes[1])
+            };
+            let holding: Vec<_> = all.intervals.iter().filter(holds).collect();
+            assert_eq!(holding.len(), 1, "{case}: {text} at s = {s}, rho = {rho}");
+            assert_eq!(holding[0].stable, verdict_of(&wanted), "{case}: {text} at s = {s}, rho = {rho}");
+            inside += 1;
+            stable += u64::from(holding[0].stable);
+        }
+        let flips = all.intervals.windows(2).all(|pair| pair[0].stable != pair[1].stable);
+        assert!(flips, "{case}: {text}: neighbours have one answer");
+    }
+    println!("{inside} steps of {count} words, {stable} stable, {palindromes} palindromes");
+    // Enough of both answers: most steps are too long for words as wild as these.
+    assert!(stable * 100 > inside && palindromes * 5 > count, "{stable} of {inside}, {palindromes}");
+}
+
+#[test]
+fn random_words_are_what_their_letters_do() {
+    random_words(400, 1);
+}
+
+#[test]
+#[ignore = "ten thousand words take minutes"]
+fn ten_thousand_random_words_are_what_their_letters_do() {
+    random_words(10_000, 2);
+}
+
+/// An edge that is rational is no step between edges.
+#[test]
+fn stable_intervals_beside_rational_edges_are_found() {
+    let own = word("K2(3) K(-1) K2(8/9) C1(2/3) D(-8/5) C1(2/3) K2(8/9) K(-1) K2(3)");
+    let all = Stability::of(&own.polynomials(&Forces::ratio(&ratio(2, 3))));
+    let (below, above) = (ratio(25, 2), ratio(13, 1));
+    let holds = |own: &&kickdrift::word::Interval| {
+        own.lower.as_ref().is_some_and(|edge| edge.compare(&below) == Sign::Negative)
+            && own.upper.as_ref().is_none_or(|edge| edge.compare(&above) == Sign::Positive)
+    };
+    assert!(all.intervals.iter().any(|own| own.stable && holds(&own)));
+}
+
+/// Texts that are nearly words: no panic, and one line that says where.
+#[test]
+fn mutated_texts_are_words_or_one_line() {
+    const PIECES: [&str; 24] = [
+        "K",
+        "D",
+        "C",
+        "(",
+        ")",
+        "1",
+        "/",
+        "*",
+        "^",
+        "-",
+        "sqrt(",
+        ",",
+        " ",
+        "2*(",
+        "K1(",
+        "0.5",
+        "e",
+        "99999999999",
+        "é",
+        "\n",
+        "\u{202e}",
+        "R(1)",
+        "^(1/3)",
+        "/0",
+    ];
+    let mut random = Random(3);
+    let (mut read, mut refused) = (0, 0);
+    for case in 0..10_000 {
+        let base = METHODS[random.below(METHODS.len() as u64) as usize].text;
+        let mut text: Vec<char> = base.chars().take(60 + random.below(60) as usize).collect();
+        for _ in 0..1 + random.below(4) {
+            let place = random.below(text.len() as u64 + 1) as usize;
+            match random.below(3) {
+                0 if place < text.len() => drop(text.remove(place)),
+                1 if place < text.len() => {
+                    text[place] = PIECES[random.below(24) as usize].chars().next().unwrap()
+                }
+                _ => drop(text.splice(place..place, PIECES[random.below(24) as usize].chars())),
+            }
+        }
+        let text: String = text.into_iter().collect();
+        match text.parse::<Word>() {
+            Ok(word) => {
+                assert_eq!(word.to_string().parse::<Word>().unwrap(), word, "{case}: {text}");
+                read += 1;
+            }
+            Err(error) => {
+                let line = error.to_string();
+                assert!(
+                    !line.contains(char::is_control) && line.contains("character "),
+                    "{case}: {text:?}: {line}"
+                );
+                refused += 1;
+            }
+        }
+    }
+    assert!(read > 100 && refused > 5000, "{read} read, {refused} refused");
+}
+
+#[test]
+fn errors_name_the_place() {
+    let line = |text: &str| text.parse::<Word>().unwrap_err().to_string();
+    assert_eq!(
+        line("K(1/2) E(1)"),
+        "word = K(1/2) E(1): character 8: unexpected 'E'; the letters are K, K1, K2, D, C, C1, C2 and n*(...)"
+    );
+    assert!(line("K(1/2").contains("character 6: expected ')'"), "{}", line("K(1/2"));
+    assert!(line("K(sqrt(2)) D(sqrt(3))").contains("one root"), "{}", line("K(sqrt(2)) D(sqrt(3))"));
+    assert!(line("D(1/0)").contains("character 4: divides by zero"), "{}", line("D(1/0)"));
+    assert!(line("").contains("a word has letters"));
+    // √12 = 2 √3, and 4^(1/3) = (2^(1/3))².
+    assert_eq!(word("K(sqrt(12)) D(2*sqrt(3))"), word("K(2*sqrt(3)) D(sqrt(12))"));
+    assert_eq!(word("K(4^(1/3)) D(2^(1/3))"), word("K(2^(2/3)) D(2^(1/3))"));
+}
