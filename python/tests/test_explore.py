@@ -154,7 +154,7 @@ def test_a_system_grows_where_its_verdict_says(tmp_path: Path) -> None:
         (lambda: kd.explore(system=kd.System({})), "masses"),
         (lambda: kd.explore(**FIGURE1).ask("nothing"), "question"),
         (lambda: kd.explore(**FIGURE1).ask("point", h1="1"), "h2"),
-        (lambda: kd.explore(**FIGURE1).ask("tile", unit=1, level=40, x=1 << 40, y=1 << 40), "tile"),
+        (lambda: kd.explore(**FIGURE1).ask("tile", unit=1, level=100, x=1 << 100, y=1 << 100), "tile"),
     ],
 )
 def test_what_is_wrong_is_named(use: Callable[[], Any], field: str) -> None:
