@@ -22,12 +22,14 @@ pub use display::Text;
 #[cfg(feature = "system")]
 pub(crate) use integer::common;
 #[cfg(feature = "system")]
-pub(crate) use integer::{in_unit_interval, quotient};
+pub(crate) use integer::in_unit_interval;
+pub(crate) use integer::quotient;
 pub(crate) use integer::{residues, roots_within, squarefree};
 pub(crate) use sturm::RootInterval;
 pub use sturm::Sturm;
 #[cfg(feature = "system")]
-pub(crate) use sturm::{primitive, sign_at};
+pub(crate) use sturm::primitive;
+pub(crate) use sturm::sign_at;
 
 use num_traits::{One, Zero};
 

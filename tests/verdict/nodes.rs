@@ -202,7 +202,7 @@ fn trace(oscillator: &Oscillator, nodes: &Nodes) -> (Option<f64>, f64) {
         // Up to T/2, half a slow step later: fast kicks there, the last one half where it is at T/2.
         let mut now = part(x);
         let mut rest = over(&BigInt::from(p), &BigInt::from(2 * q));
-        while &rest > &(one() - &now - (one() >> 300u32)) {
+        while rest > one() - &now - (one() >> 300u32) {
             let first = one() - &now;
             let is_last = (&rest - &first).abs() < one() >> 300u32;
             all =
