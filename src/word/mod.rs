@@ -21,8 +21,9 @@
 //! let word: Word = "K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)".parse()?;
 //! assert_eq!(word.to_string(), "K(1/6) D(1/2) K(2/3, -1/36) D(1/2) K(1/6)");
 //! assert_eq!(word.order().order, 4);
-//! let edge = Stability::of(&word.polynomials(&Forces::one())).first_edge().unwrap();
-//! assert_eq!(edge.rational(), Some(kickdrift::number::rational::ratio(12, 1))); // omega h = 2 sqrt 3
+//! let stability = Stability::of(&word.polynomials(&Forces::one()));
+//! let edge = stability.first_edge().unwrap().rational();
+//! assert_eq!(edge, Some(kickdrift::number::rational::ratio(12, 1))); // omega h = 2 sqrt 3
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
