@@ -152,14 +152,14 @@ fn levels_in_fewer_bits_are_what_long_numbers_give() {
 
 /// Pairs of all lengths, of ratios of all kinds: with small partial quotients, and beside simple ones.
 #[test]
-#[ignore = "ten minutes"]
+#[ignore = "a minute"]
 fn return_maps_hold_on_ten_thousand_pairs() {
     let mut state = 11u64;
     let mut next = |n: u64| {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 33) % n
     };
-    let (mut both, pairs) = (0u32, 10_000);
+    let (mut decided, mut both, pairs) = (0u32, 0u32, 10_000);
     for _ in 0..pairs {
         let size = 10 << next(13);
         let (mut p, mut q) = (1 + next(size), 1 + next(size));
@@ -180,12 +180,15 @@ fn return_maps_hold_on_ten_thousand_pairs() {
         let reference = reference.filter(|ends| ends.signs().complete().is_some());
         let reference = reference.or_else(|| refine::run(&clocks, &schedule, 1500)).unwrap();
         agree(&found, &reference, &name);
-        let is_known = found.signs().complete().is_some() && found.even.nodes.is_some();
+        let is_decided = found.signs().complete().is_some();
+        let is_known = is_decided && found.even.nodes.is_some();
+        decided += u32::from(is_decided);
         if !is_known {
             eprintln!("unsure: {name} {:?}", found.even.nodes);
         }
         both += u32::from(is_known);
     }
-    eprintln!("{both} of {pairs}");
-    assert!(both > pairs * 95 / 100, "{both} of {pairs}");
+    eprintln!("{decided} decided, {both} with sign changes, of {pairs}");
+    // Strong shears may turn a direction by nearly π, and leave it open in which sense.
+    assert!(decided > pairs * 99 / 100 && both > pairs * 9 / 10, "{decided}, {both} of {pairs}");
 }
