@@ -227,6 +227,18 @@ impl Ball {
         (&self.mid, self.exp)
     }
 
+    /// A number that is not 0, known to so many bits of itself: `evaluated` in ever more bits until it is.
+    pub(crate) fn to_accuracy(bits: u32, evaluated: impl Fn(u32) -> Ball) -> Ball {
+        let mut working = bits + 32;
+        loop {
+            let ball = evaluated(working);
+            if ball.relative_accuracy_bits() > i64::from(bits) {
+                return ball.round(bits + 2);
+            }
+            working *= 2;
+        }
+    }
+
     /// The least t with radius ≤ 2^t; `None` for an exact ball.
     pub fn radius_log2(&self) -> Option<i64> {
         let units = self.rad.checked_sub(1)?;

@@ -200,14 +200,7 @@ impl<F: NumberField> Real for Element<F> {
         if let Some(x) = self.as_rational() {
             return x.enclosure(bits);
         }
-        let mut working = bits + 32;
-        loop {
-            let ball = self.evaluated(working);
-            if ball.relative_accuracy_bits() > i64::from(bits) {
-                return ball.round(bits + 2);
-            }
-            working *= 2;
-        }
+        Ball::to_accuracy(bits, |working| self.evaluated(working))
     }
 }
 

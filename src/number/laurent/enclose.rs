@@ -26,14 +26,7 @@ impl Real for Laurent {
         if let Some(rational) = self.as_rational() {
             return Ball::from_rational(&rational, bits + 2);
         }
-        let mut working = bits + 32;
-        loop {
-            let ball = self.evaluated(working);
-            if ball.relative_accuracy_bits() > i64::from(bits) {
-                return ball.round(bits + 2);
-            }
-            working *= 2;
-        }
+        Ball::to_accuracy(bits, |working| self.evaluated(working))
     }
 
     /// Of c π^k with |k| ≤ 2: c is within 2^-104, π² within 2^-100.9, and a product or a quotient adds 2^-100 at most.

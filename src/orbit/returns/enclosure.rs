@@ -1,5 +1,7 @@
 //! The numbers that a pair's constants are made of: balls, and for doubles two doubles with a radius, a hundred times as fast.
 
+use num_bigint::BigUint;
+
 use crate::number::{Ball, Rational, Real, Sign, Twofold};
 
 /// A real number, enclosed. Numbers of one pair have the same bits.
@@ -214,9 +216,14 @@ impl Enclosure for Close {
 
     fn ball(&self) -> Ball {
         let Twofold { hi, lo } = self.middle;
-        let unit = Ball::one().neg().union(&Ball::one(), 64);
-        exact(hi).add(&exact(lo), 2200).add(&exact(self.radius).mul(&unit, 64), 2200).round(192)
+        around(&exact(hi).add(&exact(lo), 2200), self.radius, 2200).round(192)
     }
+}
+
+/// What lies within a radius of a middle.
+pub fn around(middle: &Ball, radius: f64, bits: u32) -> Ball {
+    let unit = Ball::one().neg().union(&Ball::one(), 64);
+    middle.add(&exact(radius).mul(&unit, 64), bits)
 }
 
 /// n/d within 3 2^-101 relatively, |n| and d below 2^127.
@@ -251,12 +258,9 @@ pub fn balanced<E: Enclosure, const N: usize>(terms: [Matrix<E>; N]) -> ([Matrix
     (terms.map(|term| term.map(|x| x.scale2(-largest))), largest)
 }
 
-/// One step's matrix to the n-th power, n as its binary digits, the highest first, and the power of two that it is to be multiplied by.
-pub fn power<E: Enclosure>(
-    step: &Matrix<E>,
-    one: &Matrix<E>,
-    digits: impl Iterator<Item = bool>,
-) -> (Matrix<E>, i128) {
+/// One step's matrix to the n-th power, and the power of two that it is to be multiplied by.
+pub fn power<E: Enclosure>(step: &Matrix<E>, one: &Matrix<E>, n: &BigUint) -> (Matrix<E>, i128) {
+    let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
     digits.fold((one.clone(), 0), |(own, exponent), digit| {
         let square = product(&own, &own);
         let next = if digit { product(&square, step) } else { square };

@@ -135,6 +135,10 @@ impl<T: Coefficient> Frame<T> {
         self.quotient(0, 1)
     }
 
+    fn identity(&self) -> Matrix<T::Enclosure> {
+        [self.one(), self.zero(), self.zero(), self.one()]
+    }
+
     /// One step of the base from the middle of a kick to that of the next, [[c, κ], [−σ²/κ, c]], c = 1 − s/2.
     fn step(&self) -> Option<Matrix<T::Enclosure>> {
         let cosine = self.one().minus(&self.s.scale2(-1));
@@ -144,9 +148,7 @@ impl<T: Coefficient> Frame<T> {
 
     /// n steps of the base.
     fn rotation(&self, n: &BigUint) -> Option<Rotation<T::Enclosure>> {
-        let one = [self.one(), self.zero(), self.zero(), self.one()];
-        let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
-        let (matrix, exponent) = power(&self.step()?, &one, digits);
+        let (matrix, exponent) = power(&self.step()?, &self.identity(), n);
         let turn = self.towards(&matrix[0], &matrix[2]).and_then(|angle| self.turned(n, angle));
         Some(Rotation { matrix, exponent, turn })
     }
@@ -294,21 +296,15 @@ impl<T: Coefficient> Frame<T> {
         let Half { entries: [a, b, c, d], exponent, .. } = self.half::<T>()?;
         // The second half is the first one backwards.
         let period = product(&[d.clone(), b.clone(), c.clone(), a.clone()], &[a, b, c, d]);
-        let one = [self.one(), self.zero(), self.zero(), self.one()];
-        let digits = (0..periods.bits()).rev().map(|bit| periods.bit(bit));
-        let (whole, scaled) = power(&period, &one, digits);
+        let (whole, scaled) = power(&period, &self.identity(), &periods);
         let exponent = exponent.checked_mul(2)?.checked_mul(periods.to_i128()?)?.checked_add(scaled)?;
         if rest == 0 {
             return Some((whole, exponent));
         }
         let (mut journey, place) = self.kicked::<T>(rest)?;
         let at = self.quotient(place, self.beat.q);
-        let [undo, ..] = self.nilpotent(&at, &self.zero());
-        let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
-        journey.go(&undo, |_, _| None);
-        let kick = self.s.over(&self.unit)?.scale2(-1).negative();
-        journey.go(&[self.one(), self.zero(), kick, self.one()], |_, _| None);
-        journey.go(&[self.one(), self.unit.times(&at), self.zero(), self.one()], |_, _| None);
+        self.take_back_half(&mut journey, &at);
+        self.drift_from_kick(&mut journey, self.unit.times(&at))?;
         let exponent = exponent.checked_add(journey.exponent)?;
         Some((product(&journey.entries()?, &whole), exponent))
     }
@@ -318,9 +314,7 @@ impl<T: Coefficient> Frame<T> {
         let Beat { whole, rest, q } = &self.beat;
         let p = self.beat.p();
         if q % 2 == 0 {
-            let [undo, ..] = self.nilpotent(&self.one().scale2(-1), &self.zero());
-            let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
-            journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
+            self.take_back_half(journey, &self.one().scale2(-1));
         } else {
             let passed = whole * (q / 2) + BigUint::from(q / 2) * *rest / *q;
             let rotation = self.rotation(&((&p >> 1u32) - passed))?;
@@ -332,16 +326,28 @@ impl<T: Coefficient> Frame<T> {
             });
         }
         if p.bit(0) {
-            // T/2 is half way between two strikes of the base: its kick's second half and half a drift.
-            let (zero, one) = (self.zero(), self.one());
-            let is_attracting = self.s.sign() != Some(Sign::Negative);
-            let kick = self.s.over(&self.unit)?.scale2(-1).negative();
-            journey.go(&[one.clone(), zero.clone(), kick, one.clone()], |turn, angle| {
-                Some(turn.sheared(is_attracting, angle))
-            });
-            let drift = self.unit.scale2(-1);
-            journey.go(&[one.clone(), drift, zero, one], |turn, angle| Some(turn.sheared(true, angle)));
+            // T/2 is half way between two strikes of the base.
+            self.drift_from_kick(journey, self.unit.scale2(-1))?;
         }
+        Some(())
+    }
+
+    /// Half of the other clock's last kick, at this offset, taken back.
+    fn take_back_half(&self, journey: &mut Journey<T>, at: &T::Enclosure) {
+        let [undo, ..] = self.nilpotent(at, &self.zero());
+        let [undo] = self.shear(&[undo], &self.k.scale2(-1).negative());
+        journey.go(&undo, |turn, angle| Some(turn.sheared(!self.is_clockwise(), angle)));
+    }
+
+    /// From the middle of a kick of the base through its second half and a drift by so many units of the velocity.
+    fn drift_from_kick(&self, journey: &mut Journey<T>, drift: T::Enclosure) -> Option<()> {
+        let (zero, one) = (self.zero(), self.one());
+        let is_attracting = self.s.sign() != Some(Sign::Negative);
+        let kick = self.s.over(&self.unit)?.scale2(-1).negative();
+        journey.go(&[one.clone(), zero.clone(), kick, one.clone()], |turn, angle| {
+            Some(turn.sheared(is_attracting, angle))
+        });
+        journey.go(&[one.clone(), drift, zero, one], |turn, angle| Some(turn.sheared(true, angle)));
         Some(())
     }
 }

@@ -1,6 +1,6 @@
 //! The numbers that coefficients are made of: doubles, two doubles, long numbers.
 
-use super::enclosure::{Close, Enclosure, Wide, quotient};
+use super::enclosure::{Close, Enclosure, Wide, around, quotient};
 
 pub use super::enclosure::exact;
 use super::lanes::{Lanes, Twofolds};
@@ -283,8 +283,7 @@ pub fn near_ball<T: Coefficient>(ball: &Ball) -> (T, f64) {
 }
 
 fn within(middle: &Ball, error: f64, bits: u32) -> Wide {
-    let unit = Ball::one().neg().union(&Ball::one(), 64);
-    Wide::new(middle.add(&exact(error).mul(&unit, 64), bits), bits)
+    Wide::new(around(middle, error, bits), bits)
 }
 
 #[cfg(test)]

@@ -23,6 +23,14 @@ fn agree(found: &Ends, reference: &Ends, name: &str) {
     }
 }
 
+/// Numbers that repeat, each below what is asked.
+fn numbers(mut state: u64) -> impl FnMut(u64) -> u64 {
+    move |n| {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 33) % n
+    }
+}
+
 fn pair(p: u64, q: u64, s: Rational, k: Rational) -> (TwoClocks<Rational>, Schedule) {
     let ratio = Ratio::new(p, q).unwrap();
     (TwoClocks::new(ratio, s, k), Schedule::two_clocks(ratio).unwrap())
@@ -44,11 +52,7 @@ fn tally<const N: usize>(precisions: [u32; N], p: u64, q: u64, s: Rational, k: R
 /// Weak and strong, attracting and repelling, h1 above and below h2. Two doubles decide them all.
 #[test]
 fn return_maps_are_what_kicks_give() {
-    let mut state = 1u64;
-    let mut next = |n: u64| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) % n
-    };
+    let mut next = numbers(1);
     let (mut pairs, mut counts) = (0, [[0; 2]; PRECISIONS.len()]);
     for size in [3, 10, 40, 200] {
         for weak in [1000, 100, 10, 1] {
@@ -72,11 +76,7 @@ fn return_maps_are_what_kicks_give() {
 /// |Tr| = 2. Two doubles decide them all.
 #[test]
 fn slow_products_are_what_kicks_give() {
-    let mut state = 7u64;
-    let mut next = |n: u64| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) % n
-    };
+    let mut next = numbers(7);
     let (mut pairs, mut counts) = (0, [0; 2]);
     for weak in [1000, 100, 10, 1] {
         for _ in 0..8 {
@@ -122,11 +122,7 @@ fn return_maps_are_what_kicks_give_beyond_the_limit() {
 /// and with nearly all digits of the numbers asked for.
 #[test]
 fn levels_in_fewer_bits_are_what_long_numbers_give() {
-    let mut state = 3u64;
-    let mut next = |n: u64| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) % n
-    };
+    let mut next = numbers(3);
     let (mut pairs, mut decided) = (0, [0; 2]);
     for bits in [40, 50, 62, 70, 90, 120] {
         for _ in 0..2 {
@@ -154,11 +150,7 @@ fn levels_in_fewer_bits_are_what_long_numbers_give() {
 #[test]
 #[ignore = "a minute"]
 fn return_maps_hold_on_ten_thousand_pairs() {
-    let mut state = 11u64;
-    let mut next = |n: u64| {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 33) % n
-    };
+    let mut next = numbers(11);
     let (mut decided, mut both, pairs) = (0u32, 0u32, 10_000);
     for _ in 0..pairs {
         let size = 10 << next(13);
