@@ -1,5 +1,6 @@
 //! The half period of one ratio in s and ρ.
 
+use num_bigint::BigInt;
 use num_traits::{One, Signed, Zero};
 use serde_json::{Map, Value};
 
@@ -23,9 +24,8 @@ question! {
     }
 }
 
-/// The largest p + q of polynomials unless a budget says otherwise: the entries have about p q/4 terms, with coefficients
-/// of some p + q digits.
-const MOST_KICKS: u64 = 120;
+/// The products of coefficients that polynomials cost at most unless a budget says otherwise: some ten seconds.
+const MOST_PRODUCTS: u64 = 150_000;
 
 /// Polynomials in s whose coefficients are polynomials in rho.
 type Bivariate = number::Polynomial<number::Polynomial<Rational>>;
@@ -40,11 +40,12 @@ impl Question for Polynomial {
     type Answer = Polynomials;
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
-        let (ratio, most) = (self.ratio, work.budget.unwrap_or(MOST_KICKS));
-        if ratio.kicks() > most {
-            let terms = u128::from(ratio.p()) * u128::from(ratio.q()) / 4 + 1;
-            let cost = format!("polynomials of {ratio} have about {terms} terms each");
-            return Err(Error::budget(cost, ratio.kicks()).or(format!("choose p + q <= {most}")));
+        let (ratio, most) = (self.ratio, work.budget.unwrap_or(MOST_PRODUCTS));
+        let terms = u128::from(ratio.p()) * u128::from(ratio.q()) / 4 + u128::from(ratio.kicks());
+        let products = u64::try_from(terms.saturating_mul(ratio.kicks().into())).unwrap_or(u64::MAX);
+        if products > most {
+            let cost = format!("polynomials of {ratio} have some {terms} terms each");
+            return Err(Error::budget(cost, products).or("choose a ratio of smaller p and q"));
         }
         Ok(polynomials(ratio))
     }
@@ -72,7 +73,34 @@ fn polynomials(ratio: Ratio) -> Polynomials {
     let half: HalfPeriod<Bivariate> = half_period(&TwoClocks::with_rho(ratio, s, rho));
     let entries = [("A", half.a()), ("B", half.b()), ("C", half.c()), ("D", half.d())];
     let [a, b, c, d] = entries.map(|(name, entry)| (name, entry.clone()));
-    [a, b, c, d, ("trace", half.trace())]
+    [a, b, c, d, ("trace", trace(&half, ratio.q()))]
+}
+
+/// Tr Q = 4 A D − 2, in integers: drifts are multiples of h1/(2q), kicks of s/2 and s ρ/(2q), so a coefficient of s^i in A
+/// and D becomes one by (2q)^(2i). (In rationals each of the (p q/4)² products would cost a greatest common divisor.)
+fn trace(half: &HalfPeriod<Bivariate>, q: u64) -> Bivariate {
+    let unit = (BigInt::from(q) * 2u8).pow(2);
+    let integers = |f: &Bivariate| -> Vec<Vec<BigInt>> {
+        let in_s = f.coefficients().iter().enumerate();
+        in_s.map(|(i, g)| g.coefficients().iter().map(|c| (c * unit.pow(i as u32)).to_integer()).collect())
+            .collect()
+    };
+    let (a, d) = (integers(half.a()), integers(half.d()));
+    let mut product = vec![Vec::<BigInt>::new(); a.len() + d.len() - 1];
+    for (i, a) in a.iter().enumerate() {
+        for (sum, d) in product[i..].iter_mut().zip(&d) {
+            sum.resize(sum.len().max(a.len() + d.len()), BigInt::zero());
+            for (k, a) in a.iter().enumerate() {
+                sum[k..].iter_mut().zip(d).for_each(|(own, d)| *own += a * d);
+            }
+        }
+    }
+    let rational = |(i, in_rho): (usize, Vec<BigInt>)| {
+        let divisor = unit.pow(i as u32);
+        number::Polynomial::new(in_rho.into_iter().map(|c| Rational::new(c * 4, divisor.clone())).collect())
+    };
+    let two = number::Polynomial::constant(number::Polynomial::constant(Rational::from_integer(2.into())));
+    number::Polynomial::new(product.into_iter().enumerate().map(rational).collect()) - two
 }
 
 /// One polynomial in LaTeX, term by term.

@@ -90,7 +90,7 @@ fn a_ratio_that_costs_too_much_names_the_flag_that_allows_it() {
     refused(&desk, &frugal, &["kicks", "--budget 77"]);
     let exact = [&verdict("1", "1/10", "1", "300003")[..], &["--exact"]].concat();
     refused(&desk, &exact, &["exact tier", " s;", "--budget"]);
-    refused(&desk, &["polynomial", "--ratio", "1000/7"], &["1000/7", "--budget 1007"]);
+    refused(&desk, &["polynomial", "--ratio", "1000/7"], &["1000/7", "--budget 2776299"]);
 }
 
 #[test]
