@@ -15,6 +15,7 @@ use std::str::FromStr;
 
 use super::edge::{Edges, counts};
 use super::gap::Gap;
+use super::string::MOST_KICKS;
 use super::string::lanes::LANES;
 use crate::error::{Error, Result};
 use crate::number::parse::{parse_integer, parse_integer_range};
@@ -102,8 +103,11 @@ impl Selection {
     }
 
     /// The labels selected among 1 to `last`, as far as they are known before the edges, in order.
-    pub(crate) fn labels(&self, edges: &Edges, last: u64) -> Vec<u64> {
-        let (first, last) = self.s.map_or((1, last), |window| labels_within(edges, window, last));
+    ///
+    /// # Errors
+    /// A window of s of a period too long to be laid out.
+    pub(crate) fn labels(&self, edges: &Edges, last: u64) -> Result<Vec<u64>> {
+        let (first, last) = self.s.map_or(Ok((1, last)), |window| labels_within(edges, window, last))?;
         let within = |range: Option<(i64, i64)>, x: i64| range.is_none_or(|(lo, hi)| lo <= x && x <= hi);
         let wanted = |m: u64| {
             let listed = self.m.as_ref().is_none_or(|list| list.0.iter().any(|&(a, b)| a <= m && m <= b));
@@ -114,17 +118,25 @@ impl Selection {
                     within(self.a, a) && within(self.b, b)
                 })
         };
-        (first..=last).filter(|&m| wanted(m)).collect()
+        let (from, upto) = self.m.as_ref().map_or((first, last), |list| {
+            let (from, upto) = (list.0.iter().map(|own| own.0).min(), list.0.iter().map(|own| own.1).max());
+            (from.unwrap_or(1).max(first), upto.unwrap_or(0).min(last))
+        });
+        if upto.saturating_sub(from) > MOST_KICKS {
+            // So many labels are listed of no period that is too long to be laid out.
+            edges.string()?;
+        }
+        Ok((from..=upto).filter(|&m| wanted(m)).collect())
     }
 }
 
 /// A range of labels among 1 to `last` that holds all tongues which meet the window: an edge with an index not above
 /// the count at its lower end lies below it, one with an index above the count at its upper end lies beyond.
-fn labels_within(edges: &Edges, (lo, hi): (f64, f64), last: u64) -> (u64, u64) {
+fn labels_within(edges: &Edges, (lo, hi): (f64, f64), last: u64) -> Result<(u64, u64)> {
     if hi < lo || hi <= 0.0 {
-        return (1, 0);
+        return Ok((1, 0));
     }
-    let string = edges.string();
+    let string = edges.string()?;
     let counts = |s: f64| {
         // The counts neither underflow nor overflow within these.
         let kappa = (s / string.ticks).min(4.0 * string.upper_bound);
@@ -133,7 +145,7 @@ fn labels_within(edges: &Edges, (lo, hi): (f64, f64), last: u64) -> (u64, u64) {
     let ([a, b, c, d], [e, f, g, h]) = (counts(lo * (1.0 - SLACK)), counts(hi * (1.0 + SLACK)));
     let first = (2 * b.min(c) + 2).min(2 * a.min(d) + 1);
     let upto = (2 * f.max(g)).max((2 * e.max(h)).saturating_sub(1));
-    (first, upto.min(last))
+    Ok((first, upto.min(last)))
 }
 
 /// Ranges that hold all labels and not many others: those to compute side by side.

@@ -31,7 +31,7 @@ impl Tongues {
     /// The tongues of h2/h1 = p/q and ρ = L2/L1.
     ///
     /// # Errors
-    /// ρ < 0 (then the masses are no string's), ρ p/q beyond 1e±16, too many kicks.
+    /// ρ < 0 (then the masses are no string's), ρ p/q beyond 1e±16.
     pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
         Ok(Tongues { edges: Edges::new(ratio, rho)?, open: Openness::default() })
     }
@@ -127,7 +127,7 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn select(&self, selection: &Selection) -> Result<Vec<Gap>> {
-        let labels = selection.labels(&self.edges, self.last());
+        let labels = selection.labels(&self.edges, self.last())?;
         let mut gaps = Vec::with_capacity(labels.len());
         for (from, upto) in runs(&labels) {
             let run = self.gaps(from, upto)?;
@@ -190,7 +190,7 @@ impl Tongues {
 
     /// How many positive zeros an entry has.
     pub fn zeros(&self, entry: Entry) -> usize {
-        self.edges.string().dimension(entry)
+        self.edges.dimension(entry)
     }
 
     /// The edge to `digits` significant digits: an interval narrower than 10^-digits of itself.

@@ -253,7 +253,11 @@ impl<T: Coefficient> Frame<T> {
                 let of = |x: &T::Enclosure| x.ball().scale2(exponent);
                 End { signs, x: of(x), v: of(v), nodes }
             };
-            Ends { even: end(&a, &c, (signs.a, signs.c), nodes), odd: end(&b, &d, (signs.b, signs.d), None) }
+            let odd_nodes = nodes.zip(signs.b).and_then(|(nodes, b)| odd_nodes(nodes, b));
+            Ends {
+                even: end(&a, &c, (signs.a, signs.c), nodes),
+                odd: end(&b, &d, (signs.b, signs.d), odd_nodes),
+            }
         });
         Some(Found { signs, ends })
     }
@@ -384,6 +388,13 @@ fn nodes(turn: Turn, sign: Sign) -> Option<u64> {
         1
     };
     u64::try_from(beside - 2 * turn.whole).ok()
+}
+
+/// The sign changes of the odd solution, which ends with this sign: between two of its zeros, the one at t = 0 included, lies one of
+/// the even solution's (Sturm; their Wronskian is 1), so it has as many or one less.
+fn odd_nodes(even_nodes: u64, sign: Sign) -> Option<u64> {
+    let is_as_many = (sign == Sign::Negative) == (even_nodes % 2 == 1);
+    even_nodes.checked_sub(u64::from(!is_as_many))
 }
 
 /// Where balls with this exponent, and their products, stay within what balls hold.

@@ -85,7 +85,7 @@ pub(crate) fn isolate(
     around: Option<(f64, f64)>,
 ) -> Enclosure {
     let exact = |x: f64| rational::from_f64_exact(x).expect("finite");
-    let upto = string.dimension(function.entry) as u64;
+    let upto = string.dimensions[function.entry as usize] as u64;
     let bound = exact(2.0 * string.upper_bound * string.ticks);
     let mut cell = Cell { lo: Rational::zero(), hi: bound, below: 0, upto, index: index as u64 };
     let mut hints = around.map_or(Vec::new(), |(lo, hi)| vec![exact(hi), exact(lo)]);

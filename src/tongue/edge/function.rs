@@ -3,9 +3,10 @@
 use crate::error::Result;
 use crate::number::{Ball, Ratio, Rational, Sign};
 use crate::orbit::refine::{self, End};
+use crate::orbit::returns::{self, Wanted};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
-use crate::tongue::string::Entry;
+use crate::tongue::string::{Entry, MOST_KICKS};
 use crate::verdict::Decidable;
 
 /// An entry of the half period as a function of s, for fixed p/q and ρ.
@@ -16,6 +17,17 @@ pub(crate) struct EntryFunction {
     pub slow: Rational,
     pub schedule: Schedule,
     pub entry: Entry,
+    by: By,
+}
+
+/// How the orbits are followed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum By {
+    /// Kick by kick, in as many bits as it takes; exactly in the end.
+    Kicks,
+    /// By return maps in doubles or two doubles, and where the kicks are too many to be followed in 256 bits; what they do not tell is
+    /// not known.
+    Returns,
 }
 
 /// Bits beyond which the refine tier is not asked before exact arithmetic: so many times what the cell's size asks. Of a
@@ -24,9 +36,9 @@ pub(crate) struct EntryFunction {
 const BITS_BEFORE_EXACT: u32 = 64;
 
 impl EntryFunction {
-    pub fn new(ratio: Ratio, rho: &Rational, entry: Entry) -> Result<Self> {
+    pub fn new(ratio: Ratio, rho: &Rational, entry: Entry, by: By) -> Result<Self> {
         let slow = rho * Rational::from(ratio);
-        Ok(EntryFunction { ratio, slow, schedule: Schedule::two_clocks(ratio)?, entry })
+        Ok(EntryFunction { ratio, slow, schedule: Schedule::two_clocks(ratio)?, entry, by })
     }
 
     fn clocks(&self, s: &Rational) -> TwoClocks<Rational> {
@@ -43,24 +55,52 @@ impl EntryFunction {
         // In no lowest terms: balls do not need them.
         let slow = Rational::new_raw(s.numer() * self.slow.numer(), s.denom() * self.slow.denom());
         let clocks = TwoClocks::new(self.ratio, s.clone(), slow);
-        refine::run_one(&clocks, &self.schedule, bits, self.entry.starts_free())
+        match self.by {
+            By::Kicks => refine::run_one(&clocks, &self.schedule, bits, self.entry.starts_free()),
+            By::Returns => {
+                let ends = returns::run(&(&clocks).into(), bits, Wanted::Nodes)?;
+                Some(if self.entry.starts_free() { ends.even } else { ends.odd })
+            }
+        }
     }
 
     /// The entry's value at s, with a certified sign, from `bits` bits; the exact ball 0 where it is 0. And how many zeros lie
     /// below s, if those bits decide it.
-    pub fn value(&self, s: &Rational, bits: u32) -> (Ball, Option<u64>) {
-        let mut working = bits;
-        while working <= BITS_BEFORE_EXACT * bits {
-            if let Some(end) = self.orbit(s, working) {
-                let count = self.counted(&end);
-                let value = if self.entry.ends_free() { end.v } else { end.x };
-                if value.sign().is_some() {
-                    return (value, count);
-                }
-            }
-            working *= 2;
+    ///
+    /// `None` where return maps do not tell.
+    pub fn value(&self, s: &Rational, bits: u32) -> Option<(Ball, Option<u64>)> {
+        let known = |working: u32| {
+            let end = self.orbit(s, working)?;
+            let count = self.counted(&end);
+            let value = if self.entry.ends_free() { end.v } else { end.x };
+            value.sign().is_some().then_some((value, count))
+        };
+        if self.by == By::Returns {
+            return self.bits_of_returns().filter(|&working| bits <= working).find_map(known);
         }
-        (Ball::from_integer(&self.exact_sign(s).to_i8().into()), None)
+        let mut tried = std::iter::successors(Some(bits), |bits| Some(2 * bits));
+        let found = tried.by_ref().take_while(|&working| working <= BITS_BEFORE_EXACT * bits).find_map(known);
+        Some(found.unwrap_or_else(|| (Ball::from_integer(&self.exact_sign(s).to_i8().into()), None)))
+    }
+
+    /// How many zeros lie below s, by return maps.
+    pub fn count(&self, s: &Rational) -> Option<u64> {
+        self.bits_of_returns().find_map(|bits| self.counted(&self.orbit(s, bits)?))
+    }
+
+    /// In 256 bits return maps cost a hundred times what they do in two doubles, and as much as some 10^5 kicks.
+    fn bits_of_returns(&self) -> impl Iterator<Item = u32> {
+        let most = if self.ratio.kicks() > MOST_KICKS { 256 } else { 106 };
+        returns::PRECISIONS.into_iter().filter(move |&bits| bits <= most)
+    }
+
+    /// In how many bits a value is worth computing that is to be known to so many binary digits of its size between two zeros:
+    /// return maps lose fewer than kicks do.
+    pub fn bits_for(&self, digits: u32) -> u32 {
+        match self.by {
+            By::Kicks => (digits + 96).next_multiple_of(32),
+            By::Returns => digits + 20,
+        }
     }
 
     /// The zeros below the s of an orbit, where its signs are certain and s is none.

@@ -13,6 +13,7 @@
 //! | `function` | an entry of the half period at rational points |
 //! | `fine_count` | 25 digits by counts in two doubles |
 //! | `precise`, `exact_count` | any number of digits; counts where two doubles tell nothing apart |
+//! | `long` | edges of long periods, one by one |
 //! | `edges` | the edges of one ratio, by whichever way is needed |
 
 mod batch;
@@ -26,6 +27,7 @@ mod function;
 mod half;
 mod isolate;
 mod locate;
+mod long;
 mod mode;
 mod precise;
 

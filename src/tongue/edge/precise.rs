@@ -22,7 +22,8 @@ use crate::number::{Ball, Rational, Sign};
 const STRAIGHT: u32 = 12;
 
 /// Shrinks an interval with one zero, simple and inside, until it is narrower than `relative` times itself. `None`
-/// where that there is one is neither known nor shown by the sign changes along the two ends' orbits.
+/// where that there is one is neither known nor shown by the sign changes along the two ends' orbits, and where return maps do
+/// not tell a sign.
 pub(crate) fn shrink(
     function: &EntryFunction,
     start: &Enclosure,
@@ -37,12 +38,12 @@ pub(crate) fn shrink(
     while !interval.is_below(relative) {
         cells = cells.min(goal.saturating_sub(interval.digits()) + 3);
         // Enough bits to decide the entry's sign a cell away from the zero, as a rule.
-        let bits = (interval.digits() + cells + 96).next_multiple_of(32);
+        let bits = function.bits_for(interval.digits() + cells);
         let (below, above) = match ends.take() {
             Some(ends) => ends,
             None => {
                 let value = |at: &BigInt| function.value(&interval.point(at), bits);
-                let ((below, from), (above, upto)) = (value(&BigInt::zero()), value(&interval.width));
+                let ((below, from), (above, upto)) = (value(&BigInt::zero())?, value(&interval.width)?);
                 let is_alone = from.zip(upto).is_some_and(|(from, upto)| upto == from + 1);
                 if !(is_isolated || is_alone) {
                     return None;
@@ -57,8 +58,8 @@ pub(crate) fn shrink(
         }
         let (fine, from) = (interval.cut(cells), interval.secant(&below, &above, cells));
         let upto = &from + &interval.width;
-        let value = |at: &BigInt| function.value(&fine.point(at), bits).0;
-        let (x, y) = (value(&from), value(&upto));
+        let value = |at: &BigInt| Some(function.value(&fine.point(at), bits)?.0);
+        let (x, y) = (value(&from)?, value(&upto)?);
         let all = BigInt::zero()..=fine.width.clone();
         let (part, signs, is_cell) = if x.sign() == above.sign() {
             (all.start()..=&from, (below, x), false)

@@ -92,7 +92,7 @@ impl Openness {
         if let Some(&open) = known.get() {
             return Ok(open);
         }
-        let degrees = Entry::of_tongue(odd).map(|entry| edges.string().dimension(entry));
+        let degrees = Entry::of_tongue(odd).map(|entry| edges.dimension(entry));
         let open = all_open(edges.ratio(), edges.rho(), odd, degrees)?;
         Ok(*known.get_or_init(|| open))
     }

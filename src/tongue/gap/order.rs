@@ -28,6 +28,9 @@ pub struct Gap {
     pub width: (f64, f64),
 }
 
+/// Digits asked of return maps, one after the other, each of which leaves a width its last four; two doubles give some 24 of them.
+const DIGITS_OF_RETURNS: [u32; 5] = [19, 22, 24, 26, 50];
+
 /// Relative accuracy of a width: a few digits are what it is worth.
 const WIDTH_ACCURACY: f64 = 1e-3;
 
@@ -70,10 +73,25 @@ impl Gap {
         }
         let (free, pinned) = if a.entry.starts_free() { (a, b) } else { (b, a) };
         let between = [free.lo.min(pinned.lo), free.hi.max(pinned.hi)];
-        match by_tunnelling(edges, m, &free, &pinned, between) {
-            Some(gap) => Ok(gap),
-            None => Gap::by_digits(edges, open, m, free, pinned),
+        if let Some(gap) = Gap::by_returns(edges, m, free, pinned)? {
+            return Ok(gap);
         }
+        let tunnelled = by_tunnelling(edges, m, &free, &pinned, between)?;
+        tunnelled.map_or_else(|| Gap::by_digits(edges, open, m, free, pinned), Ok)
+    }
+
+    /// By digits of both edges that return maps give, where these part them.
+    fn by_returns(edges: &Edges, m: u64, a: Edge, b: Edge) -> Result<Option<Gap>> {
+        let (mut x, mut y) = (Enclosure::from(&a), Enclosure::from(&b));
+        for digits in DIGITS_OF_RETURNS {
+            let found = (edges.by_returns(&a, &x, digits)?, edges.by_returns(&b, &y, digits)?);
+            let (Some(first), Some(second)) = found else { return Ok(None) };
+            (x, y) = (first, second);
+            if let Some((gap, _)) = parted(m, [(a, &x), (b, &y)]).filter(|(gap, _)| is_accurate(gap.width)) {
+                return Ok(Some(gap));
+            }
+        }
+        Ok(None)
     }
 
     /// By more and more digits of both edges, until they part or are proven one.
@@ -83,19 +101,16 @@ impl Gap {
         let mut digits = TWO_DOUBLES;
         loop {
             (x, y) = (edges.sharpened(&a, &x, digits)?, edges.sharpened(&b, &y, digits)?);
-            let parted =
-                [(&x, &y, a, b), (&y, &x, b, a)].into_iter().find(|(below, above, ..)| below.hi < above.lo);
-            if let Some((below, above, lower, upper)) = parted {
-                let width = Enclosure { lo: &above.lo - &below.hi, hi: &above.hi - &below.lo };
-                if width.width() * Rational::from_integer(1000.into()) <= width.lo {
-                    return Ok(Gap { m, lower, upper: Some(upper), closed: false, width: width.to_f64() });
+            if let Some((gap, width)) = parted(m, [(a, &x), (b, &y)]) {
+                if is_accurate(gap.width) {
+                    return Ok(gap);
                 }
                 // A bit is 0.30 decimal digits: so many that the width has five, more than there are.
-                let places = 3 * negative_log2(&(width.lo / &above.hi)) / 10 + 6;
+                let places = 3 * negative_log2(&(width / &x.hi)) / 10 + 6;
                 digits = places.max(digits + 1);
             } else if digits == TWO_DOUBLES
                 && let between = [(&x.lo).min(&y.lo), (&x.hi).max(&y.hi)].map(Twofold::from_rational)
-                && let Some(gap) = by_tunnelling(edges, m, &a, &b, between)
+                && let Some(gap) = by_tunnelling(edges, m, &a, &b, between)?
             {
                 return Ok(gap);
             } else if !open.is_proven(edges, m % 2 == 1)? && coincide(edges, &[(a, &x), (b, &y)])? {
@@ -107,6 +122,14 @@ impl Gap {
     }
 }
 
+/// The tongue between two edges whose enclosures are apart, and the least that its width can be.
+fn parted(m: u64, [(a, x), (b, y)]: [(Edge, &Enclosure); 2]) -> Option<(Gap, Rational)> {
+    let ordered = [(x, y, a, b), (y, x, b, a)].into_iter().find(|(below, above, ..)| below.hi < above.lo);
+    let (below, above, lower, upper) = ordered?;
+    let width = Enclosure { lo: &above.lo - &below.hi, hi: &above.hi - &below.lo };
+    Some((Gap { m, lower, upper: Some(upper), closed: false, width: width.to_f64() }, width.lo))
+}
+
 /// The tongue, if orbits over an interval that holds both edges give its width.
 fn by_tunnelling<D: Digits>(
     edges: &Edges,
@@ -114,16 +137,12 @@ fn by_tunnelling<D: Digits>(
     free: &Edge,
     pinned: &Edge,
     between: [D; 2],
-) -> Option<Gap> {
-    let Apart { in_order, width } = tunnel::splitting(edges.string(), free.entry, between)?;
+) -> Result<Option<Gap>> {
+    let splitting = tunnel::splitting(edges.string()?, free.entry, between);
+    let Some(Apart { in_order, width }) = splitting else { return Ok(None) };
     let (lower, upper) = if in_order { (*free, *pinned) } else { (*pinned, *free) };
-    (is_accurate(width) || width.1 < f64::MIN_POSITIVE).then_some(Gap {
-        m,
-        lower,
-        upper: Some(upper),
-        closed: false,
-        width,
-    })
+    let is_enough = is_accurate(width) || width.1 < f64::MIN_POSITIVE;
+    Ok(is_enough.then_some(Gap { m, lower, upper: Some(upper), closed: false, width }))
 }
 
 /// Whether both entries vanish at the simplest rational in both enclosures, or at a common algebraic zero there.

@@ -52,6 +52,9 @@ const THIN: f64 = f64::EPSILON;
 /// Relative widths up to this are too narrow for edges in doubles: they are wrong by 1e-10 of the width.
 const NARROW: f64 = 1e-6;
 
+/// Below this relative width the middle is the place, to within the square of it.
+const POINT: f64 = 1e-10;
+
 /// The last step, relative to s and to the tongue's width alike: the rate is flat to the square of it.
 const STEP: f64 = 1e-10;
 
@@ -65,10 +68,13 @@ impl Peak {
     /// Where the schedule is too long, or more digits are needed than are tried.
     pub(crate) fn new(edges: &Edges, gap: &Gap) -> Result<Option<Peak>> {
         let Some(upper) = gap.upper.filter(|_| !gap.closed) else { return Ok(None) };
-        let (s, ln_multiplier) = match Inside::new(edges.string(), gap, &upper).fastest() {
-            Some(found) => found,
-            None => fastest_by_bits(edges, gap, &upper)?,
+        // Of a long period one point by more bits costs less than the string.
+        let is_thin = gap.width.1 <= POINT * gap.lower.lo;
+        let in_doubles = match () {
+            () if edges.is_long() && is_thin => None,
+            () => Inside::new(edges.string()?, gap, &upper).fastest(),
         };
+        let (s, ln_multiplier) = in_doubles.map_or_else(|| fastest_by_bits(edges, gap, &upper), Ok)?;
         Ok(Some(Peak {
             s,
             ln_multiplier,
@@ -94,8 +100,7 @@ fn fastest_by_bits(edges: &Edges, gap: &Gap, upper: &Edge) -> Result<(f64, f64)>
     };
     let ln = |s: &Rational| ln_multiplier_by_bits(edges, s, gap.m);
     let rate = |u: f64| Ok(ln(&at(u))? / rational::to_f64(&at(u)).sqrt());
-    // Below that the middle is the place, to within the square of it.
-    let u = if ratio > 1e-10 { golden(rate)? } else { 0.5 };
+    let u = if ratio > POINT { golden(rate)? } else { 0.5 };
     Ok((rational::to_f64(&at(u)), ln(&at(u))?))
 }
 
@@ -227,7 +232,7 @@ mod tests {
                 for gap in Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;
-                    let Some((s, ln)) = Inside::new(edges.string(), &gap, &upper).fastest() else {
+                    let Some((s, ln)) = Inside::new(edges.string().unwrap(), &gap, &upper).fastest() else {
                         left += 1;
                         continue;
                     };

@@ -93,14 +93,29 @@ const EXTREME: f64 = 1e16;
 const FAST_ALONE: u64 = 1;
 
 /// More kicks than this are not laid out in memory.
-const MOST_KICKS: u64 = 1 << 24;
+pub(crate) const MOST_KICKS: u64 = 1 << 24;
 
 impl HalfString {
     /// The string of h2/h1 = p/q and ρ = L2/L1 > 0.
     ///
     /// # Errors
-    /// ρ < 0 (no string), ρ beyond 1e±16, or more than 2^24 kicks in a period.
+    /// More than 2^24 kicks in a period.
     pub fn new(ratio: Ratio, rho: &Rational) -> Result<Self> {
+        if ratio.kicks() > MOST_KICKS {
+            let cost = format!("{ratio} has more than {MOST_KICKS} kicks in a period");
+            return Err(Error::too_much(cost, "choose a simpler ratio, or few labels (--m)"));
+        }
+        let (nodes, ticks, last) = nodes(ratio, rho.is_zero())?;
+        let mut string = HalfString::with_nodes(nodes, ticks, slow_mass(ratio, rho), last);
+        string.dimensions = Entry::ALL.map(|entry| HalfString::dimension(ratio, rho.is_zero(), entry));
+        Ok(string)
+    }
+
+    /// That the masses are those of a string in the range of doubles.
+    ///
+    /// # Errors
+    /// ρ < 0 (no string), ρ p/q beyond 1e±16.
+    pub fn check(ratio: Ratio, rho: &Rational) -> Result<()> {
         if rho.is_negative() {
             let remedy = "a string has no negative masses, so the unstable set is not a list of its eigenvalues; \
                           use `map` or `verdict`, which take any sign";
@@ -110,12 +125,7 @@ impl HalfString {
         if !rho.is_zero() && !(1.0 / EXTREME..=EXTREME).contains(&mass.hi) {
             return Err(Error::input("rho", rho, "rho p/q must lie between 1e-16 and 1e16"));
         }
-        if ratio.kicks() > MOST_KICKS {
-            let cost = format!("{ratio} has more than {MOST_KICKS} kicks in a period");
-            return Err(Error::too_much(cost, "choose a simpler ratio"));
-        }
-        let (nodes, ticks, last) = nodes(ratio, rho.is_zero())?;
-        Ok(HalfString::with_nodes(nodes, ticks, mass, last))
+        Ok(())
     }
 
     /// `last`: the clocks that strike at T/2.
@@ -143,7 +153,6 @@ impl HalfString {
         };
         string.lay_steps();
         string.block = string.nodes_in_range();
-        string.dimensions = Entry::ALL.map(|entry| string.count_masses(entry));
         string
     }
 
@@ -168,18 +177,14 @@ impl HalfString {
         self.nodes.iter().fold(1.0, |most: f64, node| most.max(node.length))
     }
 
-    /// How many positive eigenvalues the problem has.
-    pub fn dimension(&self, entry: Entry) -> usize {
-        self.dimensions[entry as usize]
-    }
-
-    /// One eigenvalue for each free mass, less the rigid shift of C.
-    fn count_masses(&self, entry: Entry) -> usize {
-        let last = self.last();
-        let massive = self.nodes.iter().filter(|node| self.masses[node.kind] > 0.0).count();
-        let pinned = [(0, entry.starts_free()), (last, entry.ends_free())];
-        let lost = pinned.iter().filter(|(j, free)| !free && self.mass(*j) > 0.0).count();
-        massive - lost - usize::from(entry == Entry::C)
+    /// How many positive eigenvalues a problem of p/q has: one for each free mass, less the rigid shift of C. Masses stand at the
+    /// clocks' kicks in [0, T/2], at T/2 where p or q is even; the slow clock's only where it is not silent.
+    pub fn dimension(ratio: Ratio, slow_is_silent: bool, entry: Entry) -> usize {
+        let (p, q) = (ratio.p(), if slow_is_silent { 1 } else { ratio.q() });
+        let at_end = p.is_multiple_of(2) || q.is_multiple_of(2);
+        let between = (p - 1) / 2 + (q - 1) / 2;
+        let ends = u64::from(entry.starts_free()) + u64::from(entry.ends_free() && at_end);
+        (between + ends) as usize - usize::from(entry == Entry::C)
     }
 
     /// The steps from node to node, and what bounds the string as a whole.

@@ -14,5 +14,5 @@ mod twofold;
 pub(crate) use crate::number::Twofold;
 pub use entry::Entry;
 pub(crate) use entry::Indices;
-pub(crate) use half_string::{HalfString, KINDS, Node, Step};
+pub(crate) use half_string::{HalfString, KINDS, MOST_KICKS, Node, Step};
 pub(crate) use twofold::Digits;
