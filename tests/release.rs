@@ -88,3 +88,20 @@ fn every_installation_that_is_written_down_is_locked() {
         }
     }
 }
+
+/// One version in all that names it.
+#[test]
+fn every_file_that_names_the_version_names_this_one() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (name, line) in [
+        ("Cargo.toml", format!("kickdrift-plot\", version = \"{version}\"")),
+        ("crates/plot/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("python/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("data/citation.bib", format!("version = {{{version}}},\n")),
+        ("conda/recipe.yaml", format!("version: \"{version}\"\n")),
+        (".zenodo.json", format!("\"version\": \"{version}\",\n")),
+    ] {
+        assert!(std::fs::read_to_string(root().join(name)).unwrap().contains(&line), "{name}: {line}");
+    }
+}
