@@ -1,7 +1,7 @@
 """Every command of the site is run when the site is built, and what it prints is what is shown.
 
 Blocks of Markdown fenced as ``console run`` hold commands after ``$ ``; they run in one folder for the whole site, in which
-``data`` is the repository's and ``out`` takes what they write. Blocks fenced as ``python run`` are cells of one session a page,
+``data`` and ``docs`` are the repository's and ``out`` takes what they write. Blocks fenced as ``python run`` are cells of one session a page,
 and ``example NAME`` fences a notebook of ``python/examples``. Figures that a block leaves in ``out`` are pages' ``made/NAME``.
 
     cut=N       shows the first N lines that each command prints
@@ -44,7 +44,8 @@ def on_files(files, config):
     """Runs the blocks of all pages, and adds the figures that they make to the site."""
     folder = Path(tempfile.mkdtemp(prefix="kickdrift-docs-"))
     (folder / "out").mkdir()
-    (folder / "data").symlink_to(ROOT / "data")
+    for name in "data", "docs":
+        (folder / name).symlink_to(ROOT / name)
     began = os.getcwd()
     try:
         os.chdir(folder)
@@ -94,7 +95,7 @@ class Session:
     def console(self, body, cut, code, kind):
         program = Path(os.environ.get("KICKDRIFT", ROOT / "target/release/kickdrift")).absolute()
         if not program.exists():
-            raise PluginError(f"there is no {program}: build it (cargo build --release), or name it in KICKDRIFT")
+            raise PluginError(f"there is no {program}: build it (cargo build --release --features explore), or name it in KICKDRIFT")
         path = f"{program.parent}{os.pathsep}{os.environ['PATH']}"
         shown = []
         commands = re.findall(r"^\$ ((?:.*\\\n)*.*)$", body, re.MULTILINE)
