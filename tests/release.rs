@@ -80,12 +80,28 @@ fn released_programs_have_the_page_and_the_notices_of_what_is_linked() {
 /// An installation resolves nothing anew: it takes the versions that were tested.
 #[test]
 fn every_installation_that_is_written_down_is_locked() {
-    for name in
-        ["README.md", "conda/recipe.yaml", "src/cli/explore.rs", "python/README.md", "CONTRIBUTING.md"]
-    {
+    let pages = ["docs/index.md", "docs/page.md", "README.md", "python/README.md", "CONTRIBUTING.md"];
+    for name in pages.into_iter().chain(["conda/recipe.yaml", "src/cli/explore.rs"]) {
         let text = std::fs::read_to_string(root().join(name)).unwrap();
         for line in text.lines().filter(|line| line.contains("cargo install")) {
             assert!(line.contains("--locked"), "{name}: {line}");
         }
+    }
+}
+
+/// One version in all that names it.
+#[test]
+fn every_file_that_names_the_version_names_this_one() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (name, line) in [
+        ("Cargo.toml", format!("kickdrift-plot\", version = \"{version}\"")),
+        ("crates/plot/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("python/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("data/citation.bib", format!("version = {{{version}}},\n")),
+        ("conda/recipe.yaml", format!("version: \"{version}\"\n")),
+        (".zenodo.json", format!("\"version\": \"{version}\",\n")),
+    ] {
+        assert!(std::fs::read_to_string(root().join(name)).unwrap().contains(&line), "{name}: {line}");
     }
 }

@@ -14,7 +14,7 @@ figure1 = kd.map(
 fig, (left, right) = plt.subplots(1, 2, figsize=(9, 6), layout="constrained", sharey=True)
 figure1.plot(left)
 kd.curves().plot(right)
-left.set_title(f"{figure1.document.data['unstable']} unstable of {figure1.verdict.size} pairs")
+left.set_title(f"{figure1.document.data['unstable']} unstable of {figure1.verdict.size} pairs", pad=22)
 right.set_title("resonances")
 figure1
 

@@ -10,6 +10,8 @@ unstable: hyperbolic, Tr Q < -2; exponential growth
   ...
 """
 
+from importlib.metadata import version as _version
+
 from kickdrift._advise import Advice, SystemAdvice, advise
 from kickdrift._document import Document, Row, Table
 from kickdrift._errors import BudgetError, KickdriftError
@@ -44,6 +46,9 @@ from kickdrift._tables import (
 )
 from kickdrift._verdict import Verdict, Verdicts, decide, verdicts
 
+#: The version of the package, and of the program in it.
+__version__ = _version("kickdrift")
+
 __all__ = [
     "Advice",
     "Bands",
@@ -74,6 +79,7 @@ __all__ = [
     "Verdict",
     "Verdicts",
     "Word",
+    "__version__",
     "advise",
     "bands",
     "closings",

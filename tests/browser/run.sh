@@ -32,6 +32,9 @@ export KICKDRIFT_SYSTEM
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cp ./*.mjs package.json package-lock.json "$scratch"
+# The page in one file, from the program.
+export KICKDRIFT_ATLAS=$scratch/atlas.html
+python3 ../../docs/atlas.py "$(realpath "$KICKDRIFT")" "$KICKDRIFT_ATLAS"
 cd "$scratch"
 npm ci --silent --no-audit --no-fund
 # A browser that a failed test leaves open must not hold the rest.

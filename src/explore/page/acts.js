@@ -51,7 +51,8 @@ export function onMap(explorer) {
       map.cursor = found && at;
       map.redraw();
       if (!found) return;
-      readout(page.readout, found.pair, kindOf(explorer.state.what, found.value), null, explorer.settings().unit);
+      found.kind = kindOf(explorer.state.what, found.value);
+      readout(page.readout, found.pair, found.kind, null, explorer.settings().unit);
       if (!map.moving) pairs.askHover(found);
     },
     leave: () => {

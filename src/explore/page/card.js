@@ -30,7 +30,7 @@ export function readout(host, pair, kind, told, unit, note) {
   const rows = [
     h("div.pair", {}, h("span", {}, step(1), " = ", h("b.number", {}, h1)), h("span", {}, step(2), " = ", h("b.number", {}, h2))),
     h("div", {}, kind ? verdict(kind, told?.stable) : h("span.quiet.note-of-pair", {}, note ?? "not decided yet")),
-    h("div.quiet", {}, told ? [step(2), "/", step(1), ` = ${ratioOf(told)}`, told.resonance ? h("span", {}, `, tongue `, h("i", {}, "m"), ` = ${told.resonance.m}, family (${told.resonance.a}, ${told.resonance.b})`.replace(/-/g, "−")) : ""] : " "),
+    h("div.quiet", {}, told ? [step(2), "/", step(1), ` = ${ratioOf(told)}`, told.resonance ? h("span", {}, `, tongue `, h("i", {}, "m"), ` = ${told.resonance.m}, family (${told.resonance.a}, ${told.resonance.b})`.replace(/-/g, "−")) : ""] : (kind && note) || " "),
     h("div.quiet", {}, growth ? `growth ${number((told.growth_rate.lo + told.growth_rate.hi) / 2, 3)} per ${unit}` : " ", told?.tenfold ? `; tenfold in ${number(told.tenfold.steps, 3)} slow steps, ${number(told.tenfold.time, 3)} ${unit}` : ""),
   ];
   host.replaceChildren(...rows);

@@ -20,7 +20,9 @@ export function told(status, view) {
   return said.join(" ");
 }
 
-function tooMuch({ cost, limit, unit }, d1, elsewhere) {
+function tooMuch({ cost, limit, unit, words }, d1, elsewhere) {
+  // A host without a program has a reason of its own.
+  if (words) return words;
   if (elsewhere) return "Some tiles would cost too much.";
   if (cost === null) return `Cells of d₁\u00a0=\u00a0${d1} would cost too much.`;
   return `A tile of d₁\u00a0=\u00a0${d1} would cost ${number(Number(cost), 2)} ${unit ?? "kicks"} (limit ${number(Number(limit), 2)}).`;

@@ -34,7 +34,8 @@ export class Pairs {
     const { page } = this.host;
     // What was decided is said, also where it is another pair of the same cell.
     const pair = told.input ? [told.input.h1, told.input.h2].map(parse) : picked.pair;
-    readout(page.readout, pair, told.kind, told.error ? null : told, this.host.settings().unit, told.error);
+    // Where nothing more is told the cell's verdict stays.
+    readout(page.readout, pair, told.error ? picked.kind : told.kind, told.error ? null : told, this.host.settings().unit, told.error);
     this.#speak(pair, told);
   }
 
