@@ -123,6 +123,10 @@ impl Scene {
             let schema = schema.as_str().map_or_else(|| schema.to_string(), String::from);
             return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
+        // One text is how documents have it.
+        if let Some(text) = file.get("want").and_then(Value::as_str) {
+            return Err(Error::input("want", text, "list the products, as [\"map.csv\"]"));
+        }
         let scene = Scene::read(&ungrouped(file)?).map_err(|error| match place(error.field()) {
             Some(place) => error.at(place),
             None => error,
