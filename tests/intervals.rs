@@ -357,3 +357,22 @@ mod nearest {
         assert_eq!((alone.below, alone.searched), (None, (0.5, 2.0)));
     }
 }
+
+#[test]
+fn what_intervals_cost_is_asked_before_them_by_the_library_too() {
+    let text = include_str!("../data/scenes/water4.json");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
+    let scene = SystemScene::from_json_in(folder, serde_json::from_str(text).unwrap()).unwrap();
+    let limits = Limits { products: 30_000_000, ..Limits::default() };
+    let span = "outer=0.001..0.005".parse().unwrap();
+    for error in [
+        scene.intervals(&span, 1e-4, &limits).unwrap_err(),
+        scene.nearest_unstable(1e-4, &limits).unwrap_err(),
+    ] {
+        assert!(
+            error.kind() == kickdrift::error::Kind::Budget && error.needed() > Some(30_000_000),
+            "{error}"
+        );
+        assert!(error.to_string().contains("choose a shorter range or a larger resolution"), "{error}");
+    }
+}

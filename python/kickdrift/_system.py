@@ -239,7 +239,14 @@ class System(Frozen):
         asked = self._about(asked)
         return SystemVerdict(asked.render("json"), self, asked)
 
-    def intervals(self, outer: Range, *, resolution: float = 1e-4, accuracy: float | None = None) -> Intervals:
+    def intervals(
+        self,
+        outer: Range,
+        *,
+        resolution: float = 1e-4,
+        accuracy: float | None = None,
+        budget: int | None = None,
+    ) -> Intervals:
         """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
 
         Parameters
@@ -250,9 +257,16 @@ class System(Frozen):
             The relative width above which no interval is missed.
         accuracy : float, optional
             How well the Hessians are known.
+        budget : int, optional
+            The most products of machine words.
+
+        Raises
+        ------
+        BudgetError
+            More work than the budget allows, before it begins.
         """
         over = f"outer={range_text('outer', outer)}"
-        asked = self._about(question("system", intervals=over, width=resolution, accuracy=accuracy))
+        asked = self._about(question("system", budget, intervals=over, width=resolution, accuracy=accuracy))
         return Intervals(asked.render("json"), (), "stretches", asked)
 
     def advise(

@@ -56,5 +56,5 @@ pub use constraint::Constraints;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
 pub use mode::{Mode, Origin};
-pub use molecule::{Finding, Findings, Group, Molecule};
+pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use question::Question;

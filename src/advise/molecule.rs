@@ -102,7 +102,7 @@ const MOST_GROUPS: usize = 12;
 const NO_MODE: f64 = 1e-2;
 
 /// The most products unless a budget is given: a minute or two.
-const MOST_PRODUCTS: u64 = 1_000_000_000_000;
+pub const MOST_PRODUCTS: u64 = 1_000_000_000_000;
 
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;

@@ -1,6 +1,8 @@
 //! A scene: quantities by name, and the products that are wanted of them.
 
-use serde_json::{Map as Input, Value};
+use std::path::Path;
+
+use serde_json::{Map as Input, Value, json};
 
 use super::asking::{Fields, Question, Work, question};
 use super::closings::{Closings, DIGITS};
@@ -121,6 +123,10 @@ impl Scene {
             let schema = schema.as_str().map_or_else(|| schema.to_string(), String::from);
             return Err(Error::input("schema", schema, format!("this version reads {SCHEMA}")));
         }
+        // One text is how documents have it.
+        if let Some(text) = file.get("want").and_then(Value::as_str) {
+            return Err(Error::input("want", text, "list the products, as [\"map.csv\"]"));
+        }
         let scene = Scene::read(&ungrouped(file)?).map_err(|error| match place(error.field()) {
             Some(place) => error.at(place),
             None => error,
@@ -128,8 +134,24 @@ impl Scene {
         if scene.window_h1.is_some() != scene.window_h2.is_some() {
             return Err(missing("window"));
         }
-        scene.want.iter().try_for_each(|want| scene.supports(want.product))?;
+        scene.check()?;
         Ok(scene)
+    }
+
+    /// That it has what its products need.
+    ///
+    /// # Errors
+    /// A product whose fields are missing, or make no sense together.
+    pub fn check(&self) -> Result<()> {
+        self.want.iter().try_for_each(|want| self.supports(want.product))
+    }
+
+    /// The document on the files of its products in a folder.
+    pub fn written(&self, folder: &Path) -> Document {
+        let file = |want: &Want| folder.join(want.file_name()).display().to_string();
+        let product = |want: &Want| json!({"product": want.product.name(), "file": file(want)});
+        let products: Vec<Value> = self.want.iter().map(product).collect();
+        Document::new("run").inputs(self.input()).entry("products", products)
     }
 
     /// The question about the verdicts of the grid.

@@ -27,7 +27,7 @@ question! {
         /// The slow step; h2/h1 is rational.
         #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h2: Laurent,
-        /// So many steps of the slow clock.
+        /// How many steps of the slow clock.
         #[arg(long, value_name = "N")]
         steps: u64,
         /// The position at the start.
@@ -77,15 +77,20 @@ impl State {
     }
 }
 
-/// The row of a state.
-fn record<'a>() -> Record<'a, Reached> {
-    let mut record = Record::new()
+/// The columns of a state.
+fn state<'a>() -> Record<'a, Reached> {
+    Record::new()
         .field(Column::math("steps", "n"), |of: &Reached| Cell::whole(&of.steps.into()))
         .field(Column::new("time"), |of| Cell::exact(&of.time))
         .field(Column::math("x", "x").enclosure(), |of| of.state[0].to_f64_enclosure().into())
-        .field(Column::math("v", "v").enclosure(), |of| of.state[1].to_f64_enclosure().into());
+        .field(Column::math("v", "v").enclosure(), |of| of.state[1].to_f64_enclosure().into())
+}
+
+/// Its row: the same, and the propagator behind it.
+fn record<'a>() -> Record<'a, Reached> {
+    let mut record = state();
     for (k, name) in ["xx", "xv", "vx", "vv"].into_iter().enumerate() {
-        let column = Column::new(name).enclosure().aside();
+        let column = Column::new(name).enclosure();
         record = record.field(column, move |of| of.propagator[k].to_f64_enclosure().into());
     }
     record
@@ -103,12 +108,12 @@ impl Question for State {
 
     fn show(&self, reached: &Reached) -> Document {
         let caption = format!("The state after {} steps", self.steps);
-        let table = record().table("states", &caption, [reached]).captioned(&caption);
+        let table = |record: Record<Reached>| record.table("states", &caption, [reached]).captioned(&caption);
         let [x, v] = reached.state.each_ref().map(|own| {
             let (lo, hi) = own.to_f64_enclosure();
             decimal::enclosure(lo, hi)
         });
         let summary = format!("after {} steps of h2, at t = {}: x = {x}, v = {v}", self.steps, reached.time);
-        Document::new(Self::NAME).rows(table).summary(&[summary])
+        Document::new(Self::NAME).rows(table(record())).for_people(table(state())).summary(&[summary])
     }
 }

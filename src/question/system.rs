@@ -10,7 +10,7 @@ use crate::error::{Error, Kind, Result};
 use crate::number::Rational;
 use crate::report::document::Document;
 use crate::report::system::{self as report, Beside, SystemMap};
-use crate::scene::{Arrays, Axis, Scan, Span, SystemFile, SystemScene};
+use crate::scene::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
 use crate::system::scan::scan;
@@ -140,7 +140,7 @@ impl System {
         let width = self.width().filter(|_| self.nearest);
         let nearest = |width| {
             let cost = scene.cost_of_nearest(width, &limits)?;
-            System::begin("the unstable steps next to its own", cost, scene, work)?;
+            work.announce(NEAREST, model.seconds_of(cost));
             scene.nearest_unstable(width, &limits)
         };
         let nearest = width.map(nearest).transpose()?;
@@ -150,17 +150,8 @@ impl System {
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
         let limits = work.products();
         let cost = scene.cost_of_intervals(span, width, &limits)?;
-        System::begin(&format!("intervals of {span}"), cost, scene, work)?;
+        work.announce(&format!("intervals of {span}"), scene.model().seconds_of(cost));
         scene.intervals(span, width, &limits)
-    }
-
-    /// That work of so many products, roughly, may begin; and it is announced.
-    fn begin(what: &str, cost: f64, scene: &SystemScene, work: &Work) -> Result<()> {
-        let remedy = "choose a shorter range or a larger --resolution";
-        let allowed = work.products().allow(cost.min(1e19) as u64, || what.to_string());
-        allowed.map_err(|error| error.or(remedy))?;
-        work.announce(what, scene.model().seconds_of(cost));
-        Ok(())
     }
 
     fn map(&self, scene: &SystemScene, axes: &Scan, work: &Work) -> Result<SystemMap> {

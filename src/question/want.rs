@@ -105,8 +105,10 @@ impl Product {
 /// A list of texts in a scene, one text in documents.
 impl Field for Vec<Want> {
     fn of(given: Option<&Value>, name: &str) -> Option<Result<Self>> {
-        let texts =
-            given?.as_array().and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>());
+        let texts = match given? {
+            Value::String(text) => Some(text.split(", ").collect()),
+            list => list.as_array().and_then(|all| all.iter().map(Value::as_str).collect::<Option<Vec<_>>>()),
+        };
         let refused =
             || Error::input(name, given.unwrap_or(&Value::Null), "list the products, as [\"map.csv\"]");
         Some(texts.ok_or_else(refused).and_then(|all| all.into_iter().map(Want::new).collect()))

@@ -76,6 +76,13 @@ impl Fault {
 
 pub type Checked<T = ()> = std::result::Result<T, Fault>;
 
+/// What another route leaves out because of its cost.
+#[cfg(feature = "system")]
+pub fn too_costly(what: &str, error: &Error) -> String {
+    let raise = |needed: u64| format!("a budget of {needed} allows it");
+    format!("{what} by another route: {}", error.clone().or("").explain(raise))
+}
+
 /// That something holds, or what is wrong.
 pub fn holds(truth: bool, wrong: impl FnOnce() -> String) -> Checked {
     if truth { Ok(()) } else { Err(Fault::Wrong(wrong())) }

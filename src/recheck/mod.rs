@@ -21,6 +21,7 @@
 //! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | state | a power of the period and return maps | kick by kick |
+//! | run | the names of the products | none |
 //! | proposition | Bézout's identity | eqs. (9) and (10) in integers |
 //! | advise-system | definite forms, counts | the action over its paths; the full period kick by kick |
 //! | advise | strings, orbits in balls | the full period in balls of 512 bits, pivots of the action |
@@ -80,6 +81,7 @@ mod half;
 mod map;
 mod polynomial;
 mod proposition;
+mod run;
 mod sample;
 mod state;
 mod survey;
@@ -147,6 +149,7 @@ claims! {
     "curves" Curves curves::Claim;
     "polynomial" Polynomial polynomial::Claim;
     "proposition" Proposition proposition::Claim;
+    "run" Run run::Claim;
     "half" Half half::Claim;
     "state" State state::Claim;
     "bands" Bands bands::Claim;

@@ -44,6 +44,9 @@ const BITS: [u32; 3] = [96, 192, 384];
 /// Relative accuracy of h2 and θ/π before they are rounded to doubles, in bits.
 const ENOUGH: i64 = 80;
 
+/// The most points of all curves together: some gigabytes of rows.
+pub(super) const MOST_POINTS: usize = 20_000_000;
+
 /// Steps begin here: below, h2 would leave the doubles of full precision.
 const LEAST: f64 = f64::from_bits(64 << 52);
 
@@ -57,13 +60,13 @@ const LEAST: f64 = f64::from_bits(64 << 52);
 /// lower one of them is its point there.
 ///
 /// # Errors
-/// Where L1 ≤ 0, or fewer than 2 samples are asked for.
+/// Where L1 ≤ 0, or fewer than 2 samples are asked for, or too many.
 pub fn curve(a: i64, b: i64, lambda1: &Laurent, window: &Window, samples: usize) -> Result<Curve> {
     if lambda1.sign() != Sign::Positive {
         return Err(Error::input("lambda1", lambda1, "the fast stiffness must be positive"));
     }
-    if samples < 2 {
-        return Err(Error::input("samples", samples, "a curve needs at least 2"));
+    if !(2..=MOST_POINTS).contains(&samples) {
+        return Err(Error::input("samples", samples, format!("choose at least 2, at most {MOST_POINTS}")));
     }
     let roots = BITS.map(|bits| lambda1.enclosure(bits).sqrt(bits).expect("lambda1 > 0"));
     let path = Path { a, b, roots };

@@ -9,7 +9,7 @@
 //! # Ok::<(), kickdrift::error::Error>(())
 //! ```
 
-use super::curve::{Curve, Window, curve};
+use super::curve::{Curve, MOST_POINTS, Window, curve};
 use crate::error::{Error, Result};
 use crate::number::Laurent;
 use crate::parallel::try_map;
@@ -25,9 +25,6 @@ pub struct Families {
 /// The most curves sampled at once: beyond it the range is a mistake.
 const MOST_CURVES: i128 = 100_000;
 
-/// The most points of all curves together: some gigabytes of rows.
-const MOST_POINTS: i128 = 20_000_000;
-
 impl Families {
     /// All curves that pass through the window, each as [`curve`] samples it; by a, then b.
     ///
@@ -41,7 +38,7 @@ impl Families {
             let remedy = format!("at most {MOST_CURVES} curves: choose smaller ranges");
             return Err(Error::input("a, b", value, remedy));
         }
-        if curves * self.samples as i128 > MOST_POINTS {
+        if curves * self.samples as i128 > MOST_POINTS as i128 {
             let remedy =
                 format!("{curves} curves of so many points are more than {MOST_POINTS}: choose fewer");
             return Err(Error::input("samples", self.samples, remedy));

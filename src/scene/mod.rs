@@ -9,4 +9,4 @@ mod system;
 #[cfg(feature = "advise")]
 pub use system::of_archive;
 #[cfg(feature = "system")]
-pub use system::{Array, Arrays, Axis, Scan, Span, SystemFile, SystemScene};
+pub use system::{Array, Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};

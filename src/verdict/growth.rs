@@ -133,7 +133,7 @@ impl Runs {
         go_on()?;
         let Returned { products, label, .. } = found.ok_or_else(|| {
             let work = format!(
-                "the pair is {}, but its trace has more digits than can be counted",
+                "the pair is {}, but the entries of its half period have more than 2^58 binary digits",
                 verdict.kind().name()
             );
             Error::too_much(work, "choose steps with a simpler ratio")

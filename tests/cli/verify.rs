@@ -264,11 +264,11 @@ fn by_both(enclosure: &Value, moved: &dyn Fn(&Value, f64) -> Value, by: f64) -> 
 #[test]
 fn what_cannot_be_rechecked_is_told() {
     let desk = Desk::new();
-    desk.write("run.json", r#"{"schema": "kickdrift/run/1"}"#);
+    desk.write("verify.json", r#"{"schema": "kickdrift/verify/1"}"#);
     desk.write("text.json", "no JSON");
     desk.write("bare.json", r#"{"schema": "kickdrift/tongues/1"}"#);
     for (file, parts) in [
-        ("run.json", &["kickdrift/run/1", "one of tongues, closings, survey"][..]),
+        ("verify.json", &["kickdrift/verify/1", "one of tongues, closings, survey"][..]),
         ("text.json", &["document = no JSON", "as kickdrift wrote them"]),
         ("bare.json", &["document = not as kickdrift writes it: missing field `input`"]),
         ("none.json", &["none.json", "cannot read it"]),
@@ -382,4 +382,28 @@ fn an_input_that_makes_no_sense_is_an_error_that_names_its_field() {
         let told = told(&change);
         assert!(told.contains(part), "{part}: {told}");
     }
+}
+
+#[test]
+fn a_second_route_that_costs_too_much_is_left_out_and_named() {
+    let desk = Desk::new();
+    desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);
+    let left = |line: &str, more: &[&str]| {
+        write(&desk, line, "document.json");
+        let told = desk.run(&[&["verify", "document.json"], more].concat());
+        assert_eq!((told.code, told.stderr.as_str()), (Some(0), ""), "{line}");
+        let named = told.stdout.lines().filter(|line| line.contains("by another route"));
+        named.map(String::from).collect::<Vec<_>>()
+    };
+    // The file's own scheme has the larger matrix.
+    let advice = "advise tiny.json --steps 1fs,4fs";
+    let costly = left(advice, &["--budget", "20000"]);
+    assert!(
+        costly.len() == 1 && costly[0].contains("row ") && costly[0].contains("a budget of "),
+        "{costly:?}"
+    );
+    assert_eq!(left(advice, &[]), Vec::<String>::new());
+    let small = left("system tiny.json", &["--budget", "1700"]);
+    assert!(small.len() == 1 && small[0].contains("a budget of 3132 allows it"), "{small:?}");
+    assert_eq!(left("system tiny.json", &[]), Vec::<String>::new());
 }

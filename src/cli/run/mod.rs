@@ -4,14 +4,11 @@ mod work;
 
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
-
 use super::args::Common;
 use super::paper::Paper;
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::question::{Fields, LONGEST_SCENE, Scene};
-use crate::report::document::Document;
+use crate::question::{LONGEST_SCENE, Scene};
 use crate::report::file::{Folder, write_output};
 use crate::scene::file;
 use work::Work;
@@ -40,7 +37,7 @@ impl Args {
         let contents = scene.want.iter().map(|want| work.contents(*want)).collect::<Result<Vec<_>>>()?;
         let mut lines: Vec<String> =
             Some(scene.title.clone()).filter(|title| !title.is_empty()).into_iter().collect();
-        let (mut products, mut told) = (Vec::new(), Vec::new());
+        let mut told = Vec::new();
         for (want, contents) in scene.want.iter().zip(contents) {
             let (product, path) = (want.product, folder.path().join(want.file_name()));
             work.write(contents, &path)?;
@@ -50,10 +47,9 @@ impl Args {
                 lines.extend(summary.lines().map(|line| format!("    {line}")));
             }
             told.push(product);
-            products.push(json!({"product": product.name(), "file": path.display().to_string()}));
         }
+        let document = scene.written(folder.path()).summary(&lines);
         folder.keep();
-        let document = Document::new("run").inputs(scene.input()).entry("products", products).summary(&lines);
         let format = common.format.unwrap_or(Format::Text);
         write_output(None, document.render(format)?.as_bytes())
     }

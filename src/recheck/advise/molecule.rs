@@ -2,13 +2,14 @@
 
 use serde_json::Value;
 
-use crate::advise::Finding;
+use crate::advise::{Finding, MOST_PRODUCTS};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::question::{Advised, Question, Safe, Work};
 use crate::recheck::again::{Left, Recheck};
-use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds};
+use crate::recheck::context::{Checked, Context, Outcome, REMEDY, holds, too_costly};
 use crate::scene::{Arrays, SystemScene};
+use crate::system::Limits;
 use crate::system::levels::{Hessians, Near};
 
 /// The action and the full period, in the coordinates of the Hessians.
@@ -41,6 +42,13 @@ impl Other {
 
     fn has_paths(&self, own: &Finding) -> bool {
         self.hessians.has_paths(Other::inner_steps(own))
+    }
+
+    /// The products that a row costs, about.
+    fn cost(&self, own: &Finding) -> u64 {
+        let p = Other::inner_steps(own);
+        let paths = if self.has_paths(own) { self.hessians.cost_of_paths(p) } else { 0 };
+        self.hessians.cost_of_period(p).saturating_add(paths)
     }
 
     fn row(&self, own: &Finding) -> Checked {
@@ -100,12 +108,21 @@ impl Recheck for Claim {
         let (scene, findings) = *own;
         let other = Other::new(&scene, to_f64(&self.input.band))?;
         let (mut failures, mut not_rechecked) = (Vec::new(), Vec::new());
+        let limits =
+            Limits { products: context.options.budget.unwrap_or(MOST_PRODUCTS), ..Limits::default() };
+        let mut spent: u64 = 0;
         for (row, own) in (1..).zip(&findings.schemes) {
+            let cost = spent.saturating_add(other.cost(own));
+            if let Err(error) = limits.allow(cost, || format!("schemes 1 to {row}")) {
+                not_rechecked.push(too_costly(&format!("row {row}"), &error));
+                continue;
+            }
+            spent = cost;
             let place = || format!("outer step {} fs", own.scheme.outer());
             failures.extend(context.failure(row, place, other.row(own))?);
         }
         if !findings.schemes.iter().all(|own| other.has_paths(own)) {
-            let why = "first, band_edge by another route: too many steps for the action's matrix, computed again only";
+            let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
             not_rechecked.push(why.into());
         }
         Ok(Outcome {

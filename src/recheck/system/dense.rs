@@ -8,7 +8,7 @@ use crate::number::{Laurent, Rational};
 use crate::question::Displacement;
 use crate::recheck::context::{Checked, Fault, holds};
 use crate::scene::SystemScene;
-use crate::system::{Analysis, full_period};
+use crate::system::{Analysis, Limits, full_period};
 
 /// Multipliers are rounded eigenvalues: those of nearly defective propagators are right to half their digits only, but not
 /// the sums of them.
@@ -51,8 +51,8 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
 const STILL: f64 = 1e-5;
 
 /// The largest growth rate of measured stiffnesses holds the one of the dense full period, kick by kick and without any basis of modes.
-pub fn growth(scene: &SystemScene, analysis: &Analysis) -> Checked {
-    let Some((found, (lo, hi))) = scene.model().growth_of_period()?.zip(analysis.growth_rate()) else {
+pub fn growth(scene: &SystemScene, analysis: &Analysis, limits: &Limits) -> Checked {
+    let Some((found, (lo, hi))) = scene.model().growth_of_period(limits)?.zip(analysis.growth_rate()) else {
         return Ok(());
     };
     let off = STILL / analysis.period.to_f64() + ROUNDED * found;
@@ -86,7 +86,7 @@ pub fn linear_run(scene: &SystemScene, displace: &Displacement, run: &Run) -> Ch
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Limits, Route};
+    use crate::system::Route;
 
     #[test]
     fn the_dense_period_finds_a_growth_rate_that_is_wrong_from_the_start() {
@@ -97,13 +97,13 @@ mod tests {
             let scene = SystemScene::from_json_in(folder, serde_json::from_str(&text).unwrap()).unwrap();
             let mut analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
             assert_eq!((analysis.is_proof(), analysis.is_unstable()), (true, unstable));
-            assert!(growth(&scene, &analysis).is_ok());
+            assert!(growth(&scene, &analysis, &Limits::default()).is_ok());
             // A hundredth more, or any where there is none.
             analysis.parts[0].kind = Some(crate::verdict::Kind::Hyperbolic);
             for own in &mut analysis.parts[0].multipliers {
                 own.growth = own.growth.map(|(lo, hi)| (1.01 * lo.max(0.01), 1.01 * hi.max(0.01)));
             }
-            assert!(matches!(growth(&scene, &analysis), Err(Fault::Wrong(_))), "{step}");
+            assert!(matches!(growth(&scene, &analysis, &Limits::default()), Err(Fault::Wrong(_))), "{step}");
         }
     }
 }

@@ -9,7 +9,7 @@ mod dense;
 use serde_json::Value;
 
 use super::again::{Left, Recheck};
-use super::context::{Checked, Context, Outcome, same};
+use super::context::{Checked, Context, Fault, Outcome, same, too_costly};
 use super::sample::sample;
 use crate::avi::Ends;
 use crate::error::{Kind as Reason, Result};
@@ -73,8 +73,16 @@ impl Recheck for Claim {
 
 fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Result<Outcome> {
     if analysis.measured.is_some() {
-        let route = "the growth rate by the eigenvalues of the dense full period";
-        return outcome(context, route, dense::growth(scene, analysis));
+        return match dense::growth(scene, analysis, &context.work().products()) {
+            Err(Fault::Error(error)) if error.kind() == Reason::Budget => {
+                let mut found = outcome(context, ALONE, Ok(()))?;
+                found.not_rechecked.push(too_costly("the growth rate", &error));
+                Ok(found)
+            }
+            checked => {
+                outcome(context, "the growth rate by the eigenvalues of the dense full period", checked)
+            }
+        };
     }
     let traces = || dense::traces(scene, analysis);
     match exact_kind(scene, &context.work().products())? {

@@ -102,6 +102,15 @@ impl Span {
     }
 }
 
+/// What is asked of the unstable steps, in words.
+pub const NEAREST: &str = "the unstable steps next to its own";
+
+/// A cost that the limits allow.
+fn allowed(cost: f64, limits: &Limits, what: impl FnOnce() -> String) -> Result<f64> {
+    let remedy = "choose a shorter range or a larger resolution";
+    limits.allow(cost.min(1e19) as u64, what).map_err(|error| error.or(remedy)).map(|()| cost)
+}
+
 impl SystemScene {
     /// The verdicts on all values of a number in a range, no interval wider than `width` times its larger end missed.
     ///
@@ -109,11 +118,10 @@ impl SystemScene {
     /// A number that is none of these, nonlinear bonds, irrational quantities, friction; a budget error, before the work; as
     /// [`Model::stretches`].
     pub fn intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<Intervals> {
+        self.cost_of_intervals(span, width, limits)?;
         let (role, inner_steps) = (span.role()?, self.model.inner_steps());
         let stretches = match role {
-            Role::Step => {
-                self.allow_intervals("intervals", limits).and_then(|()| self.multiples(span, limits))?
-            }
+            Role::Step => self.multiples(span, limits)?,
             _ => {
                 self.over(span, limits, |number| self.model.stretches(number, span.ends(), width, limits))?
             }
@@ -127,15 +135,16 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::intervals`].
     pub fn cost_of_intervals(&self, span: &Span, width: f64, limits: &Limits) -> Result<f64> {
-        match span.role()? {
+        let cost = match span.role()? {
             Role::Step => {
                 self.allow_intervals("intervals", limits)?;
-                Ok(self.multiples_of(span)?.len() as f64 * self.model.cost() as f64)
+                self.multiples_of(span)?.len() as f64 * self.model.cost() as f64
             }
             _ => self.over(span, limits, |number| {
                 self.model.cost_of_stretches(number, span.ends(), width, limits)
-            }),
-        }
+            })?,
+        };
+        allowed(cost, limits, || format!("intervals of {span}"))
     }
 
     /// What `ask` finds of a number that is no step.
@@ -202,7 +211,7 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::intervals`].
     pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
-        self.allow_intervals("nearest", limits)?;
+        self.cost_of_nearest(width, limits)?;
         self.model.nearest_unstable(width, limits)
     }
 
@@ -212,7 +221,7 @@ impl SystemScene {
     /// As [`SystemScene::nearest_unstable`].
     pub fn cost_of_nearest(&self, width: f64, limits: &Limits) -> Result<f64> {
         self.allow_intervals("nearest", limits)?;
-        self.model.cost_of_nearest(width, limits)
+        allowed(self.model.cost_of_nearest(width, limits)?, limits, || NEAREST.into())
     }
 
     /// What has no intervals is refused, and what costs too much.

@@ -74,7 +74,7 @@ use crate::system::{Limits, Model, OwnOrbit, Potential, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
 use document::{Document, no_system};
-pub use intervals::Span;
+pub use intervals::{NEAREST, Span};
 #[cfg(feature = "advise")]
 pub use molecule::of_archive;
 pub use scan::{Axis, Scan};

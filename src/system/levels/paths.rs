@@ -34,6 +34,18 @@ impl Hessians {
         self.size().saturating_mul(Hessians::nodes(inner_steps)) <= MOST_ROWS
     }
 
+    /// The products that [`Hessians::growth_of_period`] costs, about: two matrices a step, and eigenvalues of twice the size.
+    pub fn cost_of_period(&self, inner_steps: u64) -> u64 {
+        let cubes = inner_steps.saturating_mul(2).saturating_add(100);
+        (self.size() as u64).saturating_pow(3).saturating_mul(cubes)
+    }
+
+    /// Those of a scheme's actions, about: ten matrices, each reduced or factorized.
+    pub fn cost_of_paths(&self, inner_steps: u64) -> u64 {
+        let rows = (self.size() as u64).saturating_mul(Hessians::nodes(inner_steps) as u64);
+        rows.saturating_pow(3).saturating_mul(20)
+    }
+
     /// J of `proofs/REGION.md`, section 1, in the time unit h, over x_0 … x_(N−1) (x_N = 0) or x_1 … x_N (x_0 = 0), and how far it may be off.
     fn action(&self, step: f64, inner_steps: u64, start_held: bool, near: Near) -> (Mat<f64>, f64) {
         let (n, last) = (self.size(), Hessians::nodes(inner_steps));

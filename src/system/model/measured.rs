@@ -231,9 +231,11 @@ impl MeasuredSystem {
     }
 
     /// The largest ln |λ|/T over the eigenvalues of the dense full period, rounded; `None` where it is not of two levels.
-    pub(super) fn growth_of_period(&self) -> Result<Option<f64>> {
+    pub(super) fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
-        Ok(Some(self.hessians()?.growth_of_period(outer.step(), outer.inner_steps())))
+        let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
+        limits.allow(hessians.cost_of_period(inner_steps), || "the full period, kick by kick,".into())?;
+        Ok(Some(hessians.growth_of_period(outer.step(), inner_steps)))
     }
 
     /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.

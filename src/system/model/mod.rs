@@ -191,9 +191,9 @@ impl Model {
     /// The largest ln |λ|/T of two levels of measured stiffnesses by the dense full period, rounded; `None` of any other system.
     ///
     /// # Errors
-    /// As [`Model::decide`].
-    pub fn growth_of_period(&self) -> Result<Option<f64>> {
-        self.measured().map_or(Ok(None), MeasuredSystem::growth_of_period)
+    /// As [`Model::decide`]; a budget error before the work.
+    pub fn growth_of_period(&self, limits: &Limits) -> Result<Option<f64>> {
+        self.measured().map_or(Ok(None), |own| own.growth_of_period(limits))
     }
 
     /// The same as two clocks on one oscillator, where it is that, without phases.
