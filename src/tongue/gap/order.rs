@@ -73,7 +73,9 @@ impl Gap {
         }
         let (free, pinned) = if a.entry.starts_free() { (a, b) } else { (b, a) };
         let between = [free.lo.min(pinned.lo), free.hi.max(pinned.hi)];
-        if let Some(gap) = Gap::by_returns(edges, m, free, pinned)? {
+        if edges.is_long()
+            && let Some(gap) = Gap::by_returns(edges, m, free, pinned)?
+        {
             return Ok(gap);
         }
         let tunnelled = by_tunnelling(edges, m, &free, &pinned, between)?;
