@@ -72,6 +72,8 @@ Check Main.deep_level. Print Assumptions Main.deep_level.
 Check Main.last_period. Print Assumptions Main.last_period.
 Check Main.walk_product. Print Assumptions Main.walk_product.
 Check Main.band_growth. Print Assumptions Main.band_growth.
+Check Main.band_unstable. Print Assumptions Main.band_unstable.
+Check Main.turning_along. Print Assumptions Main.turning_along.
 Check Main.certificate. Print Assumptions Main.certificate.
 Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
 Check Main.edge_between. Print Assumptions Main.edge_between.

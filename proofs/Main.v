@@ -422,6 +422,20 @@ Theorem band_growth : forall M u w d n,
     Cone.product M n @ add (smul x u) (smul y w) = smul s (add (smul x' u) (smul y' w)).
 Proof. exact Returns.band_growth. Qed.
 
+(** A period of such matrices is hyperbolic, ... *)
+Theorem band_unstable : forall M u w d n,
+  cross u w <> 0 -> 0 <= d ->
+  (forall k, det (M k) = 1 /\ (inside_by d u w (M k) \/ inside_by d u w (opp (M k)))) ->
+  2 < Rabs (tr (Cone.product M (S n))) /\ exponential_growth (Cone.product M (S n)).
+Proof. exact Returns.band_unstable. Qed.
+
+(** ... also where the kicks are seen in a frame that turns with the offset: the products are turned at both ends. *)
+Theorem turning_along : forall (T T' : R -> mat) a b kicked n x,
+  (forall y, T' y ** T y = one) -> (forall y, T y ** T' y = one) ->
+  along a b (fun y => T (turn a b y) ** kicked y ** T' y) n x
+  = T (turns a b n x) ** along a b kicked n x ** T' x.
+Proof. exact Returns.turning_along. Qed.
+
 (** ** 8. Certificates *)
 
 Theorem certificate : forall k p q (h1 L1 h2 L2 : Q) x1 l1 x2 l2,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::args::{Columns, Common, Stiffness};
 use crate::error::{Error, Result};
 use crate::format::Format;
-use crate::number::{Laurent, Rational};
+use crate::number::{Laurent, Rational, rational};
 use crate::propagator::Oscillator;
 use crate::question::{self, Question, flag};
 use crate::report::certificate;
@@ -23,6 +23,9 @@ pub struct Args {
     /// The slow step; h2/h1 must be rational.
     #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     h2: Laurent,
+    /// Steps are doubles that stand for simpler numbers: take the simplest within half a unit in the last place (0.3333333333333333 is 1/3).
+    #[arg(long)]
+    simplest: bool,
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
     #[arg(long)]
     exact: bool,
@@ -49,7 +52,8 @@ impl Args {
     /// The verdict; the rest of the answer is computed only where it is shown.
     fn answer(&self, common: &Common) -> Result<Verdict> {
         let Args { stiffness: Stiffness { lambda1, lambda2 }, h1, h2, friction, exact, .. } = self;
-        let [lambda1, lambda2, h1, h2] = [lambda1, lambda2, h1, h2].map(Clone::clone);
+        let [lambda1, lambda2] = [lambda1, lambda2].map(Clone::clone);
+        let [h1, h2] = [h1, h2].map(|step| self.step(step));
         let asked = question::Verdict { lambda1, lambda2, h1, h2, friction: friction.clone(), exact: *exact };
         let oscillator = asked.oscillator()?;
         if self.exit_code && common.quiet && common.output.is_none() {
@@ -60,6 +64,12 @@ impl Args {
         let verdict = self.certified(&oscillator, answer.decision.verdict, common)?;
         common.write(&self.columns.of(asked.document(&answer))?, Format::Text)?;
         Ok(verdict)
+    }
+
+    /// A step as given, or the simplest number that its double stands for; powers of π stand for themselves.
+    fn step(&self, given: &Laurent) -> Laurent {
+        let rounded = given.as_rational().filter(|_| self.simplest).map(|exact| rational::to_f64(&exact));
+        rounded.and_then(rational::simplest_beside).map_or_else(|| given.clone(), Laurent::from_rational)
     }
 
     /// The verdict, its proof written where that is asked for.

@@ -108,6 +108,16 @@ pub fn simplest(lo: &Rational, hi: &Rational) -> Rational {
     }
 }
 
+/// The simplest rational within half a unit in the last place of a double, what a rounded number most likely stands for: 1/3 of
+/// 0.3333333333333333. `None` unless the double is finite.
+pub fn simplest_beside(x: f64) -> Option<Rational> {
+    let own = from_f64_exact(x.abs())?;
+    let above = from_f64_exact(x.abs().next_up()).unwrap_or_else(|| own.clone());
+    let half = (above - &own) / Rational::from_integer(2.into());
+    let beside = if own.is_zero() { own } else { simplest(&(&own - &half), &(&own + &half)) };
+    Some(if x < 0.0 { -beside } else { beside })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -131,5 +141,18 @@ mod tests {
             }
         }
         assert!(seen > 10_000);
+    }
+
+    #[test]
+    fn rounded_numbers_stand_for_simple_ones() {
+        for (p, q) in (1..200).flat_map(|q| (1..3 * q).map(move |p| (p, q))) {
+            assert_eq!(simplest_beside(p as f64 / q as f64), Some(ratio(p, q)));
+            assert_eq!(simplest_beside(-p as f64 / q as f64), Some(ratio(-p, q)));
+        }
+        assert_eq!(simplest_beside(0.0), Some(ratio(0, 1)));
+        assert_eq!(simplest_beside(f64::NAN), None);
+        for x in [f64::from_bits(1), f64::MIN_POSITIVE, f64::MAX, 0.1 + 0.2, std::f64::consts::PI] {
+            assert_eq!(simplest_beside(x).map(|beside| to_f64(&beside)), Some(x), "{x}");
+        }
     }
 }

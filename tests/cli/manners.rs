@@ -72,6 +72,18 @@ fn what_the_columns_of_a_map_need_is_computed() {
 }
 
 #[test]
+fn steps_that_were_doubles_are_taken_for_the_numbers_that_they_stand_for() {
+    let asked = |[h1, h2]: [&str; 2], flags: &[&str]| {
+        let steps = ["verdict", "--lambda1", "pi^2", "--lambda2", "pi^2/25", "--h1", h1, "--h2", h2];
+        stdout(&[&steps[..], flags, &["--format", "json"]].concat())
+    };
+    let (rounded, meant, of_pi) = (["0.3333333333333333", "0.98"], ["1/3", "0.98"], ["1/pi", "3/pi"]);
+    assert_eq!(asked(rounded, &["--simplest"]), asked(meant, &[]));
+    assert_ne!(asked(rounded, &[]), asked(meant, &[]));
+    assert_eq!(asked(of_pi, &["--simplest"]), asked(of_pi, &[]));
+}
+
+#[test]
 fn a_citation_has_the_authors_and_the_version_of_the_citation_file() {
     let file = include_str!("../../CITATION.cff");
     assert_eq!(stdout(&["cite", "cff"]), file);
