@@ -23,7 +23,7 @@ pub struct Args {
     /// The slow step; h2/h1 must be rational.
     #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     h2: Laurent,
-    /// Steps are doubles that stand for simpler numbers: take the simplest within half a unit in the last place (0.3333333333333333 is 1/3).
+    /// Take steps for doubles: the simplest number within half a unit in the last place (0.3333333333333333 is 1/3).
     #[arg(long)]
     simplest: bool,
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.

@@ -27,9 +27,9 @@ pub(crate) use integer::quotient;
 pub(crate) use integer::{residues, roots_within, squarefree};
 pub(crate) use sturm::RootInterval;
 pub use sturm::Sturm;
-#[cfg(feature = "system")]
-pub(crate) use sturm::primitive;
 pub(crate) use sturm::sign_at;
+#[cfg(feature = "system")]
+pub(crate) use sturm::{integers, primitive};
 
 use num_traits::{One, Zero};
 

@@ -200,10 +200,9 @@ impl Question for System {
                 let Verdict { analysis, friction, orbit, is_orbit_missing, nearest } = own.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
-                report::document(
-                    analysis,
-                    &Beside { unit, friction, orbit, is_orbit_missing, labels, nearest },
-                )
+                let local = scene.model().local_steps();
+                let beside = Beside { unit, friction, orbit, is_orbit_missing, labels, nearest, local };
+                report::document(analysis, &beside)
             }
         }
     }

@@ -22,6 +22,7 @@
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
 //! | `levels` | two levels of dense stiffnesses in doubles, with margins |
 //! | `verdict` | the verdict, part by part, and what is known beside it |
+//! | `lts` | leapfrog with local time steps, as codes for waves have it |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
 //!
@@ -44,6 +45,7 @@ pub mod friction;
 mod half;
 pub mod levels;
 mod linear;
+mod lts;
 mod model;
 #[cfg(test)]
 mod numbers;
@@ -59,6 +61,7 @@ pub use half::compose::{full_period, half_period};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
+pub use lts::{Level, LocalSteps};
 pub use model::{Body, MeasuredSystem, Model, Number, Oscillator, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};

@@ -162,7 +162,7 @@ impl Polynomial<Rational> {
 }
 
 /// The coefficients times a positive number: integers without a common factor.
-pub(super) fn integers(f: &Polynomial<Rational>) -> Vec<BigInt> {
+pub(crate) fn integers(f: &Polynomial<Rational>) -> Vec<BigInt> {
     let denominator = f.coefficients.iter().fold(BigInt::one(), |lcm, c| lcm.lcm(c.denom()));
     primitive(f.coefficients.iter().map(|c| c.numer() * (&denominator / c.denom())).collect())
 }

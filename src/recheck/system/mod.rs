@@ -5,6 +5,7 @@
 //! period in doubles (multipliers, runs of linear systems).
 
 mod dense;
+mod local;
 
 use serde_json::Value;
 
@@ -84,10 +85,20 @@ fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Resul
             }
         };
     }
-    let traces = || dense::traces(scene, analysis);
+    let traces = || {
+        scene.model().local_steps().map_or(Ok(()), local::steps)?;
+        dense::traces(scene, analysis)
+    };
     match exact_kind(scene, &context.work().products())? {
         Some(truth) => {
-            let route = "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square";
+            let route = match scene.model().local_steps() {
+                Some(_) => {
+                    "the scheme substep by substep, the kind in exact arithmetic, multipliers by the traces of the full period"
+                }
+                None => {
+                    "the kind in exact arithmetic, multipliers by the traces of the dense full period and of its square"
+                }
+            };
             outcome(context, route, same_kind(analysis.kind, truth).and_then(|()| traces()))
         }
         None => {

@@ -4,11 +4,12 @@ use serde_json::{Value, json};
 
 use super::nearest;
 use super::words::rate;
+use crate::report::decimal;
 use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, OwnOrbit, middle};
+use crate::system::{Analysis, Instability, Level, LocalSteps, OwnOrbit, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,6 +24,8 @@ pub struct Beside<'a> {
     pub labels: Option<&'a [String]>,
     /// The unstable outer steps next to this one, where they were asked for.
     pub nearest: Option<&'a Nearest>,
+    /// The scheme of local time steps, where it is one.
+    pub local: Option<&'a LocalSteps>,
 }
 
 /// The degrees of freedom told of a growing mode: those that move most.
@@ -50,8 +53,30 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         ("own_orbit", orbit),
         ("moving", own.labels.as_ref().map(moving)),
         ("nearest_unstable", own.nearest.map(nearest::value)),
+        ("local_steps", own.local.map(local_steps)),
     ];
     all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+}
+
+fn local_steps(own: &LocalSteps) -> Value {
+    let level = |level: &Level| json!({"fine": level.fine.len(), "substeps": level.substeps});
+    json!({
+        "levels": own.levels().iter().map(level).collect::<Vec<_>>(),
+        "plain_limit": own.plain_limit().map(enclosure),
+    })
+}
+
+/// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
+pub(super) fn local_lines(own: &LocalSteps, unit: &str) -> Vec<String> {
+    let size = own.system().size();
+    let level = |level: &Level| {
+        format!("{} of {size} degrees of freedom take {} substeps", level.fine.len(), level.substeps)
+    };
+    let levels: Vec<_> = own.levels().iter().map(level).collect();
+    let limit = own.plain_limit().map(|(lo, hi)| {
+        format!("  plain leapfrog without them is stable below {}{unit}", decimal::enclosure(lo, hi))
+    });
+    [format!("  local time steps: {}", levels.join("; of these "))].into_iter().chain(limit).collect()
 }
 
 /// The same for people.

@@ -151,6 +151,7 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         let modes = counted(left_out, "mode grows", "modes grow");
         lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
     }
+    lines.extend(beside.local.into_iter().flat_map(|own| beside::local_lines(own, &suffix)));
     lines.extend(beside::lines(beside, analysis));
     lines
         .extend(analysis.measured.iter().flat_map(|own| measured::lines(own, analysis.is_stable(), &suffix)));

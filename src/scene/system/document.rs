@@ -93,6 +93,17 @@ pub(super) struct Document {
     pub mesh: Option<MeshDocument>,
     pub labels: Option<Vec<String>>,
     pub friction: Option<Number>,
+    pub scheme: Option<String>,
+    pub levels: Option<Vec<LevelDocument>>,
+}
+
+/// What takes substeps, see the reader of local steps.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LevelDocument {
+    pub fine: Option<Vec<Number>>,
+    pub elements: Option<Vec<Number>>,
+    pub substeps: Number,
 }
 
 #[derive(Clone, Debug, Deserialize)]

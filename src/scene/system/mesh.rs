@@ -28,9 +28,14 @@ use crate::number::Rational;
 use crate::system::System;
 use crate::system::mesh::{Material, Mesh, root};
 
+/// A label for each degree of freedom.
+pub(super) fn labels(moving: &[(usize, usize)]) -> Vec<String> {
+    moving.iter().map(|&(node, axis)| format!("node {node} {}", ["x", "y", "z"][axis])).collect()
+}
+
 impl MeshDocument {
-    /// The system, and a label for each degree of freedom.
-    pub fn system(&self) -> Result<(System, Vec<String>)> {
+    /// The system, and the node and the axis of each degree of freedom.
+    pub fn system(&self) -> Result<(System, Vec<(usize, usize)>)> {
         let mesh = self.mesh()?;
         let axes = mesh.nodes.first().map_or(0, Vec::len);
         let size = mesh.nodes.len() * axes;
@@ -41,9 +46,7 @@ impl MeshDocument {
                 format!("at most {LARGEST} degrees of freedom"),
             ));
         }
-        let (system, moving) = mesh.system()?;
-        let label = |&(node, axis): &(usize, usize)| format!("node {node} {}", ["x", "y", "z"][axis]);
-        Ok((system, moving.iter().map(label).collect()))
+        mesh.system()
     }
 
     fn mesh(&self) -> Result<Mesh> {

@@ -30,6 +30,7 @@
 //!   `accuracy` how well they are known.
 //! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
 //!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
+//! * `scheme`: `"lts"` with `levels` is leapfrog with local time steps, see `local`.
 //! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
 //!   `{"kind": "graded-bar", "elements": 100, "classes": 10, "courant": "1/4"}`,
@@ -41,6 +42,7 @@
 //! | `linear`, `bonds` | rational systems, named forms at an equilibrium |
 //! | `oscillator`, `pi` | one oscillator over ℚ\[π\], several degrees of freedom with such stiffnesses |
 //! | `mesh` | finite elements |
+//! | `local` | local time steps |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `held` | their constraints, heavy hydrogens |
 //! | `molecule` | two measured levels, to be advised on |
@@ -52,6 +54,7 @@ mod document;
 mod held;
 mod intervals;
 mod linear;
+mod local;
 mod market;
 mod measured;
 mod mesh;
@@ -364,12 +367,25 @@ impl Document {
     fn model(&self) -> Result<Described> {
         let is_explicit = self.masses.is_some() || self.potentials.is_some();
         match (&self.build, &self.mesh) {
-            (Some(build), None) if !is_explicit => Ok((Model::Rational(build.system()?), None, None)),
-            (None, Some(mesh)) if !is_explicit => {
-                let (system, labels) = mesh.system()?;
-                Ok((Model::Rational(system), None, Some(labels)))
+            (Some(build), None) if !is_explicit => {
+                Ok((self.with_scheme(Model::Rational(build.system()?), &[])?, None, None))
             }
-            (None, None) => self.explicit().map(|(model, bonds)| (model, bonds, None)),
+            (None, Some(mesh)) if !is_explicit => {
+                let (system, moving) = mesh.system()?;
+                let model = self.with_scheme(Model::Rational(system), &moving)?;
+                Ok((model, None, Some(mesh::labels(&moving))))
+            }
+            (None, None) => {
+                let (model, bonds) = self.explicit()?;
+                if let (Some(scheme), Some(_)) = (&self.scheme, &bonds) {
+                    return Err(Error::input(
+                        "scheme",
+                        scheme,
+                        "is for linear systems: give springs in place of bonds",
+                    ));
+                }
+                Ok((self.with_scheme(model, &[])?, bonds, None))
+            }
             _ => {
                 let remedy = "give either build, or mesh, or masses and potentials";
                 let field = if self.build.is_some() { "build" } else { "mesh" };

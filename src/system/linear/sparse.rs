@@ -234,6 +234,24 @@ impl Symmetric {
         self.rows().iter().map(row).collect()
     }
 
+    /// self diag(weights) other, where that is symmetric.
+    pub(in crate::system) fn symmetric_product(&self, weights: &[Rational], other: &Symmetric) -> Self {
+        let mut product = Symmetric::zero(self.size());
+        let rows = product.rows_mut();
+        for (i, row) in self.rows().iter().enumerate() {
+            for (&k, a) in row.iter().filter(|(k, _)| !weights[**k].is_zero()) {
+                let factor = a * &weights[k];
+                for (&j, b) in other.row(k).range(i..) {
+                    add(&mut rows[i], j, &(&factor * b));
+                }
+            }
+            for (j, x) in rows[i].clone().range(i + 1..) {
+                rows[*j].insert(i, x.clone());
+            }
+        }
+        product
+    }
+
     /// All entries.
     pub fn to_dense(&self) -> DMatrix<Rational> {
         DMatrix::from_fn(self.size(), self.size(), |i, j| self.get(i, j))

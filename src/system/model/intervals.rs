@@ -44,6 +44,7 @@ impl Model {
                 let at = |x: &Rational| Ok(at(x)?.system().clone());
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
+            (_, Model::LocalSteps(own)) => own.stretches(range, limits),
             _ => match self.levels() {
                 Some(own) => own.stretches(range, width),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
@@ -64,14 +65,15 @@ impl Model {
     ) -> Result<f64> {
         // A factorization or two in the eigenbasis.
         let measured = |n: usize| self.cost() as f64 + most_cells(range, width) * (n as f64).powi(3);
-        match number {
+        match (number, self) {
             _ if self.inner_steps().is_some() && !matches!(number, Number::Linear(_)) => {
                 Ok(measured(self.size()))
             }
-            Number::Linear(at) => {
+            (Number::Linear(at), _) => {
                 let at = |x: &Rational| Ok(at(x)?.system().clone());
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
+            (_, Model::LocalSteps(own)) => Ok(own.cost()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
     }
@@ -99,6 +101,9 @@ impl Model {
     /// As [`Model::stretches`] and [`Model::decide`].
     pub fn nearest_unstable(&self, width: f64, limits: &Limits) -> Result<Nearest> {
         let step = to_f64(&self.outer_step());
+        if let Model::LocalSteps(own) = self {
+            return Ok(Nearest::of(step, &own.stretches(Nearest::reach(step), limits)?));
+        }
         if self.levels().is_none() {
             let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
             if let Some(all) = self.over_outer_steps(exactly)? {
@@ -120,6 +125,7 @@ impl Model {
         let factor = outer / self.outer_step();
         match self {
             Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
+            Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
             _ => decide_by(Route::Cheapest, &self.system().with(&Rational::one(), &factor)?, limits),
         }
     }

@@ -19,6 +19,7 @@ use crate::propagator;
 use crate::system::friction::{Friction, damped_system};
 use crate::system::levels::Hessians;
 use crate::system::linear::system::{Potential, System};
+use crate::system::lts::LocalSteps;
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -40,6 +41,8 @@ pub enum Model {
     Oscillator(Oscillator),
     /// Stiffnesses in doubles, known to some accuracy.
     Measured(MeasuredSystem),
+    /// One clock, some degrees of freedom with substeps of their own while forces on the others stand still.
+    LocalSteps(LocalSteps),
 }
 
 /// Products a second: of rational systems with what goes on around them, and of dense doubles.
@@ -48,13 +51,15 @@ const DENSE_PACE: f64 = 1e10;
 
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
-    /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles.
+    /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
+    /// steps Verlet's with its effective stiffness, exactly.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(own) => own,
             Model::Pi(own) => own.near(),
             Model::Oscillator(own) => &own.rounded,
             Model::Measured(own) => own.system(),
+            Model::LocalSteps(own) => own.system(),
         }
     }
 
@@ -94,6 +99,7 @@ impl Model {
             Model::Pi(own) => own.decide(route, limits),
             Model::Oscillator(own) => own.decide(limits),
             Model::Measured(own) => own.decide(route, limits),
+            Model::LocalSteps(own) => decide_by(route, own.system(), limits),
         }
     }
 
@@ -129,6 +135,7 @@ impl Model {
             Model::Pi(own) => own.exact_kind(limits),
             Model::Oscillator(own) => own.exact_kind(limits),
             Model::Rational(own) => exact_kind(own, limits),
+            Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
     }
@@ -144,9 +151,17 @@ impl Model {
                 let remedy = "with several degrees of freedom write stiffnesses without pi";
                 Err(Error::input("friction", rate, remedy))
             }
+            Model::LocalSteps(_) => {
+                Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
+            }
             Model::Oscillator(own) => own.friction(rate, limits),
             Model::Measured(own) => own.friction(rate, limits),
         }
+    }
+
+    /// The scheme, where some degrees of freedom take substeps.
+    pub fn local_steps(&self) -> Option<&LocalSteps> {
+        if let Model::LocalSteps(own) = self { Some(own) } else { None }
     }
 
     fn measured(&self) -> Option<&MeasuredSystem> {

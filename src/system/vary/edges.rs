@@ -115,7 +115,7 @@ impl Family<'_> {
 }
 
 /// What lies between gaps, each decided at one number; `cell` is asked of a gap between two of one verdict.
-fn between(
+pub(in crate::system) fn between(
     (lo, hi): (f64, f64),
     gaps: &[Gap],
     verdict: &impl Fn(&Rational) -> Result<Holds>,

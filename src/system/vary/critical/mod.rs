@@ -38,8 +38,10 @@ mod polynomials;
 
 use half::Half;
 pub(super) use line::Line;
-pub(super) use place::Gap;
-use polynomials::Shape;
+pub(in crate::system) use place::Gap;
+use polynomials::{Critical, Shape};
+
+use num_bigint::BigInt;
 
 use crate::error::Result;
 use crate::number::Rational;
@@ -85,4 +87,17 @@ impl Plan {
         }
         Ok(Some(place::united(gaps)))
     }
+}
+
+/// The gaps of all real roots in \[0, 1\] of polynomials in s, as [`Plan::gaps`] has them.
+///
+/// # Errors
+/// Where the work is stopped.
+pub(in crate::system) fn gaps_of(
+    polynomials: &[Vec<BigInt>],
+    ends: (f64, f64),
+    place: &(impl Fn(&Rational) -> Rational + Sync),
+) -> Result<Vec<Gap>> {
+    let found: Vec<_> = polynomials.iter().map(|own| Critical::new(own)).collect();
+    Ok(place::united(place::gaps(&found, ends, place)?))
 }

@@ -90,7 +90,7 @@ pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical
 }
 
 impl Critical {
-    fn new(polynomial: &[BigInt]) -> Critical {
+    pub fn new(polynomial: &[BigInt]) -> Critical {
         let simple = squarefree(polynomial);
         let rest = quotient(&primitive(polynomial.to_vec()), &simple).expect("a divisor");
         Critical { multiple: squarefree(&rest), simple }

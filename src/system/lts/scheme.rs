@@ -1,0 +1,223 @@
+//! What a scheme of local time steps does in one step: the stiffness that Verlet's would have.
+
+use std::collections::BTreeSet;
+
+use num_traits::{Signed, Zero};
+
+use crate::error::{Error, Result};
+use crate::number::Rational;
+use crate::number::rational::{from_f64_exact, ratio, to_f64};
+use crate::system::linear::sparse::Symmetric;
+use crate::system::linear::system::{Potential, System};
+
+/// Degrees of freedom that take so many substeps in a step of the level above.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Level {
+    pub fine: BTreeSet<usize>,
+    pub substeps: u32,
+}
+
+/// The most substeps of the finest level in a step: degrees of polynomials grow with them.
+const MOST_SUBSTEPS: u32 = 1024;
+
+/// Products of rationals for the effective stiffness beyond which reading a file would take a minute.
+const MOST_WORK: f64 = 2e8;
+
+/// A diagonal mass, a stiffness, levels from the coarsest to the finest one, and a step.
+#[derive(Clone, Debug)]
+pub struct LocalSteps {
+    /// Without local steps: Verlet's.
+    plain: System,
+    levels: Vec<Level>,
+    /// With the effective stiffness.
+    system: System,
+}
+
+impl LocalSteps {
+    /// The scheme for a system of one clock.
+    ///
+    /// # Errors
+    /// A mass matrix that is not diagonal, several clocks, a phase, levels that are no parts of the ones above, too many substeps.
+    pub fn new(plain: System, levels: Vec<Level>) -> Result<LocalSteps> {
+        let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
+        if !plain.mass().is_diagonal() {
+            return refused(
+                "mass_matrix",
+                "not diagonal".into(),
+                "local steps are for lumped masses: give masses",
+            );
+        }
+        let [clock] = plain.clocks() else {
+            let remedy = "give all potentials one step: the levels say which parts take shorter ones";
+            return refused("potentials", format!("{} steps", plain.clocks().len()), remedy);
+        };
+        if !clock.phase.is_zero() {
+            return refused(
+                "phase",
+                clock.phase.to_string(),
+                "has no meaning with local steps: leave it out",
+            );
+        }
+        if levels.is_empty() {
+            return refused(
+                "levels",
+                "none".into(),
+                "give at least one, as {\"fine\": [3, 4], \"substeps\": 2}",
+            );
+        }
+        let mut product = 1u32;
+        for (l, level) in levels.iter().enumerate() {
+            let field = |name: &str| format!("levels[{l}].{name}");
+            product = product.saturating_mul(level.substeps);
+            if level.substeps == 0 || product > MOST_SUBSTEPS {
+                let remedy = format!("choose 1 or more, at most {MOST_SUBSTEPS} of all levels together");
+                return refused(&field("substeps"), level.substeps.to_string(), &remedy);
+            }
+            if let Some(i) = level.fine.iter().find(|&&i| i >= plain.size()) {
+                return refused(
+                    &field("fine"),
+                    i.to_string(),
+                    &format!("indices are 0 to {}", plain.size() - 1),
+                );
+            }
+            let above = l.checked_sub(1).map(|above| &levels[above].fine);
+            if let Some(i) = above.and_then(|above| level.fine.difference(above).next()) {
+                return refused(
+                    &field("fine"),
+                    i.to_string(),
+                    "is not fine in the level above: nest the levels",
+                );
+            }
+        }
+        let work = work(&plain, &levels);
+        if work > MOST_WORK {
+            let remedy =
+                format!("with {work:.0e} products of rationals is too much: at most {MOST_WORK:.0e}");
+            return refused("levels", format!("{product} substeps"), &remedy);
+        }
+        let stiffness = effective(&plain, &levels, &(&clock.step * &clock.step));
+        let system = with_stiffness(&plain, stiffness, &clock.step)?;
+        Ok(LocalSteps { plain, levels, system })
+    }
+
+    /// The scheme as Verlet's with its effective stiffness.
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The same system without local steps.
+    pub fn plain(&self) -> &System {
+        &self.plain
+    }
+
+    /// The levels, the coarsest first.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// dt.
+    pub fn step(&self) -> &Rational {
+        &self.plain.clocks()[0].step
+    }
+
+    /// How often the finest level steps in a step.
+    pub fn substeps(&self) -> u32 {
+        self.levels.iter().map(|level| level.substeps).product()
+    }
+
+    /// The same with another step.
+    ///
+    /// # Errors
+    /// A step that is not positive.
+    pub fn at(&self, step: &Rational) -> Result<LocalSteps> {
+        let stiffness = self.plain.clocks()[0].stiffness.clone();
+        let plain = with_stiffness(&self.plain, stiffness, step)?;
+        let system = with_stiffness(&self.plain, self.effective(&(step * step)), step)?;
+        Ok(LocalSteps { plain, levels: self.levels.clone(), system })
+    }
+
+    /// Where plain leapfrog, all with the step of the whole, becomes unstable: a step of which 0 < dt² K < 4 M is proven, and one of which it
+    /// is not so, within 10^-9; `None` where K has no positive entry on its diagonal.
+    pub fn plain_limit(&self) -> Option<(f64, f64)> {
+        const WITHIN: f64 = 1e-9;
+        let (mass, stiffness) = (self.plain.mass(), &self.plain.clocks()[0].stiffness);
+        let largest = |of: &dyn Fn(usize) -> Rational| (0..mass.size()).map(|i| of(i) / mass.get(i, i)).max();
+        let limit = |x: Rational| 2.0 / to_f64(&x).sqrt();
+        // A coordinate's own frequency is below the highest one; that is below the sums of rows (Gershgorin).
+        let stiffest = largest(&|i| stiffness.get(i, i)).filter(Rational::is_positive)?;
+        let all = largest(&|i| stiffness.row(i).values().map(Rational::abs).sum())?;
+        let (mut lo, mut hi) = (limit(all) * (1.0 - WITHIN / 4.0), limit(stiffest) * (1.0 + WITHIN / 4.0));
+        while hi - lo > WITHIN * hi {
+            let middle = lo + (hi - lo) / 2.0;
+            let square = from_f64_exact(middle * middle)?;
+            let mut rest = mass.scaled(&(ratio(4, 1) / square));
+            rest.add_all(&stiffness.scaled(&ratio(-1, 1)));
+            *(if rest.is_positive_definite() { &mut lo } else { &mut hi }) = middle;
+        }
+        Some((lo, hi))
+    }
+
+    /// f/dt² at dt² = `square` > 0.
+    pub fn effective(&self, square: &Rational) -> Symmetric {
+        effective(&self.plain, &self.levels, square)
+    }
+
+    /// The degrees of freedom in `indices` alone, which nothing couples to others.
+    pub(super) fn part(&self, indices: &[usize]) -> LocalSteps {
+        let place = |(new, old): (usize, &usize), level: &Level| level.fine.contains(old).then_some(new);
+        let own = |level: &Level| Level {
+            fine: indices.iter().enumerate().filter_map(|at| place(at, level)).collect(),
+            substeps: level.substeps,
+        };
+        let levels = self.levels.iter().map(own).collect();
+        LocalSteps { plain: self.plain.part(indices), levels, system: self.system.part(indices) }
+    }
+}
+
+/// f/dt² at dt² = `square` > 0.
+fn effective(plain: &System, levels: &[Level], square: &Rational) -> Symmetric {
+    let (stiffness, mass) = (&plain.clocks()[0].stiffness, plain.mass());
+    let substeps_of = |level: &Level| Rational::from_integer(level.substeps.into());
+    let substeps_of_all: Rational = levels.iter().map(substeps_of).product();
+    let half = Rational::new(1.into(), 2.into());
+    let finest = stiffness.scaled(&(square * half / (&substeps_of_all * &substeps_of_all)));
+    let stiffness = levels.iter().rev().fold(finest, |own, level| {
+        let weight = |i| if level.fine.contains(&i) { mass.get(i, i).recip() } else { Rational::zero() };
+        let weights: Vec<_> = (0..mass.size()).map(weight).collect();
+        substeps(&own, &weights, level.substeps)
+    });
+    stiffness.scaled(&(ratio(2, 1) / square))
+}
+
+/// Products of the substeps, roughly: where S has z entries a row, S P M⁻¹ S has up to z², at most n.
+fn work(plain: &System, levels: &[Level]) -> f64 {
+    let (n, places) = (plain.size() as f64, plain.clocks()[0].stiffness.places().count() as f64);
+    let mut width = places / n;
+    let mut work = 0.0;
+    for level in levels.iter().rev() {
+        let fine = level.fine.len() as f64;
+        let widest = (width * f64::from(level.substeps)).min(n);
+        work += f64::from(level.substeps - 1) * fine * width.min(n) * widest;
+        width = widest;
+    }
+    work
+}
+
+/// W_p(1 − S P M⁻¹) S, `weights` the diagonal of P M⁻¹: all polynomials in S P M⁻¹ times S are symmetric.
+fn substeps(own: &Symmetric, weights: &[Rational], substeps: u32) -> Symmetric {
+    let (mut before, mut now) = (Symmetric::zero(own.size()), own.clone());
+    let [two, minus, minus_two] = [2, -1, -2].map(|n| ratio(n, 1));
+    for _ in 1..substeps {
+        let mut next = own.symmetric_product(weights, &now).scaled(&minus_two);
+        next.add_all(&now.scaled(&two));
+        next.add_all(&own.scaled(&two));
+        next.add_all(&before.scaled(&minus));
+        (before, now) = (now, next);
+    }
+    now
+}
+
+fn with_stiffness(plain: &System, stiffness: Symmetric, step: &Rational) -> Result<System> {
+    let potential = Potential { stiffness, step: step.clone(), phase: Rational::zero() };
+    System::new(plain.mass().clone(), vec![potential])
+}
