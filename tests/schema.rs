@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 58] = [
+const LINES: [&str; 59] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -93,6 +93,7 @@ const LINES: [&str; 58] = [
     "system data/scenes/bar-resonant.json",
     "system data/scenes/water4.json --accuracy 1e-7 --friction 1",
     "system data/scenes/two-bars.json --nearest --resolution 1e-3",
+    "system data/scenes/no-gradient.json",
     "system data/scenes/local-steps.json",
     "system data/scenes/local-steps.json --intervals outer=1..5/2",
     "system data/scenes/water4.json --intervals outer=0.0043..0.0045 --resolution 1e-3",
@@ -265,6 +266,7 @@ fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
                 "measured",
                 "moving",
                 "nearest_unstable",
+                "no_gradient",
                 "own_orbit",
                 "predicted_points",
                 "time_unit",

@@ -15,7 +15,7 @@ use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
 use crate::system::scan::scan;
 use crate::system::vary::Intervals;
-use crate::system::{Analysis, Limits, OwnOrbit, Route};
+use crate::system::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route};
 
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of one.
@@ -80,6 +80,7 @@ pub struct Verdict {
     orbit: Option<OwnOrbit>,
     is_orbit_missing: bool,
     nearest: Option<Nearest>,
+    no_gradient: Option<NoGradient>,
 }
 
 /// What is found of a system.
@@ -144,7 +145,9 @@ impl System {
             scene.nearest_unstable(width, &limits)
         };
         let nearest = width.map(nearest).transpose()?;
-        Ok(Verdict { analysis, friction: scene.friction(&limits)?, orbit, is_orbit_missing, nearest })
+        let no_gradient = model.jacobians().map(Jacobians::no_gradient);
+        let friction = scene.friction(&limits)?;
+        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient })
     }
 
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
@@ -197,11 +200,14 @@ impl Question for System {
             Found::Map(map) => map.document(),
             Found::Intervals(own) => report::intervals(own),
             Found::Verdict(own) => {
-                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest } = own.as_ref();
+                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient } =
+                    own.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
                 let local = scene.model().local_steps();
-                let beside = Beside { unit, friction, orbit, is_orbit_missing, labels, nearest, local };
+                let no_gradient = no_gradient.as_ref();
+                let beside =
+                    Beside { unit, friction, orbit, is_orbit_missing, labels, nearest, local, no_gradient };
                 report::document(analysis, &beside)
             }
         }

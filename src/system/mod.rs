@@ -22,6 +22,7 @@
 //! | `pi` | stiffnesses that involve π: decided over ℚ\[π\] |
 //! | `levels` | two levels of dense stiffnesses in doubles, with margins |
 //! | `verdict` | the verdict, part by part, and what is known beside it |
+//! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
 //! | `lts` | leapfrog with local time steps, as codes for waves have it |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
@@ -43,6 +44,7 @@
 mod exact;
 pub mod friction;
 mod half;
+mod jacobian;
 pub mod levels;
 mod linear;
 mod lts;
@@ -58,6 +60,7 @@ mod verdict;
 
 pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
 pub use half::compose::{full_period, half_period};
+pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};

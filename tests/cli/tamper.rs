@@ -28,6 +28,7 @@ const ONE_MASS: &str = r#"{"schema": "kickdrift/system/1", "title": "", "masses"
 /// A step longer than the other, about its own orbit.
 const BARS: &str = include_str!("../../data/scenes/two-bars.json");
 const LOCAL_STEPS: &str = include_str!("../../data/scenes/local-steps.json");
+const NO_GRADIENT: &str = include_str!("../../data/scenes/no-gradient.json");
 const TENSION: &str = include_str!("../../data/scenes/tension.json");
 const LENNARD_JONES: &str = include_str!("../../data/scenes/lennard-jones.json");
 
@@ -47,6 +48,7 @@ fn desk() -> Desk {
     desk.write("one-mass.json", ONE_MASS);
     desk.write("bars.json", BARS);
     desk.write("local.json", LOCAL_STEPS);
+    desk.write("learned.json", NO_GRADIENT);
     desk.write("tension.json", TENSION);
     desk.write("lennard-jones.json", LENNARD_JONES);
     desk.write("run.mdp", ENGINE);
@@ -342,6 +344,7 @@ fn no_change_to_a_system_passes() {
         "system one-mass.json",
         "system bars.json --friction 1/10",
         "system local.json",
+        "system learned.json",
         "system tension.json --friction 1/2",
         "system resonant.json --nearest --resolution 0.1",
         "system system.json --intervals outer=1/8..1/2 --resolution 1e-2",

@@ -20,7 +20,10 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
         // Large parts tell the fastest one alone: there is no sum to compare.
         return Ok(());
     }
-    let mut turns = vec![Complex64::new(2.0, 0.0); analysis.rigid_modes.len()];
+    let jacobians = scene.model().jacobians();
+    // Their period is one without rigid motions.
+    let rigid = if jacobians.is_some() { 0 } else { analysis.rigid_modes.len() };
+    let mut turns = vec![Complex64::new(2.0, 0.0); rigid];
     for part in &analysis.parts {
         let times = Laurent::ratio(&analysis.period, &part.period).filter(Rational::is_integer);
         let times = times.and_then(|times| i32::try_from(times.to_integer()).ok());
@@ -31,9 +34,11 @@ pub fn traces(scene: &SystemScene, analysis: &Analysis) -> Checked {
             power + power.inv()
         }));
     }
-    let system = scene.model().moving()?;
-    let q: DMatrix<f64> = full_period(&system);
-    let (norm, n) = (q.norm(), system.size() as f64);
+    let q: DMatrix<f64> = match jacobians {
+        Some(own) => own.full_period(),
+        None => full_period(scene.model().moving()?.as_ref()),
+    };
+    let (norm, n) = (q.norm(), q.nrows() as f64 / 2.0);
     let sums = [
         (q.trace(), turns.iter().sum::<Complex64>(), norm),
         ((&q * &q).trace(), turns.iter().map(|turn| turn * turn - 2.0).sum(), norm * norm),

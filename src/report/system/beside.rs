@@ -9,7 +9,7 @@ use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, Level, LocalSteps, OwnOrbit, middle};
+use crate::system::{Analysis, Instability, Level, LocalSteps, NoGradient, OwnOrbit, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -26,6 +26,8 @@ pub struct Beside<'a> {
     pub nearest: Option<&'a Nearest>,
     /// The scheme of local time steps, where it is one.
     pub local: Option<&'a LocalSteps>,
+    /// What is known of forces that are no gradient.
+    pub no_gradient: Option<&'a NoGradient>,
 }
 
 /// The degrees of freedom told of a growing mode: those that move most.
@@ -54,8 +56,45 @@ pub(super) fn entries(own: &Beside, analysis: &Analysis) -> Vec<(&'static str, V
         ("moving", own.labels.as_ref().map(moving)),
         ("nearest_unstable", own.nearest.map(nearest::value)),
         ("local_steps", own.local.map(local_steps)),
+        ("no_gradient", own.no_gradient.map(|own| no_gradient(own, analysis))),
     ];
     all.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
+}
+
+fn no_gradient(own: &NoGradient, analysis: &Analysis) -> Value {
+    json!({
+        "asymmetries": own.asymmetries,
+        "without_steps": own.without_steps.map(enclosure),
+        "added_by_steps": own.added_by_steps(analysis).map(enclosure),
+        "within_accuracy": own.within_accuracy.map(enclosure),
+        "masking_friction": own.masking,
+    })
+}
+
+/// The growth of such forces, with the steps and without; `per` is the unit of time.
+pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str) -> Vec<String> {
+    let asymmetries: Vec<_> = own.asymmetries.iter().map(|x| format!("{x:.2e}")).collect();
+    let mut lines = vec![
+        format!("  forces that are no gradient: |J - J'|/|J + J'| = {}", asymmetries.join(", ")),
+        format!("  without steps growth rate {} per {per}", rate(own.without_steps)),
+    ];
+    if let Some((lo, hi)) = own.added_by_steps(analysis) {
+        lines.push(format!("  the steps add {} per {per}", decimal::enclosure(lo, hi)));
+    }
+    if let Some(ends) = own.within_accuracy {
+        lines.push(format!(
+            "  for all matrices within their accuracy growth rate {} per {per}",
+            rate(Some(ends))
+        ));
+    }
+    match own.masking {
+        Some(0.0) => lines.push("  no friction is needed".into()),
+        Some(friction) => {
+            lines.push(format!("  friction from about {friction:.4} per {per} on masks what grows (rounded)"))
+        }
+        None => {}
+    }
+    lines
 }
 
 fn local_steps(own: &LocalSteps) -> Value {

@@ -151,6 +151,9 @@ fn lines(analysis: &Analysis, beside: &Beside) -> Vec<String> {
         let modes = counted(left_out, "mode grows", "modes grow");
         lines.push(format!("  {modes} more slowly: as JSON or CSV all are shown"));
     }
+    let per = beside.unit.unwrap_or("unit time");
+    lines
+        .extend(beside.no_gradient.into_iter().flat_map(|own| beside::no_gradient_lines(own, analysis, per)));
     lines.extend(beside.local.into_iter().flat_map(|own| beside::local_lines(own, &suffix)));
     lines.extend(beside::lines(beside, analysis));
     lines

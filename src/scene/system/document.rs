@@ -93,6 +93,7 @@ pub(super) struct Document {
     pub mesh: Option<MeshDocument>,
     pub labels: Option<Vec<String>>,
     pub friction: Option<Number>,
+    pub symmetric: Option<bool>,
     pub scheme: Option<String>,
     pub levels: Option<Vec<LevelDocument>>,
 }

@@ -230,7 +230,9 @@ impl SystemScene {
         if self.friction.is_some() {
             return refused("with friction", "take the friction out of the file");
         }
-        if !self.is_linear() || matches!(self.model, Model::Oscillator(_) | Model::Pi(_)) {
+        if !self.is_linear()
+            || matches!(self.model, Model::Oscillator(_) | Model::Pi(_) | Model::NoGradient(_))
+        {
             return refused("of this file", "are for linear systems of rational numbers");
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());

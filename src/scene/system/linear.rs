@@ -3,7 +3,8 @@
 use super::document::{Build, Document, LARGEST, Number, PotentialDocument, ends};
 use crate::error::{Error, Result};
 use crate::number::Rational;
-use crate::system::{Potential, Symmetric, System, builders};
+use crate::system::{Jacobians, Potential, Symmetric, System, builders};
+use nalgebra::DMatrix;
 
 pub(super) fn numbers(field: &str, values: &[Number]) -> Result<Vec<Rational>> {
     values.iter().enumerate().map(|(i, x)| x.read(&format!("{field}[{i}]"))).collect()
@@ -37,7 +38,57 @@ impl Document {
     }
 }
 
+impl Document {
+    /// Forces that are no gradient: `stiffness` by rows is minus the derivative of the force.
+    pub fn jacobians(&self) -> Result<Jacobians> {
+        let masses = self.masses.as_ref().ok_or_else(|| {
+            Error::missing("masses", "a force that is no gradient needs them, one for each degree of freedom")
+        })?;
+        let masses = numbers("masses", masses)?;
+        if masses.len() > LARGEST {
+            return Err(Error::input(
+                "masses",
+                masses.len(),
+                format!("at most {LARGEST} degrees of freedom"),
+            ));
+        }
+        let given = self.potentials()?.iter().enumerate().map(|(k, own)| own.jacobian(k, masses.len()));
+        Jacobians::rational(&masses, &given.collect::<Result<Vec<_>>>()?)
+    }
+}
+
 impl PotentialDocument {
+    /// Springs and matrix on n degrees of freedom, which need not be symmetric, with step and phase.
+    fn jacobian(&self, k: usize, n: usize) -> Result<(DMatrix<Rational>, Rational, Rational)> {
+        let field = |name: &str| format!("potentials[{k}].{name}");
+        if !self.bonds.is_empty() {
+            return Err(Error::input(
+                &field("bonds"),
+                "given",
+                "bonds have gradients: give springs or stiffness",
+            ));
+        }
+        let mut springs = self.clone();
+        (springs.stiffness, springs.scale) = (None, None);
+        let springs = springs.linear(k, n)?;
+        let mut matrix = springs.stiffness.to_dense();
+        if let Some(rows) = &self.stiffness {
+            let read =
+                |(i, row): (usize, &Vec<Number>)| numbers(&format!("{}[{i}]", field("stiffness")), row);
+            let rows = rows.iter().enumerate().map(read).collect::<Result<Vec<_>>>()?;
+            if rows.len() != n || rows.iter().any(|row| row.len() != n) {
+                let remedy = format!("there are {n} masses: give {n} rows of {n} numbers");
+                return Err(Error::input(&field("stiffness"), format!("{} rows", rows.len()), remedy));
+            }
+            matrix += DMatrix::from_fn(n, n, |i, j| rows[i][j].clone());
+        }
+        if let Some(scale) = &self.scale {
+            let scale = scale.read(&field("scale"))?;
+            matrix.iter_mut().for_each(|x| *x *= &scale);
+        }
+        Ok((matrix, springs.step, springs.phase))
+    }
+
     /// Springs and matrix on n degrees of freedom, with the clock; bonds stand elsewhere.
     pub fn linear(&self, k: usize, n: usize) -> Result<Potential> {
         let field = |name: &str| format!("potentials[{k}].{name}");

@@ -19,6 +19,8 @@
 //!
 //! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
 //! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
+//! `"symmetric": false` says that a force is no gradient, as one that is learned and predicted directly: then its Jacobian, minus the derivative
+//! of the force, is no Hessian, and its asymmetry no error.
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
 use nalgebra::DMatrix;
@@ -31,7 +33,7 @@ use super::held::{Constraints, Particles, reweigh};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
-use crate::system::{Body, MeasuredSystem};
+use crate::system::{Body, Jacobians, MeasuredSystem, Model};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
 const USUAL_ACCURACY: f64 = 1e-6;
@@ -56,8 +58,14 @@ struct Document {
     hydrogen_mass: Option<Number>,
     #[serde(default)]
     keep_rigid: bool,
+    #[serde(default = "yes")]
+    symmetric: bool,
     potentials: Vec<PotentialDocument>,
     labels: Option<Vec<String>>,
+}
+
+fn yes() -> bool {
+    true
 }
 
 #[derive(Debug, Deserialize)]
@@ -78,7 +86,7 @@ pub(super) fn is_by_reference(source: &Value) -> bool {
 }
 
 /// From a file of such stiffnesses, with the labels that it gives.
-pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(MeasuredSystem, Option<Vec<String>>)> {
+pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec<String>>)> {
     let document: Document = serde_path_to_error::deserialize(source).map_err(|fault| {
         let field = fault.path().to_string();
         let error = no_system(fault.into_inner());
@@ -109,9 +117,14 @@ pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(MeasuredSystem, O
         Some(number) => to_f64(&number.read("accuracy")?),
         None => USUAL_ACCURACY,
     };
-    let potentials = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
-    let own = MeasuredSystem::new(body, potentials, accuracy)?;
-    Ok((if document.keep_rigid { own.keeping_rigid() } else { own }, document.labels))
+    let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
+    let model = if document.symmetric {
+        let own = MeasuredSystem::new(body, potentials, accuracy)?;
+        Model::Measured(if document.keep_rigid { own.keeping_rigid() } else { own })
+    } else {
+        Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
+    };
+    Ok((model, document.labels))
 }
 
 /// A potential as it was read, its stiffness times its scale.

@@ -30,6 +30,7 @@
 //!   `accuracy` how well they are known.
 //! * `labels` name the degrees of freedom, or the particles of three each; `friction` is a rate γ per unit time: O, v → exp(−γ t) v,
 //!   in the middle of every drift of the whole schedule, also for what only some of the clocks act on.
+//! * `symmetric`: `false` says that a force is no gradient: `stiffness` by rows is minus its derivative, whatever that is.
 //! * `scheme`: `"lts"` with `levels` is leapfrog with local time steps, see `local`.
 //! * In place of masses and potentials a `mesh` of finite elements, see `mesh`; or `build`: `{"kind": "chain", "masses": 200, "stiffness": [...], "steps": [...]}`,
 //!   `{"kind": "stiff-soft", "pairs": 4, "stiff": "100", "steps": [stiff, soft]}`,
@@ -201,9 +202,8 @@ impl SystemScene {
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {
         if measured::is_by_reference(&source) {
             check_schema(source["schema"].as_str().unwrap_or_default())?;
-            let (own, labels) = measured::read(&source, &arrays)?;
-            let labels = labels.map(|labels| spread(&labels, own.size())).transpose()?;
-            let model = Model::Measured(own);
+            let (model, labels) = measured::read(&source, &arrays)?;
+            let labels = labels.map(|labels| spread(&labels, model.size())).transpose()?;
             return Ok(SystemScene { source, arrays, model, bonds: None, labels, friction: None });
         }
         // Once more from the text, for the error to name its line.
@@ -231,14 +231,17 @@ impl SystemScene {
     ) -> Result<SystemScene> {
         let exact = "is for stiffnesses by reference: these are exact";
         if let Some(accuracy) = accuracy {
-            let Model::Measured(own) = self.model else {
-                return Err(Error::input("accuracy", accuracy, exact));
+            self.model = match self.model {
+                Model::Measured(own) => Model::Measured(own.at_accuracy(accuracy)?),
+                Model::NoGradient(own) => Model::NoGradient(Box::new(own.at_accuracy(accuracy)?)),
+                _ => return Err(Error::input("accuracy", accuracy, exact)),
             };
-            self.model = Model::Measured(own.at_accuracy(accuracy)?);
         }
         if keeps_rigid {
             let Model::Measured(own) = self.model else {
-                return Err(Error::input("rigid motions", "kept", exact));
+                let no_gradient = "say \"keep_rigid\": true in the file";
+                let remedy = if self.model.jacobians().is_some() { no_gradient } else { exact };
+                return Err(Error::input("rigid motions", "kept", remedy));
             };
             self.model = Model::Measured(own.keeping_rigid());
         }
@@ -341,8 +344,12 @@ impl SystemScene {
     }
 
     fn masses(&self) -> Result<Vec<Rational>> {
-        if let Model::Measured(own) = &self.model {
-            own.refuse_constraints()?;
+        match &self.model {
+            Model::Measured(own) => own.refuse_constraints()?,
+            Model::NoGradient(_) => {
+                return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
+            }
+            _ => {}
         }
         let mass = self.model.system().mass();
         if !mass.is_diagonal() {
@@ -395,6 +402,9 @@ impl Document {
     }
 
     fn explicit(&self) -> Result<(Model, Option<Nonlinear>)> {
+        if self.symmetric == Some(false) {
+            return Ok((Model::NoGradient(Box::new(self.jacobians()?)), None));
+        }
         if let Some(own) = self.oscillator()? {
             return Ok((Model::Oscillator(own), None));
         }

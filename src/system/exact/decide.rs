@@ -163,18 +163,27 @@ fn estimate(system: &System, frame: &Frame, program: &IntegerProgram) -> u64 {
 }
 
 fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
-    let product = blocks.product();
-    let d = &blocks.scale;
-    let polynomial = roots::characteristic(&product);
+    let (product, d) = (blocks.product(), &blocks.scale);
+    let (kind, roots) = judged(&product, d, [&blocks.a, &blocks.b, &blocks.c, &blocks.d]);
+    ExactVerdict { kind, roots, half_product: product.map(|x| Rational::new(x, d.clone())) }
+}
+
+/// The kind from d S in integers, d > 0, and multiples of the blocks A, B, C, D of the half period.
+pub(in crate::system) fn judged(
+    product: &DMatrix<BigInt>,
+    scale: &BigInt,
+    [a, b, c, d]: [&DMatrix<BigInt>; 4],
+) -> (Kind, MuCount) {
+    let polynomial = roots::characteristic(product);
     let (at_zero, rest) = roots::divided_out(polynomial, &BigInt::zero());
-    let (at_minus_one, rest) = roots::divided_out(rest, &-d);
+    let (at_minus_one, rest) = roots::divided_out(rest, &-scale);
     let simple = squarefree(&rest);
-    let RootCount { inside, above, below, complex } = roots::count(&simple, d);
+    let RootCount { inside, above, below, complex } = roots::count(&simple, scale);
     let mu = MuCount { inside, at_zero, at_minus_one, above, below, complex };
     let semisimple = || {
-        (at_zero == 0 || nullity(&blocks.b) + nullity(&blocks.c) == 2 * at_zero)
-            && (at_minus_one == 0 || nullity(&blocks.a) + nullity(&blocks.d) == 2 * at_minus_one)
-            && (simple.len() == rest.len() || rank_at(&product, &simple) == at_zero + at_minus_one)
+        (at_zero == 0 || nullity(b) + nullity(c) == 2 * at_zero)
+            && (at_minus_one == 0 || nullity(a) + nullity(d) == 2 * at_minus_one)
+            && (simple.len() == rest.len() || rank_at(product, &simple) == at_zero + at_minus_one)
     };
     let kind = if above + below + complex > 0 {
         Kind::Hyperbolic
@@ -185,8 +194,7 @@ fn judge(blocks: &IntegerBlocks) -> ExactVerdict {
     } else {
         Kind::Elliptic
     };
-    let half_product = product.map(|x| Rational::new(x, d.clone()));
-    ExactVerdict { kind, roots: mu, half_product }
+    (kind, mu)
 }
 
 fn nullity(m: &DMatrix<BigInt>) -> usize {

@@ -173,7 +173,9 @@ fn symmetric(name: &str, k: &DMatrix<f64>, n: usize, accuracy: f64) -> Result<Ma
     let off = norm::frobenius(&(&whole - whole.transpose())) / 2.0;
     let size = norm::frobenius(&whole);
     if off > accuracy * size {
-        let remedy = format!("it must be symmetric to its accuracy, {accuracy:.0e} of its norm");
+        let remedy = format!(
+            "it must be symmetric to its accuracy, {accuracy:.0e} of its norm; of a force that is no gradient say \"symmetric\": false"
+        );
         return Err(Error::input(name, format!("asymmetry of {:.1e} of its norm", off / size), remedy));
     }
     Ok(halved(whole.as_ref()))

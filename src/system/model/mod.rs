@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::propagator;
 use crate::system::friction::{Friction, damped_system};
+use crate::system::jacobian::Jacobians;
 use crate::system::levels::Hessians;
 use crate::system::linear::system::{Potential, System};
 use crate::system::lts::LocalSteps;
@@ -43,6 +44,8 @@ pub enum Model {
     Measured(MeasuredSystem),
     /// One clock, some degrees of freedom with substeps of their own while forces on the others stand still.
     LocalSteps(LocalSteps),
+    /// Forces that are no gradient: their Jacobians are not symmetric.
+    NoGradient(Box<Jacobians>),
 }
 
 /// Products a second: of rational systems with what goes on around them, and of dense doubles.
@@ -52,7 +55,8 @@ const DENSE_PACE: f64 = 1e10;
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
     /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
-    /// steps Verlet's with its effective stiffness, exactly.
+    /// steps Verlet's with its effective stiffness, exactly. Of forces that are no gradient there is none: the symmetric parts have their size
+    /// and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(own) => own,
@@ -60,6 +64,7 @@ impl Model {
             Model::Oscillator(own) => &own.rounded,
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
+            Model::NoGradient(own) => own.symmetric(),
         }
     }
 
@@ -75,6 +80,7 @@ impl Model {
     pub fn cost(&self) -> u64 {
         match self {
             Model::Measured(own) => own.cost(),
+            Model::NoGradient(own) => own.cost(),
             _ => verdict_cost(self.system()),
         }
     }
@@ -100,6 +106,7 @@ impl Model {
             Model::Oscillator(own) => own.decide(limits),
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
+            Model::NoGradient(own) => own.decide(route, limits),
         }
     }
 
@@ -121,6 +128,7 @@ impl Model {
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
             Model::Measured(own) => own.moving(),
+            Model::NoGradient(_) => Err(self.refused("a system of symmetric stiffnesses")),
             _ => Ok(Cow::Borrowed(self.system())),
         }
     }
@@ -136,6 +144,7 @@ impl Model {
             Model::Oscillator(own) => own.exact_kind(limits),
             Model::Rational(own) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
+            Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
     }
@@ -154,9 +163,23 @@ impl Model {
             Model::LocalSteps(_) => {
                 Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
             }
+            Model::NoGradient(_) => {
+                let remedy = "leave it out: the answer has the rate that masks what grows";
+                Err(Error::input("friction", rate, remedy))
+            }
             Model::Oscillator(own) => own.friction(rate, limits),
             Model::Measured(own) => own.friction(rate, limits),
         }
+    }
+
+    /// What a force that is no gradient has not.
+    fn refused(&self, what: &str) -> Error {
+        Error::input("symmetric", "false", format!("{what} needs forces that are gradients"))
+    }
+
+    /// Jacobians that are not symmetric, where it is made of such.
+    pub fn jacobians(&self) -> Option<&Jacobians> {
+        if let Model::NoGradient(own) = self { Some(own) } else { None }
     }
 
     /// The scheme, where some degrees of freedom take substeps.

@@ -1,0 +1,253 @@
+//! The verdict on forces that are no gradient, their growth with the steps and without, the friction that masks it.
+
+use faer::{Mat, c64};
+use nalgebra::DMatrix;
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::One;
+
+use super::model::{Clock, Jacobians};
+use super::orbit::{self, Doubles, State, lead};
+use crate::error::Result;
+use crate::number::rational::to_f64;
+use crate::number::{Laurent, Rational, U};
+use crate::schedule::{Event, Weight};
+use crate::system::exact::decide::{MuCount, judged};
+use crate::system::half::norm;
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::spectrum::explain::explained;
+use crate::system::spectrum::rate;
+use crate::system::verdict::analysis::{Analysis, Evidence, Part};
+use crate::system::verdict::limits::{Limits, Route, degrees_of_freedom};
+use crate::verdict::Kind;
+
+/// What is known beside the verdict.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoGradient {
+    /// |J − Jᵀ|/|J + Jᵀ| of each potential, rounded.
+    pub asymmetries: Vec<f64>,
+    /// The growth rate of x'' = −A x itself, without steps, enclosed; `None`: not bounded.
+    pub without_steps: Option<(f64, f64)>,
+    /// The growth rate for all matrices within their accuracy, enclosed, where they were measured.
+    pub within_accuracy: Option<(f64, f64)>,
+    /// The least rate of friction per unit time under which nothing grows, rounded; 0 where nothing does, `None` where it was not looked for.
+    pub masking: Option<f64>,
+}
+
+impl NoGradient {
+    /// How much faster it grows with the steps of a verdict than without, enclosed; `None` where one of these is not bounded.
+    pub fn added_by_steps(&self, analysis: &Analysis) -> Option<(f64, f64)> {
+        let ((lo, hi), (least, most)) = (analysis.growth_rate()?, self.without_steps?);
+        Some(((lo - most).next_down(), (hi - least).next_up()))
+            .filter(|(lo, hi)| lo.is_finite() && hi.is_finite())
+    }
+}
+
+/// The friction that masks growth is looked for of so many degrees of freedom: some thirty eigenvalue problems of twice as many rows.
+const MOST_MASKED: usize = 150;
+
+/// How much a multiplier may be above 1 in doubles where nothing grows: of nearly defective periods half of the digits are right.
+const STILL: f64 = 1e-7;
+
+impl Jacobians {
+    /// The verdict on the matrices given.
+    ///
+    /// # Errors
+    /// A budget error where exact arithmetic is asked for and exceeds the limits.
+    pub fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
+        limits.allow(self.cost(), || format!("a period of {}", degrees_of_freedom(self.size())))?;
+        let (spectrum, _) = self.spectrum();
+        let mut warnings = Vec::new();
+        let by_discs =
+            || spectrum.as_ref().and_then(Spectrum::by_discs).map(|kind| (Some(kind), Evidence::Discs));
+        let found = if route == Route::Exact { None } else { by_discs() };
+        let (decided, roots) = match found {
+            Some(found) => (found, None),
+            None => match self.exact(limits) {
+                Ok((kind, roots)) => ((Some(kind), Evidence::Exact), Some(roots)),
+                Err(error) if route == Route::Exact => return Err(error),
+                Err(_) => {
+                    warnings.push(format!(
+                        "doubles do not decide {}: multipliers lie too close together or to the unit circle",
+                        degrees_of_freedom(self.size())
+                    ));
+                    ((None, Evidence::Estimate), None)
+                }
+            },
+        };
+        let period = Laurent::from_rational(self.period());
+        let multipliers = spectrum.as_ref().map_or_else(Default::default, |own| {
+            let shape = |i: usize| own.shape(i, &vec![1.0; self.size()]);
+            explained(own.multipliers(), shape, decided.0, &period, |_, _, _| None)
+        });
+        let mut part = Part { roots, ..Part::new(self.size(), period, decided, multipliers) };
+        let n = self.lift.nrows();
+        part.dofs = (0..n).collect();
+        for own in &mut part.instabilities {
+            (own.shape, own.quadrature) = (self.lifted(&own.shape), self.lifted(&own.quadrature));
+            own.normalize();
+        }
+        let clocks = self.clocks.len();
+        Ok(Analysis { rigid_modes: self.rigid.clone(), ..Analysis::of_part(part, clocks, warnings) })
+    }
+
+    /// Products of doubles, roughly: both halves of a period, eigenvalues with vectors and their proof.
+    pub fn cost(&self) -> u64 {
+        let (n, kicks) = (self.size() as u64, self.schedule.strikes());
+        n.saturating_pow(3).saturating_mul(kicks.saturating_add(60))
+    }
+
+    /// What is known beside the verdict.
+    pub fn no_gradient(&self) -> NoGradient {
+        let period = Laurent::from_rational(self.period());
+        let (spectrum, error_within) = self.spectrum();
+        let within = |own: &Spectrum| {
+            let found = own.with_error(*error_within)?.multipliers();
+            let growth = found.iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
+            Some(rate::per_time(rate::largest(growth.into_iter()), &period))
+        };
+        NoGradient {
+            asymmetries: self.asymmetries.clone(),
+            without_steps: self.without_steps(),
+            within_accuracy: self.accuracy.and(spectrum.as_ref()).and_then(within),
+            masking: (self.size() <= MOST_MASKED).then(|| self.masking()),
+        }
+    }
+
+    /// The eigenvalues of S for the matrices given, and how far S can be from that of others within their accuracy.
+    fn spectrum(&self) -> &(Option<Spectrum>, f64) {
+        self.spectrum.get_or_init(|| {
+            let (s, [error, within]) = orbit::half_product(self);
+            (Spectrum::of(s, error.is_finite().then_some(error)), within)
+        })
+    }
+
+    fn lifted(&self, y: &[f64]) -> Vec<f64> {
+        (0..self.lift.nrows())
+            .map(|i| y.iter().enumerate().map(|(k, y)| self.lift[(i, k)] * y).sum())
+            .collect()
+    }
+
+    /// The kind by the characteristic polynomial of S, and where the μ lie: of doubles as the numbers that they are.
+    ///
+    /// # Errors
+    /// A budget error.
+    pub(in crate::system) fn exact(&self, limits: &Limits) -> Result<(Kind, MuCount)> {
+        // Numbers gain the bits of a kick's with each, and products of n of them.
+        let (n, kicks) = (self.size() as f64, self.schedule.strikes() as f64);
+        let words = 1.0 + kicks * self.bits() / 64.0;
+        let cost =
+            1.5 * kicks * n.powi(3) * words.powi(2) + n.powi(4) * words * 4.0 + n.powi(3) * words.powi(2);
+        limits.allow(cost.min(1e19) as u64, || {
+            format!("exact arithmetic on {}", degrees_of_freedom(self.size()))
+        })?;
+        let own = orbit::exact(self);
+        let (product, d) = whole(&own.product);
+        let blocks = own.blocks.each_ref().map(|block| whole(block).0);
+        let (kind, roots) = judged(&product, &d, blocks.each_ref());
+        Ok((kind, roots))
+    }
+
+    /// The bits of an entry of a kick.
+    fn bits(&self) -> f64 {
+        /// A double's digits over a power of two.
+        const DOUBLE: u64 = 128;
+        let bits = |m: &DMatrix<Rational>| m.iter().map(|x| x.numer().bits() + x.denom().bits()).max();
+        let of = |clock: &Clock| clock.exact.as_ref().map_or(Some(DOUBLE), bits);
+        let own = self.clocks.iter().filter_map(of).max().unwrap_or(0);
+        (own + self.tick.numer().bits() + self.tick.denom().bits()) as f64
+    }
+
+    /// |Im √λ| of the eigenvalues λ of A = Σ A_k, whose discs have one radius r: (|λ| − Re λ)/2 is its square, and moves by r at most.
+    fn without_steps(&self) -> Option<(f64, f64)> {
+        let n = self.size();
+        let mut sum = Mat::<f64>::zeros(n, n);
+        self.clocks.iter().for_each(|clock| sum += &clock.matrix);
+        let size: f64 = self.clocks.iter().map(|clock| norm::frobenius(&clock.matrix)).sum();
+        let off = self.clocks.iter().map(|clock| clock.off).sum::<f64>()
+            + self.clocks.len() as f64 * 1.1 * U * size;
+        let own = Spectrum::of(sum, Some(off))?;
+        let radius = 1.01 * own.radius?;
+        let alone = |i: usize| {
+            own.mu.iter().enumerate().all(|(j, other)| i == j || (own.mu[i] - other).norm() > 2.01 * radius)
+        };
+        let growth = |(i, z): (usize, &c64)| {
+            // A real one alone in its disc is real.
+            if z.im == 0.0 && z.re > radius && alone(i) {
+                return (0.0, 0.0);
+            }
+            let square = (z.norm() - z.re) / 2.0;
+            let rounding = 4.0 * U * z.norm();
+            (
+                (square - radius - rounding).max(0.0).sqrt() * (1.0 - 1e-15),
+                (square + radius + rounding).sqrt() * (1.0 + 1e-15),
+            )
+        };
+        Some(rate::largest(own.mu.iter().enumerate().map(growth)))
+    }
+
+    /// One period of the time-symmetric form in doubles, rounded: positions first, then velocities, without rigid motions.
+    pub fn full_period(&self) -> DMatrix<f64> {
+        let period = self.damped_period(0.0);
+        DMatrix::from_fn(period.nrows(), period.ncols(), |i, j| period[(i, j)])
+    }
+
+    /// The same with O, v → exp(−γ d) v, in the middle of every drift d.
+    fn damped_period(&self, rate: f64) -> Mat<f64> {
+        let n = self.size();
+        let whole = Mat::<f64>::identity(2 * n, 2 * n);
+        let (x, v) = (whole.subrows(0, n).to_owned(), whole.subrows(n, n).to_owned());
+        let mut state = Damped { rate, own: Doubles::new(self, x, v), tick: to_f64(&self.tick) };
+        lead(&self.schedule.symmetric_period().collect::<Vec<Event>>(), false, &mut state);
+        let (x, v) = (&state.own.x, &state.own.v);
+        Mat::from_fn(2 * n, 2 * n, |i, j| if i < n { x[(i, j)] } else { v[(i - n, j)] })
+    }
+
+    /// By bisection on the spectral radius of the damped period.
+    fn masking(&self) -> f64 {
+        let grows = |rate: f64| {
+            let multipliers = self.damped_period(rate).eigenvalues();
+            multipliers.map_or(true, |all| all.iter().any(|z| z.norm() > 1.0 + STILL))
+        };
+        if !grows(0.0) {
+            return 0.0;
+        }
+        let mut hi = 0.01 / to_f64(&self.period());
+        while grows(hi) && hi.is_finite() {
+            hi *= 2.0;
+        }
+        let mut lo = 0.0;
+        for _ in 0..20 {
+            let middle = (lo + hi) / 2.0;
+            *(if grows(middle) { &mut lo } else { &mut hi }) = middle;
+        }
+        hi
+    }
+}
+
+/// With friction amid every drift.
+struct Damped<'a> {
+    rate: f64,
+    tick: f64,
+    own: Doubles<'a>,
+}
+
+impl State for Damped<'_> {
+    fn drift(&mut self, ticks: u64) {
+        let time = self.tick * ticks as f64;
+        let half = 0.5 * time;
+        self.own.x += half * &self.own.v;
+        self.own.v *= faer::Scale((-self.rate * time).exp());
+        self.own.x += half * &self.own.v;
+    }
+
+    fn kick(&mut self, clock: usize, weight: Weight) {
+        self.own.kick(clock, weight);
+    }
+}
+
+/// d m in integers, and d > 0.
+fn whole(m: &DMatrix<Rational>) -> (DMatrix<BigInt>, BigInt) {
+    let d = m.iter().fold(BigInt::one(), |lcm, x| lcm.lcm(x.denom()));
+    (m.map(|x| x.numer() * (&d / x.denom())), d)
+}

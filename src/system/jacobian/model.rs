@@ -1,0 +1,246 @@
+//! The matrices A_k = M⁻¹ J_k with their clocks, in coordinates without the rigid motions.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use faer::{Mat, MatRef};
+use nalgebra::DMatrix;
+use num_traits::{One, Zero};
+
+use crate::error::{Error, Result};
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::{Rational, U};
+use crate::schedule::Schedule;
+use crate::system::half::norm;
+use crate::system::levels::{rigid_motions, translations};
+use crate::system::linear::sparse::{Symmetric, null_space};
+use crate::system::linear::system::{Potential, System};
+use crate::system::model::Body;
+use crate::system::spectrum::discs::Spectrum;
+
+/// One clock with its matrix.
+#[derive(Clone, Debug)]
+pub(super) struct Clock {
+    pub step: Rational,
+    /// A_k in doubles,
+    pub matrix: Mat<f64>,
+    /// and no less than the spectral norms of it, and of what it is off by.
+    pub size: f64,
+    pub off: f64,
+    /// A_k itself, where it is rational; `None`: the doubles are.
+    pub exact: Option<DMatrix<Rational>>,
+}
+
+impl Clock {
+    /// A_k over ℚ.
+    pub fn rational(&self) -> Cow<'_, DMatrix<Rational>> {
+        let entry = |i: usize, j: usize| from_f64_exact(self.matrix[(i, j)]).expect("finite, as it was read");
+        let n = self.matrix.nrows();
+        self.exact.as_ref().map_or_else(|| Cow::Owned(DMatrix::from_fn(n, n, entry)), Cow::Borrowed)
+    }
+}
+
+/// Forces that are no gradient, each with its clock.
+#[derive(Clone, Debug)]
+pub struct Jacobians {
+    pub(super) clocks: Vec<Clock>,
+    pub(super) schedule: Schedule,
+    /// The time of a tick.
+    pub(super) tick: Rational,
+    /// Every matrix is known to this times its norm, where it was measured.
+    pub(super) accuracy: Option<f64>,
+    /// |J − Jᵀ|/|J + Jᵀ| of each potential as it was given, Frobenius's norms, rounded.
+    pub(super) asymmetries: Vec<f64>,
+    /// The rigid motions, in the coordinates given.
+    pub(super) rigid: Vec<Vec<Rational>>,
+    /// Positions in the coordinates given from those that are left, a column each.
+    pub(super) lift: Mat<f64>,
+    /// With the symmetric parts alone.
+    symmetric: System,
+    /// Computed when it is first asked for.
+    pub(super) spectrum: OnceLock<(Option<Spectrum>, f64)>,
+}
+
+/// J of a potential with its step and phase.
+type Given<T> = (DMatrix<T>, Rational, Rational);
+
+impl Jacobians {
+    /// From masses and rational Jacobians J with steps and phases.
+    ///
+    /// # Errors
+    /// As [`System::new`] for the symmetric parts; a matrix of another size.
+    pub fn rational(masses: &[Rational], given: &[Given<Rational>]) -> Result<Jacobians> {
+        let n = masses.len();
+        let half = Rational::new(1.into(), 2.into());
+        let mut potentials = Vec::new();
+        for (k, (j, step, phase)) in given.iter().enumerate() {
+            square(k, j, n)?;
+            let mean = DMatrix::from_fn(n, n, |a, b| (&j[(a, b)] + &j[(b, a)]) * &half);
+            let stiffness = Symmetric::try_from(&mean)?;
+            potentials.push(Potential { stiffness, step: step.clone(), phase: phase.clone() });
+        }
+        let symmetric = System::new(Symmetric::diagonal(masses), potentials)?;
+        let weighted = given.iter().map(|(j, step, phase)| {
+            (DMatrix::from_fn(n, n, |a, b| &j[(a, b)] / &masses[a]), step.clone(), phase.clone())
+        });
+        let clocks = merged(weighted);
+        // What no force sees: A_k n = 0. In the coordinates y_i = x_i − Σ n_J[i] x_J of the others A_k keeps its rows' images.
+        let rows = clocks.iter().flat_map(|(a, ..)| {
+            a.row_iter().map(|row| {
+                row.iter().cloned().enumerate().filter(|(_, x)| !x.is_zero()).collect::<BTreeMap<_, _>>()
+            })
+        });
+        let rigid = null_space(rows.collect(), n);
+        let kept: Vec<usize> = (0..n).filter(|i| rigid.iter().all(|(own, _)| own != i)).collect();
+        let left = |a: &DMatrix<Rational>| {
+            DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+                let (i, j) = (kept[i], kept[j]);
+                rigid.iter().fold(a[(i, j)].clone(), |x, (own, n)| x - &n[i] * &a[(*own, j)])
+            })
+        };
+        let clocks = clocks.into_iter().map(|(a, step, phase)| {
+            let exact = left(&a);
+            let matrix = Mat::from_fn(kept.len(), kept.len(), |i, j| to_f64(&exact[(i, j)]));
+            let off = 1.01 * U * norm::frobenius(&matrix) + f64::MIN_POSITIVE * kept.len() as f64;
+            (Clock { step, size: norm::spectral(&matrix), off, matrix, exact: Some(exact) }, phase)
+        });
+        let lift = Mat::from_fn(n, kept.len(), |i, j| f64::from(u8::from(i == kept[j])));
+        let motions = rigid.iter().map(|(_, n)| n.clone()).collect();
+        let asymmetries = given.iter().map(|(j, ..)| asymmetry(&j.map(|x| to_f64(&x)))).collect();
+        Jacobians::new(clocks.collect(), (motions, lift), asymmetries, None, symmetric)
+    }
+
+    /// From Jacobians in doubles, each known to `accuracy` times its norm, with steps: rigid motions by positions, in a periodic box
+    /// translations, are set apart, unless they are kept.
+    ///
+    /// # Errors
+    /// As [`Jacobians::rational`]; an accuracy that is not in (0, 1/10); constraints.
+    pub fn measured(
+        body: &Body,
+        given: &[(Rational, DMatrix<f64>)],
+        accuracy: f64,
+        keeps_rigid: bool,
+    ) -> Result<Jacobians> {
+        if body.held.is_some() {
+            let remedy = "holding distances needs a force with a potential: leave them free";
+            return Err(Error::input("constraints", "given", remedy));
+        }
+        let n = given.first().map_or(0, |(_, j)| j.nrows());
+        given.iter().enumerate().try_for_each(|(k, (_, j))| square(k, j, n))?;
+        let root: Vec<f64> = match &body.masses {
+            Some(masses) if !body.is_weighted => masses.iter().map(|m| m.sqrt()).collect(),
+            _ => vec![1.0; n],
+        };
+        let motions = match (&body.masses, &body.positions) {
+            _ if keeps_rigid || !n.is_multiple_of(3) => Mat::new(),
+            (Some(masses), _) if body.is_periodic => translations(&thirds(masses)),
+            (Some(masses), Some(positions)) => rigid_motions(positions, &thirds(masses)),
+            _ => Mat::new(),
+        };
+        // Orthonormal columns beside the motions.
+        let removed = motions.ncols();
+        let basis = match removed {
+            0 => Mat::identity(n, n),
+            _ => motions.qr().compute_Q().subcols(removed, n - removed).to_owned(),
+        };
+        let clocks = merged(given.iter().map(|(step, j)| {
+            (DMatrix::from_fn(n, n, |a, b| j[(a, b)] / (root[a] * root[b])), step.clone(), Rational::zero())
+        }));
+        let clocks = clocks.into_iter().map(|(a, step, phase)| {
+            let a = MatRef::from_column_major_slice(a.as_slice(), n, n);
+            let matrix = basis.transpose() * a * &basis;
+            // Roots, quotients, two products with orthonormal columns (Frobenius's norm n^½ at most).
+            let rounding = if removed == 0 { 5.0 } else { 5.0 + 3.0 * (n as f64 + 4.0) * n as f64 };
+            let off = rounding * U * norm::frobenius(&a.to_owned());
+            (Clock { step, size: norm::spectral(&matrix), off, matrix, exact: None }, phase)
+        });
+        let lift = Mat::from_fn(n, basis.ncols(), |i, j| basis[(i, j)] / root[i]);
+        let exact = |x: f64| from_f64_exact(x).unwrap_or_default();
+        let rigid = (0..removed).map(|k| (0..n).map(|i| exact(motions[(i, k)])).collect()).collect();
+        let asymmetries = given.iter().map(|(_, j)| asymmetry(j)).collect();
+        let stand_in: Vec<_> =
+            given.iter().map(|(step, _)| Potential::new(Symmetric::zero(n), step.clone())).collect();
+        let symmetric = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), stand_in)?;
+        Jacobians::new(clocks.collect(), (rigid, lift), asymmetries, Some(accuracy), symmetric)?
+            .at_accuracy(accuracy)
+    }
+
+    /// The same with every matrix known to this times its norm.
+    ///
+    /// # Errors
+    /// Rational matrices; an accuracy that is not in (0, 1/10).
+    pub fn at_accuracy(self, accuracy: f64) -> Result<Jacobians> {
+        let remedy = match self.accuracy {
+            None => "is for stiffnesses by reference: these are exact",
+            Some(_) if accuracy > 0.0 && accuracy < 0.1 => {
+                return Ok(Jacobians { accuracy: Some(accuracy), spectrum: OnceLock::new(), ..self });
+            }
+            Some(_) => "give a positive number below 1/10, as 1e-6",
+        };
+        Err(Error::input("accuracy", accuracy, remedy))
+    }
+
+    fn new(
+        clocks: Vec<(Clock, Rational)>,
+        (rigid, lift): (Vec<Vec<Rational>>, Mat<f64>),
+        asymmetries: Vec<f64>,
+        accuracy: Option<f64>,
+        symmetric: System,
+    ) -> Result<Jacobians> {
+        let (clocks, phases): (Vec<_>, Vec<_>) = clocks.into_iter().unzip();
+        let steps: Vec<_> = clocks.iter().map(|clock: &Clock| clock.step.clone()).collect();
+        let schedule = Schedule::new(&steps, &phases)?;
+        let tick = &steps[0] / Rational::from_integer(schedule.clocks()[0].step().into());
+        let spectrum = OnceLock::new();
+        Ok(Jacobians { clocks, schedule, tick, accuracy, asymmetries, rigid, lift, symmetric, spectrum })
+    }
+
+    /// The system of the symmetric parts: its size, its clocks, no more.
+    pub fn symmetric(&self) -> &System {
+        &self.symmetric
+    }
+
+    /// The degrees of freedom that are left.
+    pub fn size(&self) -> usize {
+        self.lift.ncols()
+    }
+
+    /// T.
+    pub fn period(&self) -> Rational {
+        &self.tick * Rational::from_integer(self.schedule.period().into())
+    }
+}
+
+fn square<T>(k: usize, j: &DMatrix<T>, n: usize) -> Result<()> {
+    if j.nrows() == n && j.ncols() == n && n > 0 {
+        return Ok(());
+    }
+    let (found, remedy) = (format!("{} x {}", j.nrows(), j.ncols()), format!("give {n} rows and columns"));
+    Err(Error::input(&format!("potentials[{k}].stiffness"), found, remedy))
+}
+
+/// One clock for each step and phase, by increasing step.
+fn merged<T: nalgebra::Scalar + for<'a> std::ops::AddAssign<&'a T>>(
+    given: impl Iterator<Item = Given<T>>,
+) -> Vec<Given<T>> {
+    let mut clocks: BTreeMap<(Rational, Rational), DMatrix<T>> = BTreeMap::new();
+    for (matrix, step, phase) in given {
+        match clocks.get_mut(&(step.clone(), phase.clone())) {
+            Some(sum) => sum.iter_mut().zip(matrix.iter()).for_each(|(sum, x)| *sum += x),
+            None => drop(clocks.insert((step, phase), matrix)),
+        }
+    }
+    clocks.into_iter().map(|((step, phase), matrix)| (matrix, step, phase)).collect()
+}
+
+/// |J − Jᵀ|/|J + Jᵀ|, 0 of the matrix 0.
+fn asymmetry(j: &DMatrix<f64>) -> f64 {
+    let (off, on) = ((j - j.transpose()).norm(), (j + j.transpose()).norm());
+    if off == 0.0 { 0.0 } else { off / on }
+}
+
+/// The mass of each particle from those of its three coordinates.
+fn thirds(masses: &[f64]) -> Vec<f64> {
+    masses.iter().step_by(3).copied().collect()
+}

@@ -1,0 +1,221 @@
+//! Forces that are no gradient: their Jacobians are not symmetric.
+
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{ratio, to_f64};
+use kickdrift::scene::SystemScene;
+use kickdrift::system::{Analysis, Jacobians, Limits, Model, Potential, Route, Symmetric, System, middle};
+use kickdrift::verdict::Kind;
+use nalgebra::DMatrix;
+use serde_json::json;
+
+/// Numbers that repeat.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: u64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n) as i64
+    }
+
+    /// A Jacobian of n rows: `size` on the diagonal, and entries up to `off` twelfths of it beside.
+    fn jacobian(&mut self, n: usize, size: i64, off: u64) -> DMatrix<Rational> {
+        DMatrix::from_fn(n, n, |i, j| {
+            let beside = ratio(self.below(2 * off + 1) - off as i64, 12);
+            if i == j { ratio(size + self.below(4), 1) + beside } else { beside }
+        })
+    }
+}
+
+/// Masses, and Jacobians with their steps.
+type Given = (Vec<Rational>, Vec<(DMatrix<Rational>, Rational)>);
+
+fn decided((masses, given): &Given, route: Route) -> Analysis {
+    let given: Vec<_> = given.iter().map(|(j, step)| (j.clone(), step.clone(), ratio(0, 1))).collect();
+    Jacobians::rational(masses, &given).unwrap().decide(route, &Limits::default()).unwrap()
+}
+
+/// The outer step of two clocks, the second of which kicks in every k-th step of the first, half before and half after: in doubles.
+fn period((masses, given): &Given) -> DMatrix<f64> {
+    let n = masses.len();
+    let [(fast, inner), (slow, outer)] = &given[..] else { panic!("two") };
+    let a = |j: &DMatrix<Rational>| DMatrix::from_fn(n, n, |i, k| to_f64(&(&j[(i, k)] / &masses[i])));
+    let (fast, slow, d, h) = (a(fast), a(slow), to_f64(inner), to_f64(outer));
+    let block = |c: DMatrix<f64>, x: f64| {
+        let mut m = DMatrix::identity(2 * n, 2 * n);
+        m.view_mut((n, 0), (n, n)).copy_from(&c);
+        (0..n).for_each(|i| m[(i, n + i)] = x);
+        m
+    };
+    let [kick, end] = [block(-d / 2.0 * &fast, 0.0), block(-h / 2.0 * &slow, 0.0)];
+    let step = &kick * block(DMatrix::zeros(n, n), d) * &kick;
+    let times = (outer / inner).to_integer();
+    let inner = (0..i32::try_from(times).unwrap()).fold(DMatrix::identity(2 * n, 2 * n), |q, _| &step * q);
+    &end * inner * &end
+}
+
+#[test]
+fn doubles_and_exact_arithmetic_agree_and_so_does_the_dense_period() {
+    let (mut numbers, mut kinds) = (Numbers(3), std::collections::BTreeMap::new());
+    for _ in 0..2000 {
+        let n = 1 + numbers.below(6) as usize;
+        let masses: Vec<_> = (0..n).map(|_| ratio(1 + numbers.below(3), 1)).collect();
+        let (inner, times) = (ratio(1 + numbers.below(12), 20), 1 + numbers.below(6));
+        let off = 1 + numbers.below(5) as u64;
+        let fast = numbers.jacobian(n, 4, off);
+        let slow = numbers.jacobian(n, 0, off);
+        let given = (masses, vec![(fast, inner.clone()), (slow, inner * ratio(times, 1))]);
+        let [found, exact] = [Route::Cheapest, Route::Exact].map(|route| decided(&given, route));
+        assert!(found.is_proof() && found.kind == exact.kind, "{:?} {:?} {given:?}", found.kind, exact.kind);
+        *kinds.entry(found.kind.unwrap().name()).or_insert(0) += 1;
+        // Of nearly defective periods half of the digits are right.
+        let size = period(&given).complex_eigenvalues().iter().map(|z| z.norm()).fold(0.0, f64::max);
+        let is_unstable = found.kind == Some(Kind::Hyperbolic);
+        assert!(size > 1.0 + 1e-6 || !is_unstable || size < 1.0 + 1e-5, "{size} {given:?}");
+        if (size - 1.0).abs() > 1e-5 {
+            assert!(is_unstable, "{size} {given:?}");
+            let (lo, hi) = found.growth_rate().unwrap();
+            let rate = size.ln() / to_f64(&given.1[1].1);
+            assert!(lo - 1e-6 * rate <= rate && rate <= hi + 1e-6 * rate, "{rate} in {lo}..{hi}");
+        }
+    }
+    assert!(kinds["elliptic"] > 300 && kinds["hyperbolic"] > 300, "{kinds:?}");
+}
+
+#[test]
+fn symmetric_matrices_are_decided_as_gradients_are() {
+    let mut numbers = Numbers(5);
+    for _ in 0..300 {
+        let n = 1 + numbers.below(4) as usize;
+        let masses: Vec<_> = (0..n).map(|_| ratio(1 + numbers.below(3), 1)).collect();
+        let symmetric = |m: DMatrix<Rational>| (&m + m.transpose()).map(|x| x / ratio(2, 1));
+        let given: Vec<_> = [(4, ratio(1, 4)), (0, ratio(1, 1)), (0, ratio(3, 2))]
+            .map(|(size, step)| (symmetric(numbers.jacobian(n, size, 4)), step))
+            .into();
+        let potentials =
+            given.iter().map(|(k, step)| Potential::new(Symmetric::try_from(k).unwrap(), step.clone()));
+        let system = System::new(Symmetric::diagonal(&masses), potentials.collect()).unwrap();
+        let exact = kickdrift::system::exact_kind(&system, &Limits::default()).unwrap();
+        let found = decided(&(masses, given), Route::Exact).kind.unwrap();
+        // Over the whole period, where parts have shorter ones, multipliers may be ±1 without harm.
+        let is_elliptic = |kind: Kind| matches!(kind, Kind::Elliptic | Kind::Coexistence);
+        assert!(exact == found || is_elliptic(exact) && is_elliptic(found), "{exact:?} {found:?} {system:?}");
+    }
+}
+
+/// Three molecules alike that hardly see each other, a stiff bond in each, and a slow force whose Jacobian is not symmetric by this part of its norm, as a file.
+fn learned(asymmetry: f64, outer: i64) -> (SystemScene, Given) {
+    let (n, mut numbers) = (6, Numbers(11));
+    let fast = DMatrix::from_fn(n, n, |i, j| match (i / 2 == j / 2, i == j) {
+        (true, true) => ratio(200, 1),
+        (true, false) => ratio(-120, 1),
+        _ => ratio(0, 1),
+    });
+    let beside = |i: usize, j: usize| if i.abs_diff(j) == 1 { ratio(-1, 100) } else { ratio(0, 1) };
+    let mut slow = DMatrix::from_fn(n, n, |i, j| if i == j { ratio(20, 1) } else { beside(i, j) });
+    let mut off = DMatrix::from_fn(n, n, |_, _| ratio(0, 1));
+    for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+        let x = ratio(numbers.below(201) - 100, 100);
+        (off[(i, j)], off[(j, i)]) = (x.clone(), -x);
+    }
+    let norm = |m: &DMatrix<Rational>| m.map(|x| to_f64(&x)).norm();
+    let factor = ratio((asymmetry * norm(&slow) / norm(&off) * 1e6).round() as i64, 1_000_000);
+    slow += off.map(|x| x * &factor);
+    let text = |m: &DMatrix<Rational>| {
+        let row = |i: usize| m.row(i).iter().map(ToString::to_string).collect::<Vec<_>>();
+        (0..n).map(row).collect::<Vec<_>>()
+    };
+    let steps = [ratio(1, 50), ratio(outer, 50)];
+    let file = json!({
+        "schema": "kickdrift/system/1", "symmetric": false, "masses": vec!["1"; n],
+        "potentials": [
+            {"step": steps[0].to_string(), "stiffness": text(&fast)},
+            {"step": steps[1].to_string(), "stiffness": text(&slow)},
+        ],
+    });
+    let [inner, outer] = steps;
+    let given = (vec![ratio(1, 1); n], vec![(fast, inner), (slow, outer)]);
+    (SystemScene::read(&file.to_string()).unwrap(), given)
+}
+
+#[test]
+fn growth_of_a_learned_force_is_what_a_run_shows() {
+    for (asymmetry, outer) in [(0.004, 8), (0.015, 8), (0.03, 8), (0.03, 4), (0.03, 9)] {
+        let (scene, given) = learned(asymmetry, outer);
+        let analysis = scene.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+        let jacobians = scene.model().jacobians().unwrap();
+        let beside = jacobians.no_gradient();
+        assert!((beside.asymmetries[1] / asymmetry - 1.0).abs() < 1e-3 && beside.asymmetries[0] == 0.0);
+        assert_eq!(analysis.kind, Some(Kind::Hyperbolic), "{asymmetry} {outer}");
+        let predicted = analysis.growth_rate().unwrap();
+        assert!(predicted.1 - predicted.0 < 1e-6 * predicted.1);
+        // A run from random displacements, until what grows most is all that is left.
+        let (step, n) = (period(&given), given.0.len());
+        let time = to_f64(&given.1[1].1);
+        let mut state = nalgebra::DVector::from_fn(2 * n, |i, _| ((7 * i + 3) % 5) as f64 - 2.0);
+        let mut logs = 0.0;
+        let advance = |state: &mut nalgebra::DVector<f64>, steps: usize| {
+            (0..steps).fold(0.0, |sum, _| {
+                *state = &step * &*state;
+                let norm = state.norm();
+                *state /= norm;
+                sum + norm.ln()
+            })
+        };
+        // Others fall behind by ten thousand e-foldings of the growth, or as many of its differences.
+        let steps = (40.0 / (predicted.0 * time)) as usize + 20_000;
+        advance(&mut state, steps);
+        logs += advance(&mut state, steps);
+        let seen = logs / (steps as f64 * time);
+        assert!((seen / middle(predicted) - 1.0).abs() < 0.02, "{seen} {predicted:?}");
+        // x'' = −A x itself, by its eigenvalues.
+        let a = given.1.iter().fold(DMatrix::zeros(n, n), |a, (j, _)| a + j.map(|x| to_f64(&x)));
+        let own = a.complex_eigenvalues().iter().map(|z| z.sqrt().im.abs()).fold(0.0, f64::max);
+        let (lo, hi) = beside.without_steps.unwrap();
+        assert!(lo <= own + 1e-9 && own - 1e-9 <= hi && hi - lo < 1e-6, "{own} in {lo}..{hi}");
+        // Friction masks it at twice the rate, to first order.
+        let masking = beside.masking.unwrap();
+        assert!(masking > 0.5 * predicted.0 && masking < 8.0 * predicted.1, "{masking} {predicted:?}");
+    }
+}
+
+#[test]
+fn what_no_force_sees_is_set_apart() {
+    // Two particles that push each other unequally: a shift of both is not seen, their momentum is not kept.
+    let file = json!({
+        "schema": "kickdrift/system/1", "symmetric": false, "masses": [1, 2],
+        "potentials": [
+            {"step": "1/10", "stiffness": [["9", "-9"], ["-10", "10"]]},
+            {"step": "1/2", "stiffness": [["1/4", "-1/4"], ["-1/5", "1/5"]]},
+        ],
+    });
+    let model = SystemScene::read(&file.to_string()).unwrap().model().clone();
+    let found = model.decide(Route::Cheapest, &Limits::default()).unwrap();
+    assert_eq!(found.rigid_modes, vec![vec![ratio(1, 1), ratio(1, 1)]]);
+    assert_eq!((found.size, found.parts[0].size, found.kind), (2, 1, Some(Kind::Elliptic)));
+    // What is left is one oscillator, of x₁ − x₂: 9 + 10/2 and 1/4 + 1/10.
+    let alone = json!({
+        "schema": "kickdrift/system/1", "masses": [1],
+        "potentials": [{"step": "1/10", "stiffness": [["14"]]}, {"step": "1/2", "stiffness": [["7/20"]]}],
+    });
+    let alone = SystemScene::read(&alone.to_string()).unwrap();
+    let alone = alone.model().decide(Route::Cheapest, &Limits::default()).unwrap();
+    let [own, other] = [&found, &alone].map(|own| own.parts[0].multipliers[0].mu.re);
+    assert!((own - other).abs() < 1e-12, "{own} {other}");
+}
+
+#[test]
+fn what_needs_gradients_is_refused() {
+    let (scene, _) = learned(0.03, 8);
+    let limits = Limits::default();
+    let span = "outer=1/10..1/5".parse().unwrap();
+    let errors = [
+        scene.intervals(&span, 1e-3, &limits).unwrap_err(),
+        scene.nearest_unstable(1e-3, &limits).unwrap_err(),
+        scene.linear_simulation(vec![0.0; 6], vec![0.0; 6]).map(|_| ()).unwrap_err(),
+        scene.model().moving().map(|_| ()).unwrap_err(),
+        scene.model().decide_at(&ratio(1, 5), &limits).map(|_| ()).unwrap_err(),
+        scene.model().friction(&ratio(1, 5), &limits).map(|_| ()).unwrap_err(),
+    ];
+    assert!(errors.iter().all(|error| !error.to_string().contains('\n')), "{errors:?}");
+    assert!(matches!(scene.model(), Model::NoGradient(_)));
+}
