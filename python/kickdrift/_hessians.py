@@ -50,6 +50,7 @@ def hessian(
     difference: float,
     columns: Sequence[int] | None = None,
     progress: Progress | None = None,
+    symmetric: bool = True,
 ) -> tuple[Doubles, float]:
     """A mass-weighted Hessian by central differences of fourth order, and an estimate of its error.
 
@@ -63,12 +64,15 @@ def hessian(
         d; forces are taken at distances d and 2d.
     columns : sequence of int, optional
         The degrees of freedom to keep, all 3n unless given: the others stand still.
+    symmetric : bool
+        Whether the force is a gradient.
 
     Returns
     -------
     (array, float)
         The symmetric part, and the error as a 2-norm: the correction from second to fourth order, of which what is left
-        is a small part, plus the antisymmetric part.
+        is a small part, plus the antisymmetric part. Of a force that is no gradient the whole, whose asymmetry is no
+        error.
     """
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
     root = np.sqrt(np.repeat(masses, 3))[kept]
@@ -79,9 +83,10 @@ def hessian(
         if progress is not None:
             progress(place + 1, len(kept))
     second, fourth = (-matrix / np.outer(root, root) for matrix in (second, fourth))
-    symmetric = (fourth + fourth.T) / 2
-    error = norm(fourth - second) + norm(fourth - symmetric)
-    return symmetric, error
+    if not symmetric:
+        return fourth, norm(fourth - second)
+    mean = (fourth + fourth.T) / 2
+    return mean, norm(fourth - second) + norm(fourth - mean)
 
 
 def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:

@@ -114,6 +114,7 @@ class System(Frozen):
         notes: Sequence[str] = (),
         periodic: bool = False,
         keep_rigid: bool = False,
+        symmetric: bool = True,
     ) -> System:
         """Make a system of measured Hessians.
 
@@ -123,7 +124,7 @@ class System(Frozen):
             One for each degree of freedom, or for each particle of three.
         potentials : mapping of str to (step, Hessian)
             A step (Exact, or with its unit as ``"0.5fs"``) and a symmetric matrix of doubles, shape (n, n),
-            energy/length², by name.
+            energy/length², by name; minus the derivative of a force that is no gradient.
         positions : array of doubles, shape (n/3, 3), optional
             By which rigid motions are projected out; else the null space of the total is.
         accuracy : float
@@ -138,6 +139,9 @@ class System(Frozen):
             The particles are in a periodic box: three translations are rigid, and no rotation.
         keep_rigid : bool
             Project no rigid motions out: there are none, as of atoms among others that stand still.
+        symmetric : bool
+            False: a force is no gradient, as one that is learned and predicted directly, so that asymmetry is no error.
+            Rigid motions are projected out by positions alone then.
 
         Raises
         ------
@@ -163,6 +167,8 @@ class System(Frozen):
         named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
+        if not symmetric:
+            document["symmetric"] = False
         document["potentials"] = [
             {"name": name, "step": str(step), "stiffness": _at(f"hessian{place}")}
             for place, (name, step) in enumerate(steps.items())
@@ -429,6 +435,19 @@ class SystemVerdict(Document):
         """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
         smallest rate that masks the growth."""
         found = self.data.get("friction")
+        return None if found is None else MappingProxyType(found)
+
+    @property
+    def no_gradient(self) -> Mapping[str, Any] | None:
+        """Of forces that are no gradient: ``asymmetries``, growth ``without_steps``, ``added_by_steps`` and
+        ``within_accuracy``, and the ``masking_friction``."""
+        found = self.data.get("no_gradient")
+        return None if found is None else MappingProxyType(found)
+
+    @property
+    def local_steps(self) -> Mapping[str, Any] | None:
+        """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them."""
+        found = self.data.get("local_steps")
         return None if found is None else MappingProxyType(found)
 
     @cached_property

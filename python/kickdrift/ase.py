@@ -43,6 +43,7 @@ def system(
     minimize: bool = True,
     difference: float = DIFFERENCE,
     progress: Progress | bool = False,
+    symmetric: bool = True,
 ) -> System:
     """Make a system of ASE's: the Hessian of each calculator at the minimum of all, with its measured error.
 
@@ -51,13 +52,18 @@ def system(
     atoms : ase.Atoms
         Not changed; constraints of ASE's are an error.
     groups : mapping of str to (calculator, step)
-        The forces, and how often each is integrated: a number of fs, exactly, or a text with its unit.
+        The forces, and how often each is integrated: a number of fs, exactly, or a text with its unit. A pair of
+        calculators stands for the first minus the second: ``{"cheap": (cheap, "0.5fs"), "correction": ((dear, cheap),
+        "4fs")}`` evaluates a dear potential every 4 fs.
     minimize : bool
         Go to the minimum beside the positions first, by Newton's method.
     difference : float
         The difference of positions, Å.
     progress : bool or callable
         A bar on standard error; or what is called with the columns done and the columns in all, for each group.
+    symmetric : bool
+        False: some force is no gradient, as one that is learned and predicted directly. Then the asymmetry of a
+        Jacobian is no error, and the answer's ``no_gradient`` keeps apart what grows without steps.
 
     Returns
     -------
@@ -84,7 +90,9 @@ def system(
     forces, steps, masses = _forces(atoms, groups)
     where = _start(atoms, forces, masses, minimize, difference)
     seen_by = shown(progress)
-    measured = {name: hessian(force, where, masses, difference, None, seen_by) for name, force in forces.items()}
+    measured = {
+        name: hessian(force, where, masses, difference, None, seen_by, symmetric) for name, force in forces.items()
+    }
     accuracy = max(seen(*own, name, f"{difference:g} Å") for name, own in measured.items())
     pulls = {name: force(where) / units.fs**2 for name, force in forces.items()}
     total = np.sum([matrix for matrix, _ in measured.values()], axis=0) / units.fs**2
@@ -95,7 +103,8 @@ def system(
     root = np.sqrt(np.repeat(masses, 3))
     potentials: dict[str, tuple[Exact, Doubles]] = {}
     for (name, (matrix, _)), step in zip(measured.items(), steps, strict=True):
-        potentials[name] = (step, (matrix + matrix.T) / 2 * np.outer(root, root))
+        own = (matrix + matrix.T) / 2 if symmetric else matrix
+        potentials[name] = (step, own * np.outer(root, root))
     return System.from_hessians(
         masses,
         potentials,
@@ -107,6 +116,7 @@ def system(
         notes=notes,
         periodic=bool(atoms.pbc.any()),
         keep_rigid=held,
+        symmetric=symmetric,
     )
 
 
@@ -154,6 +164,9 @@ def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[s
 
 
 def _force(atoms: Any, calculator: Any) -> Callable[[Doubles], Doubles]:
+    if isinstance(calculator, tuple):
+        dear, cheap = (_force(atoms, own) for own in calculator)
+        return lambda positions: dear(positions) - cheap(positions)
     own = Atoms(numbers=atoms.numbers, positions=atoms.positions, cell=atoms.cell, pbc=atoms.pbc)
     own.set_masses(atoms.get_masses())
     own.set_initial_charges(atoms.get_initial_charges())

@@ -415,9 +415,7 @@ def _constraints(system: Any) -> list[_Constraint]:
     return [(i, j, float(distance._value)) for i, j, distance in every]
 
 
-def _minimized(
-    engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float
-) -> Doubles:
+def _minimized(engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float) -> Doubles:
     """The minimum in the engine's own context: the system given and its contexts stay as they are."""
     engine.context.setPositions(where)
     mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=1e-4)

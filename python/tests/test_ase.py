@@ -53,6 +53,39 @@ def test_copper_is_stable_at_five_and_not_at_fifty() -> None:
     assert measured is not None and measured["rigid_motions"]["count"] == 6
 
 
+class Swirling(Springs):
+    """Springs, and a force across them: no gradient."""
+
+    def __init__(self, stiffness: float, across: float) -> None:
+        super().__init__(stiffness)
+        self.across = across
+
+    def calculate(self, atoms=None, properties=("energy",), system_changes=all_changes) -> None:
+        super().calculate(atoms, properties, system_changes)
+        x, y, _ = self.atoms.positions.T
+        self.results["forces"] = self.results["forces"] + self.across * np.array([-y, x, 0 * x]).T
+
+
+def test_a_direct_force_grows_as_its_own_eigenvalues_say() -> None:
+    atoms = ase.Atoms("H", [[0.0, 0.0, 0.0]])
+    cheap, dear = Springs(30.0), Swirling(33.0, 0.6)
+    groups = {"cheap": (cheap, "0.5fs"), "correction": ((dear, cheap), "2fs")}
+    system = ka.system(atoms, groups, symmetric=False, minimize=False)
+    found = system.decide()
+    assert found.kind == "hyperbolic" and found.proven and not found.stable
+    beside = found.no_gradient
+    assert beside is not None and found.local_steps is None
+    # x'' = -(33 -+ 0.6 i) x, over the mass.
+    own = np.sqrt(complex(33.0, 0.6) * units.fs**2 / atoms.get_masses()[0]).imag
+    assert beside["without_steps"]["lo"] <= own <= beside["without_steps"]["hi"]
+    assert beside["within_accuracy"]["lo"] <= found.growth_rate <= beside["within_accuracy"]["hi"]
+    # |J - J'|/|J + J'| of diag(3, 3, 3) and a turn of 0.6.
+    assert beside["asymmetries"] == pytest.approx([0, 0.6 * 2**0.5 / (3 * 3**0.5)], abs=1e-6)
+    # Of a force that is a gradient this asymmetry is an error, and larger than any verdict bears.
+    with pytest.raises(kd.KickdriftError, match="too uncertain"):
+        ka.system(atoms, groups, minimize=False)
+
+
 @pytest.mark.parametrize(
     ("groups", "field"), [({}, "groups"), ({"all": (EMT(), 0)}, "groups[all]"), ({"all": (EMT(), "x")}, "groups[all]")]
 )
