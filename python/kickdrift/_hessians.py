@@ -118,7 +118,7 @@ def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float
     Raises
     ------
     KickdriftError
-        Where Newton's method does not arrive: the positions are not near a minimum.
+        Where Newton's method does not arrive, or at a saddle: the positions are not near a minimum.
     """
     own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))
     stiffness = np.zeros((own.size, own.size))
@@ -141,11 +141,15 @@ def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
     Raises
     ------
     KickdriftError
-        Where it is not: Newton's method did not arrive.
+        Where it is not, so that Newton's method did not arrive; where it arrived at a saddle.
     """
     scale = norm(stiffness) * float(np.sqrt(masses.max()))
     if not pull < 1e-9 * scale:
         raise KickdriftError("positions", f"force {pull:.1e}", "are not near a minimum: minimize them first")
+    values = np.linalg.eigvalsh(stiffness)
+    if values.size and values[0] < -_SOFT * np.abs(values).max():
+        remedy = "are near a saddle, from which something falls: minimize them first"
+        raise KickdriftError("positions", f"stiffness {values[0]:.1e}", remedy)
 
 
 #: Directions softer than this part of the stiffest are rigid motions: they are left where they are.

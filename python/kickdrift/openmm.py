@@ -39,7 +39,7 @@ from kickdrift._system import System
 
 try:
     import openmm as mm
-    from openmm import unit
+    from openmm import app, unit
 except ImportError:
     raise needs("openmm") from None
 
@@ -73,6 +73,7 @@ def system(
     system: Any,
     positions: Any,
     *,
+    topology: Any = None,
     integrator: Any = None,
     steps: Mapping[int, Any] | None = None,
     atoms: Sequence[int] | None = None,
@@ -87,6 +88,8 @@ def system(
     system : openmm.System
         Not changed. Hydrogen mass repartitioning comes along with the masses.
     positions : Quantity or array, shape (n, 3), nm
+    topology : openmm.app.Topology, optional
+        By which answers name atoms, as ``H1 HOH4``; else by their masses, as ``H 10``.
     integrator : openmm.Integrator, optional
         Verlet, MTSIntegrator or their Langevin kin; or instead
     steps : mapping of int to step, optional
@@ -167,12 +170,33 @@ def system(
         accuracy=accuracy,
         title=f"{engine.count} particles, ps and nm",
         time_unit="ps",
-        labels=[f"atom {n}" for n in range(engine.count)] if plain else (),
+        labels=_labels(engine.masses, topology) if plain else (),
         notes=notes,
         periodic=periodic and plain,
         keep_rigid=not (plain and moved.size),
     )
 
+
+def _labels(masses: Doubles, topology: Any) -> list[str]:
+    """What answers call each atom."""
+    if topology is None:
+        return [f"{_symbol(mass)} {n}" for n, mass in enumerate(masses)]
+    atoms = list(topology.atoms())
+    if len(atoms) != len(masses):
+        remedy = f"the system has {len(masses)} particles: give the topology that it was made of"
+        raise KickdriftError("topology", f"{len(atoms)} atoms", remedy)
+    return [f"{atom.name} {atom.residue.name}{atom.residue.id}" for atom in atoms]
+
+
+def _symbol(mass: float) -> str:
+    """The element of this mass; heavy hydrogens and atoms that gave them mass have none."""
+    element = app.Element.getByMass(mass)
+    near = element is not None and abs(element.mass._value - mass) < _ISOTOPES
+    return str(element.symbol) if near else "atom"
+
+
+#: How far, u, force fields' masses are from those of elements.
+_ISOTOPES = 0.02
 
 #: The rigid motions of a periodic box.
 _TRANSLATIONS = 3
@@ -416,13 +440,30 @@ def _constraints(system: Any) -> list[_Constraint]:
 
 
 def _minimized(engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float) -> Doubles:
-    """The minimum in the engine's own context: the system given and its contexts stay as they are."""
+    """The minimum in the engine's own context: the system given and its contexts stay as they are.
+
+    Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that does
+    not arrive close by.
+    """
+
+    def newton(near: Doubles) -> Doubles:
+        if constraints:
+            return _constrained_minimum(engine, near, constraints, difference)
+        return minimum(engine.force(-1), near, engine.masses, difference)
+
+    try:
+        found = newton(where)
+        if np.abs(found - where).max(initial=0.0) < _CLOSE:
+            return found
+    except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
+        pass
     engine.context.setPositions(where)
     mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=1e-4)
-    near = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
-    if constraints:
-        return _constrained_minimum(engine, near, constraints, difference)
-    return minimum(engine.force(-1), near, engine.masses, difference)
+    return newton(np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value))
+
+
+#: How far, nm, Newton's method alone may go: half a bond.
+_CLOSE = 0.05
 
 
 def _constrained_minimum(

@@ -147,7 +147,7 @@ def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     assert calm.stable and calm.proven and calm.measured is not None and calm.measured["holds"] == "stable"
     advice = ko.system(system, positions, steps={0: Fraction(1, 2000), 1: 4 * unit.femtoseconds}).advise()
     # 4 fs is stable and beyond T/3 of the stretches, 8.9 fs.
-    assert advice.status == "caution" and advice.safe == Fraction(5, 2) and "atom" in advice.groups[0]["atoms"]
+    assert advice.status == "caution" and advice.safe == Fraction(5, 2) and advice.groups[0]["atoms"] == "H 10, H 11"
 
 
 def bonds(seed: int) -> tuple[mm.System, np.ndarray]:
@@ -373,6 +373,60 @@ def test_a_box_has_three_rigid_motions_and_what_is_too_uncertain_is_refused() ->
     with pytest.raises(kd.KickdriftError, match="cutoff") as caught:
         ko.system(*box(3), steps=steps, minimize=False)
     assert "group 1, group 2, known to" in str(caught.value.value) and "%" in str(caught.value.value)
+
+
+def chain(beads: int = 6) -> tuple[mm.System, np.ndarray]:
+    """A FENE chain with repulsion, stretched: OpenMM's minimizer steps over the ends of its bonds."""
+    system = mm.System()
+    bond = mm.CustomBondForce("-0.5*30*1.5^2*log(1-(r/1.5)^2)")
+    apart = mm.CustomNonbondedForce("step(1.1224620483-r)*(4*((1/r)^12-(1/r)^6)+1)")
+    apart.setForceGroup(1)
+    for bead in range(beads):
+        system.addParticle(1.0)
+        apart.addParticle([])
+        if bead:
+            bond.addBond(bead - 1, bead, [])
+    system.addForce(bond)
+    system.addForce(apart)
+    # A zigzag with bonds of nearly the length at which both forces balance, and neighbours but one out of reach.
+    along, across = 0.961 * np.cos(0.3), 0.961 * np.sin(0.3)
+    where = np.array([[along * n, across * (n % 2), 0.0] for n in range(beads)])
+    return system, where
+
+
+def test_a_minimum_that_is_given_is_kept_whatever_the_minimizer_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    system, where = chain()
+    engine = ko._engine(system)
+    there = ko._minimized(engine, where, [], ko.DIFFERENCE)
+
+    def blown(*_: Any, **__: Any) -> None:
+        raise AssertionError("the minimizer was asked")
+
+    monkeypatch.setattr(mm.LocalEnergyMinimizer, "minimize", blown)
+    again = ko._minimized(engine, there, [], ko.DIFFERENCE)
+    assert np.abs(again - there).max() < 1e-6
+    found = ko.system(system, there, steps={0: "0.01", 1: "0.02"})
+    assert found.document["labels"] == [f"H {n}" for n in range(6)]
+
+
+def test_atoms_are_called_as_their_topology_calls_them() -> None:
+    system, where = waters()
+    topology = app.Topology()
+    group = topology.addChain()
+    for n in range(4):
+        residue = topology.addResidue("HOH", group, str(n + 1))
+        for name in ("O", "H1", "H2"):
+            topology.addAtom(name, app.Element.getBySymbol(name[0]), residue)
+    steps = {0: "0.5fs", 1: "4fs"}
+    named = ko.system(system, where, topology=topology, steps=steps)
+    assert named.document["labels"][:4] == ["O HOH1", "H1 HOH1", "H2 HOH1", "O HOH2"]
+    plain = ko.system(system, where, steps=steps)
+    assert plain.document["labels"][:4] == ["O 0", "H 1", "H 2", "O 3"]
+    topology.addResidue("HOH", group)
+    topology.addAtom("O", app.Element.getBySymbol("O"), residue)
+    with pytest.raises(kd.KickdriftError) as caught:
+        ko.system(system, where, topology=topology, steps=steps)
+    assert caught.value.field == "topology"
 
 
 def test_an_outer_field_holds_what_else_were_rigid() -> None:
