@@ -442,8 +442,8 @@ def _constraints(system: Any) -> list[_Constraint]:
 def _minimized(engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float) -> Doubles:
     """The minimum in the engine's own context: the system given and its contexts stay as they are.
 
-    Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that does
-    not arrive close by.
+    Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that
+    does not arrive close by.
     """
 
     def newton(near: Doubles) -> Doubles:
