@@ -12,7 +12,7 @@ from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -124,7 +124,8 @@ class System(Frozen):
             One for each degree of freedom, or for each particle of three.
         potentials : mapping of str to (step, Hessian)
             A step (Exact, or with its unit as ``"0.5fs"``) and a symmetric matrix of doubles, shape (n, n),
-            energy/length², by name; minus the derivative of a force that is no gradient.
+            energy/length², by name; minus the derivative of a force that is no gradient. Two sparse matrices or arrays
+            of SciPy are decided by sparse factorizations, in the first stable region: some 10^5 degrees of freedom.
         positions : array of doubles, shape (n/3, 3), optional
             By which rigid motions are projected out; else the null space of the total is.
         accuracy : float
@@ -159,7 +160,6 @@ class System(Frozen):
         True
         """
         steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
-        matrices = {name: doubles(name, hessian) for name, (_, hessian) in potentials.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
@@ -169,11 +169,11 @@ class System(Frozen):
         document |= {key: value for key, value in named.items() if value}
         if not symmetric:
             document["symmetric"] = False
-        document["potentials"] = [
-            {"name": name, "step": str(step), "stiffness": _at(f"hessian{place}")}
-            for place, (name, step) in enumerate(steps.items())
-        ]
-        arrays |= {f"hessian{place}": matrix for place, matrix in enumerate(matrices.values())}
+        document["potentials"] = []
+        for place, (name, (_, hessian)) in enumerate(potentials.items()):
+            at, own = _compressed(place, name, hessian) or _dense(place, name, hessian)
+            document["potentials"].append({"name": name, "step": str(steps[name]), "stiffness": at})
+            arrays |= own
         return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
@@ -328,6 +328,26 @@ def _warned(warnings: Sequence[str]) -> str:
 def _step(name: str, value: Exact, unit: str) -> Fraction:
     """A step in the system's unit of time, where it has one."""
     return duration(f"potentials[{name}]", value, unit, molecular=False)
+
+
+_Arrays: TypeAlias = dict[str, npt.NDArray[np.float64]]
+
+
+def _dense(place: int, name: str, hessian: npt.ArrayLike) -> tuple[dict[str, str], _Arrays]:
+    own = f"hessian{place}"
+    return _at(own), {own: doubles(name, hessian)}
+
+
+def _compressed(place: int, name: str, hessian: Any) -> tuple[dict[str, str], _Arrays] | None:
+    """The three arrays of compressed rows of a sparse matrix of SciPy's, made symmetric; None of anything else."""
+    if not hasattr(hessian, "tocsr"):
+        return None
+    rows = hessian.tocsr()
+    rows = ((rows + rows.T) / 2).tocsr()
+    rows.sum_duplicates()
+    own = f"hessian{place}"
+    parts = {"data": rows.data, "indices": rows.indices, "indptr": rows.indptr}
+    return {"npz": _ARRAYS, "csr": own}, {f"{own}.{part}": doubles(name, array) for part, array in parts.items()}
 
 
 def _at(name: str) -> dict[str, str]:

@@ -229,3 +229,33 @@ def test_drawings_have_the_programs_colours_and_legends() -> None:
 
     shown = {matplotlib.colors.to_hex(patch.get_facecolor()) for patch in axes.patches}
     assert shown <= {colours["safe"], colours["caution"], colours["unstable"], matplotlib.colors.to_hex("0.92")}
+
+
+def test_sparse_levels_are_decided_as_dense_ones_in_the_first_region() -> None:
+    sparse = pytest.importorskip("scipy.sparse")
+    rng = np.random.default_rng(3)
+    count = 40
+    # A row of particles on bonds of two lengths, held by weak walls: stiff within pairs, soft between them.
+    bonds = np.diag(np.full(count, 2.0)) - np.diag(np.ones(count - 1), 1) - np.diag(np.ones(count - 1), -1)
+    fast = np.kron(np.diag(rng.uniform(0.9, 1.1, count // 2)), [[4e5, -4e5], [-4e5, 4e5]])
+    slow = 500.0 * bonds
+    steps = ("0.5fs", "2.5fs")
+    given = {"keep_rigid": True, "time_unit": "ps", "accuracy": 1e-8}
+    names = ("bonds", "rest")
+    dense = kd.System.from_hessians(
+        np.ones(count), dict(zip(names, zip(steps, (fast, slow), strict=True), strict=True)), **given
+    )
+    matrices = (sparse.csr_matrix(fast), sparse.coo_array(slow))
+    system = kd.System.from_hessians(
+        np.ones(count), dict(zip(names, zip(steps, matrices, strict=True), strict=True)), **given
+    )
+    assert system.document["potentials"][0]["stiffness"] == {"npz": "arrays.npz", "csr": "hessian0"}
+    own, truth = system.decide(), dense.decide()
+    assert own.stable and truth.stable and own.proven
+    assert own.measured is not None and truth.measured is not None
+    found, edge = own.measured["first_unstable"], truth.measured["first_unstable"]["lo"]
+    assert found["lo"] <= edge < found["hi"] < 1.01 * found["lo"]
+    assert pickle.loads(pickle.dumps(own)).stable and kd.recheck(own).holds
+    with pytest.raises(kd.KickdriftError) as caught:
+        system.intervals(("1/500", "1/200"))
+    assert "dense" in str(caught.value)

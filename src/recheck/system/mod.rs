@@ -17,7 +17,7 @@ use crate::error::{Kind as Reason, Result};
 use crate::question::{Found, Question, Simulate, System, SystemAnswer, Work};
 use crate::report::system::SystemMap;
 use crate::scene::{Arrays, SystemScene};
-use crate::system::{Analysis, Limits};
+use crate::system::{Analysis, Limits, Model};
 use crate::verdict::Kind;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
@@ -73,6 +73,9 @@ impl Recheck for Claim {
 }
 
 fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Result<Outcome> {
+    if matches!(scene.model(), Model::Sparse(_)) {
+        return outcome(context, ALONE, Ok(()));
+    }
     if analysis.measured.is_some() {
         return match dense::growth(scene, analysis, &context.work().products()) {
             Err(Fault::Error(error)) if error.kind() == Reason::Budget => {

@@ -207,6 +207,7 @@ fn elements(kind: &str, data: &[u8], count: usize) -> Option<Vec<f64>> {
     match kind {
         "<f8" => each(data, count, f64::from_le_bytes),
         "<f4" => each(data, count, |bytes| f32::from_le_bytes(bytes).into()),
+        "<i8" => each(data, count, |bytes| i64::from_le_bytes(bytes) as f64),
         "<i4" => each(data, count, |bytes| i32::from_le_bytes(bytes).into()),
         _ => None,
     }

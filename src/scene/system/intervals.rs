@@ -231,7 +231,10 @@ impl SystemScene {
             return refused("with friction", "take the friction out of the file");
         }
         if !self.is_linear()
-            || matches!(self.model, Model::Oscillator(_) | Model::Pi(_) | Model::NoGradient(_))
+            || matches!(
+                self.model,
+                Model::Oscillator(_) | Model::Pi(_) | Model::NoGradient(_) | Model::Sparse(_)
+            )
         {
             return refused("of this file", "are for linear systems of rational numbers");
         }

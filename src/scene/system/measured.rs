@@ -36,7 +36,7 @@ use crate::number::rational::to_f64;
 use crate::system::{Body, Jacobians, MeasuredSystem, Model};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
-const USUAL_ACCURACY: f64 = 1e-6;
+pub(super) const USUAL_ACCURACY: f64 = 1e-6;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -186,7 +186,7 @@ impl PotentialDocument {
 }
 
 /// A mass for each degree of freedom, from one each or from one for each three.
-fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
+pub(super) fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
     let wrong = || {
         let remedy = format!("there are {n} degrees of freedom: give a mass for each, or for each three");
         Error::input("masses", masses.len(), remedy)
@@ -201,7 +201,7 @@ fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
     }
 }
 
-fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
+pub(super) fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
     if positions.len() != n || !n.is_multiple_of(3) {
         let remedy = format!("there are {n} degrees of freedom: give three coordinates for each particle");
         return Err(Error::input("positions", format!("{} numbers", positions.len()), remedy));

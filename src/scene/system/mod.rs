@@ -45,6 +45,7 @@
 //! | `mesh` | finite elements |
 //! | `local` | local time steps |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
+//! | `sparse` | two sparse levels, as SciPy writes them |
 //! | `held` | their constraints, heavy hydrogens |
 //! | `molecule` | two measured levels, to be advised on |
 //! | `scan`, `intervals` | one file, many systems: any number of it over a range; its unstable intervals |
@@ -64,6 +65,7 @@ mod molecule;
 mod oscillator;
 mod pi;
 mod scan;
+mod sparse;
 
 use serde::Deserialize;
 use serde_json::Value;
@@ -200,6 +202,13 @@ impl SystemScene {
     }
 
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {
+        if sparse::is_sparse(&source) {
+            check_schema(source["schema"].as_str().unwrap_or_default())?;
+            let (own, labels) = sparse::read(&source, &arrays)?;
+            let model = Model::Sparse(Box::new(own));
+            let labels = labels.map(|labels| spread(&labels, model.size())).transpose()?;
+            return Ok(SystemScene { source, arrays, model, bonds: None, labels, friction: None });
+        }
         if measured::is_by_reference(&source) {
             check_schema(source["schema"].as_str().unwrap_or_default())?;
             let (model, labels) = measured::read(&source, &arrays)?;
@@ -234,13 +243,15 @@ impl SystemScene {
             self.model = match self.model {
                 Model::Measured(own) => Model::Measured(own.at_accuracy(accuracy)?),
                 Model::NoGradient(own) => Model::NoGradient(Box::new(own.at_accuracy(accuracy)?)),
+                Model::Sparse(own) => Model::Sparse(Box::new(own.at_accuracy(accuracy)?)),
                 _ => return Err(Error::input("accuracy", accuracy, exact)),
             };
         }
         if keeps_rigid {
             let Model::Measured(own) = self.model else {
                 let no_gradient = "say \"keep_rigid\": true in the file";
-                let remedy = if self.model.jacobians().is_some() { no_gradient } else { exact };
+                let is_by_reference = matches!(self.model, Model::NoGradient(_) | Model::Sparse(_));
+                let remedy = if is_by_reference { no_gradient } else { exact };
                 return Err(Error::input("rigid motions", "kept", remedy));
             };
             self.model = Model::Measured(own.keeping_rigid());
@@ -348,6 +359,9 @@ impl SystemScene {
             Model::Measured(own) => own.refuse_constraints()?,
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
+            }
+            Model::Sparse(_) => {
+                return Err(Error::input("stiffness", "sparse", "a run is for dense stiffnesses"));
             }
             _ => {}
         }

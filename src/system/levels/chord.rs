@@ -101,7 +101,7 @@ impl Hessians {
 }
 
 /// α and β of a line α − β s that is no higher than a/b between the ends of the spectrum of h² F; `None` where p θ < π is not certain up to there.
-fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
+pub(super) fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
     let ends = [outer.scaled_down(low), outer.scaled_up(high)];
     let halves = ends.map(|s| Half::new(s, outer.inner_steps));
     if !halves.iter().all(Half::rises) {

@@ -37,6 +37,7 @@
 //! | `kernel` | the eigenbasis, its backward error, norms |
 //! | `region` | the first stable region: verdict, margin, first unstable step |
 //! | `chord` | the verdict in it without an eigenbasis |
+//! | `sparse` | the same of many thousands of degrees of freedom: sparse factorizations |
 //! | `band` | the first region of a whole band of stiffnesses |
 //! | `counts` | verdicts by counts of negative eigenvalues, wherever the step lies |
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
@@ -63,6 +64,7 @@ mod kernel;
 mod paths;
 mod region;
 mod rigid;
+pub mod sparse;
 
 pub use cell::Cells;
 pub use growth::Growing;

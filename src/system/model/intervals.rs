@@ -89,7 +89,7 @@ impl Model {
 
     /// What `ask` finds of the systems of all outer steps.
     fn over_outer_steps<T>(&self, ask: impl Fn(&Family) -> Result<T>) -> Result<T> {
-        if self.jacobians().is_some() {
+        if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
             return Err(self.refused("the intervals of a step"));
         }
         let (system, own) = (self.system(), self.outer_step());
@@ -127,7 +127,7 @@ impl Model {
         }
         let factor = outer / self.outer_step();
         match self {
-            Model::NoGradient(_) => Err(self.refused("the verdict at another step")),
+            Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("the verdict at another step")),
             Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
             Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
             _ => decide_by(Route::Cheapest, &self.system().with(&Rational::one(), &factor)?, limits),

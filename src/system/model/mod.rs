@@ -10,6 +10,7 @@ mod intervals;
 mod measured;
 mod oscillator;
 mod projected;
+mod sparse;
 
 use std::borrow::Cow;
 
@@ -30,6 +31,7 @@ use crate::verdict::Kind;
 pub use intervals::Number;
 pub use measured::{Body, MeasuredSystem, TwoLevels};
 pub use oscillator::Oscillator;
+pub use sparse::SparseSystem;
 
 /// What a system is.
 #[derive(Clone, Debug)]
@@ -46,6 +48,8 @@ pub enum Model {
     LocalSteps(LocalSteps),
     /// Forces that are no gradient: their Jacobians are not symmetric.
     NoGradient(Box<Jacobians>),
+    /// Two sparse levels of thousands of degrees of freedom.
+    Sparse(Box<SparseSystem>),
 }
 
 /// Products a second: of rational systems with what goes on around them, and of dense doubles.
@@ -55,8 +59,8 @@ const DENSE_PACE: f64 = 1e10;
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
     /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
-    /// steps Verlet's with its effective stiffness, exactly. Of forces that are no gradient there is none: the symmetric parts have their size
-    /// and their clocks, no more.
+    /// steps Verlet's with its effective stiffness, exactly. Of forces that are no gradient, and of sparse stiffnesses, there is none: it has
+    /// their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(own) => own,
@@ -65,6 +69,7 @@ impl Model {
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
             Model::NoGradient(own) => own.symmetric(),
+            Model::Sparse(own) => own.system(),
         }
     }
 
@@ -81,6 +86,7 @@ impl Model {
         match self {
             Model::Measured(own) => own.cost(),
             Model::NoGradient(own) => own.cost(),
+            Model::Sparse(own) => own.cost(),
             _ => verdict_cost(self.system()),
         }
     }
@@ -107,6 +113,8 @@ impl Model {
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
             Model::NoGradient(own) => own.decide(route, limits),
+            Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
+            Model::Sparse(own) => own.decide(limits),
         }
     }
 
@@ -117,6 +125,7 @@ impl Model {
     pub fn verdict(&self, route: Route, limits: &Limits) -> Result<Holds> {
         match self {
             Model::Measured(own) if route == Route::Cheapest => own.verdict(limits),
+            Model::Sparse(own) if route == Route::Cheapest => own.verdict(limits),
             _ => Ok(self.decide(route, limits)?.holds()),
         }
     }
@@ -128,7 +137,7 @@ impl Model {
     pub fn moving(&self) -> Result<Cow<'_, System>> {
         match self {
             Model::Measured(own) => own.moving(),
-            Model::NoGradient(_) => Err(self.refused("a system of symmetric stiffnesses")),
+            Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("a rational system")),
             _ => Ok(Cow::Borrowed(self.system())),
         }
     }
@@ -145,6 +154,7 @@ impl Model {
             Model::Rational(own) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
             Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
+            Model::Sparse(_) => Err(self.refused("exact arithmetic")),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
         }
     }
@@ -167,14 +177,20 @@ impl Model {
                 let remedy = "leave it out: the answer has the rate that masks what grows";
                 Err(Error::input("friction", rate, remedy))
             }
+            Model::Sparse(_) => Err(self.refused("friction")),
             Model::Oscillator(own) => own.friction(rate, limits),
             Model::Measured(own) => own.friction(rate, limits),
         }
     }
 
-    /// What a force that is no gradient has not.
+    /// What forces that are no gradient have not, and what is not done for sparse stiffnesses.
     fn refused(&self, what: &str) -> Error {
-        Error::input("symmetric", "false", format!("{what} needs forces that are gradients"))
+        match self {
+            Model::Sparse(_) => {
+                Error::input("stiffness", "sparse", format!("{what} needs dense stiffnesses"))
+            }
+            _ => Error::input("symmetric", "false", format!("{what} needs forces that are gradients")),
+        }
     }
 
     /// Jacobians that are not symmetric, where it is made of such.

@@ -1,0 +1,316 @@
+//! The first stable region of two sparse levels.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use faer::{Mat, Side};
+
+use super::matrix::{Factors, Pattern, Triplets};
+use crate::error::{Error, Result};
+use crate::number::{U, bisected};
+use crate::system::half::norm;
+use crate::system::levels::chord::chord;
+use crate::system::levels::half::Half;
+use crate::system::levels::kernel::{Outer, STEP_ERROR};
+use crate::system::levels::region::largest;
+use crate::system::verdict::large::start;
+use crate::system::verdict::measured::Holds;
+
+/// The fast and the slow stiffness, mass-weighted (1/time²), sparse, and the rigid motions that are set apart.
+#[derive(Clone, Debug)]
+pub struct SparseLevels {
+    /// Both in the pattern of their sum.
+    both: Pattern,
+    fast: Vec<f64>,
+    slow: Vec<f64>,
+    /// The fast one in its own.
+    alone: Pattern,
+    fast_alone: Vec<f64>,
+    /// How far these are from the matrices that are meant (2-norm), by what weighing with masses rounds; and how far F + S is from itself
+    /// without what it does along rigid motions.
+    errors: [f64; 2],
+    leak: f64,
+    /// No less than their norms.
+    sizes: [f64; 2],
+    /// Orthonormal, mass-weighted.
+    rigid: Mat<f64>,
+    /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
+    ends: OnceLock<Option<[f64; 2]>>,
+    is_total_definite: OnceLock<bool>,
+    /// By the number of inner steps.
+    first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
+}
+
+/// Where the first region ends, and the vector that proves it.
+#[derive(Clone, Debug)]
+struct First {
+    step: (f64, f64),
+    along: Mat<f64>,
+}
+
+/// Steps of Lanczos's recursion for the largest eigenvalue of F.
+const STEPS: usize = 60;
+
+/// Rooms that are tried above what it finds, relative to it.
+const ROOMS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 3e-2];
+
+/// How far below 0 eigenvalues of F may lie by rounding and differences, relative to its largest one; and if they do more than that.
+const BELOW: [f64; 2] = [1e-6, 1e-2];
+
+/// Rounds of inverse iteration for the vector that is stretched least.
+const ROUNDS: usize = 12;
+
+/// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
+const SHIFTS: u32 = 3;
+
+/// The relative width within which the first unstable step is sought.
+const WIDTH: f64 = 1e-4;
+
+impl SparseLevels {
+    /// From K of both levels and the mass of each degree of freedom; the columns of `rigid` are orthonormal and mass-weighted, and what the
+    /// stiffnesses do along them is projected out: forms that are definite on all vectors are so on those that are not rigid.
+    ///
+    /// # Errors
+    /// Masses that are not positive or as many as rows; numbers that are not finite; indices beyond the rows.
+    pub fn new(masses: &[f64], [fast, slow]: [&Triplets; 2], rigid: Mat<f64>) -> Result<SparseLevels> {
+        let n = masses.len();
+        if let Some((i, mass)) = masses.iter().enumerate().find(|(_, m)| !(m.is_finite() && **m > 0.0)) {
+            return Err(Error::input(&format!("masses[{i}]"), mass, "a mass must be positive"));
+        }
+        if [fast, slow].iter().any(|own| own.iter().any(|(_, _, x)| !x.is_finite())) {
+            return Err(Error::input("stiffness", "an entry that is not finite", "give finite numbers"));
+        }
+        let weighted = |own: &Triplets| -> Vec<_> {
+            let weight = |i: usize, j: usize| {
+                masses.get(i).zip(masses.get(j)).map_or(1.0, |(a, b)| a.sqrt() * b.sqrt())
+            };
+            own.iter().map(|&(i, j, x)| (i, j, x / weight(i, j))).collect()
+        };
+        let [fast_terms, slow_terms] = [fast, slow].map(weighted);
+        let (both, [fast, slow]) = Pattern::of(n, [&fast_terms, &slow_terms])?;
+        let (alone, [fast_alone]) = Pattern::of(n, [&fast_terms])?;
+        let sizes = [&fast, &slow].map(|own| both.size_of(own));
+        // Two roots, their product, the quotient.
+        let errors = sizes.map(|(size, _)| 4.1 * U * size);
+        let total: Vec<f64> = fast.iter().zip(&slow).map(|(f, s)| f + s).collect();
+        // P T P − T for the projection P on what is not rigid: ‖T V‖ twice and Vᵀ T V once.
+        let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
+        let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
+        let leak = 3.1 * (norm::frobenius(&image) + rounding);
+        let (ends, is_total_definite, first) = Default::default();
+        let sizes = sizes.map(|(size, _)| size);
+        Ok(SparseLevels {
+            both,
+            fast,
+            slow,
+            alone,
+            fast_alone,
+            errors,
+            leak,
+            sizes,
+            rigid,
+            ends,
+            is_total_definite,
+            first,
+        })
+    }
+
+    /// The number of degrees of freedom.
+    pub fn size(&self) -> usize {
+        self.both.size()
+    }
+
+    /// ‖F r‖/‖F‖ for the rigid motions r, rounded, and the same of S.
+    pub fn removed(&self) -> [f64; 2] {
+        [(&self.fast, self.sizes[0]), (&self.slow, self.sizes[1])].map(|(own, size)| {
+            let along = norm::frobenius(&self.both.times(own, &self.rigid));
+            if along == 0.0 { 0.0 } else { along / size }
+        })
+    }
+
+    /// The products of one factorization.
+    pub fn products(&self) -> f64 {
+        self.both.products()
+    }
+
+    /// The verdict at an outer step, for all stiffnesses within `epsilon` times their norms: [`Holds::Unstable`] is known of the matrices given
+    /// alone, [`Holds::NotTold`] beyond the first region.
+    pub fn verdict(&self, outer: &Outer, epsilon: f64) -> Holds {
+        if self.factors(outer, epsilon).is_some() {
+            return Holds::Stable;
+        }
+        let first = if epsilon == 0.0 { self.first(outer.inner_steps) } else { None };
+        let unstable = first.is_some_and(|first| self.is_unstable_along(&first.along, outer));
+        if unstable { Holds::Unstable } else { Holds::NotTold }
+    }
+
+    /// The largest ε, rounded down within a percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
+    /// where it is not for 0.
+    pub fn margin(&self, outer: &Outer) -> Option<f64> {
+        largest(1.01, |epsilon| self.factors(outer, epsilon).is_some())
+    }
+
+    /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
+    pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
+        self.first(inner_steps).map(|first| first.step)
+    }
+
+    /// The positions, mass-weighted, of the mode that is unstable first, rounded: of length 1.
+    pub fn first_mode(&self, inner_steps: u64) -> Option<Vec<f64>> {
+        self.first(inner_steps).map(|first| first.along.col_as_slice(0).to_vec())
+    }
+
+    fn first(&self, inner_steps: u64) -> Option<First> {
+        let mut known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        known.entry(inner_steps).or_insert_with(|| self.find_first(inner_steps)).clone()
+    }
+
+    fn find_first(&self, inner_steps: u64) -> Option<First> {
+        let [_, high] = self.ends(0.0)?;
+        let at = |step: f64| Outer::new(step, inner_steps).ok();
+        let stable = |step: f64| at(step).is_some_and(|outer| self.factors(&outer, 0.0).is_some());
+        // At the latest where the fastest mode alone has p θ = π.
+        let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
+        let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
+        let start = (1..=12).map(|k| top * 0.5f64.powi(k)).find(|&step| stable(step))?;
+        let (lo, _) = bisected((start, (2.0 * start).min(top)), WIDTH, |step| Some(stable(step)));
+        // The vector that is stretched least there tells where it is no more.
+        let along = self.stretched(&at(lo)?)?;
+        let unstable = |step: f64| at(step).is_some_and(|outer| self.is_unstable_along(&along, &outer));
+        let first =
+            (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
+        let hi = first.into_iter().find(|&step| unstable(step))?;
+        let (_, hi) = bisected((lo, hi), WIDTH / 64.0, |step| Some(!unstable(step)));
+        Some(First { step: (lo, hi), along })
+    }
+
+    /// The factors that prove the first region, rigid motions apart; `None` where they prove nothing.
+    fn factors(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
+        let [low, high] = self.ends(epsilon)?;
+        let [offset, slope] = chord(outer, low, high)?;
+        let off = [0, 1].map(|k| self.errors[k] + epsilon * self.sizes[k]);
+        // (3) of proofs/REGION.md follows where F + S > 0.
+        if !self.is_total_definite(off[0] + off[1]) {
+            return None;
+        }
+        let [fast, slow] = [-slope * outer.inner_square, -outer.half_kick()];
+        let rounding = 4.0 * U * offset.abs()
+            + 4.0 * STEP_ERROR * (fast.abs() * self.sizes[0] + slow.abs() * self.sizes[1]);
+        let slack = 1.01 * (rounding + fast.abs() * off[0] + slow.abs() * off[1]);
+        self.both.factored(offset, &[(fast, &self.fast), (slow, &self.slow)], slack)
+    }
+
+    /// Bounds on the spectrum of all F within ε times their norm.
+    fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
+        let found = self.ends.get_or_init(|| {
+            let top = self.highest();
+            let slack = self.errors[0] + 4.0 * U * self.sizes[0];
+            let is_above =
+                |high: f64| self.alone.factored(high, &[(-1.0, &self.fast_alone)], slack).is_some();
+            let is_below = |low: f64| self.alone.factored(low, &[(1.0, &self.fast_alone)], slack).is_some();
+            let high = ROOMS.iter().map(|room| top * (1.0 + room)).find(|&high| is_above(high))?;
+            let below = BELOW.iter().map(|room| room * high).find(|&below| is_below(below))?;
+            Some([-below, high])
+        });
+        let off = epsilon * self.sizes[0];
+        found.map(|[low, high]| [low - off, high + off])
+    }
+
+    /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`: F + S − τ has no more negative eigenvalues than there are of
+    /// these, along which F + S vanishes, so that all others are above τ.
+    fn is_total_definite(&self, off: f64) -> bool {
+        let total: [(f64, &[f64]); 2] = [(1.0, &self.fast), (1.0, &self.slow)];
+        let slack = 1.01 * (off + self.leak + 4.0 * U * (self.sizes[0] + self.sizes[1]));
+        let proves = || {
+            if self.rigid.ncols() == 0 {
+                return self.both.factored(0.0, &total, slack).is_some();
+            }
+            let mut tau = 1.1 * slack;
+            for _ in 0..SHIFTS {
+                let Some((negative, own)) = self.both.negative(tau, &total) else { return false };
+                if tau > 1.01 * (own + slack) {
+                    return negative <= self.rigid.ncols();
+                }
+                tau = 1.1 * (own + slack);
+            }
+            false
+        };
+        if off > self.errors[0] + self.errors[1] {
+            proves()
+        } else {
+            *self.is_total_definite.get_or_init(proves)
+        }
+    }
+
+    /// The largest eigenvalue of F, from within: Lanczos's recursion, rounded.
+    fn highest(&self) -> f64 {
+        let n = self.size();
+        let begin = start(n);
+        let mut now = Mat::from_fn(n, 1, |i, _| begin[i]);
+        now = &now / faer::Scale(now.norm_l2());
+        let mut before = Mat::<f64>::zeros(n, 1);
+        let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);
+        for _ in 0..STEPS.min(n) {
+            let last = beside[beside.len() - 1];
+            let mut next = self.alone.times(&self.fast_alone, &now) - &before * faer::Scale(last);
+            let along = (next.transpose() * &now)[(0, 0)];
+            next -= &now * faer::Scale(along);
+            diagonal.push(along);
+            let length = next.norm_l2();
+            beside.push(length);
+            if length <= 1e-12 * (along.abs() + last) {
+                break;
+            }
+            before = now;
+            now = next / faer::Scale(length);
+        }
+        let k = diagonal.len();
+        let small = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
+            0 => diagonal[i],
+            1 => beside[i.max(j)],
+            _ => 0.0,
+        });
+        small.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default().last().copied().unwrap_or(0.0)
+    }
+
+    /// The vector for which α − β h² F − M is least, rounded: inverse iteration with the factors at the step, or a little below.
+    fn stretched(&self, outer: &Outer) -> Option<Mat<f64>> {
+        let below =
+            |k: i32| Outer::new(outer.step * (1.0 - WIDTH * (2.0f64.powi(k) - 1.0)), outer.inner_steps).ok();
+        let factors = (0..10).filter_map(below).find_map(|outer| self.factors(&outer, 0.0))?;
+        let begin = start(self.size());
+        let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
+        for _ in 0..ROUNDS {
+            x = factors.solve(x)?;
+            x -= &self.rigid * (self.rigid.transpose() * &x);
+            let length = x.norm_l2();
+            if !(length.is_finite() && length > 0.0) {
+                return None;
+            }
+            x /= faer::Scale(length);
+        }
+        Some(x)
+    }
+
+    /// Whether E(h² xᵀFx) < xᵀMx for sure, all eigenvalues of h² F being where E is concave.
+    fn is_unstable_along(&self, x: &Mat<f64>, outer: &Outer) -> bool {
+        let Some([low, high]) = self.ends(0.0) else { return false };
+        if chord(outer, low, high).is_none() || !self.is_total_definite(self.errors[0] + self.errors[1]) {
+            return false;
+        }
+        let n = self.size() as f64;
+        // Sums of n products each, of |x|ᵀ|A||x| ≤ ‖A‖; what is left of the length and along rigid motions.
+        let length = 1.0 - 1.01 * (n + 4.0) * U;
+        let forms = [&self.fast, &self.slow].map(|own| (x.transpose() * self.both.times(own, x))[(0, 0)]);
+        let along = norm::frobenius(&(self.rigid.transpose() * x)) + n * U;
+        let off = [0, 1].map(|k| self.errors[k] + (2.1 * along + 4.04 * (n + 4.0) * U) * self.sizes[k]);
+        let [fast, slow] = [forms[0] - off[0], forms[1] - off[1]];
+        // E falls: what the quotient is at least.
+        let quotient = (fast * length).min(fast / length);
+        if !(quotient > low && quotient < high && slow > 0.0) {
+            return false;
+        }
+        let stretch = Half::new(outer.scaled_down(quotient), outer.inner_steps).stretch();
+        stretch.hi < (1.0 - 4.0 * STEP_ERROR) * outer.half_kick() * slow * length
+    }
+}
