@@ -20,9 +20,9 @@ import numpy.typing as npt
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
+from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text, written
 
 if TYPE_CHECKING:
     import pandas
@@ -154,17 +154,22 @@ class System(Frozen):
         >>> system.decide().stable
         True
         """
+        if not isinstance(potentials, Mapping):
+            raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessian)")
+        known = doubles("accuracy", accuracy)
+        if known.ndim > 0:
+            raise KickdriftError("accuracy", shown(accuracy), "give one number")
         steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
         matrices = {name: doubles(name, hessian) for name, (_, hessian) in potentials.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
-        document: dict[str, Any] = {"accuracy": float(accuracy), **{name: _at(name) for name in arrays}}
+        document: dict[str, Any] = {"accuracy": float(known), **{name: _at(name) for name in arrays}}
         named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
         document["potentials"] = [
-            {"name": name, "step": str(step), "stiffness": _at(f"hessian{place}")}
+            {"name": name, "step": written(name, step), "stiffness": _at(f"hessian{place}")}
             for place, (name, step) in enumerate(steps.items())
         ]
         arrays |= {f"hessian{place}": matrix for place, matrix in enumerate(matrices.values())}
