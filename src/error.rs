@@ -197,6 +197,20 @@ pub fn filled<T: Clone>(value: T, n: u64) -> Result<Vec<T>> {
     Ok(all)
 }
 
+/// That memory has room for so many bytes, before work that will take them piece by piece.
+///
+/// # Errors
+/// [`Kind::Budget`] where it has not.
+pub(crate) fn room(bytes: u128, fewer: &str) -> Result<()> {
+    // A compiler may leave out what is reserved and not looked at.
+    let fits = |n| std::hint::black_box(&mut Vec::<u8>::new()).try_reserve_exact(n).is_ok();
+    if usize::try_from(bytes).is_ok_and(fits) {
+        return Ok(());
+    }
+    let work = format!("work that takes {:.1} GB", bytes as f64 / 1e9);
+    Err(Error::too_much(work, format!("there is no memory for it: choose {fewer}")))
+}
+
 /// Characters that are not seen or turn the direction of what follows: marks, embeddings, isolates, tags, a byte order mark.
 fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}'

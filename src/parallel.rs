@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, room};
 
 thread_local! {
     /// What stops the work under way on this thread.
@@ -106,6 +106,7 @@ pub(crate) fn try_map<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
+    room((size_of::<Mutex<Option<Result<R>>>>() * items.len()) as u128, "fewer of them at once")?;
     let places: Vec<Mutex<Option<Result<R>>>> = items.iter().map(|_| Mutex::new(None)).collect();
     let (failed, flag) = (AtomicUsize::new(usize::MAX), STOP.with_borrow(Clone::clone));
     each(items.len(), &|n| {

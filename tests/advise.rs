@@ -297,6 +297,18 @@ fn three_clocks_that_are_no_multiples_are_still_decided() {
     assert_eq!(advice.schemes[0].rows.len(), 2);
 }
 
+/// 30,001 fast steps in a period: a silent slow clock has closed tongues only, which are not looked for one by one.
+#[test]
+fn steps_that_all_but_agree_are_answered_by_what_is_shown_of_them() {
+    let advice = ask(&["11fs"], &["3,3.0001"]);
+    let row = &advice.schemes[0].rows[0];
+    assert_eq!((row.found.kind, row.intervals.len(), row.below.is_none()), (Kind::Elliptic, 0, true));
+    // The fast clock's own limit T/π, to which no further interval comes.
+    let verlet = 11.0 / std::f64::consts::PI * 30001.0 / 30000.0;
+    let lone = row.above.as_ref().unwrap();
+    assert!((lone.lower.0 / verlet - 1.0).abs() < 1e-14 && lone.upper.is_none(), "{lone:?}");
+}
+
 #[test]
 fn both_routes_find_the_same_first_edge() {
     // Two clocks by the vibrating string; the same as three, the middle one all but silent, by positive orbits.

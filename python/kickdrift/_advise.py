@@ -15,7 +15,7 @@ from kickdrift import _plot
 from kickdrift._document import Asked, Document, Row, fields, frame
 from kickdrift._errors import KickdriftError
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, text
+from kickdrift._numbers import Exact, items, text, written
 
 if TYPE_CHECKING:
     import pandas
@@ -247,7 +247,9 @@ def advise(
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes and masses of its own")
         return periods.advise(steps, engine=engine, band=band, length=length)
-    named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in periods)
+    given_alone = [periods] if isinstance(periods, str) else periods
+    alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
+    named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
     given: dict[str, list[str]] = {"period": [], "bond": [], "on": []}
     for name, value in named:
         own = str(_time("periods", value))
@@ -298,7 +300,7 @@ def _text(engine: str | PathLike[str]) -> str:
 
 def _time(field: str, value: Time | None) -> str | None:
     if value is None or isinstance(value, str):
-        return value
+        return value and written(field, value)
     return f"{text(field, value)}fs"
 
 
@@ -311,7 +313,8 @@ def _name(field: str, name: str) -> str:
 def _schemes(steps: str | Sequence[Any]) -> list[str]:
     """Schemes as the program reads them; one scheme may stand alone."""
     if isinstance(steps, str):
-        return [steps]
-    several = len(steps) > 0 and isinstance(steps[0], list | tuple)
-    schemes = steps if several else [steps] if len(steps) else []
+        return [written("steps", steps)]
+    own = items("steps", steps, "give the steps of a scheme, the inner one first, as '0.5fs,4fs' or [0.5, 4]")
+    several = bool(own) and isinstance(own[0], list | tuple)
+    schemes = own if several else [own] if own else []
     return [",".join(str(_time("steps", step)) for step in scheme) for scheme in schemes]

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from kickdrift import _native
 from kickdrift._errors import required
-from kickdrift._numbers import frozen
+from kickdrift._numbers import frozen, written
 
 if TYPE_CHECKING:
     import pandas
@@ -37,7 +37,7 @@ def ask(arguments: Sequence[str], form: str = "json") -> str:
 def given(**options: str | int | None) -> list[str]:
     """Options that are not None, as flags."""
     pairs = ((name, value) for name, value in options.items() if value is not None)
-    return [f"--{name.replace('_', '-')}={value}" for name, value in pairs]
+    return [f"--{name.replace('_', '-')}={written(name, value)}" for name, value in pairs]
 
 
 class Frozen:
@@ -108,7 +108,7 @@ class Asked(Frozen):
 def question(name: str, budget: int | None = None, **fields: str | int | float | bool | None) -> Asked:
     """A question with fields; those that are None or False are not given."""
     given = ((field, value) for field, value in fields.items() if value is not None and value is not False)
-    return Asked(name, {field: "true" if value is True else str(value) for field, value in given}, budget)
+    return Asked(name, {field: "true" if value is True else written(field, value) for field, value in given}, budget)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -71,6 +71,14 @@ class BudgetError(KickdriftError):
         return type(self), (self.field, self.needed, self.remedy)
 
 
+def shown(value: object) -> str:
+    """The representation of a value; its type where Python refuses to write it, as integers of thousands of digits."""
+    try:
+        return repr(value)
+    except ValueError:
+        return f"a {type(value).__name__} of too many digits"
+
+
 def _short(value: str) -> str:
     line = "".join(" " if ord(c) < 32 else c for c in value)
     return line if len(line) <= 60 else f"{line[:30]}...{line[-15:]} ({len(line)} characters)"

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift import _native
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
 
 Exact: TypeAlias = int | float | Fraction | Decimal | str | Number | Any
@@ -105,7 +105,7 @@ def _exact(value: SupportsRatio) -> Number:
     try:
         above, below = value.as_integer_ratio()
     except (AttributeError, OverflowError, ValueError):
-        raise KickdriftError("number", repr(value), "give a finite float") from None
+        raise KickdriftError("number", shown(value), "give a finite float") from None
     return _native.number("number", Fraction(int(above), int(below)))
 
 
@@ -121,15 +121,51 @@ def range_text(field: str, value: Range) -> str:
     try:
         lo, hi = value
     except (TypeError, ValueError):
-        raise KickdriftError(field, repr(value), "give a pair (lo, hi), or a text as '1/100..7/2'") from None
+        raise KickdriftError(field, shown(value), "give a pair (lo, hi), or a text as '1/100..7/2'") from None
     return f"{text(field, lo)}..{text(field, hi)}"
+
+
+def written(field: str, value: Any) -> str:
+    """A value as the text that it prints, which the library can read.
+
+    Raises
+    ------
+    KickdriftError
+        Halves of surrogate pairs, which no text has, and integers of more digits than Python writes.
+    """
+    try:
+        own = str(value)
+        own.encode()
+    except ValueError:
+        raise KickdriftError(
+            field,
+            ascii(value) if isinstance(value, str) else shown(value),
+            "write a number or a text of some hundred characters",
+        ) from None
+    return own
+
+
+def items(field: str, value: Any, remedy: str) -> list[Any]:
+    """The items of a list, a one-dimensional array or another iterable; no number has any.
+
+    Raises
+    ------
+    KickdriftError
+        What has no items, and arrays with masked entries.
+    """
+    if np.ma.is_masked(value):
+        raise KickdriftError(field, "masked entries", "fill them or leave them out: every entry counts")
+    try:
+        return list(value)
+    except TypeError:
+        raise KickdriftError(field, shown(value), remedy) from None
 
 
 def labels_text(value: Labels) -> str:
     """Labels as the library reads them."""
-    if isinstance(value, str):
-        return value
-    return ",".join(str(m) for m in ([value] if isinstance(value, int) else value))
+    if isinstance(value, str | int):
+        return written("m", value)
+    return ",".join(written("m", m) for m in items("m", value, "give a label, several, or a text as '1,3,7..9'"))
 
 
 #: Units of time by name, in fs.
@@ -196,10 +232,16 @@ def simplest(value: float, ulps: Fraction | int = Fraction(1, 2)) -> Fraction:
     >>> kd.simplest(0.1), kd.simplest(0.1 * 3, ulps=2), kd.simplest(1 / 3)
     (Fraction(1, 10), Fraction(3, 10), Fraction(1, 3))
     """
-    if not 0 < value < np.inf:
-        raise KickdriftError("number", repr(value), "give a positive finite float")
-    width = ulps * Fraction(float(np.spacing(value)))
-    return _between(Fraction(value) - width, Fraction(value) + width)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
+    try:
+        known = float(value) if isinstance(value, int | float | np.floating) else np.nan
+    except OverflowError:
+        known = np.inf
+    if not 0 < known < np.inf:
+        raise KickdriftError("number", shown(value), "give a positive finite float")
+    width = ulps * Fraction(float(np.spacing(value if isinstance(value, np.floating) else known)))
+    return _between(Fraction(known) - width, Fraction(known) + width)
 
 
 def _between(lo: Fraction, hi: Fraction) -> Fraction:
@@ -228,10 +270,10 @@ def doubles(field: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
         if own.dtype.kind == "c" or (own.dtype.kind == "O" and any(isinstance(x, complex) for x in own.flat)):
             raise KickdriftError(field, "complex entries", "give real numbers")
         own = np.array(own, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as cause:
+    except (TypeError, ValueError, OverflowError) as cause:
         if isinstance(cause, KickdriftError):
             raise
-        raise KickdriftError(field, repr(value), "give an array of numbers") from None
+        raise KickdriftError(field, shown(value), "give an array of numbers") from None
     if not np.isfinite(own).all():
         where = ", ".join(str(int(n)) for n in np.argwhere(~np.isfinite(own))[0])
         raise KickdriftError(field, f"an entry that is not finite, at [{where}]", "give finite numbers")

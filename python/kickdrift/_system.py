@@ -20,9 +20,9 @@ import numpy.typing as npt
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
-from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text
+from kickdrift._numbers import Exact, Range, doubles, duration, frozen, number, range_text, text, written
 
 if TYPE_CHECKING:
     import pandas
@@ -159,11 +159,16 @@ class System(Frozen):
         >>> system.decide().stable
         True
         """
+        if not isinstance(potentials, Mapping):
+            raise KickdriftError("potentials", shown(potentials), "give a mapping of names to (step, Hessian)")
+        known = doubles("accuracy", accuracy)
+        if known.ndim > 0:
+            raise KickdriftError("accuracy", shown(accuracy), "give one number")
         steps = {name: _step(name, step, time_unit) for name, (step, _) in potentials.items()}
         arrays = {"masses": doubles("masses", masses)}
         if positions is not None:
             arrays["positions"] = doubles("positions", positions)
-        document: dict[str, Any] = {"accuracy": float(accuracy), **{name: _at(name) for name in arrays}}
+        document: dict[str, Any] = {"accuracy": float(known), **{name: _at(name) for name in arrays}}
         named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
         named |= {"periodic": periodic, "keep_rigid": keep_rigid}
         document |= {key: value for key, value in named.items() if value}
@@ -172,7 +177,7 @@ class System(Frozen):
         document["potentials"] = []
         for place, (name, (_, hessian)) in enumerate(potentials.items()):
             at, own = _compressed(place, name, hessian) or _dense(place, name, hessian)
-            document["potentials"].append({"name": name, "step": str(steps[name]), "stiffness": at})
+            document["potentials"].append({"name": name, "step": written(name, steps[name]), "stiffness": at})
             arrays |= own
         return System(MappingProxyType(document), arrays, tuple(notes))
 

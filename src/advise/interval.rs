@@ -1,5 +1,7 @@
 //! The unstable intervals of an outer step at a fixed ratio: tongues, told in fs.
 
+use num_traits::Zero;
+
 use crate::error::Result;
 use crate::number::rational::from_f64_exact;
 use crate::number::{Ball, Laurent, Ratio, Rational, Real};
@@ -63,6 +65,11 @@ impl<'a> Intervals<'a> {
         self.low.last()
     }
 
+    /// The first label that can be open: where the slow clock is silent, all before the last are closed.
+    fn first_open(&self) -> u64 {
+        if self.low.rho().is_zero() { self.last() } else { 1 }
+    }
+
     /// √(s/L1) p/q, the outer step, over an enclosure of s.
     fn step(&self, lo: f64, hi: f64) -> (f64, f64) {
         let stiffness = self.fast.enclosure(BITS);
@@ -120,7 +127,7 @@ impl<'a> Intervals<'a> {
     /// The open ones that begin below a step, from the first on: at most so many.
     pub fn up_to(&self, step: f64, count: usize) -> Result<Vec<Unstable>> {
         let mut found = Vec::new();
-        for from in (1..=self.last()).step_by(AT_ONCE as usize) {
+        for from in (self.first_open()..=self.last()).step_by(AT_ONCE as usize) {
             for gaps in self.gaps(from, self.last().min(from + AT_ONCE - 1))? {
                 if found.len() == count || self.lower(&gaps).0 > step {
                     return Ok(found);
@@ -134,13 +141,17 @@ impl<'a> Intervals<'a> {
     /// The nearest open tongues about a stable outer step: the one below it, the one above it.
     pub fn about(&self, outer: f64) -> Result<[Option<Unstable>; 2]> {
         // Lower edges rise with the label: the first label whose tongue begins above the step.
-        let (mut lo, mut hi) = (1, self.last() + 1);
+        let (mut lo, mut hi) = (self.first_open(), self.last() + 1);
         while lo < hi {
             let middle = lo + (hi - lo) / 2;
             let begins = self.lower(&self.gap(middle)?).0;
             if begins > outer { hi = middle } else { lo = middle + 1 }
         }
-        let below = (1..lo).rev().map(|label| self.get(label)).find_map(Result::transpose).transpose()?;
+        let below = (self.first_open()..lo)
+            .rev()
+            .map(|label| self.get(label))
+            .find_map(Result::transpose)
+            .transpose()?;
         let above =
             (lo..=self.last()).map(|label| self.get(label)).find_map(Result::transpose).transpose()?;
         Ok([below, above])

@@ -104,6 +104,9 @@ const NO_MODE: f64 = 1e-2;
 /// The most products unless a budget is given: a minute or two.
 pub const MOST_PRODUCTS: u64 = 1_000_000_000_000;
 
+/// A mode's inner step costs, over all the half periods that advice looks at, as much as so many products: some 1500 of them, measured.
+const OF_AN_INNER_STEP: u64 = 30_000;
+
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;
 
@@ -116,14 +119,21 @@ impl Molecule {
         Molecule { kernel, unit, names, accuracy }
     }
 
-    /// The products that advice on so many degrees of freedom at so many schemes costs, about: factorizations that bisect to edges and
-    /// margins, sampled eigenvalues; with a friction those of whole periods.
+    /// The products that advice on so many degrees of freedom at these schemes costs, about: factorizations that bisect to edges and
+    /// margins, sampled eigenvalues; with a friction those of whole periods. For each of these every fast mode is followed over the inner
+    /// steps of half an outer one.
     ///
     /// # Errors
     /// A budget error where that is more than `most`.
-    pub fn allow(size: usize, schemes: usize, has_friction: bool, most: Option<u64>) -> Result<u64> {
-        let cubes = if has_friction { 800 } else { 200 };
-        let cost = (size as u64).saturating_pow(3).saturating_mul(cubes * schemes as u64);
+    pub fn allow(size: usize, schemes: &[Scheme], has_friction: bool, most: Option<u64>) -> Result<u64> {
+        let (n, cubes) = (size as u64, if has_friction { 800 } else { 200 });
+        let of_scheme = |scheme: &Scheme| {
+            let inner_steps = (scheme.outer() / scheme.inner()).ceil().to_u64().unwrap_or(u64::MAX);
+            let followed = inner_steps.saturating_mul(n).saturating_mul(OF_AN_INNER_STEP);
+            n.saturating_pow(3).saturating_mul(cubes).saturating_add(followed)
+        };
+        let cost = schemes.iter().map(of_scheme).fold(0, u64::saturating_add);
+        let schemes = schemes.len();
         let most = most.unwrap_or(MOST_PRODUCTS);
         if cost <= most {
             return Ok(cost);
@@ -133,7 +143,7 @@ impl Molecule {
             "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {told:.1e} products, the budget is {limit:.1e}",
             if schemes == 1 { "" } else { "s" }
         );
-        Err(Error::budget(work, cost).or("ask about fewer schemes"))
+        Err(Error::budget(work, cost).or("ask about fewer schemes, or longer inner steps"))
     }
 
     /// The findings at each scheme, all periods within `band` of theirs.

@@ -54,13 +54,14 @@ impl<'a> Bases<'a> {
         self.rows.get((row - self.grid.rows().0) as usize)?.get_or_init(make).as_ref()
     }
 
-    /// The second clocks of all rows as bases of the pairs in the columns `first..=last`; empty where rows are shared.
-    pub fn rows_within(&self, first: u64, last: u64) -> Vec<Option<Base>> {
-        if !self.rows.is_empty() {
-            return Vec::new();
-        }
-        let (low, high) = self.grid.rows();
-        (low..=high).map(|row| self.row_base(row, self.turns(first, row).saturating_sub(1), last)).collect()
+    /// Whether one table of rows serves all bands.
+    pub fn rows_are_shared(&self) -> bool {
+        !self.rows.is_empty()
+    }
+
+    /// The second clock of row j as the base of pairs in the columns `first..=last`.
+    pub fn row_within(&self, row: u64, first: u64, last: u64) -> Option<Base> {
+        self.row_base(row, self.turns(first, row).saturating_sub(1), last)
     }
 
     /// The second clock of a row with the turns from `first` on that pairs up to column `last` make.

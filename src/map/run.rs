@@ -9,7 +9,7 @@ use super::resources::Resources;
 use super::shard::{Numbered, Shard, bands};
 use super::store::Store;
 use super::work::Work;
-use crate::error::{Error, Result, filled};
+use crate::error::{Error, Result, filled, room};
 use crate::parallel::{map, try_map};
 use crate::verdict::Verdict;
 
@@ -85,6 +85,10 @@ impl<'a> Map<'a> {
         self.allow()?;
         let Map { grid, products, shard, resources, store } = self;
         let (pool, bases) = (resources.pool()?, Bases::new(grid));
+        let bands = shard.bands(grid);
+        let widest = bands.clone().map(|(_, (_, columns))| columns).max().unwrap_or(0);
+        let bytes = pool.size() as u128 * Work::bytes(grid, &bases, widest);
+        room(bytes, "fewer threads, a larger step2 or a smaller h2-range")?;
         let compute = |columns| {
             resources.go_on()?;
             let work = Work::new(grid, &bases, resources, columns);
@@ -102,8 +106,10 @@ impl<'a> Map<'a> {
             }
         };
         let mut counters = Counters::default();
-        for group in shard.bands(grid).chunks(AHEAD * pool.size()) {
-            let done = pool.install(|| try_map(group, obtain))?;
+        let mut bands = bands.peekable();
+        while bands.peek().is_some() {
+            let group: Vec<Numbered> = bands.by_ref().take(AHEAD * pool.size()).collect();
+            let done = pool.install(|| try_map(&group, obtain))?;
             for (n, band) in done {
                 counters.add(&band.counters);
                 see(n, band)?;

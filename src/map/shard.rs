@@ -53,7 +53,7 @@ impl fmt::Display for Shard {
 const PAIRS: usize = 1 << 15;
 
 /// The columns of each band of a grid: (first, count). Depends on the grid alone.
-pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> + use<> {
+pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> + Clone + use<> {
     let (columns, rows) = grid.shape();
     let width = (PAIRS / rows).clamp(1, columns);
     let first = grid.columns().0;
@@ -67,12 +67,12 @@ pub(super) fn bands(grid: &Grid) -> impl ExactSizeIterator<Item = (u64, usize)> 
 pub(super) type Numbered = (u64, (u64, usize));
 
 impl Shard {
-    pub(super) fn bands(self, grid: &Grid) -> Vec<Numbered> {
-        (0..).zip(bands(grid)).filter(|(n, _)| n % self.n == self.k - 1).collect()
+    pub(super) fn bands(self, grid: &Grid) -> impl Iterator<Item = Numbered> + Clone + use<> {
+        (0..).zip(bands(grid)).filter(move |(n, _)| n % self.n == self.k - 1)
     }
 
     /// The number of pairs in this part of the grid.
     pub fn pairs(self, grid: &Grid) -> u64 {
-        self.bands(grid).iter().map(|(_, (_, columns))| *columns as u64 * grid.shape().1 as u64).sum()
+        self.bands(grid).map(|(_, (_, columns))| columns as u64 * grid.shape().1 as u64).sum()
     }
 }

@@ -9,7 +9,7 @@ use super::grid::Grid;
 use super::resources::Resources;
 use crate::error::{Error, Result};
 use crate::orbit::filter::{self, Group};
-use crate::orbit::floquet::Base;
+use crate::orbit::floquet::{Base, Turn};
 use crate::vector::instructions::{Instructions, Task};
 use crate::verdict::{Limits, decide};
 
@@ -38,11 +38,18 @@ pub(super) struct Work<'a> {
     first: u64,
     /// The columns' bases, as they are asked for.
     firsts: Vec<OnceCell<Option<Base>>>,
-    seconds: Vec<Option<Base>>,
+    /// The rows', where those are not shared by all bands.
+    seconds: Vec<OnceCell<Option<Base>>>,
     gcds: Vec<u32>,
     /// Positions in the order of the number of updates.
     order: Vec<u32>,
 }
+
+/// Of a pair at work: its divisor, key, place among the sorted and among the undecided, the two while they are sorted, verdict, tier.
+const BYTES_A_PAIR: u128 = 4 + 4 + 4 + 4 + 12 + 1 + 1;
+
+/// Of a row that is the base of pairs in one band: in a band of one column it makes three turns.
+const BYTES_A_ROW: usize = size_of::<OnceCell<Option<Base>>>() + 3 * size_of::<Turn>();
 
 impl<'a> Work<'a> {
     pub fn new(
@@ -60,11 +67,18 @@ impl<'a> Work<'a> {
             gcd::with_run(&[i / common, b], first_row, gcds);
             gcds.iter_mut().for_each(|g| *g *= common as u32);
         }
-        let firsts = (0..columns).map(|_| OnceCell::new()).collect();
-        let seconds = bases.rows_within(first, first + columns as u64 - 1);
+        let cells = |n: usize| (0..n).map(|_| OnceCell::new()).collect();
+        let (firsts, seconds) = (cells(columns), cells(if bases.rows_are_shared() { 0 } else { rows }));
         let mut work = Work { grid, bases, resources, first, firsts, seconds, gcds, order: Vec::new() };
         work.order = work.sorted();
         work
+    }
+
+    /// Bytes that a band of so many columns takes at most while it is worked on.
+    pub fn bytes(grid: &Grid, bases: &Bases, columns: usize) -> u128 {
+        let rows = grid.shape().1 as u128;
+        let own = if bases.rows_are_shared() { 0 } else { BYTES_A_ROW as u128 };
+        rows * (BYTES_A_PAIR * columns as u128 + own)
     }
 
     pub(super) fn multipliers(&self, n: usize) -> (u64, u64) {
@@ -177,8 +191,11 @@ impl<'a> Work<'a> {
 
     /// The base of a row: of this band or, as a rule, of all.
     fn second(&self, row: u64) -> Option<&Base> {
-        let own = self.seconds.get((row - self.grid.rows().0) as usize);
-        own.map_or_else(|| self.bases.row(row), Option::as_ref)
+        let Some(own) = self.seconds.get((row - self.grid.rows().0) as usize) else {
+            return self.bases.row(row);
+        };
+        let last = self.first + self.firsts.len() as u64 - 1;
+        own.get_or_init(|| self.bases.row_within(row, self.first, last)).as_ref()
     }
 
     fn allow(&self, kicks: u64) -> Result<()> {

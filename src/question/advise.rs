@@ -224,7 +224,7 @@ impl Question for Advised {
         let scene = work.read(file)?;
         let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
         let size = scene.model().size();
-        let cost = Molecule::allow(size, self.schemes.len(), friction.is_some(), work.budget)?;
+        let cost = Molecule::allow(size, &self.schemes, friction.is_some(), work.budget)?;
         let seconds = cost as f64 / PRODUCTS_A_SECOND;
         work.announce(&format!("advice on {size} degrees of freedom"), seconds);
         let findings = scene.molecule()?.0.advise(&self.schemes, &self.band, length, friction)?;

@@ -130,6 +130,26 @@ fn a_file_that_may_not_grow_so_large_is_an_error_and_nothing_is_left() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_map_that_memory_has_no_room_for_is_refused() {
+    let desk = Desk::new();
+    for line in [
+        // A column of 4e7 rows, and 6e7 columns side by side.
+        "map --lambda1 pi^2 --lambda2 1 --step1 1/20000 --step2 1/10000000 --h1-range 0..0.6 --h2-range 0..4",
+        "compare --lambda1 pi^2 --lambda2 1 --step1 1/60000000 --step2 1/60000000 --h1-range 0..1 --h2-range 0..1",
+    ] {
+        let line = format!("{line} --budget 1000000000000000000");
+        let output = under_shell(&desk, "ulimit -v 2000000", &line).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert!(
+            message.contains("there is no memory for it: choose") && message.lines().count() == 1,
+            "{message}"
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn an_input_without_an_end_is_refused() {
     let desk = Desk::new();
     for command in ["system", "verify", "advise", "advise --engine", "run", "explore --no-open"] {

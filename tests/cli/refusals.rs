@@ -335,6 +335,7 @@ fn work_beyond_the_budget_is_refused_with_its_cost_before_it_begins() {
         "closings --ratio 501/499 --budget 1000000",
         "advise --period 10fs --period 40fs --steps 3fs,3.0001fs --budget 1000000",
         "advise --period 10fs --period 20fs --period 40fs --engine n2.namd",
+        "advise tiny.json --steps 1/10000000fs,4fs",
         concat!(
             "system ",
             env!("CARGO_MANIFEST_DIR"),

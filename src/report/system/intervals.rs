@@ -98,6 +98,8 @@ pub fn document(own: &Intervals) -> Document {
         .field(Column::new("verdict").left(), |of| of.verdict.name().into());
     let number = |verdict: Holds| own.stretches.iter().filter(|own| own.verdict == verdict).count();
     let (unstable, undecided) = (number(Holds::Unstable), number(Holds::NotTold));
+    let is_place = |own: &&Stretch| own.verdict == Holds::NotTold && own.lo.next_up() == own.hi;
+    let places = own.stretches.iter().filter(is_place).count();
     let name = if own.number == "outer" { "the outer step" } else { &own.number };
     let inner = |steps| format!(", with {} in each", counted(steps as usize, "inner step", "inner steps"));
     let mut lines = vec![
@@ -106,8 +108,14 @@ pub fn document(own: &Intervals) -> Document {
             counted(unstable, "unstable interval", "unstable intervals"),
             own.inner_steps.map(inner).unwrap_or_default()
         ),
-        format!("  {} where nothing is proven", counted(undecided, "stretch", "stretches")),
+        format!("  {} where nothing is proven", counted(undecided - places, "stretch", "stretches")),
     ];
+    if places > 0 {
+        let all = counted(places, "isolated place", "isolated places");
+        lines.push(format!(
+            "  {all} between neighbouring doubles not decided, the same verdict on both sides"
+        ));
+    }
     let first = own.first_unstable();
     if let Some((lo, hi)) = first {
         lines.push(format!("  the first begins at {}", decimal::enclosure(lo, hi)));
@@ -119,4 +127,25 @@ pub fn document(own: &Intervals) -> Document {
         .entry("first_unstable", first.map(enclosure))
         .rows(record.table("stretches", "Verdicts on stretches of the number", &own.stretches))
         .summary(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::format::Format;
+
+    #[test]
+    fn a_place_between_neighbouring_doubles_is_no_stretch() {
+        let stretch = |lo: f64, hi: f64, verdict| Stretch { lo, hi, verdict };
+        let after = 1f64.next_up();
+        let stretches = vec![
+            stretch(0.5, 1.0, Holds::Stable),
+            stretch(1.0, after, Holds::NotTold),
+            stretch(after, 1.5, Holds::Stable),
+            stretch(1.5, 1.75, Holds::NotTold),
+        ];
+        let own = Intervals { number: "x".into(), is_discrete: false, inner_steps: None, stretches };
+        let text = document(&own).render(Format::Text).unwrap();
+        assert!(text.contains("  1 stretch where nothing is proven\n  1 isolated place between"), "{text}");
+    }
 }

@@ -27,7 +27,7 @@ use super::meet::Meeting;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, Twofold, rational};
 use crate::propagator::TwoClocks;
-use crate::tongue::edge::{Edge, Edges, Enclosure};
+use crate::tongue::edge::{Edge, Edges, Enclosure, negative_log2};
 use crate::tongue::gap::Gap;
 use crate::tongue::string::HalfString;
 use crate::verdict::{Limits, Side, Verdict, growth};
@@ -91,7 +91,7 @@ impl Peak {
 
 /// s and ln μ by golden section and certified enclosures: slow, and always right.
 fn fastest_by_bits(edges: &Edges, gap: &Gap, upper: &Edge) -> Result<(f64, f64)> {
-    let [a, b] = parted(edges, &gap.lower, upper)?;
+    let [a, b] = parted(edges, &gap.lower, upper, gap.width.0)?;
     let width = &b - &a;
     let ratio = rational::to_f64(&(&width / &a));
     let at = |u: f64| {
@@ -105,9 +105,11 @@ fn fastest_by_bits(edges: &Edges, gap: &Gap, upper: &Edge) -> Result<(f64, f64)>
 }
 
 /// Points at the edges, to within 1e-8 of their distance.
-fn parted(edges: &Edges, lower: &Edge, upper: &Edge) -> Result<[Rational; 2]> {
+fn parted(edges: &Edges, lower: &Edge, upper: &Edge, width: f64) -> Result<[Rational; 2]> {
     let [mut a, mut b] = [lower, upper].map(Enclosure::from);
-    let mut digits = 32;
+    // Those of the tongue's relative width (a binary digit is 0.3 decimal ones), and ten more.
+    let mut digits =
+        3 * negative_log2(&rational::from_f64_exact(width / lower.lo).expect("finite")) / 10 + 10;
     while (a.width() + b.width()) * Rational::from_integer(100_000_000.into()) > &b.lo - &a.hi {
         (a, b) = (edges.sharpened(lower, &a, digits)?, edges.sharpened(upper, &b, digits)?);
         digits *= 2;
@@ -247,5 +249,20 @@ mod tests {
         }
         // A bound on how often doubles give up: slow or fast forces of 1e-12 leave 1e-14 of an edge between the two.
         assert!(seen > 500 && left < seen / 5, "{left} of {seen}");
+    }
+
+    /// The widths relative to s are 1e-11 to 1e-12: edges by return maps are sharp enough, as 40 digits by kicks show.
+    #[test]
+    fn thin_tongues_of_a_long_period_grow_as_their_kicks_say() {
+        let edges = Edges::new(Ratio::new(30001, 30000).unwrap(), &ratio(121, 10_000)).unwrap();
+        for gap in Tongues::new(edges.ratio(), edges.rho()).unwrap().gaps(1, 2).unwrap() {
+            let upper = gap.upper.unwrap();
+            assert!(edges.is_long() && gap.width.1 < POINT * gap.lower.lo);
+            let [a, b] = [&gap.lower, &upper].map(|edge| edges.refine(edge, 40).unwrap().middle());
+            let exact = ln_multiplier_by_bits(&edges, &((a + b) / Rational::from_integer(2.into())), gap.m);
+            let (_, ln) = fastest_by_bits(&edges, &gap, &upper).unwrap();
+            // The rate is flat in the middle, to the square of the 1e-8 of a width that the place may be off.
+            assert!((ln / exact.unwrap() - 1.0).abs() < 1e-14, "{ln} {gap:?}");
+        }
     }
 }
