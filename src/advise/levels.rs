@@ -17,7 +17,7 @@
 use num_traits::Zero;
 
 use crate::error::{Error, Result};
-use crate::number::rational::from_f64_exact;
+use crate::number::rational::{enclose_f64, from_f64_exact};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::system::friction::{Damping, damped, masking};
@@ -219,6 +219,12 @@ impl Levels<'_> {
         }
         Ok(bisected((lo, hi), 0.0, at))
     }
+}
+
+/// Factors of a step as steps, rounded outward.
+pub(super) fn scaled((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
+    let times = |t: f64| enclose_f64(&(from_f64_exact(t).expect("a finite factor") * step));
+    (times(lo).0, times(hi).1)
 }
 
 /// The even and the odd orbit, (x, v) each.

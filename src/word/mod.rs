@@ -35,6 +35,7 @@ mod order;
 mod point;
 mod product;
 mod stability;
+mod trigonometric;
 
 pub use catalogue::{METHODS, Method, method};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
@@ -42,3 +43,4 @@ pub use order::Order;
 pub use point::{At, at};
 pub use product::{Forces, Polynomials, Product};
 pub use stability::{Edge, Interval, Stability};
+pub use trigonometric::Trigonometric;
