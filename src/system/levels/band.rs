@@ -44,7 +44,8 @@ impl Kernel {
         Some(bisected((lo, hi), 1e-6, |step| Some(holds(step))).0)
     }
     /// The longest step, within 1e-6, up to which the implicit midpoint rule for F beside kicks of S is proven stable: s h² S < 4, with the
-    /// slow periods shorter by `band` together and F' + s S > 0; theorem `implicit_explicit` in proofs/. `None` where F + S is not proven
+    /// slow periods shorter by `band` together and F' + s S > 0. Then P = 2/h − h S/2 and R = h (F + S)/2 are definite, and that is all there is
+    /// to show (theorem `both_definite` in proofs/; of one mode theorem `implicit_explicit` in proofs/). `None` where F + S is not proven
     /// definite or no step is proven.
     pub fn midpoint_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
         let most = (1.0 - band).powi(-2) * (1.0 + ROOM);
