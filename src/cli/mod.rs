@@ -103,11 +103,12 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Bands, Cite, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
             Advise(_)
                 | Bands(_)
+                | Compare(_)
                 | Cite(_)
                 | Map(_)
                 | Merge(_)

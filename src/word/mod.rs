@@ -30,6 +30,7 @@
 mod catalogue;
 mod coefficient;
 mod grammar;
+mod integrator;
 mod letters;
 mod order;
 mod point;
@@ -38,6 +39,7 @@ mod stability;
 mod trigonometric;
 
 pub use catalogue::{METHODS, Method, method};
+pub use integrator::{Bounded, Integrator};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::Order;
 pub use point::{At, at};

@@ -109,6 +109,11 @@ impl Trigonometric {
         }
     }
 
+    /// At s = h² Λ1.
+    pub(super) fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
+        self.verdict(&half_frequency(s), &Ball::from_rational(rho, BITS))
+    }
+
     /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
     /// told as `most`. Outside the enclosures every step is proven stable or unstable. Intervals thinner than 2^−44 of `most` are not told apart
     /// from edges that touch.
