@@ -260,6 +260,8 @@ fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
                 "families",
                 "fastest",
                 "friction",
+                "levers",
+                "levers_left_out",
                 "measured",
                 "moving",
                 "nearest_unstable",

@@ -1,10 +1,10 @@
 //! What is answered: scheme by scheme, and what to do.
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use super::edges::Edges;
 use super::interval::{Intervals, Unstable};
-use super::levels::{Found, Levels, Scheme, scaled};
+use super::levels::{Found, Levels, Scheme, longest_below, scaled};
 use super::levers::Levers;
 use super::mode::Mode;
 use super::question::{Question, is_stable};
@@ -364,19 +364,6 @@ impl Row {
         let edge = self.first.as_ref().and_then(|first| from_f64_exact(first.lower.0));
         edge.is_some_and(|edge| *outer < edge)
     }
-}
-
-/// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
-pub(super) fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
-    if scheme.steps().len() == 1 {
-        return Some(largest.min(limit).clone());
-    }
-    let step = scheme.last_but_one();
-    let mut count = (largest.min(limit) / step).floor();
-    if &count * step == *limit {
-        count -= Rational::one();
-    }
-    (count.to_f64()? >= 1.0).then(|| count * step)
 }
 
 /// ln 10 over the rate, in steps of this length.

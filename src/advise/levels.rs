@@ -14,7 +14,7 @@
 //!     (2)  J held at 0, free at T/2 > 0:   the odd orbit (0, 1) has x > 0 at every kick time, and v > 0 at the end.
 //! ```
 
-use num_traits::Zero;
+use num_traits::{One, ToPrimitive, Zero};
 
 use crate::error::{Error, Result};
 use crate::number::rational::{enclose_f64, from_f64_exact};
@@ -87,6 +87,19 @@ impl Scheme {
         *steps.last_mut().expect("at least one step") = outer;
         Scheme::new(steps)
     }
+}
+
+/// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
+pub(super) fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
+    if scheme.steps().len() == 1 {
+        return Some(largest.min(limit).clone());
+    }
+    let step = scheme.last_but_one();
+    let mut count = (largest.min(limit) / step).floor();
+    if &count * step == *limit {
+        count -= Rational::one();
+    }
+    (count.to_f64()? >= 1.0).then(|| count * step)
 }
 
 /// One mass, and the stiffness over mass (1/fs²) on each clock of a scheme.

@@ -8,10 +8,9 @@
 use num_bigint::BigInt;
 use num_traits::{One, Zero};
 
-use super::answer::longest_below;
 use super::constraint::Constraints;
 use super::engine::not_nested;
-use super::levels::{Levels, Scheme, scaled};
+use super::levels::{Levels, Scheme, longest_below, scaled};
 use super::mode::Mode;
 use super::question::Question;
 use super::unit::decimal;

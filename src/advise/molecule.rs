@@ -5,8 +5,8 @@
 
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::answer::{Status, longest_below};
-use super::levels::Scheme;
+use super::answer::Status;
+use super::levels::{Scheme, longest_below};
 use super::levers::{Bound, Lever, Levers, RATIOS, Way, bounded, least, multiple};
 use super::question::check_length;
 use crate::error::{Error, Result};

@@ -31,8 +31,11 @@ pub struct Args {
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
-    /// Integrators side by side instead: names of the catalogue (word --list), impulse, gautschi, molly-short, molly-linear, molly-long,
-    /// hairer-lubich, or words, with commas between them; over (h, lambda2/lambda1)
+    /// Integrators side by side instead, over (h, lambda2/lambda1): names of the catalogue, or words, with commas between them.
+    ///
+    /// The catalogue is that of word --list. Those with the exact flow of the fast force are impulse, gautschi, molly-short,
+    ///
+    /// molly-linear, molly-long, hairer-lubich. Without --lambda1 it is 1.
     #[arg(long, value_name = "A,B,...", requires_all = ["h_range", "h_step", "rho_range", "rho_step"], conflicts_with_all = ["lambda2", "max_sum", "rho"])]
     methods: Option<String>,
     /// The closed range of steps, with --methods.

@@ -180,7 +180,7 @@ impl Question for CompareMethods {
         let (across, up) = (to_f64(&self.h_step), to_f64(&self.rho_step));
         let ends = |all: &[f64], step: f64| (all[0] - step / 2.0, all[all.len() - 1] + step / 2.0);
         let ((left, right), (low, high)) = (ends(&steps, across), ends(&ratios, up));
-        let columns = sides.len().min(4);
+        let columns = if (5..=6).contains(&sides.len()) { 3 } else { sides.len().min(4) };
         let panel = |own: &Side| {
             let x = Axis::linear("*h*", left, right).of_time();
             let share = 100.0 * own.count(Bounded::Stable) as f64 / (steps.len() * ratios.len()) as f64;
@@ -201,7 +201,7 @@ impl Question for CompareMethods {
             })
         };
         let rows = sides.len().div_ceil(columns) as f64;
-        let sheet = Figure::new(20.0 + 52.0 * columns as f64, 16.0 + 58.0 * rows)
+        let sheet = Figure::new(20.0 + 58.0 * columns as f64, 16.0 + 58.0 * rows)
             .named("Integrators side by side")
             .columns(columns);
         let sheet = sides.iter().fold(sheet, |sheet, own| sheet.with(panel(own).legend(Place::Above)));

@@ -25,7 +25,7 @@ fn integrators_stand_side_by_side_and_their_counts_are_verified() {
     assert_eq!(desk.run(&["verify", "side.json"]).code, Some(0));
     // A count that is told off by one.
     let text =
-        String::from_utf8(desk.read("side.json")).unwrap().replacen("\"stable\": 128", "\"stable\": 127", 1);
+        String::from_utf8(desk.read("side.json")).unwrap().replacen("\"stable\":128", "\"stable\":127", 1);
     desk.write("side.json", &text);
     assert_eq!(desk.run(&["verify", "side.json"]).code, Some(2));
 }
