@@ -427,11 +427,8 @@ impl Question {
     fn masked(&self, scheme: &Scheme, rate: &Rational) -> Option<Lever> {
         let holds = |p: u64| -> Option<bool> {
             let other = scheme.with_outer(scheme.last_but_one() * Rational::from_integer(p.into())).ok()?;
-            let each = self
-                .faster()
-                .into_iter()
-                .map(|mode| Levels { scheme: &other, stiffness: self.with(mode) }.is_damped_by(rate));
-            each.fold(Some(true), |all, own| Some(all? && own?))
+            let damped = |mode| Levels { scheme: &other, stiffness: self.with(mode) }.is_damped_by(rate);
+            self.faster().into_iter().try_fold(true, |all, mode| Some(all && damped(mode)?))
         };
         (scheme.steps().len() > 1).then_some(())?;
         let found = (2..=MOST_MASKED).take_while(|&p| holds(p) == Some(true)).last()?;

@@ -61,7 +61,7 @@ enum Command {
     /// The (a, b) families of resonance curves, as tables.
     Curves(Asked<Curves>),
     /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
-    Compare(compare::Args),
+    Compare(Box<compare::Args>),
     /// Checks the Proposition exhaustively and exactly, with witnesses.
     Proposition(Asked<Proposition>),
     /// A, B, C, D and the trace of one ratio as polynomials in s and rho.

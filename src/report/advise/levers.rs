@@ -114,7 +114,7 @@ pub(super) fn lines(levers: &Levers) -> Vec<String> {
         ));
     }
     let solved = |own: &Lever| matches!(own.way, Way::Molly(_) | Way::Equilibrium | Way::ImplicitExplicit);
-    if levers.rows.iter().any(|own| solved(own)) {
+    if levers.rows.iter().any(solved) {
         lines.push(
             "             MOLLY and implicit-explicit: by linear theory alone; T/3 is published of kicks and drifts. MOLLY follows the fast motion \
              exactly; what its filter costs is not counted"
