@@ -86,9 +86,10 @@ class Advised(Document):
 
     @cached_property
     def levers(self) -> tuple[Row, ...]:
-        """What would let the outer step of the first scheme grow, one row each: other masses, constraints, methods, ratios.
-        ``first`` unstable step, ``band_edge`` (proven below), ``step`` to take and its ``bound``, costs a picosecond, ``gain``,
-        ``engines``; empty where they were left out.
+        """What would let the outer step of the first scheme grow: masses, constraints, methods, ratios, one row each.
+
+        ``first`` unstable step, ``band_edge`` (proven below), ``step`` to take and its ``bound``, costs a picosecond,
+        ``gain``, ``engines``; empty where they were left out.
 
         Examples
         --------
