@@ -1,7 +1,7 @@
 (** What every theorem of Main.v says and rests on; this output is kept in Assumptions.golden. *)
 
 From Coq Require Import Reals.
-From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa Proposition Plane Cone Returns.
+From Kickdrift Require Import Vocabulary Algebra Stability Floquet TanCriterion Respa ImplicitExplicit Proposition Plane Cone Returns.
 From Kickdrift Require Main.
 Open Scope R_scope.
 Set Printing Width 110.
@@ -34,6 +34,7 @@ Check Main.respa_trace. Print Assumptions Main.respa_trace.
 Check Main.respa_two_clocks. Print Assumptions Main.respa_two_clocks.
 Check Main.respa_tan. Print Assumptions Main.respa_tan.
 Check Main.respa_window. Print Assumptions Main.respa_window.
+Check Main.implicit_explicit. Print Assumptions Main.implicit_explicit.
 Check Main.proposition. Print Assumptions Main.proposition.
 Check Main.proposition_forward. Print Assumptions Main.proposition_forward.
 Check Main.proposition_backward. Print Assumptions Main.proposition_backward.

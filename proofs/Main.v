@@ -6,7 +6,7 @@
 
 From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
-  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa Closings Proposition Plane Perturbation
+  Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa ImplicitExplicit Closings Proposition Plane Perturbation
   Cone Returns Certificate PiCertificate EdgeCertificate.
 Open Scope R_scope.
 
@@ -145,6 +145,17 @@ Theorem respa_window : forall p h1 L1 h2 L2 th,
   2 < Rabs (tr (respa p h1 L1 h2 L2)) <->
   exists k, IZR k * PI - 2 * atan alpha < INR p * th < IZR k * PI.
 Proof. exact Respa.respa_window. Qed.
+
+(** The fast force L1 >= 0 by the implicit midpoint rule over the whole step: no resonance, whatever L1. *)
+Theorem implicit_explicit : forall h L1 L2, 0 < h -> 0 <= L1 ->
+  (-2 < tr (implicit_explicit_step h L1 L2) < 2 <-> h * h * L2 < 4 /\ 0 < L1 + L2) /\
+  (h * h * L2 < 4 -> 0 < L1 + L2 -> bounded_powers (implicit_explicit_step h L1 L2)) /\
+  (4 < h * h * L2 -> exponential_growth (implicit_explicit_step h L1 L2)).
+Proof.
+  intros; split; [now apply ImplicitExplicit.elliptic_iff | split].
+  - now apply ImplicitExplicit.implicit_explicit.
+  - now apply ImplicitExplicit.implicit_explicit_beyond.
+Qed.
 
 (** ** 4. The Proposition: eq. (9) iff eq. (10) *)
 

@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 59] = [
+const LINES: [&str; 60] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -74,6 +74,7 @@ const LINES: [&str; 59] = [
     "curves --a 1..1 --b 5..5",
     "compare --max-sum 8 --rho 1/25 --samples 20",
     "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+    "compare --methods respa-4,implicit-explicit,molly-long,gautschi --lambda1 pi^2/25 --h-range 0..16 --h-step 1/2 --rho-range 0..1/4 --rho-step 1/16",
     "proposition --max 7",
     "polynomial --ratio 7/4",
     "polynomial --ratio 1",
@@ -262,6 +263,8 @@ fn a_document_with_a_key_missing_or_of_the_wrong_kind_is_refused() {
                 "families",
                 "fastest",
                 "friction",
+                "levers",
+                "levers_left_out",
                 "local_steps",
                 "measured",
                 "moving",

@@ -1,7 +1,7 @@
 //! Words: what is known of published integrators, and random words against products of the test's own.
 
 use kickdrift::number::{Laurent, Radical, Rational, Ring, Sign, rational::ratio};
-use kickdrift::word::{Forces, METHODS, Stability, Word, at, method};
+use kickdrift::word::{Forces, METHODS, Stability, Trigonometric, Word, at, method};
 use num_traits::{One, Signed, Zero};
 
 fn word(text: &str) -> Word {
@@ -413,4 +413,136 @@ fn errors_name_the_place() {
     // √12 = 2 √3, and 4^(1/3) = (2^(1/3))².
     assert_eq!(word("K(sqrt(12)) D(2*sqrt(3))"), word("K(2*sqrt(3)) D(sqrt(12))"));
     assert_eq!(word("K(4^(1/3)) D(2^(1/3))"), word("K(2^(2/3)) D(2^(1/3))"));
+}
+
+/// Λ = (2 π/T)² of the periods 10 and 40.
+fn periods_10_and_40() -> [Laurent; 2] {
+    [ratio(1, 25), ratio(1, 400)].map(|c| Laurent::monomial(c, 2))
+}
+
+/// Unstable steps below 16 of periods 10 and 40, to four places, the enclosures being narrower (THEORY section 16).
+#[test]
+fn trigonometric_integrators_are_unstable_where_they_are_known_to_be() {
+    let known: [(Trigonometric, &[(f64, f64)]); 6] = [
+        (Trigonometric::Impulse, &[(4.7067, 5.0), (9.4180, 10.0), (14.1381, 15.0)]),
+        (Trigonometric::Gautschi, &[(4.2202, 5.7798), (14.2202, 15.7798)]),
+        (Trigonometric::Short, &[(4.8703, 5.0), (14.9577, 15.0)]),
+        (Trigonometric::Linear, &[(4.9470, 5.0), (14.9981, 15.0)]),
+        (Trigonometric::Long, &[]),
+        (Trigonometric::HairerLubich, &[]),
+    ];
+    let [fast, slow] = periods_10_and_40();
+    for (method, expected) in known {
+        let found = method.unstable(&fast, &slow, 16.0);
+        assert_eq!(found.len(), expected.len(), "{method:?}: {found:?}");
+        for ([lower, upper], (from, to)) in found.into_iter().zip(expected) {
+            for ((lo, hi), figure) in [(lower, from), (upper, to)] {
+                assert!(lo <= hi && hi - lo < 1e-10, "{method:?}: {lo}..{hi}");
+                assert!((lo - figure).abs() < 5e-5 + 1e-10, "{method:?}: {lo}..{hi} is not {figure}");
+            }
+        }
+        assert_eq!(method.is_free(&ratio(1, 16)), expected.is_empty(), "{method:?}");
+    }
+}
+
+/// The traces themselves, in doubles, on a grid beside the enclosures; other ratios, too.
+#[test]
+fn the_traces_of_trigonometric_integrators_say_the_same() {
+    let sinc = |x: f64| x.sin() / x;
+    let g = |method: Trigonometric, x: f64| match method {
+        Trigonometric::Impulse => sinc(x),
+        Trigonometric::Gautschi => sinc(x / 2.0).powi(2),
+        Trigonometric::Short => sinc(x) * sinc(x / 2.0).powi(2),
+        Trigonometric::Linear => sinc(x) * sinc(x / 2.0).powi(4),
+        Trigonometric::Long => sinc(x).powi(3),
+        Trigonometric::HairerLubich => sinc(x).powi(2),
+    };
+    let (mut stable, mut unstable) = (0, 0);
+    for rho in [ratio(1, 16), ratio(1, 2), ratio(3, 2), ratio(9, 1)] {
+        let slow = Laurent::from_rational(rho.clone());
+        for method in Trigonometric::ALL {
+            let found = method.unstable(&Laurent::from_integer(1), &slow, 20.0);
+            for n in 1..2000 {
+                let h = f64::from(n) * 0.01 + 0.0037;
+                let near = found.iter().flatten().any(|(lo, hi)| lo - 1e-6 < h && h < hi + 1e-6);
+                let trace =
+                    2.0 * h.cos() - h * h * num_traits::ToPrimitive::to_f64(&rho).unwrap() * g(method, h);
+                if near || h > 20.0 || (trace.abs() - 2.0).abs() < 1e-9 {
+                    continue;
+                }
+                let inside = found.iter().any(|[(lo, _), (_, hi)]| *lo < h && h < *hi);
+                assert_eq!(inside, trace.abs() > 2.0, "{method:?}, rho = {rho}, h = {h}: {trace}");
+                (stable, unstable) = (stable + u32::from(!inside), unstable + u32::from(inside));
+            }
+        }
+    }
+    assert!(stable > 20_000 && unstable > 5_000, "{stable} and {unstable}");
+}
+
+/// h < 2/√Λ2 = 40/π, exactly: the midpoint rule for what is fast leaves no resonance.
+#[test]
+fn implicit_explicit_is_stable_up_to_40_over_pi() {
+    let [fast, slow] = periods_10_and_40();
+    let rho = Laurent::ratio(&slow, &fast).unwrap();
+    let stability = Stability::of(&of("implicit-explicit").polynomials(&Forces::ratio(&rho)));
+    let edge = stability.first_edge().unwrap();
+    // s = h² Λ1 = (40/π)² π²/25 = 64.
+    assert_eq!(edge.rational(), Some(ratio(64, 1)));
+    assert!(stability.intervals.len() == 2 && !stability.intervals[1].stable);
+}
+
+/// n modes, 0 ≤ F ≤ Λ1, 0 ≤ S ≤ Λ2: no two coupled modes are unstable below the edge of all, many just above it.
+#[test]
+fn coupled_modes_are_stable_below_the_edge_of_all() {
+    let mut state = 7u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let (fast, slow) = (1.0, 0.3);
+    let [of_fast, of_slow] = [ratio(1, 1), ratio(3, 10)].map(Laurent::from_rational);
+    for method in [Trigonometric::Impulse, Trigonometric::Short, Trigonometric::Linear, Trigonometric::Long] {
+        let (lo, hi) = method.coupled_edge(&of_fast, &of_slow).unwrap();
+        assert!(lo <= hi && hi - lo < 1e-10);
+        let phi = |x: f64| {
+            let sinc = |x: f64| if x == 0.0 { 1.0 } else { x.sin() / x };
+            match method {
+                Trigonometric::Short => sinc(x / 2.0),
+                Trigonometric::Linear => sinc(x / 2.0).powi(2),
+                Trigonometric::Long => sinc(x),
+                _ => 1.0,
+            }
+        };
+        let mut beyond = 0;
+        for n in 0..4000 {
+            let above = n % 4 == 0;
+            let h = if above { lo * 1.002 } else { lo * (0.3 + 0.6999 * random()) };
+            let w = [fast, if n % 3 == 0 { 0.0 } else { random() }];
+            let (u, a, b) = (3.2 * random(), slow, slow * random());
+            let s = [
+                [a * u.cos().powi(2) + b * u.sin().powi(2), (a - b) * u.sin() * u.cos()],
+                [(a - b) * u.sin() * u.cos(), a * u.sin().powi(2) + b * u.cos().powi(2)],
+            ];
+            let mut m = nalgebra::Matrix4::<f64>::identity();
+            let mut kick = nalgebra::Matrix4::<f64>::identity();
+            for i in 0..2 {
+                let x = h * w[i];
+                m[(i, i)] = x.cos();
+                m[(i + 2, i + 2)] = x.cos();
+                m[(i, i + 2)] = if w[i] == 0.0 { h } else { x.sin() / w[i] };
+                m[(i + 2, i)] = -w[i] * x.sin();
+                for j in 0..2 {
+                    kick[(i + 2, j)] = -h / 2.0 * phi(x) * s[i][j] * phi(h * w[j]);
+                }
+            }
+            let size = (kick * m * kick).complex_eigenvalues().iter().map(|mu| mu.norm()).fold(0.0, f64::max);
+            if above {
+                beyond += u32::from(size > 1.0 + 1e-4);
+            } else {
+                assert!(size < 1.0 + 1e-5, "{method:?}: {size} at h = {h}, w = {w:?}, S = {s:?}");
+            }
+        }
+        // Beyond it nothing is claimed of the long average, and little grows.
+        assert!(beyond > 0 || method == Trigonometric::Long, "{method:?}: nothing grows above {lo}");
+    }
 }

@@ -35,7 +35,13 @@ class Advisable(Protocol):
     """A system."""
 
     def advise(
-        self, steps: str | Sequence[Any] = (), *, engine: Engine | None, band: Exact, length: Time | None
+        self,
+        steps: str | Sequence[Any] = (),
+        *,
+        engine: Engine | None,
+        band: Exact,
+        length: Time | None,
+        levers: bool,
     ) -> SystemAdvice: ...
 
 
@@ -77,6 +83,22 @@ class Advised(Document):
         """One row a scheme and fast mode (of Hessians one a scheme): growth, and the unstable intervals of the outer
         step, fs."""
         return self._table("rows")
+
+    @cached_property
+    def levers(self) -> tuple[Row, ...]:
+        """What would let the outer step of the first scheme grow: masses, constraints, methods, ratios, one row each.
+
+        ``first`` unstable step, ``band_edge`` (proven below), ``step`` to take and its ``bound``, costs a picosecond,
+        ``gain``, ``engines``; empty where they were left out.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> advice = kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"])
+        >>> [(row["lever"], row["step"]) for row in advice.levers[:2]], advice.levers[5]["first_exact"]
+        ([('as given', '3'), ('MOLLY, short average', '231/50')], '40/pi')
+        """
+        return self._table("levers") if "levers" in self.data else ()
 
     @property
     def engine(self) -> Mapping[str, Any] | None:
@@ -179,6 +201,7 @@ def advise(
     band: Exact = "5%",
     length: Time | None = None,
     hmr: Exact | None = None,
+    levers: bool = True,
 ) -> Advice: ...
 
 
@@ -190,6 +213,7 @@ def advise(
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    levers: bool = True,
 ) -> SystemAdvice: ...
 
 
@@ -203,6 +227,7 @@ def advise(
     band: Exact = "5%",
     length: Time | None = None,
     hmr: Exact | None = None,
+    levers: bool = True,
 ) -> Advice | SystemAdvice:
     """Say which steps are safe for these periods, for how long, and why.
 
@@ -226,6 +251,8 @@ def advise(
         The length of the run, as ``"10ns"``.
     hmr : Exact, optional
         Hydrogens of this mass in amu, taken from their heavy atoms.
+    levers : bool
+        Whether to say what would let the step grow.
 
     Raises
     ------
@@ -246,7 +273,7 @@ def advise(
         for field, value in {"bonds": bonds, "on": on, "hmr": hmr}.items():
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes and masses of its own")
-        return periods.advise(steps, engine=engine, band=band, length=length)
+        return periods.advise(steps, engine=engine, band=band, length=length, levers=levers)
     given_alone = [periods] if isinstance(periods, str) else periods
     alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
@@ -256,7 +283,7 @@ def advise(
         given["period"].append(own if name is None else f"{_name('periods', name)}={own}")
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
-    found = asked(given, steps, engine, band, length, hmr)
+    found = asked(given, steps, engine, band, length, hmr, levers=levers)
     return Advice(found.render("json"), found.render("text"), found)
 
 
@@ -268,6 +295,7 @@ def asked(
     length: Time | None,
     hmr: Exact | None = None,
     place: str | Mapping[str, Any] = "",
+    levers: bool = True,
 ) -> Asked:
     """The question about what is given, and what all advice is asked with."""
     engines = [engine] if isinstance(engine, str | PathLike) else list(engine or ())
@@ -278,6 +306,7 @@ def asked(
         "band": band if isinstance(band, str) else text("band", band),
         "length": _time("length", length),
         "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
+        "no_levers": None if levers else "true",
     }
     names = [
         f"engine{n}" if own == fspath(path) else fspath(path)

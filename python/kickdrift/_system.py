@@ -287,6 +287,7 @@ class System(Frozen):
         engine: Engine | None = None,
         band: Exact = "5%",
         length: Time | None = None,
+        levers: bool = True,
     ) -> SystemAdvice:
         """Say which steps are safe for these Hessians, two levels with a unit of time, for how long, and why.
 
@@ -300,6 +301,8 @@ class System(Frozen):
             How far every period may be off, relatively.
         length : Time, optional
             The length of the run, as ``"10ns"``.
+        levers : bool
+            Whether to say what would let the step grow.
 
         Raises
         ------
@@ -315,7 +318,7 @@ class System(Frozen):
         >>> system.advise(steps=[("0.5fs", "6fs")])
         SystemAdvice(4 fs caution, 6 fs island)
         """
-        found = asked(self._fields(), steps, engine, band, length, place=self._place())
+        found = asked(self._fields(), steps, engine, band, length, place=self._place(), levers=levers)
         warnings = self.decide().warnings
         return SystemAdvice(found.render("json"), _warned(warnings) + found.render("text"), warnings)
 

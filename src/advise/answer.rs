@@ -1,10 +1,11 @@
 //! What is answered: scheme by scheme, and what to do.
 
-use num_traits::{One, ToPrimitive, Zero};
+use num_traits::{One, Zero};
 
 use super::edges::Edges;
 use super::interval::{Intervals, Unstable};
-use super::levels::{Found, Levels, Scheme};
+use super::levels::{Found, Levels, Scheme, longest_below, scaled};
+use super::levers::Levers;
 use super::mode::Mode;
 use super::question::{Question, is_stable};
 use crate::error::Result;
@@ -124,6 +125,8 @@ pub struct Advice {
     pub held: Vec<Mode>,
     /// Per fs.
     pub friction: Option<Rational>,
+    /// What would let the outer step of the first scheme grow; `None` where that was not asked.
+    pub levers: Option<Levers>,
 }
 
 impl Question {
@@ -138,8 +141,9 @@ impl Question {
         let stiffness = |&i: &usize| &self.modes[i].stiffness;
         let fastest = faster.into_iter().max_by(|i, j| stiffness(i).cmp(stiffness(j))).expect("a mode");
         let silent = self.stiffest().iter().any(Option::is_none);
+        let levers = if self.levers { Some(self.levers()?) } else { None };
         let Question { modes, band, length, held, friction, .. } = self;
-        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction })
+        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction, levers })
     }
 
     fn of_scheme(&self, scheme: &Scheme) -> Result<Answer> {
@@ -152,8 +156,7 @@ impl Question {
         let shrink =
             |x: f64| from_f64_exact(x).map_or((x, x), |x| enclose_f64(&(x * (Rational::one() - &self.band))));
         let largest = self.largest(scheme)?;
-        let third = self.faster().into_iter().map(|i| self.modes[i].part(3).0).fold(f64::INFINITY, f64::min);
-        let third = from_f64_exact(third).unwrap_or_else(Rational::zero);
+        let third = self.third();
         let safe = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third));
         let outer = scheme.outer();
         let status = if rows.iter().any(|row| !is_stable(row.found.kind)) {
@@ -184,6 +187,12 @@ impl Question {
             pairs,
             within_run,
         })
+    }
+
+    /// T/3 of the fastest mode, rounded down.
+    pub(super) fn third(&self) -> Rational {
+        let third = self.faster().into_iter().map(|i| self.modes[i].part(3).0).fold(f64::INFINITY, f64::min);
+        from_f64_exact(third).unwrap_or_else(Rational::zero)
     }
 
     /// One mass with the shortest periods of the band: the corner that covers all of it.
@@ -254,7 +263,7 @@ impl Question {
     }
 
     /// The largest multiple of the step before the outermost one at which the corner of the band is in the first region.
-    fn largest(&self, scheme: &Scheme) -> Result<Option<Rational>> {
+    pub(super) fn largest(&self, scheme: &Scheme) -> Result<Option<Rational>> {
         let step = scheme.last_but_one();
         if scheme.steps().len() == 1 {
             let edge = self.corner(scheme).first_region_ends()?.0;
@@ -357,19 +366,6 @@ impl Row {
     }
 }
 
-/// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
-pub(super) fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
-    if scheme.steps().len() == 1 {
-        return Some(largest.min(limit).clone());
-    }
-    let step = scheme.last_but_one();
-    let mut count = (largest.min(limit) / step).floor();
-    if &count * step == *limit {
-        count -= Rational::one();
-    }
-    (count.to_f64()? >= 1.0).then(|| count * step)
-}
-
 /// ln 10 over the rate, in steps of this length.
 fn tenfold((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
     let ten = Ball::from_integer(&10.into()).ln(BITS).expect("10 > 0");
@@ -379,10 +375,4 @@ fn tenfold((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
         rate.and_then(|rate| ten.div(&rate, BITS)).map(|steps| steps.to_f64_enclosure())
     };
     (over(hi).map_or(0.0, |steps| steps.0), over(lo).map_or(f64::INFINITY, |steps| steps.1))
-}
-
-/// Factors of a step as steps, rounded outward.
-fn scaled((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
-    let times = |t: f64| enclose_f64(&(from_f64_exact(t).expect("a finite factor") * step));
-    (times(lo).0, times(hi).1)
 }

@@ -28,8 +28,8 @@ impl Constraints {
 
     fn hold(&self, mode: &Mode) -> bool {
         match self {
-            Constraints::HBonds => mode.is_bond_with_hydrogen == Some(true),
-            Constraints::AllBonds => mode.is_bond_with_hydrogen.is_some(),
+            Constraints::HBonds => mode.is_bond_with_hydrogen() == Some(true),
+            Constraints::AllBonds => mode.bond.is_some(),
             Constraints::Named(names) => names.contains(&mode.name),
         }
     }

@@ -14,10 +14,10 @@
 //!     (2)  J held at 0, free at T/2 > 0:   the odd orbit (0, 1) has x > 0 at every kick time, and v > 0 at the end.
 //! ```
 
-use num_traits::Zero;
+use num_traits::{One, ToPrimitive, Zero};
 
 use crate::error::{Error, Result};
-use crate::number::rational::from_f64_exact;
+use crate::number::rational::{enclose_f64, from_f64_exact};
 use crate::number::{Ball, ExactSign, Laurent, Rational, Real, Sign, bisected};
 use crate::schedule::{KickDrift, Kicks, Schedule};
 use crate::system::friction::{Damping, damped, masking};
@@ -87,6 +87,19 @@ impl Scheme {
         *steps.last_mut().expect("at least one step") = outer;
         Scheme::new(steps)
     }
+}
+
+/// The longest multiple of the step before the outermost one that is at most `largest` and below `limit`.
+pub(super) fn longest_below(scheme: &Scheme, largest: &Rational, limit: &Rational) -> Option<Rational> {
+    if scheme.steps().len() == 1 {
+        return Some(largest.min(limit).clone());
+    }
+    let step = scheme.last_but_one();
+    let mut count = (largest.min(limit) / step).floor();
+    if &count * step == *limit {
+        count -= Rational::one();
+    }
+    (count.to_f64()? >= 1.0).then(|| count * step)
 }
 
 /// One mass, and the stiffness over mass (1/fs²) on each clock of a scheme.
@@ -219,6 +232,12 @@ impl Levels<'_> {
         }
         Ok(bisected((lo, hi), 0.0, at))
     }
+}
+
+/// Factors of a step as steps, rounded outward.
+pub(super) fn scaled((lo, hi): (f64, f64), step: &Rational) -> (f64, f64) {
+    let times = |t: f64| enclose_f64(&(from_f64_exact(t).expect("a finite factor") * step));
+    (times(lo).0, times(hi).1)
 }
 
 /// The even and the odd orbit, (x, v) each.

@@ -17,6 +17,7 @@
 //! | `mode` | periods, wavenumbers, bonds → stiffnesses |
 //! | `levels` | one mass, K clocks: verdict, first stable region |
 //! | `interval`, `edges` | unstable intervals of the outer step, on two clocks and on more |
+//! | `levers` | what would let the step grow |
 //! | `constraint` | bonds that do not vibrate |
 //! | `molecule` | Hessians of two levels in place of periods |
 //! | `question`, `answer` | what is asked, what is answered |
@@ -45,6 +46,7 @@ mod edges;
 pub mod engine;
 mod interval;
 mod levels;
+mod levers;
 mod mode;
 mod molecule;
 mod question;
@@ -55,6 +57,7 @@ pub use caution::{Caution, PUBLISHED};
 pub use constraint::Constraints;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
-pub use mode::{Mode, Origin};
+pub use levers::{Bound, Engine, Lever, Levers, RATIOS, Way, heavy};
+pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use question::Question;

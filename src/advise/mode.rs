@@ -49,10 +49,38 @@ pub struct Mode {
     pub stiffness: Laurent,
     /// 0 is the fastest clock; `None` where that follows from its place in the list.
     pub clock: Option<usize>,
-    /// Of a bond: whether one of its atoms is a hydrogen.
-    pub is_bond_with_hydrogen: Option<bool>,
-    /// The period in fs with the masses as given, where heavy hydrogens have changed it; rounded.
-    pub before: Option<f64>,
+    /// Its masses, where it is a bond.
+    pub bond: Option<Bond>,
+}
+
+/// The masses of a bond.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bond {
+    /// In amu, as given, the larger one first.
+    pub masses: [Rational; 2],
+    /// The hydrogens on its heavy atom.
+    pub hydrogens: u8,
+    /// The mass that hydrogens take in place of their own, from their heavy atom.
+    pub heavy: Option<Rational>,
+}
+
+impl Bond {
+    pub fn new(mut masses: [Rational; 2], hydrogens: u8, heavy: Option<Rational>) -> Bond {
+        masses.sort_by(|a, b| b.cmp(a));
+        Bond { masses, hydrogens, heavy }
+    }
+
+    /// Whether one of its atoms is a hydrogen, by the masses as given.
+    fn has_hydrogen(&self) -> bool {
+        self.masses.iter().any(is_hydrogen)
+    }
+
+    /// 1/m1 + 1/m2 with hydrogens of this mass.
+    fn inverse_mass(&self, name: &str, heavy: Option<&Rational>) -> Result<Rational> {
+        let given = self.masses.clone();
+        let [m1, m2] = heavy.map_or(Ok(given.clone()), |mass| heavier(name, given, mass, self.hydrogens))?;
+        Ok(m1.recip() + m2.recip())
+    }
 }
 
 /// Periods are told in doubles from so many bits.
@@ -60,14 +88,7 @@ const BITS: u32 = 96;
 
 impl Mode {
     fn new(name: &str, origin: Origin, stiffness: Laurent) -> Mode {
-        Mode {
-            name: name.trim().into(),
-            origin,
-            stiffness,
-            clock: None,
-            is_bond_with_hydrogen: None,
-            before: None,
-        }
+        Mode { name: name.trim().into(), origin, stiffness, clock: None, bond: None }
     }
 
     /// `NAME=10fs`, `10fs`, `NAME=3700/cm`: a period or a wavenumber.
@@ -121,16 +142,38 @@ impl Mode {
         if parts.next().is_some() {
             return Err(form());
         }
-        let over = |[m1, m2]: [&Rational; 2]| &k * &Laurent::from_rational(m1.recip() + m2.recip());
-        let mut mode = Mode::new(name, origin, over([&m1, &m2]));
-        mode.is_bond_with_hydrogen = Some(is_hydrogen(&m1) || is_hydrogen(&m2));
-        if let Some(hydrogen) = hydrogen {
-            let before = mode.middle();
-            let [m1, m2] = heavier(name, [m1, m2], hydrogen, count)?;
-            mode.stiffness = over([&m1, &m2]);
-            mode.before = (mode.middle() != before).then_some(before);
-        }
-        Ok(mode)
+        let bond = Bond::new([m1, m2], count, None);
+        let stiffness = &k * &Laurent::from_rational(bond.inverse_mass(name, None)?);
+        let mode = Mode { bond: Some(bond), ..Mode::new(name, origin, stiffness) };
+        hydrogen.map_or(Ok(mode.clone()), |hydrogen| mode.with_hydrogens(hydrogen))
+    }
+
+    /// The same bond with hydrogens of this mass in amu; as it is where it is no bond, or has no hydrogen.
+    ///
+    /// # Errors
+    /// A heavy atom that would be left without mass.
+    pub fn with_hydrogens(&self, mass: &Rational) -> Result<Mode> {
+        let Some(bond) = self.bond.as_ref().filter(|bond| bond.has_hydrogen()) else {
+            return Ok(self.clone());
+        };
+        let after = bond.inverse_mass(&self.name, Some(mass))?
+            / bond.inverse_mass(&self.name, bond.heavy.as_ref())?;
+        let bond = Some(Bond { heavy: Some(mass.clone()), ..bond.clone() });
+        Ok(Mode { stiffness: &self.stiffness * &Laurent::from_rational(after), bond, ..self.clone() })
+    }
+
+    /// Of a bond: whether one of its atoms is a hydrogen.
+    pub fn is_bond_with_hydrogen(&self) -> Option<bool> {
+        self.bond.as_ref().map(Bond::has_hydrogen)
+    }
+
+    /// The period in fs with the masses as given, where heavy hydrogens have changed it; rounded.
+    pub fn before(&self) -> Option<f64> {
+        let bond = self.bond.as_ref().filter(|bond| bond.has_hydrogen())?;
+        let now = bond.inverse_mass(&self.name, Some(bond.heavy.as_ref()?)).ok()?;
+        let change = bond.inverse_mass(&self.name, None).ok()? / now;
+        let light = Mode { stiffness: &self.stiffness * &Laurent::from_rational(change), ..self.clone() };
+        (light.middle() != self.middle()).then(|| light.middle())
     }
 
     /// 2 π/√stiffness in fs, enclosed.
@@ -226,7 +269,7 @@ mod tests {
         assert_eq!(period("NH:K=434kcal/mol/A^2,14.007,1.008", Some(&heavy)), "16.20");
         // No hydrogen, no change.
         let bond = Mode::from_bond("CC:K=310kcal/mol/A^2,12.011,12.011", Some(&heavy)).unwrap();
-        assert_eq!(bond.before, None);
+        assert_eq!(bond.before(), None);
         let error = Mode::from_bond("CH:K=340kcal/mol/A^2,12.011,1.008,4", Some(&ratio(5, 1))).unwrap_err();
         assert!(error.remedy().contains("no mass"), "{error}");
     }

@@ -5,8 +5,9 @@
 
 use num_traits::{One, ToPrimitive, Zero};
 
-use super::answer::{Status, longest_below};
-use super::levels::Scheme;
+use super::answer::Status;
+use super::levels::{Scheme, longest_below};
+use super::levers::{Bound, Lever, Levers, RATIOS, Way, bounded, least, multiple};
 use super::question::check_length;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -90,6 +91,8 @@ pub struct Findings {
     /// Per fs.
     pub friction: Option<Rational>,
     pub schemes: Vec<Finding>,
+    /// What would let the outer step of the first scheme grow; `None` where that was not asked.
+    pub levers: Option<Levers>,
 }
 
 /// Fast modes are told as one where each period is within this of the next.
@@ -143,7 +146,8 @@ impl Molecule {
             "advice on {size} degrees of freedom, {schemes} scheme{} of steps, costs about {told:.1e} products, the budget is {limit:.1e}",
             if schemes == 1 { "" } else { "s" }
         );
-        Err(Error::budget(work, cost).or("ask about fewer schemes, or longer inner steps"))
+        Err(Error::budget(work, cost)
+            .or("ask about fewer schemes, longer inner steps, or without what would let the step grow"))
     }
 
     /// The findings at each scheme, all periods within `band` of theirs.
@@ -195,6 +199,7 @@ impl Molecule {
             friction: friction.cloned(),
             schemes: found,
             groups,
+            levers: None,
         })
     }
 
@@ -308,6 +313,85 @@ impl Molecule {
         })
     }
 
+    /// The molecule with one thing changed: kicks and drifts at this scheme.
+    ///
+    /// # Errors
+    /// As [`Molecule::advise`].
+    pub fn lever(&self, name: String, way: Way, scheme: &Scheme, band: &Rational) -> Result<Lever> {
+        let largest = self.largest(scheme.inner(), to_f64(band))?;
+        let step = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &self.third()));
+        let bound = if step == largest { Bound::Band } else { Bound::Third };
+        self.lever_at(name, way, scheme, band, step.map(|step| (step, bound)))
+    }
+
+    /// The longest outer steps at every ratio, the inner step following.
+    ///
+    /// # Errors
+    /// As [`Molecule::advise`].
+    pub fn ratios(&self, scheme: &Scheme, band: &Rational) -> Result<Vec<Lever>> {
+        let at = |p: u64| {
+            let unit = Rational::from_integer(p.into()) * least();
+            let scheme = scheme.with_outer(scheme.inner() * Rational::from_integer(p.into()))?;
+            let mut lever = self.lever_at(format!("ratio {p}"), Way::Respa, &scheme, band, None)?;
+            let edge = lever.band_edge.and_then(|edge| from_f64_exact(edge.0)).unwrap_or_default();
+            let bound = if self.third() < edge { Bound::Third } else { Bound::Band };
+            lever.step = multiple(&edge.min(self.third()), &unit).map(|step| (step, bound));
+            lever.inner = lever.step.as_ref().map(|(step, _)| step / Rational::from_integer(p.into()));
+            Ok(lever)
+        };
+        RATIOS.map(at).collect()
+    }
+
+    fn lever_at(
+        &self,
+        name: String,
+        way: Way,
+        scheme: &Scheme,
+        band: &Rational,
+        step: Option<(Rational, Bound)>,
+    ) -> Result<Lever> {
+        let (p, unit) = (self.outer_of(scheme)?.inner_steps(), to_f64(&self.unit));
+        let edge = self.kernel.band_edge(p, to_f64(band), self.accuracy);
+        Ok(Lever {
+            name,
+            way,
+            first: self
+                .kernel
+                .first_unstable(p)
+                .map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up())),
+            exact: None,
+            is_free: false,
+            band_edge: edge.map(|edge| rounded_edge(edge * unit)),
+            step,
+            inner: Some(scheme.inner().clone()),
+            gain: None,
+        })
+    }
+
+    /// The fast stiffness by the midpoint rule; `None` where nothing is proven.
+    pub fn implicit_explicit(&self, band: &Rational) -> Option<Lever> {
+        let unit = to_f64(&self.unit);
+        let edge = self.kernel.midpoint_edge(to_f64(band), self.accuracy)? * unit;
+        let frequency = self.kernel.highest_slow_frequency();
+        Some(Lever {
+            name: "implicit-explicit".into(),
+            way: Way::ImplicitExplicit,
+            first: None,
+            exact: None,
+            is_free: false,
+            band_edge: Some(rounded_edge(edge)),
+            step: bounded(edge.next_down(), self.period(frequency * frequency) / 5.0),
+            inner: None,
+            gain: None,
+        })
+    }
+
+    /// T/3 of the fastest mode.
+    fn third(&self) -> Rational {
+        let third = self.groups().first().and_then(|fastest| from_f64_exact(fastest.period.0 / 3.0));
+        third.unwrap_or_else(Rational::zero)
+    }
+
     /// What belongs to a number of inner steps.
     fn at_ratio(&self, inner_steps: u64, band: f64) -> Result<AtRatio> {
         let unit = to_f64(&self.unit);
@@ -344,6 +428,11 @@ impl Molecule {
 
 /// Beyond this many the inner step is so short that nobody means it.
 const MOST_INNER_STEPS: u64 = 1000;
+
+/// The edge of a band as it is found: to 1e-6 of itself.
+fn rounded_edge(edge: f64) -> (f64, f64) {
+    (edge.next_down(), edge * (1.0 + 2e-6))
+}
 
 /// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.
 fn growth(analysis: &Analysis) -> Option<f64> {

@@ -24,8 +24,10 @@ pub struct Question {
     pub(super) held: Vec<Mode>,
     /// Of the thermostat, per fs.
     pub(super) friction: Option<Rational>,
+    /// Whether it is asked what would let the step grow.
+    pub(super) levers: bool,
     /// What the advice may cost.
-    limits: Limits,
+    pub(super) limits: Limits,
 }
 
 /// Periods that are followed for a scheme: verdicts, edges of intervals, multiples of the inner step.
@@ -87,6 +89,7 @@ impl Question {
             length: None,
             held: Vec::new(),
             friction: None,
+            levers: false,
             limits: Limits::default(),
         })
     }
@@ -144,6 +147,12 @@ impl Question {
         }
         self.friction = Some(rate);
         Ok(self)
+    }
+
+    /// The same, and what would let the step grow.
+    #[must_use]
+    pub fn with_levers(self, levers: bool) -> Question {
+        Question { levers, ..self }
     }
 
     /// The number of clocks.

@@ -22,6 +22,9 @@ pub struct Args {
     path: Option<PathBuf>,
     #[command(flatten)]
     asked: Advise,
+    /// Draws what would let the step grow, a bar a row: FILE.svg, .pdf or .png.
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::FilePath, conflicts_with = "no_levers")]
+    levers: Option<PathBuf>,
     #[command(flatten)]
     paper: Paper,
 }
@@ -29,7 +32,7 @@ pub struct Args {
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
         let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
-        self.paper.check(format.is_figure())?;
+        self.paper.check(format.is_figure() || self.levers.is_some())?;
         let (asked, arrays) = (self.asked()?, self.path.as_ref().map(|path| arrays(path)));
         let work = Work { arrays: arrays.as_ref(), ..common.work() };
         let answer = asked.answer(&work)?;
@@ -38,6 +41,12 @@ impl Args {
         match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
             Some((path, figure)) => self.paper.draw("output", path, figure, common)?,
             None => common.write(&document, format)?,
+        }
+        if let Some(path) = &self.levers {
+            let figure = asked.levers_figure(&answer).ok_or_else(|| {
+                Error::input("levers", path.display(), "there is no lever to draw: the answer says why")
+            })?;
+            self.paper.draw("levers", path, figure, common)?;
         }
         common.tell_beside_output(&document)
     }

@@ -1,11 +1,12 @@
 //! `kickdrift compare`: the trace against the predictions, over a grid or over ratios.
 
 use super::args::{self, Columns, Common};
+use super::paper::Paper;
 use crate::error::Result;
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::Rational;
-use crate::question::{Compare, Question, flag};
+use crate::question::{Compare, CompareMethods, Question, flag};
 
 /// Flags of `compare`: either a grid with both stiffnesses, or --max-sum with --rho.
 #[derive(Debug, clap::Args)]
@@ -30,14 +31,65 @@ pub struct Args {
     /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
+    /// Integrators side by side instead, over (h, lambda2/lambda1): names of the catalogue, or words, with commas between them.
+    ///
+    /// The catalogue is that of word --list. Those with the exact flow of the fast force are impulse, gautschi, molly-short,
+    ///
+    /// molly-linear, molly-long, hairer-lubich. Without --lambda1 it is 1.
+    #[arg(long, value_name = "A,B,...", requires_all = ["h_range", "h_step", "rho_range", "rho_step"], conflicts_with_all = ["lambda2", "max_sum", "rho"])]
+    methods: Option<String>,
+    /// The closed range of steps, with --methods.
+    #[arg(long, value_name = "LO..HI", requires = "methods", value_parser = flag::<(Rational, Rational)>)]
+    h_range: Option<(Rational, Rational)>,
+    /// The spacing of steps.
+    #[arg(long, value_name = "D", requires = "methods", value_parser = flag::<Rational>)]
+    h_step: Option<Rational>,
+    /// The closed range of lambda2/lambda1, with --methods.
+    #[arg(long, value_name = "LO..HI", requires = "methods", value_parser = flag::<(Rational, Rational)>)]
+    rho_range: Option<(Rational, Rational)>,
+    /// The spacing of lambda2/lambda1.
+    #[arg(long, value_name = "R", requires = "methods", value_parser = flag::<Rational>)]
+    rho_step: Option<Rational>,
     #[command(flatten)]
     columns: Columns,
+    #[command(flatten)]
+    paper: Paper,
 }
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
+        if let Some(asked) = self.methods() {
+            return self.side_by_side(&asked, common);
+        }
+        self.paper.check(false)?;
         let document = self.question()?.ask(&common.work())?;
         common.write(&self.columns.of(document)?, Format::Text)
+    }
+
+    fn methods(&self) -> Option<CompareMethods> {
+        Some(CompareMethods {
+            methods: self.methods.clone()?,
+            lambda1: self.lambda1.clone().unwrap_or_else(|| Laurent::from_integer(1)),
+            h_range: self.h_range.clone()?,
+            h_step: self.h_step.clone()?,
+            rho_range: self.rho_range.clone()?,
+            rho_step: self.rho_step.clone()?,
+        })
+    }
+
+    /// The table, or the maps drawn.
+    fn side_by_side(&self, asked: &CompareMethods, common: &Common) -> Result<()> {
+        let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
+        self.paper.check(format.is_figure())?;
+        let work = common.work();
+        let answer = asked.answer(&work)?;
+        let document = self.columns.of(asked.document(&answer))?;
+        let drawn = common.output.as_deref().filter(|_| format.is_figure());
+        match drawn.zip(drawn.map_or(Ok(None), |_| asked.figure(&answer, &work))?) {
+            Some((path, figure)) => self.paper.draw("output", path, figure, common)?,
+            None => common.write(&document, format)?,
+        }
+        common.tell_beside_output(&document)
     }
 
     fn question(&self) -> Result<Compare> {

@@ -13,7 +13,7 @@ const USAGES: [(&str, &str); 7] = [
     ("map", "--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <LO..HI> --h2-range <LO..HI>"),
     (
         "compare",
-        "(--lambda1 <X> --lambda2 <Y> --step <D> --h1-range <A..B> --h2-range <A..B> | --max-sum <N> --rho <R>)",
+        "(--lambda1 X --lambda2 Y --step D --h1-range A..B --h2-range A..B | --max-sum N --rho R | --methods LIST)",
     ),
     ("tongues", "(--ratio <P/Q> | --max-sum <N>) (--rho <R> | --lambda1 <X> --lambda2 <Y>)"),
     ("closings", "(--ratio <P/Q> | --max-sum <N>)"),
@@ -37,6 +37,7 @@ const EXAMPLES: [(&str, &[&str]); 16] = [
         &[
             "compare --max-sum 9 --rho 1/25",
             "compare --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
+            "compare --methods impulse,molly-short,respa-4 --h-range 0..8 --h-step 1/8 --rho-range 0..1 --rho-step 1/16 --output side.svg",
         ],
     ),
     (

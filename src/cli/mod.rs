@@ -61,7 +61,7 @@ enum Command {
     /// The (a, b) families of resonance curves, as tables.
     Curves(Asked<Curves>),
     /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
-    Compare(compare::Args),
+    Compare(Box<compare::Args>),
     /// Checks the Proposition exhaustively and exactly, with witnesses.
     Proposition(Asked<Proposition>),
     /// A, B, C, D and the trace of one ratio as polynomials in s and rho.
@@ -103,11 +103,12 @@ enum Command {
 impl Command {
     /// Whether its output may be more than a document: a figure, arrays, files of its own.
     fn draws(&self) -> bool {
-        use Command::{Advise, Bands, Cite, Generate, Map, Merge, Run, System, Tongues};
+        use Command::{Advise, Bands, Cite, Compare, Generate, Map, Merge, Run, System, Tongues};
         matches!(
             self,
             Advise(_)
                 | Bands(_)
+                | Compare(_)
                 | Cite(_)
                 | Map(_)
                 | Merge(_)

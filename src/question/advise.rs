@@ -8,13 +8,14 @@ use super::asking::{Fields, Question, Work, question};
 use super::field::{Field, notation, read};
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
-use crate::advise::{self, Advice, Constraints, Findings, Mode, Molecule, Origin, Scheme};
+use crate::advise::{self, Advice, Bond, Constraints, Findings, Levers, Mode, Molecule, Origin, Scheme, Way};
 use crate::error::{Error, Result};
 use crate::number::parse::parse_rational;
 use crate::number::{ExactSign, Rational, Sign};
 use crate::report::advise as report;
 use crate::report::document::Document;
 use crate::scene::{SystemFile, SystemScene, of_archive};
+use num_traits::Zero;
 
 question! {
     /// Which steps are safe, in the words of those who ask.
@@ -51,6 +52,9 @@ question! {
         /// Hydrogens of this mass in amu, taken from their heavy atoms.
         #[arg(long, value_name = "MASS")]
         hmr: Option<String>,
+        /// Leaves out what would let the step grow.
+        #[arg(long)]
+        no_levers: bool,
         /// The file of Hessians in place of periods: one of a system, or FILE.npz.
         #[arg(skip)]
         file: Option<String>,
@@ -79,6 +83,8 @@ question! {
         file: Option<String>,
         /// What stands in it, in place of modes.
         system: Option<SystemFile>,
+        /// Whether what would let the step grow is left out.
+        no_levers: bool,
     }
 }
 
@@ -147,13 +153,38 @@ impl Item for Mode {
     }
 
     fn shown(&self) -> Value {
-        json!({"name": self.name, "from": self.origin.name(), "clock": self.clock.map(|k| k + 1), "stiffness": self.stiffness.to_string()})
+        let mut shown = json!({"name": self.name, "from": self.origin.name(), "clock": self.clock.map(|k| k + 1), "stiffness": self.stiffness.to_string()});
+        if let Some(bond) = &self.bond {
+            shown["bond"] = json!({"masses": bond.masses.each_ref().map(ToString::to_string), "hydrogens": bond.hydrogens});
+            if let Some(heavy) = &bond.heavy {
+                shown["bond"]["heavy"] = heavy.to_string().into();
+            }
+        }
+        shown
     }
+}
+
+fn bond(given: &Value) -> Result<Bond> {
+    let form = || {
+        Error::input("bond", given, "write {\"masses\": [M1, M2], \"hydrogens\": 1 to 4}, positive, in amu")
+    };
+    let own = given.as_object().ok_or_else(form)?;
+    super::field::known(own, &["masses", "hydrogens", "heavy"])?;
+    let positive = |value: &Value| {
+        super::field::parsed::<Rational>("bond", value).ok().filter(|mass| *mass > Rational::zero())
+    };
+    let masses: Vec<Rational> =
+        own.get("masses").and_then(Value::as_array).into_iter().flatten().filter_map(positive).collect();
+    let hydrogens =
+        own.get("hydrogens").and_then(Value::as_u64).filter(|n| (1..=4).contains(n)).ok_or_else(form)?;
+    let heavy = own.get("heavy").map(|mass| positive(mass).ok_or_else(form)).transpose()?;
+    let masses: [Rational; 2] = masses.try_into().map_err(|_| form())?;
+    Ok(Bond::new(masses, hydrogens as u8, heavy))
 }
 
 impl Mode {
     fn of_fields(given: &Map<String, Value>) -> Result<Mode> {
-        super::field::known(given, &["name", "from", "clock", "stiffness"])?;
+        super::field::known(given, &["name", "from", "clock", "stiffness", "bond"])?;
         let clock = match given.get("clock") {
             None | Some(Value::Null) => None,
             Some(own) => {
@@ -167,8 +198,7 @@ impl Mode {
             origin: read("from", given, None)?,
             stiffness: read("stiffness", given, None)?,
             clock,
-            is_bond_with_hydrogen: None,
-            before: None,
+            bond: given.get("bond").map(bond).transpose()?,
         };
         match mode.stiffness.sign() {
             Sign::Positive => Ok(mode),
@@ -199,6 +229,9 @@ pub struct Answer {
 const KICKS_A_SECOND: f64 = 5e6;
 const PRODUCTS_A_SECOND: f64 = 1e10;
 
+/// What would let a molecule's step grow costs as much as so many schemes, about.
+const LEVERS: usize = 6;
+
 /// Fastest periods of molecules, in fs.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
 
@@ -211,7 +244,7 @@ impl Question for Advised {
             let modes = self.modes.clone().unwrap_or_default();
             let held = self.constrained.clone().unwrap_or_default();
             let question = advise::Question::new(modes, self.schemes.clone(), self.band.clone())?;
-            let mut question = question.holding(held).within(work.limits());
+            let mut question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
             if let Some(length) = &self.length {
                 question = question.of_length(length.clone())?;
             }
@@ -224,10 +257,17 @@ impl Question for Advised {
         let scene = work.read(file)?;
         let (length, friction) = (self.length.as_ref(), self.friction.as_ref());
         let size = scene.model().size();
-        let cost = Molecule::allow(size, &self.schemes, friction.is_some(), work.budget)?;
+        // What would let the step grow is told where it is cheap, whatever the budget: a document tells the same with another one.
+        let others: Vec<_> = self.schemes.iter().take(1).cycle().take(LEVERS).cloned().collect();
+        let levers = !self.no_levers && Molecule::allow(size, &others, false, None).is_ok();
+        let schemes = [&self.schemes[..], if levers { &others } else { &[] }].concat();
+        let cost = Molecule::allow(size, &schemes, friction.is_some(), work.budget)?;
         let seconds = cost as f64 / PRODUCTS_A_SECOND;
         work.announce(&format!("advice on {size} degrees of freedom"), seconds);
-        let findings = scene.molecule()?.0.advise(&self.schemes, &self.band, length, friction)?;
+        let mut findings = scene.molecule()?.0.advise(&self.schemes, &self.band, length, friction)?;
+        if levers {
+            findings.levers = Some(self.of_hessians(file, &scene, work)?);
+        }
         Ok(Safe::Hessians(Box::new((scene, findings))))
     }
 
@@ -250,7 +290,58 @@ impl Safe {
     }
 }
 
+impl Safe {
+    /// What would let the step grow, where that was asked.
+    pub fn levers(&self) -> Option<&Levers> {
+        match self {
+            Safe::Periods(advice) => advice.levers.as_ref(),
+            Safe::Hessians(own) => own.1.levers.as_ref(),
+        }
+    }
+}
+
 impl Advised {
+    /// What would let the outer step of a molecule grow.
+    fn of_hessians(&self, file: &SystemFile, scene: &SystemScene, work: &Work) -> Result<Levers> {
+        let (molecule, scheme) = (scene.molecule()?.0, &self.schemes[0]);
+        let mut all = Levers::default();
+        all.rows.push(molecule.lever("as given".into(), Way::Respa, scheme, &self.band)?);
+        let given = |field: &str| !file.source()[field].is_null();
+        let masses = advise::heavy().map(|mass| decimal(&mass));
+        let heavy =
+            |mass: &String| (format!("hydrogens of {mass} amu"), Way::Hydrogens, Some(mass.clone()), None);
+        let held = || Some("h-bonds".to_string());
+        let mut ways: Vec<_> = masses.iter().map(heavy).collect();
+        ways.push(("h-bonds held".into(), Way::Held, None, held()));
+        ways.push((format!("both, {} amu", masses[0]), Way::HeldAndHeavy, Some(masses[0].clone()), held()));
+        for (name, way, mass, constraints) in ways {
+            if mass.is_some() && given("hydrogen_mass") || constraints.is_some() && given("constraints") {
+                all.left_out.push(format!("{name}: the file says it"));
+                continue;
+            }
+            let file = file.with([("hydrogen_mass", mass), ("constraints", constraints)]);
+            let lever = work.read(&file).and_then(|other| {
+                let moved = other.molecule()?.0;
+                moved.lever(name.clone(), way, scheme, &self.band)
+            });
+            match lever {
+                Ok(lever) => all.rows.push(lever),
+                Err(error) => all.left_out.push(format!("{name}: {error}")),
+            }
+        }
+        match molecule.implicit_explicit(&self.band) {
+            Some(lever) => all.rows.push(lever),
+            None => all.left_out.push("implicit-explicit: F + S is not proven definite".into()),
+        }
+        all.left_out.push("MOLLY: the slow stiffness of a molecule need not be positive".into());
+        if self.friction.is_some() {
+            all.left_out.push("masked by the friction: the rows say it of each scheme".into());
+        }
+        all.rows.extend(molecule.ratios(scheme, &self.band)?);
+        all.compare();
+        Ok(all)
+    }
+
     fn placed(&self, safe: &Safe) -> Advised {
         match safe {
             Safe::Periods(advice) => Advised { modes: Some(advice.modes.clone()), ..self.clone() },
@@ -307,6 +398,13 @@ impl Question for Advise {
 }
 
 impl Advise {
+    /// What would let the step grow, drawn; `None` where nothing is told of it.
+    #[cfg(feature = "figure")]
+    pub fn levers_figure(&self, answer: &Answer) -> Option<Figure> {
+        let levers = answer.safe.levers().filter(|own| !own.rows.is_empty())?;
+        Some(report::levers_figure(levers, "What would let the outer step grow"))
+    }
+
     /// What the engine's texts say.
     fn reading(&self) -> Result<Option<Reading>> {
         if self.engine.is_empty() {
@@ -336,7 +434,8 @@ impl Advise {
         let band = part("band", &self.band)?;
         let length = rational("length", &self.length, Dimension::Time)?;
         let friction = rational("friction", &self.friction, Dimension::Rate)?;
-        Ok(Advised { band, modes, schemes, length, friction, constrained, file, system })
+        let no_levers = self.no_levers;
+        Ok(Advised { band, modes, schemes, length, friction, constrained, file, system, no_levers })
     }
 
     fn of_periods(&self, reading: Option<&Reading>) -> Result<Advised> {

@@ -31,6 +31,7 @@ mod polynomial;
 mod proposition;
 mod ratios;
 mod scene;
+mod side;
 #[cfg(feature = "system")]
 mod simulate;
 mod state;
@@ -57,6 +58,7 @@ pub use polynomial::Polynomial;
 pub use proposition::Proposition;
 pub use ratios::{MOST_SUM, Ratios};
 pub use scene::{FAMILIES, LONGEST_SCENE, Scene};
+pub use side::{CompareMethods, Side};
 #[cfg(feature = "system")]
 pub use simulate::{Answer as Simulated, Displacement, Simulate};
 pub use state::State;
@@ -125,6 +127,7 @@ fn named(name: &str) -> Result<&'static Named> {
         Named::of::<Map>(),
         Named::of::<Curves>(),
         Named::of::<Compare>(),
+        Named::of::<CompareMethods>(),
         Named::of::<Proposition>(),
         Named::of::<Polynomial>(),
         Named::of::<Half>(),

@@ -18,6 +18,7 @@
 //! | system-verdict, system-map, simulate | signs, discs, simulation | exact arithmetic; the dense full period |
 //! | system-intervals | signs | none |
 //! | bands | a common cone of return maps, in doubles with bounds | pairs in the boxes, worst placed, by the ladder |
+//! | compare-methods | polynomials in s, balls over y = h w/2 | traces letter by letter in doubles; those of trigonometric integrators by their formula |
 //! | word, methods | polynomials in s, Sturm chains | letter by letter, in numbers of the field, at a step of each interval; halved steps |
 //! | half | the half period, kick by kick | its determinant; the trace of the full period |
 //! | state | a power of the period and return maps | kick by kick |
@@ -83,6 +84,7 @@ mod polynomial;
 mod proposition;
 mod run;
 mod sample;
+mod side;
 mod state;
 mod survey;
 #[cfg(feature = "system")]
@@ -146,6 +148,7 @@ claims! {
     "verdict" Verdict verdict::Claim;
     "map" Map map::Claim;
     "compare" Compare compare::Claim;
+    "compare-methods" CompareMethods side::Claim;
     "curves" Curves curves::Claim;
     "polynomial" Polynomial polynomial::Claim;
     "proposition" Proposition proposition::Claim;

@@ -235,6 +235,7 @@ impl Document {
             "advise-system" => "advise",
             "survey" => "tongues",
             "methods" => "word",
+            "compare-methods" => "compare",
             name => name,
         }
     }

@@ -30,15 +30,19 @@
 mod catalogue;
 mod coefficient;
 mod grammar;
+mod integrator;
 mod letters;
 mod order;
 mod point;
 mod product;
 mod stability;
+mod trigonometric;
 
 pub use catalogue::{METHODS, Method, method};
+pub use integrator::{Bounded, Integrator};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
 pub use order::Order;
 pub use point::{At, at};
 pub use product::{Forces, Polynomials, Product};
 pub use stability::{Edge, Interval, Stability};
+pub use trigonometric::Trigonometric;

@@ -8,6 +8,7 @@ mod help;
 mod manners;
 mod refusals;
 mod scenes;
+mod side;
 mod support;
 mod tamper;
 mod tongues;

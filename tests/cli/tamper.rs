@@ -308,6 +308,7 @@ fn no_change_to_a_verdict_a_map_or_a_curve_passes() {
         "map --label --growth --lambda1 10 --lambda2 2/5 --step 1/10 --h1-range 1/10..1/2 --h2-range 1/10..3",
         "compare --max-sum 6 --rho 1/25 --samples 12",
         "compare --lambda1 16 --lambda2 16/25 --step 1/10 --h1-range 1/10..3/5 --h2-range 1/10..2",
+        "compare --methods impulse,molly-long,respa-4 --lambda1 pi^2/25 --h-range 0..8 --h-step 1 --rho-range 0..1/4 --rho-step 1/16",
         "curves --samples 12 --a 0..2 --b -2..2",
         "polynomial --ratio 5/4",
         "half --ratio 5/4 --s 3/2 --rho 1/7",

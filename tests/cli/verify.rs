@@ -396,7 +396,7 @@ fn a_second_route_that_costs_too_much_is_left_out_and_named() {
         named.map(String::from).collect::<Vec<_>>()
     };
     // The file's own scheme has the larger matrix.
-    let advice = "advise tiny.json --steps 1fs,4fs";
+    let advice = "advise tiny.json --steps 1fs,4fs --no-levers";
     let costly = left(advice, &["--budget", "20000"]);
     assert!(
         costly.len() == 1 && costly[0].contains("row ") && costly[0].contains("a budget of "),

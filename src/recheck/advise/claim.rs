@@ -26,6 +26,8 @@ rows! {
         pub rows: Vec<Row>,
         pub intervals: Vec<Interval>,
         pub pairs: Vec<Pair>,
+        #[serde(default)]
+        pub levers: Vec<LeverRow>,
     }
 
     pub struct ModeRow {
@@ -85,6 +87,15 @@ rows! {
         pub tenfold_steps: f64 | null,
     }
 
+    pub struct LeverRow {
+        pub lever: String,
+        pub method: String,
+        pub first: Ends | null,
+        pub first_exact: Written<Laurent> | null,
+        pub band_edge: Ends | null,
+        pub step: Written<Rational> | null,
+    }
+
     pub struct Pair {
         pub scheme: u64,
         pub first: String,
@@ -102,7 +113,6 @@ impl Place for Row {
 impl Recheck for Claim {
     const TABLE: &'static str = "rows";
     const LEFT: &'static [Left] = &[
-        ("modes.*.before", "the masses are not part of the document"),
         ("engine", "the text that it was read from is not part of the document"),
         ("input.constrained", "bonds that are held take no part in the answer"),
     ];
@@ -159,6 +169,7 @@ impl Claim {
             holds(scheme.within_run == truth, || "within_run is not what growth in the run says".into())?;
         }
         self.pairs.iter().try_for_each(|pair| self.pair(pair))?;
+        self.levers.iter().try_for_each(|lever| self.lever(lever))?;
         self.intervals.iter().try_for_each(|interval| self.interval(interval))
     }
 

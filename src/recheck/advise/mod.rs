@@ -8,9 +8,11 @@
 //! | `claim` | the rows of the document, and what concerns it as a whole |
 //! | `mass` | one mass on its clocks: trace, friction, first region |
 //! | `scheme`, `row` | what is told of a scheme, of a mode at a scheme |
+//! | `lever` | what would let the step grow |
 //! | `molecule` | advice on Hessians: computed again, its proofs and growth by another route |
 
 mod claim;
+mod lever;
 mod mass;
 mod molecule;
 mod row;

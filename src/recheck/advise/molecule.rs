@@ -125,6 +125,9 @@ impl Recheck for Claim {
             let why = "first, band_edge by the other route: too many steps for the action's matrix, computed again only";
             not_rechecked.push(why.into());
         }
+        if findings.levers.is_some() {
+            not_rechecked.push("levers: computed again only".into());
+        }
         Ok(Outcome {
             rows: findings.schemes.len() as u64,
             route: ROUTE,

@@ -6,7 +6,9 @@ use plot::palette::{CAUTION, INK, PARABOLIC, SAFE, SAMPLED, UNSTABLE, WHITE};
 use plot::{Anchor, Axis, Figure, Foot, Hatch, Layer, Note, Panel, Place, Shape, Stroke, Tick};
 
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Finding, Findings, Group, Pair, Row, Scheme, Status, Unstable};
+use crate::advise::{
+    Advice, Answer, Bound, Finding, Findings, Group, Lever, Levers, Pair, Row, Scheme, Status, Unstable,
+};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::system::levels::Growing;
@@ -212,8 +214,69 @@ fn draw(blocks: &[Block], right: f64, (title, near): (&str, &str)) -> Figure {
     let x = Axis::linear(&format!("outer step (fs){only}"), 0.0, right);
     let (low, high) = (-FOOT, rows as f64 - 1.0 + HEAD);
     let panel = Panel::new(x, Axis::linear("", low, high).ticks(ticks));
-    let panel = notes.into_iter().fold(layers.on(panel, near), Panel::note);
+    let panel = notes.into_iter().fold(layers.on(panel, &Names::of_schemes(near)), Panel::note);
     Figure::of_rows(150.0, ROW * (high - low)).named(title).with(panel.legend(Place::Above))
+}
+
+/// What would let the step grow: a row a lever, the steps to take and those that are proven for the band.
+pub fn levers(levers: &Levers, title: &str) -> Figure {
+    let (rows, mut layers) = (levers.rows.len(), Layers::default());
+    let ends = |own: &Lever| {
+        let step = own.step.as_ref().map(|(step, _)| to_f64(step));
+        [own.first.map(|first| first.1), own.band_edge.map(|edge| edge.1), step]
+    };
+    let right = 1.08 * levers.rows.iter().flat_map(ends).flatten().fold(0.0, f64::max);
+    let mut ticks = Vec::new();
+    for (n, own) in levers.rows.iter().enumerate() {
+        let at = (rows - 1 - n) as f64;
+        let step = own.step.as_ref().map_or(0.0, |(step, _)| to_f64(step));
+        let masked = matches!(own.step, Some((_, Bound::Friction)));
+        let line = Line {
+            third: if masked { 0.0 } else { step },
+            band: own.band_edge.map_or(0.0, |edge| edge.0),
+            sampled: masked.then_some([0.0, step]).into_iter().collect(),
+            near: own.first.map(|first| first.0),
+            ..Line::default()
+        };
+        layers.add(&line, at, right);
+        let name = if own.is_free { format!("{} (none)", own.name) } else { own.name.clone() };
+        ticks.push(Tick { at, label: Some(name) });
+    }
+    layers.beyond.clear();
+    let (low, high) = (-FOOT, rows as f64 - 1.0 + FOOT);
+    let panel =
+        Panel::new(Axis::linear("outer step (fs)", 0.0, right), Axis::linear("", low, high).ticks(ticks));
+    let names = Names {
+        safe: "to be taken",
+        caution: "proven, all periods in the band",
+        sampled: "masked by the friction",
+        near: "first unstable step of the periods given",
+    };
+    Figure::of_rows(150.0, LEVER * (high - low))
+        .named(title)
+        .with(layers.on(panel, &names).legend(Place::Above))
+}
+
+/// The height of a lever's row, in mm.
+const LEVER: f64 = 5.0;
+
+/// What the kinds of bars mean.
+struct Names<'a> {
+    safe: &'a str,
+    caution: &'a str,
+    sampled: &'a str,
+    near: &'a str,
+}
+
+impl<'a> Names<'a> {
+    fn of_schemes(near: &'a str) -> Names<'a> {
+        Names {
+            safe: "proven stable, all periods in the band",
+            caution: "the same, beyond *T*/3: published drift",
+            sampled: "growing at every step sampled",
+            near,
+        }
+    }
 }
 
 fn ratio(scheme: &Scheme) -> String {
@@ -254,12 +317,12 @@ impl Layers {
     }
 
     /// Every kind has a hatch of its own, for those who see no colours.
-    fn on(self, panel: Panel, near: &str) -> Panel {
+    fn on(self, panel: Panel, names: &Names) -> Panel {
         let kinds = [
-            (&self.safe, SAFE, None, "proven stable, all periods in the band"),
-            (&self.caution, CAUTION, Some(Hatch::Rising), "the same, beyond *T*/3: published drift"),
+            (&self.safe, SAFE, None, names.safe),
+            (&self.caution, CAUTION, Some(Hatch::Rising), names.caution),
             (&self.beyond, WHITE, Some(Hatch::Falling), "not to be recommended"),
-            (&self.sampled, SAMPLED, Some(Hatch::Crossed), "growing at every step sampled"),
+            (&self.sampled, SAMPLED, Some(Hatch::Crossed), names.sampled),
             (&self.unstable, UNSTABLE, None, "unstable, proven"),
         ];
         let mut panel = panel;
@@ -267,9 +330,14 @@ impl Layers {
             let layer = Layer::areas(bands.iter().map(Band::outline).collect(), colour, 1.0);
             panel = panel.with(layer.hatched(hatch).labelled(name));
         }
-        panel = panel.with(Layer::lines(self.chosen, Stroke::LINE));
+        if !self.chosen.is_empty() {
+            panel = panel.with(Layer::lines(self.chosen, Stroke::LINE));
+        }
         if !self.near.is_empty() {
-            panel = panel.with(Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC).labelled(near));
+            panel = panel.with(Layer::dots(self.near, Shape::Diamond, 4.0, PARABOLIC).labelled(names.near));
+        }
+        if self.recommended.is_empty() {
+            return panel;
         }
         let recommended = Layer::lines(self.recommended, Stroke::DASHED.wide(1.0));
         panel.with(recommended.labelled("recommended"))

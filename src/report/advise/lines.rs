@@ -32,6 +32,7 @@ pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
         lines.extend(read_from(of_answer(&advice.schemes[0]), reading));
     }
     lines.extend(reasons(advice));
+    lines.extend(advice.levers.iter().flat_map(super::levers::lines));
     lines
 }
 

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "figure")]
 mod chart;
+mod levers;
 mod lines;
 mod molecule;
 mod tables;
@@ -15,7 +16,7 @@ use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Findings, Mode, Pair, Row, Unstable};
 
 #[cfg(feature = "figure")]
-pub use chart::figure;
+pub use chart::{figure, levers as levers_figure};
 use tables::{enclosed, engine, for_people, published};
 pub use words::nearest;
 
@@ -49,9 +50,10 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
         .entry("pairs", pairs.to_json_rows())
         .entry("published", published(&fastest.name, |parts| fastest.part(parts).into()))
         .entry("unknown", lines::UNKNOWN.to_vec());
-    let changed = advice.modes.iter().any(|mode| mode.before.is_some());
+    let changed = advice.modes.iter().any(|mode| mode.before().is_some());
     let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
-    let document = document.long_rows(rows).for_people(row_table(advice, false)).and_rows(modes);
+    let document = document.long_rows(rows).for_people(row_table(advice, false));
+    let document = levers::add(document, advice.levers.as_ref()).and_rows(modes);
     let document = if pairs.rows().is_empty() { document } else { document.and_rows(pairs) };
     let document = match reading {
         Some(reading) => document.entry("engine", engine(lines::of_answer(&advice.schemes[0]), reading)),
@@ -71,7 +73,7 @@ fn mode_table(advice: &Advice) -> Table {
     for (parts, key) in [(2, "half"), (3, "third"), (4, "quarter"), (5, "fifth"), (10, "tenth")] {
         record = record.field(enclosed(key, &format!("T/{parts}")), move |mode| mode.part(parts).into());
     }
-    record.field(Column::new("before").in_words("T before").in_unit("fs"), |mode| mode.before.into()).table(
+    record.field(Column::new("before").in_words("T before").in_unit("fs"), |mode| mode.before().into()).table(
         "modes",
         "Periods in fs, and the steps that they limit",
         &advice.modes,

@@ -33,12 +33,12 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         Some(reading) => document.entry("engine", tables::engine(advised_step(best), reading)),
         None => document,
     };
-    document
-        .long_rows(for_people(&rows, |key| match key {
-            "holds" => false,
-            "masked_above" | "damped" => findings.friction.is_some(),
-            _ => true,
-        }))
+    let document = document.long_rows(for_people(&rows, |key| match key {
+        "holds" => false,
+        "masked_above" | "damped" => findings.friction.is_some(),
+        _ => true,
+    }));
+    super::levers::add(document, findings.levers.as_ref())
         .and_rows(for_people(&intervals, |_| true))
         .and_rows(for_people(&groups, |_| true))
         .summary(&summary(findings, reading, notes))
@@ -82,6 +82,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     if let Some(removed) = &findings.removed {
         lines.push(format!("  rigid      {} motions projected out, by {}", removed.count, removed.found_by));
     }
+    lines.extend(findings.levers.iter().flat_map(super::levers::lines));
     lines
 }
 

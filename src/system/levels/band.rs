@@ -43,4 +43,23 @@ impl Kernel {
         let hi = hi.min(2.0 * lo);
         Some(bisected((lo, hi), 1e-6, |step| Some(holds(step))).0)
     }
+    /// The longest step, within 1e-6, up to which the implicit midpoint rule for F beside kicks of S is proven stable: s h² S < 4, with the
+    /// slow periods shorter by `band` together and F' + s S > 0. Then P = 2/h − h S/2 and R = h (F + S)/2 are definite, and that is all there is
+    /// to show (theorem `both_definite` in proofs/; of one mode theorem `implicit_explicit` in proofs/). `None` where F + S is not proven
+    /// definite or no step is proven.
+    pub fn midpoint_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
+        let most = (1.0 - band).powi(-2) * (1.0 + ROOM);
+        let [_, slow] = self.errors_within(epsilon);
+        let two = vec![2.0; self.size()];
+        let holds = |step: f64| {
+            Outer::new(step, 1).is_ok_and(|outer| {
+                // Of h² S/2, and of its rounding.
+                let slack = 1.02 * most * outer.half_kick() * (slow + 4.0 * f64::EPSILON * self.norms()[1]);
+                is_definite(self.with_slow(&outer, -most, &two), slack)
+            })
+        };
+        let hi = 4.0 / self.highest_slow_frequency();
+        let lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| hi.is_finite() && holds(step))?;
+        self.is_total_definite().then(|| bisected((lo, 2.0 * lo), 1e-6, |step| Some(holds(step))).0)
+    }
 }

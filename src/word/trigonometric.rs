@@ -1,0 +1,202 @@
+//! Trigonometric integrators: the fast force by its exact flow, the slow one by filtered kicks.
+//!
+//! With w = √Λ1, y = h w/2, c = cos y, s = sin y and ρ = Λ2/Λ1 the trace of a step is Tr = 2 cos h w − h² Λ2 g with
+//! g = c^i (s/y)^k (Hairer, Lubich, Wanner, Geometric Numerical Integration, XIII.2), so that
+//!
+//! ```text
+//!     (2 + Tr)/4 = c² − ρ y² c^i (s/y)^k,        (2 − Tr)/4 = s² + ρ y² c^i (s/y)^k.
+//! ```
+//!
+//! A step is unstable where one of them is negative. Common factors c² and s² change no sign; they are 0 only where the filters are, and
+//! the propagator is ±I there. Balls over intervals of y tell the signs, all but at the edges themselves.
+//!
+//! ```
+//! use kickdrift::number::{Laurent, rational::ratio};
+//! use kickdrift::word::Trigonometric;
+//! // Periods 10 and 40: Λ = (2 π/T)².
+//! let [fast, slow] = [ratio(1, 25), ratio(1, 400)].map(|c| Laurent::monomial(c, 2));
+//! let unstable = Trigonometric::Short.unstable(&fast, &slow, 16.0);
+//! assert_eq!(format!("{:.4} {:.4}", unstable[0][0].0, unstable[0][1].1), "4.8703 5.0000");
+//! assert!(Trigonometric::HairerLubich.unstable(&fast, &slow, 16.0).is_empty());
+//! ```
+
+use num_traits::One;
+
+use crate::number::rational::{from_f64_exact, ratio};
+use crate::number::{Ball, Laurent, Rational, Real, Sign};
+
+/// A trigonometric integrator, by its filters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trigonometric {
+    /// No filter: g = sinc h w.
+    Impulse,
+    /// g = sinc²(h w/2).
+    Gautschi,
+    /// MOLLY, positions averaged over a short time: g = sinc h w sinc²(h w/2).
+    Short,
+    /// MOLLY, the average weighted linearly: g = sinc h w sinc⁴(h w/2).
+    Linear,
+    /// MOLLY, positions averaged over the whole step: g = sinc³ h w.
+    Long,
+    /// g = sinc² h w.
+    HairerLubich,
+}
+
+/// Bits of the balls; intervals are halved to fewer.
+const BITS: u32 = 96;
+
+/// Halvings of the range of steps: an edge is enclosed to 2^−44 of the range.
+const HALVINGS: u32 = 44;
+
+impl Trigonometric {
+    pub const ALL: [Trigonometric; 6] = [
+        Trigonometric::Impulse,
+        Trigonometric::Gautschi,
+        Trigonometric::Short,
+        Trigonometric::Linear,
+        Trigonometric::Long,
+        Trigonometric::HairerLubich,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Trigonometric::Impulse => "impulse",
+            Trigonometric::Gautschi => "gautschi",
+            Trigonometric::Short => "molly-short",
+            Trigonometric::Linear => "molly-linear",
+            Trigonometric::Long => "molly-long",
+            Trigonometric::HairerLubich => "hairer-lubich",
+        }
+    }
+
+    /// (i, k) of g = c^i (s/y)^k.
+    fn powers(self) -> (u32, u32) {
+        match self {
+            Trigonometric::Impulse => (1, 1),
+            Trigonometric::Gautschi => (0, 2),
+            Trigonometric::Short => (1, 3),
+            Trigonometric::Linear => (1, 5),
+            Trigonometric::Long => (3, 3),
+            Trigonometric::HairerLubich => (2, 2),
+        }
+    }
+
+    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
+    fn signs(self, y: &Ball, rho: &Ball) -> [Option<Sign>; 2] {
+        let (i, k) = self.powers();
+        let (c, sinc) = (y.cos(BITS), sinc(y));
+        let power = |x: &Ball, n: u32| (0..n).fold(Ball::one(), |product, _| product.mul(x, BITS));
+        let common = i.min(2);
+        let kicked = rho.mul(&y.square(BITS), BITS).mul(&power(&sinc, k), BITS);
+        // c², or c (c − ...), or 1 − ...
+        let bracket = power(&c, 2 - common).sub(&kicked.mul(&power(&c, i - common), BITS), BITS);
+        let below = if common == 1 { c.mul(&bracket, BITS) } else { bracket };
+        // s² is y² sinc².
+        let rest = rho.mul(&power(&c, i), BITS);
+        let above = match k {
+            1 => sinc.mul(&sinc.add(&rest, BITS), BITS),
+            _ => Ball::one().add(&rest.mul(&power(&sinc, k - 2), BITS), BITS),
+        };
+        [below.sign(), above.sign()]
+    }
+
+    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is not told.
+    fn verdict(self, y: &Ball, rho: &Ball) -> Option<bool> {
+        match self.signs(y, rho) {
+            [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),
+            [Some(Sign::Negative), _] | [_, Some(Sign::Negative)] => Some(false),
+            _ => None,
+        }
+    }
+
+    /// At s = h² Λ1.
+    pub(super) fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
+        self.verdict(&half_frequency(s), &Ball::from_rational(rho, BITS))
+    }
+
+    /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
+    /// told as `most`. Outside the enclosures every step is proven stable or unstable. Intervals thinner than 2^−44 of `most` are not told apart
+    /// from edges that touch.
+    pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
+        let (half, rho) = (half_frequency(fast), over(slow, fast));
+        let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).expect("finite"), BITS), BITS);
+        // (h, whether the steps up to the next one are stable)
+        let mut cells: Vec<(f64, Option<bool>)> = Vec::new();
+        let mut open = vec![(0.0, most, 0)];
+        while let Some((lo, hi, depth)) = open.pop() {
+            let told = self.verdict(&at(lo).union(&at(hi), BITS), &rho);
+            if told.is_some() || depth == HALVINGS {
+                if cells.last().is_none_or(|last| last.1 != told) {
+                    cells.push((lo, told));
+                }
+            } else {
+                let middle = lo + (hi - lo) / 2.0;
+                open.extend([(middle, hi, depth + 1), (lo, middle, depth + 1)]);
+            }
+        }
+        let ends = |n: usize| cells.get(n).map_or(most, |cell| cell.0);
+        let unstable = (0..cells.len()).filter(|&n| cells[n].1 == Some(false));
+        let lower = |n: usize| {
+            if n > 0 && cells[n - 1].1.is_none() { (ends(n - 1), ends(n)) } else { (ends(n), ends(n)) }
+        };
+        let upper = |n: usize| match cells.get(n + 1) {
+            Some((_, None)) => (ends(n + 1), ends(n + 2)),
+            _ => (ends(n + 1), ends(n + 1)),
+        };
+        unstable.map(|n| [lower(n), upper(n)]).collect()
+    }
+
+    /// The end of the steps at which **any number of coupled modes** is stable, with 0 ≤ F ≤ Λ1 and 0 ≤ S ≤ Λ2: proven stable below its lower end.
+    ///
+    /// There P and R of THEORY section 16 are definite as long as h w < π and ρ y² c^(i−1) (s/y)^k < c for every w² ≤ Λ1. Of this,
+    /// (s/y)^k c^(i−1)/c times h² Λ2/4 is the left side over the right one. Its logarithm has the derivative Σ a_n (4^n − 1 − k) y^(2n−1) for
+    /// i = 1, all a_n > 0: it increases for k ≤ 3, and for k = 5 decreases first and then increases. So the ends of 0 ≤ w² ≤ Λ1 decide: at w = 0
+    /// it is h² Λ2 < 4, at w² = Λ1 the first edge. For i = 3 it is at most h² Λ2/4, and h w < π. `None` for what is no filtered impulse.
+    pub fn coupled_edge(self, fast: &Laurent, slow: &Laurent) -> Option<(f64, f64)> {
+        let frequency = half_frequency(fast).scale2(1);
+        let turn = Ball::pi(BITS).div(&frequency, BITS)?.to_f64_enclosure();
+        let own = match self {
+            Trigonometric::Impulse | Trigonometric::Short | Trigonometric::Linear => {
+                self.unstable(fast, slow, turn.1).first()?[0]
+            }
+            Trigonometric::Long => turn,
+            Trigonometric::Gautschi | Trigonometric::HairerLubich => return None,
+        };
+        let rigid =
+            Ball::from_integer(&2.into()).div(&slow.enclosure(BITS).sqrt(BITS)?, BITS)?.to_f64_enclosure();
+        Some((own.0.min(rigid.0), own.1.min(rigid.1)))
+    }
+
+    /// Whether no step at all is unstable, of one mode: proven for [`Long`](Self::Long) and [`HairerLubich`](Self::HairerLubich) where ρ < 1, since
+    /// then ρ |s|³ |c|/y, ρ |c|³ |s|/y and ρ s² are below 1.
+    pub fn is_free(self, rho: &Rational) -> bool {
+        matches!(self, Trigonometric::Long | Trigonometric::HairerLubich) && *rho < Rational::one()
+    }
+}
+
+/// √Λ/2.
+fn half_frequency(stiffness: &Laurent) -> Ball {
+    stiffness.enclosure(BITS).sqrt(BITS).expect("a stiffness is positive").scale2(-1)
+}
+
+fn over(slow: &Laurent, fast: &Laurent) -> Ball {
+    match Laurent::ratio(slow, fast) {
+        Some(rho) => Ball::from_rational(&rho, BITS),
+        None => {
+            slow.enclosure(BITS).div(&fast.enclosure(BITS), BITS).expect("the fast stiffness is positive")
+        }
+    }
+}
+
+/// sin y / y of every y of a ball.
+fn sinc(y: &Ball) -> Ball {
+    match y.sin(BITS).div(y, BITS) {
+        Some(own) if y.lower() >= ratio(1, 4) => own,
+        // 1 − y²/6 ≤ sinc y ≤ 1.
+        _ => {
+            let square = y.square(BITS).upper();
+            let least = Rational::one() - square / Rational::from_integer(6.into());
+            Ball::from_rational(&least, BITS).union(&Ball::one(), BITS)
+        }
+    }
+}
