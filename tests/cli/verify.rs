@@ -395,9 +395,9 @@ fn a_second_route_that_costs_too_much_is_left_out_and_named() {
         let named = told.stdout.lines().filter(|line| line.contains("by another route"));
         named.map(String::from).collect::<Vec<_>>()
     };
-    // The file's own scheme has the larger matrix.
-    let advice = "advise tiny.json --steps 1fs,4fs --no-levers";
-    let costly = left(advice, &["--budget", "20000"]);
+    // The actions of a scheme of many inner steps cost the cube of their number.
+    let advice = "advise tiny.json --steps 1/20fs,4fs --no-levers";
+    let costly = left(advice, &["--budget", "10000000"]);
     assert!(
         costly.len() == 1 && costly[0].contains("row ") && costly[0].contains("a budget of "),
         "{costly:?}"
