@@ -73,7 +73,8 @@ fn no_gradient(own: &NoGradient, analysis: &Analysis) -> Value {
 
 /// The growth of such forces, with the steps and without; `per` is the unit of time.
 pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str) -> Vec<String> {
-    let asymmetries: Vec<_> = own.asymmetries.iter().map(|x| format!("{x:.2e}")).collect();
+    let asymmetries: Vec<_> =
+        own.asymmetries.iter().map(|&x| if x == 0.0 { "0".into() } else { format!("{x:.2e}") }).collect();
     let mut lines = vec![
         format!("  forces that are no gradient: |J - J'|/|J + J'| = {}", asymmetries.join(", ")),
         format!("  without steps growth rate {} per {per}", rate(own.without_steps)),

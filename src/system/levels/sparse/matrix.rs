@@ -272,3 +272,46 @@ fn supernodes(
         (columns, &rows[ends[k]..ends[k + 1]], own.col_ptr_for_val()[k])
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix of n rows with entries up to so far from its diagonal, numbers without a pattern.
+    fn banded(n: usize, width: usize) -> (Vec<(usize, usize, f64)>, Mat<f64>) {
+        let entry = |i: usize, j: usize| ((i * n + j + 1) as f64 * 0.754_877_666_246_692_7).fract() - 0.5;
+        let near = |i: usize| (i.saturating_sub(width)..=i).map(move |j| (i, j, entry(i, j)));
+        let triplets: Vec<_> = (0..n).flat_map(near).collect();
+        let mut dense = Mat::zeros(n, n);
+        triplets.iter().for_each(|&(i, j, x)| (dense[(i, j)], dense[(j, i)]) = (x, x));
+        (triplets, dense)
+    }
+
+    #[test]
+    fn counts_products_and_solutions_are_those_of_the_dense_matrix() {
+        let mut kinds = [0, 0];
+        for (n, width) in [(1, 0), (40, 0), (60, 1), (90, 2), (30, 30), (70, 70), (120, 40), (400, 400)] {
+            let (triplets, dense) = banded(n, width);
+            let (pattern, [values]) = Pattern::of(n, [&triplets]).unwrap();
+            kinds[usize::from(matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Supernodal(_)))] += 1;
+            let x = Mat::from_fn(n, 2, |i, j| (i + 3 * j) as f64 - 1.5);
+            // Some hundred roundings of numbers up to some hundreds.
+            assert!((pattern.times(&values, &x) - &dense * &x).norm_l2() < 1e-9);
+            let eigenvalues = dense.self_adjoint_eigenvalues(Side::Lower).unwrap();
+            let beyond = pattern.size_of(&values).0 + 1.0;
+            for shift in [-3.0, -0.3, 0.1, 1.7, beyond] {
+                let Some((negative, off)) = pattern.negative(shift, &[(1.0, &values)]) else { continue };
+                let below = |by: f64| eigenvalues.iter().filter(|&&x| x < shift + by).count();
+                // Without exchanges pivots can be small and the bound large: it holds all the same.
+                assert!(below(-off) <= negative && negative <= below(off), "{n} {width} {shift} {off}");
+                assert!(shift < beyond || negative == n && off < 1e-7, "{n} {width} {off}");
+            }
+            let factors = pattern.factored(beyond, &[(1.0, &values)], 1e-3).expect("above all eigenvalues");
+            let solved = factors.solve(x.clone()).unwrap();
+            let back = pattern.times(&values, &solved) + &solved * faer::Scale(beyond);
+            assert!((back - &x).norm_l2() < 0.01 * x.norm_l2());
+            assert!(pattern.factored(-beyond, &[(1.0, &values)], 0.0).is_none());
+        }
+        assert!(kinds.iter().all(|&count| count > 0), "{kinds:?}");
+    }
+}
