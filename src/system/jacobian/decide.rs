@@ -91,10 +91,12 @@ impl Jacobians {
         Ok(Analysis { rigid_modes: self.rigid.clone(), ..Analysis::of_part(part, clocks, warnings) })
     }
 
-    /// Products of doubles, roughly: both halves of a period, eigenvalues with vectors and their proof.
+    /// Products of doubles, roughly: both halves of a period, eigenvalues with vectors and their proof; periods with friction and their
+    /// eigenvalues.
     pub fn cost(&self) -> u64 {
         let (n, kicks) = (self.size() as u64, self.schedule.strikes());
-        n.saturating_pow(3).saturating_mul(kicks.saturating_add(60))
+        let damped = if self.size() <= MOST_MASKED { 6_000 } else { 0 };
+        n.saturating_pow(3).saturating_mul(kicks.saturating_add(60 + damped))
     }
 
     /// What is known beside the verdict.
