@@ -452,31 +452,31 @@ class SystemVerdict(Document):
         """What limits the verdict, in words; what was left out when the system was made comes first."""
         return (*self.system.notes, *self.data["warnings"])
 
+    def _beside(self, name: str) -> Mapping[str, Any] | None:
+        found = self.data.get(name)
+        return None if found is None else MappingProxyType(found)
+
     @property
     def measured(self) -> Mapping[str, Any] | None:
         """Of measured Hessians: ``accuracy``, ``holds`` within it, ``margin``, ``first_unstable`` outer step."""
-        found = self.data.get("measured")
-        return None if found is None else MappingProxyType(found)
+        return self._beside("measured")
 
     @property
     def friction(self) -> Mapping[str, Any] | None:
         """What the friction asked for does: ``rate``, ``damping``, ``growth_rate`` with it, and ``masking``, the
         smallest rate that masks the growth."""
-        found = self.data.get("friction")
-        return None if found is None else MappingProxyType(found)
+        return self._beside("friction")
 
     @property
     def no_gradient(self) -> Mapping[str, Any] | None:
         """Of forces that are no gradient: ``asymmetries``, growth ``without_steps``, ``added_by_steps`` and
         ``within_accuracy``, and the ``masking_friction``."""
-        found = self.data.get("no_gradient")
-        return None if found is None else MappingProxyType(found)
+        return self._beside("no_gradient")
 
     @property
     def local_steps(self) -> Mapping[str, Any] | None:
         """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them."""
-        found = self.data.get("local_steps")
-        return None if found is None else MappingProxyType(found)
+        return self._beside("local_steps")
 
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:

@@ -69,6 +69,12 @@ pub struct Lever {
 }
 
 impl Lever {
+    /// One of which nothing is told yet.
+    pub(super) fn new(name: String, way: Way) -> Lever {
+        let (first, exact, band_edge, step, inner, gain) = Default::default();
+        Lever { name, way, first, exact, is_free: false, band_edge, step, inner, gain }
+    }
+
     /// Evaluations a picosecond of what is kicked every `step` fs.
     fn per_ps(step: &Rational) -> Rational {
         Rational::from_integer(1000.into()) / step
@@ -221,19 +227,21 @@ impl Question {
         let third = self.third();
         let largest = self.largest(scheme)?;
         let one_clock = scheme.steps().len() == 1;
-        let step = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third));
-        let bound = if step == largest { Bound::Band } else { Bound::Third };
-        let step = if one_clock { step.and_then(|step| multiple(&step, &least())) } else { step };
+        let step = below_third(scheme, largest.as_ref(), &third);
+        let step = match step {
+            Some((step, bound)) if one_clock => multiple(&step, &least()).map(|step| (step, bound)),
+            own => own,
+        };
         Ok(Lever {
-            name,
-            way,
             first: Some(first),
-            exact: None,
-            is_free: false,
             band_edge: Some(band_edge),
-            inner: if one_clock { step.clone() } else { Some(scheme.inner().clone()) },
-            step: step.map(|step| (step, bound)),
-            gain: None,
+            inner: if one_clock {
+                step.as_ref().map(|(step, _)| step.clone())
+            } else {
+                Some(scheme.inner().clone())
+            },
+            step,
+            ..Lever::new(name, way)
         })
     }
 
@@ -351,29 +359,23 @@ impl Question {
             let Some(band_edge) = method.coupled_edge(&corner[0], &corner[1]) else { continue };
             let step = bounded(band_edge.0, fifth);
             all.rows.push(Lever {
-                name: words.into(),
-                way: Way::Molly(method),
                 first: first.filter(|_| !is_free),
-                exact: None,
                 is_free,
                 band_edge: Some(band_edge),
                 inner: part(&step, inner),
                 step,
-                gain: None,
+                ..Lever::new(words.into(), Way::Molly(method))
             });
         }
         let (band_edge, exact) = (self.shrunk(beyond_verlet), exact_root(slow));
         let step = bounded(band_edge.0, fifth);
         let free = |name: &str, way: Way, inner: Option<Rational>| Lever {
-            name: name.into(),
-            way,
             first: Some(beyond_verlet),
             exact: exact.clone(),
-            is_free: false,
             band_edge: Some(band_edge),
             inner,
             step: step.clone(),
-            gain: None,
+            ..Lever::new(name.into(), way)
         };
         all.rows.push(free("MOLLY, equilibrium", Way::Equilibrium, part(&step, inner)));
         all.rows.push(free("implicit-explicit", Way::ImplicitExplicit, None));
@@ -402,22 +404,16 @@ impl Question {
         for p in RATIOS {
             let scheme = own.with_outer(own.last_but_one() * Rational::from_integer(p.into()))?;
             let (first, band_edge) = self.edges(&scheme)?;
-            let edge = from_f64_exact(band_edge.0).unwrap_or_default();
-            let bound = if third < edge { Bound::Third } else { Bound::Band };
             // The unit of the outer step: the innermost one is a multiple of the least.
             let unit = scheme.outer() / scheme.inner() * least();
-            let step = multiple(&edge.min(third.clone()), &unit);
-            let inner = step.as_ref().map(|step| step / scheme.outer() * scheme.inner());
+            let step = of_units(band_edge.0, &third, &unit);
+            let inner = step.as_ref().map(|(step, _)| step / scheme.outer() * scheme.inner());
             all.rows.push(Lever {
-                name: format!("ratio {p}"),
-                way: Way::Respa,
                 first: Some(first),
-                exact: None,
-                is_free: false,
                 band_edge: Some(band_edge),
-                step: step.map(|step| (step, bound)),
+                step,
                 inner,
-                gain: None,
+                ..Lever::new(format!("ratio {p}"), Way::Respa)
             });
         }
         Ok(())
@@ -433,15 +429,12 @@ impl Question {
         (scheme.steps().len() > 1).then_some(())?;
         let found = (2..=MOST_MASKED).take_while(|&p| holds(p) == Some(true)).last()?;
         Some(Lever {
-            name: format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into())))),
-            way: Way::Friction,
-            first: None,
-            exact: None,
-            is_free: false,
-            band_edge: None,
             step: Some((scheme.last_but_one() * Rational::from_integer(found.into()), Bound::Friction)),
             inner: Some(scheme.inner().clone()),
-            gain: None,
+            ..Lever::new(
+                format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into())))),
+                Way::Friction,
+            )
         })
     }
 }
@@ -452,6 +445,24 @@ fn exact_root(stiffness: &Laurent) -> Option<Laurent> {
     let root = |n: &BigInt| Some(n.sqrt()).filter(|root| root * root == *n);
     let (below, above) = (root(c.numer())?, root(c.denom())?);
     (power % 2 == 0).then(|| Laurent::monomial(Rational::new(above * 2, below), -power / 2))
+}
+
+/// The longest step of a scheme below a third of the fastest period, of those up to `largest`.
+pub(super) fn below_third(
+    scheme: &Scheme,
+    largest: Option<&Rational>,
+    third: &Rational,
+) -> Option<(Rational, Bound)> {
+    let step = longest_below(scheme, largest?, third)?;
+    let bound = if Some(&step) == largest { Bound::Band } else { Bound::Third };
+    Some((step, bound))
+}
+
+/// The longest multiple of `unit` below the band's edge and a third of the fastest period.
+pub(super) fn of_units(edge: f64, third: &Rational, unit: &Rational) -> Option<(Rational, Bound)> {
+    let edge = from_f64_exact(edge).unwrap_or_default();
+    let bound = if *third < edge { Bound::Third } else { Bound::Band };
+    multiple((&edge).min(third), unit).map(|step| (step, bound))
 }
 
 /// The longest multiple of `unit` that is shorter than `limit`.

@@ -7,7 +7,7 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use super::answer::Status;
 use super::levels::{Scheme, longest_below};
-use super::levers::{Bound, Lever, Levers, RATIOS, Way, bounded, least, multiple};
+use super::levers::{Bound, Lever, Levers, RATIOS, Way, below_third, bounded, least, of_units};
 use super::question::check_length;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -319,9 +319,8 @@ impl Molecule {
     /// As [`Molecule::advise`].
     pub fn lever(&self, name: String, way: Way, scheme: &Scheme, band: &Rational) -> Result<Lever> {
         let largest = self.largest(scheme.inner(), to_f64(band))?;
-        let step = largest.as_ref().and_then(|largest| longest_below(scheme, largest, &self.third()));
-        let bound = if step == largest { Bound::Band } else { Bound::Third };
-        self.lever_at(name, way, scheme, band, step.map(|step| (step, bound)))
+        let step = below_third(scheme, largest.as_ref(), &self.third());
+        self.lever_at(name, way, scheme, band, step)
     }
 
     /// The longest outer steps at every ratio, the inner step following.
@@ -333,9 +332,7 @@ impl Molecule {
             let unit = Rational::from_integer(p.into()) * least();
             let scheme = scheme.with_outer(scheme.inner() * Rational::from_integer(p.into()))?;
             let mut lever = self.lever_at(format!("ratio {p}"), Way::Respa, &scheme, band, None)?;
-            let edge = lever.band_edge.and_then(|edge| from_f64_exact(edge.0)).unwrap_or_default();
-            let bound = if self.third() < edge { Bound::Third } else { Bound::Band };
-            lever.step = multiple(&edge.min(self.third()), &unit).map(|step| (step, bound));
+            lever.step = of_units(lever.band_edge.map_or(0.0, |edge| edge.0), &self.third(), &unit);
             lever.inner = lever.step.as_ref().map(|(step, _)| step / Rational::from_integer(p.into()));
             Ok(lever)
         };
@@ -353,18 +350,14 @@ impl Molecule {
         let (p, unit) = (self.outer_of(scheme)?.inner_steps(), to_f64(&self.unit));
         let edge = self.kernel.band_edge(p, to_f64(band), self.accuracy);
         Ok(Lever {
-            name,
-            way,
             first: self
                 .kernel
                 .first_unstable(p)
                 .map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up())),
-            exact: None,
-            is_free: false,
             band_edge: edge.map(|edge| rounded_edge(edge * unit)),
             step,
             inner: Some(scheme.inner().clone()),
-            gain: None,
+            ..Lever::new(name, way)
         })
     }
 
@@ -374,15 +367,9 @@ impl Molecule {
         let edge = self.kernel.midpoint_edge(to_f64(band), self.accuracy)? * unit;
         let frequency = self.kernel.highest_slow_frequency();
         Some(Lever {
-            name: "implicit-explicit".into(),
-            way: Way::ImplicitExplicit,
-            first: None,
-            exact: None,
-            is_free: false,
             band_edge: Some(rounded_edge(edge)),
             step: bounded(edge.next_down(), self.period(frequency * frequency) / 5.0),
-            inner: None,
-            gain: None,
+            ..Lever::new("implicit-explicit".into(), Way::ImplicitExplicit)
         })
     }
 

@@ -18,9 +18,6 @@ use crate::system::{Level, LocalSteps, Model, System};
 /// The only scheme so far that has a name.
 const NAME: &str = "lts";
 
-/// The most substeps of one level.
-const MOST: usize = 1024;
-
 impl Document {
     /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.
     pub fn with_scheme(&self, model: Model, moving: &[(usize, usize)]) -> Result<Model> {
@@ -80,7 +77,7 @@ impl Document {
                 return Err(Error::input(&format!("levels[{l}]"), "not told", remedy));
             }
         };
-        let substeps = own.substeps.count(&field("substeps"), MOST)? as u32;
+        let substeps = own.substeps.count(&field("substeps"), LocalSteps::MOST_SUBSTEPS as usize)? as u32;
         Ok(Level { fine, substeps })
     }
 }

@@ -18,6 +18,7 @@ use crate::system::linear::sparse::{Symmetric, null_space};
 use crate::system::linear::system::{Potential, System};
 use crate::system::model::Body;
 use crate::system::spectrum::discs::Spectrum;
+use crate::system::verdict::measured::check_accuracy;
 
 /// One clock with its matrix.
 #[derive(Clone, Debug)]
@@ -171,14 +172,15 @@ impl Jacobians {
     /// # Errors
     /// Rational matrices; an accuracy that is not in (0, 1/10).
     pub fn at_accuracy(self, accuracy: f64) -> Result<Jacobians> {
-        let remedy = match self.accuracy {
-            None => "is for stiffnesses by reference: these are exact",
-            Some(_) if accuracy > 0.0 && accuracy < 0.1 => {
-                return Ok(Jacobians { accuracy: Some(accuracy), spectrum: OnceLock::new(), ..self });
-            }
-            Some(_) => "give a positive number below 1/10, as 1e-6",
-        };
-        Err(Error::input("accuracy", accuracy, remedy))
+        if self.accuracy.is_none() {
+            return Err(Error::input(
+                "accuracy",
+                accuracy,
+                "is for stiffnesses by reference: these are exact",
+            ));
+        }
+        check_accuracy(accuracy)?;
+        Ok(Jacobians { accuracy: Some(accuracy), spectrum: OnceLock::new(), ..self })
     }
 
     fn new(

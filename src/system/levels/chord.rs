@@ -68,8 +68,11 @@ impl Hessians {
         if !(sizes[0] + sizes[1]).is_finite() {
             return false;
         }
-        let (ends, total) =
-            both(side_by_side, || ends(&self.fast), || self.is_positive(0.0, [1.0, 1.0], sizes));
+        let (ends, total) = both(
+            side_by_side,
+            || ends(self.size(), STEPS, |x| &self.fast * x),
+            || self.is_positive(0.0, [1.0, 1.0], sizes),
+        );
         let room = ROOM * ends[1].max(-ends[0]);
         // Where F is positive but for rounding the interval begins near 0.
         let low = if ends[0] > -room { -ZERO * ends[1] } else { ends[0] - room };
@@ -118,17 +121,17 @@ pub(super) fn chord(outer: &Outer, low: f64, high: f64) -> Option<[f64; 2]> {
     (slope.is_finite() && offset.is_finite()).then_some([offset, slope])
 }
 
-/// The lowest and the highest eigenvalue, from within: Lanczos's recursion, rounded.
-fn ends(m: &Mat<f64>) -> [f64; 2] {
-    let n = m.nrows();
+/// The lowest and the highest eigenvalue of a symmetric matrix of n rows, given by what it takes a vector to, from within: so many steps of
+/// Lanczos's recursion, rounded.
+pub(super) fn ends(n: usize, steps: usize, times: impl Fn(&Mat<f64>) -> Mat<f64>) -> [f64; 2] {
     let start = start(n);
     let start = Mat::from_fn(n, 1, |i, _| start[i]);
     let mut now = &start / faer::Scale(start.norm_l2());
     let mut before = Mat::<f64>::zeros(n, 1);
     let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);
-    for _ in 0..STEPS.min(n) {
+    for _ in 0..steps.min(n) {
         let last = beside[beside.len() - 1];
-        let mut next = m * &now - &before * faer::Scale(last);
+        let mut next = times(&now) - &before * faer::Scale(last);
         let along = (next.transpose() * &now)[(0, 0)];
         next -= &now * faer::Scale(along);
         diagonal.push(along);

@@ -17,9 +17,6 @@ pub struct Level {
     pub substeps: u32,
 }
 
-/// The most substeps of the finest level in a step: degrees of polynomials grow with them.
-const MOST_SUBSTEPS: u32 = 1024;
-
 /// Products of rationals for the effective stiffness beyond which reading a file would take a minute.
 const MOST_WORK: f64 = 2e8;
 
@@ -34,6 +31,9 @@ pub struct LocalSteps {
 }
 
 impl LocalSteps {
+    /// The most substeps of the finest level in a step: degrees of polynomials grow with them.
+    pub const MOST_SUBSTEPS: u32 = 1024;
+
     /// The scheme for a system of one clock.
     ///
     /// # Errors
@@ -69,8 +69,9 @@ impl LocalSteps {
         for (l, level) in levels.iter().enumerate() {
             let field = |name: &str| format!("levels[{l}].{name}");
             product = product.saturating_mul(level.substeps);
-            if level.substeps == 0 || product > MOST_SUBSTEPS {
-                let remedy = format!("choose 1 or more, at most {MOST_SUBSTEPS} of all levels together");
+            if level.substeps == 0 || product > LocalSteps::MOST_SUBSTEPS {
+                let remedy =
+                    format!("choose 1 or more, at most {} of all levels together", LocalSteps::MOST_SUBSTEPS);
                 return refused(&field("substeps"), level.substeps.to_string(), &remedy);
             }
             if let Some(i) = level.fine.iter().find(|&&i| i >= plain.size()) {

@@ -17,7 +17,7 @@ use crate::system::linear::system::{Potential, System};
 use crate::system::vary::stretches::{Stretch, cover};
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::limits::{Limits, Route};
-use crate::system::verdict::measured::Holds;
+use crate::system::verdict::measured::{Holds, check_accuracy};
 
 /// What moves, and what of it is held.
 #[derive(Clone, Debug, Default)]
@@ -92,9 +92,7 @@ impl MeasuredSystem {
     /// # Errors
     /// An accuracy that is not in (0, 1/10).
     pub fn at_accuracy(mut self, accuracy: f64) -> Result<MeasuredSystem> {
-        if !(accuracy > 0.0 && accuracy < 0.1) {
-            return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
-        }
+        check_accuracy(accuracy)?;
         (self.accuracy, self.kernel) = (accuracy, Arc::default());
         Ok(self)
     }

@@ -10,7 +10,7 @@ use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::analysis::{Analysis, Evidence, Part};
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
-use crate::system::verdict::measured::{Holds, Measured, Removed};
+use crate::system::verdict::measured::{Holds, Measured, Removed, check_accuracy};
 use crate::verdict::Kind;
 
 /// Two sparse levels with their steps.
@@ -44,9 +44,7 @@ impl SparseSystem {
         accuracy: f64,
         removed: Option<Removed>,
     ) -> Result<SparseSystem> {
-        if !(accuracy > 0.0 && accuracy < 0.1) {
-            return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
-        }
+        check_accuracy(accuracy)?;
         let n = levels.size();
         let steps = [inner, outer].map(|step| Potential::new(Symmetric::zero(n), step.clone()));
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), steps.into())?;
@@ -65,9 +63,7 @@ impl SparseSystem {
     /// # Errors
     /// One that is not in (0, 1/10).
     pub fn at_accuracy(self, accuracy: f64) -> Result<SparseSystem> {
-        if !(accuracy > 0.0 && accuracy < 0.1) {
-            return Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"));
-        }
+        check_accuracy(accuracy)?;
         Ok(SparseSystem { accuracy, ..self })
     }
 
@@ -81,10 +77,13 @@ impl SparseSystem {
         (FACTORIZATIONS / FASTER * self.levels.products()).min(1e19) as u64
     }
 
+    fn allow(&self, limits: &Limits) -> Result<()> {
+        limits.allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.levels.size())))
+    }
+
     /// The verdict, how far it stands, and where the first region ends.
     pub(super) fn decide(&self, limits: &Limits) -> Result<Analysis> {
-        limits
-            .allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.levels.size())))?;
+        self.allow(limits)?;
         let (levels, outer) = (&self.levels, &self.outer);
         let verdict = levels.verdict(outer, 0.0);
         let (kind, evidence) = match verdict {
@@ -112,8 +111,7 @@ impl SparseSystem {
 
     /// What is proven, and nothing else.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
-        limits
-            .allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.levels.size())))?;
+        self.allow(limits)?;
         Ok(self.levels.verdict(&self.outer, 0.0))
     }
 }

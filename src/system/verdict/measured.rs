@@ -1,5 +1,6 @@
 //! How far a verdict on measured stiffnesses stands.
 
+use crate::error::{Error, Result};
 use crate::verdict::Kind;
 
 /// Rigid motions that were projected out of every potential.
@@ -13,6 +14,17 @@ pub struct Removed {
     pub fast: f64,
     /// The same of the slow one.
     pub slow: f64,
+}
+
+/// That an accuracy of measured matrices, relative to their norms, is in (0, 1/10).
+///
+/// # Errors
+/// Where it is not.
+pub(in crate::system) fn check_accuracy(accuracy: f64) -> Result<()> {
+    if accuracy > 0.0 && accuracy < 0.1 {
+        return Ok(());
+    }
+    Err(Error::input("accuracy", accuracy, "give a positive number below 1/10, as 1e-6"))
 }
 
 /// Whether a verdict holds for every matrix within the accuracy of the data.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
 use faer::sparse::linalg::cholesky::{
     LltRef, SymbolicCholesky, SymbolicCholeskyRaw, factorize_symbolic_cholesky,
@@ -160,44 +160,40 @@ impl Pattern {
             return None;
         }
         (0..n).for_each(|j| values[self.diagonal(j)] -= shift);
-        let threads = faer::get_global_parallelism();
-        let scratch = self.symbolic.factorize_numeric_llt_scratch::<f64>(threads, Default::default());
-        let (mut room, mut factor) = (MemBuffer::try_new(scratch).ok()?, self.room()?);
+        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let scratch = own.factorize_numeric_llt_scratch::<f64>(threads, Default::default());
         let (matrix, none) = (self.matrix(&values), Default::default());
-        let stack = MemStack::new(&mut room);
-        self.symbolic
-            .factorize_numeric_llt(&mut factor, matrix, Side::Lower, none, threads, stack, Default::default())
-            .ok()?;
+        let factor = self.with_room(scratch, |factor, stack| {
+            own.factorize_numeric_llt(factor, matrix, Side::Lower, none, threads, stack, Default::default())
+                .is_ok()
+        })?;
         Some(Factors { symbolic: Arc::clone(&self.symbolic), values: factor })
     }
 
-    fn room(&self) -> Option<Vec<f64>> {
-        let mut factor = Vec::new();
-        factor.try_reserve_exact(self.symbolic.len_val()).ok()?;
-        factor.resize(self.symbolic.len_val(), 0.0);
-        Some(factor)
+    /// The values of factors that `factor` writes with so much room beside; `None` where it fails, or memory runs out.
+    fn with_room(
+        &self,
+        scratch: StackReq,
+        factor: impl FnOnce(&mut [f64], &mut MemStack) -> bool,
+    ) -> Option<Vec<f64>> {
+        let mut room = MemBuffer::try_new(scratch).ok()?;
+        let mut values = Vec::new();
+        values.try_reserve_exact(self.symbolic.len_val()).ok()?;
+        values.resize(self.symbolic.len_val(), 0.0);
+        factor(&mut values, MemStack::new(&mut room)).then_some(values)
     }
 
     /// How many negative eigenvalues a matrix has that is no farther from Σ a_k A_k − c (2-norm) than the number beside: that of the negative
     /// pivots of L D Lᵀ without exchanges, whose error is γ |L||D||Lᵀ| (Higham, chapter 11) and the roundings of the sum.
     pub fn negative(&self, c: f64, terms: &[(f64, &[f64])]) -> Option<(usize, f64)> {
         let (values, trace) = self.sum(-c, terms);
-        let threads = faer::get_global_parallelism();
-        let scratch = self.symbolic.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
-        let (mut room, mut factor) = (MemBuffer::try_new(scratch).ok()?, self.room()?);
+        let (own, threads) = (&self.symbolic, faer::get_global_parallelism());
+        let scratch = own.factorize_numeric_ldlt_scratch::<f64>(threads, Default::default());
         let (matrix, none) = (self.matrix(&values), Default::default());
-        let stack = MemStack::new(&mut room);
-        self.symbolic
-            .factorize_numeric_ldlt(
-                &mut factor,
-                matrix,
-                Side::Lower,
-                none,
-                threads,
-                stack,
-                Default::default(),
-            )
-            .ok()?;
+        let factor = self.with_room(scratch, |factor, stack| {
+            own.factorize_numeric_ldlt(factor, matrix, Side::Lower, none, threads, stack, Default::default())
+                .is_ok()
+        })?;
         // Of each column: its pivot, and the square of its length, 1 on the diagonal.
         let (mut negative, mut size) = (0, 0.0);
         let mut see = |pivot: f64, below: &mut dyn Iterator<Item = f64>| {

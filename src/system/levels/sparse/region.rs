@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use faer::{Mat, Side};
+use faer::Mat;
 
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
 use crate::number::{U, bisected};
 use crate::system::half::norm;
-use crate::system::levels::chord::chord;
+use crate::system::levels::chord::{chord, ends};
 use crate::system::levels::half::Half;
 use crate::system::levels::kernel::{Outer, STEP_ERROR};
 use crate::system::levels::region::largest;
@@ -46,6 +46,7 @@ pub struct SparseLevels {
 struct First {
     step: (f64, f64),
     along: Mat<f64>,
+    quotients: [f64; 2],
 }
 
 /// Steps of Lanczos's recursion for the largest eigenvalue of F.
@@ -140,7 +141,7 @@ impl SparseLevels {
             return Holds::Stable;
         }
         let first = if epsilon == 0.0 { self.first(outer.inner_steps) } else { None };
-        let unstable = first.is_some_and(|first| self.is_unstable_along(&first.along, outer));
+        let unstable = first.is_some_and(|first| self.is_unstable_along(first.quotients, outer));
         if unstable { Holds::Unstable } else { Holds::NotTold }
     }
 
@@ -176,12 +177,13 @@ impl SparseLevels {
         let (lo, _) = bisected((start, (2.0 * start).min(top)), WIDTH, |step| Some(stable(step)));
         // The vector that is stretched least there tells where it is no more.
         let along = self.stretched(&at(lo)?)?;
-        let unstable = |step: f64| at(step).is_some_and(|outer| self.is_unstable_along(&along, &outer));
+        let quotients = self.quotients(&along);
+        let unstable = |step: f64| at(step).is_some_and(|outer| self.is_unstable_along(quotients, &outer));
         let first =
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
         let hi = first.into_iter().find(|&step| unstable(step))?;
         let (_, hi) = bisected((lo, hi), WIDTH / 64.0, |step| Some(!unstable(step)));
-        Some(First { step: (lo, hi), along })
+        Some(First { step: (lo, hi), along, quotients })
     }
 
     /// The factors that prove the first region, rigid motions apart; `None` where they prove nothing.
@@ -203,7 +205,7 @@ impl SparseLevels {
     /// Bounds on the spectrum of all F within ε times their norm.
     fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
         let found = self.ends.get_or_init(|| {
-            let top = self.highest();
+            let [_, top] = ends(self.size(), STEPS, |x| self.alone.times(&self.fast_alone, x));
             let slack = self.errors[0] + 4.0 * U * self.sizes[0];
             let is_above =
                 |high: f64| self.alone.factored(high, &[(-1.0, &self.fast_alone)], slack).is_some();
@@ -242,37 +244,6 @@ impl SparseLevels {
         }
     }
 
-    /// The largest eigenvalue of F, from within: Lanczos's recursion, rounded.
-    fn highest(&self) -> f64 {
-        let n = self.size();
-        let begin = start(n);
-        let mut now = Mat::from_fn(n, 1, |i, _| begin[i]);
-        now = &now / faer::Scale(now.norm_l2());
-        let mut before = Mat::<f64>::zeros(n, 1);
-        let (mut diagonal, mut beside) = (Vec::new(), vec![0.0]);
-        for _ in 0..STEPS.min(n) {
-            let last = beside[beside.len() - 1];
-            let mut next = self.alone.times(&self.fast_alone, &now) - &before * faer::Scale(last);
-            let along = (next.transpose() * &now)[(0, 0)];
-            next -= &now * faer::Scale(along);
-            diagonal.push(along);
-            let length = next.norm_l2();
-            beside.push(length);
-            if length <= 1e-12 * (along.abs() + last) {
-                break;
-            }
-            before = now;
-            now = next / faer::Scale(length);
-        }
-        let k = diagonal.len();
-        let small = Mat::from_fn(k, k, |i, j| match i.abs_diff(j) {
-            0 => diagonal[i],
-            1 => beside[i.max(j)],
-            _ => 0.0,
-        });
-        small.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default().last().copied().unwrap_or(0.0)
-    }
-
     /// The vector for which α − β h² F − M is least, rounded: inverse iteration with the factors at the step, or a little below.
     fn stretched(&self, outer: &Outer) -> Option<Mat<f64>> {
         let below =
@@ -292,25 +263,31 @@ impl SparseLevels {
         Some(x)
     }
 
-    /// Whether E(h² xᵀFx) < xᵀMx for sure, all eigenvalues of h² F being where E is concave.
-    fn is_unstable_along(&self, x: &Mat<f64>, outer: &Outer) -> bool {
+    /// What xᵀFx and xᵀSx are at least over xᵀx, off the rigid motions.
+    fn quotients(&self, x: &Mat<f64>) -> [f64; 2] {
+        let n = self.size() as f64;
+        // Sums of n products each, of |x|ᵀ|A||x| ≤ ‖A‖; what is left of the length and along rigid motions.
+        let along = norm::frobenius(&(self.rigid.transpose() * x)) + n * U;
+        let length = 1.0 - 1.01 * (n + 4.0) * U;
+        let of = |k: usize, own: &[f64]| {
+            let off = self.errors[k] + (2.1 * along + 4.04 * (n + 4.0) * U) * self.sizes[k];
+            let form = (x.transpose() * self.both.times(own, x))[(0, 0)] - off;
+            (form * length).min(form / length)
+        };
+        [of(0, &self.fast), of(1, &self.slow)]
+    }
+
+    /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being where E is concave.
+    fn is_unstable_along(&self, [fast, slow]: [f64; 2], outer: &Outer) -> bool {
         let Some([low, high]) = self.ends(0.0) else { return false };
         if chord(outer, low, high).is_none() || !self.is_total_definite(self.errors[0] + self.errors[1]) {
             return false;
         }
-        let n = self.size() as f64;
-        // Sums of n products each, of |x|ᵀ|A||x| ≤ ‖A‖; what is left of the length and along rigid motions.
-        let length = 1.0 - 1.01 * (n + 4.0) * U;
-        let forms = [&self.fast, &self.slow].map(|own| (x.transpose() * self.both.times(own, x))[(0, 0)]);
-        let along = norm::frobenius(&(self.rigid.transpose() * x)) + n * U;
-        let off = [0, 1].map(|k| self.errors[k] + (2.1 * along + 4.04 * (n + 4.0) * U) * self.sizes[k]);
-        let [fast, slow] = [forms[0] - off[0], forms[1] - off[1]];
         // E falls: what the quotient is at least.
-        let quotient = (fast * length).min(fast / length);
-        if !(quotient > low && quotient < high && slow > 0.0) {
-            return false;
+        let is_inside = fast > low && fast < high && slow > 0.0;
+        is_inside && {
+            let stretch = Half::new(outer.scaled_down(fast), outer.inner_steps).stretch();
+            stretch.hi < (1.0 - 4.0 * STEP_ERROR) * outer.half_kick() * slow
         }
-        let stretch = Half::new(outer.scaled_down(quotient), outer.inner_steps).stretch();
-        stretch.hi < (1.0 - 4.0 * STEP_ERROR) * outer.half_kick() * slow * length
     }
 }
