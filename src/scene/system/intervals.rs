@@ -230,13 +230,11 @@ impl SystemScene {
         if self.friction.is_some() {
             return refused("with friction", "take the friction out of the file");
         }
-        if !self.is_linear()
-            || matches!(
-                self.model,
-                Model::Oscillator(_) | Model::Pi(_) | Model::NoGradient(_) | Model::Sparse(_)
-            )
-        {
-            return refused("of this file", "are for linear systems of rational numbers");
+        match &self.model {
+            Model::NoGradient(_) => return refused("of this file", "are for forces that are gradients"),
+            Model::Sparse(_) => return refused("of this file", "are for dense stiffnesses"),
+            Model::Rational(_) | Model::Measured(_) | Model::LocalSteps(_) if self.is_linear() => {}
+            _ => return refused("of this file", "are for linear systems of rational numbers"),
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());
         limits.allow(self.model.cost(), work)

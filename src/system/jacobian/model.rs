@@ -43,6 +43,23 @@ impl Clock {
 }
 
 /// Forces that are no gradient, each with its clock.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Jacobians, Limits, Route};
+/// use nalgebra::DMatrix;
+/// let rational = |entries: [i64; 4]| DMatrix::from_row_slice(2, 2, &entries.map(|x| ratio(x, 2)));
+/// // Two oscillators alike, stiff ones every 1/50; every 4/25 a force that turns one into the other.
+/// let stiff = (rational([400, 0, 0, 400]), ratio(1, 50), ratio(0, 1));
+/// let turning = (rational([40, 1, -1, 40]), ratio(4, 25), ratio(0, 1));
+/// let forces = Jacobians::rational(&[ratio(1, 1), ratio(1, 1)], &[stiff, turning])?;
+/// let found = forces.decide(Route::Cheapest, &Limits::default())?;
+/// // It grows, and would with the shortest steps: these add a fifth.
+/// let (lo, hi) = found.growth_rate().expect("enclosed");
+/// let (least, most) = forces.no_gradient().without_steps.expect("enclosed");
+/// assert!(found.is_unstable() && lo > 1.1 * most && hi < 1.3 * least);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Jacobians {
     pub(super) clocks: Vec<Clock>,

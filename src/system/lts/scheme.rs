@@ -21,6 +21,23 @@ pub struct Level {
 const MOST_WORK: f64 = 2e8;
 
 /// A diagonal mass, a stiffness, levels from the coarsest to the finest one, and a step.
+///
+/// ```
+/// use kickdrift::number::rational::ratio;
+/// use kickdrift::system::{Holds, Level, Limits, LocalSteps, Potential, Symmetric, System};
+/// use nalgebra::DMatrix;
+/// // Two masses, the second on a stiff spring: it takes two substeps in each step.
+/// let stiffness = Symmetric::try_from(&DMatrix::from_row_slice(2, 2, &[1.0, -1.0, -1.0, 9.0]))?;
+/// let mass = Symmetric::diagonal(&[ratio(1, 1), ratio(1, 1)]);
+/// let plain = System::new(mass, vec![Potential::new(stiffness, ratio(1, 2))])?;
+/// let scheme = LocalSteps::new(plain, vec![Level { fine: [1].into(), substeps: 2 }])?;
+/// // Unstable for steps from 0.8837... to 1 and above 4/3, and nowhere else.
+/// let found = scheme.stretches((0.1, 3.0), &Limits::default())?;
+/// let unstable: Vec<_> = found.iter().filter(|own| own.verdict == Holds::Unstable).collect();
+/// assert_eq!(unstable.len(), 2);
+/// assert!(unstable[0].lo > 0.8837 && unstable[0].hi == 1.0 && unstable[1].lo > 1.3333);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct LocalSteps {
     /// Without local steps: Verlet's.

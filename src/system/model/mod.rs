@@ -229,6 +229,9 @@ impl Model {
     }
 
     fn of_two(&self) -> Result<&MeasuredSystem> {
+        if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
+            return Err(self.refused("advice"));
+        }
         let remedy = "give stiffnesses by reference, as {\"npz\": \"water.npz\", \"array\": \"fast\"}";
         self.measured().ok_or_else(|| Error::input("stiffness", "given in place", remedy))
     }

@@ -17,6 +17,23 @@ use crate::system::verdict::large::start;
 use crate::system::verdict::measured::Holds;
 
 /// The fast and the slow stiffness, mass-weighted (1/time²), sparse, and the rigid motions that are set apart.
+///
+/// ```
+/// use faer::Mat;
+/// use kickdrift::system::Holds;
+/// use kickdrift::system::levels::Outer;
+/// use kickdrift::system::levels::sparse::SparseLevels;
+/// // A thousand oscillators, each on a stiff spring, soft springs between neighbours and to walls.
+/// let n = 1000;
+/// let fast: Vec<_> = (0..n).map(|i| (i, i, 1.0)).collect();
+/// let slow: Vec<_> = (0..n).map(|i| (i, i, 0.02)).chain((1..n).map(|i| (i, i - 1, -0.01))).collect();
+/// let levels = SparseLevels::new(&vec![1.0; n], [&fast, &slow], Mat::zeros(n, 0))?;
+/// // Outer steps of eight inner ones: half the fast period is π.
+/// let (lo, hi) = levels.first_unstable(8).expect("proven");
+/// assert!(2.9 < lo && lo < hi && hi < 3.15);
+/// assert_eq!(levels.verdict(&Outer::new(2.0, 8)?, 1e-6), Holds::Stable);
+/// # Ok::<(), kickdrift::error::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct SparseLevels {
     /// Both in the pattern of their sum.
