@@ -5,6 +5,7 @@ use plot::{Axis, Cells, Figure, Foot, Layer, Panel, Place, palette};
 
 use super::asking::{Question, Work, question};
 use crate::error::{Error, Result};
+#[cfg(feature = "figure")]
 use crate::number::rational::to_f64;
 use crate::number::{ExactSign, Laurent, Rational, Sign};
 use crate::parallel::try_map;
