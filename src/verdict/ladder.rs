@@ -22,6 +22,10 @@ use crate::schedule::Schedule;
 /// The precisions of the refine tier in bits, as far as the exact tier is expected to cost more.
 const PRECISIONS: [u32; 3] = [128, 256, 512];
 
+/// The binary digits of the longest period that is tried: a power of one step takes as many squarings of numbers with three times as
+/// many digits, half a second here.
+const LONGEST_RATIO: u64 = 1 << 12;
+
 /// Decides the pair, with the cheapest tier that can.
 ///
 /// # Errors
@@ -91,8 +95,16 @@ pub fn decide_anew<S: Decidable>(clocks: &LongClocks<S>) -> Result<Option<(Verdi
 ///
 /// # Errors
 /// A budget error where return maps in 256 bits tell no verdict: on an edge of a tongue exactly or next to it, and where kicks are so
-/// strong that the bound exceeds the entries (proofs/RETURNS.md). `Stopped`.
+/// strong that the bound exceeds the entries (proofs/RETURNS.md); at once where the period has more than 2^4096 kicks. `Stopped`.
 pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
+    let kicks = clocks.ratio().numer() + clocks.ratio().denom();
+    if kicks.bits() > LONGEST_RATIO {
+        let work = format!(
+            "the period has {} kicks, and a verdict's cost grows with the cube of the digits",
+            short(&kicks)
+        );
+        return Err(Error::too_much(work, "choose steps of fewer digits: at most 1200"));
+    }
     for bits in returns::PRECISIONS {
         go_on()?;
         if let Some(verdict) = returns::signs(clocks, bits).and_then(|signs| signs.verdict()) {
@@ -101,7 +113,6 @@ pub fn decide_long<S: Decidable>(clocks: &LongClocks<S>) -> Result<Decision> {
         }
     }
     go_on()?;
-    let kicks = clocks.ratio().numer() + clocks.ratio().denom();
     let work = format!(
         "256 bits do not tell the verdict, and the period has {} kicks: the pair is on an edge of a tongue or next to one, or its kicks are very strong",
         short(&kicks)

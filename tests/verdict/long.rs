@@ -160,3 +160,17 @@ fn every_pair_of_doubles_is_decided() {
         assert!(found.is_ok(), "{n}: {h1}, {h2}: {found:?}");
     }
 }
+
+/// Its cost grows with the cube of the digits: half a second at the limit.
+#[test]
+fn steps_of_more_digits_than_a_verdict_is_worth_are_refused_at_once() {
+    let digits = |n: usize| "9".repeat(n).parse().unwrap();
+    let decided = |n| {
+        let [lambda1, lambda2] = [Laurent::pi_power(2), Laurent::from_integer(1)];
+        let oscillator =
+            Oscillator::new(lambda1, lambda2, digits(n), Laurent::from_rational(ratio(1, 3))).unwrap();
+        decide_long(&oscillator.long_clocks())
+    };
+    assert!(decided(300).is_ok());
+    assert_eq!(decided(1300).unwrap_err().kind(), kickdrift::error::Kind::Budget);
+}

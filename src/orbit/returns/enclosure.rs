@@ -258,14 +258,15 @@ pub fn balanced<E: Enclosure, const N: usize>(terms: [Matrix<E>; N]) -> ([Matrix
     (terms.map(|term| term.map(|x| x.scale2(-largest))), largest)
 }
 
-/// One step's matrix to the n-th power, and the power of two that it is to be multiplied by.
+/// One step's matrix to the n-th power, and the power of two that it is to be multiplied by: beyond what 128 bits hold, their
+/// largest number, which no ball takes.
 pub fn power<E: Enclosure>(step: &Matrix<E>, one: &Matrix<E>, n: &BigUint) -> (Matrix<E>, i128) {
     let digits = (0..n.bits()).rev().map(|bit| n.bit(bit));
-    digits.fold((one.clone(), 0), |(own, exponent), digit| {
+    digits.fold((one.clone(), 0i128), |(own, exponent), digit| {
         let square = product(&own, &own);
         let next = if digit { product(&square, step) } else { square };
         let ([next], scaled) = balanced([next]);
-        (next, 2 * exponent + i128::from(scaled))
+        (next, exponent.saturating_mul(2).saturating_add(scaled.into()))
     })
 }
 

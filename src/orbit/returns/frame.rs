@@ -222,7 +222,7 @@ impl<T: Coefficient> Frame<T> {
         let (terms, exponent) = balanced(terms.map(|term| product(&term, &steps.matrix)));
         let turn = steps.turn.zip(self.towards(&terms[0][0], &terms[0][2]));
         let mut map = Map::new(&terms, turn.map(|(turn, angle)| turn.sheared(self.is_clockwise(), angle)));
-        map.exponent += steps.exponent + i128::from(exponent);
+        map.exponent = map.exponent.saturating_add(steps.exponent).saturating_add(exponent.into());
         map
     }
 
@@ -322,7 +322,7 @@ impl<T: Coefficient> Frame<T> {
         } else {
             let passed = whole * (q / 2) + BigUint::from(q / 2) * *rest / *q;
             let rotation = self.rotation(&((&p >> 1u32) - passed))?;
-            journey.exponent += rotation.exponent;
+            journey.exponent = journey.exponent.saturating_add(rotation.exponent);
             journey.go(&rotation.matrix, |turn, angle| {
                 let by = rotation.turn?;
                 let turned = turn.on(by.angle, angle);

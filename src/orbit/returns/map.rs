@@ -162,8 +162,9 @@ impl<T: Coefficient> Map<T> {
         Map { norm: largest(&terms), terms, error: 0.0, exponent: 0, turn: None }
     }
 
-    /// Without a turn, balanced.
+    /// Without a turn, balanced; known by nothing where the power of two leaves the range of its number.
     fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i128) -> Self {
+        let error = if exponent.unsigned_abs() > 1 << 125 { f64::INFINITY } else { error };
         let mut map = Map { norm: largest(&terms), terms, error, exponent, turn: None };
         map.balance();
         map
@@ -274,7 +275,7 @@ impl<T: Coefficient> Map<T> {
         let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
         let carried = self.norm * earlier.error + earlier.norm * self.error + self.error * earlier.error;
         let error = (carried + dropped + rounding) * UP + FLOOR;
-        let product = Map::bounded(terms, error, self.exponent + earlier.exponent);
+        let product = Map::bounded(terms, error, self.exponent.saturating_add(earlier.exponent));
         Map { turn: self.turn_after(earlier, &product), ..product }
     }
 

@@ -1,9 +1,11 @@
 //! A period or half of one in doubles with a proven bound, with friction, and with a stiffness of its own for every kick.
 //!
 //! Each step is Ĥ_k = M_k Ĥ_(k−1) + Δ_k, the M_k shears or, with friction, shears times diag(1, c): then H_k is d_k^½ times a
-//! symplectic matrix, d_k the product of the c's, and ‖H_k⁻¹‖ = ‖H_k‖/d_k. The error after the last step is
-//! Σ_j H H_j⁻¹ Δ_j, so with σ = Σ ‖Ĥ_j‖ |Δ_j|/d_j, ρ = Σ |Δ_j|/d_j and G = max ‖Ĥ_k‖ the bound of [`float`](crate::system::half::float)
-//! holds: if 8 G ρ ≤ 1 all errors stay below 2 G σ, and ‖E‖ ≤ ‖Ĥ‖ s/(1 − s), s = σ + 2 G σ ρ.
+//! symplectic matrix, d_k the product of the c's, and H_k⁻¹ takes an error R in the rows of momenta to Xᵀ R/d_k, X the rows of positions, and
+//! one in those of positions to Pᵀ R/d_k, but for signs. The error after the last step is Σ_j H H_j⁻¹ Δ_j, so with
+//! σ = Σ ‖X̂_j‖ ‖R_j‖/d_j (or P̂_j), ρ = Σ ‖R_j‖/d_j and G = max ‖Ĥ_k‖ the bound of [`float`](crate::system::half::float) holds: if
+//! 8 G ρ ≤ 1 all errors stay below 2 G σ, and ‖E‖ ≤ ‖Ĥ‖ s/(1 − s), s = σ + 2 G σ ρ. A kick F that is off by δ has R = δ X, and its term
+//! is δ ‖X̂‖²: norms are spectral, of many rows some n times less than Frobenius's.
 
 use std::collections::BTreeMap;
 
@@ -31,7 +33,7 @@ pub(in crate::system) struct Drifts<'a> {
     pub off: f64,
 }
 
-/// The rows of positions and momenta, 2n columns each, and the bound on the error of all (Frobenius).
+/// The rows of positions and momenta, 2n columns each, and the bound on the error of all (2-norm).
 #[derive(Clone, Debug)]
 pub(in crate::system) struct Propagated {
     pub n: usize,
@@ -39,6 +41,15 @@ pub(in crate::system) struct Propagated {
     p: Vec<f64>,
     pub error: Option<f64>,
 }
+
+/// ‖R‖ and ‖X‖ ‖R‖ of one step's errors, with P in place of X for errors of positions.
+struct Step {
+    error: f64,
+    taken_back: f64,
+}
+
+/// From so many columns on sums of rows and columns are worth their time.
+const MANY: usize = 32;
 
 /// The sums of the bound.
 struct Account {
@@ -50,11 +61,10 @@ struct Account {
 }
 
 impl Account {
-    fn add(&mut self, error: f64, state: &Propagated) {
-        let size = state.size();
+    fn add(&mut self, Step { error, taken_back }: Step, size: f64) {
         self.largest = self.largest.max(size);
         self.rho += error / self.volume;
-        self.sigma += error / self.volume * size;
+        self.sigma += taken_back / self.volume;
     }
 }
 
@@ -87,24 +97,27 @@ fn followed<'a>(
         (0..2 * n * n).map(|k| f64::from(u8::from(k % (2 * n) == first + k / (2 * n)))).collect()
     };
     let mut state = Propagated { n, x: unit(0), p: unit(n), error: None };
-    let mut account = Account { rho: 0.0, sigma: 0.0, largest: state.size(), volume: 1.0 };
+    let mut sizes = [1.0; 2];
+    let mut account = Account { rho: 0.0, sigma: 0.0, largest: 1.0, volume: 1.0 };
     let mut known: BTreeMap<u64, f64> = BTreeMap::new();
     for (k, event) in events.enumerate() {
         if event.drift > 0 {
             let c = *known.entry(event.drift).or_insert_with(|| decayed(drifts.decay, event.drift));
-            let error = state.drift(drifts, event.drift as f64, c);
+            let step = state.drift(drifts, event.drift as f64, c, &mut sizes);
             account.volume *= c;
-            account.add(error, &state);
+            account.add(step, sizes[0].hypot(sizes[1]));
         }
         for clock in event.clocks() {
-            let error = state.kick(kick(k, clock), event.weight);
-            account.add(error, &state);
+            let step = state.kick(kick(k, clock), event.weight, &mut sizes);
+            account.add(step, sizes[0].hypot(sizes[1]));
         }
         if gives_up(&account) {
             return None;
         }
     }
-    state.error = account.bound(state.size());
+    if account.holds() {
+        state.error = account.bound(state.norm());
+    }
     Some(state)
 }
 
@@ -121,13 +134,12 @@ impl Account {
         8.0 * (1.01 * self.largest) * (1.01 * self.rho) <= 1.0
     }
 
+    /// Where it holds.
     fn bound(&self, end: f64) -> Option<f64> {
         // 1.01: the roundings of norms, of d_k and of the sums.
         let (rho, sigma, largest) = (1.01 * self.rho, 1.01 * self.sigma, 1.01 * self.largest);
-        self.holds().then(|| {
-            let s = sigma + 2.0 * largest * sigma * rho;
-            1.02 * end * s / (1.0 - s)
-        })
+        let s = sigma + 2.0 * largest * sigma * rho;
+        Some(1.02 * end * s / (1.0 - s))
     }
 }
 
@@ -136,17 +148,17 @@ impl Propagated {
         &rows[i * columns..(i + 1) * columns]
     }
 
-    /// ‖Ĥ‖_F.
-    fn size(&self) -> f64 {
-        1.01 * self.x.iter().chain(&self.p).map(|x| x * x).sum::<f64>().sqrt()
+    /// More than ‖Ĥ‖.
+    fn norm(&self) -> f64 {
+        spectral(&self.x, self.n).hypot(spectral(&self.p, self.n))
     }
 
-    /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error.
-    fn drift(&mut self, drifts: &Drifts, ticks: f64, c: f64) -> f64 {
+    /// x ← x + t (1 + c)/2 M⁻¹ p, p ← c p; more than the error. The sizes are bounds of ‖X̂‖ and ‖P̂‖, before and then after.
+    fn drift(&mut self, drifts: &Drifts, ticks: f64, c: f64, [x_size, p_size]: &mut [f64; 2]) -> Step {
         let columns = 2 * self.n;
         let mean = ticks * (1.0 + c) / 2.0;
         let mut squares = 0.0;
-        let moved = mean * drifts.off * norm2(&self.p).sqrt();
+        let moved = mean * drifts.off * *p_size;
         for (i, masses) in drifts.inverse_mass.iter().enumerate() {
             let target = &mut self.x[i * columns..(i + 1) * columns];
             let mut size = norm2(target).sqrt();
@@ -158,15 +170,20 @@ impl Propagated {
             // Each term: the factor's five roundings (a, t, c, sum, product), the product's, at most k sums.
             squares += ((masses.len() as f64 + 6.0) * size).powi(2);
         }
-        if c != 1.0 {
-            squares += 4.0 * norm2(&self.p);
-            self.p.iter_mut().for_each(|p| *p *= c);
+        let of_positions = 1.01 * (U * squares.sqrt() + moved);
+        *x_size = bound(&self.x, columns);
+        if c == 1.0 {
+            return Step { error: of_positions, taken_back: of_positions * *p_size };
         }
-        1.01 * (U * squares.sqrt() + moved)
+        let of_momenta = 1.01 * U * 2.0 * norm2(&self.p).sqrt();
+        self.p.iter_mut().for_each(|p| *p *= c);
+        // 1.01: the rounding of the rows just scaled.
+        *p_size *= 1.01 * c;
+        Step { error: of_positions + of_momenta, taken_back: of_positions * *p_size + of_momenta * *x_size }
     }
 
-    /// p ← p − w F x; more than the error.
-    fn kick(&mut self, stiff: &Stiff, weight: Weight) -> f64 {
+    /// p ← p − w F x; more than the error. The sizes as in `drift`.
+    fn kick(&mut self, stiff: &Stiff, weight: Weight, [x_size, p_size]: &mut [f64; 2]) -> Step {
         let columns = 2 * self.n;
         let weight = if weight == Weight::Full { -1.0 } else { -0.5 };
         let mut squares = 0.0;
@@ -180,7 +197,9 @@ impl Propagated {
             }
             squares += ((row.len() as f64 + 3.0) * size).powi(2);
         }
-        1.01 * (U * squares.sqrt() + weight.abs() * stiff.off * norm2(&self.x).sqrt())
+        *p_size = bound(&self.p, columns);
+        let error = 1.01 * (U * squares.sqrt() + weight.abs() * stiff.off * *x_size);
+        Step { error, taken_back: error * *x_size }
     }
 
     /// The whole propagator, 2n x 2n.
@@ -195,9 +214,25 @@ impl Propagated {
     pub fn blocks(&self, scales: Vec<f64>) -> FloatBlocks {
         let columns = 2 * self.n;
         let rows = |from: &[f64]| (0..self.n).map(|i| Propagated::row(from, columns, i).to_vec()).collect();
-        let norm = 1.01 * norm::frobenius(&self.matrix()) + self.error.unwrap_or(0.0);
+        let norm = self.norm() + self.error.unwrap_or(0.0);
         FloatBlocks { m: self.n, y: rows(&self.x), p: rows(&self.p), error: self.error, norm, scales }
     }
+}
+
+/// More than the 2-norm of the rows, each of so many columns: Frobenius's, or of many rows the root of the largest sums.
+fn bound(rows: &[f64], columns: usize) -> f64 {
+    let size = 1.01 * norm2(rows).sqrt();
+    if columns < MANY || !size.is_finite() {
+        size
+    } else {
+        size.min(norm::by_sums(columns, rows.chunks(columns)))
+    }
+}
+
+/// The same, nearer and at the cost of products: ‖(A B)‖² ≤ ‖A‖² + ‖B‖².
+fn spectral(rows: &[f64], n: usize) -> f64 {
+    let block = |first: usize| norm::spectral(&Mat::from_fn(n, n, |i, j| rows[i * 2 * n + first + j]));
+    1.01 * block(0).hypot(block(n))
 }
 
 fn norm2(row: &[f64]) -> f64 {

@@ -251,7 +251,7 @@ impl Kind {
             Kind::Hyperbolic => [exp(&without(&a)), exp(&without(&b))],
         };
         let mut first = Map::of_balls(&[self.entries(first, Ball::zero(), Ball::neg)]);
-        first.exponent += log2.to_i128()?;
+        first.exponent = first.exponent.checked_add(log2.to_i128()?)?;
         // e^R, R = S without its constant term: of a long sum a small part, whose own power of two is none of S.
         let scale = i32::try_from(scale).ok()?;
         let mut terms = exponent.terms().to_vec();
@@ -288,7 +288,7 @@ fn inverse<T: Coefficient>(given: &Map<T>) -> Option<Map<T>> {
     let entries = [&d, &b.negative(), &c.negative(), &a].map(|x| x.over(&determinant));
     let [Some(a), Some(b), Some(c), Some(d)] = entries else { return None };
     let mut inverse = map(&[a, b, c, d]);
-    inverse.exponent = -given.exponent;
+    inverse.exponent = given.exponent.saturating_neg();
     let rest = inverse.after(given).plus(&Map::identity().negative()).size();
     (rest < 0.1).then(|| inverse.widened(rest / (1.0 - rest) * (1.0 + 1e-12)))
 }
@@ -363,7 +363,7 @@ impl<T: Coefficient> Normal<T> {
         let sum = self.sum.on(end, length).plus(&self.sum.on(start, length).negative());
         let error = (self.error * n as f64).exp_m1() * (1.0 + 1e-9);
         let mut product = self.kind.exponential(&sum)?.widened(error);
-        product.exponent += self.exponent.checked_mul(n.try_into().ok()?)?;
+        product.exponent = product.exponent.checked_add(self.exponent.checked_mul(n.try_into().ok()?)?)?;
         product.turn = self.turns.and_then(|turns| {
             let turns = turns.checked_mul(n.try_into().ok()?)?;
             let own = self.kind.numbers(&sum.terms()[0])[1].ball().scale2(sum.exponent.try_into().ok()?);
