@@ -171,3 +171,49 @@ fn compressed_rows_are_read_and_refused_by_name() {
         assert!(!error.contains('\n'), "{error}");
     }
 }
+
+/// What falls by itself falls at any step; the resonances of the steps are those of the same system without it.
+#[test]
+fn resonances_are_proven_where_the_forces_hold_no_minimum() {
+    let n = 40;
+    let fast: Vec<_> = (0..n).map(|i| (i, i, if i < 2 { 0.0 } else { 1.0 })).collect();
+    let slow = |falls: f64| -> Vec<_> {
+        let own = |i: usize| if i < 2 { falls } else { 0.02 };
+        (0..n).map(|i| (i, i, own(i))).chain((3..n).map(|i| (i, i - 1, -0.01))).collect()
+    };
+    let levels =
+        |falls| SparseLevels::new(&vec![1.0; n], [&fast, &slow(falls)], faer::Mat::zeros(n, 0)).unwrap();
+    let [held, falling] = [0.02, -0.02].map(levels);
+    assert_eq!((held.unheld(), falling.unheld()), (Some(0), Some(2)));
+    assert_eq!(held.first_unstable(8), held.first_resonance(8));
+    assert_eq!(falling.first_unstable(8), None);
+    let ((lo, hi), (other, end)) = (held.first_resonance(8).unwrap(), falling.first_resonance(8).unwrap());
+    assert!(lo < end && other < hi, "{lo} {hi} {other} {end}");
+    let verdict = |levels: &SparseLevels, step: f64| levels.verdict(&Outer::new(step, 8).unwrap(), 0.0);
+    assert_eq!([verdict(&held, 2.0), verdict(&held, 1.01 * hi)], [Holds::Stable, Holds::Unstable]);
+    assert_eq!([verdict(&falling, 2.0), verdict(&falling, 1.01 * end)], [Holds::NotTold, Holds::Unstable]);
+    // The multipliers of the dense period: positive where they grow below, and one below −1 beyond.
+    let dense = |own: &[(usize, usize, f64)]| {
+        let mut matrix = DMatrix::zeros(n, n);
+        own.iter().for_each(|&(i, j, x)| (matrix[(i, j)], matrix[(j, i)]) = (x, x));
+        matrix
+    };
+    let (stiff, soft) = (dense(&fast), dense(&slow(-0.02)));
+    let grown = |outer: f64| {
+        let inner = outer / 8.0;
+        let shear = |up: bool, by: &DMatrix<f64>| {
+            let mut own = DMatrix::identity(2 * n, 2 * n);
+            own.view_mut(if up { (0, n) } else { (n, 0) }, (n, n)).copy_from(by);
+            own
+        };
+        let (kick, drift) =
+            (shear(false, &(-outer / 2.0 * &soft)), shear(true, &(DMatrix::identity(n, n) * inner)));
+        let half = shear(false, &(-inner / 2.0 * &stiff));
+        let step = &half * drift * &half;
+        let period = &kick * step.pow(8) * &kick;
+        period.complex_eigenvalues().iter().filter(|own| own.norm() > 1.0 + 1e-6).copied().collect::<Vec<_>>()
+    };
+    let below = grown(0.999 * other);
+    assert!(below.len() == 2 && below.iter().all(|own| own.re > 1.0 && own.im.abs() < 1e-6), "{below:?}");
+    assert!(grown(1.01 * end).iter().any(|own| own.re < -1.0));
+}

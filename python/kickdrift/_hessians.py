@@ -177,7 +177,12 @@ def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:
     KickdriftError
         Where a tenth of it is unknown: no verdict holds for so uncertain a Hessian.
     """
-    accuracy = max(error / max(norm(matrix), 1e-300), 1e-12)
+    return usable(error / max(norm(matrix), 1e-300), name, difference)
+
+
+def usable(known: float, name: str, difference: str) -> float:
+    """How well a Hessian is known relative to its norm, at least rounding; refused where that is too little."""
+    accuracy = max(known, 1e-12)
     if accuracy >= _UNKNOWN:
         remedy = (
             "is too uncertain for any verdict: its forces jump or bend within the differences, as where pairs cross a "
@@ -191,12 +196,13 @@ def seen(matrix: Doubles, error: float, name: str, difference: str) -> float:
 _UNKNOWN = 0.1
 
 
-def unbalanced(forces: Mapping[str, Doubles], total: Doubles, masses: Doubles, unit: str, follow: str) -> list[str]:
+def unbalanced(forces: Mapping[str, Doubles], size: float, masses: Doubles, unit: str, follow: str) -> list[str]:
     """What to know where a group's own force does not vanish at the positions: they are no rest of the integrator.
 
-    A force is rounding where it would displace no atom by more than 1e-9, as :func:`arrived` has it.
+    ``size`` is the norm of the total Hessian. A force is rounding where it would displace no atom by more than 1e-9, as
+    :func:`arrived` has it.
     """
-    rounding = 1e-9 * norm(total) * float(np.sqrt(masses.max()))
+    rounding = 1e-9 * size * float(np.sqrt(masses.max()))
     root = np.sqrt(masses)[:, None]
     notes = []
     if np.linalg.norm(np.sum(list(forces.values()), axis=0) / root) > rounding:

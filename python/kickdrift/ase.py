@@ -24,7 +24,7 @@ from kickdrift._hessians import (
     unbalanced,
 )
 from kickdrift._numbers import Exact, doubles, duration
-from kickdrift._rigid import Doubles, is_held, rigid_motions
+from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
 from kickdrift._system import System
 
 try:
@@ -97,7 +97,7 @@ def system(
     pulls = {name: force(where) / units.fs**2 for name, force in forces.items()}
     total = np.sum([matrix for matrix, _ in measured.values()], axis=0) / units.fs**2
     follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
-    notes = unbalanced(pulls, total, masses, "eV/Å", follow)
+    notes = unbalanced(pulls, norm(total), masses, "eV/Å", follow)
     moved = rigid_motions(where, masses, rotations=False)
     held = is_held(total * units.fs**2, moved, sum(error for _, error in measured.values()))
     root = np.sqrt(np.repeat(masses, 3))

@@ -32,9 +32,10 @@ from kickdrift._hessians import (
     shown,
     soft_solve,
     unbalanced,
+    usable,
 )
 from kickdrift._numbers import Exact, doubles, duration, rational, simplest
-from kickdrift._rigid import Doubles, complement, is_held, rigid_motions
+from kickdrift._rigid import Doubles, complement, is_held, norm, rigid_motions
 from kickdrift._system import System
 
 try:
@@ -79,6 +80,7 @@ def system(
     atoms: Sequence[int] | None = None,
     minimize: bool = True,
     difference: float = DIFFERENCE,
+    sparse: bool = False,
     progress: Progress | bool = False,
 ) -> System:
     """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
@@ -101,6 +103,10 @@ def system(
         Go to the minimum beside the positions, in a copy.
     difference : float
         The difference of positions, nm.
+    sparse : bool
+        For thousands of atoms on two levels: bonded forces by differences of many atoms at once, a NonbondedForce with
+        a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;
+        ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable region.
     progress : bool or callable
         A bar on standard error; or what is called with the columns done and the columns in all, for each group.
 
@@ -139,6 +145,11 @@ def system(
     engine = _engine(system)
     where = _positions(positions, engine.count)
     constraints = _constraints(system)
+    if sparse:
+        if constraints or atoms is not None:
+            remedy = "has no sparse Hessians with constraints or some atoms alone: leave sparse=True out"
+            raise KickdriftError("system", f"{len(constraints)} constraints", remedy)
+        return _sparse(system, engine, clocks, where, minimize, difference, topology, shown(progress), integrator)
     if minimize:
         where = _minimized(engine, where, constraints, difference)
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
@@ -175,6 +186,59 @@ def system(
         periodic=periodic and plain,
         keep_rigid=not (plain and moved.size),
     )
+
+
+def _sparse(
+    system: Any,
+    engine: _Engine,
+    clocks: Mapping[int, Fraction],
+    where: Doubles,
+    minimize: bool,
+    difference: float,
+    topology: Any,
+    progress: Progress | None,
+    integrator: Any,
+) -> System:
+    """Two levels with sparse Hessians, at the place where OpenMM's minimizer ends."""
+    from kickdrift import _forcefield
+
+    if minimize:
+        engine.context.setPositions(where)
+        mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=_REST)
+        where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    potentials: dict[str, tuple[Exact, Any]] = {}
+    accuracy, size, pulls = 1e-12, 0.0, {}
+    for step, groups in _levels(clocks).items():
+        name = ", ".join(f"group {group}" for group in groups)
+        # Forces in doubles allow a tenth of the difference.
+        matrix, error = _forcefield.hessian(system, groups, where, difference / 10, progress)
+        # No entry of the diagonal exceeds the norm.
+        diagonal = matrix.diagonal()
+        known = error / max(float(np.abs(diagonal).max(initial=0.0)), 1e-300)
+        accuracy = max(accuracy, usable(known, name, f"{difference:g} nm"))
+        size = max(size, float((diagonal / np.repeat(engine.masses, 3)).max(initial=0.0)))
+        pulls[name] = engine.force(sum(1 << group for group in groups))(where)
+        potentials[name] = (step, matrix)
+    follow = "Orbits of so many atoms are not followed"
+    notes = [*_notes(system, integrator, clocks), *unbalanced(pulls, size, engine.masses, "kJ/mol/nm", follow)]
+    periodic = system.usesPeriodicBoundaryConditions()
+    held = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
+    return System.from_hessians(
+        engine.masses,
+        potentials,
+        positions=None if held else where,
+        accuracy=accuracy,
+        title=f"{engine.count} particles, ps and nm",
+        time_unit="ps",
+        labels=_labels(engine.masses, topology),
+        notes=notes,
+        periodic=periodic,
+        keep_rigid=held,
+    )
+
+
+#: kJ/mol/nm: the forces at which OpenMM's minimizer may end; jumps at a cutoff keep it from less.
+_REST = 0.1
 
 
 def _labels(masses: Doubles, topology: Any) -> list[str]:
@@ -249,7 +313,7 @@ def _unbalanced(
     follow = "Its orbit is not known: those of constrained systems are not followed"
     if not constraints:
         follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
-    return unbalanced(along, total, masses[kept[::3] // 3], "kJ/mol/nm", follow)
+    return unbalanced(along, norm(total), masses[kept[::3] // 3], "kJ/mol/nm", follow)
 
 
 def _rigid(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> Doubles:

@@ -53,7 +53,7 @@ pub struct SparseLevels {
     rigid: Mat<f64>,
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
-    is_total_definite: OnceLock<bool>,
+    unheld: OnceLock<Option<usize>>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -115,7 +115,7 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, is_total_definite, first) = Default::default();
+        let (ends, unheld, first) = Default::default();
         let sizes = sizes.map(|(size, _)| size);
         Ok(SparseLevels {
             both,
@@ -128,7 +128,7 @@ impl SparseLevels {
             sizes,
             rigid,
             ends,
-            is_total_definite,
+            unheld,
             first,
         })
     }
@@ -158,7 +158,7 @@ impl SparseLevels {
             return Holds::Stable;
         }
         let first = if epsilon == 0.0 { self.first(outer.inner_steps) } else { None };
-        let unstable = first.is_some_and(|first| self.is_unstable_along(first.quotients, outer));
+        let unstable = first.is_some_and(|first| self.resonates_along(first.quotients, outer));
         if unstable { Holds::Unstable } else { Holds::NotTold }
     }
 
@@ -170,6 +170,15 @@ impl SparseLevels {
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
+        self.first_resonance(inner_steps).filter(|_| self.unheld() == Some(0))
+    }
+
+    /// \[lo, hi\]: at every outer step of so many inner ones in (0, lo] all multipliers are on the circle or real and positive, so that what grows
+    /// falls without swinging, as where forces hold no minimum; at hi one is proven below −1. `None` where nothing is proven.
+    ///
+    /// With a, b, d of the inner steps' half, μ + 1 are the eigenvalues of b d(h² F) (a/b(h² F) − (p/2) h² S) (proofs/REGION.md): b d > 0 by (2), so
+    /// they are real, and have the signs of (1).
+    pub fn first_resonance(&self, inner_steps: u64) -> Option<(f64, f64)> {
         self.first(inner_steps).map(|first| first.step)
     }
 
@@ -186,7 +195,7 @@ impl SparseLevels {
     fn find_first(&self, inner_steps: u64) -> Option<First> {
         let [_, high] = self.ends(0.0)?;
         let at = |step: f64| Outer::new(step, inner_steps).ok();
-        let stable = |step: f64| at(step).is_some_and(|outer| self.factors(&outer, 0.0).is_some());
+        let stable = |step: f64| at(step).is_some_and(|outer| self.above(&outer, 0.0).is_some());
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
@@ -195,7 +204,7 @@ impl SparseLevels {
         // The vector that is stretched least there tells where it is no more.
         let along = self.stretched(&at(lo)?)?;
         let quotients = self.quotients(&along);
-        let unstable = |step: f64| at(step).is_some_and(|outer| self.is_unstable_along(quotients, &outer));
+        let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer));
         let first =
             (0..40).map(|k| lo * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k))).take_while(|&step| step < top);
         let hi = first.into_iter().find(|&step| unstable(step))?;
@@ -205,13 +214,16 @@ impl SparseLevels {
 
     /// The factors that prove the first region, rigid motions apart; `None` where they prove nothing.
     fn factors(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
+        // (3) of proofs/REGION.md follows where F + S > 0.
+        let off: f64 = (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum();
+        if self.is_total_definite(off) { self.above(outer, epsilon) } else { None }
+    }
+
+    /// Those that prove (1) and (2) of proofs/REGION.md.
+    fn above(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
         let [low, high] = self.ends(epsilon)?;
         let [offset, slope] = chord(outer, low, high)?;
         let off = [0, 1].map(|k| self.errors[k] + epsilon * self.sizes[k]);
-        // (3) of proofs/REGION.md follows where F + S > 0.
-        if !self.is_total_definite(off[0] + off[1]) {
-            return None;
-        }
         let [fast, slow] = [-slope * outer.inner_square, -outer.half_kick()];
         let rounding = 4.0 * U * offset.abs()
             + 4.0 * STEP_ERROR * (fast.abs() * self.sizes[0] + slow.abs() * self.sizes[1]);
@@ -235,37 +247,43 @@ impl SparseLevels {
         found.map(|[low, high]| [low - off, high + off])
     }
 
-    /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`: F + S − τ has no more negative eigenvalues than there are of
-    /// these, along which F + S vanishes, so that all others are above τ.
+    /// How many directions beside the rigid ones F + S is not proven to hold: along which it is negative, or too small for doubles to see.
+    /// `None` where the factorization does not count them.
+    pub fn unheld(&self) -> Option<usize> {
+        *self.unheld.get_or_init(|| self.not_above_zero(self.errors[0] + self.errors[1]))
+    }
+
+    /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`.
     fn is_total_definite(&self, off: f64) -> bool {
+        let found =
+            if off > self.errors[0] + self.errors[1] { self.not_above_zero(off) } else { self.unheld() };
+        found == Some(0)
+    }
+
+    /// The eigenvalues of F + S that are not proven above `off` and the roundings: F + S − τ has as many negative ones, and of these there are as
+    /// many as rigid motions in any case, along which F + S vanishes.
+    fn not_above_zero(&self, off: f64) -> Option<usize> {
         let total: [(f64, &[f64]); 2] = [(1.0, &self.fast), (1.0, &self.slow)];
         let slack = 1.01 * (off + self.leak + 4.0 * U * (self.sizes[0] + self.sizes[1]));
-        let proves = || {
-            if self.rigid.ncols() == 0 {
-                return self.both.factored(0.0, &total, slack).is_some();
-            }
-            let mut tau = 1.1 * slack;
-            for _ in 0..SHIFTS {
-                let Some((negative, own)) = self.both.negative(tau, &total) else { return false };
-                if tau > 1.01 * (own + slack) {
-                    return negative <= self.rigid.ncols();
-                }
-                tau = 1.1 * (own + slack);
-            }
-            false
-        };
-        if off > self.errors[0] + self.errors[1] {
-            proves()
-        } else {
-            *self.is_total_definite.get_or_init(proves)
+        if self.rigid.ncols() == 0 && self.both.factored(0.0, &total, slack).is_some() {
+            return Some(0);
         }
+        let mut tau = 1.1 * slack;
+        for _ in 0..SHIFTS {
+            let (negative, own) = self.both.negative(tau, &total)?;
+            if tau > 1.01 * (own + slack) {
+                return Some(negative.saturating_sub(self.rigid.ncols()));
+            }
+            tau = 1.1 * (own + slack);
+        }
+        None
     }
 
     /// The vector for which α − β h² F − M is least, rounded: inverse iteration with the factors at the step, or a little below.
     fn stretched(&self, outer: &Outer) -> Option<Mat<f64>> {
         let below =
             |k: i32| Outer::new(outer.step * (1.0 - WIDTH * (2.0f64.powi(k) - 1.0)), outer.inner_steps).ok();
-        let factors = (0..10).filter_map(below).find_map(|outer| self.factors(&outer, 0.0))?;
+        let factors = (0..10).filter_map(below).find_map(|outer| self.above(&outer, 0.0))?;
         let begin = start(self.size());
         let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
         for _ in 0..ROUNDS {
@@ -294,10 +312,11 @@ impl SparseLevels {
         [of(0, &self.fast), of(1, &self.slow)]
     }
 
-    /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being where E is concave.
-    fn is_unstable_along(&self, [fast, slow]: [f64; 2], outer: &Outer) -> bool {
+    /// Whether E(h² xᵀFx) < xᵀMx for sure for a vector with these quotients, all eigenvalues of h² F being where E is concave: a multiplier is
+    /// below −1.
+    fn resonates_along(&self, [fast, slow]: [f64; 2], outer: &Outer) -> bool {
         let Some([low, high]) = self.ends(0.0) else { return false };
-        if chord(outer, low, high).is_none() || !self.is_total_definite(self.errors[0] + self.errors[1]) {
+        if chord(outer, low, high).is_none() {
             return false;
         }
         // E falls: what the quotient is at least.

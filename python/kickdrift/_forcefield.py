@@ -1,0 +1,320 @@
+"""Sparse Hessians of OpenMM's force groups: bonded forces by coloured differences, pairs by their formulas.
+
+A bonded term reaches a few atoms. Atoms of one colour share no term with any third atom, so one difference of forces
+gives the columns of all of them: a few dozen evaluations, whatever the number of atoms. Pairs within a cutoff have
+second derivatives in closed form, E'' along the pair and E'/r across. Units: nm, ps, u, kJ/mol; not mass-weighted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import openmm as mm
+
+from kickdrift._errors import KickdriftError, needs
+from kickdrift._hessians import Force, Progress
+from kickdrift._rigid import Doubles
+
+try:
+    import scipy.sparse as sparse
+    from scipy.spatial import cKDTree
+except ImportError:
+    raise needs("scipy") from None
+
+_Indices = npt.NDArray[np.int64]
+_Mask = npt.NDArray[np.bool_]
+
+#: The terms of each bonded force: how many there are, how one is read, and where its atoms stand in that.
+_BONDED: dict[str, tuple[str, str, slice]] = {
+    "HarmonicBondForce": ("getNumBonds", "getBondParameters", slice(0, 2)),
+    "CustomBondForce": ("getNumBonds", "getBondParameters", slice(0, 2)),
+    "HarmonicAngleForce": ("getNumAngles", "getAngleParameters", slice(0, 3)),
+    "CustomAngleForce": ("getNumAngles", "getAngleParameters", slice(0, 3)),
+    "PeriodicTorsionForce": ("getNumTorsions", "getTorsionParameters", slice(0, 4)),
+    "RBTorsionForce": ("getNumTorsions", "getTorsionParameters", slice(0, 4)),
+    "CustomTorsionForce": ("getNumTorsions", "getTorsionParameters", slice(0, 4)),
+    "CMAPTorsionForce": ("getNumTorsions", "getTorsionParameters", slice(1, 9)),
+    "CustomExternalForce": ("getNumParticles", "getParticleParameters", slice(0, 1)),
+}
+
+#: kJ/mol nm per elementary charge squared: OpenMM's own constant.
+_COULOMB = 138.93545764438198
+
+
+def hessian(
+    system: Any,
+    groups: Sequence[int],
+    positions: Doubles,
+    difference: float,
+    progress: Progress | None = None,
+) -> tuple[Any, float]:
+    """The Hessian of some force groups as compressed rows, kJ/mol/nm², and an estimate of its error.
+
+    Raises
+    ------
+    KickdriftError
+        A force whose terms are not known here: Ewald sums, custom pairs, bonds of many bodies.
+    """
+    own = [force for force in system.getForces() if force.getForceGroup() in groups]
+    bonded = [force for force in own if type(force).__name__ in _BONDED]
+    pairs = [force for force in own if isinstance(force, mm.NonbondedForce)]
+    others = [force for force in own if force not in bonded + pairs and not isinstance(force, mm.CMMotionRemover)]
+    if others:
+        name = type(others[0]).__name__
+        remedy = "has no sparse Hessian here: leave sparse=True out, or give Hessians to System.from_hessians"
+        raise KickdriftError("system", name, remedy)
+    total = sparse.csr_matrix((positions.size, positions.size))
+    error = 0.0
+    if bonded:
+        terms = [atoms for force in bonded for atoms in _terms(force)]
+        force = _alone(system, bonded)
+        matrix, error = coloured(force, positions, _neighbours(terms, len(positions)), difference, progress)
+        total = total + matrix
+    for force in pairs:
+        matrix, smooth = nonbonded(force, system, positions)
+        error += _seen(matrix, _alone(system, [force]), positions, smooth)
+        total = total + matrix
+    return total.tocsr(), error
+
+
+def _terms(force: Any) -> list[list[int]]:
+    count, read, atoms = _BONDED[type(force).__name__]
+    return [list(getattr(force, read)(n)[atoms]) for n in range(getattr(force, count)())]
+
+
+def _alone(system: Any, forces: Sequence[Any]) -> Force:
+    """The forces of these alone, in doubles."""
+    copy = mm.System()
+    for n in range(system.getNumParticles()):
+        copy.addParticle(system.getParticleMass(n))
+    copy.setDefaultPeriodicBoxVectors(*system.getDefaultPeriodicBoxVectors())
+    for force in forces:
+        copy.addForce(deepcopy(force))
+    context = mm.Context(copy, mm.VerletIntegrator(0.001), mm.Platform.getPlatformByName("Reference"))
+
+    def of(positions: Doubles) -> Doubles:
+        context.setPositions(positions)
+        return np.asarray(context.getState(getForces=True).getForces(asNumpy=True)._value, dtype=np.float64)
+
+    return of
+
+
+def _neighbours(terms: Sequence[Sequence[int]], count: int) -> Any:
+    """Which atoms stand in one term, each with itself."""
+    places = [(n, atom) for n, atoms in enumerate(terms) for atom in atoms]
+    rows, columns = np.array(places, dtype=np.int64).reshape(-1, 2).T
+    member = sparse.csr_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(terms), count))
+    return ((member.T @ member + sparse.identity(count)) != 0).tocsr()
+
+
+def _colours(neighbours: Any) -> list[_Indices]:
+    """The atoms of each colour, which no third atom is a neighbour of twice."""
+    near = (neighbours @ neighbours).tocsr()
+    colours = np.full(near.shape[0], -1)
+    for atom in range(near.shape[0]):
+        taken = set(colours[near.indices[near.indptr[atom] : near.indptr[atom + 1]]])
+        colours[atom] = next(colour for colour in range(len(taken) + 1) if colour not in taken)
+    return [np.flatnonzero(colours == colour) for colour in range(colours.max(initial=-1) + 1)]
+
+
+def coloured(
+    force: Force, positions: Doubles, neighbours: Any, difference: float, progress: Progress | None = None
+) -> tuple[Any, float]:
+    """A Hessian by central differences of fourth order, all atoms of a colour displaced at once; and its error.
+
+    That is the largest sum of a row: of the correction from second to fourth order, plus of the antisymmetric part.
+    """
+    colours = _colours(neighbours)
+    entries: list[tuple[_Indices, _Indices, Doubles, Doubles]] = []
+    for done, atoms in enumerate(colours):
+        own = neighbours[atoms].tocoo()
+        reached, moved = own.col, atoms[own.row]
+        for axis in range(3):
+            near, far = (_difference(force, positions, atoms, axis, width) for width in (difference, 2 * difference))
+            for to in range(3):
+                second, fourth = near[reached, to], (4 * near[reached, to] - far[reached, to]) / 3
+                entries.append((3 * reached + to, 3 * moved + axis, -second, -fourth))
+        if progress is not None:
+            progress(done + 1, len(colours))
+    rows, columns, second, fourth = (np.concatenate(part) for part in zip(*entries, strict=True))
+    size = positions.size
+    matrix = sparse.csr_matrix((fourth, (rows, columns)), shape=(size, size))
+    lower = sparse.csr_matrix((second, (rows, columns)), shape=(size, size))
+    mean = ((matrix + matrix.T) / 2).tocsr()
+    return mean, _largest_row(matrix - lower) + _largest_row(matrix - mean)
+
+
+def _difference(force: Force, positions: Doubles, atoms: _Indices, axis: int, width: float) -> Doubles:
+    moved = positions.copy()
+    moved[atoms, axis] += width
+    ahead = force(moved)
+    moved[atoms, axis] -= 2 * width
+    return (ahead - force(moved)) / (2 * width)
+
+
+def _largest_row(matrix: Any) -> float:
+    return float(abs(matrix).sum(axis=1).max()) if matrix.nnz else 0.0
+
+
+def nonbonded(force: Any, system: Any, positions: Doubles) -> tuple[Any, _Mask]:
+    """The Hessian of a NonbondedForce without Ewald sums, and which atoms have no pair that a look takes across.
+
+    Lennard-Jones with its switching, Coulomb with the reaction field, and exceptions, which know neither.
+
+    Raises
+    ------
+    KickdriftError
+        Ewald sums, offsets of parameters, a box that is not rectangular.
+    """
+    method = force.getNonbondedMethod()
+    if method not in (force.NoCutoff, force.CutoffNonPeriodic, force.CutoffPeriodic):
+        remedy = "reaches all pairs at once: choose a cutoff, or leave sparse=True out"
+        raise KickdriftError("system", "an Ewald sum", remedy)
+    if force.getNumGlobalParameters():
+        raise KickdriftError(
+            "system", "offsets of parameters", "have no sparse Hessian here: give the values themselves"
+        )
+    count = len(positions)
+    charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
+    given = [force.getExceptionParameters(n) for n in range(force.getNumExceptions())]
+    held = np.array([own[:2] for own in given], dtype=np.int64).reshape(-1, 2)
+    special = np.array([_plain(own[2:]) for own in given]).reshape(-1, 3)
+    box = _box(system) if method == force.CutoffPeriodic else None
+    pairs = _pairs(force, positions, box)
+    pairs = pairs[~np.isin(_key(pairs, count), _key(held, count))]
+    i, j = pairs.T
+    scale = _COULOMB * charge[i] * charge[j]
+    apart, r = _apart(positions, pairs, box)
+    first, second = _lennard_jones((sigma[i] + sigma[j]) / 2, np.sqrt(epsilon[i] * epsilon[j]), r, _switch(force, r))
+    field, smooth = 0.0, np.ones(count, dtype=bool)
+    if method != force.NoCutoff:
+        end, dielectric = force.getCutoffDistance()._value, force.getReactionFieldDielectric()
+        field = (dielectric - 1) / (2 * dielectric + 1) / end**3
+        smooth[pairs[r > end - _CROSSED].ravel()] = False
+        beyond = _pairs(force, positions, box, _CROSSED)
+        smooth[beyond[_apart(positions, beyond, box)[1] > end].ravel()] = False
+    first, second = first + scale * (2 * field * r - r**-2), second + scale * (2 * r**-3 + 2 * field)
+    if len(held):
+        wrapped = box if force.getExceptionsUsePeriodicBoundaryConditions() else None
+        near, close = _apart(positions, held, wrapped)
+        slope, bend = _lennard_jones(special[:, 1], special[:, 2], close, None)
+        strength = _COULOMB * special[:, 0]
+        pairs, apart, r = np.vstack([pairs, held]), np.vstack([apart, near]), np.concatenate([r, close])
+        first = np.concatenate([first, slope - strength * close**-2])
+        second = np.concatenate([second, bend + 2 * strength * close**-3])
+    return _assembled(pairs, apart, r, first, second, count), smooth
+
+
+def _plain(quantities: Sequence[Any]) -> list[float]:
+    return [float(own._value) for own in quantities]
+
+
+def _box(system: Any) -> Doubles:
+    """The edges of a rectangular box, nm."""
+    vectors = np.array([list(own._value) for own in system.getDefaultPeriodicBoxVectors()])
+    if np.any(vectors != np.diag(np.diag(vectors))):
+        raise KickdriftError("system", "a triclinic box", "has no sparse Hessian here: choose a rectangular one")
+    return np.diag(vectors).copy()
+
+
+def _key(pairs: _Indices, count: int) -> _Indices:
+    return np.asarray(pairs.min(axis=1, initial=count) * count + pairs.max(axis=1, initial=0))
+
+
+def _pairs(force: Any, positions: Doubles, box: Doubles | None, beyond: float = 0.0) -> _Indices:
+    """All pairs within the cutoff, or so far beyond it."""
+    if force.getNonbondedMethod() == force.NoCutoff:
+        return np.column_stack(np.triu_indices(len(positions), 1)).astype(np.int64)
+    places = positions if box is None else np.mod(positions, box)
+    tree = cKDTree(places, boxsize=box)
+    return np.asarray(
+        tree.query_pairs(force.getCutoffDistance()._value + beyond, output_type="ndarray"), dtype=np.int64
+    )
+
+
+def _apart(positions: Doubles, pairs: _Indices, box: Doubles | None) -> tuple[Doubles, Doubles]:
+    apart = positions[pairs[:, 0]] - positions[pairs[:, 1]]
+    if box is not None:
+        apart -= box * np.round(apart / box)
+    return apart, np.linalg.norm(apart, axis=1)
+
+
+_Switch = tuple[Doubles, Doubles, Doubles]
+
+
+def _switch(force: Any, r: Doubles) -> _Switch | None:
+    """1 - 10 x³ + 15 x⁴ - 6 x⁵ and its two derivatives by r, x from 0 where the switching begins to 1 at the cutoff."""
+    if force.getNonbondedMethod() == force.NoCutoff or not force.getUseSwitchingFunction():
+        return None
+    begin, end = force.getSwitchingDistance()._value, force.getCutoffDistance()._value
+    x, width = np.clip((r - begin) / (end - begin), 0.0, 1.0), end - begin
+    first = -30 * x**2 * (1 - x) ** 2 / width
+    second = -60 * x * (1 - x) * (1 - 2 * x) / width**2
+    return 1 - x**3 * (10 - 15 * x + 6 * x**2), first, second
+
+
+def _lennard_jones(sigma: Doubles, epsilon: Doubles, r: Doubles, switch: _Switch | None) -> tuple[Doubles, Doubles]:
+    """E' and E''."""
+    sixth = (sigma / r) ** 6
+    energy = 4 * epsilon * sixth * (sixth - 1)
+    first = 4 * epsilon * sixth * (6 - 12 * sixth) / r
+    second = 4 * epsilon * sixth * (156 * sixth - 42) / r**2
+    if switch is None:
+        return first, second
+    own, slope, bend = switch
+    return own * first + slope * energy, own * second + 2 * slope * first + bend * energy
+
+
+def _assembled(pairs: _Indices, apart: Doubles, r: Doubles, first: Doubles, second: Doubles, count: int) -> Any:
+    """The sum of pair blocks (E'' - E'/r) e eᵀ + E'/r."""
+    along = (second - first / r) / r**2
+    kept = (along != 0) | (first != 0)
+    pairs, apart, along, across = pairs[kept], apart[kept], along[kept], (first / r)[kept]
+    blocks = along[:, None, None] * apart[:, :, None] * apart[:, None, :] + across[:, None, None] * np.eye(3)
+    i, j = pairs.T
+    # Places of blocks, in the order of rows: -block at (i, j) and (j, i); numbers from 1, since no entry may be 0.
+    numbers = np.arange(1, len(i) + 1)
+    places = sparse.csr_matrix(
+        (np.concatenate([numbers, numbers]), (np.concatenate([i, j]), np.concatenate([j, i]))), shape=(count, count)
+    )
+    places.sort_indices()
+    beside = sparse.bsr_matrix((-blocks[places.data - 1], places.indices, places.indptr), shape=(3 * count, 3 * count))
+    own = np.empty((count, 3, 3))
+    for a in range(3):
+        for b in range(3):
+            own[:, a, b] = sum(np.bincount(side, weights=blocks[:, a, b], minlength=count) for side in (i, j))
+    diagonal = sparse.bsr_matrix((own, np.arange(count), np.arange(count + 1)), shape=(3 * count, 3 * count))
+    return (beside + diagonal).tocsr()
+
+
+#: How many random displacements a Hessian by formulas is compared with differences for, and how long they are, nm: of
+#: forces of 1e4 kJ/mol/nm doubles leave 1e-5 kJ/mol/nm² unknown then, and few pairs are so near a cutoff.
+_LOOKS, _LOOK = 3, 1e-6
+
+#: Two atoms displaced by 2 looks in each coordinate come nearer by less.
+_CROSSED = 8 * _LOOK
+
+
+def _seen(matrix: Any, force: Force, positions: Doubles, smooth: _Mask) -> float:
+    """How far differences of forces are from the matrix where each coordinate is displaced by ± a look.
+
+    The largest distance of an atom's force from that of the matrix, over the look.
+
+    Forces jump where a pair crosses the cutoff, which no Hessian knows: atoms of such pairs are left out.
+    """
+    random = np.random.default_rng(1)
+    worst = 0.0
+    for _ in range(_LOOKS):
+        signs = random.choice([-1.0, 1.0], size=positions.shape)
+        near, far = (
+            (force(positions - part * _LOOK * signs) - force(positions + part * _LOOK * signs)) / (2 * part)
+            for part in (1, 2)
+        )
+        own = (matrix @ signs.ravel()).reshape(positions.shape)
+        measured = (4 * near - far) / (3 * _LOOK)
+        worst = max(worst, float(np.linalg.norm((measured - own)[smooth], axis=1).max(initial=0.0)))
+    return worst

@@ -1,0 +1,201 @@
+"""Sparse Hessians of force fields against differences of every coordinate, and their systems against dense ones."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import openmm as mm
+import pytest
+from openmm import app
+
+import kickdrift as kd
+import kickdrift.openmm as ko
+from kickdrift import _forcefield
+from kickdrift._hessians import hessian
+
+#: Bonds and angles, and what OpenMM's own pairs are, by groups.
+SLOW = 1
+
+
+@cache
+def waters(side: int, method: str, switched: bool = False) -> tuple[mm.System, np.ndarray]:
+    """Flexible waters on a grid of 0.31 nm, somewhat turned, with a cutoff of 0.43 edges' thirds."""
+    field = app.ForceField("amber14/tip3pfb.xml")
+    topology, places = app.Topology(), []
+    topology.setUnitCellDimensions(mm.Vec3(0.31, 0.31, 0.31) * side)
+    random, chain = np.random.default_rng(3), topology.addChain()
+    for corner in 0.31 * np.indices((side, side, side)).reshape(3, -1).T:
+        residue = topology.addResidue("HOH", chain)
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1])
+        topology.addBond(atoms[0], atoms[2])
+        first, across = (own / np.linalg.norm(own) for own in random.normal(size=(2, 3)))
+        second = across - across @ first * first
+        second = -0.25 * first + 0.97 * second / np.linalg.norm(second)
+        places += [corner, corner + 0.0957 * first, corner + 0.0957 * second]
+    system = field.createSystem(
+        topology,
+        nonbondedMethod=getattr(app, method),
+        nonbondedCutoff=0.15 * side,
+        switchDistance=0.11 * side if switched else None,
+        rigidWater=False,
+        removeCMMotion=False,
+    )
+    for force in system.getForces():
+        force.setForceGroup(SLOW if isinstance(force, mm.NonbondedForce) else 0)
+    return system, np.array(places)
+
+
+def by_differences(system: mm.System, group: int, positions: np.ndarray, columns: list[int]) -> np.ndarray:
+    """Not mass-weighted, at displacements so small that few pairs cross a cutoff."""
+    own = [force for force in system.getForces() if force.getForceGroup() == group]
+    force = _forcefield._alone(system, own)
+    return hessian(force, positions, np.ones(len(positions)), 2e-6, columns)[0]
+
+
+@pytest.mark.parametrize(
+    ("method", "switched"),
+    [("NoCutoff", False), ("CutoffNonPeriodic", False), ("CutoffNonPeriodic", True), ("CutoffPeriodic", True)],
+)
+def test_pairs_have_the_second_derivatives_that_differences_show(method: str, switched: bool) -> None:
+    system, positions = waters(3, method, switched)
+    matrix, error = _forcefield.hessian(system, [SLOW], positions, 1e-5)
+    columns = list(range(0, positions.size, 5))
+    measured = by_differences(system, SLOW, positions, columns)
+    own = matrix.toarray()[np.ix_(columns, columns)]
+    # Forces of some 1e4 kJ/mol/nm are rounded at 1e-12 of themselves, the differences are 4e-6 wide.
+    assert np.abs(own - measured).max() < 0.02 and np.abs(measured).max() > 1e4
+    assert np.abs(matrix - matrix.T).max() < 1e-9 * np.abs(measured).max()
+    assert error < 1e-3, "what the formulas leave out would be seen"
+    assert matrix.nnz < 0.9 * positions.size**2 or method != "CutoffNonPeriodic"
+
+
+def peptide() -> tuple[mm.System, np.ndarray]:
+    """A chain of eight atoms with bonds, angles, both kinds of torsions, a map of two torsions and scaled pairs."""
+    system, random = mm.System(), np.random.default_rng(5)
+    bonds, angles, periodic, rb = (
+        mm.HarmonicBondForce(),
+        mm.HarmonicAngleForce(),
+        mm.PeriodicTorsionForce(),
+        mm.RBTorsionForce(),
+    )
+    cmap, pairs = mm.CMAPTorsionForce(), mm.NonbondedForce()
+    cmap.addMap(8, (10 * random.normal(size=64)).tolist())
+    for n in range(8):
+        system.addParticle(12.0)
+        pairs.addParticle(0.3 * (-1) ** n, 0.3, 0.4)
+    for n in range(7):
+        bonds.addBond(n, n + 1, 0.15, 2e5)
+    for n in range(6):
+        angles.addAngle(n, n + 1, n + 2, 1.9, 400.0)
+    for n in range(5):
+        periodic.addTorsion(n, n + 1, n + 2, n + 3, 3, 0.3, 5.0)
+        rb.addTorsion(n, n + 1, n + 2, n + 3, 1.0, 2.0, -1.0, 0.5, 0.2, 0.1)
+    cmap.addTorsion(0, 0, 1, 2, 3, 1, 2, 3, 4)
+    pairs.createExceptionsFromBonds([(n, n + 1) for n in range(7)], 0.8, 0.5)
+    for force in (bonds, angles, periodic, rb, cmap, pairs):
+        system.addForce(force)
+    pairs.setForceGroup(SLOW)
+    turns = 0.1 * np.arange(8)[:, None] * [1.2, 0.3, 0.2]
+    return system, turns + 0.03 * random.normal(size=(8, 3))
+
+
+def test_a_few_differences_give_the_hessian_of_all_bonded_terms() -> None:
+    system, positions = peptide()
+    every = list(range(positions.size))
+    for group in (0, SLOW):
+        matrix, error = _forcefield.hessian(system, [group], positions, 1e-5)
+        force = _forcefield._alone(system, [own for own in system.getForces() if own.getForceGroup() == group])
+        measured, rough = hessian(force, positions, np.ones(8), 1e-5, every)
+        assert np.linalg.norm(matrix.toarray() - measured, 2) <= error + rough < 1e-3 * np.abs(measured).max()
+
+
+def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
+    counts = []
+    for side in (2, 4):
+        system, positions = waters(side, "CutoffNonPeriodic")
+        bonded = [force for force in system.getForces() if force.getForceGroup() == 0]
+        own, asked = _forcefield._alone(system, bonded), []
+
+        def counted(at: np.ndarray, own: Any = own, asked: list[int] = asked) -> np.ndarray:
+            asked.append(1)
+            return own(at)
+
+        terms = [
+            atoms
+            for force in bonded
+            if type(force).__name__ in _forcefield._BONDED
+            for atoms in _forcefield._terms(force)
+        ]
+        near = _forcefield._neighbours(terms, len(positions))
+        for atoms in _forcefield._colours(near):
+            # Every atom is a neighbour of one of a colour at most.
+            assert near[atoms].sum(axis=0).max() == 1
+        _forcefield.coloured(counted, positions, near, 1e-5)
+        counts.append(len(asked))
+    assert counts == [36, 36]
+
+
+def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:
+    system, positions = waters(2, "NoCutoff")
+    steps = {0: "0.5fs", SLOW: "4fs"}
+    where = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    both = [ko.system(system, where, steps=steps, sparse=sparse, minimize=False).decide() for sparse in (True, False)]
+    assert all(own.stable for own in both)
+    first, same = (own.data["measured"]["first_unstable"] for own in both)
+    # The dense step is enclosed in 1e-7 of itself, each for Hessians known to 1e-6.
+    assert first["lo"] <= same["hi"] * (1 + 1e-5) and same["lo"] <= first["hi"] * (1 + 1e-5), (first, same)
+
+
+def test_what_the_minimizer_leaves_is_told() -> None:
+    system, positions = waters(2, "CutoffNonPeriodic")
+    steps = {0: "0.5fs", SLOW: "4fs"}
+    found = ko.system(system, positions, steps=steps, sparse=True)
+    assert any("are no minimum of all forces" in note for note in found.notes)
+    assert any("do not vanish at the positions" in note for note in found.notes)
+    assert found.decide().data["measured"]["rigid_motions"]["count"] == 6
+
+
+@pytest.mark.parametrize(
+    ("make", "value"),
+    [
+        (lambda: box_of("PME"), "an Ewald sum"),
+        (lambda: custom(), "CustomNonbondedForce"),
+        (lambda: held(), "1 constraints"),
+        (lambda: offset(), "offsets of parameters"),
+    ],
+)
+def test_what_has_no_sparse_hessian_is_refused_by_name(make: Any, value: str) -> None:
+    system, positions = make()
+    with pytest.raises(kd.KickdriftError) as caught:
+        ko.system(system, positions, steps={0: "0.5fs", SLOW: "2fs"}, sparse=True, minimize=False)
+    assert caught.value.value == value and caught.value.remedy
+
+
+def box_of(method: str) -> tuple[mm.System, np.ndarray]:
+    return waters(3, method)
+
+
+def custom() -> tuple[mm.System, np.ndarray]:
+    system, positions = peptide()
+    force = mm.CustomNonbondedForce("1e-6/r^6")
+    for _ in range(8):
+        force.addParticle([])
+    force.setForceGroup(SLOW)
+    system.addForce(force)
+    return system, positions
+
+
+def held() -> tuple[mm.System, np.ndarray]:
+    system, positions = peptide()
+    system.addConstraint(0, 1, float(np.linalg.norm(positions[0] - positions[1])))
+    return system, positions
+
+
+def offset() -> tuple[mm.System, np.ndarray]:
+    system, positions = peptide()
+    pairs = next(force for force in system.getForces() if isinstance(force, mm.NonbondedForce))
+    pairs.addGlobalParameter("scale", 0.5)
+    return system, positions
