@@ -1,0 +1,70 @@
+"""What droplets of flexible water cost: their sparse Hessians, and the verdict with the first resonance.
+
+Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [10000]
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+
+import numpy as np
+import openmm as mm
+from openmm import app, unit
+
+import kickdrift.openmm as ko
+
+#: Molecules a nm³, nm, kJ/mol/nm.
+DENSITY, CUTOFF, REST = 33.0, 0.9, 1.0
+
+
+def droplet(count: int) -> tuple[mm.System, np.ndarray]:
+    """So many waters next to the middle of a box, cooled and at rest but for what single precision leaves."""
+    field = app.ForceField("amber14/tip3pfb.xml")
+    modeller = app.Modeller(app.Topology(), [])
+    edge = 1.6 * (count / DENSITY) ** (1 / 3) + 1
+    modeller.addSolvent(field, boxSize=mm.Vec3(edge, edge, edge) * unit.nanometer)
+    positions = np.array(modeller.positions.value_in_unit(unit.nanometer))
+    residues = list(modeller.topology.residues())
+    first = np.array([next(residue.atoms()).index for residue in residues])
+    away = np.linalg.norm(positions[first] - positions.mean(axis=0), axis=1)
+    modeller.delete([residues[n] for n in np.argsort(away)[count:]])
+    system = field.createSystem(
+        modeller.topology,
+        nonbondedMethod=app.CutoffNonPeriodic,
+        nonbondedCutoff=CUTOFF,
+        switchDistance=CUTOFF - 0.1,
+        rigidWater=False,
+        removeCMMotion=False,
+    )
+    for force in system.getForces():
+        force.setForceGroup(int(isinstance(force, mm.NonbondedForce)))
+    integrator = mm.LangevinMiddleIntegrator(150, 5, 0.0005)
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("CPU"))
+    context.setPositions(modeller.positions)
+    mm.LocalEnergyMinimizer.minimize(context, 10 * REST)
+    for temperature in (150, 60, 10):
+        integrator.setTemperature(temperature)
+        integrator.step(500)
+    mm.LocalEnergyMinimizer.minimize(context, REST)
+    return system, np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+
+
+def main() -> None:
+    """Print a line for each number of waters."""
+    for count in map(int, sys.argv[1:]):
+        system, positions = droplet(count)
+        times = [time.perf_counter()]
+        own = ko.system(system, positions, steps={0: "0.25fs", 1: "4fs"}, sparse=True, minimize=False)
+        times.append(time.perf_counter())
+        found = own.decide(budget=10**15)
+        times.append(time.perf_counter())
+        made, decided = np.diff(times)
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+        print(f"{count} waters: Hessians {made:.1f} s, answer {decided:.1f} s, at most {peak:.1f} GB")
+        print("\n".join(f"  {line}" for line in [found.kind, *found.data["warnings"]]), flush=True)
+
+
+if __name__ == "__main__":
+    main()
