@@ -6,6 +6,7 @@ use plot::{Anchor, Axis, Figure, Layer, Note, Panel, Place, Shape, Stroke};
 use super::terms;
 use super::words::rate;
 use crate::report::decimal;
+use crate::report::text::counted;
 use crate::system::{Analysis, Instability, Origin, middle};
 
 /// The most shapes on one page: the fastest.
@@ -50,8 +51,11 @@ fn spectrum(analysis: &Analysis, shown: &[&Instability]) -> Panel {
         Axis::linear("growth rate", -0.5, 0.5).ticks(vec![zero])
     };
     let y = y.per_time();
-    let counts =
-        format!("Multipliers: {} pairs on the unit circle, {} instabilities", still.len(), moving.len());
+    let counts = format!(
+        "Multipliers: {} on the unit circle, {}",
+        counted(still.len(), "pair", "pairs"),
+        counted(moving.len(), "instability", "instabilities")
+    );
     let stems = moving.iter().map(|&[x, y]| vec![[x, 0.0], [x, y]]).collect();
     let panel = Panel::new(Axis::linear("angle of the multiplier, arg *λ*/π", -0.02, 1.02), y)
         .titled(&counts)
