@@ -2,11 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use num_traits::{Signed, Zero};
+use num_traits::Zero;
 
 use crate::error::{Error, Result};
-use crate::number::Rational;
-use crate::number::rational::{from_f64_exact, ratio, to_f64};
+use crate::number::rational::{ratio, to_f64};
+use crate::number::{Rational, U};
+use crate::system::levels::sparse::Pattern;
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 
@@ -154,25 +155,20 @@ impl LocalSteps {
         Ok(LocalSteps { plain, levels: self.levels.clone(), system })
     }
 
-    /// Where plain leapfrog, all with the step of the whole, becomes unstable: a step of which 0 < dt² K < 4 M is proven, and one of which it
-    /// is not so, within 10^-9; `None` where K has no positive entry on its diagonal.
+    /// Where plain leapfrog, all with the step of the whole, becomes unstable: \[lo, hi\] holds 2/√λ of the largest λ of K x = λ M x, within
+    /// 10^-9 of itself or as near as doubles tell; `None` where no λ is positive.
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
         const WITHIN: f64 = 1e-9;
         let (mass, stiffness) = (self.plain.mass(), &self.plain.clocks()[0].stiffness);
-        let largest = |of: &dyn Fn(usize) -> Rational| (0..mass.size()).map(|i| of(i) / mass.get(i, i)).max();
-        let limit = |x: Rational| 2.0 / to_f64(&x).sqrt();
-        // A coordinate's own frequency is below the highest one; that is below the sums of rows (Gershgorin).
-        let stiffest = largest(&|i| stiffness.get(i, i)).filter(Rational::is_positive)?;
-        let all = largest(&|i| stiffness.row(i).values().map(Rational::abs).sum())?;
-        let (mut lo, mut hi) = (limit(all) * (1.0 - WITHIN / 4.0), limit(stiffest) * (1.0 + WITHIN / 4.0));
-        while hi - lo > WITHIN * hi {
-            let middle = lo + (hi - lo) / 2.0;
-            let square = from_f64_exact(middle * middle)?;
-            let mut rest = mass.scaled(&(ratio(4, 1) / square));
-            rest.add_all(&stiffness.scaled(&ratio(-1, 1)));
-            *(if rest.is_positive_definite() { &mut lo } else { &mut hi }) = middle;
-        }
-        Some((lo, hi))
+        let root: Vec<f64> = (0..mass.size()).map(|i| to_f64(&mass.get(i, i)).sqrt()).collect();
+        let row = |i: usize| stiffness.row(i).iter().map(move |(&j, x)| (i, j, x));
+        let entries: Vec<_> =
+            (0..mass.size()).flat_map(row).map(|(i, j, x)| (i, j, to_f64(x) / (root[i] * root[j]))).collect();
+        let (pattern, [values]) = Pattern::of(mass.size(), [&entries]).ok()?;
+        // Of each entry: its own rounding, two masses' and two roots', their product, the quotient.
+        let slack = 8.0 * U * pattern.size_of(&values).0;
+        let (lo, hi) = pattern.largest(&values, slack, WITHIN)?;
+        Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
     /// f/dt² at dt² = `square` > 0.

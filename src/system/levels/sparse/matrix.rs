@@ -16,7 +16,7 @@ use crate::number::U;
 
 /// The lower triangles of some matrices of one pattern, column by column, every diagonal entry there.
 #[derive(Clone, Debug)]
-pub(super) struct Pattern {
+pub(in crate::system) struct Pattern {
     /// Where each column begins, and where the last one ends.
     columns: Vec<usize>,
     rows: Vec<usize>,
@@ -170,6 +170,25 @@ impl Pattern {
         Some(Factors { symbolic: Arc::clone(&self.symbolic), values: factor })
     }
 
+    /// \[lo, hi\], which holds the largest eigenvalue of every matrix within `slack` of A (2-norm), to `within` of itself or as near as doubles
+    /// tell: above it c − A is proven positive definite, below it c − A has a negative pivot. `None` where it is not positive.
+    pub fn largest(&self, values: &[f64], slack: f64, within: f64) -> Option<(f64, f64)> {
+        let (mut lo, mut hi) = (0.0, self.size_of(values).0 + slack);
+        let minus = [(-1.0, values)];
+        while hi - lo > within * hi {
+            let middle = lo + (hi - lo) / 2.0;
+            if self.factored(middle, &minus, slack).is_some() {
+                hi = middle;
+                continue;
+            }
+            match self.negative(-middle, &minus) {
+                Some((1.., off)) if middle - 1.01 * (off + slack) > lo => lo = middle - 1.01 * (off + slack),
+                _ => break,
+            }
+        }
+        (lo > 0.0).then_some((lo, hi))
+    }
+
     /// The values of factors that `factor` writes with so much room beside; `None` where it fails, or memory runs out.
     fn with_room(
         &self,
@@ -222,7 +241,7 @@ impl Pattern {
 }
 
 /// Cholesky's factors.
-pub(super) struct Factors {
+pub(in crate::system) struct Factors {
     symbolic: Arc<SymbolicCholesky<usize>>,
     values: Vec<f64>,
 }

@@ -19,5 +19,6 @@
 mod matrix;
 mod region;
 
+pub(in crate::system) use matrix::Pattern;
 pub use matrix::Triplets;
 pub use region::SparseLevels;
