@@ -65,6 +65,25 @@ def periods():
     return plot.latex()
 
 
+def molecules():
+    """Unstable intervals about the minimum, and rates at the steps that were run; all in fs."""
+    plot = Plot(110, 42, (1.7, 8.5, False), (0, 18, False))
+    for stretch in document("water4")["stretches"]:
+        if stretch["verdict"] != "stable":
+            shade = "0.78 0.82 0.90" if stretch["verdict"] == "unstable" else "0.90 0.90 0.90"
+            (a, _), (b, height) = plot.place(1000 * stretch["lo"], 0), plot.place(1000 * stretch["hi"], 18)
+            plot.path([(a, 0), (b, 0), (b, height), (a, height)], shade, 0.05, close="b")
+    plot.axis("x", range(2, 9), [str(n) for n in range(2, 9)], "outer step (fs)")
+    plot.axis("y", range(0, 19, 3), [str(n) for n in range(0, 19, 3)], "growth rate ($10^{-3}$ per fs)")
+    rows = [(float(row["outer"]), row["minimum"], row["run"]) for row in document("runs")["rows"]]
+    plot.series([(outer, minimum) for outer, minimum, _ in rows], ORANGE, "open diamond", "predicted about the minimum", (1.95, 15.5), line=False)
+    plot.series([(outer, run) for outer, _, run in rows], BLUE, "square", "OpenMM's run", (1.95, 13), line=False)
+    for y, colour, shape in ((15.5, ORANGE, "open diamond"), (13, BLUE, "square")):
+        a, b = plot.place(1.95, y)
+        plot.mark(a - 2, b, colour, shape)
+    return plot.latex()
+
+
 def plain_rows():
     """Where the plain loop is wrong, grid by grid; a rule between the two oscillators."""
     lines, before = [], None
@@ -141,6 +160,6 @@ def references(name):
 
 def write():
     """All of them, into build/."""
-    for name, text in {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "plain": plain_rows(), "runs": runs_rows(),
+    for name, text in {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "molecules": molecules(), "plain": plain_rows(), "runs": runs_rows(),
                        "paper-references": references("paper"), "supplement-references": references("supplement")}.items():
         (BUILD / f"{name}.tex").write_text(text)
