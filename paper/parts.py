@@ -76,10 +76,10 @@ def molecules():
     plot.axis("x", range(2, 9), [str(n) for n in range(2, 9)], "outer step (fs)")
     plot.axis("y", range(0, 19, 3), [str(n) for n in range(0, 19, 3)], "growth rate ($10^{-3}$ per fs)")
     rows = [(float(row["outer"]), row["minimum"], row["run"]) for row in document("runs")["rows"]]
-    plot.series([(outer, minimum) for outer, minimum, _ in rows], ORANGE, "open diamond", "predicted about the minimum", (1.95, 15.5), line=False)
-    plot.series([(outer, run) for outer, _, run in rows], BLUE, "square", "OpenMM's run", (1.95, 13), line=False)
+    plot.series([(outer, minimum) for outer, minimum, _ in rows], ORANGE, "open diamond", "about the minimum", (2.1, 15.5), line=False)
+    plot.series([(outer, run) for outer, _, run in rows], BLUE, "square", "OpenMM's run", (2.1, 13), line=False)
     for y, colour, shape in ((15.5, ORANGE, "open diamond"), (13, BLUE, "square")):
-        a, b = plot.place(1.95, y)
+        a, b = plot.place(2.1, y)
         plot.mark(a - 2, b, colour, shape)
     return plot.latex()
 
