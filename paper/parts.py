@@ -27,7 +27,8 @@ def schedule():
             a, _ = plot.place(n * step, 0)
             plot.path([(a + (step == 5) * 0.35, 6 - size / 2), (a + (step == 5) * 0.35, 6 + size)], colour, 1.2)
     plot.path([(60, 0), (60, 13)], GREY, 0.6, "2 2")
-    for a, b, text, anchor in ((0, 1.5, "$0$", "t"), (120, 1.5, "$T=5h_1=3h_2$", "t"), (60, -0.5, "$T/2$", "t"), (12, 10, "$h_1$", ""), (20, 14, "$h_2$", "")):
+    words = ((0, 1.5, "$0$", "t"), (120, 1.5, "$T=5h_1=3h_2$", "t"), (60, -0.5, "$T/2$", "t"), (12, 10, "$h_1$", ""), (20, 14, "$h_2$", ""))
+    for a, b, text, anchor in words:
         plot.words(a, b, text, anchor)
     # Braces of one step of each clock.
     for b, width in ((8.3, 24), (12.3, 40)):
@@ -76,7 +77,8 @@ def molecules():
     plot.axis("x", range(2, 9), [str(n) for n in range(2, 9)], "outer step (fs)")
     plot.axis("y", range(0, 19, 3), [str(n) for n in range(0, 19, 3)], "growth rate ($10^{-3}$ per fs)")
     rows = [(float(row["outer"]), row["minimum"], row["run"]) for row in document("runs")["rows"]]
-    plot.series([(outer, minimum) for outer, minimum, _ in rows], ORANGE, "open diamond", "about the minimum", (2.1, 15.5), line=False)
+    minimum = [(outer, rate) for outer, rate, _ in rows]
+    plot.series(minimum, ORANGE, "open diamond", "about the minimum", (2.1, 15.5), line=False)
     plot.series([(outer, run) for outer, _, run in rows], BLUE, "square", "OpenMM's run", (2.1, 13), line=False)
     for y, colour, shape in ((15.5, ORANGE, "open diamond"), (13, BLUE, "square")):
         a, b = plot.place(2.1, y)
@@ -91,7 +93,8 @@ def plain_rows():
         if before not in (None, grid["lambda1"]):
             lines.append(r"\midrule")
         before = grid["lambda1"]
-        numbers = [grid["pairs"], grid["unstable"], grid["on_an_edge"], grid["trace"]["wrong"], *(one["wrong"] for one in grid["spectral_radius"])]
+        numbers = [grid["pairs"], grid["unstable"], grid["on_an_edge"], grid["trace"]["wrong"]]
+        numbers += [one["wrong"] for one in grid["spectral_radius"]]
         lines.append(f"${grid['step']}$ & " + " & ".join(f"${grouped(number)}$" for number in numbers) + r" \\")
     return "\n".join(lines) + "\n"
 
@@ -99,7 +102,8 @@ def plain_rows():
 def runs_rows():
     """Growth in OpenMM beside its prediction, 1/ps as 10^-3 per fs."""
     rows = document("runs")["rows"]
-    return "".join(f"{row['outer']} & {row['inner']} & {row['minimum']:.4f} & {row['orbit']:.4f} & {row['run']:.4f}" + r" \\" + "\n" for row in rows)
+    rates = ("minimum", "orbit", "run")
+    return "".join(" & ".join([row["outer"], str(row["inner"]), *(f"{row[rate]:.4f}" for rate in rates)]) + " \\\\\n" for row in rows)
 
 
 def runs_macros():
@@ -108,7 +112,8 @@ def runs_macros():
     assert all(row["orbit"] == row["run"] for row in rows)
     wrong = [row["outer"] for row in rows if (row["minimum"] > 0) != (row["run"] > 0)]
     off = sorted(row["minimum"] / row["run"] - 1 for row in rows if row["run"] > 0)
-    values = {"RunsWrong": ", ".join(wrong), "RunsSteps": len(rows), "RunsOffLeast": f"{100 * off[0]:.0f}\\,\\%", "RunsOffMost": f"{100 * off[-1]:.0f}\\,\\%"}
+    least, most = (f"{100 * one:.0f}\\,\\%" for one in (off[0], off[-1]))
+    values = {"RunsWrong": ", ".join(wrong), "RunsSteps": len(rows), "RunsOffLeast": least, "RunsOffMost": most}
     return [f"\\newcommand{{\\{name}}}{{\\ensuremath{{{value}}}}}" for name, value in values.items()]
 
 
@@ -126,7 +131,7 @@ def people(authors):
     """"Last, First" as initials before the name."""
     def one(author):
         last, _, first = author.partition(", ")
-        initials = " ".join(re.sub(r"^(\{?\\?.).*", r"\1", name) + "." if "." not in name else name for name in first.split())
+        initials = " ".join(name if "." in name else re.sub(r"^(\{?\\?.).*", r"\1.", name) for name in first.split())
         return f"{initials} {last}".strip()
 
     return ", ".join("others" if author == "others" else one(author) for author in authors.split(" and ")).replace(", others", " and others")
@@ -160,6 +165,7 @@ def references(name):
 
 def write():
     """All of them, into build/."""
-    for name, text in {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "molecules": molecules(), "plain": plain_rows(), "runs": runs_rows(),
-                       "paper-references": references("paper"), "supplement-references": references("supplement")}.items():
+    figures = {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "molecules": molecules()}
+    lists = {f"{name}-references": references(name) for name in ("paper", "supplement")}
+    for name, text in {**figures, "plain": plain_rows(), "runs": runs_rows(), **lists}.items():
         (BUILD / f"{name}.tex").write_text(text)

@@ -70,5 +70,5 @@ class Plot:
     def latex(self, left=14, right=4, below=14, above=7):
         width, height = self.size
         self.path([(0, 0), (width, 0), (width, height), (0, height), (0, 0)])
-        return "\n".join([r"{\footnotesize\setlength{\unitlength}{1mm}%", rf"\begin{{picture}}({width + left + right},{height + below + above})(-{left},-{below})",
-                          *self.items, r"\end{picture}}"]) + "\n"
+        head = rf"\begin{{picture}}({width + left + right},{height + below + above})(-{left},-{below})"
+        return "\n".join([r"{\footnotesize\setlength{\unitlength}{1mm}%", head, *self.items, r"\end{picture}}"]) + "\n"

@@ -8,8 +8,8 @@ them that hold a pair of the finest grid. "near_edges" takes the loop to random 
 from random edges, on either side, of the tongues of one ratio: there the verdict is known from the certified edges.
 """
 
-import ctypes
 import csv
+import ctypes
 import io
 import json
 import math
@@ -90,11 +90,13 @@ def seen(program, n):
 def near_edges(program, library, p, q):
     """The share of wrong verdicts by distance."""
     rng = np.random.default_rng(1)
-    command = [program, "tongues", "--ratio", f"{p}/{q}", "--rho", "1/25", "--columns", "edges", "--m", f"1..{p - 1}", "--format", "csv", "--quiet"]
+    command = [program, "tongues", "--ratio", f"{p}/{q}", "--rho", "1/25", "--columns", "edges", "--m", f"1..{p - 1}",
+               "--format", "csv", "--quiet"]
     rows = csv.DictReader(io.StringIO(subprocess.run(command, check=True, capture_output=True, text=True).stdout))
     ends = [(float(row[f"{end}_lo"]), float(row[f"{end}_hi"]), side) for row in rows for end, side in (("lower", 1), ("upper", -1))]
     # Edges whose neighbours on both sides are farther than the places looked at.
-    edges = [edge for before, edge, after in zip(ends, ends[1:], ends[2:]) if min(edge[0] - before[1], after[0] - edge[1]) > 2e-8 * edge[0]]
+    edges = [edge for before, edge, after in zip(ends, ends[1:], ends[2:], strict=False)
+             if min(edge[0] - before[1], after[0] - edge[1]) > 2e-8 * edge[0]]
     library.trace.restype = ctypes.c_double
     found = []
     for k in range(8, 16):

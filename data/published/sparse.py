@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Sparse levels: sparse.py; JSON. Needs the Python package and SciPy.
 
-A lattice of L^3 diatomic molecules, each bond in a random direction with a frequency of about 2 pi/10 fs, neighbours tied by weak random springs
-(slow force); three degrees of freedom an atom. Asked: the verdict at an outer step of 4 fs with eight inner ones, and the first unstable outer
-step. Seconds are processor time.
+A lattice of L^3 diatomic molecules, each bond in a random direction with a frequency of about 2 pi/10 fs, neighbours tied by
+weak random springs (slow force); three degrees of freedom an atom. Asked: the verdict at an outer step of 4 fs with eight inner
+ones, and the first unstable outer step. Seconds are processor time.
 """
 
 import json
