@@ -139,6 +139,17 @@ fn every_installation_that_is_written_down_is_locked() {
     }
 }
 
+/// The oldest Rust is one number, and a job builds with it.
+#[test]
+fn the_oldest_rust_of_all_manifests_is_the_same_and_checked() {
+    let oldest = concat!("\nrust-version = \"", env!("CARGO_PKG_RUST_VERSION"), "\"\n");
+    for name in ["Cargo.toml", "crates/plot/Cargo.toml", "python/Cargo.toml"] {
+        assert!(std::fs::read_to_string(root().join(name)).unwrap().contains(oldest), "{name}");
+    }
+    let checks = std::fs::read_to_string(root().join(".github/workflows/check.yml")).unwrap();
+    assert!(checks.contains(r#"cargo "+$oldest" check --locked --all-features"#));
+}
+
 /// One version in all that names it.
 #[test]
 fn every_file_that_names_the_version_names_this_one() {
