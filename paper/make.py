@@ -16,6 +16,8 @@ from fractions import Fraction
 from math import gcd
 from pathlib import Path
 
+import parts
+
 HERE = Path(__file__).parent
 BUILD = HERE / "build"
 PUBLISHED = "../data/published/"
@@ -76,23 +78,26 @@ def value(document, path):
 def shown(found, form):
     """A value in LaTeX, between dollars."""
     kind, *digits = form.split()
+    times = float(digits.pop().removeprefix("x")) if digits and digits[-1].startswith("x") else 1.0
     if kind == "count":
         found = len(found)
     if kind in ("integer", "count"):
         return f"{found:,}".replace(",", "\\,")
     if kind == "text":
         return found
+    if kind == "rounded":
+        return f"{float(f'{found:.{digits[0]}g}'):,.0f}".replace(",", "\\,")
     if kind == "all":
         return r"\text{all}" if found == 1 else f"{100 * float(found):.6f}\\,\\%"
-    if kind == "percent":
-        return f"{100 * float(found):.{digits[0]}f}\\,\\%"
     if isinstance(found, dict):
         # The ends agree in the digits shown, or the middle would claim more than is proven.
         lo, hi = (f"{found[end]:.{int(digits[0]) - 1}e}" for end in ("lo", "hi"))
         if abs(float(lo) - float(hi)) > 10.0 ** (1 - int(digits[0])) * abs(float(hi)) * 1.01:
             raise ValueError(f"{found} is not known to {digits[0]} digits")
         found = 0.5 * (found["lo"] + found["hi"])
-    text = f"{found:.{digits[0]}g}"
+    if kind == "percent":
+        return f"{100 * float(found):.{digits[0]}f}\\,\\%"
+    text = f"{times * found:.{digits[0]}g}"
     mantissa, _, power = text.partition("e")
     return f"{mantissa} \\times 10^{{{int(power)}}}" if power else mantissa
 
@@ -130,6 +135,8 @@ def main(program):
         macros.append(f"\\newcommand{{\\{macro}}}{{\\ensuremath{{{text}}}}}")
         rows.append(f"\\texttt{{{macro}}} & ${text}$ & \\texttt{{{path.replace('_', chr(92) + '_')}}} & \\texttt{{{name}}} \\\\")
     (BUILD / "counts.tex").write_text(counts(json.loads((BUILD / "closings.json").read_text())))
+    parts.write()
+    macros += parts.runs_macros()
     macros += [macro for name in commands if name.endswith(".tex") for macro in references(name)]
     pairs = json.loads((BUILD / "map1000.json").read_text())["pairs"]
     rate = f"{pairs / seconds['map1000'] / 1e6:.1f}"

@@ -57,6 +57,56 @@ fn scripts_of_workflows_take_names_from_their_environment_only() {
     }
 }
 
+/// The jobs of the release by name, with their texts.
+fn release_jobs() -> Vec<(String, String)> {
+    let text = std::fs::read_to_string(root().join(".github/workflows/release.yml")).unwrap();
+    let heads = Regex::new(r"(?m)^  ([a-z]+):$").unwrap();
+    let jobs = text.split_once("\njobs:\n").unwrap().1;
+    let starts: Vec<_> =
+        heads.captures_iter(jobs).map(|found| (found.get(0).unwrap().start(), found[1].to_owned())).collect();
+    let ends = starts.iter().skip(1).map(|(start, _)| *start).chain([jobs.len()]);
+    starts.iter().zip(ends).map(|((start, name), end)| (name.clone(), jobs[*start..end].to_owned())).collect()
+}
+
+/// Whoever downloads a file can ask which commit and which workflow made it.
+#[test]
+fn every_file_that_a_release_holds_is_attested_before_it_is_uploaded() {
+    let mut uploading = 0;
+    for (name, job) in release_jobs() {
+        assert_eq!(job.contains("contents: write"), job.contains("gh release upload"), "{name}");
+        let Some(upload) = job.find("gh release upload") else { continue };
+        uploading += 1;
+        let attested = job.find("uses: actions/attest-build-provenance@").expect(&name);
+        assert!(
+            attested < upload && job.contains("attestations: write") && job.contains("id-token: write"),
+            "{name}"
+        );
+        let files = Regex::new(r"subject-path: (\S+)\n").unwrap().captures(&job).expect(&name)[1].to_owned();
+        assert!(job.contains(&format!("gh release upload \"$TAG\" {files}\n")), "{name}: {files}");
+    }
+    assert_eq!(uploading, 3);
+    let (_, pypi) = release_jobs().into_iter().find(|(name, _)| name == "pypi").unwrap();
+    assert!(
+        pypi.find("pypi_attestations sign").unwrap()
+            < pypi.find("upload --non-interactive --skip-existing --attestations").unwrap()
+    );
+}
+
+/// A number with an underscore is an integer to some readers of YAML.
+#[test]
+fn programs_are_static_for_old_machines_and_wheels_are_there_without_the_lock() {
+    let jobs = release_jobs();
+    let job = |wanted: &str| jobs.iter().find(|(name, _)| name == wanted).unwrap().1.clone();
+    for target in ["x86_64-unknown-linux-musl", "aarch64-unknown-linux-musl"] {
+        assert!(job("program").contains(&format!("target: {target}}}")), "{target}");
+    }
+    let wheels = job("wheels");
+    assert_eq!(wheels.matches("python: 3.14t, native: true").count(), 4);
+    assert!(wheels.contains("not sys._is_gil_enabled()"));
+    let unquoted = Regex::new(r"linux: [0-9]").unwrap();
+    assert!(!unquoted.is_match(&wheels) && wheels.contains("linux: \"2_28\""));
+}
+
 /// The page is in what people download.
 #[test]
 fn released_programs_have_the_page_and_the_notices_of_what_is_linked() {
@@ -87,6 +137,17 @@ fn every_installation_that_is_written_down_is_locked() {
             assert!(line.contains("--locked"), "{name}: {line}");
         }
     }
+}
+
+/// The oldest Rust is one number, and a job builds with it.
+#[test]
+fn the_oldest_rust_of_all_manifests_is_the_same_and_checked() {
+    let oldest = concat!("\nrust-version = \"", env!("CARGO_PKG_RUST_VERSION"), "\"\n");
+    for name in ["Cargo.toml", "crates/plot/Cargo.toml", "python/Cargo.toml"] {
+        assert!(std::fs::read_to_string(root().join(name)).unwrap().contains(oldest), "{name}");
+    }
+    let checks = std::fs::read_to_string(root().join(".github/workflows/check.yml")).unwrap();
+    assert!(checks.contains(r#"cargo "+$oldest" check --locked --all-features"#));
 }
 
 /// One version in all that names it.
