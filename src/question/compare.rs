@@ -21,7 +21,7 @@ question! {
         tolerance: Rational = "1/20",
         /// The stiffness of the fast force, with a grid.
         lambda1: Option<Laurent>,
-        /// That of the slow force.
+        /// The stiffness of the slow force.
         lambda2: Option<Laurent>,
         /// The spacing of h1.
         step1: Option<Laurent>,

@@ -18,7 +18,7 @@ question! {
         /// The stiffness of the fast force, 1/time^2.
         #[arg(long, value_name = "L1", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda1: Laurent,
-        /// That of the slow force.
+        /// The stiffness of the slow force.
         #[arg(long, value_name = "L2", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         lambda2: Laurent,
         /// The fast step.

@@ -22,7 +22,7 @@ question! {
     struct Verdict {
         /// The stiffness of the fast force, 1/time².
         lambda1: Laurent,
-        /// That of the slow force.
+        /// The stiffness of the slow force.
         lambda2: Laurent,
         /// The fast step.
         h1: Laurent,
