@@ -32,6 +32,7 @@
 //! | file | what |
 //! |---|---|
 //! | `half`, `interval` | the fast half period of one mode, in intervals |
+//! | `method` | that of other integrators, as exact flows with filters: the same machinery serves them all |
 //! | `rigid` | rigid motions projected out |
 //! | `basis` | eigenvalues and eigenvectors, block by block |
 //! | `kernel` | the eigenbasis, its backward error, norms |
@@ -61,6 +62,7 @@ mod half;
 mod interval;
 mod intervals;
 mod kernel;
+mod method;
 mod paths;
 mod region;
 mod rigid;
@@ -69,5 +71,6 @@ pub mod sparse;
 pub use cell::Cells;
 pub use growth::Growing;
 pub use kernel::{Kernel, Outer};
+pub use method::Method;
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};
