@@ -46,6 +46,7 @@
 //! | `growth` | how fast it grows past that, and up to where: sampled |
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
+//! | `step` | one step of other methods, the same way |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
@@ -67,6 +68,7 @@ mod paths;
 mod region;
 mod rigid;
 pub mod sparse;
+mod step;
 
 pub use cell::Cells;
 pub use growth::Growing;
