@@ -97,13 +97,13 @@ impl Method {
         self.powers().is_some()
     }
 
-    /// The H w of the fastest mode at which the first region ends at the latest, about; `None` where the slow force alone ends it.
+    /// A little more than the H w of the fastest mode at which the first region ends at the latest; `None` where the slow force alone ends it.
     pub(super) fn highest_angle(self, p: u64) -> Option<f64> {
         let pi = std::f64::consts::PI;
         match self {
-            Method::Respa => Some(p as f64 * 2.0 * (pi / (2.0 * p as f64)).sin()),
+            Method::Respa => Some(1.000_001 * p as f64 * 2.0 * (pi / (2.0 * p as f64)).sin()),
             Method::ImplicitExplicit => None,
-            Method::Trigonometric(_) => Some(pi),
+            Method::Trigonometric(_) => Some(1.000_001 * pi),
         }
     }
 

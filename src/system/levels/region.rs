@@ -101,7 +101,7 @@ impl Kernel {
             outer(step).is_some_and(|outer| is_below(&outer) && self.is_in_first_region(&outer, 0.0))
         };
         let mut hi = match self.method.highest_angle(inner_steps) {
-            Some(angle) => 1.000_001 * angle / self.highest_frequency(),
+            Some(angle) => angle / self.highest_frequency(),
             None => 2.000_002 / self.highest_slow_frequency(),
         };
         let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
