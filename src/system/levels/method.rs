@@ -115,7 +115,7 @@ impl Method {
             Method::Trigonometric(Trigonometric::Impulse) | Method::Respa | Method::ImplicitExplicit => {
                 f64::INFINITY
             }
-            Method::Trigonometric(_) => 3.141_592,
+            Method::Trigonometric(_) => 0.999_999 * std::f64::consts::PI,
         }
     }
 
