@@ -115,7 +115,8 @@ mod tests {
                 assert!((own - other).abs() < 1e-5 / step, "{method} {step}: {own} {other}");
                 grown += usize::from(own > 1e-3);
             }
-            assert!(grown > 0, "{method}");
+            // Where S < F, Hairer and Lubich's filter leaves no step to grow.
+            assert_eq!(grown > 0, method.name() != "hairer-lubich", "{method}");
         }
     }
 }
