@@ -198,7 +198,7 @@ fn measured_stiffnesses_are_masked_from_where_it_is_told() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
     let text = std::fs::read_to_string(folder.join("water4.json")).unwrap().replace("1/250", "9/2000");
     let scene =
-        SystemScene::read_in(&folder, &text).unwrap().asked(None, false, Some(&ratio(1, 100))).unwrap();
+        SystemScene::read_in(&folder, &text).unwrap().asked(None, false, Some(&ratio(1, 100)), None).unwrap();
     let weak = scene.friction(&Limits::default()).unwrap().unwrap();
     let (Mask::At(Masked { rate: (lo, hi), .. }), Some(growth)) = (weak.masking, weak.growth) else {
         panic!("{weak:?}")

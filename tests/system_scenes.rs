@@ -199,7 +199,7 @@ fn what_pi_may_not_be_in_is_refused() {
     let scene = of_unit_masses(2, r#"{"step": "1/2", "springs": [[0, 1, "pi"], [0, null, "1"]]}"#).unwrap();
     let error = scene
         .clone()
-        .asked(None, false, Some(&ratio(1, 2)))
+        .asked(None, false, Some(&ratio(1, 2)), None)
         .unwrap()
         .friction(&Limits::default())
         .unwrap_err();

@@ -222,6 +222,7 @@ class System(Frozen):
         accuracy: float | None = None,
         keep_rigid: bool = False,
         friction: Exact | None = None,
+        method: str | None = None,
         budget: int | None = None,
     ) -> SystemVerdict:
         """Decide whether the system is stable, and find what grows.
@@ -237,6 +238,10 @@ class System(Frozen):
         friction : Exact, optional
             A rate G, 1/time, rational: v times exp(-G t) in the middle of every drift (BAOAB). The verdict stays that
             without friction; ``SystemVerdict.friction`` tells what friction does.
+        method : str, optional
+            The integrator of two dense Hessians, in place of the system's own: ``"respa"``, ``"implicit-explicit"``,
+            ``"impulse"``, ``"molly-short"``, ``"molly-linear"``, ``"molly-long"``, ``"gautschi"``, ``"hairer-lubich"``.
+            All but the first take the force of the shorter step in one go over the longer one.
         budget : int, optional
             The most products of machine words.
 
@@ -246,7 +251,15 @@ class System(Frozen):
             A system that makes no sense; more work than the budget allows.
         """
         damped = None if friction is None else text("friction", friction)
-        asked = question("system", budget, exact=exact, keep_rigid=keep_rigid, friction=damped, accuracy=accuracy)
+        asked = question(
+            "system",
+            budget,
+            exact=exact,
+            keep_rigid=keep_rigid,
+            friction=damped,
+            accuracy=accuracy,
+            method=method,
+        )
         asked = self._about(asked)
         return SystemVerdict(asked.render("json"), self, asked)
 
@@ -256,6 +269,7 @@ class System(Frozen):
         *,
         resolution: float = 1e-4,
         accuracy: float | None = None,
+        method: str | None = None,
         budget: int | None = None,
     ) -> Intervals:
         """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
@@ -268,6 +282,8 @@ class System(Frozen):
             The relative width above which no interval is missed.
         accuracy : float, optional
             How well the Hessians are known.
+        method : str, optional
+            The integrator of two dense Hessians, as for ``decide``.
         budget : int, optional
             The most products of machine words.
 
@@ -277,7 +293,8 @@ class System(Frozen):
             More work than the budget allows, before it begins.
         """
         over = f"outer={range_text('outer', outer)}"
-        asked = self._about(question("system", budget, intervals=over, width=resolution, accuracy=accuracy))
+        asked = question("system", budget, intervals=over, width=resolution, accuracy=accuracy, method=method)
+        asked = self._about(asked)
         return Intervals(asked.render("json"), (), "stretches", asked)
 
     def advise(

@@ -11,6 +11,7 @@ use crate::question::{Found, Question, System, Work, flag};
 use crate::report::system::Colouring;
 use crate::scene::{Arrays, Axis, Span, SystemFile, file};
 use crate::system::Holds;
+use crate::system::levels::Method;
 
 /// Flags of `system`.
 ///
@@ -33,6 +34,9 @@ pub struct Args {
     /// How well measured stiffnesses (by reference to NumPy's files) are known, relative to their norms [default: 1e-6].
     #[arg(long, value_name = "X")]
     accuracy: Option<f64>,
+    /// The integrator of two measured levels: respa, implicit-explicit, impulse, molly-short, ... [default: the file's].
+    #[arg(long, value_name = "NAME", value_parser = from_str::<Method>)]
+    method: Option<Method>,
     /// Unstable intervals of a number of the file: outer (all steps, or one of them), a scale, a stiffness, a spring, a mass
     #[arg(long, value_name = "PATH=LO..HI", conflicts_with_all = ["scan", "exact"], value_parser = from_str::<Span>)]
     intervals: Option<Span>,
@@ -120,6 +124,7 @@ impl Args {
             keep_rigid: self.keep_rigid,
             friction: self.friction.clone(),
             accuracy: self.accuracy,
+            method: self.method,
             scan_x,
             scan_y,
             intervals: self.intervals.clone(),

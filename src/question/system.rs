@@ -12,6 +12,7 @@ use crate::report::document::Document;
 use crate::report::system::{self as report, Beside, SystemMap};
 use crate::scene::{Arrays, Axis, NEAREST, Scan, Span, SystemFile, SystemScene};
 use crate::system::friction::Friction;
+use crate::system::levels::Method;
 use crate::system::nearest::Nearest;
 use crate::system::scan::scan;
 use crate::system::vary::Intervals;
@@ -34,6 +35,8 @@ question! {
         friction: Option<Rational>,
         /// How well measured stiffnesses are known, relative to their norms.
         accuracy: Option<f64>,
+        /// The integrator of two measured levels, in place of the file's.
+        method: Option<Method>,
         /// The number that is varied in a map,
         scan_x: Option<Axis>,
         /// and another one.
@@ -48,6 +51,7 @@ question! {
 }
 
 notation! {
+    Method: |_, text: &str| text.parse(), ToString::to_string;
     Axis: |_, text: &str| text.parse(), ToString::to_string;
     Span: |_, text: &str| text.parse(), ToString::to_string;
 }
@@ -107,7 +111,7 @@ impl System {
     /// # Errors
     /// As [`SystemFile::read`] and [`SystemScene::asked`].
     pub fn scene(&self, work: &Work) -> Result<SystemScene> {
-        work.read(&self.system)?.asked(self.accuracy, self.keep_rigid, self.friction.as_ref())
+        work.read(&self.system)?.asked(self.accuracy, self.keep_rigid, self.friction.as_ref(), self.method)
     }
 
     /// By which means it is decided.

@@ -81,6 +81,18 @@ impl Trigonometric {
         }
     }
 
+    /// Whether it is told by its two-step form alone, Gautschi's and that of Hairer and Lubich; else kicks stand around an exact flow.
+    pub fn is_two_step(self) -> bool {
+        matches!(self, Trigonometric::Gautschi | Trigonometric::HairerLubich)
+    }
+
+    /// (i, k) of the filter c^i (s/y)^k of positions and forces alike: its square is g, beside the c s/y of an exact flow.
+    pub fn filter(self) -> (u32, u32) {
+        let (i, k) = self.powers();
+        let own = u32::from(!self.is_two_step());
+        ((i - own) / 2, (k - own) / 2)
+    }
+
     /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
     fn signs(self, y: &Ball, rho: &Ball) -> [Option<Sign>; 2] {
         let (i, k) = self.powers();

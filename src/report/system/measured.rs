@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::report::decimal;
 use crate::report::document::enclosure;
+use crate::system::levels::Method;
 use crate::system::{Holds, Measured};
 
 /// The entry `measured` of a document.
@@ -12,19 +13,31 @@ pub(super) fn value(own: &Measured) -> Value {
         .removed
         .as_ref()
         .map(|r| json!({"count": r.count, "found_by": r.found_by, "fast": r.fast, "slow": r.slow}));
-    json!({
+    let mut value = json!({
         "accuracy": own.accuracy,
         "holds": own.holds.name(),
         "margin": own.margin,
         "first_unstable": own.first_unstable.map(enclosure),
         "above_unstable": own.is_above_unstable,
         "rigid_motions": removed,
-    })
+    });
+    if has_other_method(own) {
+        value["method"] = own.method.into();
+    }
+    value
+}
+
+/// Whether it is another than kicks and drifts: there are no inner steps then.
+fn has_other_method(own: &Measured) -> bool {
+    own.method != Method::Respa.name()
 }
 
 /// The same for people; `unit` is that of times, after a space.
 pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> {
     let mut lines = Vec::new();
+    if has_other_method(own) {
+        lines.push(format!("  by {}: the fast force in one go over the outer step", own.method));
+    }
     if let Some(r) = &own.removed {
         lines.push(format!(
             "  {} rigid motions projected out ({}): they held {:.1e} of the fast and {:.1e} of the slow stiffness",
@@ -50,8 +63,9 @@ pub(super) fn lines(own: &Measured, is_stable: bool, unit: &str) -> Vec<String> 
             ""
         };
         let first = decimal::enclosure(lo, hi);
+        let inner = if has_other_method(own) { "" } else { " with as many inner ones" };
         lines.push(format!(
-            "  first unstable outer step with as many inner ones: {first}{unit}; every smaller one is proven stable{place}"
+            "  first unstable outer step{inner}: {first}{unit}; every smaller one is proven stable{place}"
         ));
     }
     lines

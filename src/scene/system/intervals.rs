@@ -126,7 +126,8 @@ impl SystemScene {
                 self.over(span, limits, |number| self.model.stretches(number, span.ends(), width, limits))?
             }
         };
-        let inner_steps = inner_steps.filter(|_| role == Role::Outer);
+        let inner_steps =
+            inner_steps.filter(|_| role == Role::Outer && self.model.method().has_inner_steps());
         Ok(Intervals { number: span.path.clone(), is_discrete: role == Role::Step, inner_steps, stretches })
     }
 

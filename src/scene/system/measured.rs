@@ -19,6 +19,8 @@
 //!
 //! `"hydrogen_mass": 3.024` makes hydrogens (up to 1.1) heavier at the cost of the nearest heavy particle. `"constraints": "h-bonds"`, or pairs,
 //! holds distances; then each potential has a `force` by reference, at the positions and not mass-weighted (see `held`).
+//! `"method": "molly-short"` integrates two levels otherwise than by kicks and drifts: the force of the shorter step is followed exactly, or by the
+//! midpoint rule, over the whole longer one, and the other force kicks, filtered (see [`Method`](crate::system::levels::Method)).
 //! `"symmetric": false` says that a force is no gradient, as one that is learned and predicted directly: then its Jacobian, minus the derivative
 //! of the force, is no Hessian, and its asymmetry no error.
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
@@ -60,6 +62,7 @@ struct Document {
     keep_rigid: bool,
     #[serde(default = "yes")]
     symmetric: bool,
+    method: Option<String>,
     potentials: Vec<PotentialDocument>,
     labels: Option<Vec<String>>,
 }
@@ -120,8 +123,15 @@ pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec
     let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
     let model = if document.symmetric {
         let own = MeasuredSystem::new(body, potentials, accuracy)?;
-        Model::Measured(if document.keep_rigid { own.keeping_rigid() } else { own })
+        let own = if document.keep_rigid { own.keeping_rigid() } else { own };
+        Model::Measured(match &document.method {
+            Some(method) => own.with_method(method.parse()?)?,
+            None => own,
+        })
     } else {
+        if let Some(method) = &document.method {
+            return Err(Error::input("method", method, "is for forces that are gradients: leave it out"));
+        }
         Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
     };
     Ok((model, document.labels))

@@ -76,6 +76,7 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::scene::json;
 use crate::system::friction::Friction;
+use crate::system::levels::Method;
 use crate::system::{Limits, Model, OwnOrbit, Potential, System};
 pub use array::{Array, Arrays};
 use bonds::Nonlinear;
@@ -224,11 +225,11 @@ impl SystemScene {
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
         let scene = SystemScene { source, arrays, model, bonds, labels: given.or(labels), friction: None };
         let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
-        scene.asked(None, false, friction.as_ref())
+        scene.asked(None, false, friction.as_ref(), None)
     }
 
     /// The same with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
-    /// motions left in; friction of a rate per unit time, O in the middle of every drift.
+    /// motions left in; friction of a rate per unit time, O in the middle of every drift; another integrator of two measured levels.
     ///
     /// # Errors
     /// An accuracy or rigid motions where nothing is measured, an accuracy that is not in (0, 1/10), a rate that is not positive.
@@ -237,6 +238,7 @@ impl SystemScene {
         accuracy: Option<f64>,
         keeps_rigid: bool,
         friction: Option<&Rational>,
+        method: Option<Method>,
     ) -> Result<SystemScene> {
         let exact = "is for stiffnesses by reference: these are exact";
         if let Some(accuracy) = accuracy {
@@ -255,6 +257,13 @@ impl SystemScene {
                 return Err(Error::input("rigid motions", "kept", remedy));
             };
             self.model = Model::Measured(own.keeping_rigid());
+        }
+        if let Some(method) = method {
+            let Model::Measured(own) = self.model else {
+                let remedy = "is for two dense stiffnesses by reference to NumPy's files: give these";
+                return Err(Error::input("method", method, remedy));
+            };
+            self.model = Model::Measured(own.with_method(method)?);
         }
         if let Some(rate) = friction {
             if *rate <= Rational::default() {
@@ -356,7 +365,7 @@ impl SystemScene {
 
     fn masses(&self) -> Result<Vec<Rational>> {
         match &self.model {
-            Model::Measured(own) => own.refuse_constraints()?,
+            Model::Measured(own) => own.refuse_constraints().and(own.refuse_method("a run"))?,
             Model::NoGradient(_) => {
                 return Err(Error::input("symmetric", "false", "a run is for forces that are gradients"));
             }

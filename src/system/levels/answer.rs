@@ -67,6 +67,7 @@ impl Kernel {
     fn measured(&self, outer: &Outer, accuracy: f64) -> Measured {
         let first_unstable = self.first_unstable(outer.inner_steps);
         Measured {
+            method: self.method.name(),
             accuracy,
             holds: self.verdict_within(outer, accuracy),
             margin: None,

@@ -28,7 +28,9 @@ impl Kernel {
         }
         let stretch: Vec<f64> = halves.iter().map(|half| half.stretch().lo).collect();
         let slack = self.shifted(outer, epsilon).slow_slack;
-        [least, most].into_iter().all(|s| is_definite(self.with_slow(outer, -s, &stretch), 1.01 * s * slack))
+        [least, most]
+            .into_iter()
+            .all(|s| is_definite(self.with_slow(outer, &self.slow, -s, &stretch), 1.01 * s * slack))
     }
 
     /// The outer step, as many inner ones in it, up to which [`Kernel::covers_band`] provably holds, within 1e-6 of the longest; `None`
@@ -55,7 +57,7 @@ impl Kernel {
             Outer::new(step, 1).is_ok_and(|outer| {
                 // Of h² S/2, and of its rounding.
                 let slack = 1.02 * most * outer.half_kick() * (slow + 4.0 * f64::EPSILON * self.norms()[1]);
-                is_definite(self.with_slow(&outer, -most, &two), slack)
+                is_definite(self.with_slow(&outer, &self.slow, -most, &two), slack)
             })
         };
         let hi = 4.0 / self.highest_slow_frequency();

@@ -55,21 +55,28 @@ impl Kernel {
     fn blocks(&self, outer: &Outer, epsilon: f64) -> Option<Blocks> {
         let p = outer.inner_steps;
         let (lowest, highest) = (*self.values.first()?, *self.values.last()?);
-        let [shift, slow] = self.errors_within(epsilon);
+        let shifts = self.errors_within(epsilon);
+        let shift = shifts[0];
         // |1 − s/2| − 1 at both ends.
         let beyond =
             (outer.scaled_up(highest + shift) / 2.0 - 2.0).max(-outer.scaled_down(lowest - shift) / 2.0);
         let moved = self.moved(outer, shift);
-        let halves: Vec<Half> = self.values.iter().map(|x| Half::new(outer.inner_square * x, p)).collect();
+        let halves = self.halves(outer);
         let near = |pick: fn(&Half) -> Interval, lipschitz: f64| {
             let radius = halves.iter().map(|half| pick(half).radius()).fold(0.0, f64::max);
             let largest = halves.iter().map(|half| pick(half).mid().abs()).fold(0.0, f64::max);
             let off = radius + lipschitz * moved;
             Near { size: largest + off, off }
         };
-        let [a, b, c, d] = lipschitz(p, beyond.max(0.0));
+        let [a, b, c, d] = match self.method.has_inner_steps() {
+            true => lipschitz(p, beyond.max(0.0)),
+            false => {
+                let [a, b, c, d, _] = self.method.slopes(p, self.below(outer, shift));
+                [a, b, c, d]
+            }
+        };
         let near = [near(|h| h.a, a), near(|h| h.b, b), near(|h| h.c, c), near(|h| h.d, d)];
-        let (kick, [size, off]) = self.half_kick(outer, slow);
+        let (kick, [size, off]) = self.half_kick(outer, shifts);
         let near_kick = Near { size, off };
         let halves = halves.iter().map(|h| [h.a.mid(), h.b.mid(), h.c.mid(), h.d.mid()]).collect();
         Some(Blocks { halves, near, kick, near_kick })
@@ -99,7 +106,8 @@ impl Kernel {
     /// The spectrum of S where p θ < π for all modes: with V = 2 b d > 0, 1 + 2 S = V^½ (cos p θ − V^½ M V^½) V^-½.
     fn real_spectrum(&self, outer: &Outer, blocks: &Blocks) -> Option<Spectrum> {
         let highest = self.values.last().copied()?;
-        if !Half::new(outer.inner_square * highest, outer.inner_steps).rises() {
+        let top = self.method.half(Interval::point(outer.inner_square * highest), outer.inner_steps);
+        if !top.rises() {
             return None;
         }
         let (m, half) = (self.size(), &blocks.halves);

@@ -28,6 +28,17 @@ pub struct Cells<'a> {
     size: Mat<f64>,
 }
 
+/// What the filter is in a cell, see [`Cells::filter`].
+struct Filter {
+    phi: Vec<Interval>,
+    /// m ‖N‖ (1 + 1/τ) r²,
+    moved: Vec<f64>,
+    /// m τ, of N,
+    share: f64,
+    /// and how far (2-norm) Φ S Φ is off for each unit of m, since F and S are not exactly known.
+    off: f64,
+}
+
 /// Factors of the fast and of the slow stiffness in the time unit of the inner step.
 struct Cell {
     inner_steps: u64,
@@ -103,19 +114,57 @@ impl<'a> Cells<'a> {
     fn counts(&self, cell: &Cell) -> Option<Counts> {
         let kernel = self.kernel;
         let (shift, middle, half) = (kernel.fast_error, cell.slow.mid(), cell.slow.radius());
-        let mode = |s: f64| Half::new(s, cell.inner_steps);
-        let less =
-            kernel.values.iter().map(|x| mode((Interval::point((x - shift).next_down()) * cell.fast).lo));
-        let more =
-            kernel.values.iter().map(|x| mode((Interval::point((x + shift).next_up()) * cell.fast).hi));
-        let m = kernel.size();
+        let ends = |x: &f64| {
+            let least = Interval::point((x - shift).next_down()) * cell.fast;
+            (least.lo, (Interval::point((x + shift).next_up()) * cell.fast).hi)
+        };
+        let around = |x: &f64| kernel.method.around(ends(x), cell.inner_steps);
+        let (less, more): (Vec<_>, Vec<_>) =
+            kernel.values.iter().map(around).map(|[less, more]: [Half; 2]| (less, more)).unzip();
+        let (m, filter) = (kernel.size(), self.filter(cell));
+        let phi = |i: usize| filter.phi[i].mid();
         let slow = |sign: f64| {
-            Mat::from_fn(m, m, |i, j| middle * kernel.slow[(i, j)] + sign * half * self.size[(i, j)])
+            Mat::from_fn(m, m, |i, j| {
+                let own = middle * kernel.slow[(i, j)] + sign * (half + filter.share) * self.size[(i, j)];
+                phi(i) * own * phi(j) + if i == j { sign * filter.moved[i] } else { 0.0 }
+            })
         };
         let slow = [slow(-1.0), slow(1.0)];
         let largest = cell.slow.lo.abs().max(cell.slow.hi.abs());
-        let rounding = 4.0 * U * largest * (norm::frobenius(&kernel.slow) + norm::frobenius(&self.size));
-        Counts::new([less.collect(), more.collect()], slow, 1.01 * (largest * kernel.slow_error + rounding))
+        let rounding = 8.0 * U * largest * (norm::frobenius(&kernel.slow) + norm::frobenius(&self.size));
+        let slack = largest * filter.off + rounding;
+        Counts::new([less, more], slow, 1.01 * slack)
+    }
+
+    /// φ of every mode in the cell. With Φ = Φ₀ + Δ, |Δ| ≤ r entry by entry, and N = |S|
+    ///
+    /// ```text
+    ///     ± (Φ S Φ − Φ₀ S Φ₀) ≤ (1 + 1/τ) Δ N Δ + τ Φ₀ N Φ₀,     Δ N Δ ≤ ‖N‖ r²,
+    /// ```
+    ///
+    /// for every τ > 0.
+    fn filter(&self, cell: &Cell) -> Filter {
+        let (kernel, p) = (self.kernel, cell.inner_steps);
+        let phi = |x: &f64| kernel.method.filter(Interval::point(*x) * cell.fast, p);
+        let phi: Vec<Interval> = kernel.values.iter().map(phi).collect();
+        if !kernel.method.has_filter() {
+            return Filter { moved: vec![0.0; phi.len()], phi, share: 0.0, off: kernel.slow_error };
+        }
+        let (largest, [_, size]) = (cell.slow.lo.abs().max(cell.slow.hi.abs()), kernel.norms());
+        let tau = phi.iter().map(|own| own.radius()).fold(U, f64::max);
+        let moved = |own: &Interval| 1.01 * largest * (1.0 + 1.0 / tau) * size * own.radius().powi(2);
+        let below = self.below(cell);
+        let [.., slope] = kernel.method.slopes(p, below);
+        let turned = 1.01 * slope * cell.fast.hi * kernel.fast_error;
+        // φ² is at most 1, but for what lies below 0.
+        let off = 1.01 * (1.0 + below) * (2.0 * turned * size + kernel.slow_error);
+        Filter { moved: phi.iter().map(moved).collect(), phi, share: 1.01 * largest * tau, off }
+    }
+
+    /// How far the fast kicks reach below 0.
+    fn below(&self, cell: &Cell) -> f64 {
+        let lowest = self.kernel.values.first().map_or(0.0, |x| x - self.kernel.fast_error);
+        (-lowest * cell.fast.hi).next_up().max(0.0)
     }
 
     /// S = f(F) − g(F) m S, f = (T_p − 1)/2 and g = U_(p−1)/2 at 1 − t F/2, in the middle of the cell, and how far it is elsewhere, entry by
@@ -126,6 +175,9 @@ impl<'a> Cells<'a> {
         let (shift, middle) = (kernel.fast_error, Interval::point(cell.fast.mid()));
         let (lowest, highest) = (kernel.values.first()?, kernel.values.last()?);
         let ends = Interval { lo: lowest - shift, hi: highest + shift } * cell.fast;
+        if !kernel.method.has_inner_steps() {
+            return self.spectrum_in_one_go(cell);
+        }
         if ends.hi > 4.0 || ends.lo < -0.02 / (p * p) {
             return None;
         }
@@ -158,6 +210,29 @@ impl<'a> Cells<'a> {
         Some((Spectrum::of(s, Some(error))?, off))
     }
 
+    /// The same where all functions of F are enclosed over the whole cell.
+    fn spectrum_in_one_go(&self, cell: &Cell) -> Option<(Spectrum, Mat<f64>)> {
+        let (kernel, p, m) = (self.kernel, cell.inner_steps, self.kernel.size());
+        let halves: Vec<Half> =
+            kernel.values.iter().map(|x| kernel.method.half(Interval::point(*x) * cell.fast, p)).collect();
+        let phi = self.filter(cell);
+        let entry = |i: usize, j: usize| {
+            let kick = phi.phi[i] * phi.phi[j] * cell.slow * Interval::point(kernel.slow[(i, j)]);
+            let coupled = -(halves[i].b * halves[i].d * kick);
+            if i == j { halves[i].b * halves[i].c + coupled } else { coupled }
+        };
+        let s = Mat::from_fn(m, m, |i, j| entry(i, j).mid());
+        let off = Mat::from_fn(m, m, |i, j| entry(i, j).radius());
+        let below = self.below(cell);
+        let [f_slope, g_slope] = kernel.method.slopes_of_products(p, below);
+        let most = cell.slow.lo.abs().max(cell.slow.hi.abs());
+        let [error, size] = [1.01 * cell.fast.hi * kernel.fast_error, kernel.norms()[1] + kernel.slow_error];
+        // b d is at most p/2, and no φ above 1, but for the small negative part.
+        let g = 0.51 * p as f64 * (1.0 + below);
+        let kicked = most * (g_slope * error * size + g * phi.off);
+        Some((Spectrum::of(s, Some(1.02 * (f_slope * error + kicked)))?, off))
+    }
+
     /// Values of s = 1 + μ between modes of one of Krein's signs and of the other; `None` where some are off \[−1, 0\]. Whatever they are,
     /// counts at them prove what they prove.
     fn twists(&self, cell: &Cell, spectrum: &Spectrum) -> Option<Vec<f64>> {
@@ -165,13 +240,15 @@ impl<'a> Cells<'a> {
         if spectrum.mu.iter().any(|mu| mu.im != 0.0 || !(-1.0..=0.0).contains(&mu.re)) {
             return None;
         }
-        let half = |x: &f64| Half::new(x * cell.fast.mid(), cell.inner_steps);
+        let half = |x: &f64| kernel.method.half(Interval::point(x * cell.fast.mid()), cell.inner_steps);
         let halves: Vec<Half> = kernel.values.iter().map(half).collect();
-        let kicked = &kernel.slow * Mat::from_fn(m, m, |i, k| cell.slow.mid() * spectrum.vectors[(i, k)].re);
+        let phi = self.filter(cell).phi;
+        let kicked = &kernel.slow
+            * Mat::from_fn(m, m, |i, k| phi[i].mid() * cell.slow.mid() * spectrum.vectors[(i, k)].re);
         // vᵀ Aᵀ C v, A = a − b M, C = c − d M.
         let sign = |k: usize| {
             let term = |i: usize| {
-                let (v, kick) = (spectrum.vectors[(i, k)].re, kicked[(i, k)]);
+                let (v, kick) = (spectrum.vectors[(i, k)].re, phi[i].mid() * kicked[(i, k)]);
                 let [a, b, c, d] = [halves[i].a, halves[i].b, halves[i].c, halves[i].d].map(Interval::mid);
                 (a * v - b * kick) * (c * v - d * kick)
             };

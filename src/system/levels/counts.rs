@@ -103,7 +103,7 @@ impl Counts {
 impl Kernel {
     fn counts(&self, outer: &Outer, epsilon: f64) -> Option<Counts> {
         let shifted = self.shifted(outer, epsilon);
-        let slow = &self.slow * faer::Scale(outer.half_kick());
+        let slow = shifted.slow.as_ref() * faer::Scale(outer.half_kick());
         Counts::new([shifted.less, shifted.more], [slow.clone(), slow], shifted.slow_slack)
     }
 

@@ -138,7 +138,7 @@ impl Kernel {
     fn damped_period(&self, outer: &Outer, friction: f64) -> Option<(Mat<f64>, f64)> {
         let fast = self.damped_modes(outer, friction)?;
         let m = self.size();
-        let (k, [kick_size, kick_off]) = self.half_kick(outer, self.slow_error);
+        let (k, [kick_size, kick_off]) = self.half_kick(outer, self.errors_within(0.0));
         let kick_size = 1.01 * (1.0 + kick_size);
         let bk = Mat::from_fn(m, m, |i, j| fast.modes[i][1] * k[(i, j)]);
         let kbk = &k * &bk;

@@ -4,7 +4,6 @@
 use faer::Mat;
 use num_complex::Complex64;
 
-use super::half::Half;
 use super::kernel::{Kernel, Outer};
 use crate::error::Result;
 use crate::number::bisected;
@@ -42,12 +41,11 @@ const STILL: f64 = 1e-5;
 impl Kernel {
     /// max ln |λ|/H at an outer step H, from the eigenvalues μ of Bᵀ C = b (c − d M) in doubles.
     pub fn growth(&self, outer: &Outer) -> f64 {
-        let halves: Vec<Half> =
-            self.values.iter().map(|x| Half::new(outer.inner_square * x, outer.inner_steps)).collect();
-        let factor = outer.half_kick();
+        let (halves, factor) = (self.halves(outer), outer.half_kick());
+        let (slow, _) = self.filtered(outer, [0.0; 2]);
         let entry = |i: usize, j: usize| {
             let [b, c, d] = [halves[i].b, halves[i].c, halves[i].d].map(|own| own.mid());
-            b * ((if i == j { c } else { 0.0 }) - d * factor * self.slow[(i, j)])
+            b * ((if i == j { c } else { 0.0 }) - d * factor * slow[(i, j)])
         };
         let period = Mat::from_fn(self.size(), self.size(), entry);
         let rate = |mu: Complex64| exponent(mu).re;

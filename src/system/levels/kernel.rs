@@ -1,11 +1,15 @@
 //! The eigenbasis of the fast stiffness, computed once for every ratio and step.
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use faer::{Mat, Side};
 use num_traits::ToPrimitive;
 
 use super::basis::Basis;
+use super::half::Half;
+use super::interval::Interval;
+use super::method::Method;
 use super::rigid::{Hessians, halved};
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
@@ -33,6 +37,7 @@ pub struct Kernel {
     is_total_definite: OnceLock<bool>,
     /// The modes as columns in the mass-weighted coordinates given, rounded.
     pub(super) modes: Mat<f64>,
+    pub(super) method: Method,
     /// What was projected out before.
     pub removed: Option<Removed>,
 }
@@ -136,8 +141,19 @@ impl Kernel {
             slow_size,
             is_total_definite: OnceLock::new(),
             modes,
+            method: Method::default(),
             removed: hessians.removed.clone(),
         })
+    }
+
+    /// The same modes under another integrator.
+    #[must_use]
+    pub fn with_method(self, method: Method) -> Kernel {
+        Kernel { method, ..self }
+    }
+
+    pub fn method(&self) -> Method {
+        self.method
     }
 
     /// Upper bounds of the 2-norms of both stiffnesses, of sums of potentials that share a clock those of the sums of their norms: what all are
@@ -161,11 +177,40 @@ impl Kernel {
         1.01 * (outer.inner_square * shift + 2.0 * STEP_ERROR * outer.inner_square * self.fast_norm)
     }
 
-    /// Half an outer kick, and upper bounds of the norm of the true one and of its distance, the slow stiffness being within `shift`.
-    pub(super) fn half_kick(&self, outer: &Outer, shift: f64) -> (Mat<f64>, [f64; 2]) {
+    /// The fast half periods at the modes' own frequencies.
+    pub(super) fn halves(&self, outer: &Outer) -> Vec<Half> {
+        let half = |x: &f64| self.method.half(Interval::point(outer.inner_square * x), outer.inner_steps);
+        self.values.iter().map(half).collect()
+    }
+
+    /// How far h² Λ reaches below 0, the fast stiffness being within `shift`.
+    pub(super) fn below(&self, outer: &Outer, shift: f64) -> f64 {
+        self.values.first().map_or(0.0, |lowest| (-outer.scaled_down(lowest - shift)).max(0.0))
+    }
+
+    /// The slow stiffness as it kicks, filtered, and how far (2-norm) that may be off, both stiffnesses being within these shifts.
+    pub(super) fn filtered(&self, outer: &Outer, [fast, slow]: [f64; 2]) -> (Cow<'_, Mat<f64>>, f64) {
+        if !self.method.has_filter() {
+            return (Cow::Borrowed(&self.slow), slow);
+        }
+        let (m, p, size) = (self.size(), outer.inner_steps, self.norms()[1] + slow);
+        let phi = |x: &f64| self.method.filter(Interval::point(outer.inner_square * x), p);
+        let phi: Vec<Interval> = self.values.iter().map(phi).collect();
+        let [.., slope] = self.method.slopes(p, self.below(outer, fast));
+        let off = phi.iter().map(|own| own.radius()).fold(0.0, f64::max) + slope * self.moved(outer, fast);
+        let largest = phi.iter().map(|own| own.mid().abs()).fold(0.0, f64::max) + off;
+        let kicks = Mat::from_fn(m, m, |i, j| phi[i].mid() * self.slow[(i, j)] * phi[j].mid());
+        // Two roundings an entry.
+        let rounding = 3.0 * U * largest * largest * norm::frobenius(&self.slow);
+        (Cow::Owned(kicks), 1.01 * (2.0 * off * largest * size + largest * largest * slow + rounding))
+    }
+
+    /// Half an outer kick, and upper bounds of the norm of the true one and of its distance, the stiffnesses being within these shifts.
+    pub(super) fn half_kick(&self, outer: &Outer, shifts: [f64; 2]) -> (Mat<f64>, [f64; 2]) {
         let (m, factor, [_, slow_norm]) = (self.size(), outer.half_kick(), self.norms());
-        let off = shift + 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
-        let kick = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
+        let (slow, shift) = self.filtered(outer, shifts);
+        let off = shift + 2.0 * STEP_ERROR * norm::frobenius(slow.as_ref());
+        let kick = Mat::from_fn(m, m, |i, j| factor * slow[(i, j)]);
         (kick, [1.01 * factor * (slow_norm + off), 1.01 * factor * off])
     }
 

@@ -32,6 +32,7 @@
 //! | file | what |
 //! |---|---|
 //! | `half`, `interval` | the fast half period of one mode, in intervals |
+//! | `method` | that of other integrators, as exact flows with filters: the same machinery serves them all |
 //! | `rigid` | rigid motions projected out |
 //! | `basis` | eigenvalues and eigenvectors, block by block |
 //! | `kernel` | the eigenbasis, its backward error, norms |
@@ -45,6 +46,7 @@
 //! | `growth` | how fast it grows past that, and up to where: sampled |
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
+//! | `step` | one step of other methods, the same way |
 //! | `answer` | the verdict at one outer step |
 //! | `intervals` | the verdicts on a range of outer steps |
 
@@ -61,13 +63,16 @@ mod half;
 mod interval;
 mod intervals;
 mod kernel;
+mod method;
 mod paths;
 mod region;
 mod rigid;
 pub mod sparse;
+mod step;
 
 pub use cell::Cells;
 pub use growth::Growing;
 pub use kernel::{Kernel, Outer};
+pub use method::Method;
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};

@@ -1,5 +1,7 @@
 //! The first stable region: verdict, margin, and where it ends.
 
+use std::borrow::Cow;
+
 use faer::Mat;
 
 use super::half::Half;
@@ -9,10 +11,12 @@ use crate::system::half::norm;
 use crate::system::signs::inertia::is_definite;
 
 /// The halves of all modes with every stiffness shifted by as much as errors and `epsilon` allow.
-pub(super) struct Shifted {
+pub(super) struct Shifted<'a> {
     /// Fast stiffnesses decreased, increased.
     pub less: Vec<Half>,
     pub more: Vec<Half>,
+    /// The slow stiffness, filtered.
+    pub slow: Cow<'a, Mat<f64>>,
     /// ‖E₂‖ times half an outer kick, and the rounding of that product's entries.
     pub slow_slack: f64,
 }
@@ -35,21 +39,23 @@ pub(super) fn largest(width: f64, holds: impl Fn(f64) -> bool) -> Option<f64> {
 }
 
 impl Kernel {
-    pub(super) fn shifted(&self, outer: &Outer, epsilon: f64) -> Shifted {
-        let [fast, slow] = self.errors_within(epsilon);
-        let shift = fast.next_up();
-        let half = |s: f64| Half::new(s, outer.inner_steps);
-        let less = self.values.iter().map(|x| half(outer.scaled_down((x - shift).next_down()))).collect();
-        let more = self.values.iter().map(|x| half(outer.scaled_up((x + shift).next_up()))).collect();
-        let rounding = 2.0 * STEP_ERROR * norm::frobenius(&self.slow);
-        Shifted { less, more, slow_slack: 1.01 * outer.half_kick() * (slow + rounding) }
+    pub(super) fn shifted(&self, outer: &Outer, epsilon: f64) -> Shifted<'_> {
+        let shifts = self.errors_within(epsilon);
+        let shift = shifts[0].next_up();
+        let ends =
+            |x: &f64| (outer.scaled_down((x - shift).next_down()), outer.scaled_up((x + shift).next_up()));
+        let around = |x: &f64| self.method.around(ends(x), outer.inner_steps);
+        let (less, more) = self.values.iter().map(around).map(|[less, more]: [Half; 2]| (less, more)).unzip();
+        let (slow, off) = self.filtered(outer, shifts);
+        let rounding = 2.0 * STEP_ERROR * norm::frobenius(slow.as_ref());
+        Shifted { less, more, slow, slow_slack: 1.01 * outer.half_kick() * (off + rounding) }
     }
 
-    /// diag(d) + sign (p/2) h² S'.
-    pub(super) fn with_slow(&self, outer: &Outer, sign: f64, diagonal: &[f64]) -> Mat<f64> {
+    /// diag(d) + sign (p/2) h² S', S' as it is given.
+    pub(super) fn with_slow(&self, outer: &Outer, slow: &Mat<f64>, sign: f64, diagonal: &[f64]) -> Mat<f64> {
         let factor = sign * outer.half_kick();
         let m = self.size();
-        let mut form = Mat::from_fn(m, m, |i, j| factor * self.slow[(i, j)]);
+        let mut form = Mat::from_fn(m, m, |i, j| factor * slow[(i, j)]);
         diagonal.iter().enumerate().for_each(|(i, x)| form[(i, i)] += x);
         form
     }
@@ -62,8 +68,10 @@ impl Kernel {
         }
         let stretch: Vec<f64> = shifted.more.iter().map(|half| half.stretch().lo).collect();
         let restoring: Vec<f64> = shifted.less.iter().map(|half| half.restoring().lo).collect();
-        is_definite(self.with_slow(outer, -1.0, &stretch), shifted.slow_slack)
-            && is_definite(self.with_slow(outer, 1.0, &restoring), shifted.slow_slack)
+        let is_definite = |sign: f64, diagonal: &[f64]| {
+            is_definite(self.with_slow(outer, &shifted.slow, sign, diagonal), shifted.slow_slack)
+        };
+        is_definite(-1.0, &stretch) && is_definite(1.0, &restoring)
     }
 
     /// The largest ε, within a percent (in the first stable region) or a tenth, for which [`Kernel::is_stable`] holds; `None` where
@@ -76,16 +84,26 @@ impl Kernel {
     }
 
     /// The first unstable outer step of p inner ones, [lo, hi]: every step in (0, lo] is proven stable, hi is proven unstable.
-    /// `None` where F + S is not proven definite, so that the region does not begin at 0.
+    /// `None` where F + S is not proven definite, so that the region does not begin at 0, and where no step is unstable as far as the region is
+    /// known to be one interval ([`Method::first_region_ends`](super::method::Method)).
     pub fn first_unstable(&self, inner_steps: u64) -> Option<(f64, f64)> {
         let outer = |step: f64| Outer::new(step, inner_steps).ok();
         if !self.is_total_definite() || self.highest_frequency() == 0.0 {
             return None;
         }
-        let stable = |step: f64| outer(step).is_some_and(|outer| self.is_in_first_region(&outer, 0.0));
-        // At the latest where the fastest mode alone has p θ = π.
-        let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
-        let mut hi = 1.000_001 * inner_steps as f64 * 2.0 * angle.sin() / self.highest_frequency();
+        let is_below = |outer: &Outer| {
+            let end = self.method.first_region_ends();
+            let inner =
+                end.is_infinite() || self.below(outer, self.fast_error) * (inner_steps as f64).powi(2) < 1.0;
+            inner && outer.step * self.highest_frequency() < end
+        };
+        let stable = |step: f64| {
+            outer(step).is_some_and(|outer| is_below(&outer) && self.is_in_first_region(&outer, 0.0))
+        };
+        let mut hi = match self.method.highest_angle(inner_steps) {
+            Some(angle) => angle / self.highest_frequency(),
+            None => 2.000_002 / self.highest_slow_frequency(),
+        };
         let mut lo = (1..=40).map(|k| hi * 0.5f64.powi(k)).find(|&step| stable(step))?;
         hi = hi.min(2.0 * lo);
         (lo, hi) = bisected((lo, hi), 1e-8, |step| Some(stable(step)));

@@ -6,6 +6,7 @@ use super::Model;
 use crate::error::Result;
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
+use crate::system::levels::Method;
 use crate::system::spectrum::rate::middle;
 use crate::system::vary::edges::{Family, Linear};
 use crate::system::vary::nearest::Nearest;
@@ -152,6 +153,11 @@ impl Model {
     /// The longest step.
     fn outer_step(&self) -> Rational {
         self.steps().into_iter().max().unwrap_or_default()
+    }
+
+    /// The integrator: kicks and drifts, unless two measured levels have another.
+    pub fn method(&self) -> Method {
+        self.levels().map_or(Method::Respa, |own| own.method())
     }
 
     /// The inner steps in an outer one of two measured levels.

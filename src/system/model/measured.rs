@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Friction;
-use crate::system::levels::{Cells, Hessians, Kernel, Outer, rigid_motions, translations};
+use crate::system::levels::{Cells, Hessians, Kernel, Method, Outer, rigid_motions, translations};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::vary::stretches::{Stretch, cover};
@@ -44,6 +44,7 @@ pub struct MeasuredSystem {
     body: Body,
     accuracy: f64,
     keeps_rigid: bool,
+    method: Method,
     system: OnceLock<System>,
     kernel: Arc<OnceLock<Kernel>>,
 }
@@ -83,7 +84,8 @@ impl MeasuredSystem {
         let clock = |(step, _): &(Rational, _)| Potential::new(Symmetric::zero(1), step.clone());
         System::new(Symmetric::diagonal(&[Rational::one()]), potentials.iter().map(clock).collect())?;
         let (system, kernel) = (OnceLock::new(), Arc::default());
-        let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid: false, system, kernel };
+        let (keeps_rigid, method) = (false, Method::default());
+        let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid, method, system, kernel };
         read.at_accuracy(accuracy)
     }
 
@@ -104,10 +106,38 @@ impl MeasuredSystem {
         self
     }
 
-    /// Takes over the accuracy of another of the same body, whether it keeps rigid motions, and its eigenbasis where the stiffnesses are the
+    /// The same under another integrator of two levels.
+    ///
+    /// # Errors
+    /// Where there are not two levels.
+    pub fn with_method(mut self, method: Method) -> Result<MeasuredSystem> {
+        (self.method, self.kernel) = (method, Arc::default());
+        match (method, self.potentials.len(), self.is_of_two_levels()) {
+            (Method::Respa, ..) | (_, 2, true) => Ok(self),
+            _ => Err(Error::input(
+                "method",
+                method,
+                "is for two levels: give two potentials with different steps, the shorter one's force is the fast one",
+            )),
+        }
+    }
+
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// That kicks and drifts integrate it.
+    pub fn refuse_method(&self, what: &str) -> Result<()> {
+        match self.method {
+            Method::Respa => Ok(()),
+            own => Err(Error::input("method", own, format!("{what} is for respa: leave it out"))),
+        }
+    }
+
+    /// Takes over the accuracy and the method of another of the same body, whether it keeps rigid motions, and its eigenbasis where the stiffnesses are the
     /// same.
     pub fn follow(&mut self, other: &MeasuredSystem) {
-        (self.accuracy, self.keeps_rigid) = (other.accuracy, other.keeps_rigid);
+        (self.accuracy, self.keeps_rigid, self.method) = (other.accuracy, other.keeps_rigid, other.method);
         if self.potentials.iter().map(|(_, k)| k).eq(other.potentials.iter().map(|(_, k)| k)) {
             self.kernel = Arc::clone(&other.kernel);
         }
@@ -135,6 +165,9 @@ impl MeasuredSystem {
     fn outer(&self) -> Option<(Outer, Rational)> {
         match self.potentials.as_slice() {
             [(step, _)] => Some((Outer::of_steps(step, step)?, step.clone())),
+            [_, (outer, _)] if !self.method.has_inner_steps() => {
+                Some((Outer::new(to_f64(outer), 1).ok()?, outer.clone()))
+            }
             [(inner, _), (outer, _)] => Some((Outer::of_steps(inner, outer)?, outer.clone())),
             _ => None,
         }
@@ -152,6 +185,7 @@ impl MeasuredSystem {
     /// The verdict: two levels by their kernel, anything else as a rational system of the doubles given.
     pub(super) fn decide(&self, route: Route, limits: &Limits) -> Result<Analysis> {
         let Some((outer, period)) = self.outer().filter(|_| route == Route::Cheapest) else {
+            self.refuse_method("exact arithmetic")?;
             return self.decide_projected(route, limits);
         };
         self.allow(limits)?;
@@ -166,7 +200,8 @@ impl MeasuredSystem {
         self.allow(limits)?;
         match self.kernel.get() {
             Some(kernel) => Ok(kernel.verdict_within(&outer, 0.0)),
-            None => self.hessians()?.verdict(&outer),
+            None if self.method == Method::Respa => self.hessians()?.verdict(&outer),
+            None => Ok(self.kernel()?.verdict_within(&outer, 0.0)),
         }
     }
 
@@ -179,6 +214,7 @@ impl MeasuredSystem {
 
     /// What friction of this rate per unit time does.
     pub(super) fn friction(&self, rate: &Rational, limits: &Limits) -> Result<Friction> {
+        self.refuse_method("friction")?;
         let Some((outer, _)) = self.outer() else { return self.friction_projected(rate, limits) };
         // Some 20 eigenvalue problems of 2n rows, each 25 (2n)³.
         let cost = (self.size() as u64).saturating_pow(3).saturating_mul(4_000);
@@ -233,7 +269,7 @@ impl MeasuredSystem {
         let Some((outer, _)) = self.outer() else { return Ok(None) };
         let (hessians, inner_steps) = (self.hessians()?, outer.inner_steps());
         limits.allow(hessians.cost_of_period(inner_steps), || "the full period, kick by kick,".into())?;
-        Ok(Some(hessians.growth_of_period(outer.step(), inner_steps)))
+        Ok(Some(hessians.growth_of_step(self.method, outer.step(), inner_steps)))
     }
 
     /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
@@ -244,6 +280,7 @@ impl MeasuredSystem {
 
     /// The inner and the outer step.
     pub(super) fn two_steps(&self) -> Result<[Rational; 2]> {
+        self.refuse_method("advice")?;
         let [(inner, _), (outer, _)] = self.potentials.as_slice() else { return Err(self.not_two()) };
         self.outer().ok_or_else(|| self.not_two())?;
         Ok([inner.clone(), outer.clone()])
@@ -258,7 +295,7 @@ impl MeasuredSystem {
         if let Some(kernel) = self.kernel.get() {
             return Ok(kernel);
         }
-        let kernel = Kernel::new(&self.hessians()?)?;
+        let kernel = Kernel::new(&self.hessians()?)?.with_method(self.method);
         Ok(self.kernel.get_or_init(|| kernel))
     }
 

@@ -39,6 +39,7 @@ impl MeasuredSystem {
 
     /// These doubles as a rational system, rigid motions and held distances projected out where there are any.
     pub(super) fn moving(&self) -> Result<Cow<'_, System>> {
+        self.refuse_method("a rational system")?;
         match self.hessians()?.basis() {
             Some(basis) => Ok(Cow::Owned(self.projected(basis))),
             None => self.refuse_constraints().map(|()| Cow::Borrowed(self.system())),

@@ -4,8 +4,8 @@ use num_traits::One;
 
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
-use crate::system::levels::Outer;
 use crate::system::levels::sparse::SparseLevels;
+use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::verdict::analysis::{Analysis, Evidence, Part};
@@ -100,6 +100,7 @@ impl SparseSystem {
             Default::default(),
         );
         let measured = Some(Measured {
+            method: Method::default().name(),
             accuracy: self.accuracy,
             holds: levels.verdict(outer, self.accuracy),
             margin: if verdict == Holds::Stable { levels.margin(outer) } else { None },

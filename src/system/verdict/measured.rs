@@ -67,6 +67,8 @@ impl Holds {
 /// How far a verdict on measured stiffnesses stands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
+    /// The integrator: "respa", kicks and drifts, or the name of another.
+    pub method: &'static str,
     /// The stated accuracy: every stiffness is known to this times its norm (2-norm, mass-weighted).
     pub accuracy: f64,
     /// The verdict on all matrices within it.
