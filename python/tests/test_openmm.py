@@ -419,7 +419,7 @@ def test_atoms_are_called_as_their_topology_calls_them() -> None:
             topology.addAtom(name, app.Element.getBySymbol(name[0]), residue)
     steps = {0: "0.5fs", 1: "4fs"}
     named = ko.system(system, where, topology=topology, steps=steps)
-    assert named.document["labels"][:4] == ["O HOH1", "H1 HOH1", "H2 HOH1", "O HOH2"]
+    assert named.document["labels"][:4] == ["O HOH 1", "H1 HOH 1", "H2 HOH 1", "O HOH 2"]
     plain = ko.system(system, where, steps=steps)
     assert plain.document["labels"][:4] == ["O 0", "H 1", "H 2", "O 3"]
     topology.addResidue("HOH", group)
@@ -446,7 +446,8 @@ def test_forces_that_do_not_vanish_at_the_minimum_are_told_first() -> None:
     for told in (found.decide().warnings[0], found.advise().warnings[0]):
         assert "do not vanish" in told and "oscillations(...)" in told and "group 0" in told
     assert str(found.decide()).startswith("warning: the forces of") and "warnings: " in repr(found.decide())
-    assert str(found.advise()).startswith("warning: the forces of")
+    # Behind the three sentences of the answer, before everything else.
+    assert str(found.advise()).splitlines()[3].startswith("warning: the forces of")
     alone = ko.system(system, positions, steps={0: "0.5fs", 1: "0.5fs"})
     assert not any("do not vanish" in note for note in alone.notes)
     moved = ko.system(system, positions * 1.02, steps={0: "0.5fs", 1: "4fs"}, minimize=False)
@@ -504,3 +505,49 @@ def test_numbers_of_ps_that_no_molecule_bears_ask_for_a_unit() -> None:
     with pytest.raises(kd.KickdriftError, match="not finite") as caught:
         ko.system(system, np.where(positions == positions.max(), np.nan, positions), steps={0: "1fs", 1: "1fs"})
     assert caught.value.field == "positions"
+
+
+def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> None:
+    system, where = waters()
+    steps = {0: "0.5fs", 1: "4fs"}
+    unnamed = kd.advise(system, positions=where, steps=steps, levers=False)
+    assert [row["name"] for row in unnamed.groups[:2]] == ["O-H stretch of H2O", "H-O-H bend of H2O"]
+    assert [row["count"] for row in unnamed.groups[:2]] == [8, 4]
+    topology = app.Topology()
+    chain = topology.addChain()
+    for n in range(4):
+        residue = topology.addResidue("HOH", chain, str(n + 1))
+        own = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(own[0], own[1]), topology.addBond(own[0], own[2])
+    integrator = mm.MTSIntegrator(4 * unit.femtoseconds, [(1, 1), (0, 8)])
+    simulation = app.Simulation(topology, system, integrator, REFERENCE)
+    simulation.context.setPositions(where)
+    advice = kd.advise(simulation)
+    safe, limit, longer, warning = str(advice).splitlines()[:4]
+    assert safe.startswith("advice: outer step 2.5 fs") and limit.startswith("limit: O-H stretch of HOH (8 modes, ")
+    # The forces come along, so held bonds are among what lets the step grow; and what limits the answer comes next.
+    assert longer.startswith("longer: ") and "h-bonds held" in {row["lever"] for row in advice.levers}
+    assert warning.startswith("warning: the forces of group 0 and of group 1 do not vanish")
+    held = kd.advise(simulation, constraints="h-bonds", hmr="3.024", friction="1/ps", levers=False)
+    assert held.groups[0]["name"] == "H-O-H bend of HOH" and held.groups[0]["shortest"] > 20
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(system, steps=steps)
+    assert caught.value.field == "positions"
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"], positions=where)
+    assert caught.value.field == "positions"
+
+
+def test_held_bonds_keep_the_names_of_their_atoms() -> None:
+    """Held distances are handed over as they are: what is held here is what the program holds by its own."""
+    system, where = waters()
+    bonds = [(3 * n, 3 * n + k) for n in range(4) for k in (1, 2)]
+    held = mm.XmlSerializer.clone(system)
+    for i, j in bonds:
+        held.addConstraint(i, j, float(np.linalg.norm(where[i] - where[j])))
+    steps = {0: "0.5fs", 1: "4fs"}
+    here = ko.system(held, where, steps=steps, minimize=False).advise(levers=False)
+    there = kd.advise(system, positions=where, steps=steps, constraints="h-bonds", levers=False)
+    assert [row["name"] for row in here.groups] == [row["name"] for row in there.groups]
+    periods = [[row["shortest"] for row in own.groups] for own in (here, there)]
+    assert periods[0] == pytest.approx(periods[1], rel=1e-6)

@@ -38,3 +38,9 @@ pub const PUBLISHED: [Caution; 4] = [
         source: "GROMACS, grompp.cpp, check_bonds_timestep",
     },
 ];
+
+/// Shortest periods of slow forces alone, in fs: of what, and which Hessians they are measured by (all but bonds and angles, at a minimum).
+pub const SLOW: [(&str, &str, &str); 2] = [
+    ("39.5", "of water", "data/scenes/flexible-water.json: 16 flexible waters, amber14 tip3pfb"),
+    ("71.6", "of a peptide in vacuum", "data/scenes/alanine-dipeptide.json: amber ff96"),
+];
