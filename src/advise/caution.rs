@@ -39,8 +39,12 @@ pub const PUBLISHED: [Caution; 4] = [
     },
 ];
 
-/// Shortest periods of slow forces alone, in fs: of what, and which Hessians they are measured by (all but bonds and angles, at a minimum).
+/// Shortest periods of nonbonded forces alone, in fs: of what, and by which Hessians, at a minimum. Torsions on the slow clock make it shorter.
 pub const SLOW: [(&str, &str, &str); 2] = [
-    ("39.5", "of water", "data/scenes/flexible-water.json: 16 flexible waters, amber14 tip3pfb"),
-    ("71.6", "of a peptide in vacuum", "data/scenes/alanine-dipeptide.json: amber ff96"),
+    (
+        "39.5",
+        "of nonbonded forces in water",
+        "data/scenes/flexible-water.json: 16 flexible waters, amber14 tip3pfb",
+    ),
+    ("71.6", "of nonbonded forces in a peptide in vacuum", "data/scenes/alanine-dipeptide.json: amber ff96"),
 ];
