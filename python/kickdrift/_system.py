@@ -62,6 +62,7 @@ class System(Frozen):
     notes: Sequence[str] = ()
     _path: Path | None = None
     _source: str = ""
+    _orbit: str = ""
 
     def __post_init__(self) -> None:
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
@@ -358,9 +359,10 @@ class System(Frozen):
             levers=levers,
         )
         warnings = self.decide().warnings
-        # Three sentences first: what is safe, what limits it, what would let it grow.
+        # What a run does at these steps, where that is known to be about another state; then three sentences: what is
+        # safe, what limits it, what would let it grow.
         lines = found.render("text").splitlines(keepends=True)
-        text = "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
+        text = self._orbit + "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
         return SystemAdvice(found.render("json"), text, warnings)
 
     def __repr__(self) -> str:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -222,7 +222,29 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
         raise KickdriftError("periods", type(own).__name__, "of OpenMM give a Simulation, or a System with positions=")
     if "positions" not in arguments:
         raise KickdriftError("positions", None, "give the positions of the particles, nm")
-    return system(own, arguments.pop("positions"), **arguments), steps
+    found = system(own, arguments.pop("positions"), **arguments)
+    positions = found.arrays.get("positions")
+    is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
+    if not is_whole or own.getNumConstraints() or not any("swings about an orbit" in note for note in found.notes):
+        return found, steps
+    scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
+    return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
+
+
+#: Orbits of so many degrees of freedom are followed unasked: some seconds.
+_FOLLOWED = 300
+
+
+def _about_orbit(own: Any, positions: Doubles, scheme: Mapping[str, Any]) -> str:
+    """What small deviations do about the integrator's own orbit: what a run shows first."""
+    outer = float(max(_clocks(own, scheme.get("integrator"), scheme.get("steps")).values())) * 1000
+    begin = f"own orbit: at {outer:g} fs a run swings about an orbit beside the minimum"
+    try:
+        found = oscillations(own, positions, **scheme, minimize=False)
+    except KickdriftError as error:
+        return f"{begin} that is not found: {error}\n"
+    does = "nothing grows" if found.stable else f"deviations grow at {found.growth_rate:.3g}/ps"
+    return f"{begin}, {found.away:.2g} nm away at most; about it {does} (an estimate in doubles)\n"
 
 
 def _symbol(mass: float) -> str:

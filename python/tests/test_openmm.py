@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib.util
+import json
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -525,7 +527,14 @@ def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> No
     simulation = app.Simulation(topology, system, integrator, REFERENCE)
     simulation.context.setPositions(where)
     advice = kd.advise(simulation)
-    safe, limit, longer, warning = str(advice).splitlines()[:4]
+    # What a run shows stands first: it is not about the minimum.
+    orbit, safe, limit, longer, warning = str(advice).splitlines()[:5]
+    assert orbit.startswith("own orbit: at 4 fs ") and "about it nothing grows" in orbit
+    grown = kd.advise(system, positions=where, steps={0: "23/50fs", 1: "4.6fs"}, levers=False)
+    found = ko.oscillations(system, where, steps={0: "23/50fs", 1: "4.6fs"})
+    assert f"deviations grow at {found.growth_rate:.3g}/ps" in str(grown).splitlines()[0]
+    ended = kd.advise(system, positions=where, steps={0: "1/2fs", 1: "10fs"}, levers=False)
+    assert "it ends there" in str(ended).splitlines()[0]
     assert safe.startswith("advice: outer step 2.5 fs") and limit.startswith("limit: O-H stretch of HOH (8 modes, ")
     # The forces come along, so held bonds are among what lets the step grow; and what limits the answer comes next.
     assert longer.startswith("longer: ") and "h-bonds held" in {row["lever"] for row in advice.levers}
@@ -593,3 +602,24 @@ def test_rigid_motions_are_within_their_doubts_and_nothing_else_is(outer: str) -
     assert found.stable and np.log(np.abs(found.multipliers)).max() > 0 and (apart < found.doubts).all()
     # The doubts are small: what grows by a hundredth of 1/ps would be seen even where multipliers meet at -1.
     assert np.sqrt(4 * found.doubts.max()) / float(found.period) < 0.01
+
+
+def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
+    """The dipeptide's predictions again, and one of its runs: it blows up where grids on both sides do not."""
+    folder = Path(__file__).resolve().parents[2] / "data" / "published"
+    spec = importlib.util.spec_from_file_location("runs", folder / "runs.py")
+    assert spec is not None and spec.loader is not None
+    runs = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(runs)
+    stored = json.loads((folder / "runs.json").read_text())["systems"][1]["rows"]
+    system, topology, positions = runs.dipeptide()
+    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    for row in stored:
+        steps, inner = runs.steps_of(Fraction(row["outer"]))
+        verdict = ko.system(system, at, topology=topology, steps=steps, minimize=False).decide()
+        assert (inner, verdict.stable) == (row["inner_steps"], row["minimum"]["stable"])
+        # Differences leave some 1e-6 of the stiffness, of which a thin interval makes a part in a thousand.
+        assert verdict.growth_rate == pytest.approx(row["minimum"]["rate"], rel=1e-2)
+    blown, _ = runs.run(system, at, Fraction("5.03"), 11)
+    # From 1 K at 0.555/ps: a hundredfold to a thousandfold amplitude, by where the noise begins.
+    assert blown is not None and 5 < blown < 20
