@@ -637,3 +637,26 @@ fn a_friction_masks_up_to_a_step() {
     };
     assert!((2..=9).all(|p| damped(p) == Some(true)) && damped(10) == Some(false));
 }
+
+/// The periods that are told where nobody knows one, held against the Hessians that they are named after.
+#[cfg(feature = "npz")]
+#[test]
+fn slow_periods_that_are_told_are_those_of_the_hessians_they_are_named_after() {
+    use kickdrift::advise::SLOW;
+    use kickdrift::scene::SystemScene;
+    for (period, _, source) in SLOW {
+        let file = source.split(':').next().unwrap();
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let scene = SystemScene::read_in(path.parent().unwrap(), &text).unwrap();
+        let (molecule, scheme) = scene.molecule().unwrap();
+        let found = molecule.advise(&[scheme], &ratio(1, 20), None, None).unwrap();
+        // Told to three digits.
+        assert_eq!(format!("{:.1}", found.slow), period);
+        assert!(found.groups[0].name.as_ref().unwrap().ends_with(if file.contains("water") {
+            "of HOH"
+        } else {
+            "of ALA, NME"
+        }));
+    }
+}

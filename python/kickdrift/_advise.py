@@ -13,15 +13,13 @@ from typing import TYPE_CHECKING, Any, Protocol, TypeAlias, overload, runtime_ch
 
 from kickdrift import _plot
 from kickdrift._document import Asked, Document, Row, fields, frame
-from kickdrift._errors import KickdriftError
+from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, items, text, written
 
 if TYPE_CHECKING:
     import pandas
     from matplotlib.axes import Axes
-
-    from kickdrift._system import System
 
 Time: TypeAlias = Exact
 """A length of time: a text with its unit as ``"0.5fs"`` or ``"0.01ps"``, or an exact number of fs."""
@@ -41,6 +39,9 @@ class Advisable(Protocol):
         engine: Engine | None,
         band: Exact,
         length: Time | None,
+        friction: Exact | None,
+        constraints: str | None,
+        hmr: Exact | None,
         levers: bool,
     ) -> SystemAdvice: ...
 
@@ -200,6 +201,8 @@ def advise(
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    friction: Exact | None = None,
+    constraints: str | None = None,
     hmr: Exact | None = None,
     levers: bool = True,
 ) -> Advice: ...
@@ -207,37 +210,46 @@ def advise(
 
 @overload
 def advise(
-    periods: System,
+    periods: Any,
     *,
-    steps: str | Sequence[Any] = (),
+    steps: str | Sequence[Any] | Mapping[int, Any] = (),
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    friction: Exact | None = None,
+    constraints: str | None = None,
+    hmr: Exact | None = None,
     levers: bool = True,
+    **made: Any,
 ) -> SystemAdvice: ...
 
 
 def advise(
-    periods: System | Mapping[str, Time] | Sequence[Time] = (),
+    periods: Any = (),
     *,
-    steps: str | Sequence[Any] = (),
+    steps: str | Sequence[Any] | Mapping[int, Any] = (),
     bonds: Mapping[str, str] | None = None,
     on: Mapping[str, int] | None = None,
     engine: Engine | None = None,
     band: Exact = "5%",
     length: Time | None = None,
+    friction: Exact | None = None,
+    constraints: str | None = None,
     hmr: Exact | None = None,
     levers: bool = True,
+    **made: Any,
 ) -> Advice | SystemAdvice:
     """Say which steps are safe for these periods, for how long, and why.
 
     Parameters
     ----------
-    periods : System, mapping of str to Time, or a sequence of Time
-        A system of measured Hessians, which is asked for :meth:`System.advise`; or the periods of the forces, fs, or
-        wavenumbers as ``"3700/cm"``; the last ones are on the slower clocks.
+    periods : what vibrates
+        A mapping of str to Time, or a sequence of Time: the periods of the forces, fs, or wavenumbers as ``"3700/cm"``;
+        the last ones are on the slower clocks. Or a molecule: a :class:`System`, the path of a system file, OpenMM's
+        ``Simulation`` or ``System``, ASE's ``Atoms``, which is asked for :meth:`System.advise`.
     steps : sequence of Time, or a sequence of such
-        A scheme, from the innermost to the outermost step, fs; or several schemes.
+        A scheme, from the innermost to the outermost step, fs; or several schemes. Of OpenMM's ``System`` also a
+        mapping of force groups to steps.
     bonds : mapping of str to str, optional
         ``"k=1106kcal/mol/A^2,15.999,1.008"``: the force constant (k of E = k x²/2, K of E = K x²), two masses in amu,
         and behind them the heavy atom's hydrogens if not 1.
@@ -249,10 +261,17 @@ def advise(
         How far every period may be off, relatively.
     length : Time, optional
         The length of the run, as ``"10ns"``.
+    friction : Exact, optional
+        A thermostat's, as ``"1/ps"``: whether it masks what grows.
+    constraints : str, optional
+        What is held: ``"h-bonds"``, of bonds also ``"all-bonds"`` or their names.
     hmr : Exact, optional
         Hydrogens of this mass in amu, taken from their heavy atoms.
     levers : bool
         Whether to say what would let the step grow.
+    **made
+        What else makes the system of OpenMM's or ASE's: the keywords of :func:`kickdrift.openmm.system` (``positions``,
+        ``topology``, ``integrator`` and so on) or :func:`kickdrift.ase.system` (``groups``).
 
     Raises
     ------
@@ -269,11 +288,23 @@ def advise(
     >>> kd.advise(["10fs", "40fs"], engine=gromacs).engine["rewritten"]
     ['mts-level2-factor = 6', 'nstlog = 1020', 'nstenergy = 1020', 'nstcalcenergy = 102']
     """
-    if isinstance(periods, Advisable):
-        for field, value in {"bonds": bonds, "on": on, "hmr": hmr}.items():
+    found, rest = molecule(periods, steps, made)
+    if found is not None:
+        for field, value in {"bonds": bonds, "on": on}.items():
             if value is not None:
-                raise KickdriftError(field, str(value), "is for periods: a system has its modes and masses of its own")
-        return periods.advise(steps, engine=engine, band=band, length=length, levers=levers)
+                raise KickdriftError(field, str(value), "is for periods: a system has its modes of its own")
+        return found.advise(
+            rest,
+            engine=engine,
+            band=band,
+            length=length,
+            friction=friction,
+            constraints=constraints,
+            hmr=hmr,
+            levers=levers,
+        )
+    if made:
+        raise KickdriftError(next(iter(made)), shown(next(iter(made.values()))), "is for a system of OpenMM or ASE")
     given_alone = [periods] if isinstance(periods, str) else periods
     alone = items("periods", given_alone, "give a list of periods in fs, or texts as '10fs'; or periods by name")
     named = periods.items() if isinstance(periods, Mapping) else ((None, value) for value in alone)
@@ -283,21 +314,50 @@ def advise(
         given["period"].append(own if name is None else f"{_name('periods', name)}={own}")
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
-    found = asked(given, steps, engine, band, length, hmr, levers=levers)
-    return Advice(found.render("json"), found.render("text"), found)
+    scales = (band, length, friction, constraints, hmr)
+    every = asked(given, rest, engine, scales, levers=levers)
+    return Advice(every.render("json"), every.render("text"), every)
+
+
+def molecule(
+    given: Any, steps: str | Sequence[Any] | Mapping[int, Any], made: Mapping[str, Any]
+) -> tuple[Advisable | None, str | Sequence[Any]]:
+    """The system that this is or makes, None where it is periods; and the schemes asked about beside its own."""
+    if isinstance(given, Advisable):
+        return given, _no_groups(steps)
+    if isinstance(given, str | PathLike) and fspath(given).endswith((".json", ".npz")):
+        from kickdrift._system import System
+
+        return System.read(given), _no_groups(steps)
+    home = type(given).__module__.partition(".")[0]
+    if home == "ase":
+        from kickdrift import ase
+
+        return ase.system(given, **made), _no_groups(steps)
+    if home == "openmm":
+        from kickdrift import openmm
+
+        return openmm.given(given, steps, made)
+    return None, _no_groups(steps)
+
+
+def _no_groups(steps: str | Sequence[Any] | Mapping[int, Any]) -> str | Sequence[Any]:
+    if isinstance(steps, Mapping):
+        raise KickdriftError("steps", shown(steps), "steps by force group are OpenMM's: list them, the inner one first")
+    return steps
 
 
 def asked(
     given: Mapping[str, str | list[str]],
     steps: str | Sequence[Any],
     engine: Engine | None,
-    band: Exact,
-    length: Time | None,
-    hmr: Exact | None = None,
+    scales: tuple[Exact, Time | None, Exact | None, str | None, Exact | None],
     place: str | Mapping[str, Any] = "",
     levers: bool = True,
 ) -> Asked:
-    """The question about what is given, and what all advice is asked with."""
+    """The question about what is given, and what all advice is asked with: the band, the length of the run, friction,
+    constraints, the mass of hydrogens."""
+    band, length, friction, constraints, hmr = scales
     engines = [engine] if isinstance(engine, str | PathLike) else list(engine or ())
     texts = [_text(own) for own in engines]
     rest = {
@@ -305,6 +365,8 @@ def asked(
         "engine": texts,
         "band": band if isinstance(band, str) else text("band", band),
         "length": _time("length", length),
+        "friction": friction if friction is None or isinstance(friction, str) else f"{text('friction', friction)}/ps",
+        "constraints": constraints,
         "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
         "no_levers": None if levers else "true",
     }

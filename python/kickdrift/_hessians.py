@@ -74,6 +74,20 @@ def hessian(
         is a small part, plus the antisymmetric part. Of a force that is no gradient the whole, whose asymmetry is no
         error.
     """
+    matrix, correction, asymmetry = _measured(force, positions, masses, difference, columns, progress, symmetric)
+    return matrix, correction + asymmetry
+
+
+def _measured(
+    force: Force,
+    positions: Doubles,
+    masses: Doubles,
+    difference: float,
+    columns: Sequence[int] | None = None,
+    progress: Progress | None = None,
+    symmetric: bool = True,
+) -> tuple[Doubles, float, float]:
+    """The Hessian, the correction from second to fourth order, and the antisymmetric part, as 2-norms."""
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
@@ -84,9 +98,9 @@ def hessian(
             progress(place + 1, len(kept))
     second, fourth = (-matrix / np.outer(root, root) for matrix in (second, fourth))
     if not symmetric:
-        return fourth, norm(fourth - second)
+        return fourth, norm(fourth - second), 0.0
     mean = (fourth + fourth.T) / 2
-    return mean, norm(fourth - second) + norm(fourth - mean)
+    return mean, norm(fourth - second), norm(fourth - mean)
 
 
 def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:
@@ -266,6 +280,11 @@ class Monodromy(Frozen):
         The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n.
     residual : float
         The step that Newton's method would take next, relative to the extent of the atoms; 0 about a minimum.
+    mu : array, shape (n',)
+        Of the half period: lambda + 1/lambda = 2 + 4 mu for the multipliers lambda of the period.
+    doubts : array, shape (n',)
+        How far each mu may be off, to first order in the errors of the Hessians: what the differences leave, and what
+        the residual moves.
     """
 
     about: str
@@ -274,6 +293,8 @@ class Monodromy(Frozen):
     period: Fraction
     half: Doubles
     residual: float
+    mu: npt.NDArray[np.complex128]
+    doubts: Doubles
 
     @cached_property
     def matrix(self) -> Doubles:
@@ -287,17 +308,15 @@ class Monodromy(Frozen):
     @cached_property
     def multipliers(self) -> npt.NDArray[np.complex128]:
         """The eigenvalues of the period, shape (2n',), from those of half of it: lambda + 1/lambda = 2 + 4 mu."""
-        n = len(self.half) // 2
-        mu = np.linalg.eigvals(self.half[:n, n:].T @ self.half[n:, :n]).astype(np.complex128)
-        trace = 2 + 4 * mu
-        root = np.sqrt(mu * (mu + 1)) * 4
-        return frozen(np.concatenate([(trace + root) / 2, (trace - root) / 2]))
+        return frozen(_multipliers(self.mu))
 
     @property
     def growth_rate(self) -> float:
-        """The largest growth rate, 1/time; what rounding and differences make of rigid motions counts as none."""
-        rate = float(np.log(np.abs(self.multipliers).max())) / float(self.period)
-        return rate if rate * float(self.period) > ROUGH else 0.0
+        """The largest growth rate, 1/time, of multipliers that are off the unit circle by more than their doubt: the
+        numbers mu of bounded ones lie between -1 and 0."""
+        apart = np.abs(self.mu - np.clip(self.mu.real, -1.0, 0.0))
+        grown = np.abs(_multipliers(self.mu[apart > self.doubts]))
+        return float(np.log(grown.max())) / float(self.period) if grown.size else 0.0
 
     @property
     def stable(self) -> bool:
@@ -313,9 +332,51 @@ class Monodromy(Frozen):
         return f"Monodromy(about the {self.about}: {words}, an estimate)"
 
 
-#: Multipliers of rigid motions are 1, twofold and not diagonalizable: an error e of the Hessians moves them by about
-#: its root, and these errors are 1e-12 or so.
-ROUGH = 1e-5
+def _multipliers(mu: npt.NDArray[np.complex128]) -> npt.NDArray[np.complex128]:
+    trace, root = 2 + 4 * mu, np.sqrt(mu * (mu + 1)) * 4
+    return np.concatenate([(trace + root) / 2, (trace - root) / 2])
+
+
+@dataclass(frozen=True)
+class Struck:
+    """A kick that was made: how long its group acted, the rows of the propagator that say where the atoms were, the
+    error of its Hessian, which the differences leave, and its norm."""
+
+    duration: float
+    rows: Doubles
+    error: float
+    size: float
+
+
+def _eigenvalues(
+    half: Doubles, struck: Sequence[Struck], residual: float
+) -> tuple[npt.NDArray[np.complex128], Doubles]:
+    """The eigenvalues mu of B^T C, and how far each is off, to first order, where each kick's Hessian is by its error.
+
+    A kick changed by dK changes the half period by S (0, -h dK X), X the rows at the kick and S what comes after it,
+    which a symplectic matrix's own entries tell: from velocities S = half (-B_k^T, A_k^T). Of mu with the eigenvectors
+    y and x the change is y* (dB^T C + B^T dC) x over y* x.
+    """
+    n = len(half) // 2
+    b, c = half[:n, n:], half[n:, :n]
+    values, right = np.linalg.eig(b.T @ c)
+    # Rows of the inverse are left eigenvectors with y* x = 1.
+    left = np.linalg.inv(right)
+    cx, by = c @ right, b @ left.T
+    doubts = np.zeros(len(values))
+    for kick in struck:
+        before, speeds = kick.rows[:, :n], kick.rows[:, n:]
+        after = half[:, n:] @ before.T - half[:, :n] @ speeds.T
+        off = kick.duration * (kick.error + residual * kick.size)
+        along = np.linalg.norm(speeds @ left.T, axis=0) * np.linalg.norm(after[:n].T @ cx, axis=0)
+        along += np.linalg.norm(after[n:].T @ by, axis=0) * np.linalg.norm(before @ right, axis=0)
+        doubts += off * along
+    doubts += _ROUNDING * np.linalg.norm(left, axis=1) * np.linalg.norm(right, axis=0)
+    return frozen(values.astype(np.complex128)), frozen(doubts)
+
+
+#: Products of some ten matrices of the size of one are rounded by about this, n some hundreds.
+_ROUNDING = 1e-13
 
 
 def compose(
@@ -325,12 +386,13 @@ def compose(
     masses: Doubles,
     difference: float,
     still: bool = False,
-) -> tuple[Doubles, Doubles]:
+) -> tuple[Doubles, Doubles, list[Struck]]:
     """The propagator over half a period along the orbit from rest at ``start``, or about ``start`` itself where
-    ``still``, and the mass-weighted velocity at its end."""
+    ``still``, the mass-weighted velocity at its end, and the kicks."""
     size, root = start.size, np.sqrt(np.repeat(masses, 3))
     half, position, speed = np.eye(2 * size), start.copy(), np.zeros(size)
-    known: dict[int, Doubles] = {}
+    known: dict[int, tuple[Doubles, float, float]] = {}
+    struck = []
     last = Fraction(0)
     for kick in schedule(steps):
         drift = float(kick.time - last)
@@ -338,15 +400,18 @@ def compose(
         if not still:
             position += (drift * speed / root).reshape(position.shape)
         for group, duration in kick.groups:
-            if still and group in known:
-                stiffness = known[group]
-            else:
-                stiffness = known[group] = hessian(forces[group], position, masses, difference)[0]
+            if not (still and group in known):
+                known[group] = _measured(forces[group], position, masses, difference)
+            stiffness, correction, asymmetry = known[group]
+            own = norm(stiffness)
+            # Of smooth forces the fourth order leaves of the second order's error what that is of the whole.
+            error = correction**2 / max(own, 1e-300) + asymmetry
+            struck.append(Struck(float(duration), half[:size].copy(), error, own))
             half[size:] -= float(duration) * (stiffness @ half[:size])
             if not still:
                 speed += float(duration) * forces[group](position).ravel() / root
         last = kick.time
-    return half, speed
+    return half, speed, struck
 
 
 def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, masses: Doubles) -> Doubles:
@@ -384,9 +449,9 @@ def _newton(
     masses: Doubles,
     difference: float,
     firm: Doubles,
-) -> tuple[Doubles, Doubles, float]:
-    """Damped Newton's method for rest after half a period: positions, the propagator from there, and the step that
-    would be next over the extent of the atoms.
+) -> tuple[Doubles, Doubles, float, list[Struck]]:
+    """Damped Newton's method for rest after half a period: positions, the propagator from there, the step that would
+    be next over the extent of the atoms, and the kicks.
 
     It moves along the columns of ``firm``, and along them it seeks rest: of rigid motions there is none to begin with,
     and what has no momentum gets none.
@@ -397,14 +462,14 @@ def _newton(
         return float(np.abs(firm.T @ _swing(forces, steps, start + part * move, masses)).max())
 
     while True:
-        half, speed = compose(forces, steps, start, masses, difference)
+        half, speed, struck = compose(forces, steps, start, masses, difference)
         speed = firm.T @ speed
         move = firm @ np.linalg.lstsq(firm.T @ half[start.size :, : start.size] @ firm, -speed, rcond=None)[0]
         move = (move / root).reshape(start.shape)
         residual = float(np.abs(move).max()) / extent
         part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
         if part is None:
-            return start, half, residual
+            return start, half, residual, struck
         start = start + part * move
 
 
@@ -431,8 +496,8 @@ def monodromy(
     own = list(forces.values())
     period = _common(steps)
     if about == "minimum":
-        half, _ = compose(own, steps, at, masses, difference, still=True)
-        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half), 0.0)
+        half, _, struck = compose(own, steps, at, masses, difference, still=True)
+        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half), 0.0, *_eigenvalues(half, struck, 0.0))
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
     balances = [force(at) for force in own]
@@ -441,7 +506,7 @@ def monodromy(
     while done < 1.0:
         share = min(done + part, 1.0)
         held = [_held(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
-        there, half, residual = _newton(held, steps, start, masses, difference, firm)
+        there, half, residual, struck = _newton(held, steps, start, masses, difference, firm)
         if residual <= _ARRIVED:
             done, part, start = share, 2 * part, there
         elif part < _SMALLEST_PART:
@@ -450,4 +515,5 @@ def monodromy(
         else:
             part /= 2
     away = float(np.linalg.norm(start - at, axis=1).max())
-    return Monodromy(about, frozen(start.copy()), away, period, frozen(half), residual)
+    found = _eigenvalues(half, struck, residual)
+    return Monodromy(about, frozen(start.copy()), away, period, frozen(half), residual, *found)

@@ -30,10 +30,3 @@ def rigid_motions(positions: Doubles, masses: Doubles, rotations: bool = True) -
 def is_held(total: Doubles, translations: Doubles, error: float) -> bool:
     """Whether a field holds the atoms: of a translation, forces that know no place leave what differences leave."""
     return norm(total @ translations) > max(10 * error, 1e-9 * norm(total))
-
-
-def complement(columns: Doubles) -> Doubles:
-    """An orthonormal basis of what is orthogonal to the columns."""
-    whole, sizes, _ = np.linalg.svd(columns)
-    rank = int((sizes > 1e-10 * sizes.max(initial=0.0)).sum())
-    return np.asarray(whole[:, rank:])

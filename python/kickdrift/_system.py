@@ -62,6 +62,7 @@ class System(Frozen):
     notes: Sequence[str] = ()
     _path: Path | None = None
     _source: str = ""
+    _orbit: str = ""
 
     def __post_init__(self) -> None:
         own = {name: doubles(name, array) for name, array in self.arrays.items()}
@@ -111,6 +112,10 @@ class System(Frozen):
         title: str = "",
         time_unit: str = "",
         labels: Sequence[str] = (),
+        elements: Sequence[str] = (),
+        bonded: Sequence[tuple[int, int]] | None = None,
+        forces: Mapping[str, npt.ArrayLike] | None = None,
+        constraints: str | Sequence[tuple[int, int]] | None = None,
         notes: Sequence[str] = (),
         periodic: bool = False,
         keep_rigid: bool = False,
@@ -133,7 +138,16 @@ class System(Frozen):
         time_unit : str, optional
             What the steps are in, as ``"ps"``; answers name it.
         labels : sequence of str, optional
-            One for each degree of freedom, or for each particle of three.
+            One for each degree of freedom, or for each particle of three: of molecules the atom, its kind of residue
+            and its number, as ``"H1 HOH 4"``.
+        elements : sequence of str, optional
+            The symbol of each particle; else its mass tells.
+        bonded : sequence of (int, int), optional
+            Which particles are bonded; else distances tell. By these answers name motions: ``O-H stretch of HOH``.
+        forces : mapping of str to array, shape (n,) or (n/3, 3), optional
+            The force of each potential at the positions, by which ``constraints`` bend its Hessian.
+        constraints : "h-bonds" or a sequence of (int, int), optional
+            The distances that are held; they need ``forces`` and ``positions``.
         notes : sequence of str, optional
             What was left out or estimated: the first warnings of every answer.
         periodic : bool
@@ -170,15 +184,24 @@ class System(Frozen):
             arrays["positions"] = doubles("positions", positions)
         document: dict[str, Any] = {"accuracy": float(known), **{name: _at(name) for name in arrays}}
         named: dict[str, Any] = {"title": title, "time_unit": time_unit, "labels": list(labels)}
-        named |= {"periodic": periodic, "keep_rigid": keep_rigid}
+        named |= {"periodic": periodic, "keep_rigid": keep_rigid, "elements": list(elements)}
+        named["constraints"] = constraints if isinstance(constraints, str) else _pairs("constraints", constraints)
         document |= {key: value for key, value in named.items() if value}
         if not symmetric:
             document["symmetric"] = False
+        if bonded is not None:
+            document["bonded"] = _pairs("bonded", bonded)
         document["potentials"] = []
         for place, (name, (_, hessian)) in enumerate(potentials.items()):
             at, own = _compressed(place, name, hessian) or _dense(place, name, hessian)
-            document["potentials"].append({"name": name, "step": written(name, steps[name]), "stiffness": at})
+            potential = {"name": name, "step": written(name, steps[name]), "stiffness": at}
             arrays |= own
+            if forces is not None:
+                if name not in forces:
+                    raise KickdriftError("forces", name, "give the force of each potential")
+                arrays[f"force{place}"] = doubles(name, forces[name]).ravel()
+                potential["force"] = _at(f"force{place}")
+            document["potentials"].append(potential)
         return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
@@ -304,6 +327,9 @@ class System(Frozen):
         engine: Engine | None = None,
         band: Exact = "5%",
         length: Time | None = None,
+        friction: Exact | None = None,
+        constraints: str | None = None,
+        hmr: Exact | None = None,
         levers: bool = True,
     ) -> SystemAdvice:
         """Say which steps are safe for these Hessians, two levels with a unit of time, for how long, and why.
@@ -318,6 +344,12 @@ class System(Frozen):
             How far every period may be off, relatively.
         length : Time, optional
             The length of the run, as ``"10ns"``.
+        friction : Exact, optional
+            A thermostat's, as ``"1/ps"``: whether it masks what grows.
+        constraints : str, optional
+            ``"h-bonds"``: bonds with hydrogens held, beside what is held already; of Hessians with ``forces``.
+        hmr : Exact, optional
+            Hydrogens of this mass in amu, taken from their heavy atoms.
         levers : bool
             Whether to say what would let the step grow.
 
@@ -335,9 +367,20 @@ class System(Frozen):
         >>> system.advise(steps=[("0.5fs", "6fs")])
         SystemAdvice(4 fs caution, 6 fs island)
         """
-        found = asked(self._fields(), steps, engine, band, length, place=self._place(), levers=levers)
+        found = asked(
+            self._fields(),
+            steps,
+            engine,
+            (band, length, friction, constraints, hmr),
+            place=self._place(),
+            levers=levers,
+        )
         warnings = self.decide().warnings
-        return SystemAdvice(found.render("json"), _warned(warnings) + found.render("text"), warnings)
+        # What a run does at these steps, where that is known to be about another state; then three sentences: what is
+        # safe, what limits it, what would let it grow.
+        lines = found.render("text").splitlines(keepends=True)
+        text = self._orbit + "".join(lines[:3]) + _warned(warnings) + "".join(lines[3:])
+        return SystemAdvice(found.render("json"), text, warnings)
 
     def __repr__(self) -> str:
         potentials = self.document.get("potentials", ())
@@ -353,6 +396,13 @@ def _warned(warnings: Sequence[str]) -> str:
 def _step(name: str, value: Exact, unit: str) -> Fraction:
     """A step in the system's unit of time, where it has one."""
     return duration(f"potentials[{name}]", value, unit, molecular=False)
+
+
+def _pairs(name: str, pairs: Sequence[tuple[int, int]] | None) -> list[list[int]]:
+    try:
+        return [[int(i), int(j)] for i, j in pairs or ()]
+    except (TypeError, ValueError) as cause:
+        raise KickdriftError(name, shown(pairs), "give pairs of particles, counted from 0, as [(0, 1)]") from cause
 
 
 _Arrays: TypeAlias = dict[str, npt.NDArray[np.float64]]

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._hessians import (
@@ -35,7 +36,7 @@ from kickdrift._hessians import (
     usable,
 )
 from kickdrift._numbers import Exact, doubles, duration, rational, simplest
-from kickdrift._rigid import Doubles, complement, is_held, norm, rigid_motions
+from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
 from kickdrift._system import System
 
 try:
@@ -91,7 +92,8 @@ def system(
         Not changed. Hydrogen mass repartitioning comes along with the masses.
     positions : Quantity or array, shape (n, 3), nm
     topology : openmm.app.Topology, optional
-        By which answers name atoms, as ``H1 HOH4``; else by their masses, as ``H 10``.
+        By which answers name atoms and motions, as ``H1 HOH 4`` and ``O-H stretch of HOH``; else by masses and
+        distances, as ``H 10`` and ``O-H stretch of H2O``.
     integrator : openmm.Integrator, optional
         Verlet, MTSIntegrator or their Langevin kin; or instead
     steps : mapping of int to step, optional
@@ -159,32 +161,40 @@ def system(
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
     accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
-    moved = _rigid(system, where, engine.masses, frame, measured) if chosen is None else np.empty((len(frame.T), 0))
+    kept = np.arange(engine.count) if atoms is None else np.asarray(atoms, dtype=np.intp)
+    title = f"{engine.count} particles, ps and nm"
     if chosen is not None:
-        notes.append(f"only {len(atoms or ())} of {engine.count} atoms move")
-    # In their own coordinates where nothing is projected out here: answers name the atoms then.
-    plain = not constraints and chosen is None
-    periodic = system.usesPeriodicBoundaryConditions()
-    kept = np.eye(len(moved)) if plain else complement(moved)
-    if not plain and moved.size:
-        notes.append(f"{moved.shape[1]} rigid motions projected out ({'box' if periodic else 'positions'})")
-    masses = engine.masses if plain else np.ones(kept.shape[1])
-    root = np.sqrt(np.repeat(masses, 3) if plain else masses)
-    potentials: dict[str, tuple[Exact, Doubles]] = {}
-    for own in measured:
-        matrix = kept.T @ own.matrix @ kept
-        potentials[own.name] = (own.step, (matrix + matrix.T) / 2 * np.outer(root, root))
+        notes.append(f"only {len(kept)} of {engine.count} atoms move")
+        if constraints:
+            # Distances to atoms that stand still: in coordinates along the constraints, which have no names.
+            levels = {own.name: (own.step, own.matrix) for own in measured}
+            return System.from_hessians(
+                np.ones(frame.shape[1]),
+                levels,
+                accuracy=accuracy,
+                title=title,
+                time_unit="ps",
+                notes=notes,
+                keep_rigid=True,
+            )
+    keep = chosen is not None or _is_held(system, where, engine.masses, frame, measured)
+    root = np.sqrt(np.repeat(engine.masses[kept], 3))
+    labels, elements, bonded = _named(engine.masses, topology, kept)
     return System.from_hessians(
-        masses,
-        potentials,
-        positions=where if plain and moved.size else None,
+        engine.masses[kept],
+        {own.name: (own.step, own.full * np.outer(root, root)) for own in measured},
+        positions=where[kept],
         accuracy=accuracy,
-        title=f"{engine.count} particles, ps and nm",
+        title=title,
         time_unit="ps",
-        labels=_labels(engine.masses, topology) if plain else (),
+        labels=labels,
+        elements=elements,
+        bonded=bonded,
+        forces={own.name: own.force[kept] for own in measured},
+        constraints=[own[:2] for own in constraints] or None,
         notes=notes,
-        periodic=periodic and plain,
-        keep_rigid=not (plain and moved.size),
+        periodic=system.usesPeriodicBoundaryConditions(),
+        keep_rigid=keep,
     )
 
 
@@ -223,6 +233,7 @@ def _sparse(
     notes = [*_notes(system, integrator, clocks), *unbalanced(pulls, size, engine.masses, "kJ/mol/nm", follow)]
     periodic = system.usesPeriodicBoundaryConditions()
     held = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
+    labels, elements, bonded = _named(engine.masses, topology, np.arange(engine.count))
     return System.from_hessians(
         engine.masses,
         potentials,
@@ -230,7 +241,9 @@ def _sparse(
         accuracy=accuracy,
         title=f"{engine.count} particles, ps and nm",
         time_unit="ps",
-        labels=_labels(engine.masses, topology),
+        labels=labels,
+        elements=elements,
+        bonded=bonded,
         notes=notes,
         periodic=periodic,
         keep_rigid=held,
@@ -241,15 +254,64 @@ def _sparse(
 _REST = 0.1
 
 
-def _labels(masses: Doubles, topology: Any) -> list[str]:
-    """What answers call each atom."""
+def _named(
+    masses: Doubles, topology: Any, kept: npt.NDArray[np.intp]
+) -> tuple[list[str], list[str], list[tuple[int, int]] | None]:
+    """What answers call these atoms, their elements, and who is bonded to whom; what is not known is empty or None."""
     if topology is None:
-        return [f"{_symbol(mass)} {n}" for n, mass in enumerate(masses)]
+        return [f"{_symbol(masses[n])} {n}" for n in kept], [], None
     atoms = list(topology.atoms())
     if len(atoms) != len(masses):
         remedy = f"the system has {len(masses)} particles: give the topology that it was made of"
         raise KickdriftError("topology", f"{len(atoms)} atoms", remedy)
-    return [f"{atom.name} {atom.residue.name}{atom.residue.id}" for atom in atoms]
+    own = [atoms[n] for n in kept]
+    labels = [f"{atom.name} {atom.residue.name} {atom.residue.id}" for atom in own]
+    elements = [atom.element.symbol if atom.element is not None else "atom" for atom in own]
+    place = {n: k for k, n in enumerate(kept)}
+    pairs = [(place.get(bond[0].index), place.get(bond[1].index)) for bond in topology.bonds()]
+    bonded = [(i, j) for i, j in pairs if i is not None and j is not None]
+    # A topology without bonds knows none: distances tell then.
+    return labels, elements, bonded or None
+
+
+def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
+    """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own."""
+    arguments = dict(made)
+    if isinstance(steps, Mapping):
+        arguments["steps"], steps = steps, ()
+    if isinstance(own, app.Simulation):
+        state = own.context.getState(getPositions=True)
+        arguments = {"positions": state.getPositions(asNumpy=True), "topology": own.topology} | arguments
+        if "steps" not in arguments:
+            arguments.setdefault("integrator", own.integrator)
+        own = own.system
+    if not isinstance(own, mm.System):
+        raise KickdriftError("periods", type(own).__name__, "of OpenMM give a Simulation, or a System with positions=")
+    if "positions" not in arguments:
+        raise KickdriftError("positions", None, "give the positions of the particles, nm")
+    found = system(own, arguments.pop("positions"), **arguments)
+    positions = found.arrays.get("positions")
+    is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
+    if not is_whole or own.getNumConstraints() or not any("swings about an orbit" in note for note in found.notes):
+        return found, steps
+    scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
+    return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
+
+
+#: Orbits of so many degrees of freedom are followed unasked: some seconds.
+_FOLLOWED = 300
+
+
+def _about_orbit(own: Any, positions: Doubles, scheme: Mapping[str, Any]) -> str:
+    """What small deviations do about the integrator's own orbit: what a run shows first."""
+    outer = float(max(_clocks(own, scheme.get("integrator"), scheme.get("steps")).values())) * 1000
+    begin = f"own orbit: at {outer:g} fs a run swings about an orbit beside the minimum"
+    try:
+        found = oscillations(own, positions, **scheme, minimize=False)
+    except KickdriftError as error:
+        return f"{begin} that is not found: {error}\n"
+    does = "nothing grows" if found.stable else f"deviations grow at {found.growth_rate:.3g}/ps"
+    return f"{begin}, {found.away:.2g} nm away at most; about it {does} (an estimate in doubles)\n"
 
 
 def _symbol(mass: float) -> str:
@@ -262,16 +324,14 @@ def _symbol(mass: float) -> str:
 #: How far, u, force fields' masses are from those of elements.
 _ISOTOPES = 0.02
 
-#: The rigid motions of a periodic box.
-_TRANSLATIONS = 3
-
 
 @dataclass(frozen=True)
 class _Level:
-    """The groups of one step: their mass-weighted Hessian on what the constraints allow, its error, and their force."""
+    """The groups of one step: their mass-weighted Hessian, that on what constraints allow, its error, their force."""
 
     name: str
     step: Fraction
+    full: Doubles
     matrix: Doubles
     error: float
     force: Doubles
@@ -289,12 +349,13 @@ def _measured(
     found = []
     for step, groups in _levels(clocks).items():
         force = engine.force(sum(1 << group for group in groups))
-        matrix, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        full, error = hessian(force, where, engine.masses, difference, chosen, progress)
+        matrix = full
         if constraints:
             matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
         matrix = frame.T @ matrix @ frame
         name = ", ".join(f"group {group}" for group in groups)
-        found.append(_Level(name, step, (matrix + matrix.T) / 2, error, force(where)))
+        found.append(_Level(name, step, full, (matrix + matrix.T) / 2, error, force(where)))
     return found
 
 
@@ -316,16 +377,14 @@ def _unbalanced(
     return unbalanced(along, norm(total), masses[kept[::3] // 3], "kJ/mol/nm", follow)
 
 
-def _rigid(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> Doubles:
-    """The rigid motions along the frame: none in an outer field, translations alone in a periodic box."""
-    periodic = system.usesPeriodicBoundaryConditions()
-    moved = np.asarray(frame.T @ rigid_motions(where, masses, rotations=not periodic))
+def _is_held(system: Any, where: Doubles, masses: Doubles, frame: Doubles, measured: Sequence[_Level]) -> bool:
+    """Whether there are no rigid motions: an outer field holds the atoms."""
+    moved = frame.T @ rigid_motions(where, masses, rotations=False)
     total = np.sum([own.matrix for own in measured], axis=0)
     error = sum(own.error for own in measured)
     field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
     # The mesh of a box's Ewald sum knows places, a little.
-    held = field or (not periodic and is_held(total, moved[:, :_TRANSLATIONS], error))
-    return moved[:, :0] if held else moved
+    return field or (not system.usesPeriodicBoundaryConditions() and is_held(total, np.asarray(moved), error))
 
 
 def oscillations(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import importlib.util
+import json
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -14,6 +17,7 @@ from openmm import app, unit
 
 import kickdrift as kd
 import kickdrift.openmm as ko
+from kickdrift import _hessians as hessians
 
 REFERENCE = mm.Platform.getPlatformByName("Reference")
 
@@ -419,7 +423,7 @@ def test_atoms_are_called_as_their_topology_calls_them() -> None:
             topology.addAtom(name, app.Element.getBySymbol(name[0]), residue)
     steps = {0: "0.5fs", 1: "4fs"}
     named = ko.system(system, where, topology=topology, steps=steps)
-    assert named.document["labels"][:4] == ["O HOH1", "H1 HOH1", "H2 HOH1", "O HOH2"]
+    assert named.document["labels"][:4] == ["O HOH 1", "H1 HOH 1", "H2 HOH 1", "O HOH 2"]
     plain = ko.system(system, where, steps=steps)
     assert plain.document["labels"][:4] == ["O 0", "H 1", "H 2", "O 3"]
     topology.addResidue("HOH", group)
@@ -446,7 +450,8 @@ def test_forces_that_do_not_vanish_at_the_minimum_are_told_first() -> None:
     for told in (found.decide().warnings[0], found.advise().warnings[0]):
         assert "do not vanish" in told and "oscillations(...)" in told and "group 0" in told
     assert str(found.decide()).startswith("warning: the forces of") and "warnings: " in repr(found.decide())
-    assert str(found.advise()).startswith("warning: the forces of")
+    # Behind the three sentences of the answer, before everything else.
+    assert str(found.advise()).splitlines()[3].startswith("warning: the forces of")
     alone = ko.system(system, positions, steps={0: "0.5fs", 1: "0.5fs"})
     assert not any("do not vanish" in note for note in alone.notes)
     moved = ko.system(system, positions * 1.02, steps={0: "0.5fs", 1: "4fs"}, minimize=False)
@@ -504,3 +509,117 @@ def test_numbers_of_ps_that_no_molecule_bears_ask_for_a_unit() -> None:
     with pytest.raises(kd.KickdriftError, match="not finite") as caught:
         ko.system(system, np.where(positions == positions.max(), np.nan, positions), steps={0: "1fs", 1: "1fs"})
     assert caught.value.field == "positions"
+
+
+def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> None:
+    system, where = waters()
+    steps = {0: "0.5fs", 1: "4fs"}
+    unnamed = kd.advise(system, positions=where, steps=steps, levers=False)
+    assert [row["name"] for row in unnamed.groups[:2]] == ["O-H stretch of H2O", "H-O-H bend of H2O"]
+    assert [row["count"] for row in unnamed.groups[:2]] == [8, 4]
+    topology = app.Topology()
+    chain = topology.addChain()
+    for n in range(4):
+        residue = topology.addResidue("HOH", chain, str(n + 1))
+        own = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(own[0], own[1]), topology.addBond(own[0], own[2])
+    integrator = mm.MTSIntegrator(4 * unit.femtoseconds, [(1, 1), (0, 8)])
+    simulation = app.Simulation(topology, system, integrator, REFERENCE)
+    simulation.context.setPositions(where)
+    advice = kd.advise(simulation)
+    # What a run shows stands first: it is not about the minimum.
+    orbit, safe, limit, longer, warning = str(advice).splitlines()[:5]
+    assert orbit.startswith("own orbit: at 4 fs ") and "about it nothing grows" in orbit
+    grown = kd.advise(system, positions=where, steps={0: "23/50fs", 1: "4.6fs"}, levers=False)
+    found = ko.oscillations(system, where, steps={0: "23/50fs", 1: "4.6fs"})
+    assert f"deviations grow at {found.growth_rate:.3g}/ps" in str(grown).splitlines()[0]
+    ended = kd.advise(system, positions=where, steps={0: "1/2fs", 1: "10fs"}, levers=False)
+    assert "it ends there" in str(ended).splitlines()[0]
+    assert safe.startswith("advice: outer step 2.5 fs") and limit.startswith("limit: O-H stretch of HOH (8 modes, ")
+    # The forces come along, so held bonds are among what lets the step grow; and what limits the answer comes next.
+    assert longer.startswith("longer: ") and "h-bonds held" in {row["lever"] for row in advice.levers}
+    assert warning.startswith("warning: the forces of group 0 and of group 1 do not vanish")
+    held = kd.advise(simulation, constraints="h-bonds", hmr="3.024", friction="1/ps", levers=False)
+    assert held.groups[0]["name"] == "H-O-H bend of HOH" and held.groups[0]["shortest"] > 20
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(system, steps=steps)
+    assert caught.value.field == "positions"
+    with pytest.raises(kd.KickdriftError) as caught:
+        kd.advise(["10fs", "40fs"], steps=["0.5fs", "4fs"], positions=where)
+    assert caught.value.field == "positions"
+
+
+def test_held_bonds_keep_the_names_of_their_atoms() -> None:
+    """Held distances are handed over as they are: what is held here is what the program holds by its own."""
+    system, where = waters()
+    bonds = [(3 * n, 3 * n + k) for n in range(4) for k in (1, 2)]
+    held = mm.XmlSerializer.clone(system)
+    for i, j in bonds:
+        held.addConstraint(i, j, float(np.linalg.norm(where[i] - where[j])))
+    steps = {0: "0.5fs", 1: "4fs"}
+    here = ko.system(held, where, steps=steps, minimize=False).advise(levers=False)
+    there = kd.advise(system, positions=where, steps=steps, constraints="h-bonds", levers=False)
+    assert [row["name"] for row in here.groups] == [row["name"] for row in there.groups]
+    periods = [[row["shortest"] for row in own.groups] for own in (here, there)]
+    assert periods[0] == pytest.approx(periods[1], rel=1e-6)
+
+
+def test_multipliers_are_off_by_no_more_than_their_doubts() -> None:
+    """Linear forces, each Hessian changed by noise of the size that it is said to be off by."""
+    rng = np.random.default_rng(3)
+
+    def symmetric(size: float) -> np.ndarray:
+        own = rng.normal(size=(6, 6))
+        own = own + own.T
+        return size * own / np.linalg.norm(own, 2)
+
+    fast, slow = 300.0 * np.eye(6) + symmetric(200.0), symmetric(20.0)
+    masses, steps, start = np.ones(2), [Fraction(1, 40), Fraction(1, 8)], np.zeros((2, 3))
+
+    def found(pair: list[np.ndarray], error: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+        forces = [lambda x, k=own: -(k @ x.ravel()).reshape(x.shape) for own in pair]
+        half, _, struck = hessians.compose(forces, steps, start, masses, 1e-3, still=True)
+        if error is not None:
+            struck = [replace(own, error=error) for own in struck]
+        return hessians._eigenvalues(half, struck, 0.0)
+
+    size = 1e-5
+    mu, doubts = found([fast, slow], size)
+    parts = []
+    for _ in range(200):
+        other, _ = found([fast + symmetric(size), slow + symmetric(size)])
+        parts.append(max(np.abs(other - own).min() / doubt for own, doubt in zip(mu, doubts, strict=True)))
+    # Never more, and no idle bound: a tenth of it is reached.
+    assert 0.1 < max(parts) <= 1.0
+
+
+@pytest.mark.parametrize("outer", ["2", "4.4", "5", "7"])
+def test_rigid_motions_are_within_their_doubts_and_nothing_else_is(outer: str) -> None:
+    system, positions = waters()
+    found = ko.oscillations(system, positions, steps=levels(Fraction(outer) / 1000)[0], minimize=False)
+    apart = np.abs(found.mu - np.clip(found.mu.real, -1, 0))
+    # Three translations and three rotations, of which half an error makes seem to grow.
+    assert found.stable and np.log(np.abs(found.multipliers)).max() > 0 and (apart < found.doubts).all()
+    # The doubts are small: what grows by a hundredth of 1/ps would be seen even where multipliers meet at -1.
+    assert np.sqrt(4 * found.doubts.max()) / float(found.period) < 0.01
+
+
+def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
+    """The dipeptide's predictions again, and one of its runs: it blows up where grids on both sides do not."""
+    folder = Path(__file__).resolve().parents[2] / "data" / "published"
+    spec = importlib.util.spec_from_file_location("runs", folder / "runs.py")
+    assert spec is not None and spec.loader is not None
+    runs = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(runs)
+    stored = json.loads((folder / "runs.json").read_text())["systems"][1]["rows"]
+    system, topology, positions = runs.dipeptide()
+    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    for row in stored:
+        steps, inner = runs.steps_of(Fraction(row["outer"]))
+        verdict = ko.system(system, at, topology=topology, steps=steps, minimize=False).decide()
+        assert (inner, verdict.stable) == (row["inner_steps"], row["minimum"]["stable"])
+        # Differences leave some 1e-6 of the stiffness, of which a thin interval makes a part in a thousand.
+        assert verdict.growth_rate == pytest.approx(row["minimum"]["rate"], rel=1e-2)
+    blown, _ = runs.run(system, at, Fraction("5.03"), 11)
+    # From 1 K at 0.555/ps: a hundredfold to a thousandfold amplitude, by where the noise begins.
+    assert blown is not None and 5 < blown < 20

@@ -153,11 +153,12 @@ def test_advice_is_asked_of_a_system_and_carries_its_warnings(tmp_path: Path) ->
     system = molecule()
     advice = kd.advise(system, steps=[("0.5fs", "5fs")])
     assert advice == system.advise(steps=[("0.5fs", "5fs")])
-    assert advice.warnings[0] == "a note" and str(advice).startswith("warning: a note\n")
+    assert advice.warnings[0] == "a note" and str(advice).splitlines()[3] == "warning: a note"
     assert str(system.decide()).startswith("warning: a note\n") and "warnings: 1" in repr(system.decide())
     with pytest.raises(kd.KickdriftError) as caught:
-        kd.advise(system, hmr=3)  # type: ignore[call-overload]
-    assert caught.value.field == "hmr"
+        kd.advise(system, hmr=3)
+    # Heavy hydrogens are known by where they are.
+    assert caught.value.field in ("masses", "positions")
     # A total that is not positive definite is warned of by the verdict, and so by the advice.
     bent = kd.System.from_hessians([1.0, 1.0], {"fast": ("1/2", FAST), "slow": (4, -SLOW * 30)}, time_unit="fs")
     assert any("positive definite" in own for own in bent.decide().warnings)

@@ -38,3 +38,13 @@ pub const PUBLISHED: [Caution; 4] = [
         source: "GROMACS, grompp.cpp, check_bonds_timestep",
     },
 ];
+
+/// Shortest periods of nonbonded forces alone, in fs: of what, and by which Hessians, at a minimum. Torsions on the slow clock make it shorter.
+pub const SLOW: [(&str, &str, &str); 2] = [
+    (
+        "39.5",
+        "of nonbonded forces in water",
+        "data/scenes/flexible-water.json: 16 flexible waters, amber14 tip3pfb",
+    ),
+    ("71.6", "of nonbonded forces in a peptide in vacuum", "data/scenes/alanine-dipeptide.json: amber ff96"),
+];

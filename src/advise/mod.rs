@@ -20,6 +20,7 @@
 //! | `levers` | what would let the step grow |
 //! | `constraint` | bonds that do not vibrate |
 //! | `molecule` | Hessians of two levels in place of periods |
+//! | `names` | what the motions of molecules are called |
 //! | `question`, `answer` | what is asked, what is answered |
 //! | `caution` | what is published |
 //! | [`engine`] | the input of simulation engines |
@@ -49,15 +50,17 @@ mod levels;
 mod levers;
 mod mode;
 mod molecule;
+mod names;
 mod question;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
-pub use caution::{Caution, PUBLISHED};
+pub use caution::{Caution, PUBLISHED, SLOW};
 pub use constraint::Constraints;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
 pub use levers::{Bound, Engine, Lever, Levers, RATIOS, Way, heavy};
 pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
+pub use names::{Names, Told};
 pub use question::Question;

@@ -8,6 +8,7 @@ use num_traits::{One, ToPrimitive, Zero};
 use super::answer::Status;
 use super::levels::{Scheme, longest_below};
 use super::levers::{Bound, Lever, Levers, RATIOS, Way, below_third, bounded, least, of_units};
+use super::names::Names;
 use super::question::check_length;
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -22,8 +23,7 @@ pub struct Molecule {
     kernel: Kernel,
     /// fs in the unit of time of the matrices.
     unit: Rational,
-    /// One for each particle of three coordinates, or for each coordinate; empty where there are none.
-    names: Vec<String>,
+    names: Names,
     /// How well the matrices are known, relative to their norms.
     accuracy: f64,
 }
@@ -34,6 +34,8 @@ pub struct Group {
     pub count: usize,
     /// The shortest and the longest period in fs, rounded.
     pub period: (f64, f64),
+    /// What they are called; `None` where it is not known who is bonded to whom, or no bond, angle or molecule has most of a mode.
+    pub name: Option<String>,
     /// Who moves in the fastest of them.
     pub atoms: String,
 }
@@ -55,7 +57,9 @@ pub struct Finding {
     pub growing: Vec<Growing>,
     /// Growth per fs, rounded; 0 where nothing grows, `None` where that is not decided.
     pub rate: Option<f64>,
-    /// Who moves in what grows fastest.
+    /// What grows fastest is called, where that is known.
+    pub name: Option<String>,
+    /// Who moves in it.
     pub atoms: Option<String>,
     /// Where a friction was given: whether it is proven to keep all bounded, or that something grows all the same; `None`: doubles do not tell.
     pub is_damped: Option<bool>,
@@ -118,7 +122,7 @@ const LEAST_SAMPLE: f64 = 1e-5;
 
 impl Molecule {
     /// From a kernel whose unit of time is so many fs.
-    pub fn new(kernel: Kernel, unit: Rational, names: Vec<String>, accuracy: f64) -> Molecule {
+    pub fn new(kernel: Kernel, unit: Rational, names: Names, accuracy: f64) -> Molecule {
         Molecule { kernel, unit, names, accuracy }
     }
 
@@ -210,40 +214,28 @@ impl Molecule {
     fn groups(&self) -> Vec<Group> {
         let squares = self.kernel.fast_squares();
         let least = NO_MODE * NO_MODE * squares.last().copied().unwrap_or(0.0).max(0.0);
-        let mut groups: Vec<Group> = Vec::new();
+        let mut groups: Vec<(Group, Vec<Vec<f64>>)> = Vec::new();
         for (k, &square) in squares.iter().enumerate().rev().take_while(|(_, square)| **square > least) {
-            let period = self.period(square);
+            let (period, mode) = (self.period(square), self.kernel.fast_mode(k));
+            let is_full = groups.len() == MOST_GROUPS;
             match groups.last_mut() {
-                Some(last) if period < NEIGHBOUR * last.period.1 => {
+                Some((last, modes)) if period < NEIGHBOUR * last.period.1 => {
                     (last.count, last.period.1) = (last.count + 1, period);
+                    modes.push(mode);
                 }
-                _ => groups.push(Group {
-                    count: 1,
-                    period: (period, period),
-                    atoms: self.atoms(&self.kernel.fast_mode(k)),
-                }),
+                _ if is_full => break,
+                _ => {
+                    let atoms = self.names.atoms(&mode);
+                    groups
+                        .push((Group { count: 1, period: (period, period), name: None, atoms }, vec![mode]));
+                }
             }
         }
-        groups.truncate(MOST_GROUPS);
-        groups
-    }
-
-    /// Who has most of the kinetic energy: up to three names, as long as they have a tenth of it and the first ones not nine.
-    fn atoms(&self, shape: &[f64]) -> String {
-        let each = if shape.len().is_multiple_of(3) && self.names.len() != shape.len() { 3 } else { 1 };
-        let share = |own: &[f64]| own.iter().map(|x| x * x).sum::<f64>();
-        let mut shares: Vec<(usize, f64)> = shape.chunks(each).map(share).enumerate().collect();
-        let whole: f64 = shares.iter().map(|(_, own)| own).sum();
-        shares.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        let (mut told, mut names) = (0.0, Vec::new());
-        for (i, own) in shares.into_iter().take(3) {
-            if told > 0.9 * whole || own < 0.1 * whole {
-                break;
-            }
-            told += own;
-            names.push(self.names.get(i).cloned().unwrap_or_else(|| format!("atom {}", i + 1)));
-        }
-        names.join(", ")
+        let named = |(group, modes): (Group, Vec<Vec<f64>>)| {
+            let modes: Vec<Vec<&[f64]>> = modes.iter().map(|mode| vec![&mode[..]]).collect();
+            Group { name: self.names.motion(&modes), ..group }
+        };
+        groups.into_iter().map(named).collect()
     }
 
     fn outer(&self, inner: &Rational, outer: &Rational) -> Result<Outer> {
@@ -288,6 +280,7 @@ impl Molecule {
         let grows = rate.is_some_and(|rate| rate > 0.0);
         let time = rate.map(|rate| std::f64::consts::LN_10 / rate);
         let AtRatio { first_upper, growing, band_edge } = at.clone();
+        let fastest_growing = fastest_instability(&analysis);
         let largest = self.largest(inner, part)?;
         Ok(Finding {
             scheme: scheme.clone(),
@@ -305,7 +298,8 @@ impl Molecule {
                 .filter(|_| grows)
                 .and_then(|_| self.kernel.masking_friction(&outer))
                 .map(|own| own / unit),
-            atoms: fastest_shape(&analysis).map(|shape| self.atoms(&shape)),
+            name: fastest_growing.and_then(|own| self.names.motion(&[vec![&own.shape, &own.quadrature]])),
+            atoms: fastest_growing.map(|own| self.names.atoms(&amplitudes(own))),
             band_edge,
             safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
             largest,
@@ -431,10 +425,12 @@ fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::In
     analysis.parts.iter().flat_map(|part| &part.instabilities)
 }
 
-fn fastest_shape(analysis: &Analysis) -> Option<Vec<f64>> {
-    let fastest =
-        instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))?;
-    Some(fastest.shape.iter().zip(&fastest.quadrature).map(|(re, im)| re.hypot(*im)).collect())
+fn fastest_instability(analysis: &Analysis) -> Option<&crate::system::Instability> {
+    instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))
+}
+
+fn amplitudes(own: &crate::system::Instability) -> Vec<f64> {
+    own.shape.iter().zip(&own.quadrature).map(|(re, im)| re.hypot(*im)).collect()
 }
 
 impl Finding {

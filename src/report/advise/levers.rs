@@ -91,6 +91,30 @@ pub(super) fn add(document: Document, levers: Option<&Levers>) -> Document {
     if levers.rows.is_empty() { document } else { document.and_rows(shown(levers, &table)) }
 }
 
+/// What lets the outer step grow most: the three best ways, longer than kicks and drifts as they are.
+pub(super) fn longer(levers: Option<&Levers>) -> String {
+    let Some(levers) = levers else { return "longer: what would let the step grow was not looked at".into() };
+    let one = Rational::from_integer(1.into());
+    let mut best: Vec<(&Lever, &Rational, &Rational)> = levers.rows.iter().filter_map(gained).collect();
+    best.retain(|(own, _, gain)| **gain > one && !matches!(own.way, Way::Respa | Way::Friction));
+    best.sort_by(|a, b| b.2.cmp(a.2));
+    let told = |(own, step, gain): &(&Lever, &Rational, &Rational)| {
+        let gain = to_f64(gain);
+        format!("{} fs by {} ({} times)", decimal(step), own.name, nearest((gain, gain), 3))
+    };
+    let told: Vec<String> = best.iter().take(3).map(told).collect();
+    if told.is_empty() {
+        "longer: nothing known would let the step grow".into()
+    } else {
+        format!("longer: {}", told.join(", "))
+    }
+}
+
+fn gained(own: &Lever) -> Option<(&Lever, &Rational, &Rational)> {
+    let (step, _) = own.step.as_ref()?;
+    Some((own, step, own.gain.as_ref()?))
+}
+
 /// What stands beside the table.
 pub(super) fn lines(levers: &Levers) -> Vec<String> {
     let mut lines = Vec::new();

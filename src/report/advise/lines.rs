@@ -3,7 +3,7 @@
 use super::words::{choice, down, fs, nearest, percent, told, within};
 use crate::advise::engine::{Reading, nested_beside, not_nested};
 use crate::advise::unit::decimal;
-use crate::advise::{Advice, Answer, Pair, Row, Scheme, Status, Unstable};
+use crate::advise::{Advice, Answer, Pair, Row, SLOW, Scheme, Status, Unstable};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
@@ -265,6 +265,8 @@ fn reasons(advice: &Advice) -> Vec<String> {
     if advice.silent {
         let line = "  unknown    a clock has no period given: its force is taken as 0; with it unstable steps begin somewhat below the one told";
         lines.push(line.into());
+        let known = SLOW.map(|(period, what, source)| format!("slow={period}fs {what} ({source})"));
+        lines.push(format!("  slow       measured by Hessians at a minimum: {}", known.join("; ")));
     }
     lines
 }

@@ -26,7 +26,7 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
         .entry("groups", groups.to_json_rows())
         .entry("rows", rows.to_json_rows())
         .entry("intervals", intervals.to_json_rows())
-        .entry("published", published(&fastest.atoms, |parts| (fastest.period.0 / parts as f64).into()))
+        .entry("published", published(called(fastest), |parts| (fastest.period.0 / parts as f64).into()))
         .entry("unknown", UNKNOWN.to_vec());
     let best = &findings.schemes[0];
     let document = match reading {
@@ -55,12 +55,14 @@ fn advised_step(finding: &Finding) -> Option<&Rational> {
 }
 
 fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> Vec<String> {
-    let mut lines: Vec<String> = findings.schemes.iter().map(|own| line(findings, own)).collect();
     let (best, fastest) = (&findings.schemes[0], &findings.groups[0]);
     let period = fastest.period.0;
-    let told = format!("{} (T = {} fs)", fastest.atoms, rounded(period, 4));
+    let told = told(fastest);
     let band = percent(&findings.band);
-    lines.push(choice(&best.scheme, [&best.safe, &best.largest], &band, (&told, (period, period))));
+    // What is safe, what limits it, what would let it grow; then the steps that were asked for.
+    let safe = choice(&best.scheme, [&best.safe, &best.largest], &band, (&told, (period, period)));
+    let mut lines = vec![safe, limit(&told, period, best), super::levers::longer(findings.levers.as_ref())];
+    lines.extend(findings.schemes.iter().map(|own| line(findings, own)));
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
     }
@@ -74,6 +76,7 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
         ));
     }
     lines.push(lines::published(&told, |n| rounded(period / n, 4)));
+    lines.push(slow(findings.slow));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
     if let Some(friction) = &findings.friction {
@@ -86,8 +89,43 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     lines
 }
 
+/// By its motion, or by who moves in the fastest of it.
+pub(super) fn called(group: &Group) -> &str {
+    group.name.as_deref().unwrap_or(&group.atoms)
+}
+
+/// "O-H stretch of HOH (32 modes, 8.914-9.069 fs)".
+fn told(group: &Group) -> String {
+    let [lo, hi] = [group.period.0, group.period.1].map(|period| rounded(period, 4));
+    match group.count {
+        1 => format!("{} (T = {lo} fs)", called(group)),
+        count if lo == hi => format!("{} ({count} modes, T = {lo} fs)", called(group)),
+        count => format!("{} ({count} modes, {lo}-{hi} fs)", called(group)),
+    }
+}
+
 fn rounded(x: f64, digits: usize) -> String {
     nearest((x, x), digits)
+}
+
+/// What bounds the outer step.
+fn limit(told: &str, period: f64, own: &Finding) -> String {
+    let first = own.first.map_or_else(String::new, |(lo, hi)| {
+        format!("; outer steps are unstable from {} fs on (proven)", nearest((lo, hi), 4))
+    });
+    format!("limit: {told}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
+}
+
+/// Where the period of the slow force comes from.
+fn slow(period: f64) -> String {
+    if period.is_infinite() {
+        return "  slow       the slow stiffness has no positive eigenvalue, so no period".into();
+    }
+    format!(
+        "  slow       {} fs: 2 pi/sqrt(s), s the largest eigenvalue of the slow stiffness, mass-weighted: as if nothing else acted; periods alone are \
+         asked about with slow={0}fs",
+        rounded(period, 3)
+    )
 }
 
 /// "5.0226-5.0228 fs (tenfold in ...), 5.0229-5.032 fs (...)".
@@ -137,6 +175,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
 /// ": tenfold in ...".
 fn grows(own: &Finding) -> String {
     let Some((steps, rate)) = own.tenfold_steps().zip(own.rate) else { return String::new() };
+    let named = own.name.as_ref().map_or_else(String::new, |name| format!(", {name}"));
     let atoms = own.atoms.as_ref().map_or_else(String::new, |atoms| format!(", {atoms} moving most"));
     let friction = match (own.is_damped, own.masking) {
         (Some(true), _) => "masked by the friction given, which hides it and does not cure it".into(),
@@ -152,7 +191,7 @@ fn grows(own: &Finding) -> String {
         _ => format!("a friction of some {}/ps would mask it, to first order", rounded(2000.0 * rate, 2)),
     };
     format!(
-        ": tenfold in {} outer steps = {} ps, {}/ps{atoms} ({friction})",
+        ": tenfold in {} outer steps = {} ps, {}/ps{named}{atoms} ({friction})",
         rounded(steps, 3),
         rounded(steps * to_f64(own.scheme.outer()) / 1000.0, 3),
         rounded(1000.0 * rate, 3)
@@ -165,6 +204,7 @@ fn groups(findings: &Findings) -> Table {
         .field(Column::new("shortest").in_words("shortest period").in_unit("fs"), |own| own.period.0.into())
         .field(Column::new("longest").in_unit("fs"), |own| own.period.1.into())
         .field(Column::new("half").in_words("T/2"), |own| (own.period.0 / 2.0).into())
+        .field(Column::new("name").in_words("modes").left(), |own| own.name.as_deref().into())
         .field(Column::new("atoms").in_words("the fastest moves").left(), |own| own.atoms.as_str().into())
         .table("groups", "Modes of the fast stiffness alone, the fastest first", &findings.groups)
 }
@@ -198,12 +238,13 @@ fn rows(findings: &Findings) -> Table {
         .field(column("outer", "outer step").in_unit("fs"), |own: &Finding| Cell::exact(own.scheme.outer()))
         .field(Column::new("status").left(), |own| own.status.name().into())
         .field(Column::new("holds").left(), |own| own.holds.name().into())
-        .field(Column::new("margin"), |own| own.margin.into())
+        .field(column("margin", "margin of the stiffness"), |own| own.margin.into())
         .field(enclosed("first", "first unstable from").in_unit("fs"), |own| own.first.into())
         .field(column("first_upper", "at least to").in_unit("fs"), |own| own.first_upper.into())
         .field(column("growth_rate", "growth").in_unit("1/ps"), move |own| per_ps(own.rate))
         .field(column("tenfold_steps", "tenfold in steps"), |own| own.tenfold_steps().into())
-        .field(column("atoms", "growing").left(), |own| own.atoms.as_deref().into())
+        .field(column("name", "growing").left(), |own| own.name.as_deref().into())
+        .field(column("atoms", "moving most").left(), |own| own.atoms.as_deref().into())
         .field(column("masked_above", "masked above a friction").in_unit("1/ps"), move |own| {
             per_ps(own.masking)
         })

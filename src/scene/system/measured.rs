@@ -23,6 +23,8 @@
 //! midpoint rule, over the whole longer one, and the other force kicks, filtered (see [`Method`](crate::system::levels::Method)).
 //! `"symmetric": false` says that a force is no gradient, as one that is learned and predicted directly: then its Jacobian, minus the derivative
 //! of the force, is no Hessian, and its asymmetry no error.
+//! Of particles in space `labels` may be of three words, as `H1 HOH 4`; `elements` are their symbols, `bonded` pairs of them: by these, or by
+//! masses and distances, the motions of a molecule are named.
 //! `"keep_rigid": true` projects no rigid motions out: there are none, as of atoms among others that stand still.
 
 use nalgebra::DMatrix;
@@ -65,6 +67,8 @@ struct Document {
     method: Option<String>,
     potentials: Vec<PotentialDocument>,
     labels: Option<Vec<String>>,
+    elements: Option<Vec<String>>,
+    bonded: Option<Vec<[usize; 2]>>,
 }
 
 fn yes() -> bool {
@@ -113,6 +117,7 @@ pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec
     }
     let positions = document.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
     let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+    document.check_atoms(n)?;
     let (is_weighted, is_periodic) = (document.mass_weighted, document.periodic);
     let mut body = Body { masses, positions, is_weighted, is_periodic, held: None };
     document.transform(&mut body, &mut read, arrays)?;
@@ -145,6 +150,19 @@ struct Read {
 }
 
 impl Document {
+    /// That elements and bonds are those of the particles that there are.
+    fn check_atoms(&self, n: usize) -> Result<()> {
+        let remedy = || format!("there are {} particles of three coordinates, counted from 0", n / 3);
+        match (&self.elements, self.bonded.iter().flatten().find(|pair| pair.iter().any(|&i| 3 * i + 2 >= n)))
+        {
+            (Some(all), _) if 3 * all.len() != n => {
+                Err(Error::input("elements", format!("{} of them", all.len()), remedy()))
+            }
+            (_, Some(pair)) => Err(Error::input("bonded", format!("{pair:?}"), remedy())),
+            _ => Ok(()),
+        }
+    }
+
     /// Heavier hydrogens first, then constraints: the stiffnesses as they are then, and what is held.
     fn transform(&self, body: &mut Body, read: &mut [Read], arrays: &Arrays) -> Result<()> {
         if self.constraints.is_none() && self.hydrogen_mass.is_none() {

@@ -4,10 +4,13 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::SystemScene;
+use super::array::Reference;
+use super::measured::spread;
 use crate::advise::unit::{self, Dimension};
-use crate::advise::{Molecule, Scheme};
+use crate::advise::{Molecule, Names, Scheme, Told};
 use crate::error::{Error, Result};
 use crate::number::Rational;
+use crate::system::Body;
 
 /// A system file for an archive that holds `fast`, `slow`, `masses` and `positions`: mass-weighted, 1/ps², the steps in fs.
 pub fn of_archive(npz: &str, steps: [&Rational; 2]) -> Value {
@@ -26,9 +29,31 @@ impl SystemScene {
     /// As [`SystemScene::scheme`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
         let (scheme, levels) = (self.scheme()?, self.model.two_levels()?);
-        let labels = self.source().get("labels").map(Vec::<String>::deserialize);
-        let names = labels.and_then(std::result::Result::ok).unwrap_or_default();
+        let names = self.names(levels.body)?;
         Ok((Molecule::new(levels.kernel.clone(), self.femtoseconds()?, names, levels.accuracy), scheme))
+    }
+
+    /// What the file tells of atoms.
+    fn names(&self, body: &Body) -> Result<Names> {
+        #[derive(Deserialize)]
+        struct Document {
+            labels: Option<Vec<String>>,
+            elements: Option<Vec<String>>,
+            bonded: Option<Vec<[usize; 2]>>,
+            masses: Option<Reference>,
+        }
+        let Ok(Document { labels, elements, bonded, masses }) = Document::deserialize(self.source()) else {
+            return Ok(Names::default());
+        };
+        let labels = labels.unwrap_or_default();
+        let (Some(positions), Some(moving), Some(masses)) = (&body.positions, &body.masses, masses) else {
+            return Ok(Names::of_labels(labels));
+        };
+        let of_atoms = |masses: &[f64]| masses.chunks_exact(3).map(|own| own[0]).collect::<Vec<_>>();
+        let given = spread(masses.read("masses", &self.arrays)?.into_values(), moving.len())?;
+        let told =
+            Told { labels, elements: elements.unwrap_or_default(), bonds: bonded, masses: of_atoms(&given) };
+        Ok(Names::new(told, positions, of_atoms(moving)))
     }
 
     /// The steps of two measured levels, in fs.

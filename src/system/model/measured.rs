@@ -53,6 +53,7 @@ pub struct MeasuredSystem {
 #[derive(Clone, Debug)]
 pub struct TwoLevels<'a> {
     pub kernel: &'a Kernel,
+    pub body: &'a Body,
     pub inner: Rational,
     pub outer: Rational,
     /// Every stiffness is known to this times its norm.
@@ -275,7 +276,7 @@ impl MeasuredSystem {
     /// The eigenbasis with the inner and the outer step, and how well the stiffnesses are known.
     pub(super) fn two_levels(&self) -> Result<TwoLevels<'_>> {
         let [inner, outer] = self.two_steps()?;
-        Ok(TwoLevels { kernel: self.kernel()?, inner, outer, accuracy: self.accuracy })
+        Ok(TwoLevels { kernel: self.kernel()?, body: &self.body, inner, outer, accuracy: self.accuracy })
     }
 
     /// The inner and the outer step.
