@@ -136,7 +136,7 @@ def main(program):
         rows.append(f"\\texttt{{{macro}}} & ${text}$ & \\texttt{{{path.replace('_', chr(92) + '_')}}} & \\texttt{{{name}}} \\\\")
     (BUILD / "counts.tex").write_text(counts(json.loads((BUILD / "closings.json").read_text())))
     parts.write()
-    macros += parts.runs_macros()
+    macros += parts.runs_macros() + parts.blowups_macros()
     macros += [macro for name in commands if name.endswith(".tex") for macro in references(name)]
     pairs = json.loads((BUILD / "map1000.json").read_text())["pairs"]
     rate = f"{pairs / seconds['map1000'] / 1e6:.1f}"

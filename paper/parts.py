@@ -2,6 +2,7 @@
 
 import json
 import re
+from math import log
 from pathlib import Path
 
 from plot import BLUE, GREY, ORANGE, Plot
@@ -86,6 +87,34 @@ def molecules():
     return plot.latex()
 
 
+def share_alone(told, own):
+    """The logarithm by which one motion's velocity at the run's start must grow to have the energy of the whole blown-up molecule."""
+    return log(2 * told["blown"] / told["temperature"] * (3 * own["atoms"] - 6)) / 2
+
+
+def blowups():
+    """Time until a run from the orbit blew up over the rate that is predicted."""
+    told = document("blowups")
+    plot = Plot(100, 44, (0.1, 30, True), (0.1, 150, True))
+    plot.decades("x", "predicted growth rate about the orbit ($10^{-3}$ per fs)")
+    plot.decades("y", "time until the run blew up (ps)")
+    end = told["length"]
+    plot.path([plot.place(0.1, end), plot.place(30, end)], GREY, 0.5, "2 2")
+    plot.words(*plot.place(27, 1.45 * end), "end of the runs", "r")
+    looks = ((BLUE, "square", 8.5), (ORANGE, "diamond", 3.4))
+    for own, (colour, shape, y) in zip(told["systems"], looks, strict=True):
+        alone = share_alone(told, own)
+        plot.path([plot.place(rate, alone / rate) for rate in (0.1, 29)], colour, 0.5)
+        rows = [row["orbit"] for row in own["rows"] if not row["orbit"]["stable"]]
+        for orbit in rows:
+            blown = orbit["blown_up"]
+            plot.mark(*plot.place(orbit["rate"], blown or end), colour, shape if blown else f"open {shape}")
+        a, b = plot.place(2.6, y)
+        plot.mark(a - 3, b, colour, shape)
+        plot.words(a, b, own["system"], "l")
+    return plot.latex()
+
+
 def plain_rows():
     """Where the plain loop is wrong, grid by grid; a rule between the two oscillators."""
     lines, before = [], None
@@ -114,6 +143,74 @@ def runs_macros():
     off = sorted(row["minimum"] / row["run"] - 1 for row in rows if row["run"] > 0)
     least, most = (f"{100 * one:.0f}\\,\\%" for one in (off[0], off[-1]))
     values = {"RunsWrong": ", ".join(wrong), "RunsSteps": len(rows), "RunsOffLeast": least, "RunsOffMost": most}
+    return [f"\\newcommand{{\\{name}}}{{\\ensuremath{{{value}}}}}" for name, value in values.items()]
+
+
+def blowups_rows():
+    """Predictions beside runs from the minimum and from the orbit; a star where a run does what is not predicted of its own state."""
+    def ran(predicted, found):
+        blown, hottest = found["blown_up"], found["hottest"]
+        star = "" if predicted["stable"] == (blown is None) else r"\rlap{$^*$}"
+        return [f"{blown:.3g}{star}" if blown else f"none{star}", f"{hottest:.1f}" if blown is None else ""]
+
+    def rate(found):
+        return "0" if found["stable"] else f"{found['rate']:.2f}"
+
+    lines = []
+    for own in document("blowups")["systems"]:
+        lines += [r"\midrule"] * bool(lines) + [rf"\multicolumn{{8}}{{@{{}}l}}{{{own['system']}, {own['atoms']} atoms}} \\"]
+        for row in own["rows"]:
+            minimum, orbit = row["minimum"], row["orbit"]
+            cells = [row["outer"], str(row["inner_steps"]), rate(minimum), rate(orbit), *ran(minimum, row), *ran(orbit, orbit)]
+            lines.append(" & ".join(cells) + r" \\")
+    return "\n".join(lines) + "\n"
+
+
+def blowups_macros():
+    """How many predictions the runs bear out, which not, and how clearly."""
+    told = document("blowups")
+    waters, dipeptide = told["systems"]
+    every = waters["rows"] + dipeptide["rows"]
+
+    def wrong(rows, begin):
+        """Where a run that begins there does not do what is predicted about it."""
+        ran = {"minimum": lambda row: row, "orbit": lambda row: row["orbit"]}[begin]
+        return [row for row in rows if row[begin]["stable"] != (ran(row)["blown_up"] is None)]
+
+    slow, late = wrong(every, "orbit"), wrong(waters["rows"], "minimum")
+    # What the text says in words.
+    assert all(row["minimum"]["stable"] == row["orbit"]["stable"] for row in every)
+    assert all(row in dipeptide["rows"] and not row["orbit"]["stable"] for row in slow)
+    assert len(late) == 1 and late[0]["orbit"]["stable"]
+    assert wrong(dipeptide["rows"], "minimum") == slow[1:]
+    assert len(wrong(every, "minimum")) == len(slow)
+    every_three = zip(dipeptide["rows"], dipeptide["rows"][1:], dipeptide["rows"][2:], strict=False)
+    narrow, = (three for three in every_three if [row["orbit"]["blown_up"] is None for row in three] == [True, False, True])
+    assert all((row["blown_up"] is None) == (row["orbit"]["blown_up"] is None) for row in narrow)
+    assert len(waters["rows"]) == len(dipeptide["rows"])
+    assert max(row["orbit"]["away"] for row in dipeptide["rows"]) < min(row["orbit"]["away"] for row in waters["rows"])
+    stable = [row for row in every if row["orbit"]["stable"]]
+    off = [max(abs(row["minimum"]["rate"] / row["orbit"]["rate"] - 1) for row in own["rows"] if not row["orbit"]["stable"])
+           for own in told["systems"]]
+    grown = [row["orbit"]["rate"] * row["orbit"]["blown_up"] for row in every if row["orbit"]["blown_up"]]
+    alone = [share_alone(told, own) for own in told["systems"]]
+    values = {
+        "BlowSteps": len(every), "BlowEach": len(waters["rows"]), "BlowWaters": waters["atoms"] // 3,
+        "BlowInner": f"{max(float(row['outer']) / row['inner_steps'] for row in every):.2g}",
+        "BlowBefore": narrow[0]["outer"], "BlowNarrow": narrow[1]["outer"], "BlowAfter": narrow[2]["outer"],
+        "BlowShare": f"{2 * told['blown'] / told['temperature']:.0f}",
+        "BlowRight": len(every) - len(slow),
+        "BlowSlow": r",\ ".join(row["outer"] for row in slow), "BlowLate": late[0]["outer"], "BlowLateTime": f"{late[0]['blown_up']:.3g}",
+        "BlowAway": f"{late[0]['orbit']['away']:.2g}",
+        "BlowStill": f"{max(row['orbit']['hottest'] for row in stable):.1f}",
+        "BlowGrowing": f"{min(row['orbit']['hottest'] for row in slow):.0f}",
+        "BlowSwing": f"{max(row['hottest'] for row in stable if row['hottest']):.0f}",
+        "BlowOffWaters": f"{100 * off[0]:.0f}\\,\\%", "BlowOffDipeptide": f"{100 * off[1]:.0f}\\,\\%",
+        "BlowLeast": f"{min(grown):.1f}", "BlowMost": f"{max(grown):.1f}",
+        "BlowAloneWaters": f"{alone[0]:.1f}", "BlowAloneDipeptide": f"{alone[1]:.1f}",
+        "BlowSlowGrown": f"{min(row['orbit']['rate'] for row in slow) * told['length']:.0f}",
+        "BlowLength": f"{told['length']:.0f}", "BlowCold": f"{told['temperature']:.0f}", "BlowHot": f"{told['blown']:.0f}",
+    }
     return [f"\\newcommand{{\\{name}}}{{\\ensuremath{{{value}}}}}" for name, value in values.items()]
 
 
@@ -165,7 +262,7 @@ def references(name):
 
 def write():
     """All of them, into build/."""
-    figures = {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "molecules": molecules()}
+    figures = {"schedule": schedule(), "wrong": wrong(), "periods": periods(), "molecules": molecules(), "blowup-times": blowups()}
     lists = {f"{name}-references": references(name) for name in ("paper", "supplement")}
-    for name, text in {**figures, "plain": plain_rows(), "runs": runs_rows(), **lists}.items():
+    for name, text in {**figures, "plain": plain_rows(), "runs": runs_rows(), "blowups": blowups_rows(), **lists}.items():
         (BUILD / f"{name}.tex").write_text(text)
