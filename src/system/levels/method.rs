@@ -124,9 +124,7 @@ impl Method {
     /// cos(t √s) solves y'' = −s y, so it moves by t²/2; its mean over t, sinc, by t²/6; its slope −√s sin(t √s) by t.
     pub(super) fn slopes(self, p: u64, below: f64) -> [f64; 5] {
         let (p, square) = (p as f64, (p as f64).powi(2));
-        // All of these grow by no more than cosh² √below, and 1/(1 + s/4)² by less.
-        let room =
-            if below * square <= 1.0 { 1.01 * (2.0 * (below * square).sqrt()).exp() } else { f64::INFINITY };
+        let room = room(below * square);
         let (i, k) = self.powers().unwrap_or_default();
         let filter = f64::from(i) / 8.0 + f64::from(k) / 24.0;
         let [a, b, c, d] = match (self, self.is_two_step()) {
@@ -141,8 +139,7 @@ impl Method {
     /// The slopes of b c and b d.
     pub(super) fn slopes_of_products(self, p: u64, below: f64) -> [f64; 2] {
         let (size, square) = (p as f64, (p as f64).powi(2));
-        let room =
-            if below * square <= 1.0 { 1.01 * (2.0 * (below * square).sqrt()).exp() } else { f64::INFINITY };
+        let room = room(below * square);
         // b c = (cos x − 1)/2 or −y²/(1 + y²)/2; b d = sinc(x)/2 or 1/(1 + y²)/2.
         let other = match (self, self.is_two_step()) {
             (Method::ImplicitExplicit, _) => 0.125,
@@ -184,6 +181,11 @@ impl std::fmt::Display for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.write_str(self.name())
     }
+}
+
+/// By how much slopes at s ≥ −`below` may exceed those at s ≥ 0: all grow by no more than cosh² √below, and 1/(1 + s/4)² by less.
+fn room(below: f64) -> f64 {
+    if below <= 1.0 { 1.01 * (2.0 * below.sqrt()).exp() } else { f64::INFINITY }
 }
 
 /// Bits of balls that become doubles.
