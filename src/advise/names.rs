@@ -241,8 +241,12 @@ fn ordered<'a>(a: &'a str, b: &'a str) -> [&'a str; 2] {
 }
 
 impl Structure {
-    /// Who has half of the energy: stretches, bends, or the motions of whole molecules; empty where nobody has.
+    /// Who has half of the energy: stretches, bends, or the motions of whole molecules; empty where nobody has, and of shapes in other
+    /// coordinates than these atoms'.
     fn shares(&self, parts: &[&[f64]]) -> Vec<Share> {
+        if parts.iter().any(|part| part.len() != 3 * self.masses.len()) {
+            return Vec::new();
+        }
         let whole: f64 = parts.iter().flat_map(|part| part.iter()).map(|x| x * x).sum();
         let moved: Vec<Vec<[f64; 3]>> = parts.iter().map(|part| self.moved(part)).collect();
         let [libration, translation] = self.rigid(&moved);
@@ -464,6 +468,7 @@ mod tests {
         assert_eq!(names.motion(&[vec![&stretch], vec![&other]]).as_deref(), Some("O-H stretch of HOH"));
         assert_eq!(waters(&[]).motion(&[vec![&stretch]]).as_deref(), Some("O-H stretch of H2O"));
         assert_eq!(Names::of_labels(Vec::new()).motion(&[vec![&stretch]]), None);
+        assert_eq!(names.motion(&[vec![&stretch[..6]]]), None);
     }
 
     #[test]
