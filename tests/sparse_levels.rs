@@ -156,6 +156,28 @@ fn compressed_rows_are_read_and_refused_by_name() {
     let (lo, hi) = measured.first_unstable.unwrap();
     assert!(0.001 < lo && lo < hi);
     let limits = Limits::default();
+    let with = |key: &str, value: serde_json::Value| {
+        let mut source = file("slow", "1/1000");
+        source[key] = value;
+        SystemScene::from_json_in(held.clone(), source)
+    };
+    // What names atoms is taken; what dense stiffnesses alone have is refused by its name.
+    assert!(with("elements", json!(vec!["O"; n / 3])).is_ok() && with("bonded", json!([[0, 1]])).is_ok());
+    for (key, value) in [
+        ("constraints", json!([[0, 1]])),
+        ("hydrogen_mass", json!(3)),
+        ("symmetric", json!(false)),
+        ("method", json!("impulse")),
+        ("mass_weighted", json!(true)),
+        ("elements", json!(["O"])),
+    ] {
+        let error = with(key, value).unwrap_err();
+        assert_eq!(error.field(), key, "{error}");
+    }
+    let mut source = file("slow", "1/1000");
+    source["potentials"][1]["stiffness"] = json!({"npz": "a.npz", "array": "slow.data"});
+    let error = SystemScene::from_json_in(held.clone(), source).unwrap_err();
+    assert_eq!(error.field(), "potentials[1].stiffness", "{error}");
     let refusals = [
         read("nothing", "1/1000").map(|_| ()),
         read("slow", "3/4000").map(|_| ()),

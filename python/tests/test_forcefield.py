@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -156,6 +157,19 @@ def test_what_the_minimizer_leaves_is_told() -> None:
     assert any("are no minimum of all forces" in note for note in found.notes)
     assert any("do not vanish at the positions" in note for note in found.notes)
     assert found.decide().data["measured"]["rigid_motions"]["count"] == 6
+
+
+def test_sparse_systems_take_the_names_of_a_topology() -> None:
+    system, positions = peptide()
+    topology = app.Topology()
+    residue = topology.addResidue("PEP", topology.addChain())
+    atoms = [topology.addAtom(f"C{n}", app.element.carbon, residue) for n in range(8)]
+    for near, far in pairwise(atoms):
+        topology.addBond(near, far)
+    steps = {0: "0.5fs", SLOW: "2fs"}
+    found = ko.system(system, positions, steps=steps, topology=topology, sparse=True, minimize=False)
+    assert found.decide().data["degrees_of_freedom"] == 24
+    assert found.document["labels"][7] == "C7 PEP 1" and found.document["bonded"][0] == [0, 1]
 
 
 @pytest.mark.parametrize(

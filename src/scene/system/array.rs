@@ -23,13 +23,26 @@ const MOST_ELEMENTS: usize = 1 << 24;
 /// The most bytes of a `.npy` file: its elements and its header.
 const MOST_BYTES: u64 = 8 * MOST_ELEMENTS as u64 + 65_536;
 
-/// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}` or `{"mm": "k.mtx"}`; paths are relative to the file that holds them.
+/// `{"npy": "h.npy"}`, `{"npz": "data.npz", "array": "fast"}`, `{"mm": "k.mtx"}` or, of a sparse stiffness, `{"npz": "k.npz", "csr": ""}`; paths
+/// are relative to the file that holds them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(try_from = "Value")]
 pub(crate) enum Reference {
-    Npy { npy: String },
-    Npz { npz: String, array: String },
-    Mm { mm: String },
+    Npy {
+        npy: String,
+    },
+    Npz {
+        npz: String,
+        array: String,
+    },
+    Mm {
+        mm: String,
+    },
+    /// Compressed rows, by the name of their three arrays (see `sparse`).
+    Csr {
+        npz: String,
+        csr: String,
+    },
 }
 
 impl TryFrom<Value> for Reference {
@@ -39,7 +52,10 @@ impl TryFrom<Value> for Reference {
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(String::from);
         let own = match value.as_object().map_or(0, Map::len) {
             1 => text("npy").map(|npy| Reference::Npy { npy }).or(text("mm").map(|mm| Reference::Mm { mm })),
-            2 => text("npz").zip(text("array")).map(|(npz, array)| Reference::Npz { npz, array }),
+            2 => text("npz").and_then(|npz| {
+                let array = text("array").map(|array| Reference::Npz { npz: npz.clone(), array });
+                array.or(text("csr").map(|csr| Reference::Csr { npz, csr }))
+            }),
             _ => None,
         };
         own.ok_or_else(|| {
@@ -127,18 +143,27 @@ impl Reference {
                 let file = File::open(&path).map_err(|cause| io(&path, cause))?;
                 (format!("{npz}, {array}"), member(file, array).map_err(|why| Error::input(field, npz, why))?)
             }
+            Reference::Csr { csr, .. } => return Err(no_array(field, csr)),
         };
         parse(&bytes).map_err(|why| Error::input(field, path, why))
     }
 
     fn held(&self, field: &str, held: &BTreeMap<String, Array>) -> Result<Array> {
-        let (Reference::Npz { array: name, .. } | Reference::Npy { npy: name } | Reference::Mm { mm: name }) =
-            self;
+        let name = match self {
+            Reference::Npz { array: name, .. }
+            | Reference::Npy { npy: name }
+            | Reference::Mm { mm: name } => name,
+            Reference::Csr { csr, .. } => return Err(no_array(field, csr)),
+        };
         held.get(name).cloned().ok_or_else(|| {
             let names: Vec<&str> = held.keys().map(String::as_str).collect();
             Error::input(field, name, format!("is no array given: there are {}", names.join(", ")))
         })
     }
+}
+
+fn no_array(field: &str, csr: &str) -> Error {
+    Error::input(field, csr, "names compressed rows, as stiffnesses alone have: give one array")
 }
 
 #[cfg(feature = "npz")]

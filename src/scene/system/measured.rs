@@ -40,11 +40,11 @@ use crate::number::rational::to_f64;
 use crate::system::{Body, Jacobians, MeasuredSystem, Model};
 
 /// How well a measured stiffness is known unless its file says so: a Hessian by differences is good to some 10^-6 of its norm.
-pub(super) const USUAL_ACCURACY: f64 = 1e-6;
+const USUAL_ACCURACY: f64 = 1e-6;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Document {
+pub(super) struct Document {
     #[serde(rename = "schema")]
     _schema: String,
     #[serde(rename = "title")]
@@ -52,23 +52,23 @@ struct Document {
     #[serde(rename = "time_unit")]
     _time_unit: Option<String>,
     #[serde(default)]
-    mass_weighted: bool,
-    masses: Option<Reference>,
-    positions: Option<Reference>,
+    pub mass_weighted: bool,
+    pub masses: Option<Reference>,
+    pub positions: Option<Reference>,
     #[serde(default)]
-    periodic: bool,
-    accuracy: Option<Number>,
-    constraints: Option<Constraints>,
-    hydrogen_mass: Option<Number>,
+    pub periodic: bool,
+    pub accuracy: Option<Number>,
+    pub constraints: Option<Constraints>,
+    pub hydrogen_mass: Option<Number>,
     #[serde(default)]
-    keep_rigid: bool,
+    pub keep_rigid: bool,
     #[serde(default = "yes")]
-    symmetric: bool,
-    method: Option<String>,
-    potentials: Vec<PotentialDocument>,
-    labels: Option<Vec<String>>,
-    elements: Option<Vec<String>>,
-    bonded: Option<Vec<[usize; 2]>>,
+    pub symmetric: bool,
+    pub method: Option<String>,
+    pub potentials: Vec<PotentialDocument>,
+    pub labels: Option<Vec<String>>,
+    pub elements: Option<Vec<String>>,
+    pub bonded: Option<Vec<[usize; 2]>>,
 }
 
 fn yes() -> bool {
@@ -77,13 +77,13 @@ fn yes() -> bool {
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct PotentialDocument {
+pub(super) struct PotentialDocument {
     #[serde(rename = "name")]
     _name: Option<String>,
-    step: Number,
-    scale: Option<Number>,
-    stiffness: Reference,
-    force: Option<Reference>,
+    pub step: Number,
+    pub scale: Option<Number>,
+    pub stiffness: Reference,
+    pub force: Option<Reference>,
 }
 
 /// Whether some stiffness of the file stands by reference.
@@ -92,13 +92,17 @@ pub(super) fn is_by_reference(source: &Value) -> bool {
     potentials.is_some_and(|all| all.iter().any(|own| own.get("stiffness").is_some_and(Value::is_object)))
 }
 
-/// From a file of such stiffnesses, with the labels that it gives.
-pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec<String>>)> {
-    let document: Document = serde_path_to_error::deserialize(source).map_err(|fault| {
+/// The file, its arrays unread.
+pub(super) fn parse(source: &Value) -> Result<Document> {
+    serde_path_to_error::deserialize(source).map_err(|fault| {
         let field = fault.path().to_string();
         let error = no_system(fault.into_inner());
         if field == "." { error } else { error.at(field) }
-    })?;
+    })
+}
+
+/// From a file of dense stiffnesses.
+pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
     let mut read = read.collect::<Result<Vec<_>>>()?;
     let n = read.first().map_or(0, |own| own.stiffness.nrows());
@@ -110,21 +114,15 @@ pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec
         let remedy = format!("give {n} x {n} finite numbers for each potential");
         return Err(Error::input("potentials", "a stiffness", remedy));
     }
-    let masses = document.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
-    let masses = masses.map(|own| spread(own.into_values(), n)).transpose()?;
+    let masses = document.masses(n, arrays)?;
     if masses.is_none() && !document.mass_weighted {
         return Err(Error::missing("masses", "give them, or say \"mass_weighted\": true"));
     }
-    let positions = document.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
-    let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
-    document.check_atoms(n)?;
+    let positions = document.positions(n, arrays)?;
     let (is_weighted, is_periodic) = (document.mass_weighted, document.periodic);
     let mut body = Body { masses, positions, is_weighted, is_periodic, held: None };
     document.transform(&mut body, &mut read, arrays)?;
-    let accuracy = match &document.accuracy {
-        Some(number) => to_f64(&number.read("accuracy")?),
-        None => USUAL_ACCURACY,
-    };
+    let accuracy = document.accuracy()?;
     let potentials: Vec<_> = read.into_iter().map(|own| (own.step, own.stiffness)).collect();
     let model = if document.symmetric {
         let own = MeasuredSystem::new(body, potentials, accuracy)?;
@@ -139,7 +137,7 @@ pub(super) fn read(source: &Value, arrays: &Arrays) -> Result<(Model, Option<Vec
         }
         Model::NoGradient(Box::new(Jacobians::measured(&body, &potentials, accuracy, document.keep_rigid)?))
     };
-    Ok((model, document.labels))
+    Ok(model)
 }
 
 /// A potential as it was read, its stiffness times its scale.
@@ -150,6 +148,30 @@ struct Read {
 }
 
 impl Document {
+    /// Whether some stiffness is sparse.
+    pub fn is_sparse(&self) -> bool {
+        self.potentials.iter().any(|own| matches!(own.stiffness, Reference::Csr { .. }))
+    }
+
+    /// One of each degree of freedom, where any are given.
+    pub fn masses(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<f64>>> {
+        let masses = self.masses.as_ref().map(|at| at.read("masses", arrays)).transpose()?;
+        masses.map(|own| spread(own.into_values(), n)).transpose()
+    }
+
+    /// Those of the particles, where any are given; and that what is said of particles fits to them.
+    pub fn positions(&self, n: usize, arrays: &Arrays) -> Result<Option<Vec<[f64; 3]>>> {
+        let positions = self.positions.as_ref().map(|at| at.read("positions", arrays)).transpose()?;
+        let positions = positions.map(|own| triples(&own.into_values(), n)).transpose()?;
+        self.check_atoms(n).map(|()| positions)
+    }
+
+    /// That of the file, or the usual one.
+    pub fn accuracy(&self) -> Result<f64> {
+        let given = self.accuracy.as_ref().map(|number| number.read("accuracy")).transpose()?;
+        Ok(given.map_or(USUAL_ACCURACY, |own| to_f64(&own)))
+    }
+
     /// That elements and bonds are those of the particles that there are.
     fn check_atoms(&self, n: usize) -> Result<()> {
         let remedy = || format!("there are {} particles of three coordinates, counted from 0", n / 3);
@@ -200,12 +222,19 @@ impl Document {
 }
 
 impl PotentialDocument {
+    /// The step of the k-th potential.
+    pub fn step(&self, k: usize) -> Result<Rational> {
+        let field = format!("potentials[{k}].step");
+        let step = self.step.read(&field)?;
+        if step <= Rational::default() {
+            return Err(Error::input(&field, step, "a step must be positive"));
+        }
+        Ok(step)
+    }
+
     fn read(&self, k: usize, arrays: &Arrays) -> Result<Read> {
         let field = |name: &str| format!("potentials[{k}].{name}");
-        let step = self.step.read(&field("step"))?;
-        if step <= Rational::default() {
-            return Err(Error::input(&field("step"), step, "a step must be positive"));
-        }
+        let step = self.step(k)?;
         let stiffness = self.stiffness.read(&field("stiffness"), arrays)?.matrix(&field("stiffness"))?;
         let scale = self.scale.as_ref().map(|own| own.read(&field("scale"))).transpose()?;
         let scale = scale.map_or(1.0, |own| to_f64(&own));
@@ -229,7 +258,7 @@ pub(super) fn spread(masses: Vec<f64>, n: usize) -> Result<Vec<f64>> {
     }
 }
 
-pub(super) fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
+fn triples(positions: &[f64], n: usize) -> Result<Vec<[f64; 3]>> {
     if positions.len() != n || !n.is_multiple_of(3) {
         let remedy = format!("there are {n} degrees of freedom: give three coordinates for each particle");
         return Err(Error::input("positions", format!("{} numbers", positions.len()), remedy));

@@ -203,17 +203,15 @@ impl SystemScene {
     }
 
     fn parsed(arrays: Arrays, source: Value, text: Option<&str>) -> Result<SystemScene> {
-        if sparse::is_sparse(&source) {
-            check_schema(source["schema"].as_str().unwrap_or_default())?;
-            let (own, labels) = sparse::read(&source, &arrays)?;
-            let model = Model::Sparse(Box::new(own));
-            let labels = labels.map(|labels| spread(&labels, model.size())).transpose()?;
-            return Ok(SystemScene { source, arrays, model, bonds: None, labels, friction: None });
-        }
         if measured::is_by_reference(&source) {
             check_schema(source["schema"].as_str().unwrap_or_default())?;
-            let (model, labels) = measured::read(&source, &arrays)?;
-            let labels = labels.map(|labels| spread(&labels, model.size())).transpose()?;
+            let document = measured::parse(&source)?;
+            let model = if document.is_sparse() {
+                Model::Sparse(Box::new(sparse::read(&document, &arrays)?))
+            } else {
+                measured::read(&document, &arrays)?
+            };
+            let labels = document.labels.map(|labels| spread(&labels, model.size())).transpose()?;
             return Ok(SystemScene { source, arrays, model, bonds: None, labels, friction: None });
         }
         // Once more from the text, for the error to name its line.
