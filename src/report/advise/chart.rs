@@ -150,10 +150,7 @@ fn of_molecule(findings: &Findings, title: &str) -> Figure {
         |own: &Finding| own.growing.last().and_then(|last| last.upper).or(own.first.map(|first| first.1));
     let right = findings.schemes.iter().filter_map(far).fold(0.0, f64::max);
     let near = "half a turn of these modes alone";
-    let group =
-        |foot: Foot, own: &Group| foot.words(&format!("{} {} fs", called(own), nearest(own.period, 4)));
-    let foot = findings.groups.iter().take(MOST_ROWS).fold(Foot::default(), group);
-    let foot = within(foot, &findings.band, findings.friction.as_ref());
+    let foot = within(Foot::default(), &findings.band, findings.friction.as_ref());
     draw(&blocks(&findings.schemes, |own| &own.scheme, of), right, (title, near)).footed(&foot)
 }
 
@@ -173,7 +170,7 @@ fn molecule(findings: &Findings, own: &Finding) -> Vec<Line> {
     let parts = to_f64(&(own.scheme.outer() / own.scheme.inner()));
     let half = |period: f64| parts * period / PI * (PI / (2.0 * parts)).sin();
     let group = |own: &Group| Line {
-        label: called(own).into(),
+        label: format!("{}, {} fs", called(own), nearest(own.period, 4)),
         third: own.period.0 / 3.0,
         band,
         near: Some(half(own.period.0)),

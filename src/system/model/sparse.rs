@@ -112,12 +112,13 @@ impl SparseSystem {
         if let Some(count) = levels.unheld().filter(|&count| count > 0) {
             let s = if count == 1 { "" } else { "s" };
             notes.push(format!(
-                "both stiffnesses together are not proven positive along {count} direction{s} beside the rigid ones: positions that are no minimum \
-                 fall along them whatever the steps are"
+                "along {count} direction{s}, rigid motions aside, both stiffnesses together are not proven positive, as where positions are no \
+                 minimum: the system may fall along them at any step"
             ));
             notes.extend(levels.first_resonance(outer.inner_steps()).map(|(lo, hi)| {
                 format!(
-                    "but for such falls every outer step with as many inner ones is proven free of resonances up to {lo:.6}; {hi:.6} is not"
+                    "apart from such falls nothing grows at any outer step up to {lo:.6} with as many inner steps; at {hi:.6} a resonance grows \
+                     (both proven)"
                 )
             }));
         }

@@ -247,8 +247,8 @@ impl SparseLevels {
         found.map(|[low, high]| [low - off, high + off])
     }
 
-    /// How many directions beside the rigid ones F + S is not proven to hold: along which it is negative, or too small for doubles to see.
-    /// `None` where the factorization does not count them.
+    /// The number of directions, rigid motions aside, along which F + S is not proven positive: it is negative there, or too small for doubles to
+    /// tell. `None` where the factorization does not count them.
     pub fn unheld(&self) -> Option<usize> {
         *self.unheld.get_or_init(|| self.not_above_zero(self.errors[0] + self.errors[1]))
     }
