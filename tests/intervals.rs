@@ -239,6 +239,65 @@ fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
     }
 }
 
+/// Motions of different symmetry cross at irrational numbers without growth: a mirror's two families in chains, and the families of equal arms
+/// about one atom, of which two are alike and leave everything unstable at the same place.
+#[test]
+fn crossings_of_different_symmetries_leave_nothing_open() {
+    let mut numbers = Numbers(29);
+    for k in 0..24 {
+        let mut pick = |n: u64| (1 + numbers.below(n)).to_string();
+        let n = 3 + k % 3;
+        let (mut fast, mut slow, mut masses) = (Vec::new(), Vec::new(), vec![String::from("1"); n]);
+        if k % 2 == 0 {
+            for i in 0..n.div_ceil(2) {
+                let (mass, wall, bond) = (pick(3), pick(12), pick(12));
+                for i in [i, n - 1 - i] {
+                    masses[i].clone_from(&mass);
+                    slow.push(json!([i, null, wall]));
+                    fast.push(json!([i, if i < n / 2 { i + 1 } else { i - 1 }, bond]));
+                }
+            }
+        } else {
+            let (bond, wall) = (pick(12), pick(12));
+            masses[0] = pick(4);
+            slow.push(json!([0, null, pick(12)]));
+            fast.extend((1..n).map(|i| json!([0, i, bond])));
+            slow.extend((1..n).map(|i| json!([i, null, wall])));
+        }
+        let [step, outer] = [["1/4", "3/4"], ["1/3", "1/2"]][k / 2 % 2];
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": masses, "potentials": [
+                {"name": "fast", "step": step, "scale": "1", "springs": fast},
+                {"name": "slow", "step": outer, "scale": "1", "springs": slow},
+            ],
+        });
+        for (path, range, ends) in
+            [("potentials.0.scale", "1/4..3", (0.25, 3.0)), ("potentials.1.scale", "1/4..5", (0.25, 5.0))]
+        {
+            let span = format!("{path}={range}").parse().unwrap();
+            let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+            assert_whole(&found.stretches, ends, &format!("{path} of {source}"));
+            assert_true(&source, path, &found.stretches, 2, &mut numbers);
+        }
+    }
+}
+
+/// Two modes under two clocks, one of them at −1 with a Jordan block for all strengths of the slow force: all entries of the matrices that show the
+/// block stand in pairs of opposite sign.
+#[test]
+fn a_block_whose_entries_cancel_leaves_nothing_open() {
+    let source = json!({
+        "schema": "kickdrift/system/1", "masses": ["2", "2"], "potentials": [
+            {"step": "1/4", "springs": [[0, 1, "16"]]},
+            {"step": "3/4", "scale": "1", "springs": [[0, null, "4"], [1, null, "1"]]},
+        ],
+    });
+    let span = "potentials.1.scale=1/4..5".parse().unwrap();
+    let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap().stretches;
+    assert_eq!(found, [Stretch { lo: 0.25, hi: 5.0, verdict: Holds::Unstable }]);
+    assert_true(&source, "potentials.1.scale", &found, 20, &mut Numbers(7));
+}
+
 /// One entry of a mass matrix that is not diagonal, on the diagonal and off it.
 #[test]
 fn intervals_of_masses_off_the_diagonal_leave_nothing_open_and_agree_with_exact_verdicts() {

@@ -1,8 +1,17 @@
-//! Commuting potentials, split exactly: rational common eigenvectors become oscillators of their own.
+//! Systems split exactly into rational subspaces that all potentials leave invariant.
 //!
 //! Where the M⁻¹ K_k commute, they share their eigenspaces, and each common eigenvector v is an oscillator with the
 //! stiffnesses vᵀ K_k v/vᵀ M v. One combination of the M⁻¹ K_k separates them; its rational eigenvalues are found
 //! exactly, and what has irrational ones stays together, M-orthogonal to the rest.
+//!
+//! Where they do not commute, an X that commutes with each of them, self-adjoint in the metric of M, has eigenspaces that all
+//! leave invariant: a mirror of a molecule splits it into symmetric and antisymmetric motions. With X = M⁻¹ Y that is
+//!
+//! ```text
+//!     Y = Yᵀ,      Y M⁻¹ K_k = K_k M⁻¹ Y for all k,
+//! ```
+//!
+//! linear in Y; Y = M is always a solution.
 
 use std::collections::BTreeMap;
 
@@ -13,8 +22,8 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 
 use crate::number::polynomial::squarefree;
-use crate::number::{Polynomial, Rational, U};
-use crate::system::exact::roots;
+use crate::number::{Polynomial, PrimeField, Rational, U};
+use crate::system::exact::{modular, roots};
 use crate::system::half::compose::{inverse_mass, rounded_inverse_mass};
 use crate::system::linear::sparse::{Symmetric, null_space};
 use crate::system::linear::system::System;
@@ -39,11 +48,7 @@ pub(in crate::system) fn invariant_subspaces(
         return None;
     }
     let mut subspaces = Vec::new();
-    let mut open = vec![
-        (0..n)
-            .map(|i| (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect())
-            .collect::<Subspace>(),
-    ];
+    let mut open = vec![whole(n)];
     for operator in &operators {
         let mut next = Vec::new();
         for space in open {
@@ -87,6 +92,57 @@ pub(in crate::system) fn may_split(system: &System, stiffnesses: &[&Symmetric]) 
             .any(|(x, size)| x.abs() > 2.0 * rounding * size + f64::MIN_POSITIVE)
     };
     !products.iter().enumerate().any(|(i, a)| products[..i].iter().any(|b| differ(a, b)))
+}
+
+/// Invariant subspaces of potentials that need not commute, M-orthogonal to each other: the eigenspaces of a symmetry with
+/// rational eigenvalues and what is left of it; `None` where none with two of them is found.
+pub(in crate::system) fn symmetric_subspaces(
+    system: &System,
+    stiffnesses: &[&Symmetric],
+) -> Option<Vec<Subspace>> {
+    let inverse = dense_inverse(system);
+    let operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
+    symmetries(&operators).iter().find_map(|y| {
+        let found = eigenspaces(system, &(&inverse * y), whole(system.size()));
+        (found.len() > 1).then_some(found)
+    })
+}
+
+/// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its rank modulo a prime, which is
+/// no larger than the true one.
+fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {
+    let n = operators.first().map_or(0, DMatrix::nrows);
+    let unknown = |i: usize, j: usize| i.max(j) * (i.max(j) + 1) / 2 + i.min(j);
+    let count = n * (n + 1) / 2;
+    let mut equations: Vec<BTreeMap<usize, Rational>> = Vec::new();
+    for a in operators {
+        for (i, j) in (0..n).flat_map(|i| (0..i).map(move |j| (i, j))) {
+            let mut equation = BTreeMap::new();
+            for k in 0..n {
+                *equation.entry(unknown(i, k)).or_insert_with(Rational::zero) += &a[(k, j)];
+                *equation.entry(unknown(k, j)).or_insert_with(Rational::zero) -= &a[(k, i)];
+            }
+            equation.retain(|_, x| !x.is_zero());
+            equations.push(equation);
+        }
+    }
+    let field = PrimeField::LARGEST;
+    let residue = |x: &Rational| field.of_rational(x);
+    let entry = |i: usize, j: usize| equations[i].get(&j).map_or(Some(field.of(0)), residue);
+    let rows: Option<Vec<u64>> = (0..equations.len())
+        .flat_map(|i| (0..count).map(move |j| (i, j)))
+        .map(|(i, j)| entry(i, j))
+        .collect();
+    let rank = rows.map(|own| modular::rank(&field, DMatrix::from_row_slice(equations.len(), count, &own)));
+    if rank.is_some_and(|rank| rank + 1 >= count) {
+        return Vec::new();
+    }
+    let matrix = |y: &[Rational]| DMatrix::from_fn(n, n, |i, j| y[unknown(i, j)].clone());
+    null_space(equations, count).iter().map(|(_, y)| matrix(y)).collect()
+}
+
+fn whole(n: usize) -> Subspace {
+    (0..n).map(|i| (0..n).map(|j| Rational::from_integer(i64::from(i == j).into())).collect()).collect()
 }
 
 fn dense_inverse(system: &System) -> DMatrix<Rational> {

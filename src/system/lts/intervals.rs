@@ -38,7 +38,11 @@ impl LocalSteps {
     /// A budget error where the determinants would cost more; as [`decide_system`].
     pub fn stretches(&self, range: (f64, f64), limits: &Limits) -> Result<Vec<Stretch>> {
         let verdict = |x: &Rational| Ok(decide_system(self.at(x)?.system(), limits)?.holds());
-        between(range, &self.gaps(range, limits)?, &verdict, &|_, _| Ok(Holds::NotTold))
+        // At a simple root one eigenvalue passes an end. On the side where it is within both, others are unstable, and stay so.
+        let within = |gap: &Gap, around: Holds| {
+            Ok(if gap.is_simple() && around == Holds::Unstable { around } else { Holds::NotTold })
+        };
+        between(range, &self.gaps(range, limits)?, &verdict, &within)
     }
 
     /// What these cost, in products of machine words.

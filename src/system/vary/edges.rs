@@ -67,7 +67,14 @@ impl Family<'_> {
         let Some(gaps) = plan.gaps((lo, hi), &fraction)? else { return Ok(None) };
         let verdict = |x: &Rational| Ok(decide_system(&(self.at)(&self.linear.of(x))?, limits)?.holds());
         self.over_cells(|cells| {
-            between((lo, hi), &gaps, &verdict, &|lo, hi| self.cell(cells, lo, hi)).map(Some)
+            let within = |gap: &Gap, around: Holds| {
+                let sides = [gap.lo, gap.hi].map(|x| fraction(&exact(x)));
+                match around {
+                    Holds::Unstable if plan.is_unstable_in(gap, sides, limits)? => Ok(around),
+                    _ => self.cell(cells, gap.lo, gap.hi),
+                }
+            };
+            between((lo, hi), &gaps, &verdict, &within).map(Some)
         })
     }
 
@@ -114,12 +121,12 @@ impl Family<'_> {
     }
 }
 
-/// What lies between gaps, each decided at one number; `cell` is asked of a gap between two of one verdict.
+/// What lies between gaps, each decided at one number; `within` is asked of a gap between two of one verdict.
 pub(in crate::system) fn between(
     (lo, hi): (f64, f64),
     gaps: &[Gap],
     verdict: &impl Fn(&Rational) -> Result<Holds>,
-    cell: &impl Fn(f64, f64) -> Result<Holds>,
+    within: &impl Fn(&Gap, Holds) -> Result<Holds>,
 ) -> Result<Vec<Stretch>> {
     let free = |lo: f64, hi: f64| -> Result<Option<Stretch>> {
         let sample = || if lo == hi { exact(lo) } else { inside(lo, hi) };
@@ -144,9 +151,8 @@ pub(in crate::system) fn between(
         // Two doubles without one between them: either a gap lies there, or nothing can change.
         let gap = gaps.iter().find(|gap| gap.double().is_none() && gap.lo == last.hi);
         let holds = |gap: &Gap| match &gap.exact {
-            _ if is_same(gap, own.verdict) => Ok(own.verdict),
             Some(x) => verdict(x),
-            None => cell(gap.lo, gap.hi),
+            None => within(gap, own.verdict),
         };
         if gap.map_or(Ok(true), |gap| Ok(holds(gap)? == own.verdict))? {
             all.last_mut().expect("just seen").hi = own.hi;
@@ -155,13 +161,6 @@ pub(in crate::system) fn between(
         }
     }
     Ok(all)
-}
-
-/// Whether what is unstable on both sides of a gap is so within. At a simple root either one μ crosses 0 or −1, or two meet that are
-/// real on one side, and all others stay where they are. Where these meet outside \[−1, 0\] they are unstable themselves; else one side has
-/// them within it, so that others are unstable there, and at the root.
-fn is_same(gap: &Gap, verdict: Holds) -> bool {
-    gap.is_simple && verdict == Holds::Unstable
 }
 
 /// A number well within (lo, hi), of small denominator where it can be.

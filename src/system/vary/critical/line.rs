@@ -5,7 +5,7 @@ use crate::number::Rational;
 use crate::system::half::compose::connected;
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
-use crate::system::linear::split::{Subspace, invariant_subspaces};
+use crate::system::linear::split::{Subspace, invariant_subspaces, symmetric_subspaces};
 use crate::system::linear::system::{Potential, System};
 
 /// Parts of at most this size are split along rational eigenvectors that all systems have in common.
@@ -58,7 +58,8 @@ impl Line {
         Ok(Frame::new(&System::new(lo.mass().clone(), both)?))
     }
 
-    /// The connected parts that some potential acts on, split where all potentials of all systems commute and masses do not vary.
+    /// The connected parts that some potential acts on, split where all potentials of all systems commute and masses do not vary, and along
+    /// the symmetries that all systems have in common.
     pub fn parts(&self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
         let matrices = |own: &System| {
@@ -68,15 +69,20 @@ impl Line {
         let all = [matrices(lo), matrices(hi)].concat();
         let parts = connected(lo.size(), all.iter().flat_map(Symmetric::places));
         let acted = parts.into_iter().map(|dofs| Line::new([lo, hi].map(|own| own.part(&dofs))));
-        let acts = |own: &Line| {
-            own.ends.iter().any(|own| own.potentials().iter().any(|own| !own.stiffness.is_zero()))
-        };
-        acted.filter(acts).flat_map(Line::split).collect()
+        acted.filter(Line::is_acted_on).flat_map(Line::split).collect()
+    }
+
+    /// Whether any potential acts.
+    fn is_acted_on(&self) -> bool {
+        self.ends.iter().any(|own| own.potentials().iter().any(|own| !own.stiffness.is_zero()))
     }
 
     fn split(self) -> Vec<Line> {
-        if self.varies_mass() || self.ends[0].size() > SMALL {
+        if self.ends[0].size() > SMALL {
             return vec![self];
+        }
+        if self.varies_mass() {
+            return self.along_symmetries().unwrap_or_else(|| vec![self]);
         }
         let Ok(frame) = self.frame() else { return vec![self] };
         let complement = frame.complement(&self.ends[0]);
@@ -84,12 +90,23 @@ impl Line {
         let stiffnesses: Vec<_> =
             vibrating.ends.iter().flat_map(|own| own.potentials().iter().map(|own| &own.stiffness)).collect();
         let Some(spaces) = invariant_subspaces(&vibrating.ends[0], &stiffnesses) else {
-            return vec![vibrating];
+            return vibrating.along_symmetries().unwrap_or_else(|| vec![vibrating]);
         };
         let along = |space: &Subspace| {
             let ends = vibrating.ends.each_ref().map(|own| own.restricted(space));
             Line { ends, commutes: true }
         };
         spaces.iter().map(along).collect()
+    }
+
+    /// The eigenspaces of a symmetry, each split in turn.
+    fn along_symmetries(&self) -> Option<Vec<Line>> {
+        let [lo, hi] = &self.ends;
+        let stiffnesses = self.ends.iter().flat_map(|own| own.potentials()).map(|own| &own.stiffness);
+        // What leaves M of one end and M⁻¹ of it times M of the other invariant splits the masses in between, too.
+        let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
+        let spaces = symmetric_subspaces(lo, &all)?;
+        let along = |space: &Subspace| Line::new(self.ends.each_ref().map(|own| own.restricted(space)));
+        Some(spaces.iter().map(along).filter(Line::is_acted_on).flat_map(Line::split).collect())
     }
 }

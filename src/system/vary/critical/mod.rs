@@ -45,10 +45,12 @@ use num_bigint::BigInt;
 
 use crate::error::Result;
 use crate::number::Rational;
+use crate::system::verdict::decide::decide_system;
 use crate::system::verdict::limits::Limits;
+use crate::system::verdict::measured::Holds;
 
-/// The half periods of all parts that change, and what is to be found of each.
-pub(super) struct Plan(Vec<(Half, Shape)>);
+/// All parts, with the half periods of those that change and what is to be found of each.
+pub(super) struct Plan(Vec<(Line, Option<(Half, Shape)>)>);
 
 impl Plan {
     /// `None` where the polynomials would cost too much.
@@ -57,17 +59,26 @@ impl Plan {
     /// As [`Line::at`].
     pub fn new(line: &Line, limits: &Limits) -> Result<Option<Plan>> {
         let mut parts = Vec::new();
-        for part in line.parts().iter().filter(|part| !part.is_constant()) {
-            let half = Half::new(part)?;
+        for part in line.parts() {
+            if part.is_constant() {
+                parts.push((part, None));
+                continue;
+            }
+            let half = Half::new(&part)?;
             let Some(shape) = polynomials::shape(&half, limits) else { return Ok(None) };
-            parts.push((half, shape));
+            parts.push((part, Some((half, shape))));
         }
         Ok(Some(Plan(parts)))
     }
 
+    /// Those that change, with their places among all.
+    fn changing(&self) -> impl Iterator<Item = (usize, &(Half, Shape))> {
+        self.0.iter().enumerate().filter_map(|(k, (_, own))| Some((k, own.as_ref()?)))
+    }
+
     /// Products of machine words, roughly.
     pub fn cost(&self) -> f64 {
-        self.0.iter().map(|(half, shape)| shape.cost(half)).sum()
+        self.changing().map(|(_, (half, shape))| shape.cost(half)).sum()
     }
 
     /// The gaps between doubles from `lo` to `hi` that hold all places where the verdict can change, increasing; `place` takes a number to
@@ -81,11 +92,35 @@ impl Plan {
         place: &(impl Fn(&Rational) -> Rational + Sync),
     ) -> Result<Option<Vec<Gap>>> {
         let mut gaps = Vec::new();
-        for (half, shape) in &self.0 {
+        for (part, (half, shape)) in self.changing() {
             let Some(found) = polynomials::critical(half, shape)? else { return Ok(None) };
-            gaps.extend(place::gaps(&found, ends, place)?);
+            gaps.extend(place::gaps(part, &found, ends, place)?);
         }
         Ok(Some(place::united(gaps)))
+    }
+
+    /// Whether some part is unstable at all places in a gap, whatever the others are, since it is on both sides, at s from and to, and has at
+    /// most one simple root between. At such a root either one μ crosses 0 or −1, or two meet that are real on one side, and all others stay
+    /// where they are. Where these meet outside \[−1, 0\] they are unstable themselves; else one side has them within it, so that others are
+    /// unstable there, and at the root.
+    ///
+    /// # Errors
+    /// As [`decide_system`].
+    pub fn is_unstable_in(&self, gap: &Gap, sides: [Rational; 2], limits: &Limits) -> Result<bool> {
+        for (k, (part, _)) in self.0.iter().enumerate() {
+            let roots = gap.parts.iter().find(|own| own.0 == k);
+            if roots.is_some_and(|own| !own.1) {
+                continue;
+            }
+            // Without a root both sides are alike.
+            let mut sides = sides.iter().take(if roots.is_some() { 2 } else { 1 });
+            if sides.try_fold(true, |is, s| {
+                Ok(is && decide_system(&part.at(s)?, limits)?.holds() == Holds::Unstable)
+            })? {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 }
 
@@ -99,5 +134,5 @@ pub(in crate::system) fn gaps_of(
     place: &(impl Fn(&Rational) -> Rational + Sync),
 ) -> Result<Vec<Gap>> {
     let found: Vec<_> = polynomials.iter().map(|own| Critical::new(own)).collect();
-    Ok(place::united(place::gaps(&found, ends, place)?))
+    Ok(place::united(place::gaps(0, &found, ends, place)?))
 }

@@ -17,18 +17,19 @@ pub(in crate::system) struct Gap {
     pub hi: f64,
     /// That place, where it is rational, of a small denominator or a double, and the only one.
     pub exact: Option<Rational>,
-    /// Whether there is but one, a simple root of one polynomial.
-    pub is_simple: bool,
+    /// The parts of the system whose polynomials have roots there, increasing, and whether each has but one, a simple root of one polynomial.
+    pub parts: Vec<(usize, bool)>,
 }
 
 /// Bits in which signs are sought before they are computed exactly.
 const BITS: u32 = 256;
 
-/// The roots of the polynomials in \[0, 1\], in no order.
+/// The roots of a part's polynomials in \[0, 1\], in no order.
 ///
 /// # Errors
 /// Where the work is stopped.
 pub(super) fn gaps(
+    part: usize,
     polynomials: &[Critical],
     ends: (f64, f64),
     place: &(impl Fn(&Rational) -> Rational + Sync),
@@ -37,7 +38,8 @@ pub(super) fn gaps(
         let multiple = roots(&own.multiple, ends, place);
         let is_simple = |gap: &Gap| multiple.iter().all(|own| own.hi <= gap.lo || gap.hi <= own.lo);
         let all = roots(&own.simple, ends, place);
-        Ok(all.into_iter().map(|gap| Gap { is_simple: is_simple(&gap), ..gap }).collect::<Vec<_>>())
+        let of_part = |gap: Gap| Gap { parts: vec![(part, is_simple(&gap))], ..gap };
+        Ok(all.into_iter().map(of_part).collect::<Vec<_>>())
     })?;
     Ok(found.concat())
 }
@@ -56,7 +58,12 @@ fn roots(f: &[BigInt], ends: (f64, f64), place: &impl Fn(&Rational) -> Rational)
 
 impl Gap {
     fn at(x: f64) -> Gap {
-        Gap { lo: x.next_down(), hi: x.next_up(), exact: from_f64_exact(x), is_simple: true }
+        Gap { lo: x.next_down(), hi: x.next_up(), exact: from_f64_exact(x), parts: Vec::new() }
+    }
+
+    /// Whether there is but one place, a simple root of one polynomial.
+    pub fn is_simple(&self) -> bool {
+        matches!(self.parts[..], [(_, true)])
     }
 
     /// The double strictly between its ends, where that is the place.
@@ -74,7 +81,14 @@ pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
             Some(last) if own.lo < last.hi => {
                 // The same double twice is still alone.
                 let exact = last.exact.take().filter(|x| own.exact.as_ref() == Some(x));
-                *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, is_simple: false };
+                let mut parts = std::mem::take(&mut last.parts);
+                for (part, is_simple) in own.parts {
+                    match parts.iter_mut().find(|known| known.0 == part) {
+                        Some(known) => known.1 = false,
+                        None => parts.push((part, is_simple)),
+                    }
+                }
+                *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, parts };
             }
             _ => all.push(own),
         }
@@ -115,7 +129,7 @@ impl Own<'_> {
                     false => simplest(&least, &most),
                 };
                 let exact = Some(exact).filter(|x| is_root(&place(x)));
-                return Gap { lo, hi, exact, is_simple: true };
+                return Gap { lo, hi, exact, parts: Vec::new() };
             }
             let s = place(&from_f64_exact(middle).expect("finite"));
             if is_root(&s) {
@@ -137,18 +151,20 @@ mod tests {
         // (8 s² − 1) (4 s − 1) (s − 1), whose 1/4 is double: x = 2 s = 1/√2, 1/2 and 2.
         let f: Vec<BigInt> = [-1, 5, 4, -40, 32].map(BigInt::from).into();
         let f = Critical { simple: f, multiple: [-1, 4].map(BigInt::from).into() };
-        let all = united(gaps(&[f], (0.0, 2.0), &place).unwrap());
+        let all = united(gaps(0, &[f], (0.0, 2.0), &place).unwrap());
         let [half, root, two] = &all[..] else { panic!("three") };
-        assert_eq!((half, two), (&Gap { is_simple: false, ..Gap::at(0.5) }, &Gap::at(2.0)));
+        let of = |parts: &[(usize, bool)], x: f64| Gap { parts: parts.to_vec(), ..Gap::at(x) };
+        assert_eq!((half, two), (&of(&[(0, false)], 0.5), &of(&[(0, true)], 2.0)));
         assert!(root.lo.powi(2) < 0.5 && root.hi.powi(2) > 0.5 && root.hi == root.lo.next_up());
-        assert!(root.is_simple && root.exact.is_none());
-        let [a, b] = [0.7, 0.8].map(Gap::at);
-        assert_eq!(united(vec![b.clone(), a.clone(), b.clone()]), [a.clone(), Gap { is_simple: false, ..b }]);
-        let near = Gap { lo: 0.7, hi: 0.7f64.next_up(), exact: None, is_simple: true };
-        assert_eq!(united(vec![near, a.clone()]), [Gap { exact: None, is_simple: false, ..a }]);
+        assert!(root.is_simple() && root.exact.is_none());
+        // Twice in one part, and once in each of two.
+        let (a, b) = (of(&[(1, true)], 0.7), of(&[(1, true)], 0.8));
+        assert_eq!(united(vec![b.clone(), a.clone(), b.clone()]), [a.clone(), of(&[(1, false)], 0.8)]);
+        let near = Gap { lo: 0.7, hi: 0.7f64.next_up(), exact: None, parts: vec![(0, true)] };
+        assert_eq!(united(vec![near, a]), [Gap { exact: None, ..of(&[(0, true), (1, true)], 0.7) }]);
         // 3 s − 1: x = 2/3 is no double.
         let f = Critical { simple: [-1, 3].map(BigInt::from).into(), multiple: vec![BigInt::one()] };
-        let [third] = &gaps(&[f], (0.0, 2.0), &place).unwrap()[..] else { panic!("one") };
+        let [third] = &gaps(0, &[f], (0.0, 2.0), &place).unwrap()[..] else { panic!("one") };
         assert!(third.exact == Some(Rational::new(2.into(), 3.into())) && third.double().is_none());
     }
 }

@@ -261,12 +261,13 @@ impl Own {
                     })
                     .collect(),
             };
-            let entries = matrices.iter().flat_map(|own| own.iter());
-            for (k, &x) in entries.enumerate().filter(|(_, x)| **x != 0) {
-                is_semisimple = false;
-                // Any weights below 2^16: two multiplicative sequences.
-                for (sum, factor) in off.iter_mut().zip([40_503, 30_011]) {
-                    *sum = field.add(*sum, field.mul(field.of((k as u64 + 1) * factor % 65_521), x));
+            // Weights below 2^16, powers of two numbers modulo a prime: weights that are linear in the place are lost on [[1, -1], [-1, 1]].
+            let mut weights = [1; 2];
+            for &x in matrices.iter().flat_map(|own| own.iter()) {
+                is_semisimple &= x == 0;
+                for ((sum, weight), factor) in off.iter_mut().zip(&mut weights).zip([40_503, 30_011]) {
+                    *weight = *weight * factor % 65_521;
+                    *sum = field.add(*sum, field.mul(field.of(*weight), x));
                 }
             }
         }
