@@ -163,10 +163,23 @@ impl System {
 
     fn map(&self, scene: &SystemScene, axes: &Scan, work: &Work) -> Result<SystemMap> {
         let (xs, ys, limits) = (axes.x.values(), axes.ys(), work.products());
-        let bar = work.count((xs.len() * ys.len()) as u64, "points");
+        let points = xs.len() * ys.len();
+        let cost = System::cost_of_map(axes, &xs, &ys)?;
+        limits.allow(cost as u64, || format!("a map of {points} points"))?;
+        let bar = work.count(points as u64, "points");
         let decide = |x: &_, y: &_| axes.at(x, y)?.model().decide(self.route(), &limits);
         let points = scan(&xs, &ys, decide, |done| bar.advance(done as u64))?;
         Ok(SystemMap { names: axes.names(), xs, ys, points, time_unit: scene.time_unit().map(String::from) })
+    }
+
+    /// The products that a map costs, roughly, from those of some points spread over it: to ask each takes as long as many a verdict.
+    fn cost_of_map(axes: &Scan, xs: &[Rational], ys: &[Rational]) -> Result<f64> {
+        let points = xs.len() * ys.len();
+        let asked = points.min(ASKED);
+        let place = |k: usize| (2 * k + 1) * points / (2 * asked);
+        let cost = |k| Ok(axes.at(&xs[place(k) % xs.len()], &ys[place(k) / xs.len()])?.model().cost() as f64);
+        let costs = (0..asked).map(cost).collect::<Result<Vec<_>>>()?;
+        Ok(costs.iter().sum::<f64>() * points as f64 / asked as f64)
     }
 
     /// That only one kind of answer is asked for.
@@ -183,6 +196,9 @@ impl System {
         }
     }
 }
+
+/// The points of a map that are asked what they cost.
+const ASKED: usize = 16;
 
 impl Question for System {
     const NAME: &'static str = "system";
