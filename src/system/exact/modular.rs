@@ -1,9 +1,11 @@
 //! Linear algebra over prime fields.
 
+use std::collections::BTreeMap;
+
 use nalgebra::DMatrix;
 use num_bigint::BigInt;
 
-use crate::number::PrimeField;
+use crate::number::{PrimeField, Rational};
 
 /// The matrix modulo the prime.
 pub(in crate::system) fn matrix(field: &PrimeField, m: &DMatrix<BigInt>) -> DMatrix<u64> {
@@ -33,6 +35,19 @@ pub(in crate::system) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize 
         rank += 1;
     }
     rank
+}
+
+/// Whether rows of rationals, of n columns, are seen to have the rank n, which they have where they have it modulo a prime.
+pub(in crate::system) fn is_of_rank(rows: &[BTreeMap<usize, Rational>], n: usize) -> bool {
+    let field = PrimeField::LARGEST;
+    let mut m = DMatrix::from_element(rows.len(), n, 0);
+    for (i, row) in rows.iter().enumerate() {
+        for (&j, x) in row {
+            let Some(x) = field.of_rational(x) else { return false };
+            m[(i, j)] = x;
+        }
+    }
+    rows.len() >= n && rank(&field, m) == n
 }
 
 /// 1/m and det m; `None` where that is 0. Gauss and Jordan.

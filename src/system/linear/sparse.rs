@@ -12,6 +12,7 @@ use num_traits::{One, Signed, Zero};
 use crate::error::{Error, Result};
 use crate::number::rational::{from_f64_exact, product_to_f64};
 use crate::number::{Rational, Twofold, U};
+use crate::system::exact::modular;
 use crate::system::half::norm;
 use crate::system::signs::inertia::{Inertia, proven};
 
@@ -410,10 +411,15 @@ impl TryFrom<&DMatrix<f64>> for Symmetric {
 }
 
 /// A basis of {x : rows x = 0}: (free coordinate, vector) pairs, each vector 1 there and 0 at the other free ones.
+///
+/// Of rows with many entries it is empty where they are independent modulo a prime: elimination over ℚ makes numbers of n times their length.
 pub(in crate::system) fn null_space(
     mut rows: Vec<BTreeMap<usize, Rational>>,
     n: usize,
 ) -> Vec<(usize, Vec<Rational>)> {
+    if 8 * rows.iter().map(BTreeMap::len).sum::<usize>() > n * n && modular::is_of_rank(&rows, n) {
+        return Vec::new();
+    }
     // Gauss and Jordan; pivots[i] = the column that row i was solved for.
     let mut solved: Vec<(usize, BTreeMap<usize, Rational>)> = Vec::new();
     while let Some(mut row) = rows.pop() {

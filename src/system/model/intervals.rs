@@ -42,7 +42,7 @@ impl Model {
                 own.stretches_of_scale(*level, range, *factor, width)
             }
             (Number::Linear(at), _) => {
-                let at = |x: &Rational| Ok(at(x)?.system().clone());
+                let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
@@ -71,7 +71,7 @@ impl Model {
                 Ok(measured(self.size()))
             }
             (Number::Linear(at), _) => {
-                let at = |x: &Rational| Ok(at(x)?.system().clone());
+                let at = |x: &Rational| Ok(at(x)?.moving()?.into_owned());
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
@@ -93,7 +93,7 @@ impl Model {
         if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
             return Err(self.refused("the intervals of a step"));
         }
-        let (system, own) = (self.system(), self.outer_step());
+        let (system, own) = (self.moving()?, self.outer_step());
         // In the old steps all stiffnesses grow as the square of the step does.
         let at = |square: &Rational| system.with(&(square / (&own * &own)), &Rational::one());
         ask(&Family { linear: Linear::Square, at: &at })
@@ -131,7 +131,7 @@ impl Model {
             Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("the verdict at another step")),
             Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
             Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
-            _ => decide_by(Route::Cheapest, &self.system().with(&Rational::one(), &factor)?, limits),
+            _ => decide_by(Route::Cheapest, &self.moving()?.with(&Rational::one(), &factor)?, limits),
         }
     }
 

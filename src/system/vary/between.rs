@@ -12,7 +12,7 @@ use faer::Mat;
 use num_traits::{Signed, Zero};
 
 use crate::error::{Error, Result};
-use crate::number::rational::{ratio, to_f64};
+use crate::number::rational::{from_f64_exact, ratio, to_f64};
 use crate::number::{Rational, U};
 use crate::system::half::compose::inverted;
 use crate::system::half::float::scaled_program;
@@ -24,6 +24,7 @@ use crate::system::linear::system::{Potential, System};
 use crate::system::signs;
 use crate::system::signs::action::{self, Counts, differ, is_total_definite};
 use crate::system::signs::envelope::Sign;
+use crate::system::signs::inertia;
 use crate::system::spectrum::discs::Spectrum;
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::measured::Holds;
@@ -60,8 +61,7 @@ pub(in crate::system) struct Cells<'a> {
     at: &'a (dyn Fn(f64) -> Result<System> + Sync),
     /// Whether they differ by a positive factor of all stiffnesses alone, growing with the number, which needs no check then.
     is_scaled: bool,
-    /// Of such, how each stiffness moves, the rigid modes, and whether Σ K_k is proven positive definite but for these.
-    courses: OnceLock<Vec<Course>>,
+    /// Of such, the rigid modes, and whether Σ K_k is proven positive definite but for these.
     frame: OnceLock<Frame>,
     is_definite: OnceLock<bool>,
     /// Counts at ends of cells, which neighbours share, by the bits of the number.
@@ -76,8 +76,8 @@ const MOST_ENDS: usize = 128;
 
 impl<'a> Cells<'a> {
     pub fn new(at: &'a (dyn Fn(f64) -> Result<System> + Sync), is_scaled: bool) -> Cells<'a> {
-        let (courses, frame, is_definite) = Default::default();
-        Cells { at, is_scaled, courses, frame, is_definite, counts: Mutex::default() }
+        let (frame, is_definite) = Default::default();
+        Cells { at, is_scaled, frame, is_definite, counts: Mutex::default() }
     }
 
     /// What is proven of all systems of numbers between two: those of both ends and their mean are given, masses and stiffnesses
@@ -98,11 +98,8 @@ impl<'a> Cells<'a> {
                 return Ok(Holds::NotTold);
             }
         }
-        let courses = || -> Vec<Course> {
-            let pairs = lo.potentials().iter().zip(hi.potentials());
-            pairs.map(|(a, b)| Course::of(&a.stiffness, &b.stiffness)).collect()
-        };
-        let courses = if self.is_scaled { self.courses.get_or_init(courses).clone() } else { courses() };
+        let pairs = lo.potentials().iter().zip(hi.potentials()).filter(|_| !self.is_scaled);
+        let courses = pairs.map(|(a, b)| Course::of(&a.stiffness, &b.stiffness)).collect();
         let frame = || Frame::new(middle);
         let frame = if self.is_scaled { self.frame.get_or_init(frame).clone() } else { frame() };
         let cell = Cell { ends, systems, frame, courses, cells: self };
@@ -203,18 +200,23 @@ pub(in crate::system) fn verify_line(systems: [&System; 3]) -> Result<()> {
     Ok(())
 }
 
-/// Less and more than all on a segment: its middle less and more the sums of the rows of |K_hi − K_lo|/2 on the diagonal (Gershgorin).
-fn spread([lo, hi]: [&Symmetric; 2], middle: &Symmetric) -> [Symmetric; 2] {
-    let [minus, half] = [ratio(-1, 1), ratio(1, 2)];
-    let mut difference = hi.clone();
-    difference.add_all(&lo.scaled(&minus));
-    let row = |i: usize| difference.row(i).values().fold(Rational::zero(), |sum, x| sum + x.abs()) * &half;
-    let shift = Symmetric::diagonal(&(0..difference.size()).map(row).collect::<Vec<_>>());
-    [minus, ratio(1, 1)].map(|sign| {
-        let mut moved = middle.clone();
-        moved.add_all(&shift.scaled(&sign));
+/// Less and more than all on the segment from a to b: with b − a + β I ≥ 0 and a − b + γ I ≥ 0 these are a − β I and b + β I, or b − γ I
+/// and a + γ I.
+fn spread([a, b]: [&Symmetric; 2]) -> Option<[Symmetric; 2]> {
+    let minus = ratio(-1, 1);
+    let mut difference = b.clone();
+    difference.add_all(&a.scaled(&minus));
+    let rounded = difference.rounded();
+    let slack = 1.01 * U * norm::frobenius(&rounded);
+    let (beta, gamma) = (inertia::lack(&rounded, slack), inertia::lack(&-&rounded, slack));
+    let (bound, [lo, hi]) = if beta <= gamma { (beta, [a, b]) } else { (gamma, [b, a]) };
+    let bound = from_f64_exact(bound)?;
+    let moved = |own: &Symmetric, by: &Rational| {
+        let mut moved = own.clone();
+        moved.add_all(&Symmetric::diagonal(&vec![by.clone(); own.size()]));
         moved
-    })
+    };
+    Some([moved(lo, &-&bound), moved(hi, &bound)])
 }
 
 /// Three systems on a line.
@@ -222,6 +224,7 @@ struct Cell<'a> {
     ends: (f64, f64),
     systems: [&'a System; 3],
     frame: Frame,
+    /// How each stiffness moves, where they are not scaled.
     courses: Vec<Course>,
     cells: &'a Cells<'a>,
 }
@@ -236,15 +239,19 @@ impl Cell<'_> {
         match self.rises() {
             Some(true) => self.between_kicks([lo, hi], Some(true)),
             Some(false) => self.between_kicks([hi, lo], Some(false)),
-            None => {
-                let [less, more] = self.around()?;
-                self.between_kicks([&less, &more], None)
-            }
+            None => match self.around()? {
+                Some([less, more]) => self.between_kicks([&less, &more], None),
+                None => Ok(Holds::NotTold),
+            },
         }
     }
 
-    /// Whether all kicks grow with the number, or all fall; lighter masses act as stiffer kicks.
+    /// Whether all kicks grow with the number, or all fall; lighter masses act as stiffer kicks. Where they are but scaled, by a factor that
+    /// grows, all counts grow with it, whatever the signs of the kicks (`proofs/REGION.md`, section 3).
     fn rises(&self) -> Option<bool> {
+        if self.cells.is_scaled {
+            return Some(true);
+        }
         let [lo, _, hi] = self.systems.map(System::mass);
         let masses = |is: fn(&Rational, &Rational) -> bool| {
             lo == hi || (0..lo.size()).all(|i| is(&lo.get(i, i), &hi.get(i, i)))
@@ -257,7 +264,7 @@ impl Cell<'_> {
     }
 
     /// Systems with kicks no stronger and no weaker than any of the cell.
-    fn around(&self) -> Result<[System; 2]> {
+    fn around(&self) -> Result<Option<[System; 2]>> {
         let [lo, middle, hi] = self.systems;
         let (mut less, mut more) = (Vec::new(), Vec::new());
         for (k, own) in middle.potentials().iter().enumerate() {
@@ -265,7 +272,10 @@ impl Cell<'_> {
             let [small, large] = match self.courses[k] {
                 Course::Fixed | Course::Rising => [a, b],
                 Course::Falling => [b, a],
-                Course::Neither => spread([&a, &b], &own.stiffness),
+                Course::Neither => match spread([&a, &b]) {
+                    Some(both) => both,
+                    None => return Ok(None),
+                },
             };
             less.push(Potential { stiffness: small, ..own.clone() });
             more.push(Potential { stiffness: large, ..own.clone() });
@@ -274,7 +284,7 @@ impl Cell<'_> {
             let entry = |i: usize| pick(lo.mass().get(i, i), hi.mass().get(i, i));
             Symmetric::diagonal(&(0..middle.size()).map(entry).collect::<Vec<_>>())
         };
-        Ok([System::new(masses(|a, b| a.max(b)), less)?, System::new(masses(|a, b| a.min(b)), more)?])
+        Ok(Some([System::new(masses(|a, b| a.max(b)), less)?, System::new(masses(|a, b| a.min(b)), more)?]))
     }
 
     /// What is proven where all kicks lie between those of two systems, the softer one first; these are the cell's ends where the kicks
@@ -331,19 +341,26 @@ impl Cell<'_> {
         let stiff = |(k, clock): (usize, &Potential)| {
             let ticks = Rational::from_integer(reduced.schedule().clocks()[k].step().into());
             let factor = to_f64(&(tick * tick * ticks));
+            let rows = program.kicks[k].rows.clone();
+            let squares: f64 = rows.iter().flat_map(|(_, row)| row).map(|(_, x)| x * x).sum();
             let mut moved = Mat::<f64>::zeros(m, m);
-            for (from, to) in kicks(middle).iter().zip(kicks(hi)) {
-                if (&from.step, &from.phase) == (&clock.step, &clock.phase) {
-                    let mut change = to.stiffness.clone();
-                    change.add_all(&from.stiffness.scaled(&ratio(-1, 1)));
-                    for (a, row) in change.restricted(&self.frame.kept).rounded_products(&ratio(1, 1)) {
-                        row.into_iter()
-                            .for_each(|(b, x)| moved[(a, b)] += x * factor / (scales[a] * scales[b]));
+            if self.cells.is_scaled {
+                // By a factor from 1 − r to 1 + r, the number's square being that in the old steps.
+                let (lo, hi) = self.ends;
+                let r = (hi - lo) * (hi + lo) / (hi * hi + lo * lo);
+                rows.iter().for_each(|(a, row)| row.iter().for_each(|(b, x)| moved[(*a, *b)] = r * x));
+            } else {
+                for (from, to) in kicks(middle).iter().zip(kicks(hi)) {
+                    if (&from.step, &from.phase) == (&clock.step, &clock.phase) {
+                        let mut change = to.stiffness.clone();
+                        change.add_all(&from.stiffness.scaled(&ratio(-1, 1)));
+                        for (a, row) in change.restricted(&self.frame.kept).rounded_products(&ratio(1, 1)) {
+                            row.into_iter()
+                                .for_each(|(b, x)| moved[(a, b)] += x * factor / (scales[a] * scales[b]));
+                        }
                     }
                 }
             }
-            let rows = program.kicks[k].rows.clone();
-            let squares: f64 = rows.iter().flat_map(|(_, row)| row).map(|(_, x)| x * x).sum();
             Stiff { rows, off: 1.01 * (norm::spectral(&moved) + 2.0 * U * squares.sqrt()) }
         };
         let kicks: Vec<Stiff> = reduced.clocks().iter().enumerate().map(stiff).collect();
