@@ -2,6 +2,7 @@
 
 use kickdrift::number::Rational;
 use kickdrift::number::rational::{from_f64_exact, ratio};
+use kickdrift::scene::SystemScene;
 use kickdrift::system::levels::{Cells, Hessians, Kernel, Outer};
 use kickdrift::system::{Evidence, Holds, Limits, Origin, Potential, Symmetric, System, decide_system};
 use kickdrift::verdict::Kind;
@@ -610,4 +611,39 @@ mod chord {
         assert!(proves(&[0.0, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
         assert!(proves(&[-0.04, 0.5, 1.0], &[0.05, 0.05, 0.05], 1.0));
     }
+}
+
+/// The slow force of four waters on two clocks, half of it twice as often: what is proven of stretches of the outer step holds at each place in
+/// them, up to the first unstable step nothing grows, and the rates are those of what moves, not of rigid motions that rounding lets drift.
+#[test]
+fn intervals_on_three_clocks_end_and_agree_with_each_verdict() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes");
+    let text = std::fs::read_to_string(format!("{folder}/water4.json")).unwrap();
+    let mut source: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let potentials = source["potentials"].as_array_mut().unwrap();
+    potentials.push(potentials[1].clone());
+    for (k, step) in [(1, "1/500"), (2, "1/250")] {
+        potentials[k]["name"] = format!("slow {k}").into();
+        potentials[k]["scale"] = "1/2".into();
+        potentials[k]["step"] = step.into();
+    }
+    let scene = SystemScene::from_json_in(folder, source).unwrap();
+    let (limits, span) = (Limits::default(), "outer=0.002..0.005".parse().unwrap());
+    let found = scene.intervals(&span, 1e-3, &limits).unwrap();
+    let first = found.first_unstable().unwrap();
+    assert!(0.00442 < first.0 && first.1 < 0.00443 && first.1 - first.0 < 1e-8, "{first:?}");
+    let length = |verdict: Holds| -> f64 {
+        found.stretches.iter().filter(|own| own.verdict == verdict).map(|own| own.hi - own.lo).sum()
+    };
+    assert!(length(Holds::Stable) > 0.0024 && length(Holds::Unstable) > 0.00015, "{found:?}");
+    for own in found.stretches.iter().filter(|own| own.verdict != Holds::NotTold) {
+        for k in 0..=4 {
+            let step = own.lo + (own.hi - own.lo) * f64::from(k) / 4.0;
+            let analysis = scene.model().decide_at(&from_f64_exact(step).unwrap(), &limits).unwrap();
+            assert_eq!(analysis.holds(), own.verdict, "{step} {analysis:?}");
+        }
+    }
+    let rates = scene.growth_rates(&span, &[0.002, 0.004, 0.0046], &limits).unwrap();
+    assert_eq!(rates[..2], [Some(0.0); 2]);
+    assert!(rates[2].unwrap() > 1.0, "{rates:?}");
 }

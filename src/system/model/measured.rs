@@ -288,7 +288,7 @@ impl MeasuredSystem {
     }
 
     fn not_two(&self) -> Error {
-        self.other_steps("give two potentials, the step of one a multiple of the other's")
+        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE --intervals outer=LO..HI` takes any number")
     }
 
     /// The eigenbasis, computed when it is first asked for.
