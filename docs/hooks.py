@@ -107,7 +107,8 @@ class Session:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 text=True,
-                timeout=100,
+                # The slowest block takes 20 s on two idle cores; this leaves room for a busy machine.
+                timeout=300,
             )
             wanted = code if position == len(commands) - 1 else 0
             if done.returncode != wanted:

@@ -112,7 +112,15 @@ class Advised(Document):
         return tuple(MappingProxyType(row) for row in self.data[name])
 
     def to_pandas(self) -> pandas.DataFrame:
-        """The rows as a data frame; the ends of enclosures stand beside each other, as ``first_lower_lo``."""
+        """The rows as a data frame; the ends of enclosures stand beside each other, as ``first_lower_lo``.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> frame = kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"]).to_pandas()
+        >>> len(frame), "first_lower_lo" in frame
+        (1, True)
+        """
         return frame(dict(fields(row)) for row in self.rows)
 
     def __str__(self) -> str:
@@ -149,11 +157,23 @@ class Advice(Advised):
         return self._table("modes")
 
     def to_svg(self) -> str:
-        """The program's figure: the outer step across, each mode a row."""
+        """The program's figure: the outer step across, each mode a row.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.advise({"OH": "10fs", "slow": "40fs"}, steps=["0.5fs", "4fs"]).to_svg().startswith("<svg")
+        True
+        """
         return self._asked.svg()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw what is proven stable and unstable over the outer step of the first scheme, a row a mode.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
 
         Examples
         --------
@@ -169,7 +189,17 @@ class Advice(Advised):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SystemAdvice(Advised):
-    """Which steps are safe for a molecule by its Hessians, as :meth:`System.advise` finds."""
+    """Which steps are safe for a molecule by its Hessians, as :meth:`System.advise` finds.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> fast, slow = [[0.39, 0], [0, 0.41]], [[0.02, 0.01], [0.01, 0.02]]
+    >>> system = kd.System.from_hessians([1, 1], {"fast": ("1/2", fast), "slow": (4, slow)}, time_unit="fs")
+    >>> advice = system.advise()
+    >>> advice.status, advice.groups[0]["count"]
+    ('caution', 2)
+    """
 
     warnings: tuple[str, ...] = ()
     """What limits the advice, in words: what was found when the system was made, and what its verdict warns of."""
@@ -183,7 +213,21 @@ class SystemAdvice(Advised):
         return self._table("groups")
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme."""
+        """Draw what is proven stable and the first unstable interval over the outer step, a row a scheme.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> fast, slow = [[0.39, 0], [0, 0.41]], [[0.02, 0.01], [0.01, 0.02]]
+        >>> system = kd.System.from_hessians([1, 1], {"fast": ("1/2", fast), "slow": (4, slow)}, time_unit="fs")
+        >>> system.advise().plot().get_xlabel()
+        'outer step (fs)'
+        """
         return _plot.system_advice(self.data, ax)
 
 

@@ -187,11 +187,25 @@ class Table(Document, Sequence[Row]):
         return iter(self.rows)
 
     def to_csv(self) -> str:
-        """The rows as CSV, all columns."""
+        """The rows as CSV, all columns.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.half("1/1", s=1, rho=0).to_csv().splitlines()[0].split(",")[:2]
+        ['entry', 'sign']
+        """
         return self._again("csv")
 
     def to_latex(self) -> str:
-        """The rows as a LaTeX table."""
+        """The rows as a LaTeX table.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> r"\\begin{tabular}" in kd.half("1/1", s=1, rho=0).to_latex()
+        True
+        """
         return self._again("latex")
 
     def _again(self, form: str) -> str:

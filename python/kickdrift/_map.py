@@ -103,11 +103,27 @@ class Map(Frozen):
         return Document(self._texts[0])
 
     def to_json(self) -> str:
-        """The document of ``kickdrift map``, byte for byte: the counts."""
+        """The document of ``kickdrift map``, byte for byte: the counts.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
+        >>> small.to_json() == small.document.to_json()
+        True
+        """
         return self.document.to_json()
 
     def to_csv(self) -> str:
-        """A row for each pair that is unstable or on an edge; computed again in that form."""
+        """A row for each pair that is unstable or on an edge; computed again in that form.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
+        >>> len(small.to_csv().splitlines()) == 1 + int((~small.stable).sum())
+        True
+        """
         return ask(self._arguments, "csv")
 
     def to_xarray(self) -> xarray.Dataset:
@@ -133,7 +149,15 @@ class Map(Frozen):
         return made
 
     def to_pandas(self) -> pandas.DataFrame:
-        """One row a pair, by h1, then h2; the kind by name."""
+        """One row a pair, by h1, then h2; the kind by name.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
+        >>> len(small.to_pandas())
+        50
+        """
         pd = required("pandas")
         h1, h2 = (axis.ravel() for axis in np.meshgrid(self.h1, self.h2, indexing="ij"))
         kinds = pd.Categorical.from_codes(self.verdict.ravel().astype(np.int8), categories=pd.Index(VERDICTS))
@@ -145,6 +169,18 @@ class Map(Frozen):
 
     def plot(self, ax: Axes | None = None, colour: Literal["verdict", "growth"] = "verdict") -> Axes:
         """Draw the map in the program's colours: the kinds of unstable pairs, or their growth rates.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+        colour : "verdict" or "growth"
+            Growth needs a map that was asked for with ``growth=True``.
+
+        Raises
+        ------
+        KickdriftError
+            Growth that was not computed.
 
         Examples
         --------
@@ -158,7 +194,15 @@ class Map(Frozen):
         return _plot.verdicts(self.h1, self.h2, self.verdict, VERDICTS, ax)
 
     def to_svg(self) -> str:
-        """The program's figure of the verdicts as SVG."""
+        """The program's figure of the verdicts as SVG.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> small = kd.map(lambda1="pi^2", lambda2=1, step="1/10", h1=("1/10", "1/2"), h2=("1/10", 1))
+        >>> small.to_svg().startswith("<svg")
+        True
+        """
         return ask(self._arguments, "svg") if self._map is None else self._map.svg(self.verdict, self.tier)
 
     def _repr_svg_(self) -> str | None:
@@ -197,8 +241,8 @@ def map(
         The stiffnesses, 1/time².
     h1, h2 : Range
         The closed ranges of steps, time.
-    step : Exact, optional
-        The spacing of both steps; ``step1`` and ``step2`` are their own where they differ.
+    step, step1, step2 : Exact, optional
+        The spacing of both steps, or where they differ that of each.
     label : bool
         Also the tongue's label m of each growing pair, and its dominant family (a, b).
     growth : bool

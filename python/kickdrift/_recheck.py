@@ -37,6 +37,13 @@ class Recheck:
         The fields that were not rechecked, each with the reason.
     failures : tuple of (row, place, why)
         The rows that do not hold.
+
+    Examples
+    --------
+    >>> import kickdrift as kd
+    >>> found = kd.recheck(kd.tongues("5/3", rho="1/25"))
+    >>> found.holds, found.rows, found.failures
+    (True, 7, ())
     """
 
     rows: int

@@ -80,6 +80,11 @@ class System(Frozen):
     def read(path: str | PathLike[str]) -> System:
         """Read a system file.
 
+        Parameters
+        ----------
+        path : str or path
+            The file; arrays that it refers to lie in its folder.
+
         Raises
         ------
         KickdriftError
@@ -135,6 +140,8 @@ class System(Frozen):
             By which rigid motions are projected out; else the null space of the total is.
         accuracy : float
             How well the Hessians are known, relative to their norms; verdicts tell whether they stand within it.
+        title : str, optional
+            Names the system in answers.
         time_unit : str, optional
             What the steps are in, as ``"ps"``; answers name it.
         labels : sequence of str, optional
@@ -205,7 +212,27 @@ class System(Frozen):
         return System(MappingProxyType(document), arrays, tuple(notes))
 
     def save(self, folder: str | PathLike[str]) -> Path:
-        """Write ``system.json`` and ``arrays.npz`` to a folder; return the path of the former."""
+        """Write ``system.json`` and ``arrays.npz`` to a folder; return the path of the former.
+
+        Parameters
+        ----------
+        folder : str or path
+            Made where it is missing.
+
+        Returns
+        -------
+        Path
+            That of ``system.json``.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> import kickdrift as kd
+        >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     kd.System.read(system.save(folder)).decide().stable
+        True
+        """
         own = Path(folder)
         own.mkdir(parents=True, exist_ok=True)
         if self.arrays:
@@ -272,6 +299,13 @@ class System(Frozen):
         ------
         KickdriftError, BudgetError
             A system that makes no sense; more work than the budget allows.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> system.decide().stable, system.decide(method="implicit-explicit").stable
+        (True, True)
         """
         damped = None if friction is None else text("friction", friction)
         asked = question(
@@ -314,6 +348,13 @@ class System(Frozen):
         ------
         BudgetError
             More work than the budget allows, before it begins.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> [row["verdict"] for row in system.intervals(("1/20", "1/10"))]
+        ['stable']
         """
         over = f"outer={range_text('outer', outer)}"
         asked = question("system", budget, intervals=over, width=resolution, accuracy=accuracy, method=method)
@@ -455,11 +496,32 @@ class Intervals(Answer):
     """
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the stretches over the outer step."""
+        """Draw the stretches over the outer step.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> system.intervals(("1/20", "1/5")).plot().get_xlabel()
+        'outer step'
+        """
         return _plot.intervals(self.rows, ax)
 
     def to_svg(self) -> str:
-        """The program's figure: the stretches, and growth where it is unstable."""
+        """The program's figure: the stretches, and growth where it is unstable.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> system.intervals(("1/20", "1/5")).to_svg().startswith("<svg")
+        True
+        """
         return self._asked.svg()
 
 
@@ -554,11 +616,32 @@ class SystemVerdict(Document):
         return frozen(np.concatenate([values, 1 / values]))
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the multipliers in the complex plane, those off the unit circle in another colour."""
+        """Draw the multipliers in the complex plane, those off the unit circle in another colour.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> system.decide().plot().get_aspect()
+        1.0
+        """
         return _plot.multipliers(self.multipliers, ax)
 
     def to_svg(self) -> str:
-        """The program's figure: multipliers, and shapes of growing modes."""
+        """The program's figure: multipliers, and shapes of growing modes.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System.from_hessians([1.0], {"stiff": ("1/40", [[400.0]]), "soft": ("1/10", [[1.0]])})
+        >>> system.decide().to_svg().startswith("<svg")
+        True
+        """
         return self._asked.svg()
 
     def _repr_svg_(self) -> str:
@@ -593,11 +676,32 @@ class Run(Document):
     """
 
     def to_pandas(self) -> pandas.DataFrame:
-        """One row a period: time, energy, momentum, amplitude."""
+        """One row a period: time, energy, momentum, amplitude.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
+        >>> kd.simulate(system, periods=10).to_pandas().columns.tolist()
+        ['time', 'energy', 'momentum', 'amplitude']
+        """
         return frame(self.data["series"])
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the amplitude over time, beside the growth predicted where there is some."""
+        """Draw the amplitude over time, beside the growth predicted where there is some.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> system = kd.System({"masses": [1], "potentials": [{"step": "1/10", "springs": [[0, None, 10]]}]})
+        >>> kd.simulate(system, periods=10).plot().get_xlabel()
+        'time'
+        """
         return _plot.run(self.data, ax)
 
     def __repr__(self) -> str:

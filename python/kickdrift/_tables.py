@@ -50,7 +50,15 @@ class Tongues(Table):
         return _plot.tongues(self.rows, ax)
 
     def to_svg(self) -> str:
-        """The atlas in the (h1, h2) plane as SVG, of tongues asked for with ``lambda1``, ``h1`` and ``h2``."""
+        """The atlas in the (h1, h2) plane as SVG, of tongues asked for with ``lambda1``, ``h1`` and ``h2``.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> found = kd.tongues(max_sum=6, lambda1="pi^2", lambda2="pi^2/25", h1=("1/10", "2/pi"), h2=("1/10", "7/2"))
+        >>> found.to_svg().startswith("<svg")
+        True
+        """
         skipped = ("--digits", "--columns")
         return ask([part for part in self._arguments if not part.startswith(skipped)], "svg")
 
@@ -140,6 +148,11 @@ class Closings(Answer):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the closings in the (rho, s) plane.
 
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
+
         Examples
         --------
         >>> import kickdrift as kd
@@ -210,12 +223,24 @@ class Curves(Answer):
     """
 
     def to_pandas(self) -> pandas.DataFrame:
-        """One row a point: a, b, h1, h2 and so on."""
+        """One row a point: a, b, h1, h2 and so on.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> kd.curves(a="0..0", b="1..1", samples=50).to_pandas().columns[:4].tolist()
+        ['a', 'b', 'h1', 'h2']
+        """
         points = ({"a": row["a"], "b": row["b"], **point} for row in self.rows for point in row["points"])
         return frame(points)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the curves in the (h1, h2) plane.
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
 
         Examples
         --------
@@ -295,7 +320,7 @@ def proposition(max: int | None = None) -> Proposition:
     Parameters
     ----------
     max : int, optional
-        The bound on p and q.
+        All coprime p, q up to this number; 60 unless given.
 
     Raises
     ------
@@ -323,6 +348,11 @@ class Comparison(Answer):
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the disagreements: a grid's in the (h1, h2) plane, those of ratios in (s, h2/h1).
+
+        Parameters
+        ----------
+        ax : matplotlib Axes, optional
+            Where to draw; a new figure unless given.
 
         Examples
         --------

@@ -140,15 +140,39 @@ class Verdict:
         return None if found is None else MappingProxyType(found)
 
     def to_json(self) -> str:
-        """The document of ``kickdrift verdict``, byte for byte."""
+        """The document of ``kickdrift verdict``, byte for byte.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> verdict = kd.decide(lambda1=1, lambda2=0, h1=1, h2=1)
+        >>> verdict.to_json() == verdict.document.to_json()
+        True
+        """
         return self.document.to_json()
 
     def to_csv(self) -> str:
-        """The document's one row as CSV."""
+        """The document's one row as CSV.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> verdict = kd.decide(lambda1=1, lambda2=0, h1=1, h2=1)
+        >>> len(verdict.to_csv().splitlines())
+        2
+        """
         return self._pair.render("csv")
 
     def to_latex(self) -> str:
-        """The document's one row as a LaTeX table."""
+        """The document's one row as a LaTeX table.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> verdict = kd.decide(lambda1=1, lambda2=0, h1=1, h2=1)
+        >>> r"\\begin{tabular}" in verdict.to_latex()
+        True
+        """
         return self._pair.render("latex")
 
     def __bool__(self) -> bool:
@@ -277,7 +301,15 @@ class Verdicts(Frozen):
         return frozen(np.asarray(np.array([name.rstrip("+-") for name in VERDICTS])[self.code]))
 
     def to_pandas(self) -> pandas.DataFrame:
-        """One row a pair, in the order of the flattened arrays: stable, kind, decided_by."""
+        """One row a pair, in the order of the flattened arrays: stable, kind, decided_by.
+
+        Examples
+        --------
+        >>> import kickdrift as kd
+        >>> found = kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1="1/100", h2=["0.9", "0.98"])
+        >>> found.to_pandas().kind.tolist()
+        ['elliptic', 'hyperbolic']
+        """
         columns = {
             "stable": self.stable.ravel(),
             "kind": self.kind.ravel(),

@@ -32,6 +32,8 @@ try:
 except ImportError:
     raise needs("ase") from None
 
+__all__ = ["oscillations", "system"]
+
 #: The difference of positions, Å.
 DIFFERENCE = 1e-3
 
@@ -136,6 +138,11 @@ def oscillations(
         As for :func:`system`.
     about : str
         ``"orbit"`` or ``"minimum"``.
+
+    Raises
+    ------
+    KickdriftError
+        As :func:`system`; another word for ``about``.
 
     Examples
     --------

@@ -32,6 +32,8 @@ from kickdrift._numbers import Exact, Range, text
 from kickdrift._system import System
 from kickdrift._verdict import TIERS, VERDICTS
 
+__all__ = ["map", "scan", "survey"]
+
 try:
     import xarray
     import zarr
@@ -246,6 +248,11 @@ def scan(
     -------
     xarray.Dataset
         ``stable``, ``proven`` and ``growth_rate`` over the coordinates, which are rounded.
+
+    Raises
+    ------
+    KickdriftError
+        Parameters of one name or without values; a store of another question; what ``make`` or a verdict raises.
 
     Examples
     --------

@@ -45,6 +45,8 @@ try:
 except ImportError:
     raise needs("openmm") from None
 
+__all__ = ["oscillations", "system"]
+
 #: The difference of positions, nm: force fields are smooth on this length.
 DIFFERENCE = 1e-4
 

@@ -32,13 +32,13 @@ pub struct Common {
     /// Threads to use [default: one a core]. The result is the same, byte for byte.
     #[arg(long, global = true, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
     pub threads: Option<usize>,
-    /// The environment of LaTeX tables [default: table where a column of two takes it, else table*; longtable beyond a page].
+    /// The environment of LaTeX tables [default: table where it fits a column, else table*; longtable beyond a page].
     #[arg(long, global = true, value_name = "ENV", value_enum)]
     pub float: Option<Float>,
-    /// Neither progress nor what was written where on standard error.
+    /// Nothing on standard error but errors: neither progress nor the names of written files.
     #[arg(long, global = true)]
     pub quiet: bool,
-    /// The most kicks that one tier may compose for one pair [default: 100000000].
+    /// The most kicks that may be composed for one pair of steps, in doubles or in more digits [default: 100000000].
     #[arg(long, global = true, value_name = "KICKS", allow_negative_numbers = true, value_parser = flag::<u64>)]
     pub budget: Option<u64>,
     /// The command as figures carry it.

@@ -14,16 +14,16 @@ const BIBTEX: &str = include_str!("../../data/citation.bib");
 /// Flags of `cite`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// The form: entries of BibTeX, or the citation file itself.
+    /// What to print.
     #[arg(value_enum, default_value_t = Form::Bibtex)]
     form: Form,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
-    /// An entry of this version of the program, and one of the paper whose method it decides.
+    /// Two entries of BibTeX: this version of the program, and the paper that posed its question.
     Bibtex,
-    /// CITATION.cff, as archives and reference managers read it.
+    /// The file CITATION.cff, which archives and reference managers read.
     Cff,
 }
 

@@ -28,7 +28,7 @@ pub struct Args {
     /// With --max-sum: the values of s = h1^2 lambda1, evenly spaced inside 0 < s < 4.
     #[arg(long, value_name = "K", default_value_t = 99, allow_negative_numbers = true, value_parser = flag::<u64>)]
     samples: u64,
-    /// How near q h2 must be to a multiple of T1/2 to count as resonant, in units of T1/2.
+    /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
     /// Integrators side by side instead, over (h, lambda2/lambda1): names of the catalogue, or words, with commas between them.

@@ -26,7 +26,7 @@ pub struct Args {
     #[arg(long, value_name = "UNIT")]
     units: Option<String>,
     /// The port to listen at [default: a free one].
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     port: u16,
     /// Print the address and do not open the browser.
     #[arg(long)]

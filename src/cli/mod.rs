@@ -62,9 +62,9 @@ enum Command {
     Curves(Asked<Curves>),
     /// The trace verdict against the tan criterion and against resonance, with the disagreements listed.
     Compare(Box<compare::Args>),
-    /// Checks the Proposition exhaustively and exactly, with witnesses.
+    /// Checks the Proposition of Fong, Darve and Lew for all p and q up to a number, exactly, with witnesses.
     Proposition(Asked<Proposition>),
-    /// A, B, C, D and the trace of one ratio as polynomials in s and rho.
+    /// The half period's entries A, B, C, D and the trace as polynomials in s = h1^2 lambda1, rho = lambda2/lambda1.
     Polynomial(Asked<Polynomial>),
     /// The half period of one ratio in numbers: its four entries, exact and enclosed.
     Half(Asked<Half>),
@@ -86,15 +86,15 @@ enum Command {
     System(system::Args),
     /// Which steps are safe for these periods or bonds, for how long, and why.
     Advise(advise::Args),
-    /// Runs Algorithm 1 on a system and shows energy and growth against the prediction.
+    /// Runs a system as Algorithm 1 of Fong, Darve and Lew does: its energy and growth beside the prediction.
     Simulate(simulate::Args),
     /// A page on this machine to move in the plane of steps: maps, tongues and verdicts, at any depth.
     Explore(explore::Args),
-    /// Reads a scene file and computes the products that it wants.
+    /// Computes what a scene file asks for: tables, figures, documents.
     Run(run::Args),
-    /// Computes a JSON document that kickdrift wrote again, value by value, and rechecks it by another route.
+    /// Checks a JSON document of kickdrift: every value computed again, and every claim by another route.
     Verify(verify::Args),
-    /// How to cite kickdrift, and the paper whose method it decides: BibTeX, or CITATION.cff.
+    /// How to cite kickdrift and the paper that posed its question: BibTeX, or CITATION.cff.
     Cite(cite::Args),
     /// Manual pages and completions for shells: what packagers need.
     Generate(generate::Args),

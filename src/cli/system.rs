@@ -46,7 +46,7 @@ pub struct Args {
     /// The relative width above which no interval is missed, of --intervals and --nearest [default: 1e-4].
     #[arg(long, value_name = "W")]
     resolution: Option<f64>,
-    /// Friction per unit time, v times exp(-G t) amid every drift between any two kicks (BAOAB): is it enough?
+    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does it stop the growth?
     #[arg(long, value_name = "G", value_parser = flag::<Rational>, conflicts_with_all = ["scan", "intervals"])]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable, both proven; with --quiet and without --output that is all the answer.

@@ -23,7 +23,7 @@ pub struct Args {
     /// The slow step; h2/h1 must be rational.
     #[arg(long, value_name = "B", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
     h2: Laurent,
-    /// Take steps for doubles: the simplest number within half a unit in the last place (0.3333333333333333 is 1/3).
+    /// Read the steps as doubles: each as the simplest number that rounds to it (0.3333333333333333 is 1/3).
     #[arg(long)]
     simplest: bool,
     /// Decide in exact arithmetic alone, and show the exact trace where it is rational.
@@ -32,7 +32,7 @@ pub struct Args {
     /// Also write a Coq proof of the verdict (fractions times powers of pi); proofs/tools/certificate.sh checks it.
     #[arg(long, value_name = "FILE.v")]
     certificate: Option<PathBuf>,
-    /// Friction per unit time, v times exp(-G t) amid every drift between any two kicks (BAOAB): is it enough?
+    /// Friction per unit time, as BAOAB has it: halfway through a drift over t, v becomes v exp(-G t). Does it stop the growth?
     #[arg(long, value_name = "G", value_parser = flag::<Rational>)]
     friction: Option<Rational>,
     /// Exit with 0 if stable, 1 if unstable; with --quiet and without --output that is all the answer.

@@ -426,7 +426,14 @@ impl Advise {
     }
 
     /// The question about these schemes, still of nothing.
-    fn of_schemes(&self, schemes: Vec<Scheme>) -> Result<Advised> {
+    fn of_schemes(&self, asked: Vec<Scheme>) -> Result<Advised> {
+        // Steps that are given twice, or that the file has already, are answered once.
+        let mut schemes: Vec<Scheme> = Vec::new();
+        asked.into_iter().for_each(|scheme| {
+            if !schemes.contains(&scheme) {
+                schemes.push(scheme);
+            }
+        });
         let rational = |field: &str, text: &Option<String>, dimension| {
             text.as_deref().map(|text| unit::rational(field, text, dimension)).transpose()
         };
@@ -472,10 +479,7 @@ impl Advise {
             Some(reading) => reading.scheme.clone(),
             None => work.read(&file)?.scheme()?,
         };
-        // Those of an archive were given.
-        let given = self.given(reading)?.into_iter();
-        let given = given.filter(|scheme| self.system.is_some() || *scheme != own);
-        let asked = self.of_schemes([own.clone()].into_iter().chain(given).collect())?;
+        let asked = self.of_schemes([own].into_iter().chain(self.given(reading)?).collect())?;
         Ok(Advised { file: self.file.clone(), system: Some(file), ..asked })
     }
 

@@ -28,7 +28,7 @@ question! {
         /// The closed range of rho = lambda2/lambda1, positive.
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<(Rational, Rational)>)]
         rho_range: (Rational, Rational) = "1/10000..100",
-        /// Values of rho, evenly spaced in ln rho, between which edges are seen to cross, where p + q > 24.
+        /// Where p + q > 24: at how many rho, evenly spaced in ln rho, edges are computed to see where two cross.
         #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = flag::<usize>)]
         samples: usize = "400",
         /// Significant digits of s and rho.

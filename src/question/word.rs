@@ -35,7 +35,7 @@ question! {
         /// The step of the whole word: the verdict there.
         #[arg(long, value_name = "H", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
         h: Option<Laurent>,
-        /// Intervals that meet this range of steps alone.
+        /// Only intervals that meet this closed range of steps.
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h_range: Option<StepRange>,
     }

@@ -192,6 +192,17 @@ fn an_archive_is_advised_as_its_system_file_is() {
 }
 
 #[test]
+fn steps_that_the_file_has_or_that_are_given_twice_are_answered_once() {
+    let advice = |line: &str| stdout(&words(line, &[]));
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenes/water4.json");
+    let own = advice(&format!("advise {file}"));
+    assert_eq!(advice(&format!("advise {file} --steps 0.5fs,4fs --steps 1/2fs,4fs")), own);
+    assert_ne!(advice(&format!("advise {file} --steps 0.5fs,3fs")), own);
+    let once = "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs";
+    assert_eq!(advice(&format!("{once} --steps 0.5fs,4fs")), advice(once));
+}
+
+#[test]
 fn a_molecule_is_drawn_and_its_advice_verified() {
     let desk = Desk::new();
     desk.copy(&["tiny.json", "tiny-fast.npy", "tiny-slow.npy"]);

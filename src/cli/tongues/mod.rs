@@ -61,13 +61,13 @@ pub struct Args {
     digits: Option<u32>,
     /// Columns by the names that csv has, or groups [default: all; with --max-sum all but growth; in LaTeX edges].
     ///
-    /// Groups: edges alone, exact, growth (the dearest), predicted, first-order.
+    /// Groups: edges, exact, growth (takes longest), predicted, first-order.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     columns: Option<Vec<String>>,
     /// Count and compare instead of listing: all tongues of all ratios that begin below s = 4 (needs --max-sum).
     #[arg(long)]
     survey: bool,
-    /// The thinnest tongues that a survey lists.
+    /// How many of the thinnest tongues a survey lists.
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = flag::<usize>)]
     thinnest: Option<usize>,
     /// What a figure (--output FILE.svg, FILE.pdf or FILE.png) shows [default: atlas].

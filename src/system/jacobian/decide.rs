@@ -227,7 +227,7 @@ impl Jacobians {
     }
 }
 
-/// With friction amid every drift.
+/// With friction halfway through every drift.
 struct Damped<'a> {
     rate: f64,
     tick: f64,
