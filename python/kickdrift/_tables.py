@@ -383,7 +383,7 @@ def compare(
     >>> names = ["respa-4", "implicit-explicit"]
     >>> sides = kd.compare(methods=names, h=(0, 16), h_step=1, rho_range=(0, "1/2"), rho_step="1/8", lambda1="pi^2/25")
     >>> [(row["method"], row["unstable"]) for row in sides]
-    [('respa-4', 21), ('implicit-explicit', 33)]
+    [('respa-4', 33), ('implicit-explicit', 40)]
     """
     spacing = _text("step", step)
     if methods is not None:
