@@ -60,7 +60,7 @@ fn output(line: &str) -> Value {
 }
 
 /// One line for every shape that a command's answer can take.
-const LINES: [&str; 62] = [
+const LINES: [&str; 66] = [
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 0.98",
     "verdict --lambda1 pi^2 --lambda2 pi^2/25 --h1 1/100 --h2 1/2",
     "verdict --lambda1 11/4 --lambda2 57/10 --h1 1 --h2 5/3",
@@ -115,6 +115,10 @@ const LINES: [&str; 62] = [
     "word --method respa-4 --lambda1 pi^2 --lambda2 pi^2/25 --h 1 --h-range 0..3",
     "word --list",
     "word --method symplectic-euler --lambda1 1 --h 3",
+    "word --method impulse --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --h-range 0..16",
+    "word --method mts-baoab-4 --lambda1 pi^2/25 --lambda2 pi^2/400 --h 4 --friction 1/100",
+    "word --method molly-long --lambda1 pi^2/25 --lambda2 pi^2/400 --h 5",
+    "compare --methods respa-4,impulse --h1-range 0..4 --h2-range 0..2 --step 1/2",
     "bands --lambda1 pi^2 --lambda2 pi^2/25 --h1-range 0..2/pi --h2-range 0..7/2 --area 1/200 --boxes 9000",
     "closings --max-sum 9 --samples 50",
     "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Literal
 
 from kickdrift import _plot
@@ -374,9 +374,14 @@ def compare(
     rho: Exact | None = None,
     samples: int | None = None,
     tolerance: Exact | None = None,
+    methods: str | Sequence[str] | None = None,
+    h: Range | None = None,
+    h_step: Exact | None = None,
+    rho_range: Range | None = None,
+    rho_step: Exact | None = None,
     budget: int | None = None,
 ) -> Comparison:
-    """Compare the trace with its predictions, over a grid or over ratios.
+    """Compare the trace with its predictions, over a grid or over ratios; or integrators side by side.
 
     Parameters
     ----------
@@ -386,6 +391,11 @@ def compare(
         All coprime p + q up to ``max_sum`` at lambda2/lambda1 = ``rho``, at ``samples`` values of s in (0, 4).
     tolerance : Exact, optional
         How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
+    methods : str or sequence of str, optional
+        Integrators side by side instead: names of :func:`methods`, or words. Over the grid of ``step``, ``h1``, ``h2``, each force in units of its own
+        step; or over
+    h, h_step, rho_range, rho_step
+        Steps and lambda2/lambda1, each a closed range with a spacing.
     budget : int, optional
         The most kicks that one verdict may compose.
 
@@ -400,8 +410,29 @@ def compare(
     >>> found = kd.compare(lambda1="pi^2", lambda2="pi^2/25", step="1/10", h1=("1/10", "2/pi"), h2=("1/10", 3))
     >>> found.data["pairs"]
     180
+    >>> names = ["respa-4", "implicit-explicit"]
+    >>> sides = kd.compare(methods=names, h=(0, 16), h_step=1, rho_range=(0, "1/2"), rho_step="1/8", lambda1="pi^2/25")
+    >>> [(row["method"], row["unstable"]) for row in sides]
+    [('respa-4', 33), ('implicit-explicit', 40)]
     """
     spacing = _text("step", step)
+    if methods is not None:
+        by_step = h1 is not None or h2 is not None
+        return answered(
+            Comparison,
+            "compare-methods",
+            "methods",
+            budget,
+            methods=methods if isinstance(methods, str) else ",".join(methods),
+            lambda1="1" if lambda1 is None else _text("lambda1", lambda1),
+            lambda2=_text("lambda2", lambda2),
+            h_range=_range("h1", h1) if by_step else _range("h", h),
+            h_step=spacing if by_step else _text("h_step", h_step),
+            rho_range=_range("rho_range", rho_range),
+            rho_step=_text("rho_step", rho_step),
+            h2_range=_range("h2", h2),
+            h2_step=spacing if by_step else None,
+        )
     return answered(
         Comparison,
         "compare",
@@ -623,6 +654,7 @@ def word(
     lambda2: Exact | None = None,
     h: Exact | None = None,
     h_range: Range | None = None,
+    friction: Exact | None = None,
     budget: int | None = None,
 ) -> Word:
     """Decide consistency, symmetry, order, stable steps and cost of an integrator, and its verdict at one step.
@@ -630,7 +662,7 @@ def word(
     Parameters
     ----------
     word : str, optional
-        Kicks K, K1, K2, drifts D, implicit midpoints C and repetitions n*(...), as "K(1/2) D(1) K(1/2)".
+        Kicks K, K1, K2, drifts D, implicit midpoints C, exact flows R, friction O and repetitions n*(...), as "K(1/2) D(1) K(1/2)".
     method : str, optional
         A name of the catalogue in place of a word, see `methods`.
     lambda1, lambda2 : Exact, optional
@@ -639,6 +671,8 @@ def word(
         The step of the whole word at which the verdict is asked for.
     h_range : Range, optional
         Only the intervals that meet this range of steps.
+    friction : Exact, optional
+        The friction of letters O, in 1/time; without it they do nothing.
     budget : int, optional
         The most kicks of a word; 100 unless given.
 
@@ -666,6 +700,7 @@ def word(
         lambda2=_text("lambda2", lambda2),
         h=_text("h", h),
         h_range=_range("h_range", h_range),
+        friction=_text("friction", friction),
     )
 
 

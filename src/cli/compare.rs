@@ -2,7 +2,7 @@
 
 use super::args::{self, Columns, Common};
 use super::paper::Paper;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::format::Format;
 use crate::number::Laurent;
 use crate::number::Rational;
@@ -31,12 +31,12 @@ pub struct Args {
     /// How near q h2 must be to a multiple of T1/2, half the vibration's period, to count as resonant; in units of T1/2.
     #[arg(long, value_name = "T", default_value = "1/20", allow_hyphen_values = true, value_parser = flag::<Rational>)]
     tolerance: Rational,
-    /// Integrators side by side instead, over (h, lambda2/lambda1): names of the catalogue, or words, with commas between them.
+    /// Integrators side by side instead: names of the catalogue (word --list), or words, with commas between them.
     ///
-    /// The catalogue is that of word --list. Those with the exact flow of the fast force are impulse, gautschi, molly-short,
+    /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so that a step h of the word has
     ///
-    /// molly-linear, molly-long, hairer-lubich. Without --lambda1 it is 1.
-    #[arg(long, value_name = "A,B,...", requires_all = ["h_range", "h_step", "rho_range", "rho_step"], conflicts_with_all = ["lambda2", "max_sum", "rho"])]
+    /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. Stiffnesses are 1 unless given.
+    #[arg(long, value_name = "A,B,...", conflicts_with_all = ["max_sum", "rho"])]
     methods: Option<String>,
     /// The closed range of steps, with --methods.
     #[arg(long, value_name = "LO..HI", requires = "methods", value_parser = flag::<(Rational, Rational)>)]
@@ -58,7 +58,7 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<()> {
-        if let Some(asked) = self.methods() {
+        if let Some(asked) = self.methods()? {
             return self.side_by_side(&asked, common);
         }
         self.paper.check(false)?;
@@ -66,15 +66,51 @@ impl Args {
         common.write(&self.columns.of(document)?, Format::Text)
     }
 
-    fn methods(&self) -> Option<CompareMethods> {
-        Some(CompareMethods {
-            methods: self.methods.clone()?,
-            lambda1: self.lambda1.clone().unwrap_or_else(|| Laurent::from_integer(1)),
-            h_range: self.h_range.clone()?,
-            h_step: self.h_step.clone()?,
-            rho_range: self.rho_range.clone()?,
-            rho_step: self.rho_step.clone()?,
-        })
+    fn methods(&self) -> Result<Option<CompareMethods>> {
+        let Some(methods) = self.methods.clone() else { return Ok(None) };
+        let one = || Laurent::from_integer(1);
+        let lambda1 = self.lambda1.clone().unwrap_or_else(one);
+        let asked = if self.grid.is_absent() {
+            let missing = |flag: &str| {
+                Error::missing(
+                    flag,
+                    "give --h-range, --h-step, --rho-range, --rho-step; or the grid of h1 and h2",
+                )
+            };
+            CompareMethods {
+                methods,
+                lambda1,
+                h_range: self.h_range.clone().ok_or_else(|| missing("h-range"))?,
+                h_step: self.h_step.clone().ok_or_else(|| missing("h-step"))?,
+                rho_range: self.rho_range.clone(),
+                rho_step: self.rho_step.clone(),
+                lambda2: self.lambda2.clone(),
+                h2_range: None,
+                h2_step: None,
+            }
+        } else {
+            let map = self.grid.map(&lambda1, self.lambda2.as_ref().unwrap_or(&one()))?;
+            let rational = |field: &str, x: &Laurent| {
+                x.as_rational().ok_or_else(|| {
+                    Error::input(field, x, "write a rational number here, pi in the stiffnesses")
+                })
+            };
+            let range = |field: &str, (lo, hi): &(Laurent, Laurent)| {
+                Ok::<_, Error>((rational(field, lo)?, rational(field, hi)?))
+            };
+            CompareMethods {
+                methods,
+                lambda1,
+                h_range: range("h1-range", &map.h1_range)?,
+                h_step: rational("step1", &map.step1)?,
+                rho_range: self.rho_range.clone(),
+                rho_step: self.rho_step.clone(),
+                lambda2: self.lambda2.clone(),
+                h2_range: Some(range("h2-range", &map.h2_range)?),
+                h2_step: Some(rational("step2", &map.step2)?),
+            }
+        };
+        Ok(Some(asked))
     }
 
     /// The table, or the maps drawn.

@@ -34,6 +34,7 @@ mod domain;
 mod element;
 mod enclosed;
 mod float;
+pub(crate) mod jet;
 pub mod laurent;
 mod operators;
 pub mod parse;

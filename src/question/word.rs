@@ -5,12 +5,16 @@ use super::asking::{Question, Work, question};
 use super::field::flag;
 use super::field::{StepRange, notation};
 use crate::error::{Error, Result};
+use crate::number::rational::from_f64_exact;
 use crate::number::{Ball, ExactSign, Laurent, Radical, Rational, Real, Ring, Sign};
 use crate::report::decimal;
 use crate::report::document::Document;
 use crate::report::record::Record;
 use crate::report::table::{Cell, Column, Table};
-use crate::word::{At, Cost, Edge, Forces, Interval, METHODS, Method, Order, Stability, at, method};
+use crate::word::{
+    At, Cost, Edge, Enclosed, Forces, Interval, METHODS, MOST_ORDER, Method, Order, Piece, Shape, Stability,
+    at, method,
+};
 use num_traits::Zero;
 
 notation! {
@@ -20,7 +24,7 @@ notation! {
 question! {
     /// Consistency, symmetry, order, stable steps, cost of an integrator; its verdict at one step.
     args struct Word {
-        /// The integrator: kicks K, K1, K2, drifts D, implicit midpoints C, n*(...), as "K(1/2) D(1) K(1/2)".
+        /// The integrator: kicks K, K1, K2, drifts D, midpoints C, exact flows R, friction O, n*(...), as "K(1/2) D(1) K(1/2)".
         #[arg(value_name = "WORD", value_parser = flag::<crate::word::Word>)]
         word: Option<crate::word::Word>,
         /// One of the catalogue, which --list shows.
@@ -38,6 +42,9 @@ question! {
         /// Only intervals that meet this closed range of steps.
         #[arg(long, value_name = "LO..HI", allow_hyphen_values = true, value_parser = flag::<StepRange>)]
         h_range: Option<StepRange>,
+        /// The friction of letters O, in 1/time; without it they do nothing.
+        #[arg(long, value_name = "G", allow_hyphen_values = true, value_parser = flag::<Laurent>)]
+        friction: Option<Laurent>,
     }
 }
 
@@ -62,12 +69,107 @@ pub struct Linted {
     /// Λ2/Λ1; 0 for one force. `None` where the word names forces and the stiffnesses are not given.
     pub rho: Option<Rational>,
     pub stability: Option<Stability>,
+    /// The same of a word with exact flows, filters or friction: in steps h, within the range.
+    pub pieces: Option<Pieces>,
     /// The range of (h² Λ1) that is asked about, rounded outwards.
     pub range: Option<(Rational, Rational)>,
     pub at: Option<At>,
 }
 
+/// The answers at all steps of a range, each end enclosed.
+#[derive(Clone, Debug)]
+pub struct Pieces {
+    pub all: Vec<Piece>,
+    /// The range of h.
+    pub range: (f64, f64),
+    /// √Λ1, 1 where no stiffness is given.
+    pub root: Ball,
+    /// Whether no step at all is unstable, by theorem ([`Shape::is_free`]).
+    pub is_free: bool,
+}
+
+/// Without a range √Λ1 h is looked at up to here: two periods of the fast force.
+const TURNS: f64 = 4.0 * std::f64::consts::PI;
+
+impl Pieces {
+    fn of(question: &Word, word: &crate::word::Word, lambda2: &Laurent) -> Result<Pieces> {
+        let one = Laurent::from_integer(1);
+        let lambda1 = question.lambda1.as_ref().unwrap_or(&one);
+        let friction = question.friction.clone().unwrap_or_else(Laurent::zero);
+        let root = lambda1.enclosure(BITS).sqrt(BITS).expect("positive");
+        let (lo, hi) = match &question.h_range {
+            Some((lo, hi)) => {
+                (lo.enclosure(BITS).to_f64_enclosure().0.max(0.0), hi.enclosure(BITS).to_f64_enclosure().1)
+            }
+            None => (0.0, TURNS / root.mid_f64()),
+        };
+        let shape = Shape::of(word).filter(|_| question.friction.is_none());
+        let all = match shape {
+            Some(shape) => shape.pieces(lambda1, lambda2, lo, hi),
+            None => Enclosed::new(word, lambda1, lambda2, &friction).pieces(lo, hi).ok_or_else(|| {
+                Error::input(
+                    "h_range",
+                    format!("{lo}..{hi}"),
+                    "there are too many intervals here: choose a shorter range",
+                )
+            })?,
+        };
+        let rho = Laurent::ratio(lambda2, lambda1);
+        let is_free = shape.zip(rho).is_some_and(|(shape, rho)| shape.is_free(&rho));
+        Ok(Pieces { all, range: (lo, hi), root, is_free })
+    }
+
+    /// The end of the stable steps that begin with the range at 0, in h; `None` where the next ones are stable, too, or the range ends.
+    fn edge(&self) -> Option<(f64, f64)> {
+        let first = self.all.first().filter(|first| first.stable && self.range.0 == 0.0)?;
+        self.all.get(1).filter(|next| !next.stable).map(|_| first.upper)
+    }
+
+    /// √Λ1 h.
+    fn omega_h(&self, (lo, hi): (f64, f64)) -> Ball {
+        let ball = |x: f64| Ball::from_rational(&from_f64_exact(x).unwrap_or_default(), BITS);
+        ball(lo).union(&ball(hi), BITS).mul(&self.root, BITS)
+    }
+}
+
 impl Word {
+    /// Whether balls answer: the product of the letters is no polynomial.
+    fn is_enclosed(&self, word: &crate::word::Word) -> bool {
+        !word.is_algebraic() || self.friction.is_some()
+    }
+
+    /// Refuses friction that no letter feels, and flows of forces that push away.
+    fn check(&self, word: &crate::word::Word) -> Result<()> {
+        if let Some(friction) = &self.friction {
+            if friction.sign() != Sign::Positive {
+                return Err(Error::input(
+                    "friction",
+                    friction,
+                    "the friction must be positive; or leave it out",
+                ));
+            }
+            if !word.has_friction() {
+                return Err(Error::input(
+                    "friction",
+                    friction,
+                    "the word has no letter O, so nothing feels it",
+                ));
+            }
+            if self.lambda1.is_none() {
+                return Err(Error::missing("lambda1", "friction needs a scale of time: give the stiffness"));
+            }
+        }
+        match &self.lambda2 {
+            Some(lambda2) if word.turns_second() && lambda2.sign() != Sign::Positive => {
+                Err(Error::input("lambda2", lambda2, "the exact flow R2 or R is of a positive stiffness"))
+            }
+            Some(lambda2) if !word.is_algebraic() && lambda2.sign() == Sign::Zero => {
+                Err(Error::input("lambda2", lambda2, "give a stiffness that is not 0"))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The word that is asked about.
     ///
     /// # Errors
@@ -146,6 +248,7 @@ impl Question for Word {
     fn answer(&self, work: &Work) -> Result<Linted> {
         let word = self.word()?;
         affordable(&word, work)?;
+        self.check(&word)?;
         let rho = self.ratio(&word)?;
         let range = self.h_range.as_ref().map(|(lo, hi)| {
             let lo = if lo.sign() == Sign::Zero { Ok(Laurent::zero()) } else { self.s(lo, "h_range") };
@@ -154,8 +257,16 @@ impl Question for Word {
         let range =
             range.transpose()?.map(|(lo, hi)| (lo.enclosure(BITS).lower(), hi.enclosure(BITS).upper()));
         let s = self.h.as_ref().map(|h| self.s(h, "h")).transpose()?;
-        let (mut stability, mut found) = (None, None);
-        if let Some(rho) = &rho {
+        let (mut stability, mut pieces, mut found) = (None, None, None);
+        if rho.is_some() && self.is_enclosed(&word) {
+            let lambda2 = self.lambda2.clone().unwrap_or_else(Laurent::zero);
+            pieces = Some(Pieces::of(self, &word, &lambda2)?);
+            if let (Some(h), Some(lambda1)) = (&self.h, &self.lambda1) {
+                let friction = self.friction.clone().unwrap_or_else(Laurent::zero);
+                let at = Enclosed::new(&word, lambda1, &lambda2, &friction).at(h);
+                found = Some(at.ok_or_else(|| Error::input("h", h, "a filter has a pole at this step"))?);
+            }
+        } else if let Some(rho) = &rho {
             let product = word.polynomials(&Forces::ratio(rho));
             stability = Some(Stability::of(&product));
             let pole = |h: &Laurent| {
@@ -170,7 +281,7 @@ impl Question for Word {
         }
         let order = word.order();
         let (sums, cost) = (word.sums(), word.cost());
-        Ok(Linted { word, sums, order, cost, rho, stability, range, at: found })
+        Ok(Linted { word, sums, order, cost, rho, stability, pieces, range, at: found })
     }
 
     fn show(&self, answer: &Linted) -> Document {
@@ -208,15 +319,76 @@ fn omega_h(edge: &Edge) -> Ball {
     edge.s().sqrt(BITS).expect("s > 0")
 }
 
+/// What is at least 0 as doubles.
+fn positive(x: &Ball) -> (f64, f64) {
+    let (lo, hi) = x.to_f64_enclosure();
+    (lo.max(0.0), hi)
+}
+
+/// An interval as it is shown.
+struct Span {
+    stable: bool,
+    /// √Λ1 h at both ends.
+    ends: [Option<Ball>; 2],
+    h: [Option<(f64, f64)>; 2],
+    /// (√Λ1 h)² where it is rational.
+    squares: [Option<Rational>; 2],
+    /// Whether the answer holds at the ends; `None` where balls do not tell.
+    includes: [Option<bool>; 2],
+}
+
 impl Linted {
     /// The end of the stable interval that begins at 0.
     pub fn edge(&self) -> Option<&Edge> {
         self.stability.as_ref()?.first_edge()
     }
 
+    /// √Λ1 h there.
+    fn edge_omega_h(&self) -> Option<Ball> {
+        let enclosed = || self.pieces.as_ref().and_then(|own| Some(own.omega_h(own.edge()?)));
+        self.edge().map(omega_h).or_else(enclosed)
+    }
+
     /// The same when unstable intervals that are next to nothing do not count.
     fn nominal_edge(&self) -> Option<Ball> {
-        self.stability.as_ref()?.nominal_edge().map(omega_h)
+        match &self.stability {
+            Some(stability) => stability.nominal_edge().map(omega_h),
+            None => self.edge_omega_h(),
+        }
+    }
+
+    /// Every interval that is shown.
+    fn spans(&self, lambda1: Option<&Laurent>) -> Vec<Span> {
+        let root = lambda1.map(|lambda1| lambda1.enclosure(BITS).sqrt(BITS).expect("positive"));
+        let over = |x: &Option<Ball>| Some(x.as_ref()?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
+        let shown = |own: &&Interval| self.range.as_ref().is_none_or(|(lo, hi)| meets(own, lo, hi));
+        let exact = |own: &Interval| {
+            let ends = [
+                own.lower.as_ref().map_or(Some(Ball::zero()), |edge| Some(omega_h(edge))),
+                own.upper.as_ref().map(omega_h),
+            ];
+            let square = |edge: &Option<Edge>| edge.as_ref().and_then(Edge::rational);
+            Span {
+                stable: own.stable,
+                h: [over(&ends[0]), over(&ends[1])],
+                ends,
+                squares: [square(&own.lower), square(&own.upper)],
+                includes: own.includes.map(Some),
+            }
+        };
+        let enclosed = |(own, pieces): (&Piece, &Pieces)| {
+            let upper = (own.upper.1 < pieces.range.1).then_some(own.upper);
+            Span {
+                stable: own.stable,
+                ends: [Some(pieces.omega_h(own.lower)), upper.map(|own| pieces.omega_h(own))],
+                h: lambda1.map_or([None; 2], |_| [Some(own.lower), upper]),
+                squares: [None, None],
+                includes: [None; 2],
+            }
+        };
+        let exactly = self.stability.iter().flat_map(|own| &own.intervals).filter(shown).map(exact);
+        let pieces = self.pieces.iter().flat_map(|all| all.all.iter().map(move |own| (own, all)));
+        exactly.chain(pieces.map(enclosed)).collect()
     }
 
     /// ω h at the nominal edge an evaluation, gradients and solves counted as one each.
@@ -238,17 +410,8 @@ impl Linted {
 
     /// Every interval with one answer.
     fn rows(&self, lambda1: Option<&Laurent>) -> Table {
-        type Of<'a> = &'a Interval;
-        let root = lambda1.map(|lambda1| lambda1.enclosure(BITS).sqrt(BITS).expect("positive"));
-        let end = |edge: &Option<Edge>, lower: bool| match edge {
-            Some(edge) => Some(omega_h(edge)),
-            None => lower.then(Ball::zero),
-        };
-        let (one, two) = (root.clone(), root);
-        let over =
-            |x: Option<Ball>, root: &Option<Ball>| Some(x?.div(root.as_ref()?, BITS)?.to_f64_enclosure());
-        let exact =
-            |edge: &Option<Edge>| edge.as_ref().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        type Of<'a> = &'a Span;
+        let exact = |square: &Option<Rational>| square.as_ref().map_or(Cell::Missing, Cell::exact);
         let record = Record::new()
             .field(Column::new("stable").left(), |of: Of| of.stable.into())
             .field(
@@ -262,16 +425,16 @@ impl Linted {
                         },
                     )
                     .enclosure(),
-                move |of| end(&of.lower, true).map(|x| x.to_f64_enclosure()).into(),
+                |of| of.ends[0].as_ref().map(positive).into(),
             )
-            .field(Column::new("upper").titled("to", "to").enclosure(), move |of| {
-                end(&of.upper, false).map(|x| x.to_f64_enclosure()).into()
+            .field(Column::new("upper").titled("to", "to").enclosure(), |of| {
+                of.ends[1].as_ref().map(Ball::to_f64_enclosure).into()
             })
             .field(Column::new("lower_s").in_words("lower (omega h)^2 exactly").aside(), move |of| {
-                exact(&of.lower)
+                exact(&of.squares[0])
             })
             .field(Column::new("upper_s").in_words("upper (omega h)^2 exactly").aside(), move |of| {
-                exact(&of.upper)
+                exact(&of.squares[1])
             })
             .field(Column::new("lower_included").in_words("with lower end").aside(), |of| {
                 of.includes[0].into()
@@ -279,15 +442,9 @@ impl Linted {
             .field(Column::new("upper_included").in_words("with upper end").aside(), |of| {
                 of.includes[1].into()
             })
-            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), move |of| {
-                over(end(&of.lower, true), &one).into()
-            })
-            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), move |of| {
-                over(end(&of.upper, false), &two).into()
-            });
-        let all = self.stability.iter().flat_map(|own| &own.intervals);
-        let shown = all.filter(|own| self.range.as_ref().is_none_or(|(lo, hi)| meets(own, lo, hi)));
-        record.table("intervals", "Stable and unstable steps of the word", shown)
+            .field(Column::new("h_lower").titled("h from", "$h$ from").enclosure(), |of| of.h[0].into())
+            .field(Column::new("h_upper").titled("h to", "$h$ to").enclosure(), |of| of.h[1].into());
+        record.table("intervals", "Stable and unstable steps of the word", &self.spans(lambda1))
     }
 
     /// For people.
@@ -316,7 +473,10 @@ impl Linted {
         } else {
             String::new()
         };
-        line("order", format!("{} on oscillators{rounded}", self.order.order));
+        let least =
+            if self.order.order >= MOST_ORDER && !self.word.is_algebraic() { "at least " } else { "" };
+        let friction = if self.word.has_friction() { ", friction aside" } else { "" };
+        line("order", format!("{least}{} on oscillators{friction}{rounded}", self.order.order));
         for (name, term) in [("frequency", &self.order.frequency), ("impedance", &self.order.impedance)] {
             if let Some((k, c)) = term {
                 let text = shown(c);
@@ -352,12 +512,34 @@ impl Linted {
                 },
             );
         }
+        if let Some(pieces) = &self.pieces {
+            let upto = format!("looked at up to h = {}", decimal::enclosure(pieces.range.1, pieces.range.1));
+            let upto = if question.lambda1.is_some() { upto } else { upto.replace(" h ", " omega h ") };
+            let begins = pieces.all.first().is_some_and(|first| first.stable);
+            line(
+                "stable",
+                match (self.edge_omega_h().filter(|_| begins), pieces.is_free) {
+                    (_, true) => "at every step, by theorem: no resonance".into(),
+                    (Some(edge), _) => format!("0 < {unit} < {}; {upto}", enclosed(edge.to_f64_enclosure())),
+                    _ => format!("see the intervals; {upto}"),
+                },
+            );
+        }
+        if self.word.has_friction() {
+            line(
+                "friction",
+                match &question.friction {
+                    Some(friction) => format!("{friction}: stable steps draw every start to 0, noise aside"),
+                    None => "not given: O does nothing, and what is told is of the word without it".into(),
+                },
+            );
+        }
         let cost = self.cost;
         let counts = match (self.word.names_forces(), cost.evaluations) {
             (false, [all, _]) => counted(all, "evaluation"),
             (true, [fast, slow]) => format!("{} of force 1, {slow} of force 2", counted(fast, "evaluation")),
         };
-        let more = [(cost.gradients, "gradient"), (cost.solves, "linear solve")];
+        let more = [(cost.gradients, "gradient"), (cost.solves, "linear solve"), (cost.flows, "exact flow")];
         let more: String =
             more.iter().filter(|(n, _)| *n > 0).map(|(n, of)| format!(", {}", counted(*n, of))).collect();
         line("cost", format!("{counts}{more} a step"));
@@ -370,7 +552,11 @@ impl Linted {
             line("efficiency", text);
         }
         if let (Some(found), Some(h)) = (&self.at, &question.h) {
-            let stable = if found.is_stable() { "stable" } else { "unstable" };
+            let stable = match (found.kind, found.is_stable()) {
+                ("edge", _) => "on an edge or nearer to one than balls tell",
+                (_, true) => "stable",
+                (_, false) => "unstable",
+            };
             line(
                 "verdict",
                 format!(
@@ -448,7 +634,7 @@ fn record(question: &Word) -> Record<'_, Linted> {
     let mut record = Record::new()
         .json("word", |of: Of| Cell::exact(&of.word))
         .json("consistent", |of| of.word.is_consistent().into());
-    for name in ["D", "K", "K1", "K2"] {
+    for name in ["D", "K", "K1", "K2", "O"] {
         record = record.json(format!("sums.{name}"), move |of| sum(of, name));
     }
     record = record
@@ -470,20 +656,28 @@ fn record(question: &Word) -> Record<'_, Linted> {
         .json("frequency.coefficient", move |of| term(&of.order.frequency, false))
         .json("impedance.power", move |of| term(&of.order.impedance, true))
         .json("impedance.coefficient", move |of| term(&of.order.impedance, false))
-        .json("edge.omega_h", |of| of.edge().map(|edge| omega_h(edge).to_f64_enclosure()).into())
-        .json("edge.s", |of| of.edge().map(|edge| edge.s().to_f64_enclosure()).into())
+        .json("edge.omega_h", |of| of.edge_omega_h().map(|edge| edge.to_f64_enclosure()).into())
+        .json("edge.s", |of| {
+            of.edge_omega_h()
+                .map(|edge| of.edge().map_or_else(|| edge.square(BITS), Edge::s).to_f64_enclosure())
+                .into()
+        })
         .json("edge.exact", |of| of.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact))
         .json("edge.side", |of| of.edge().map(|edge| i64::from(edge.side)).into())
         .json("edge.polynomial", |of| of.edge().map_or(Cell::Missing, |edge| Cell::Text(polynomial(edge))))
+        .json("free", |of| of.pieces.as_ref().map(|own| own.is_free).into())
         .json("nominal_edge", |of| of.nominal_edge().map(|own| own.to_f64_enclosure()).into())
         .json("evaluations.first", |of| of.cost.evaluations[0].into())
         .json("evaluations.second", |of| of.cost.evaluations[1].into())
         .json("evaluations.gradients", |of| of.cost.gradients.into())
         .json("evaluations.solves", |of| of.cost.solves.into())
+        .json("evaluations.flows", |of| of.cost.flows.into())
         .json("per_unit", |of| of.per_unit().into())
         .json("efficiency", |of| of.efficiency().into())
         .json("verdict.kind", |of| of.at.as_ref().map(|found| found.kind).into())
-        .json("verdict.stable", |of| of.at.as_ref().map(At::is_stable).into())
+        .json("verdict.stable", |of| {
+            of.at.as_ref().filter(|own| own.kind != "edge").map(At::is_stable).into()
+        })
         .json("verdict.side", |of| of.at.as_ref().map(|found| i64::from(found.side)).into())
         .json("verdict.trace", |of| of.at.as_ref().map(|found| found.trace.to_f64_enclosure()).into())
         .json("verdict.growth_rate", move |of| at(of, |found| &found.ln_multiplier))
@@ -503,7 +697,7 @@ fn polynomial(edge: &Edge) -> String {
 
 impl Question for Methods {
     const NAME: &'static str = "methods";
-    type Answer = Vec<(&'static Method, Linted)>;
+    type Answer = Vec<Listed>;
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
         let lint = |method: &'static Method| {
@@ -514,40 +708,108 @@ impl Question for Methods {
                 lambda2: None,
                 h: None,
                 h_range: None,
+                friction: None,
             };
-            Ok((method, none.answer(work)?))
+            let linted = none.answer(work)?;
+            let two = || Word {
+                lambda1: Some(16.into()),
+                lambda2: Some(1.into()),
+                h_range: Some(slow_range()),
+                ..none
+            };
+            let two = if linted.word.names_forces() { Some(two().answer(work)?) } else { None };
+            Ok(Listed { method, linted, two })
         };
         METHODS.iter().map(lint).collect()
     }
 
     fn show(&self, all: &Self::Answer) -> Document {
-        type Of<'a> = &'a (&'static Method, Linted);
-        let exact = |of: Of| of.1.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        type Of<'a> = &'a Listed;
+        let exact = |of: Of| of.linted.edge().and_then(Edge::rational).map_or(Cell::Missing, Cell::exact);
+        let of = |edge: Option<Ball>| -> Cell { edge.map(|own| own.to_f64_enclosure()).into() };
+        let engines = |of: Of| match of.method.engines {
+            [] => Cell::Missing,
+            all => Cell::Text(all.join("; ")),
+        };
         let table = Record::new()
-            .field(Column::new("name").left(), |of: Of| of.0.name.into())
-            .field(Column::new("order"), |of| of.1.order.nominal.into())
-            .field(Column::new("evaluations").in_words("cost"), |of| of.1.cost.total().into())
-            .field(Column::new("palindrome").left(), |of| of.1.word.asymmetry().is_none().into())
-            .field(Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(), |of| {
-                of.1.edge().map(|edge| omega_h(edge).to_f64_enclosure()).into()
+            .field(Column::new("name").left(), |of: Of| of.method.name.into())
+            .field(Column::new("order"), |of| of.linted.order.nominal.into())
+            .field(Column::new("evaluations").in_words("cost"), |of| of.linted.cost.total().into())
+            .field(Column::new("palindrome").left(), |of| of.linted.word.asymmetry().is_none().into())
+            .field(Column::new("edge").titled("omega h below", "$\\omega h$ below").enclosure(), move |own| {
+                of(own.linted.edge_omega_h())
             })
-            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), |of| {
-                of.1.nominal_edge().map(|own| own.to_f64_enclosure()).into()
+            .field(Column::new("nominal_edge").in_words("nominally").enclosure(), move |own| {
+                of(own.linted.nominal_edge())
             })
             .field(Column::new("edge_s").in_words("(omega h)^2").aside(), exact)
-            .field(Column::new("efficiency").enclosure(), |of| of.1.efficiency().into())
-            .field(Column::new("word").left().aside(), |of| Cell::exact(&of.1.word))
-            .field(Column::new("source").left().aside(), |of| of.0.source.into())
+            .field(Column::new("efficiency").enclosure(), |of| of.linted.efficiency().into())
+            .field(
+                Column::new("coupled_edge").titled("omega1 h below", "$\\omega_1 h$ below").enclosure(),
+                move |own| of(own.two.as_ref().and_then(Linted::edge_omega_h)),
+            )
+            .field(Column::new("free").titled("free", "free").left(), |of| of.is_free().into())
+            .field(Column::new("engines").left(), engines)
+            .field(Column::new("word").left().aside(), |of| Cell::exact(&of.linted.word))
+            .field(Column::new("source").left().aside(), |of| of.method.source.into())
             .table(
                 "methods",
-                "Published integrators: order on oscillators, cost a step, stable steps, efficiency",
+                "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
                 all,
             );
-        let line = format!("{} integrators; kickdrift word --method NAME tells more of one", all.len());
+        let lines = [
+            format!("{} integrators; kickdrift word --method NAME tells more of one", all.len()),
+            "two forces: omega1 h below which they are stable at lambda2/lambda1 = 1/16 (periods 1:4)".into(),
+            "free: no unstable step there before the slow force's own limit omega2 h = 2".into(),
+        ];
         let people = chosen(
             &table,
-            &["name", "order", "evaluations", "palindrome", "edge", "nominal_edge", "efficiency"],
+            &[
+                "name",
+                "order",
+                "evaluations",
+                "palindrome",
+                "edge",
+                "nominal_edge",
+                "efficiency",
+                "coupled_edge",
+                "free",
+                "engines",
+            ],
         );
-        Document::new(Self::NAME).rows(table).for_people(people).summary(&[line])
+        Document::new(Self::NAME).rows(table).for_people(people).summary(&lines)
+    }
+}
+
+/// An entry of the catalogue.
+#[derive(Clone, Debug)]
+pub struct Listed {
+    pub method: &'static Method,
+    pub linted: Linted,
+    /// The answer for Λ1 = 16, Λ2 = 1, where the word names forces.
+    pub two: Option<Linted>,
+}
+
+/// Steps up to √Λ2 h = 2, at which the slow force alone has its edge: √Λ1 h = 8.
+fn slow_range() -> StepRange {
+    (Laurent::zero(), Laurent::from_integer(2))
+}
+
+impl Listed {
+    /// Whether no step below √Λ2 h = 2 is unstable at Λ2/Λ1 = 1/16: that is free of resonance. `None` for one force, and where edges that touch are
+    /// not told apart.
+    pub fn is_free(&self) -> Option<bool> {
+        let two = self.two.as_ref()?;
+        let limit = Rational::from_integer(64.into());
+        match (&two.stability, &two.pieces) {
+            (Some(own), _) => Some(match own.first_edge() {
+                Some(edge) => edge.compare(&limit) != Sign::Negative,
+                None => own.begins_stable(),
+            }),
+            (_, Some(own)) if own.is_free => Some(true),
+            (_, Some(own)) if own.all.iter().any(|piece| !piece.stable) => Some(false),
+            (_, Some(own)) => (own.all.len() == 1).then_some(true),
+            _ => None,
+        }
     }
 }

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::number::rational::to_f64;
 use crate::number::{Radical, Real};
 use crate::question::{CompareMethods, Side};
-use crate::word::{Bounded, Force, Integrator, Letter, Trigonometric};
+use crate::word::{Bounded, Force, Integrator, Letter, Word};
 
 const ROUTE: &str = "the trace at every point in doubles, letter by letter; points within 1e-7 of an edge may fall on either side";
 
@@ -33,28 +33,36 @@ impl Recheck for Claim {
     asked!(CompareMethods);
 
     fn check(&self, sides: Vec<Side>, context: &Context) -> Result<Outcome> {
-        let [steps, ratios] = self.input.grid()?;
-        let squares: Vec<f64> = self.input.squares(&steps).iter().map(|s| s.to_f64()).collect();
-        let ratios: Vec<f64> = ratios.iter().map(to_f64).collect();
+        let ([steps, ups], ratio) = (self.input.grid()?, self.input.ratio()?);
+        let squares = self.input.squares(&steps);
+        // (h² Λ1, Λ2/Λ1)
+        let points: Vec<(f64, f64)> = ups
+            .iter()
+            .flat_map(|up| {
+                steps
+                    .iter()
+                    .zip(&squares)
+                    .map(|(h, s)| (s.to_f64(), to_f64(&ratio(h, up))))
+                    .collect::<Vec<_>>()
+            })
+            .collect();
         context.outcome(ROUTE, ("the grid", Ok(())), &self.methods, |row| {
             let own = sides.iter().find(|own| own.name == row.method);
             holds(own.is_some(), || format!("{} is not among the methods", row.method))?;
-            own.map_or(Ok(()), |own| row.holds(own, &squares, &ratios))
+            own.map_or(Ok(()), |own| row.holds(own, &points))
         })
     }
 }
 
 impl Row {
-    fn holds(&self, own: &Side, squares: &[f64], ratios: &[f64]) -> Checked {
+    fn holds(&self, own: &Side, points: &[(f64, f64)]) -> Checked {
         let (mut stable, mut unstable) = (0u64, 0u64);
-        for rho in ratios {
-            for s in squares {
-                let excess = trace(&own.integrator, *s, *rho).abs() - 2.0;
-                stable += u64::from(excess < -NEAR);
-                unstable += u64::from(excess > NEAR);
-            }
+        for (s, rho) in points {
+            let excess = trace(&own.integrator, *s, *rho).abs() - 2.0;
+            stable += u64::from(excess < -NEAR);
+            unstable += u64::from(excess > NEAR);
         }
-        let points = (squares.len() * ratios.len()) as u64;
+        let points = points.len() as u64;
         holds(self.stable + self.unstable + self.edge == points, || format!("there are {points} points"))?;
         let right =
             self.stable >= stable && self.unstable >= unstable && own.count(Bounded::Stable) == self.stable;
@@ -63,23 +71,23 @@ impl Row {
 }
 
 fn trace(integrator: &Integrator, s: f64, rho: f64) -> f64 {
-    let word = match integrator {
+    match integrator {
         Integrator::Trigonometric(own) => {
             let x = s.sqrt();
-            let sinc = |x: f64| x.sin() / x;
-            let (whole, half) = (sinc(x), sinc(x / 2.0));
-            let g = match own {
-                Trigonometric::Impulse => whole,
-                Trigonometric::Gautschi => half.powi(2),
-                Trigonometric::Short => whole * half.powi(2),
-                Trigonometric::Linear => whole * half.powi(4),
-                Trigonometric::Long => whole.powi(3),
-                Trigonometric::HairerLubich => whole.powi(2),
-            };
-            return 2.0 * x.cos() - s * rho * g;
+            let (cos, sinc) = ((x / 2.0).cos(), sinc(x / 2.0));
+            let g = cos.powi(own.cos as i32) * sinc.powi(own.sinc as i32);
+            2.0 * x.cos() - if own.felt { s * rho * g } else { 0.0 }
         }
-        Integrator::Word(word) => word,
-    };
+        Integrator::Word(word) => step(word, s, rho, 0.0).0,
+    }
+}
+
+fn sinc(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.sin() / x }
+}
+
+/// Trace and determinant of a word, letter by letter in doubles, at h² Λ1 = s, Λ2 = ρ Λ1, γ h = `friction`.
+pub(super) fn step(word: &Word, s: f64, rho: f64, friction: f64) -> (f64, f64) {
     let number = |c: &Radical| c.enclosure(64).mid_f64();
     let strength = |force: Force| match force {
         Force::All => s * (1.0 + rho),
@@ -90,22 +98,32 @@ fn trace(integrator: &Integrator, s: f64, rho: f64) -> f64 {
     let mut columns = [[1.0, 0.0], [0.0, 1.0]];
     for letter in word.letters() {
         for [x, v] in &mut columns {
+            let before = (*x, *v);
             match letter {
                 Letter::Drift(time) => *x += number(time) * *v,
-                Letter::Kick { force, powers } => {
+                Letter::Friction(time) => *v *= (-friction * number(time)).exp(),
+                Letter::Kick { force, filter, powers } => {
                     let f = strength(*force);
                     let kick = powers.iter().rev().fold(0.0, |sum, c| (sum + number(c)) * f);
-                    *v -= kick * *x;
+                    let half = s.sqrt() / 2.0;
+                    let g = half.cos().powi(filter.cos) * sinc(half).powi(filter.sinc);
+                    *v -= if filter.zero { 0.0 } else { kick * g } * *x;
+                }
+                Letter::Flow { force, time } => {
+                    let (c, f) = (number(time), strength(*force));
+                    let y = c.abs() * f.sqrt();
+                    *x = y.cos() * before.0 + c * sinc(y) * before.1;
+                    *v = -c * f * sinc(y) * before.0 + y.cos() * before.1;
                 }
                 Letter::Midpoint { force, time } => {
                     let (c, f) = (number(time), strength(*force));
                     let q = c * c * f / 4.0;
-                    let before = (*x, *v);
                     *x = ((1.0 - q) * before.0 + c * before.1) / (1.0 + q);
                     *v = (-c * f * before.0 + (1.0 - q) * before.1) / (1.0 + q);
                 }
             }
         }
     }
-    columns[0][0] + columns[1][1]
+    let [[a, c], [b, d]] = columns;
+    (a + d, a * d - b * c)
 }

@@ -5,13 +5,17 @@ use num_traits::{One, Zero};
 
 use super::again::{Recheck, asked};
 use super::context::{Checked, Context, Outcome, holds, same};
+use super::side::step;
 use super::written::{Ends, Written};
 use crate::error::Result;
 use crate::number::{ExactSign, Radical, Rational, Real, Ring, Sign, rational};
 use crate::question::{Methods, Word};
 use crate::word::{Force, Letter, method};
 
-const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the order by halving a step";
+const ROUTE: &str = "letter by letter in exact numbers: a step of each interval, the order by halving a step; exact flows, filters and friction in doubles";
+
+/// Traces this near to an edge tell nothing in doubles.
+const NEAR: f64 = 1e-7;
 
 rows! {
     /// `kickdrift/word/1`.
@@ -38,6 +42,7 @@ rows! {
     struct Entry [name] {
         name: String,
         nominal_edge: Ends | null,
+        coupled_edge: Ends | null,
         word: Written<crate::word::Word>,
     }
 }
@@ -58,7 +63,10 @@ fn product(word: &crate::word::Word, s: &Rational, rho: &Rational) -> Matrix2<Ra
         |product, letter| {
             let matrix = match letter {
                 Letter::Drift(time) => Matrix2::new(one.clone(), time.clone(), zero.clone(), one.clone()),
-                Letter::Kick { force: named, powers } => {
+                // Without friction O does nothing; words with flows take another route.
+                Letter::Friction(_) | Letter::Flow { .. } => return product,
+                Letter::Kick { filter, .. } if filter.zero => return product,
+                Letter::Kick { force: named, powers, .. } => {
                     let force = force(*named);
                     let (mut power, mut strength) = (one.clone(), zero.clone());
                     for c in powers {
@@ -97,7 +105,15 @@ impl Recheck for Claim {
     fn check(&self, found: Self::Found, context: &Context) -> Result<Outcome> {
         // Whose length is within the budget.
         let (word, rho) = (&found.word, found.rho.unwrap_or_default());
-        context.outcome(ROUTE, ("the word", self.whole(word)), &self.intervals, |row| row.holds(word, &rho))
+        let Some(pieces) = &found.pieces else {
+            let whole = self.whole(word);
+            return context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| row.holds(word, &rho));
+        };
+        let whole = holds(self.word.0 == *word, || format!("the word is {word}"));
+        let friction = self.input.friction.as_ref().map_or(0.0, |own| own.to_f64()) / pieces.root.mid_f64();
+        context.outcome(ROUTE, ("the word", whole), &self.intervals, |row| {
+            row.holds_in_doubles(word, rational::to_f64(&rho), friction)
+        })
     }
 }
 
@@ -161,14 +177,21 @@ impl Row {
         let omega_h = (lo + hi) / Rational::from_integer(2.into());
         let sign = inside(word, &(&omega_h * &omega_h), rho);
         let stable = sign == Sign::Positive;
-        holds(sign == Sign::Zero || stable == self.stable, || {
-            format!(
-                "at omega h = {} it is {}",
-                rational::to_f64(&omega_h),
-                if stable { "stable" } else { "unstable" }
-            )
-        })
+        holds(sign == Sign::Zero || stable == self.stable, || told(rational::to_f64(&omega_h), stable))
     }
+
+    /// The trace in the middle against 1 + the determinant; γ in units of √Λ1.
+    fn holds_in_doubles(&self, word: &crate::word::Word, rho: f64, friction: f64) -> Checked {
+        let lower = self.lower.map_or(0.0, |own| own.hi);
+        let omega_h = self.upper.map_or(lower + 0.01, |own| (lower + own.lo) / 2.0);
+        let (trace, determinant) = step(word, omega_h * omega_h, rho, friction * omega_h);
+        let margin = 1.0 + determinant - trace.abs();
+        holds(margin.abs() < NEAR || (margin > 0.0) == self.stable, || told(omega_h, margin > 0.0))
+    }
+}
+
+fn told(omega_h: f64, stable: bool) -> String {
+    format!("at omega h = {omega_h} it is {}", if stable { "stable" } else { "unstable" })
 }
 
 impl Recheck for Listed {
@@ -184,6 +207,12 @@ impl Entry {
     /// Just below the edge it is stable, just above it is not: the interval there is no narrower than 2^-30 of its size.
     fn holds(&self) -> Checked {
         holds(method(&self.name)?.word() == self.word.0, || "its word is another one".into())?;
+        if let Some(Ends { lo, hi }) = self.coupled_edge {
+            for (x, stable) in [(lo * (1.0 - 1e-4), true), (hi * (1.0 + 1e-4), false)] {
+                let margin = 2.0 - step(&self.word.0, x * x, 1.0 / 16.0, 0.0).0.abs();
+                holds((margin > 0.0) == stable, || "its edge beside a slow force is another one".into())?;
+            }
+        }
         let Some(Ends { lo, hi }) = self.nominal_edge else { return Ok(()) };
         for (factor, stable) in [(1.0 - 1e-10, Sign::Positive), (1.0 + 1e-10, Sign::Negative)] {
             let x = if stable == Sign::Positive { lo * factor } else { hi * factor };

@@ -14,6 +14,8 @@ pub struct Method {
     pub text: &'static str,
     /// Where the coefficients come from.
     pub source: &'static str,
+    /// Programs that have it, each with what to write there, as "LAMMPS: run_style respa".
+    pub engines: &'static [&'static str],
 }
 
 impl Method {
@@ -35,8 +37,8 @@ pub fn method(name: &str) -> Result<&'static Method> {
 }
 
 macro_rules! methods {
-    ($($name:literal $order:literal $text:expr, $source:expr;)*) => {
-        &[$(Method { name: $name, order: $order, text: $text, source: $source }),*]
+    ($($name:literal $order:literal $text:expr, $source:expr $(, $engine:literal)*;)*) => {
+        &[$(Method { name: $name, order: $order, text: $text, source: $source, engines: &[$($engine),*] }),*]
     };
 }
 
@@ -64,16 +66,23 @@ const BCSS: &str = "Blanes, Casas, Sanz-Serna, SIAM J. Sci. Comput. 36, A1556 (2
 const BLANES_MOAN: &str = "Blanes, Moan, J. Comput. Appl. Math. 142, 313 (2002)";
 const YOSHIDA: &str = "Yoshida, Phys. Lett. A 150, 262 (1990)";
 const CHIN: &str = "Chin, Phys. Lett. A 226, 344 (1997)";
+const BAOAB_RESPA: &str = "Lagardere, Aviat, Piquemal, J. Phys. Chem. Lett. 10, 2593 (2019)";
+const IPI: &str = "Kapil et al., Comput. Phys. Commun. 236, 214 (2019)";
+const MOLLY: &str = "Garcia-Archilla, Sanz-Serna, Skeel, SIAM J. Sci. Comput. 20, 930 (1998)";
 const RESPA: &str = "Tuckerman, Berne, Martyna, J. Chem. Phys. 97, 1990 (1992)";
 
 /// All of them, simple ones first; the last ones are of two forces, K1 the fast one.
 pub const METHODS: &[Method] = methods! {
     "symplectic-euler" 1 "K(1) D(1)", "Hairer, Lubich, Wanner, Geometric Numerical Integration, I.1.2";
-    "velocity-verlet" 2 "K(1/2) D(1) K(1/2)", "Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76, 637 (1982)";
+    "velocity-verlet" 2 "K(1/2) D(1) K(1/2)", "Swope, Andersen, Berens, Wilson, J. Chem. Phys. 76, 637 (1982)",
+        "LAMMPS: run_style verlet", "GROMACS: integrator = md-vv", "ASE: VelocityVerlet";
     "position-verlet" 2 "D(1/2) K(1) D(1/2)", RESPA;
     "midpoint" 2 "C(1)", "Hairer, Lubich, Wanner, Geometric Numerical Integration, II.1.4";
+    // beta = 1/4, gamma = 1/2: the trapezoidal rule, on linear problems the midpoint rule.
+    "newmark" 2 "C(1)", "Newmark, J. Eng. Mech. Div. ASCE 85, 67 (1959)";
     "mclachlan-atela-2" 2 "K(1-1/sqrt(2)) D(1/sqrt(2)) K(1/sqrt(2)) D(1-1/sqrt(2))", MCLACHLAN_ATELA;
-    "2mn-velocity" 2 "K(0.1931833275037836) D(1/2) K(1-2*0.1931833275037836) D(1/2) K(0.1931833275037836)", OMELYAN_2002;
+    "2mn-velocity" 2 "K(0.1931833275037836) D(1/2) K(1-2*0.1931833275037836) D(1/2) K(0.1931833275037836)", OMELYAN_2002,
+        "tmLQCD: Type = 2MN";
     "2mn-position" 2 "D(0.1931833275037836) K(1/2) D(1-2*0.1931833275037836) K(1/2) D(0.1931833275037836)", OMELYAN_2002;
     "bcss-2" 2 "K((3-sqrt(3))/6) D(1/2) K(sqrt(3)/3) D(1/2) K((3-sqrt(3))/6)", BCSS;
     // The condition 6 a b - 2 a - b + 1/2 = 0, under which a zero of A and one of D coincide, gives b from a.
@@ -86,7 +95,7 @@ pub const METHODS: &[Method] = methods! {
     "bcss-4" 2
         "K(0.071353913450279725904) D(0.1916678) K(0.268548791161230105820) D(1/2-0.1916678) K(1-2*(0.071353913450279725904+0.268548791161230105820)) D(1/2-0.1916678) K(0.268548791161230105820) D(0.1916678) K(0.071353913450279725904)",
         BCSS;
-    "forest-ruth" 4 verlets!("1/(2-2^(1/3))"; "-2^(1/3)/(2-2^(1/3))"), "Forest, Ruth, Physica D 43, 105 (1990)";
+    "forest-ruth" 4 verlets!("1/(2-2^(1/3))"; "-2^(1/3)/(2-2^(1/3))"), "Forest, Ruth, Physica D 43, 105 (1990); Yoshida, Phys. Lett. A 150, 262 (1990)";
     "suzuki-4" 4 verlets!("1/(4-4^(1/3))" "1/(4-4^(1/3))"; "1-4/(4-4^(1/3))"), "Suzuki, Phys. Lett. A 146, 319 (1990)";
     "mclachlan-atela-4" 4
         "K(0.1344961992774310892) D(0.5153528374311229364) K(-0.2248198030794208058) D(-0.085782019412973646) K(0.7563200005156682911) D(0.4415830236164665242) K(0.3340036032863214255) D(0.1288461583653841854)",
@@ -94,6 +103,10 @@ pub const METHODS: &[Method] = methods! {
     "pefrl" 4
         "D(0.1786178958448091) K((1-2*(-0.2123418310626054))/2) D(-0.06626458266981849) K(-0.2123418310626054) D(1-2*(0.1786178958448091-0.06626458266981849)) K(-0.2123418310626054) D(-0.06626458266981849) K((1-2*(-0.2123418310626054))/2) D(0.1786178958448091)",
         OMELYAN_2002;
+    // The word of PEFRL, its last digits rounded otherwise.
+    "4mn4fp" 4
+        "D(0.1786178958448091) K(0.7123418310626056) D(-0.06626458266981843) K(1/2-0.7123418310626056) D(1-2*(0.1786178958448091-0.06626458266981843)) K(1/2-0.7123418310626056) D(-0.06626458266981843) K(0.7123418310626056) D(0.1786178958448091)",
+        OMELYAN_2003;
     "vefrl" 4
         "K(0.1644986515575760) D((1-2*(-0.02094333910398989))/2) K(1.235692651138917) D(-0.02094333910398989) K(1-2*(0.1644986515575760+1.235692651138917)) D(-0.02094333910398989) K(1.235692651138917) D((1-2*(-0.02094333910398989))/2) K(0.1644986515575760)",
         OMELYAN_2002;
@@ -120,7 +133,15 @@ pub const METHODS: &[Method] = methods! {
     "yoshida-8" 8
         verlets!("1.04242620869991" "1.82020630970714" "0.157739928123617" "2.44002732616735" "-0.00716989419708120" "-2.44699182370524" "-1.61582374150097"; "1-2*(1.04242620869991+1.82020630970714+0.157739928123617+2.44002732616735-0.00716989419708120-2.44699182370524-1.61582374150097)"),
         YOSHIDA;
-    "respa-4" 2 "K2(1/2) 4*(K1(1/8) D(1/4) K1(1/8)) K2(1/2)", RESPA;
+    "baoab" 2 "K(1/2) D(1/2) O(1) D(1/2) K(1/2)", "Leimkuhler, Matthews, Appl. Math. Res. Express 2013, 34 (2013)",
+        "ASE: LangevinBAOAB", "OpenMM: LangevinMiddleIntegrator (leapfrog velocities)", "i-PI: splitting = baoab";
+    "obabo" 2 "O(1/2) K(1/2) D(1) K(1/2) O(1/2)", "Bussi, Parrinello, Phys. Rev. E 75, 056707 (2007)", "i-PI: splitting = obabo";
+    "respa-4" 2 "K2(1/2) 4*(K1(1/8) D(1/4) K1(1/8)) K2(1/2)", RESPA,
+        "OpenMM: MTSIntegrator", "LAMMPS: run_style respa", "GROMACS: mts = yes", "NAMD: nonbondedFreq, fullElectFrequency",
+        "Tinker: integrator respa", "i-PI: nmts";
+    "mts-baoab-4" 2 "K2(1/2) 4*(K1(1/8) D(1/8) O(1/4) D(1/8) K1(1/8)) K2(1/2)", BAOAB_RESPA, "OpenMM: MTSLangevinIntegrator";
+    "mts-baoab-middle-4" 2 "K2(1/2) 2*(K1(1/8) D(1/4) K1(1/8)) O(1) 2*(K1(1/8) D(1/4) K1(1/8)) K2(1/2)", IPI, "i-PI: nmts, splitting = baoab";
+    "mts-obabo-4" 2 "O(1/2) K2(1/2) 4*(K1(1/8) D(1/4) K1(1/8)) K2(1/2) O(1/2)", IPI, "i-PI: nmts, splitting = obabo";
     "avi-3-2" 2
         "K1(1/6) K2(1/4) D(1/3) K1(1/3) D(1/6) K2(1/2) D(1/6) K1(1/3) D(1/3) K2(1/4) K1(1/6)",
         "Lew, Marsden, Ortiz, West, Arch. Ration. Mech. Anal. 167, 85 (2003)";
@@ -128,4 +149,19 @@ pub const METHODS: &[Method] = methods! {
         "K2(1/6) 2*(K1(1/24) D(1/8) K1(1/6) D(1/8) K1(1/24)) K2(2/3) 2*(K1(1/24) D(1/8) K1(1/6) D(1/8) K1(1/24)) K2(1/6)",
         "Sexton, Weingarten, Nucl. Phys. B 380, 665 (1992)";
     "implicit-explicit" 2 "K2(1/2) C1(1) K2(1/2)", "Stern, Grinspun, Multiscale Model. Simul. 7, 1779 (2009)";
+    "impulse" 2 "K2(1/2) R1(1) K2(1/2)", RESPA;
+    "deuflhard" 2 "K2(1/2) R1(1) K2(1/2)", "Deuflhard, Z. Angew. Math. Phys. 30, 177 (1979)";
+    "gautschi" 2 "K2[sinc(x/2)/cos(x/2)](1/2) R1(1) K2[sinc(x/2)/cos(x/2)](1/2)", "Gautschi, Numer. Math. 3, 381 (1961)";
+    "molly-short" 2 "K2[sinc(x/2)^2](1/2) R1(1) K2[sinc(x/2)^2](1/2)", MOLLY;
+    "molly-linear" 2 "K2[sinc(x/2)^4](1/2) R1(1) K2[sinc(x/2)^4](1/2)", MOLLY;
+    "molly-long" 2 "K2[sinc(x)^2](1/2) R1(1) K2[sinc(x)^2](1/2)", MOLLY;
+    // Of the slow force a mode with a fast one feels nothing: no order on such an oscillator.
+    "molly-equilibrium" 0 "K2[0](1/2) R1(1) K2[0](1/2)", "Izaguirre, Reich, Skeel, J. Chem. Phys. 110, 9853 (1999)",
+        "LAMMPS: fix filter/corotate";
+    "hairer-lubich" 2 "K2[sinc(x)](1/2) R1(1) K2[sinc(x)](1/2)", "Hairer, Lubich, SIAM J. Numer. Anal. 38, 414 (2000)";
+    "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, J. Phys. A 39, 5495 (2006)";
+    "rpmd" 2 "K2(1/2) R1(1) K2(1/2)", "Ceriotti, Parrinello, Markland, Manolopoulos, J. Chem. Phys. 133, 124104 (2010)",
+        "i-PI: normal_modes propagator = exact";
+    "rpmd-cayley" 2 "K2(1/2) C1(1) K2(1/2)", "Korol, Bou-Rabee, Miller, J. Chem. Phys. 151, 124103 (2019)",
+        "i-PI: normal_modes propagator = cayley";
 };

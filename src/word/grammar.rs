@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::coefficient::{Read, Reader, TWO_FIELDS};
+use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use crate::error::{Error, Result};
 use crate::number::Radical;
@@ -42,7 +43,13 @@ impl FromStr for Word {
     }
 }
 
-const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2 and n*(...)";
+const LETTERS: &str = "the letters are K, K1, K2, D, C, C1, C2, R, R1, R2, O and n*(...)";
+
+const FILTERS: &str =
+    "a filter is made of sinc(x), sinc(x/2), cos(x/2), their powers, 1 and 0, as [sinc(x/2)^2]";
+
+/// The largest power of a filter's factor, and of all together.
+const MAX_FILTER: i32 = 16;
 
 impl Reader {
     /// items = (letter | digits "*" "(" items ")")*
@@ -53,7 +60,7 @@ impl Reader {
             self.skip('\0');
             match self.peek() {
                 Some(c) if c.is_ascii_digit() => items.push(self.repeated()?),
-                Some('K' | 'D' | 'C') => items.push(Item::Letter(self.letter()?)),
+                Some('K' | 'D' | 'C' | 'R' | 'O') => items.push(Item::Letter(self.letter()?)),
                 _ => return Ok(items),
             }
         }
@@ -84,6 +91,12 @@ impl Reader {
             Some("2") => Force::Second,
             _ => return self.wrong(at, format!("{name} is no letter; {LETTERS}")),
         };
+        let filtered = self.at;
+        let filter = if self.skip('[') { Some(self.filter()?) } else { None };
+        if filter.is_some() && name != "K2" {
+            return self.wrong(filtered, "filters stand on K2: x is h sqrt(lambda1), the fast force's angle");
+        }
+        let filter = filter.unwrap_or_default();
         self.expect('(', &format!("after {name}"))?;
         let mut powers = vec![self.coefficient()?];
         while self.skip(',') {
@@ -91,12 +104,69 @@ impl Reader {
         }
         self.expect(')', &format!("after the coefficient of {name}"))?;
         match (name.as_bytes()[0], powers.len()) {
-            (b'K', 1..=MAX_POWERS) => Ok(Letter::Kick { force, powers }),
+            (b'K', 1..=MAX_POWERS) => Ok(Letter::Kick { force, filter, powers }),
             (b'K', _) => self.wrong(at, format!("a kick has {MAX_POWERS} powers of the force at most")),
             (_, 2..) => self.wrong(at, format!("{name} has one coefficient")),
             (b'D', _) if force == Force::All => Ok(Letter::Drift(powers.remove(0))),
+            (b'O', _) if force == Force::All => Ok(Letter::Friction(powers.remove(0))),
             (b'C', _) => Ok(Letter::Midpoint { force, time: powers.remove(0) }),
+            (b'R', _) => Ok(Letter::Flow { force, time: powers.remove(0) }),
             _ => self.wrong(at, format!("{name} is no letter; {LETTERS}")),
         }
+    }
+
+    /// filter = factor (("*" | "/") factor)* "]"
+    fn filter(&mut self) -> Read<Filter> {
+        let mut all = self.factor()?;
+        loop {
+            let at = self.at;
+            let sign = if self.skip('*') { 1 } else { -i32::from(self.skip('/')) };
+            if sign == 0 {
+                return self.expect(']', "after a filter").map(|()| all);
+            }
+            let own = self.factor()?;
+            if own.zero && sign < 0 {
+                return self.wrong(at, "divides by zero");
+            }
+            all = Filter {
+                cos: all.cos + sign * own.cos,
+                sinc: all.sinc + sign * own.sinc,
+                zero: all.zero || own.zero,
+            };
+            if all.cos.abs().max(all.sinc.abs()) > MAX_FILTER {
+                return self.wrong(at, format!("choose powers up to {MAX_FILTER}"));
+            }
+            if all.zero {
+                all = Filter { zero: true, ..Filter::default() };
+            }
+        }
+    }
+
+    /// factor = "0" | "1" | ("sinc(x)" | "sinc(x/2)" | "cos(x/2)") ("^" digits)?
+    fn factor(&mut self) -> Read<Filter> {
+        self.skip('\0');
+        let at = self.at;
+        let mut name = self.taken(char::is_alphanumeric);
+        if self.skip('(') {
+            name += &format!("({})", self.taken(|c| c != ')' && c != ']'));
+            self.expect(')', "after the argument of a filter")?;
+        }
+        let mut power = 1;
+        if self.skip('^') {
+            let digits = self.taken(|c| c.is_ascii_digit());
+            let Some(own) = digits.parse().ok().filter(|own| (0..=MAX_FILTER).contains(own)) else {
+                return self.wrong(at, format!("the power of a filter is 0 to {MAX_FILTER}"));
+            };
+            power = own;
+        }
+        let (cos, sinc) = match name.as_str() {
+            "0" if power > 0 => return Ok(Filter { zero: true, ..Filter::default() }),
+            "0" | "1" => (0, 0),
+            "sinc(x)" => (power, power),
+            "sinc(x/2)" => (0, power),
+            "cos(x/2)" => (power, 0),
+            _ => return self.wrong(at, FILTERS),
+        };
+        Ok(Filter { cos, sinc, zero: false })
     }
 }

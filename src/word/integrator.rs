@@ -1,12 +1,11 @@
-//! Integrators of two forces by name: words of the catalogue, and trigonometric ones.
-
-use num_traits::Zero;
+//! Integrators of two forces by name or as words, each by its quickest route.
 
 use super::catalogue::{METHODS, method};
+use super::enclosed::Enclosed;
 use super::letters::Word;
-use super::point::at;
+use super::point::{At, at};
 use super::product::Forces;
-use super::trigonometric::Trigonometric;
+use super::trigonometric::Shape;
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 
@@ -15,8 +14,8 @@ use crate::number::{Laurent, Rational};
 pub enum Integrator {
     /// Kicks, drifts, midpoints; one that names no forces kicks with both at once.
     Word(Word),
-    /// The exact flow of the fast force, filtered kicks of the slow one.
-    Trigonometric(Trigonometric),
+    /// The exact flow of the fast force, filtered kicks of the slow one: all that its trace is made of.
+    Trigonometric(Shape),
 }
 
 /// The answer at one step.
@@ -24,32 +23,32 @@ pub enum Integrator {
 pub enum Bounded {
     Stable,
     Unstable,
-    /// On an edge of the trigonometric integrator, or nearer to one than 96 bits tell.
+    /// On an edge of a word with exact flows or filters, or nearer to one than 96 bits tell.
     Edge,
 }
 
 impl Integrator {
-    /// The integrator of a name in the catalogue, of [`Trigonometric::ALL`], or as a word.
+    /// The integrator of a name in the catalogue, or as a word.
     ///
     /// # Errors
     /// A text that is neither.
     pub fn named(text: &str) -> Result<Integrator> {
         let text = text.trim();
-        if let Some(own) = Trigonometric::ALL.into_iter().find(|own| own.name() == text) {
-            return Ok(Integrator::Trigonometric(own));
-        }
         if let Ok(own) = method(text) {
-            return Ok(Integrator::Word(own.word()));
+            return Ok(Integrator::of(own.word()));
         }
-        text.parse().map(Integrator::Word).map_err(|_| {
-            let own = Trigonometric::ALL.map(Trigonometric::name).join(", ");
+        text.parse().map(Integrator::of).map_err(|_| {
             let names: Vec<&str> = METHODS.iter().map(|method| method.name).collect();
-            Error::input(
-                "methods",
-                text,
-                format!("write a word, or choose among {own}, {}", names.join(", ")),
-            )
+            Error::input("methods", text, format!("write a word, or choose among {}", names.join(", ")))
         })
+    }
+
+    /// A word, by the quickest route to its verdicts.
+    pub fn of(word: Word) -> Integrator {
+        match Shape::of(&word) {
+            Some(shape) => Integrator::Trigonometric(shape),
+            None => Integrator::Word(word),
+        }
     }
 
     /// The degree of its entries in s; 1 for what has none.
@@ -64,6 +63,12 @@ impl Integrator {
     pub fn along(&self, rho: &Rational, all: &[Laurent]) -> Vec<Bounded> {
         let told = |stable: bool| if stable { Bounded::Stable } else { Bounded::Unstable };
         match self {
+            Integrator::Word(word) if !word.is_algebraic() => {
+                let one = Laurent::from_integer(1);
+                let at = |s| Enclosed::scaled(word, s, rho).at(&one);
+                let answer = |own: At| if own.kind == "edge" { Bounded::Edge } else { told(own.is_stable()) };
+                all.iter().map(|s| at(s).map_or(Bounded::Edge, answer)).collect()
+            }
             Integrator::Word(word) => {
                 let product = word.polynomials(&Forces::ratio(rho));
                 // At a pole of a midpoint there is no step at all; forces that attract have none.
@@ -72,18 +77,8 @@ impl Integrator {
                     .collect()
             }
             Integrator::Trigonometric(own) => {
-                all.iter().map(|s| own.at(s, rho).map_or(Bounded::Edge, told)).collect()
+                all.iter().map(|s| own.stable_at(s, rho).map_or(Bounded::Edge, told)).collect()
             }
         }
-    }
-}
-
-impl Trigonometric {
-    /// Whether the step with h² Λ1 = s is stable; `None` on an edge, or nearer to one than 96 bits tell.
-    pub fn at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
-        if s.is_zero() {
-            return None;
-        }
-        self.stable_at(s, rho)
     }
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use num_traits::{One, Zero};
 
+use super::filter::Filter;
 use crate::number::{Radical, Rational};
 
 /// The forces that a letter names.
@@ -22,10 +23,14 @@ pub enum Force {
 pub enum Letter {
     /// D(c): x += c h v.
     Drift(Radical),
-    /// K(c, d, ...): v −= (c F + d F² + ...) x / h, F = h² Λ.
-    Kick { force: Force, powers: Vec<Radical> },
+    /// K(c, d, ...): v −= (c F + d F² + ...) g x / h, F = h² Λ, g the filter.
+    Kick { force: Force, filter: Filter, powers: Vec<Radical> },
     /// C(c): the implicit midpoint rule over c h.
     Midpoint { force: Force, time: Radical },
+    /// R(c): the exact flow of x'' + Λ x = 0 over c h.
+    Flow { force: Force, time: Radical },
+    /// O(c): friction alone over c h, v ← exp(−γ c h) v.
+    Friction(Radical),
 }
 
 /// A letter, or a word that is repeated.
@@ -67,35 +72,54 @@ pub struct Cost {
     pub gradients: u64,
     /// Implicit midpoints: each solves one linear system.
     pub solves: u64,
+    /// Exact flows.
+    pub flows: u64,
 }
 
 impl Cost {
-    /// Evaluations, gradients and solves, each counted as one.
+    /// Evaluations, gradients, solves and flows, each counted as one.
     pub fn total(&self) -> u64 {
-        self.evaluations.iter().sum::<u64>() + self.gradients + self.solves
+        self.evaluations.iter().sum::<u64>() + self.gradients + self.solves + self.flows
     }
 }
 
 impl Letter {
     fn numbers(&mut self) -> &mut [Radical] {
         match self {
-            Letter::Drift(time) | Letter::Midpoint { time, .. } => std::slice::from_mut(time),
+            Letter::Drift(time)
+            | Letter::Friction(time)
+            | Letter::Midpoint { time, .. }
+            | Letter::Flow { time, .. } => std::slice::from_mut(time),
             Letter::Kick { powers, .. } => powers,
         }
     }
 
     fn is_nothing(&self) -> bool {
         match self {
-            Letter::Drift(time) | Letter::Midpoint { time, .. } => time.is_zero(),
+            Letter::Drift(time)
+            | Letter::Friction(time)
+            | Letter::Midpoint { time, .. }
+            | Letter::Flow { time, .. } => time.is_zero(),
             Letter::Kick { powers, .. } => powers.iter().all(Zero::is_zero),
         }
     }
 
     pub(super) fn force(&self) -> Option<Force> {
         match self {
-            Letter::Drift(_) => None,
-            Letter::Kick { force, .. } | Letter::Midpoint { force, .. } => Some(*force),
+            Letter::Drift(_) | Letter::Friction(_) => None,
+            Letter::Kick { force, .. } | Letter::Midpoint { force, .. } | Letter::Flow { force, .. } => {
+                Some(*force)
+            }
         }
+    }
+
+    /// The filter of a kick: kicks of one force with different filters are different kicks.
+    fn filter(&self) -> Option<Filter> {
+        if let Letter::Kick { filter, .. } = self { Some(*filter) } else { None }
+    }
+
+    fn moves(&self) -> bool {
+        !matches!(self, Letter::Kick { .. } | Letter::Friction(_))
     }
 }
 
@@ -155,15 +179,39 @@ impl Word {
         self.items.is_empty()
     }
 
-    /// Whether it names the forces: K1, K2, C1, C2.
-    pub fn names_forces(&self) -> bool {
-        fn any(items: &[Item]) -> bool {
+    /// Whether some letter is of this kind.
+    fn any(&self, is: fn(&Letter) -> bool) -> bool {
+        fn any(items: &[Item], is: fn(&Letter) -> bool) -> bool {
             items.iter().any(|item| match item {
-                Item::Letter(letter) => matches!(letter.force(), Some(Force::First | Force::Second)),
-                Item::Repeat(_, inside) => any(inside),
+                Item::Letter(letter) => is(letter),
+                Item::Repeat(_, inside) => any(inside, is),
             })
         }
-        any(&self.items)
+        any(&self.items, is)
+    }
+
+    /// Whether it names the forces: K1, K2, C1, C2, R1, R2.
+    pub fn names_forces(&self) -> bool {
+        self.any(|letter| matches!(letter.force(), Some(Force::First | Force::Second)))
+    }
+
+    /// Whether its entries are algebraic in h: it has neither exact flows nor filters. Friction is not counted: without it O does nothing.
+    pub fn is_algebraic(&self) -> bool {
+        !self.any(|letter| match letter {
+            Letter::Flow { .. } => true,
+            Letter::Kick { filter, .. } => !filter.is_one() && !filter.zero,
+            _ => false,
+        })
+    }
+
+    /// Whether it has letters O.
+    pub fn has_friction(&self) -> bool {
+        self.any(|letter| matches!(letter, Letter::Friction(_)))
+    }
+
+    /// Whether exact flows need a force beside the first one to attract.
+    pub fn turns_second(&self) -> bool {
+        self.any(|letter| matches!(letter, Letter::Flow { force: Force::All | Force::Second, .. }))
     }
 
     /// The letters one by one. Its length is [`Word::len`]: to be known before.
@@ -183,14 +231,14 @@ impl Word {
 
     /// The letters with those that touch joined and those that do nothing left out: a drift, then the kicks at one place by
     /// their forces, and so on. A kick by the whole force is one by each where the word names two.
-    fn joined(&self) -> Vec<Letter> {
+    pub(super) fn joined(&self) -> Vec<Letter> {
         let named = self.names_forces();
         let mut all: Vec<Letter> = Vec::new();
         for letter in self.letters() {
             let parts = match letter {
-                Letter::Kick { force: Force::All, powers } if named && powers.len() == 1 => {
+                Letter::Kick { force: Force::All, filter, powers } if named && powers.len() == 1 => {
                     [Force::First, Force::Second]
-                        .map(|force| Letter::Kick { force, powers: powers.clone() })
+                        .map(|force| Letter::Kick { force, filter: *filter, powers: powers.clone() })
                         .to_vec()
                 }
                 other => vec![other.clone()],
@@ -200,21 +248,25 @@ impl Word {
         all
     }
 
-    /// Σ of the drifts, and of the kicks of each force that the word names (midpoints are both); consistent iff each is 1.
+    /// Σ of the drifts, of the kicks of each force that the word names (midpoints and flows are both; a kick whose filter is 0 is none), and
+    /// of friction where there is some; consistent iff each is 1.
     pub fn sums(&self) -> Vec<(&'static str, Radical)> {
         let names = if self.names_forces() { &["D", "K1", "K2"][..] } else { &["D", "K"] };
+        let friction = self.has_friction().then_some("O");
         let mut sums: Vec<(&'static str, Radical)> =
-            names.iter().map(|name| (*name, Radical::zero())).collect();
+            names.iter().copied().chain(friction).map(|name| (name, Radical::zero())).collect();
         for letter in self.letters() {
             let (drift, force, c) = match letter {
                 Letter::Drift(time) => (true, None, time),
-                Letter::Kick { force, powers } => (false, Some(*force), &powers[0]),
-                Letter::Midpoint { force, time } => (true, Some(*force), time),
+                Letter::Friction(time) => (false, None, time),
+                Letter::Kick { filter, .. } if filter.zero => continue,
+                Letter::Kick { force, powers, .. } => (false, Some(*force), &powers[0]),
+                Letter::Midpoint { force, time } | Letter::Flow { force, time } => (true, Some(*force), time),
             };
             for (name, sum) in &mut sums {
                 let kicked = match force {
-                    None => false,
-                    Some(Force::All) => *name != "D",
+                    None => *name == "O" && !drift,
+                    Some(Force::All) => name.starts_with('K'),
                     Some(Force::First) => *name == "K1",
                     Some(Force::Second) => *name == "K2",
                 };
@@ -250,12 +302,18 @@ impl Word {
         let mut known = fresh_at_end(&all);
         for letter in &all {
             match letter {
+                Letter::Friction(_) => (),
                 Letter::Drift(_) => known = [false; 2],
                 Letter::Midpoint { .. } => {
                     known = [false; 2];
                     cost.solves += 1;
                 }
-                Letter::Kick { force, powers } => {
+                Letter::Flow { .. } => {
+                    known = [false; 2];
+                    cost.flows += 1;
+                }
+                Letter::Kick { filter, .. } if filter.zero => (),
+                Letter::Kick { force, powers, .. } => {
                     cost.gradients += u64::from(powers.iter().skip(1).any(|c| !c.is_zero()));
                     for i in indices(*force, self.names_forces()) {
                         cost.evaluations[i] += u64::from(!known[i]);
@@ -280,11 +338,10 @@ fn indices(force: Force, named: bool) -> std::ops::Range<usize> {
 /// Which forces are known at the end of a step, x not having moved since; none where x never moves.
 fn fresh_at_end(all: &[Letter]) -> [bool; 2] {
     let mut known = [false; 2];
-    let moves = |letter: &Letter| !matches!(letter, Letter::Kick { .. });
-    if !all.iter().any(moves) {
+    if !all.iter().any(Letter::moves) {
         return known;
     }
-    for letter in all.iter().rev().take_while(|letter| !moves(letter)) {
+    for letter in all.iter().rev().take_while(|letter| !letter.moves()) {
         if let Letter::Kick { force, .. } = letter {
             match force {
                 Force::All => known = [true; 2],
@@ -303,21 +360,25 @@ fn join(all: &mut Vec<Letter>, letter: Letter) {
     }
     let place = all.iter().rposition(|own| !matches!(own, Letter::Kick { .. })).map_or(0, |last| last + 1);
     match &letter {
-        Letter::Drift(time) => {
-            if let Some(Letter::Drift(own)) = all.last_mut() {
-                *own += time.clone();
-                if own.is_zero() {
-                    all.pop();
-                }
-                return;
+        Letter::Drift(time) | Letter::Friction(time) | Letter::Flow { time, .. } => {
+            // Flows of one force over two times are one over their sum.
+            let last = all.last_mut().filter(|own| {
+                std::mem::discriminant(*own) == std::mem::discriminant(&letter)
+                    && own.force() == letter.force()
+            });
+            let Some(own) = last.and_then(|own| own.numbers().first_mut()) else { return all.push(letter) };
+            *own += time.clone();
+            if own.is_zero() {
+                all.pop();
             }
-            all.push(letter);
         }
         Letter::Midpoint { .. } => all.push(letter),
-        Letter::Kick { force, powers } => {
-            let same = all[place..].iter().position(|own| own.force() == Some(*force));
+        Letter::Kick { force, filter, powers } => {
+            let key = (Some(*force), Some(*filter));
+            let of = |own: &Letter| (own.force(), own.filter());
+            let same = all[place..].iter().position(|own| of(own) == key);
             let Some(same) = same.map(|same| place + same) else {
-                let at = all[place..].iter().position(|own| own.force() > Some(*force));
+                let at = all[place..].iter().position(|own| of(own) > key);
                 return all.insert(at.map_or(all.len(), |at| place + at), letter);
             };
             if let Letter::Kick { powers: own, .. } = &mut all[same] {
@@ -365,10 +426,12 @@ impl fmt::Display for Letter {
         let number = |x: &Radical| x.text(text);
         match self {
             Letter::Drift(time) => write!(f, "D({})", number(time)),
+            Letter::Friction(time) => write!(f, "O({})", number(time)),
             Letter::Midpoint { time, .. } => write!(f, "C{name}({})", number(time)),
-            Letter::Kick { powers, .. } => {
+            Letter::Flow { time, .. } => write!(f, "R{name}({})", number(time)),
+            Letter::Kick { powers, filter, .. } => {
                 let powers: Vec<String> = powers.iter().map(number).collect();
-                write!(f, "K{name}({})", powers.join(", "))
+                write!(f, "K{name}{filter}({})", powers.join(", "))
             }
         }
     }

@@ -7,13 +7,17 @@
 //! | `D(c)` | drift: x += c v |
 //! | `K(c)`, `K1(c)`, `K2(c)` | kick by both forces, or by one: v −= c F x |
 //! | `K(c, d, ...)` | kick by a polynomial of the force (force gradients): v −= (c F + d F² + ...) x |
+//! | `K2[g](c)` | kick by the second force through the filter g(x), x = h √Λ1: v −= c g F x ([`Filter`]) |
 //! | `C(c)`, `C1(c)`, `C2(c)` | implicit midpoint rule over c h (Cayley's transform) |
+//! | `R(c)`, `R1(c)`, `R2(c)` | exact flow over c h |
+//! | `O(c)` | friction alone over c h: v ← exp(−γ c h) v |
 //! | `n*( ... )` | the letters in parentheses n times |
 //!
 //! Coefficients are sums, products, quotients and powers of rationals and of the roots `sqrt(c)`, `c^(1/n)`; all of them
 //! are exact numbers of one field ℚ(c^(1/n)) ([`Radical`](crate::number::Radical)). So the product of the letters has entries
 //! that are polynomials in s = h² Λ1 over this field, up to a common denominator that is positive, and everything here is
-//! decided exactly: order, edges of stability, verdicts. Doubles appear only as outward rounded enclosures.
+//! decided exactly: order, edges of stability, verdicts. Doubles appear only as outward rounded enclosures. Exact flows, filters and friction are no
+//! polynomials; words that have them are proven stable or unstable in balls ([`Shape`], [`Enclosed`]), their order by power series.
 //!
 //! ```
 //! use kickdrift::word::{Forces, Stability, Word};
@@ -29,6 +33,8 @@
 
 mod catalogue;
 mod coefficient;
+mod enclosed;
+mod filter;
 mod grammar;
 mod integrator;
 mod letters;
@@ -39,10 +45,12 @@ mod stability;
 mod trigonometric;
 
 pub use catalogue::{METHODS, Method, method};
+pub use enclosed::{Enclosed, Piece};
+pub use filter::Filter;
 pub use integrator::{Bounded, Integrator};
 pub use letters::{Cost, Force, Item, Letter, Place, Word};
-pub use order::Order;
+pub use order::{MOST_ORDER, Order};
 pub use point::{At, at};
 pub use product::{Forces, Polynomials, Product};
 pub use stability::{Edge, Interval, Stability};
-pub use trigonometric::Trigonometric;
+pub use trigonometric::{Shape, Trigonometric};

@@ -3,7 +3,7 @@
 use num_traits::{One, Zero};
 
 use super::letters::Word;
-use super::product::Forces;
+use super::product::{Forces, TERMS};
 use crate::number::{Polynomial, Radical, Rational, Real, Ring, rational};
 
 /// Polynomials in ρ = Λ2/Λ1.
@@ -27,6 +27,9 @@ pub struct Order {
     /// (k, c): the effective impedance √(−C/B) is ω (1 + c (ω h)^k + ...). As `frequency`, and for A = D only.
     pub impedance: Option<(u64, Radical)>,
 }
+
+/// The largest order that is told of a word with exact flows or filters: it has this order or a higher one.
+pub const MOST_ORDER: u64 = 2 * TERMS as u64 - 3;
 
 /// An error coefficient below this counts as 0 for the nominal order.
 const ROUNDED: i64 = -30;
@@ -71,9 +74,10 @@ impl Word {
                 if twice % 2 == 0 { error(entry, (twice / 2) as usize, offset) } else { InRho::zero() }
             })
         };
-        // No rational function of s is the exact flow, so both are found.
+        // No rational function of s is the exact flow, so both are found; of series the first terms are known.
+        let most = if self.is_algebraic() { u64::MAX } else { MOST_ORDER + 1 };
         let first = |counts: &dyn Fn(&InRho) -> bool| {
-            (1..).find(|&power| errors(power).iter().any(counts)).expect("found")
+            (1..most).find(|&power| errors(power).iter().any(counts)).unwrap_or(most)
         };
         let (order, nominal) = (first(&|f| !f.is_zero()) - 1, first(&|f| !is_small(f)) - 1);
         let half = Radical::from_rational(&rational::ratio(1, 2));
@@ -83,11 +87,12 @@ impl Word {
             // δ cos θ = −sin θ δθ, so δθ/θ = −(the error of Tr/2)/(ω h)².
             let wrong = |k: usize| &error(&m[(0, 0)], k, 0) + &error(&m[(1, 1)], k, 0);
             let differs = |k: &usize| !wrong(*k).is_zero();
-            frequency = (2..).find(differs).map(|k| (2 * k as u64 - 2, -halved(wrong(k))));
+            let most = if self.is_algebraic() { usize::MAX } else { TERMS - 1 };
+            frequency = (2..most).find(differs).map(|k| (2 * k as u64 - 2, -halved(wrong(k))));
             if m[(0, 0)] == m[(1, 1)] {
                 // −C/(s B) = 1 + 2 c s^k + ...
                 let wrong = |k: usize| -(&m[(1, 0)].coefficient(k + 1) + &m[(0, 1)].coefficient(k));
-                let most = m[(1, 0)].coefficients().len().max(m[(0, 1)].coefficients().len());
+                let most = most.min(m[(1, 0)].coefficients().len().max(m[(0, 1)].coefficients().len()));
                 let found = (1..=most).find(|&k| !wrong(k).is_zero());
                 impedance = found.map(|k| (2 * k as u64, halved(wrong(k))));
             }

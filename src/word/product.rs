@@ -1,8 +1,9 @@
 //! The product of the letters, over any ring that holds the coefficients.
 
 use nalgebra::Matrix2;
-use num_traits::Zero;
+use num_traits::{One, Zero};
 
+use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use crate::number::{Polynomial, Radical, Rational, Ring};
 use crate::propagator::methods::respa::power;
@@ -15,11 +16,13 @@ pub struct Forces<S> {
 }
 
 /// A product of letters in the coordinates (x, h v): the matrix divided by the denominator. The matrix's determinant is the
-/// square of the denominator; the latter is 1 without midpoints.
+/// square of the denominator times the damping; the denominator is 1 without midpoints.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Product<S> {
     pub matrix: Matrix2<S>,
     pub denominator: S,
+    /// The product of all exp(−γ c h): 1 without friction.
+    pub damping: S,
 }
 
 /// The entries as polynomials in s = h² Λ1.
@@ -39,35 +42,106 @@ impl Forces<Polynomial<Radical>> {
     }
 }
 
-impl<S: Ring> Forces<S> {
-    fn of(&self, force: Force) -> S {
+/// What the letters mean in a ring.
+pub(super) trait Setting<S: Ring> {
+    /// F = h² Λ.
+    fn force(&self, force: Force) -> S;
+
+    fn embed(&self, c: &Radical) -> S;
+
+    /// cos c x and c sinc c x of the exact flow over c h, x² = F.
+    fn flow(&self, force: Force, c: &Radical) -> [S; 2];
+
+    /// g at x = h √Λ1.
+    fn filter(&self, filter: Filter) -> S;
+
+    /// exp(−γ c h).
+    fn damping(&self, c: &Radical) -> S;
+}
+
+/// Terms of the series of flows and filters in [`Forces`]: orders up to twice as many are told.
+pub(super) const TERMS: usize = 12;
+
+/// Σ f_k F^k by Horner's rule.
+fn series<S: Ring>(all: &[S], force: &S) -> S {
+    all.iter().rev().fold(S::zero(), |sum, f| S::product(&sum, force) + f.clone())
+}
+
+/// Exact where the word is algebraic; flows and filters by the first terms of their series in F. Friction is none.
+impl<S: Ring> Setting<S> for Forces<S> {
+    fn force(&self, force: Force) -> S {
         match force {
             Force::All => self.of[0].clone() + self.of[1].clone(),
             Force::First => self.of[0].clone(),
             Force::Second => self.of[1].clone(),
         }
     }
+
+    fn embed(&self, c: &Radical) -> S {
+        (self.embed)(c)
+    }
+
+    fn flow(&self, force: Force, c: &Radical) -> [S; 2] {
+        let (c, force) = (self.embed(c), self.force(force));
+        let x = S::product(&S::product(&c, &c), &force);
+        let terms = |from: u64| {
+            let next = |term: &mut Rational, k: u64| {
+                let own = S::from_rational(term);
+                *term /= Rational::from_integer(
+                    (-((2 * k + 1 + from) as i128 * (2 * k + 2 + from) as i128)).into(),
+                );
+                Some(own)
+            };
+            (0..TERMS as u64).scan(Rational::one(), next).collect::<Vec<_>>()
+        };
+        [series(&terms(0), &x), S::product(&c, &series(&terms(1), &x))]
+    }
+
+    fn filter(&self, filter: Filter) -> S {
+        let all: Vec<S> = filter.series(TERMS).iter().map(S::from_rational).collect();
+        series(&all, &self.of[0])
+    }
+
+    fn damping(&self, _: &Radical) -> S {
+        S::one()
+    }
 }
 
 impl<S: Ring> Product<S> {
     fn identity() -> Self {
-        Product { matrix: Matrix2::new(S::one(), S::zero(), S::zero(), S::one()), denominator: S::one() }
+        let unit = Matrix2::new(S::one(), S::zero(), S::zero(), S::one());
+        Product { matrix: unit, denominator: S::one(), damping: S::one() }
     }
 
-    fn times(&mut self, letter: &Letter, forces: &Forces<S>) {
+    fn times(&mut self, letter: &Letter, setting: &impl Setting<S>) {
         match letter {
-            Letter::Drift(time) => apply_drift(&mut self.matrix, &(forces.embed)(time)),
-            Letter::Kick { force, powers } => {
-                let force = forces.of(*force);
+            Letter::Drift(time) => apply_drift(&mut self.matrix, &setting.embed(time)),
+            Letter::Friction(time) => {
+                let damping = setting.damping(time);
+                for column in 0..2 {
+                    self.matrix[(1, column)] *= damping.clone();
+                }
+                self.damping *= damping;
+            }
+            Letter::Kick { force, filter, powers } => {
+                let force = setting.force(*force);
                 // (c + d F + ...) F by Horner's rule.
-                let strength = powers
+                let mut strength = powers
                     .iter()
                     .rev()
-                    .fold(S::zero(), |sum, c| S::product(&(sum + (forces.embed)(c)), &force));
+                    .fold(S::zero(), |sum, c| S::product(&(sum + setting.embed(c)), &force));
+                if !filter.is_one() {
+                    strength *= setting.filter(*filter);
+                }
                 apply_kick(&mut self.matrix, &strength);
             }
+            Letter::Flow { force, time } => {
+                let [cos, sinc] = setting.flow(*force, time);
+                let back = -S::product(&setting.force(*force), &sinc);
+                self.matrix = Matrix2::new(cos.clone(), sinc, back, cos) * &self.matrix;
+            }
             Letter::Midpoint { force, time } => {
-                let (force, time) = (forces.of(*force), (forces.embed)(time));
+                let (force, time) = (setting.force(*force), setting.embed(time));
                 let kick = S::product(&time, &force);
                 let quarter = S::from_rational(&Rational::new(1.into(), 4.into()));
                 let part = S::product(&S::product(&kick, &time), &quarter);
@@ -81,16 +155,18 @@ impl<S: Ring> Product<S> {
         }
     }
 
-    fn items(items: &[Item], forces: &Forces<S>) -> Self {
+    fn items(items: &[Item], setting: &impl Setting<S>) -> Self {
         let mut product = Product::identity();
         for item in items {
             match item {
-                Item::Letter(letter) => product.times(letter, forces),
+                Item::Letter(letter) => product.times(letter, setting),
                 Item::Repeat(times, inside) => {
-                    let Product { matrix, denominator } = Product::items(inside, forces);
+                    let Product { matrix, denominator, damping } = Product::items(inside, setting);
                     product.matrix = power(matrix, *times) * &product.matrix;
-                    let scalar = power(Matrix2::new(denominator, S::zero(), S::zero(), S::zero()), *times);
-                    product.denominator *= scalar[(0, 0)].clone();
+                    let scalars = Matrix2::new(denominator, S::zero(), S::zero(), damping);
+                    let scalars = power(scalars, *times);
+                    product.denominator *= scalars[(0, 0)].clone();
+                    product.damping *= scalars[(1, 1)].clone();
                 }
             }
         }
@@ -105,11 +181,11 @@ impl<S: Ring> Product<S> {
 
 impl Word {
     /// The product of all letters.
-    pub fn product<S: Ring>(&self, forces: &Forces<S>) -> Product<S> {
-        Product::items(self.items(), forces)
+    pub(super) fn product<S: Ring>(&self, setting: &impl Setting<S>) -> Product<S> {
+        Product::items(self.items(), setting)
     }
 
-    /// The product with entries in ℚ(c^(1/n))\[s\].
+    /// The product with entries in ℚ(c^(1/n))\[s\]: exact where the word [is algebraic](Word::is_algebraic), else up to s^12.
     pub fn polynomials(&self, forces: &Forces<Polynomial<Radical>>) -> Polynomials {
         self.product(forces)
     }
@@ -119,7 +195,8 @@ impl Word {
     pub fn degree(&self) -> u64 {
         fn of(items: &[Item]) -> u64 {
             let one = |item: &Item| match item {
-                Item::Letter(Letter::Drift(_)) => 0,
+                Item::Letter(Letter::Drift(_) | Letter::Friction(_)) => 0,
+                Item::Letter(Letter::Flow { .. }) => TERMS as u64,
                 Item::Letter(Letter::Kick { powers, .. }) => powers.len() as u64,
                 Item::Letter(Letter::Midpoint { .. }) => 1,
                 Item::Repeat(times, inside) => of(inside).saturating_mul(*times),

@@ -20,8 +20,10 @@
 //! assert!(Trigonometric::HairerLubich.unstable(&fast, &slow, 16.0).is_empty());
 //! ```
 
-use num_traits::One;
+use num_traits::{One, Signed};
 
+use super::enclosed::{Piece, pieces};
+use super::letters::{Force, Item, Letter, Word};
 use crate::number::rational::{from_f64_exact, ratio};
 use crate::number::{Ball, Laurent, Rational, Real, Sign};
 
@@ -44,9 +46,6 @@ pub enum Trigonometric {
 
 /// Bits of the balls; intervals are halved to fewer.
 const BITS: u32 = 96;
-
-/// Halvings of the range of steps: an edge is enclosed to 2^−44 of the range.
-const HALVINGS: u32 = 44;
 
 impl Trigonometric {
     pub const ALL: [Trigonometric; 6] = [
@@ -93,69 +92,15 @@ impl Trigonometric {
         ((i - own) / 2, (k - own) / 2)
     }
 
-    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
-    fn signs(self, y: &Ball, rho: &Ball) -> [Option<Sign>; 2] {
-        let (i, k) = self.powers();
-        let (c, sinc) = (y.cos(BITS), sinc(y));
-        let power = |x: &Ball, n: u32| (0..n).fold(Ball::one(), |product, _| product.mul(x, BITS));
-        let common = i.min(2);
-        let kicked = rho.mul(&y.square(BITS), BITS).mul(&power(&sinc, k), BITS);
-        // c², or c (c − ...), or 1 − ...
-        let bracket = power(&c, 2 - common).sub(&kicked.mul(&power(&c, i - common), BITS), BITS);
-        let below = if common == 1 { c.mul(&bracket, BITS) } else { bracket };
-        // s² is y² sinc².
-        let rest = rho.mul(&power(&c, i), BITS);
-        let above = match k {
-            1 => sinc.mul(&sinc.add(&rest, BITS), BITS),
-            _ => Ball::one().add(&rest.mul(&power(&sinc, k - 2), BITS), BITS),
-        };
-        [below.sign(), above.sign()]
+    /// Its trace.
+    pub fn shape(self) -> Shape {
+        let (cos, sinc) = self.powers();
+        Shape { cos, sinc, felt: true }
     }
 
-    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is not told.
-    fn verdict(self, y: &Ball, rho: &Ball) -> Option<bool> {
-        match self.signs(y, rho) {
-            [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),
-            [Some(Sign::Negative), _] | [_, Some(Sign::Negative)] => Some(false),
-            _ => None,
-        }
-    }
-
-    /// At s = h² Λ1.
-    pub(super) fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
-        self.verdict(&half_frequency(s), &Ball::from_rational(rho, BITS))
-    }
-
-    /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
-    /// told as `most`. Outside the enclosures every step is proven stable or unstable. Intervals thinner than 2^−44 of `most` are not told apart
-    /// from edges that touch.
+    /// See [`Shape::unstable`].
     pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
-        let (half, rho) = (half_frequency(fast), over(slow, fast));
-        let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).expect("finite"), BITS), BITS);
-        // (h, whether the steps up to the next one are stable)
-        let mut cells: Vec<(f64, Option<bool>)> = Vec::new();
-        let mut open = vec![(0.0, most, 0)];
-        while let Some((lo, hi, depth)) = open.pop() {
-            let told = self.verdict(&at(lo).union(&at(hi), BITS), &rho);
-            if told.is_some() || depth == HALVINGS {
-                if cells.last().is_none_or(|last| last.1 != told) {
-                    cells.push((lo, told));
-                }
-            } else {
-                let middle = lo + (hi - lo) / 2.0;
-                open.extend([(middle, hi, depth + 1), (lo, middle, depth + 1)]);
-            }
-        }
-        let ends = |n: usize| cells.get(n).map_or(most, |cell| cell.0);
-        let unstable = (0..cells.len()).filter(|&n| cells[n].1 == Some(false));
-        let lower = |n: usize| {
-            if n > 0 && cells[n - 1].1.is_none() { (ends(n - 1), ends(n)) } else { (ends(n), ends(n)) }
-        };
-        let upper = |n: usize| match cells.get(n + 1) {
-            Some((_, None)) => (ends(n + 1), ends(n + 2)),
-            _ => (ends(n + 1), ends(n + 1)),
-        };
-        unstable.map(|n| [lower(n), upper(n)]).collect()
+        self.shape().unstable(fast, slow, most)
     }
 
     /// The end of the steps at which **any number of coupled modes** is stable, with 0 ≤ F ≤ Λ1 and 0 ≤ S ≤ Λ2: proven stable below its lower end.
@@ -179,10 +124,106 @@ impl Trigonometric {
         Some((own.0.min(rigid.0), own.1.min(rigid.1)))
     }
 
-    /// Whether no step at all is unstable, of one mode: proven for [`Long`](Self::Long) and [`HairerLubich`](Self::HairerLubich) where ρ < 1, since
-    /// then ρ |s|³ |c|/y, ρ |c|³ |s|/y and ρ s² are below 1.
+    /// See [`Shape::is_free`].
     pub fn is_free(self, rho: &Rational) -> bool {
-        matches!(self, Trigonometric::Long | Trigonometric::HairerLubich) && *rho < Rational::one()
+        self.shape().is_free(rho)
+    }
+}
+
+/// The trace 2 cos h w − h² Λ2 g with g = c^i (s/y)^k, and with g = 0: of one filtered slow kick beside one exact fast flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    pub cos: u32,
+    pub sinc: u32,
+    /// Whether the slow force is felt at all; else g = 0.
+    pub felt: bool,
+}
+
+impl Shape {
+    /// The trace of a word that has, once its ends are joined, one slow kick and one fast flow, each over the whole step; `None` for all others,
+    /// and where g has a pole. A kick and a flow have that trace in whatever order and shares they stand around each other.
+    pub fn of(word: &Word) -> Option<Shape> {
+        let mut letters: Vec<Letter> = word.joined();
+        letters.retain(|letter| !matches!(letter, Letter::Friction(_)));
+        if letters.len() == 3 {
+            // Their traces are those of the words that begin elsewhere.
+            let last = letters.pop()?;
+            letters.insert(0, last);
+            letters = Word::new(letters.into_iter().map(Item::Letter).collect())?.joined();
+        }
+        if letters.first().is_some_and(|letter| matches!(letter, Letter::Flow { .. })) {
+            letters.rotate_left(1);
+        }
+        let [
+            Letter::Kick { force: Force::Second, filter, powers },
+            Letter::Flow { force: Force::First, time },
+        ] = letters.as_slice()
+        else {
+            return None;
+        };
+        let whole = powers.len() == 1 && powers[0].is_one() && time.is_one();
+        let power = |n: i32| u32::try_from(n + 1).ok();
+        whole.then_some(())?;
+        Some(Shape { cos: power(filter.cos)?, sinc: power(filter.sinc)?, felt: !filter.zero })
+    }
+
+    /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
+    fn signs(self, y: &Ball, rho: &Ball) -> [Option<Sign>; 2] {
+        if !self.felt {
+            // 4 cos² y and 4 sin² y: ±I where they are 0.
+            return [Some(Sign::Positive); 2];
+        }
+        let (i, k) = (self.cos, self.sinc);
+        let (c, sinc) = (y.cos(BITS), sinc(y));
+        let power = |x: &Ball, n: u32| (0..n).fold(Ball::one(), |product, _| product.mul(x, BITS));
+        let common = i.min(2);
+        let kicked = rho.mul(&y.square(BITS), BITS).mul(&power(&sinc, k), BITS);
+        // c², or c (c − ...), or 1 − ...
+        let bracket = power(&c, 2 - common).sub(&kicked.mul(&power(&c, i - common), BITS), BITS);
+        let below = if common == 1 { c.mul(&bracket, BITS) } else { bracket };
+        // s² is y² sinc².
+        let rest = rho.mul(&power(&c, i), BITS);
+        let above = match k {
+            0 => sinc.square(BITS).add(&rest, BITS),
+            1 => sinc.mul(&sinc.add(&rest, BITS), BITS),
+            _ => Ball::one().add(&rest.mul(&power(&sinc, k - 2), BITS), BITS),
+        };
+        [below.sign(), above.sign()]
+    }
+
+    /// Whether every step of an interval of y is stable or every one unstable; `None` where that is not told.
+    fn verdict(self, y: &Ball, rho: &Ball) -> Option<bool> {
+        match self.signs(y, rho) {
+            [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),
+            [Some(Sign::Negative), _] | [_, Some(Sign::Negative)] => Some(false),
+            _ => None,
+        }
+    }
+
+    /// At s = h² Λ1; `None` on an edge, or nearer to one than 96 bits tell.
+    pub fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
+        self.verdict(&half_frequency(s), &Ball::from_rational(rho, BITS))
+    }
+
+    /// Every step h of (lo, hi), 0 ≤ lo: pieces with one answer, their ends enclosed. Outside the enclosures every step is proven stable or unstable.
+    /// Intervals thinner than 2^−44 of the range are not told apart from edges that touch.
+    pub fn pieces(self, fast: &Laurent, slow: &Laurent, lo: f64, hi: f64) -> Vec<Piece> {
+        let (half, rho) = (half_frequency(fast), over(slow, fast));
+        let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).unwrap_or_default(), BITS), BITS);
+        pieces(lo, hi, |lo, hi| self.verdict(&at(lo).union(&at(hi), BITS), &rho))
+    }
+
+    /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
+    /// told as `most`.
+    pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
+        let all = self.pieces(fast, slow, 0.0, most).into_iter();
+        all.filter(|own| !own.stable).map(|own| [own.lower, own.upper]).collect()
+    }
+
+    /// Whether no step at all is unstable, of one mode: proven for i, k ≥ 2 where 0 < ρ < 1, since then ρ y² c^(i−2) (s/y)^k ≤ ρ s² < 1 and
+    /// ρ |c^i (s/y)^(k−2)| < 1. So it is for MOLLY's long average and the methods of Hairer and Lubich, and of Grimm and Hochbruck.
+    pub fn is_free(self, rho: &Rational) -> bool {
+        !self.felt || self.cos >= 2 && self.sinc >= 2 && rho.is_positive() && *rho < Rational::one()
     }
 }
 
