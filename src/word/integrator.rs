@@ -24,7 +24,8 @@ pub enum Integrator {
 pub enum Bounded {
     Stable,
     Unstable,
-    /// On an edge of the trigonometric integrator, or nearer to one than 96 bits tell.
+    /// Nearer to an edge of a trigonometric integrator than thousands of bits tell, and no theorem says whether it is one: only where h² Λ1 is neither
+    /// rational nor (r π)² with a rational r.
     Edge,
 }
 
@@ -79,7 +80,7 @@ impl Integrator {
 }
 
 impl Trigonometric {
-    /// Whether the step with h² Λ1 = s is stable; `None` on an edge, or nearer to one than 96 bits tell.
+    /// Whether the step with h² Λ1 = s is stable; `None` where that is not decided ([`Bounded::Edge`]).
     pub fn at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
         if s.is_zero() {
             return None;
