@@ -280,3 +280,58 @@ fn one_mode_has_the_intervals_of_scalars() {
     let end = intervals("implicit-explicit", 16.0)[0][0];
     assert!((end - 40.0 / std::f64::consts::PI).abs() < 1e-6, "{end}");
 }
+
+/// Periods of all fast modes shorter or longer each for itself, the slow stiffness by one factor, errors of the accuracy on both: nothing grows below the
+/// edge of a band, which is not far below the first unstable step.
+#[test]
+fn nothing_in_a_band_grows_below_its_edge() {
+    let mut numbers = Numbers(3);
+    let (band, accuracy) = (0.05, 1e-6);
+    for method in Method::all() {
+        let (mut trial, mut found, mut tight) = (0, 0, 0);
+        while trial < 40 {
+            let (fast, slow, _, inner) = case(&mut numbers, method);
+            // A slow stiffness that pulls nowhere sets the midpoint rule no limit.
+            let slowest = slow.symmetric_eigenvalues().max();
+            if (&fast + &slow).symmetric_eigenvalues().min() < 1e-2 || slowest < 1e-2 {
+                continue;
+            }
+            trial += 1;
+            let kernel =
+                Kernel::new(&Hessians::new(&fast, &slow, accuracy).unwrap()).unwrap().with_method(method);
+            let Some(edge) = kernel.band_edge(inner, band, accuracy) else { continue };
+            found += 1;
+            let first = kernel.first_unstable(inner).map_or(f64::INFINITY, |(lo, _)| lo);
+            assert!(edge < first, "{method}: {edge} {first}");
+            tight += usize::from(edge > 0.93 * first);
+            let own = fast.clone().symmetric_eigen();
+            for k in 0..30 {
+                let modes = own.eigenvalues.map(|x| {
+                    let longer = 1.0 + band * if k < 2 { -1.0 } else { 4.0 * numbers.next() - 1.0 };
+                    x / longer.powi(2)
+                });
+                let fast = &own.eigenvectors * DMatrix::from_diagonal(&modes) * own.eigenvectors.transpose();
+                let slower = (1.0 + band * if k < 2 { -1.0 } else { 2.0 * numbers.next() - 1.0 }).powi(-2);
+                let mut near = |m: &DMatrix<f64>| {
+                    let e = numbers.square(m.nrows());
+                    let e = &e + e.transpose();
+                    let size = m.symmetric_eigenvalues().amax() * accuracy;
+                    m + &e * (size / e.symmetric_eigenvalues().amax())
+                };
+                let (fast, slow) = (near(&fast), near(&(&slow * slower)));
+                if (&fast + &slow).symmetric_eigenvalues().min() < 1e-3 {
+                    continue;
+                }
+                let h = edge * if k % 2 == 0 { 1.0 } else { numbers.next() };
+                let largest = radius(&step(method, &fast, &slow, h, inner));
+                assert!(largest < 1.0 + 1e-5, "{method} at {h} below {edge}: {largest}");
+            }
+        }
+        println!("{method}: {found} of {trial}, {tight} tight");
+        // Two-step methods are proven for no band.
+        let none = ["gautschi", "hairer-lubich"].contains(&method.name());
+        assert_eq!(found, if none { 0 } else { trial }, "{method}");
+        // The long average has no first unstable step to be near to.
+        assert!(none || tight > 25 || method.name() == "molly-long", "{method}: {tight}");
+    }
+}
