@@ -10,6 +10,9 @@
 
     So with definite forms the step is stable iff h^2 S < 4 and F + S > 0.
 
+    Not proven here: the edge, where a form is semidefinite. By hand: if (4 - h^2 S) u = 0 with u off 0, x_k = (-1)^k k u has two equal sides in
+    [alternating], so an orbit grows step by step; if (F + S) u = 0, x_k = k u does, which is a rigid motion.
+
     Words: form M x y == x^T M y, a number; definite M == the form of M is positive off 0; next == one step, from position and momentum;
     position k z == the position after k steps from z.                                        *)
 

@@ -173,8 +173,9 @@ fn friction_masks_a_resonance_from_where_it_is_told() {
 #[cfg(feature = "npz")]
 mod molecules {
     use super::*;
-    use kickdrift::advise::Findings;
+    use kickdrift::advise::{Findings, SOLVED};
     use kickdrift::scene::SystemScene;
+    use kickdrift::word::Trigonometric;
 
     fn findings_with(name: &str, schemes: &[&str], entries: &[(&str, &str)]) -> Findings {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
@@ -269,6 +270,37 @@ mod molecules {
         assert!((mask / (2.0 * light.schemes[0].rate.unwrap()) - 1.0).abs() < 0.2, "{mask}");
         let damped = |x: f64| with(from_f64_exact(x).unwrap()).is_damped;
         assert_eq!([damped(0.99 * mask), damped(1.01 * mask)], [Some(false), Some(true)]);
+    }
+
+    /// Every method of the table, with the proof of its own kernel: half the fastest period bounds MOLLY, h² S < 4 the midpoint rule.
+    #[test]
+    fn other_methods_let_the_step_of_a_molecule_grow() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("data/scenes");
+        let text = std::fs::read_to_string(folder.join("water4.json")).unwrap();
+        let (molecule, scheme) = SystemScene::read_in(&folder, &text).unwrap().molecule().unwrap();
+        let found = molecule.advise(std::slice::from_ref(&scheme), &ratio(1, 20), None, None).unwrap();
+        let (half, slow) = (found.groups[0].period.0 / 2.0, found.slow);
+        for (name, way) in SOLVED {
+            let own = molecule.method(name, way, &scheme, &ratio(1, 20)).unwrap();
+            let (edge, (step, bound)) = (own.band_edge.unwrap(), own.step.clone().unwrap());
+            let limit = if way == Way::ImplicitExplicit { slow / std::f64::consts::PI } else { half };
+            // 5 % below, and what the accuracy of the Hessians costs; a tongue of MOLLY's is thinner than that.
+            assert!(0.949 * limit < edge.0 && edge.1 < 0.9501 * limit, "{name}: {edge:?} {limit}");
+            assert!(
+                own.first.is_none_or(|(lo, hi)| edge.1 < lo && hi < 1.0001 * limit),
+                "{name}: {:?}",
+                own.first
+            );
+            assert_eq!(own.first.is_none(), way == Way::Molly(Trigonometric::Long), "{name}");
+            assert!(to_f64(&step) < edge.0, "{name}");
+            match way {
+                Way::ImplicitExplicit => assert!(own.inner.is_none() && bound == Bound::SlowFifth),
+                _ => assert!(own.inner.is_some_and(|inner| inner <= *scheme.inner()) && bound == Bound::Band),
+            }
+        }
+        // 4 fs is the last multiple before the first unstable step, 4.41 fs.
+        let masked = molecule.masked(&scheme, &ratio(1, 1000)).unwrap().unwrap();
+        assert_eq!(masked.step, Some((ratio(4, 1), Bound::Friction)));
     }
 
     #[test]

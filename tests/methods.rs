@@ -1,8 +1,10 @@
 //! Two levels of several modes under every method of THEORY section 16, against dense eigenvalues of the step itself.
 
-use kickdrift::number::rational::ratio;
-use kickdrift::system::Holds;
+use kickdrift::number::Rational;
+use kickdrift::number::rational::{ratio, to_f64};
 use kickdrift::system::levels::{Hessians, Kernel, Method, Outer};
+use kickdrift::system::{Holds, Limits, Model, Number, Potential, Route, Symmetric, System};
+use kickdrift::verdict::Kind;
 use nalgebra::DMatrix;
 
 /// Numbers that repeat, in [0, 1).
@@ -279,4 +281,153 @@ fn one_mode_has_the_intervals_of_scalars() {
     }
     let end = intervals("implicit-explicit", 16.0)[0][0];
     assert!((end - 40.0 / std::f64::consts::PI).abs() < 1e-6, "{end}");
+}
+
+/// Periods of all fast modes shorter or longer each for itself, the slow stiffness by one factor, errors of the accuracy on both: nothing grows below the
+/// edge of a band, which is not far below the first unstable step.
+#[test]
+fn nothing_in_a_band_grows_below_its_edge() {
+    let mut numbers = Numbers(3);
+    let (band, accuracy) = (0.05, 1e-6);
+    for method in Method::all() {
+        let (mut trial, mut found, mut tight) = (0, 0, 0);
+        while trial < 40 {
+            let (fast, slow, _, inner) = case(&mut numbers, method);
+            // A slow stiffness that pulls nowhere sets the midpoint rule no limit.
+            let slowest = slow.symmetric_eigenvalues().max();
+            if (&fast + &slow).symmetric_eigenvalues().min() < 1e-2 || slowest < 1e-2 {
+                continue;
+            }
+            trial += 1;
+            let kernel =
+                Kernel::new(&Hessians::new(&fast, &slow, accuracy).unwrap()).unwrap().with_method(method);
+            let Some(edge) = kernel.band_edge(inner, band, accuracy) else { continue };
+            found += 1;
+            let first = kernel.first_unstable(inner).map_or(f64::INFINITY, |(lo, _)| lo);
+            assert!(edge < first, "{method}: {edge} {first}");
+            tight += usize::from(edge > 0.93 * first);
+            let own = fast.clone().symmetric_eigen();
+            for k in 0..30 {
+                let modes = own.eigenvalues.map(|x| {
+                    let longer = 1.0 + band * if k < 2 { -1.0 } else { 4.0 * numbers.next() - 1.0 };
+                    x / longer.powi(2)
+                });
+                let fast = &own.eigenvectors * DMatrix::from_diagonal(&modes) * own.eigenvectors.transpose();
+                let slower = (1.0 + band * if k < 2 { -1.0 } else { 2.0 * numbers.next() - 1.0 }).powi(-2);
+                let mut near = |m: &DMatrix<f64>| {
+                    let e = numbers.square(m.nrows());
+                    let e = &e + e.transpose();
+                    let size = m.symmetric_eigenvalues().amax() * accuracy;
+                    m + &e * (size / e.symmetric_eigenvalues().amax())
+                };
+                let (fast, slow) = (near(&fast), near(&(&slow * slower)));
+                if (&fast + &slow).symmetric_eigenvalues().min() < 1e-3 {
+                    continue;
+                }
+                let h = edge * if k % 2 == 0 { 1.0 } else { numbers.next() };
+                let largest = radius(&step(method, &fast, &slow, h, inner));
+                assert!(largest < 1.0 + 1e-5, "{method} at {h} below {edge}: {largest}");
+            }
+        }
+        println!("{method}: {found} of {trial}, {tight} tight");
+        // Two-step methods are proven for no band.
+        let none = ["gautschi", "hairer-lubich"].contains(&method.name());
+        assert_eq!(found, if none { 0 } else { trial }, "{method}");
+        // The long average has no first unstable step to be near to.
+        assert!(none || tight > 25 || method.name() == "molly-long", "{method}: {tight}");
+    }
+}
+
+/// Two levels of whole numbers, masses from 1 to 4.
+fn whole_numbers(numbers: &mut Numbers) -> ([DMatrix<f64>; 2], Vec<f64>) {
+    let n = 1 + (4.0 * numbers.next()) as usize;
+    let mut matrix = || DMatrix::from_fn(n, n, |_, _| (7.0 * numbers.next()).floor() - 3.0);
+    let (a, b) = (matrix(), matrix());
+    let slow = if a[(0, 0)] > 0.0 { &b + b.transpose() } else { &b * b.transpose() };
+    let masses = (0..n).map(|_| 1.0 + (4.0 * numbers.next()).floor()).collect();
+    ([&a * a.transpose(), slow], masses)
+}
+
+fn rational(levels: &[DMatrix<f64>; 2], masses: &[f64], h: &Rational) -> Model {
+    let masses: Vec<Rational> = masses.iter().map(|m| ratio(*m as i64, 1)).collect();
+    let potential =
+        |own: &DMatrix<f64>, step: Rational| Potential::new(Symmetric::try_from(own).unwrap(), step);
+    let all = vec![potential(&levels[0], h / ratio(3, 1)), potential(&levels[1], h.clone())];
+    Model::Rational(System::new(Symmetric::diagonal(&masses), all).unwrap())
+}
+
+/// Verlet's step with masses M + h² F/4, exactly, against dense eigenvalues of the midpoint rule between kicks.
+#[test]
+fn rational_levels_that_are_solved_for_are_decided_exactly() {
+    let mut numbers = Numbers(21);
+    let (limits, mut seen, mut near) = (Limits::default(), [0; 2], 0);
+    for trial in 0..400 {
+        let (levels, masses) = whole_numbers(&mut numbers);
+        if levels.iter().any(|own| own.amax() == 0.0) {
+            continue;
+        }
+        let h = ratio(1 + (60.0 * numbers.next()) as i64, 20);
+        let model = rational(&levels, &masses, &h).with_method(Method::ImplicitExplicit).unwrap();
+        let analysis = model.decide(Route::Cheapest, &limits).unwrap();
+        assert_eq!(analysis.kind, Some(model.exact_kind(&limits).unwrap()));
+        let weighted = |own: &DMatrix<f64>| {
+            DMatrix::from_fn(own.nrows(), own.ncols(), |i, j| own[(i, j)] / (masses[i] * masses[j]).sqrt())
+        };
+        let [fast, slow] = levels.each_ref().map(weighted);
+        let largest = radius(&step(Method::ImplicitExplicit, &fast, &slow, to_f64(&h), 1));
+        match analysis.holds() {
+            Holds::Stable => assert!(largest < 1.0 + 1e-5, "{trial}: {largest} {levels:?} {masses:?} {h}"),
+            // At h² S = 4 what grows does so step by step alone.
+            Holds::Unstable => near += usize::from(largest < 1.0 + 1e-5),
+            Holds::NotTold => panic!("{trial}: exact numbers"),
+        }
+        seen[usize::from(analysis.is_stable())] += 1;
+    }
+    println!("{seen:?}, {near} on edges");
+    assert!(seen.iter().all(|count| *count > 60) && near < 40, "{seen:?} {near}");
+}
+
+/// h² S < 4: the steps of S = diag(1, 1/4) end at 2, whatever F, and at 2 itself the step is parabolic.
+#[test]
+fn the_steps_of_rational_levels_that_are_solved_for_end_where_the_theorem_says() {
+    let fast = DMatrix::from_row_slice(2, 2, &[100.0, 3.0, 3.0, 5.0]);
+    let levels = [fast, DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, 0.25])];
+    let at = |h: Rational| rational(&levels, &[1.0, 1.0], &h).with_method(Method::ImplicitExplicit).unwrap();
+    let limits = Limits::default();
+    let all = at(ratio(1, 1)).stretches(&Number::Outer, (0.1, 10.0), 1e-6, &limits).unwrap();
+    let stable: Vec<_> = all.iter().filter(|own| own.verdict == Holds::Stable).collect();
+    assert_eq!(stable.len(), 1);
+    assert!(stable[0].lo == 0.1 && stable[0].hi <= 2.0 && stable[0].hi > 1.999_999, "{all:?}");
+    assert!(all.iter().all(|own| own.verdict != Holds::NotTold), "{all:?}");
+    assert_eq!(at(ratio(2, 1)).exact_kind(&limits).unwrap(), Kind::Parabolic);
+    let nearest = at(ratio(3, 2)).nearest_unstable(1e-6, &limits).unwrap();
+    assert!(
+        format!("{nearest:?}").contains("2.0") || format!("{nearest:?}").contains("1.999"),
+        "{nearest:?}"
+    );
+}
+
+/// What has no exact step is decided in doubles: w = 1 and S = 1/16, the impulse's tongue from pi - 2 atan(h/32) to pi.
+#[test]
+fn rational_levels_take_trigonometric_methods_in_doubles() {
+    let levels = [1.0, 0.0625].map(|x| DMatrix::from_element(1, 1, x));
+    let holds = |name: &str, h: Rational| {
+        let model = rational(&levels, &[1.0], &h).with_method(name.parse().unwrap()).unwrap();
+        model.verdict(Route::Cheapest, &Limits::default()).unwrap()
+    };
+    assert_eq!(
+        ["impulse", "molly-long"].map(|name| holds(name, ratio(3, 1))),
+        [Holds::Unstable, Holds::Stable]
+    );
+    assert_eq!(holds("impulse", ratio(29, 10)), Holds::Stable);
+    let model = rational(&levels, &[1.0], &ratio(3, 1));
+    let again = model.clone().with_method("impulse".parse().unwrap()).unwrap();
+    assert_eq!((again.method().name(), model.method()), ("impulse", Method::Respa));
+    // One clock is no two levels.
+    let one = Potential::new(Symmetric::diagonal(&[ratio(1, 1)]), ratio(1, 1));
+    let one = Model::Rational(System::new(Symmetric::diagonal(&[ratio(1, 1)]), vec![one]).unwrap());
+    for name in ["impulse", "implicit-explicit"] {
+        let error = one.clone().with_method(name.parse().unwrap()).unwrap_err().to_string();
+        assert!(error.contains("two levels") && !error.contains('\n'), "{error}");
+    }
 }

@@ -1,6 +1,6 @@
 //! Words: what is known of published integrators, and random words against products of the test's own.
 
-use kickdrift::number::{Laurent, Radical, Rational, Ring, Sign, rational::ratio};
+use kickdrift::number::{Laurent, Radical, Rational, Ring, Sign, parse::parse_rational, rational::ratio};
 use kickdrift::word::{Forces, METHODS, Stability, Trigonometric, Word, at, method};
 use num_traits::{One, Signed, Zero};
 
@@ -710,4 +710,45 @@ fn langevin_orders_damp_what_the_word_without_friction_leaves_bounded() {
             );
         }
     }
+}
+
+/// On the edges themselves: h w = n π, c² = ρ s² and ρ s² = 1 at angles whose cosines are rational; rational h² Λ1 is never one.
+#[test]
+fn edges_of_trigonometric_integrators_are_decided() {
+    use Trigonometric::{Gautschi, HairerLubich, Impulse, Linear, Long, Short};
+    let at = |r: (i64, i64), rho: (i64, i64), method: Trigonometric| {
+        let r = ratio(r.0, r.1);
+        method.at(&Laurent::monomial(&r * &r, 2), &ratio(rho.0, rho.1))
+    };
+    // The filter is 0 at odd n of the long average and of Hairer and Lubich, at even n > 0 of all but the impulse: the step is 1 or -1 there.
+    for n in 1..=6 {
+        for (method, stable) in [
+            (Impulse, [false, false]),
+            (Short, [true, false]),
+            (Linear, [true, false]),
+            (Long, [true, true]),
+            (HairerLubich, [true, true]),
+            (Gautschi, [true, false]),
+        ] {
+            assert_eq!(at((n, 1), (1, 16), method), Some(stable[n as usize % 2]), "{method:?} {n}");
+        }
+    }
+    // Tr = -2 and no filter is 0: a Jordan block. cos h w = (rho - 1)/(rho + 1), 1 - 2/rho.
+    for (r, rho) in [((1, 2), (1, 1)), ((1, 3), (3, 1)), ((2, 3), (1, 3)), ((5, 3), (3, 1)), ((7, 2), (1, 1))]
+    {
+        assert_eq!(at(r, rho, Gautschi), Some(false), "{r:?}");
+    }
+    for (r, rho) in [((1, 2), (2, 1)), ((1, 3), (4, 1)), ((2, 3), (4, 3)), ((4, 3), (4, 3))] {
+        assert_eq!(at(r, rho, HairerLubich), Some(false), "{r:?}");
+    }
+    // A little less of the slow force, and it is none.
+    assert_eq!(at((1, 2), (999, 1000), Gautschi), Some(true));
+    assert_eq!(at((1, 3), (3999, 1000), HairerLubich), Some(true));
+    // h w within 1e-40 of 2 pi, beyond 96 bits: pi to 50 digits.
+    let pi = "3.14159265358979323846264338327950288419716939937510";
+    let pi: Rational = parse_rational("pi", pi).unwrap();
+    let s = Laurent::from_rational(&pi * &pi * ratio(4, 1));
+    assert!(Impulse.at(&s, &ratio(1, 16)).is_some());
+    // Below, as these digits are, an impulse is unstable.
+    assert_eq!(Impulse.at(&s, &ratio(1, 16)), Some(false));
 }

@@ -1,7 +1,8 @@
 //! What would let the outer step grow: other masses, constraints, methods and ratios, each with its own proof.
 //!
 //! A lever is the question with one thing changed. Those of r-RESPA (kicks and drifts) have the first region as proof, that of the levels; mollified
-//! kicks the edge of all coupled modes ([`Trigonometric::coupled_edge`](crate::word::Trigonometric::coupled_edge)). Two methods have none of the
+//! kicks the edge of all coupled modes ([`Trigonometric::coupled_edge`](crate::word::Trigonometric::coupled_edge)), of Hessians the band of their
+//! modes ([`Kernel::band_edge`](crate::system::levels::Kernel::band_edge)). Two methods have none of the
 //! fast modes' resonances at all: with the fast forces by the midpoint rule a step is stable iff h² S < 4 (and F + S > 0), whatever F
 //! (proofs/ImplicitExplicit.v); MOLLY by the equilibrium kicks the fast modes not at all. What cannot be computed is left out, and why is said.
 
@@ -75,6 +76,16 @@ impl Lever {
         Lever { name, way, first, exact, is_free: false, band_edge, step, inner, gain }
     }
 
+    /// What a friction per fs masks up to this outer step.
+    pub(super) fn masked(step: Rational, inner: &Rational, rate: &Rational) -> Lever {
+        let name = format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into()))));
+        Lever {
+            step: Some((step, Bound::Friction)),
+            inner: Some(inner.clone()),
+            ..Lever::new(name, Way::Friction)
+        }
+    }
+
     /// Evaluations a picosecond of what is kicked every `step` fs.
     fn per_ps(step: &Rational) -> Rational {
         Rational::from_integer(1000.into()) / step
@@ -142,18 +153,28 @@ impl Way {
                 "Tinker" "RESPA-INNER" "respa.f";
                 "i-PI" "nmts" "i-PI user guide, motion dynamics";
             },
+            Way::Hydrogens => engines! {
+                "OpenMM" "hydrogenMass" "wrappers/python/openmm/app/forcefield.py";
+                "GROMACS" "mass-repartition-factor" "GROMACS 2024 release notes, performance";
+            },
+            Way::HeldAndHeavy => engines! {
+                "OpenMM" "constraints=HBonds, hydrogenMass" "wrappers/python/openmm/app/forcefield.py";
+                "GROMACS" "constraints = h-bonds, mass-repartition-factor" "GROMACS manual, mdp options";
+            },
             Way::Held => engines! {
+                "OpenMM" "constraints=HBonds" "wrappers/python/openmm/app/forcefield.py";
                 "GROMACS" "constraints = h-bonds" "GROMACS manual, mdp options";
                 "LAMMPS" "fix shake" "LAMMPS manual, fix shake";
                 "NAMD" "rigidBonds all" "NAMD user guide, rigidBonds";
             },
             Way::Equilibrium => engines! {
+                "NAMD" "molly on" "SimParameters.C";
                 "LAMMPS" "fix filter/corotate" "LAMMPS manual, fix filter/corotate";
             },
             Way::Friction => engines! {
                 "OpenMM" "MTSLangevinIntegrator" "wrappers/python/openmm/mtsintegrator.py";
             },
-            Way::Verlet | Way::Hydrogens | Way::HeldAndHeavy | Way::Molly(_) | Way::ImplicitExplicit => &[],
+            Way::Verlet | Way::Molly(_) | Way::ImplicitExplicit => &[],
         }
     }
 }
@@ -173,13 +194,21 @@ pub fn heavy() -> [Rational; 2] {
 /// Ratios of the outermost step to the one before it.
 pub const RATIOS: std::ops::RangeInclusive<u64> = 2..=16;
 
+/// Other methods, by name.
+pub const SOLVED: [(&str, Way); 4] = [
+    ("MOLLY, short average", Way::Molly(Trigonometric::Short)),
+    ("MOLLY, linear average", Way::Molly(Trigonometric::Linear)),
+    ("MOLLY, long average", Way::Molly(Trigonometric::Long)),
+    ("implicit-explicit", Way::ImplicitExplicit),
+];
+
 /// Innermost steps of other ratios are multiples of this, in fs.
 pub(super) fn least() -> Rational {
     ratio(1, 100)
 }
 
 /// The most outer steps that a friction is tried at.
-const MOST_MASKED: u64 = 200;
+pub(super) const MOST_MASKED: u64 = 200;
 
 impl Question {
     /// What would let the outer step of the first scheme grow.
@@ -345,11 +374,8 @@ impl Question {
         let rho = rho.map(|rho| rho.upper() * &widest * &widest);
         let (inner, fifth) = (self.schemes[0].last_but_one(), self.slow(5).1);
         let beyond_verlet = self.rigid(slow);
-        for (method, words) in [
-            (Trigonometric::Short, "MOLLY, short average"),
-            (Trigonometric::Linear, "MOLLY, linear average"),
-            (Trigonometric::Long, "MOLLY, long average"),
-        ] {
+        for (words, way) in SOLVED {
+            let Way::Molly(method) = way else { continue };
             let is_free = rho.as_ref().is_some_and(|rho| method.is_free(rho));
             let turn = 2.0 * beyond_verlet.1;
             let of_mode =
@@ -364,7 +390,7 @@ impl Question {
                 band_edge: Some(band_edge),
                 inner: part(&step, inner),
                 step,
-                ..Lever::new(words.into(), Way::Molly(method))
+                ..Lever::new(words.into(), way)
             });
         }
         let (band_edge, exact) = (self.shrunk(beyond_verlet), exact_root(slow));
@@ -428,14 +454,8 @@ impl Question {
         };
         (scheme.steps().len() > 1).then_some(())?;
         let found = (2..=MOST_MASKED).take_while(|&p| holds(p) == Some(true)).last()?;
-        Some(Lever {
-            step: Some((scheme.last_but_one() * Rational::from_integer(found.into()), Bound::Friction)),
-            inner: Some(scheme.inner().clone()),
-            ..Lever::new(
-                format!("friction {}/ps", decimal(&(rate * Rational::from_integer(1000.into())))),
-                Way::Friction,
-            )
-        })
+        let step = scheme.last_but_one() * Rational::from_integer(found.into());
+        Some(Lever::masked(step, scheme.inner(), rate))
     }
 }
 
@@ -482,7 +502,7 @@ pub(super) fn bounded(edge: f64, fifth: f64) -> Option<(Rational, Bound)> {
 }
 
 /// The longest step up to `inner` of which `step` is a multiple.
-fn part(step: &Option<(Rational, Bound)>, inner: &Rational) -> Option<Rational> {
+pub(super) fn part(step: &Option<(Rational, Bound)>, inner: &Rational) -> Option<Rational> {
     step.as_ref().map(|(step, _)| step / (step / inner).ceil())
 }
 

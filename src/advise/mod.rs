@@ -59,7 +59,7 @@ pub use caution::{Caution, PUBLISHED, SLOW};
 pub use constraint::Constraints;
 pub use interval::{Unstable, Worst};
 pub use levels::{Found, Levels, Scheme};
-pub use levers::{Bound, Engine, Lever, Levers, RATIOS, Way, heavy};
+pub use levers::{Bound, Engine, Lever, Levers, RATIOS, SOLVED, Way, heavy};
 pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use names::{Names, Told};

@@ -7,14 +7,16 @@ use num_traits::{One, ToPrimitive, Zero};
 
 use super::answer::Status;
 use super::levels::{Scheme, longest_below};
-use super::levers::{Bound, Lever, Levers, RATIOS, Way, below_third, bounded, least, of_units};
+use super::levers::{
+    Bound, Lever, Levers, MOST_MASKED, RATIOS, Way, below_third, bounded, least, of_units, part,
+};
 use super::names::Names;
 use super::question::check_length;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Damping;
-use crate::system::levels::{Growing, Kernel, Outer};
+use crate::system::levels::{Growing, Kernel, Method, Outer};
 use crate::system::{Analysis, Holds, Removed};
 
 /// Measured stiffnesses of two levels, and what their coordinates are called.
@@ -344,10 +346,7 @@ impl Molecule {
         let (p, unit) = (self.outer_of(scheme)?.inner_steps(), to_f64(&self.unit));
         let edge = self.kernel.band_edge(p, to_f64(band), self.accuracy);
         Ok(Lever {
-            first: self
-                .kernel
-                .first_unstable(p)
-                .map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up())),
+            first: self.first_of(&self.kernel, p),
             band_edge: edge.map(|edge| rounded_edge(edge * unit)),
             step,
             inner: Some(scheme.inner().clone()),
@@ -355,16 +354,50 @@ impl Molecule {
         })
     }
 
-    /// The fast stiffness by the midpoint rule; `None` where nothing is proven.
-    pub fn implicit_explicit(&self, band: &Rational) -> Option<Lever> {
+    /// The first unstable outer step of p inner ones under the method of a kernel, in fs.
+    fn first_of(&self, kernel: &Kernel, p: u64) -> Option<(f64, f64)> {
         let unit = to_f64(&self.unit);
-        let edge = self.kernel.midpoint_edge(to_f64(band), self.accuracy)? * unit;
-        let frequency = self.kernel.highest_slow_frequency();
+        kernel.first_unstable(p).map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up()))
+    }
+
+    /// Another method that takes the fast stiffness in one go, or follows it exactly by inner steps up to that of the scheme; `None` where no step is
+    /// proven.
+    pub fn method(&self, name: &str, way: Way, scheme: &Scheme, band: &Rational) -> Option<Lever> {
+        let method = match way {
+            Way::Molly(own) => Method::Trigonometric(own),
+            Way::ImplicitExplicit => Method::ImplicitExplicit,
+            _ => return None,
+        };
+        let kernel = self.kernel.clone().with_method(method);
+        let edge = rounded_edge(kernel.band_edge(1, to_f64(band), self.accuracy)? * to_f64(&self.unit));
+        let frequency = kernel.highest_slow_frequency();
+        let step = bounded(edge.0, self.period(frequency * frequency) / 5.0);
+        let follows = method != Method::ImplicitExplicit;
         Some(Lever {
-            band_edge: Some(rounded_edge(edge)),
-            step: bounded(edge.next_down(), self.period(frequency * frequency) / 5.0),
-            ..Lever::new("implicit-explicit".into(), Way::ImplicitExplicit)
+            first: self.first_of(&kernel, 1),
+            band_edge: Some(edge),
+            inner: part(&step, scheme.inner()).filter(|_| follows),
+            step,
+            ..Lever::new(name.into(), way)
         })
+    }
+
+    /// The longest multiple of the inner step that a friction per fs is proven to mask, all shorter multiples too; `None` where it is none.
+    ///
+    /// # Errors
+    /// As [`Molecule::advise`].
+    pub fn masked(&self, scheme: &Scheme, rate: &Rational) -> Result<Option<Lever>> {
+        let (inner, unit) = (scheme.inner(), to_f64(&self.unit));
+        let mut longest = None;
+        for p in 2..=MOST_MASKED {
+            let step = inner * Rational::from_integer(p.into());
+            let outer = self.outer(inner, &step)?;
+            if self.kernel.damping(&outer, to_f64(rate) * unit) != Some(Damping::Damped) {
+                break;
+            }
+            longest = Some(step);
+        }
+        Ok(longest.map(|step| Lever::masked(step, inner, rate)))
     }
 
     /// T/3 of the fastest mode.

@@ -8,7 +8,9 @@ use super::asking::{Fields, Question, Work, question};
 use super::field::{Field, notation, read};
 use crate::advise::engine::{self, Reading};
 use crate::advise::unit::{self, Dimension, decimal};
-use crate::advise::{self, Advice, Bond, Constraints, Findings, Levers, Mode, Molecule, Origin, Scheme, Way};
+use crate::advise::{
+    self, Advice, Bond, Constraints, Findings, Levers, Mode, Molecule, Origin, SOLVED, Scheme, Way,
+};
 use crate::error::{Error, Result};
 use crate::number::parse::parse_rational;
 use crate::number::{ExactSign, Rational, Sign};
@@ -230,7 +232,7 @@ const KICKS_A_SECOND: f64 = 5e6;
 const PRODUCTS_A_SECOND: f64 = 1e10;
 
 /// What would let a molecule's step grow costs as much as so many schemes, about.
-const LEVERS: usize = 6;
+const LEVERS: usize = 10;
 
 /// Fastest periods of molecules, in fs.
 const PLAUSIBLE: std::ops::RangeInclusive<f64> = 3.0..=3000.0;
@@ -259,7 +261,7 @@ impl Question for Advised {
         let size = scene.model().size();
         // What would let the step grow is told where it is cheap, whatever the budget: a document tells the same with another one.
         let others: Vec<_> = self.schemes.iter().take(1).cycle().take(LEVERS).cloned().collect();
-        let levers = !self.no_levers && Molecule::allow(size, &others, false, None).is_ok();
+        let levers = !self.no_levers && Molecule::allow(size, &others, friction.is_some(), None).is_ok();
         let schemes = [&self.schemes[..], if levers { &others } else { &[] }].concat();
         let cost = Molecule::allow(size, &schemes, friction.is_some(), work.budget)?;
         let seconds = cost as f64 / PRODUCTS_A_SECOND;
@@ -329,15 +331,21 @@ impl Advised {
                 Err(error) => all.left_out.push(format!("{name}: {error}")),
             }
         }
-        match molecule.implicit_explicit(&self.band) {
-            Some(lever) => all.rows.push(lever),
-            None => all.left_out.push("implicit-explicit: F + S is not proven definite".into()),
+        for (name, way) in SOLVED {
+            match molecule.method(name, way, scheme, &self.band) {
+                Some(lever) => all.rows.push(lever),
+                None => all.left_out.push(format!("{name}: F + S is not proven definite")),
+            }
         }
-        all.left_out.push("MOLLY: the slow stiffness of a molecule need not be positive".into());
-        if self.friction.is_some() {
-            all.left_out.push("masked by the friction: the rows say it of each scheme".into());
-        }
+        all.left_out
+            .push("MOLLY, equilibrium: Hessians do not say which motions the fast forces leave alone".into());
         all.rows.extend(molecule.ratios(scheme, &self.band)?);
+        if let Some(rate) = &self.friction {
+            match molecule.masked(scheme, rate)? {
+                Some(lever) => all.rows.push(lever),
+                None => all.left_out.push("masked by the friction: not even the first step".into()),
+            }
+        }
         all.compare();
         Ok(all)
     }

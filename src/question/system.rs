@@ -225,9 +225,19 @@ impl Question for System {
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
                 let local = scene.model().local_steps();
+                let is_implicit = scene.model().implicit().is_some();
                 let no_gradient = no_gradient.as_ref();
-                let beside =
-                    Beside { unit, friction, orbit, is_orbit_missing, labels, nearest, local, no_gradient };
+                let beside = Beside {
+                    unit,
+                    friction,
+                    orbit,
+                    is_orbit_missing,
+                    labels,
+                    nearest,
+                    local,
+                    is_implicit,
+                    no_gradient,
+                };
                 report::document(analysis, &beside)
             }
         }

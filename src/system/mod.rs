@@ -44,6 +44,7 @@
 mod exact;
 pub mod friction;
 mod half;
+mod implicit;
 mod jacobian;
 pub mod levels;
 mod linear;
@@ -60,6 +61,7 @@ mod verdict;
 
 pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
 pub use half::compose::{full_period, half_period};
+pub use implicit::ImplicitExplicit;
 pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};

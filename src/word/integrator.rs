@@ -23,7 +23,8 @@ pub enum Integrator {
 pub enum Bounded {
     Stable,
     Unstable,
-    /// On an edge of a word with exact flows or filters, or nearer to one than 96 bits tell.
+    /// Of one filtered kick beside one exact flow: nearer to an edge than thousands of bits tell, and no theorem says whether it is one, only where
+    /// h² Λ1 is neither rational nor (r π)² with a rational r. Of other words with flows or filters: on an edge, or nearer to one than 96 bits tell.
     Edge,
 }
 

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! A step is unstable where one of them is negative. Common factors c² and s² change no sign; they are 0 only where the filters are, and
-//! the propagator is ±I there. Balls over intervals of y tell the signs, all but at the edges themselves.
+//! the propagator is ±I there. Balls over intervals of y tell the signs, all but at the edges themselves; whether a step is one is decided by
+//! where numbers are transcendental, see `at_edge`.
 //!
 //! ```
 //! use kickdrift::number::{Laurent, rational::ratio};
@@ -20,7 +21,8 @@
 //! assert!(Trigonometric::HairerLubich.unstable(&fast, &slow, 16.0).is_empty());
 //! ```
 
-use num_traits::{One, Signed};
+use num_bigint::BigInt;
+use num_traits::{One, Signed, Zero};
 
 use super::enclosed::{Piece, pieces};
 use super::letters::{Force, Item, Letter, Word};
@@ -46,6 +48,9 @@ pub enum Trigonometric {
 
 /// Bits of the balls; intervals are halved to fewer.
 const BITS: u32 = 96;
+
+/// The most bits of a step that is no edge, for all that is known.
+const MOST_BITS: u32 = 1 << 13;
 
 impl Trigonometric {
     pub const ALL: [Trigonometric; 6] = [
@@ -98,6 +103,11 @@ impl Trigonometric {
         Shape { cos, sinc, felt: true }
     }
 
+    /// See [`Shape::stable_at`].
+    pub fn at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
+        self.shape().stable_at(s, rho)
+    }
+
     /// See [`Shape::unstable`].
     pub fn unstable(self, fast: &Laurent, slow: &Laurent, most: f64) -> Vec<[(f64, f64); 2]> {
         self.shape().unstable(fast, slow, most)
@@ -110,7 +120,7 @@ impl Trigonometric {
     /// i = 1, all a_n > 0: it increases for k ≤ 3, and for k = 5 decreases first and then increases. So the ends of 0 ≤ w² ≤ Λ1 decide: at w = 0
     /// it is h² Λ2 < 4, at w² = Λ1 the first edge. For i = 3 it is at most h² Λ2/4, and h w < π. `None` for what is no filtered impulse.
     pub fn coupled_edge(self, fast: &Laurent, slow: &Laurent) -> Option<(f64, f64)> {
-        let frequency = half_frequency(fast).scale2(1);
+        let frequency = half_frequency(fast, BITS).scale2(1);
         let turn = Ball::pi(BITS).div(&frequency, BITS)?.to_f64_enclosure();
         let own = match self {
             Trigonometric::Impulse | Trigonometric::Short | Trigonometric::Linear => {
@@ -168,49 +178,79 @@ impl Shape {
     }
 
     /// The signs of 2 + Tr and 2 − Tr, without factors that are squares, for every y of a ball; `None` where they are not told.
-    fn signs(self, y: &Ball, rho: &Ball) -> [Option<Sign>; 2] {
+    fn signs(self, y: &Ball, rho: &Ball, bits: u32) -> [Option<Sign>; 2] {
         if !self.felt {
             // 4 cos² y and 4 sin² y: ±I where they are 0.
             return [Some(Sign::Positive); 2];
         }
         let (i, k) = (self.cos, self.sinc);
-        let (c, sinc) = (y.cos(BITS), sinc(y));
-        let power = |x: &Ball, n: u32| (0..n).fold(Ball::one(), |product, _| product.mul(x, BITS));
+        let (c, sinc) = (y.cos(bits), sinc(y, bits));
+        let power = |x: &Ball, n: u32| (0..n).fold(Ball::one(), |product, _| product.mul(x, bits));
         let common = i.min(2);
-        let kicked = rho.mul(&y.square(BITS), BITS).mul(&power(&sinc, k), BITS);
+        let kicked = rho.mul(&y.square(bits), bits).mul(&power(&sinc, k), bits);
         // c², or c (c − ...), or 1 − ...
-        let bracket = power(&c, 2 - common).sub(&kicked.mul(&power(&c, i - common), BITS), BITS);
-        let below = if common == 1 { c.mul(&bracket, BITS) } else { bracket };
+        let bracket = power(&c, 2 - common).sub(&kicked.mul(&power(&c, i - common), bits), bits);
+        let below = if common == 1 { c.mul(&bracket, bits) } else { bracket };
         // s² is y² sinc².
-        let rest = rho.mul(&power(&c, i), BITS);
+        let rest = rho.mul(&power(&c, i), bits);
         let above = match k {
-            0 => sinc.square(BITS).add(&rest, BITS),
-            1 => sinc.mul(&sinc.add(&rest, BITS), BITS),
-            _ => Ball::one().add(&rest.mul(&power(&sinc, k - 2), BITS), BITS),
+            0 => sinc.square(bits).add(&rest, bits),
+            1 => sinc.mul(&sinc.add(&rest, bits), bits),
+            _ => Ball::one().add(&rest.mul(&power(&sinc, k - 2), bits), bits),
         };
         [below.sign(), above.sign()]
     }
 
     /// Whether every step of an interval of y is stable or every one unstable; `None` where that is not told.
-    fn verdict(self, y: &Ball, rho: &Ball) -> Option<bool> {
-        match self.signs(y, rho) {
+    fn verdict(self, y: &Ball, rho: &Ball, bits: u32) -> Option<bool> {
+        match self.signs(y, rho, bits) {
             [Some(Sign::Positive), Some(Sign::Positive)] => Some(true),
             [Some(Sign::Negative), _] | [_, Some(Sign::Negative)] => Some(false),
             _ => None,
         }
     }
 
-    /// At s = h² Λ1; `None` on an edge, or nearer to one than 96 bits tell.
+    /// At s = h² Λ1, ρ > 0; `None` at s = 0, and where [`MOST_BITS`] bits do not tell and no theorem does.
     pub fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
-        self.verdict(&half_frequency(s), &Ball::from_rational(rho, BITS))
+        if s.is_zero() {
+            return None;
+        }
+        let at = |bits: u32| self.verdict(&half_frequency(s, bits), &Ball::from_rational(rho, bits), bits);
+        let doubled = || std::iter::successors(Some(2 * BITS), |bits| Some(2 * bits));
+        at(BITS)
+            .or_else(|| self.at_edge(s, rho))
+            .or_else(|| doubled().take_while(|bits| *bits <= MOST_BITS).find_map(at))
+    }
+
+    /// What holds at an edge; `None` where s is none, or where it is not known whether it is.
+    ///
+    /// For h w = r π, s = r² π²: where r is a whole number s or c is 0, the flow is ±I, and the step is ±I if the filter c^(i−1) (s/y)^(k−1) of the
+    /// kick is 0 there, and else a kick, under which a displacement grows with every step. Where it is none, and k is not 2, c² and s² are algebraic and not 0, what is added to them is a
+    /// power of π times an algebraic number, and π is transcendental: no sum is 0. For k = 2 it is only where cos h w is a rational number, which at
+    /// rational r is 0, ±1/2 or ±1 (Niven). A rational s > 0 is no edge at all: the exponentials of different algebraic numbers are independent
+    /// over the algebraic numbers (Lindemann, Weierstrass), so c² and what is added to it, other sums of them, have no common value.
+    fn at_edge(self, s: &Laurent, rho: &Rational) -> Option<bool> {
+        let r = turns(s)?;
+        if r.is_integer() {
+            let is_even = (r.to_integer() % BigInt::from(2)).is_zero();
+            return Some(if is_even { self.sinc > 1 } else { self.cos > 1 });
+        }
+        let edge = match (self.cos, self.sinc) {
+            // c² = ρ s².
+            (0, 2) => (rho - Rational::one()) / (rho + Rational::one()),
+            // 1 = ρ s².
+            (2, 2) => Rational::one() - ratio(2, 1) / rho,
+            _ => return None,
+        };
+        (cosine(&r) == Some(edge)).then_some(false)
     }
 
     /// Every step h of (lo, hi), 0 ≤ lo: pieces with one answer, their ends enclosed. Outside the enclosures every step is proven stable or unstable.
     /// Intervals thinner than 2^−44 of the range are not told apart from edges that touch.
     pub fn pieces(self, fast: &Laurent, slow: &Laurent, lo: f64, hi: f64) -> Vec<Piece> {
-        let (half, rho) = (half_frequency(fast), over(slow, fast));
+        let (half, rho) = (half_frequency(fast, BITS), over(slow, fast));
         let at = |h: f64| half.mul(&Ball::from_rational(&from_f64_exact(h).unwrap_or_default(), BITS), BITS);
-        pieces(lo, hi, |lo, hi| self.verdict(&at(lo).union(&at(hi), BITS), &rho))
+        pieces(lo, hi, |lo, hi| self.verdict(&at(lo).union(&at(hi), BITS), &rho, BITS))
     }
 
     /// The unstable intervals of the step h that begin below `most` > 0, both ends of each enclosed; an end beyond `most` is not looked for, but
@@ -228,8 +268,30 @@ impl Shape {
 }
 
 /// √Λ/2.
-fn half_frequency(stiffness: &Laurent) -> Ball {
-    stiffness.enclosure(BITS).sqrt(BITS).expect("a stiffness is positive").scale2(-1)
+fn half_frequency(stiffness: &Laurent, bits: u32) -> Ball {
+    stiffness.enclosure(bits).sqrt(bits).expect("a stiffness is positive").scale2(-1)
+}
+
+/// r > 0 where s = r² π² and r is rational.
+fn turns(s: &Laurent) -> Option<Rational> {
+    let (power, square) = s.as_monomial()?;
+    let root = |n: &BigInt| Some(n.sqrt()).filter(|root| root * root == *n);
+    (power == 2).then(|| Some(Rational::new(root(square.numer())?, root(square.denom())?)))?
+}
+
+/// cos r π, where it is rational and r is no whole number.
+fn cosine(r: &Rational) -> Option<Rational> {
+    let two = ratio(2, 1);
+    let rest = r - (r / &two).floor() * &two;
+    let known = [
+        ((1, 2), (0, 1)),
+        ((3, 2), (0, 1)),
+        ((1, 3), (1, 2)),
+        ((5, 3), (1, 2)),
+        ((2, 3), (-1, 2)),
+        ((4, 3), (-1, 2)),
+    ];
+    known.into_iter().find(|((n, d), _)| ratio(*n, *d) == rest).map(|(_, (n, d))| ratio(n, d))
 }
 
 fn over(slow: &Laurent, fast: &Laurent) -> Ball {
@@ -242,14 +304,14 @@ fn over(slow: &Laurent, fast: &Laurent) -> Ball {
 }
 
 /// sin y / y of every y of a ball.
-fn sinc(y: &Ball) -> Ball {
-    match y.sin(BITS).div(y, BITS) {
+fn sinc(y: &Ball, bits: u32) -> Ball {
+    match y.sin(bits).div(y, bits) {
         Some(own) if y.lower() >= ratio(1, 4) => own,
         // 1 − y²/6 ≤ sinc y ≤ 1.
         _ => {
-            let square = y.square(BITS).upper();
+            let square = y.square(bits).upper();
             let least = Rational::one() - square / Rational::from_integer(6.into());
-            Ball::from_rational(&least, BITS).union(&Ball::one(), BITS)
+            Ball::from_rational(&least, bits).union(&Ball::one(), bits)
         }
     }
 }

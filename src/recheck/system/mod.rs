@@ -5,6 +5,7 @@
 //! period in doubles (multipliers, runs of linear systems).
 
 mod dense;
+mod implicit;
 mod local;
 
 use serde_json::Value;
@@ -90,6 +91,7 @@ fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Resul
     }
     let traces = || {
         scene.model().local_steps().map_or(Ok(()), local::steps)?;
+        scene.model().implicit().map_or(Ok(()), |own| implicit::in_doubles(own, analysis))?;
         dense::traces(scene, analysis)
     };
     match exact_kind(scene, &context.work().products())? {

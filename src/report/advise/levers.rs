@@ -150,6 +150,11 @@ pub(super) fn lines(levers: &Levers) -> Vec<String> {
             "             friction: it hides what grows for the periods given; no advice rests on it".into(),
         );
     }
+    let unknown = |own: &&Lever| matches!(own.way, Way::Molly(_) | Way::ImplicitExplicit);
+    let unknown: Vec<&str> = levers.rows.iter().filter(unknown).map(|own| own.name.as_str()).collect();
+    if !unknown.is_empty() {
+        lines.push(format!("             {}: no engine is known to have them", unknown.join("; ")));
+    }
     let mut told: Vec<Way> = Vec::new();
     for own in levers.rows.iter().filter(|own| !own.way.engines().is_empty()) {
         if !told.contains(&own.way) {

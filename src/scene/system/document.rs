@@ -95,6 +95,7 @@ pub(super) struct Document {
     pub friction: Option<Number>,
     pub symmetric: Option<bool>,
     pub scheme: Option<String>,
+    pub method: Option<String>,
     pub levels: Option<Vec<LevelDocument>>,
 }
 

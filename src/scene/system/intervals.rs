@@ -234,7 +234,8 @@ impl SystemScene {
         match &self.model {
             Model::NoGradient(_) => return refused("of this file", "are for forces that are gradients"),
             Model::Sparse(_) => return refused("of this file", "are for dense stiffnesses"),
-            Model::Rational(_) | Model::Measured(_) | Model::LocalSteps(_) if self.is_linear() => {}
+            Model::Rational(_) | Model::Measured(_) | Model::LocalSteps(_) | Model::Implicit(_)
+                if self.is_linear() => {}
             _ => return refused("of this file", "are for linear systems of rational numbers"),
         }
         let work = || format!("a verdict on {} degrees of freedom", self.model.size());

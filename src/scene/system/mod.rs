@@ -220,6 +220,10 @@ impl SystemScene {
         let document = document.map_err(no_system)?;
         check_schema(&document.schema)?;
         let (model, bonds, labels) = document.model()?;
+        let model = match &document.method {
+            Some(method) => with_method(model, bonds.as_ref(), method.parse()?)?,
+            None => model,
+        };
         let given = document.labels.as_ref().map(|labels| spread(labels, model.size())).transpose()?;
         let scene = SystemScene { source, arrays, model, bonds, labels: given.or(labels), friction: None };
         let friction = document.friction.as_ref().map(|own| own.read("friction")).transpose()?;
@@ -227,7 +231,7 @@ impl SystemScene {
     }
 
     /// The same with what is asked of it beside its file: another accuracy of measured stiffnesses, relative to their norms; their rigid
-    /// motions left in; friction of a rate per unit time, O in the middle of every drift; another integrator of two measured levels.
+    /// motions left in; friction of a rate per unit time, O in the middle of every drift; another integrator of two levels.
     ///
     /// # Errors
     /// An accuracy or rigid motions where nothing is measured, an accuracy that is not in (0, 1/10), a rate that is not positive.
@@ -257,11 +261,7 @@ impl SystemScene {
             self.model = Model::Measured(own.keeping_rigid());
         }
         if let Some(method) = method {
-            let Model::Measured(own) = self.model else {
-                let remedy = "is for two dense stiffnesses by reference to NumPy's files: give these";
-                return Err(Error::input("method", method, remedy));
-            };
-            self.model = Model::Measured(own.with_method(method)?);
+            self.model = with_method(self.model, self.bonds.as_ref(), method)?;
         }
         if let Some(rate) = friction {
             if *rate <= Rational::default() {
@@ -370,6 +370,13 @@ impl SystemScene {
             Model::Sparse(_) => {
                 return Err(Error::input("stiffness", "sparse", "a run is for dense stiffnesses"));
             }
+            Model::Implicit(_) => {
+                return Err(Error::input(
+                    "method",
+                    Method::ImplicitExplicit,
+                    "a run is for respa: leave it out",
+                ));
+            }
             _ => {}
         }
         let mass = self.model.system().mass();
@@ -378,6 +385,16 @@ impl SystemScene {
             return Err(Error::input("mass_matrix", "not diagonal", remedy));
         }
         Ok((0..mass.size()).map(|i| mass.get(i, i)).collect())
+    }
+}
+
+/// The model under another integrator, unless bonds are there whose forces are not linear.
+fn with_method(model: Model, bonds: Option<&Nonlinear>, method: Method) -> Result<Model> {
+    match bonds.filter(|own| !own.is_harmonic) {
+        Some(_) => {
+            Err(Error::input("method", method, "is for linear systems: give springs in place of bonds"))
+        }
+        None => model.with_method(method),
     }
 }
 

@@ -9,7 +9,7 @@ use std::str::FromStr;
 
 use serde_json::Value;
 
-use super::SystemScene;
+use super::{SystemScene, with_method};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
@@ -180,6 +180,10 @@ impl SystemScene {
             }
         }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
+        let method = self.model.method();
+        if scene.model.method() != method {
+            scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
+        }
         if let (Model::Measured(own), Model::Measured(old)) = (&mut scene.model, &self.model) {
             own.follow(old);
         }

@@ -93,6 +93,9 @@ impl Model {
         if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
             return Err(self.refused("the intervals of a step"));
         }
+        if let Model::Implicit(own) = self {
+            return ask(&Family { linear: Linear::Square, at: &|square| own.at_square(square) });
+        }
         let (system, own) = (self.moving()?, self.outer_step());
         // In the old steps all stiffnesses grow as the square of the step does.
         let at = |square: &Rational| system.with(&(square / (&own * &own)), &Rational::one());
@@ -131,6 +134,7 @@ impl Model {
             Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("the verdict at another step")),
             Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
             Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
+            Model::Implicit(own) => decide_by(Route::Cheapest, &own.at(outer)?, limits),
             _ => decide_by(Route::Cheapest, &self.moving()?.with(&Rational::one(), &factor)?, limits),
         }
     }
@@ -155,9 +159,12 @@ impl Model {
         self.steps().into_iter().max().unwrap_or_default()
     }
 
-    /// The integrator: kicks and drifts, unless two measured levels have another.
+    /// The integrator: kicks and drifts, unless two levels have another.
     pub fn method(&self) -> Method {
-        self.levels().map_or(Method::Respa, |own| own.method())
+        match self {
+            Model::Implicit(_) => Method::ImplicitExplicit,
+            _ => self.levels().map_or(Method::Respa, |own| own.method()),
+        }
     }
 
     /// The inner steps in an outer one of two measured levels.

@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use faer::Mat;
 use nalgebra::DMatrix;
-use num_traits::One;
+use num_traits::{One, Zero};
 
 use crate::error::{Error, Result};
 use crate::number::Rational;
@@ -60,6 +60,10 @@ pub struct TwoLevels<'a> {
     pub accuracy: f64,
 }
 
+/// What rational stiffnesses are known to in doubles, relative to their norms: more than (√n + 4) 2⁻⁵³ of n = 4096 rows, from half a unit in the last place
+/// of each entry and each mass, and enough for rigid motions to be found.
+const ROUNDED: f64 = 1e-12;
+
 impl MeasuredSystem {
     /// From the step and the stiffness of each potential, at least one, all n x n finite doubles; masses and positions, where they are given,
     /// fit them.
@@ -88,6 +92,38 @@ impl MeasuredSystem {
         let (keeps_rigid, method) = (false, Method::default());
         let read = MeasuredSystem { potentials, shares, body, accuracy, keeps_rigid, method, system, kernel };
         read.at_accuracy(accuracy)
+    }
+
+    /// The clocks of a rational system in doubles.
+    ///
+    /// # Errors
+    /// A mass matrix that is not diagonal; numbers that are no doubles of full precision.
+    pub fn rounded(system: &System) -> Result<MeasuredSystem> {
+        let (mass, n) = (system.mass(), system.size());
+        if !mass.is_diagonal() {
+            let remedy =
+                "methods but implicit-explicit are decided in doubles: give masses in place of mass_matrix";
+            return Err(Error::input("mass_matrix", "not diagonal", remedy));
+        }
+        let double = |x: &Rational| {
+            let own = to_f64(x);
+            let error =
+                || Error::input("method", x, "decides in doubles of full precision: choose other units");
+            (own.is_normal() || x.is_zero()).then_some(own).ok_or_else(error)
+        };
+        let masses = (0..n).map(|i| double(&mass.get(i, i))).collect::<Result<_>>()?;
+        let dense = |clock: &Potential| {
+            let mut own = DMatrix::zeros(n, n);
+            for i in 0..n {
+                for (&j, x) in clock.stiffness.row(i) {
+                    own[(i, j)] = double(x)?;
+                }
+            }
+            Ok((clock.step.clone(), own))
+        };
+        let body = Body { masses: Some(masses), ..Body::default() };
+        let clocks = system.clocks().iter().map(dense).collect::<Result<_>>()?;
+        MeasuredSystem::new(body, clocks, ROUNDED)
     }
 
     /// The same with every stiffness known to this times its norm.

@@ -18,8 +18,9 @@ use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational};
 use crate::propagator;
 use crate::system::friction::{Friction, damped_system};
+use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
-use crate::system::levels::Hessians;
+use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
 use crate::system::lts::LocalSteps;
 use crate::system::pi::PiSystem;
@@ -46,6 +47,8 @@ pub enum Model {
     Measured(MeasuredSystem),
     /// One clock, some degrees of freedom with substeps of their own while forces on the others stand still.
     LocalSteps(LocalSteps),
+    /// Two rational levels, the force of the shorter step by the midpoint rule over the longer one.
+    Implicit(Box<ImplicitExplicit>),
     /// Forces that are no gradient: their Jacobians are not symmetric.
     NoGradient(Box<Jacobians>),
     /// Two sparse levels of thousands of degrees of freedom.
@@ -59,7 +62,7 @@ const DENSE_PACE: f64 = 1e10;
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
     /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
-    /// steps Verlet's with its effective stiffness, exactly. Of forces that are no gradient, and of sparse stiffnesses, there is none: it has
+    /// steps Verlet's with its effective stiffness, of the midpoint rule with its effective masses, exactly. Of forces that are no gradient, and of sparse stiffnesses, there is none: it has
     /// their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
@@ -68,6 +71,7 @@ impl Model {
             Model::Oscillator(own) => &own.rounded,
             Model::Measured(own) => own.system(),
             Model::LocalSteps(own) => own.system(),
+            Model::Implicit(own) => own.system(),
             Model::NoGradient(own) => own.symmetric(),
             Model::Sparse(own) => own.system(),
         }
@@ -112,6 +116,7 @@ impl Model {
             Model::Oscillator(own) => own.decide(limits),
             Model::Measured(own) => own.decide(route, limits),
             Model::LocalSteps(own) => decide_by(route, own.system(), limits),
+            Model::Implicit(own) => decide_by(route, own.system(), limits),
             Model::NoGradient(own) => own.decide(route, limits),
             Model::Sparse(_) if route == Route::Exact => Err(self.refused("exact arithmetic")),
             Model::Sparse(own) => own.decide(limits),
@@ -153,6 +158,7 @@ impl Model {
             Model::Oscillator(own) => own.exact_kind(limits),
             Model::Rational(own) => exact_kind(own, limits),
             Model::LocalSteps(own) => exact_kind(own.system(), limits),
+            Model::Implicit(own) => exact_kind(own.system(), limits),
             Model::NoGradient(own) => own.exact(limits).map(|(kind, _)| kind),
             Model::Sparse(_) => Err(self.refused("exact arithmetic")),
             Model::Measured(own) => exact_kind(own.moving()?.as_ref(), limits),
@@ -173,6 +179,9 @@ impl Model {
             Model::LocalSteps(_) => {
                 Err(Error::input("friction", rate, "has no place in a scheme of local steps: leave it out"))
             }
+            Model::Implicit(_) => {
+                Err(Error::input("method", Method::ImplicitExplicit, "friction is for respa: leave it out"))
+            }
             Model::NoGradient(_) => {
                 let remedy = "leave it out: the answer has the rate that masks what grows";
                 Err(Error::input("friction", rate, remedy))
@@ -191,6 +200,43 @@ impl Model {
             }
             _ => Error::input("symmetric", "false", format!("{what} needs forces that are gradients")),
         }
+    }
+
+    /// The same under another integrator of two levels: measured ones as they are; rational ones exactly where the fast force is solved for, else in
+    /// doubles, their entries known within the rounding of these.
+    ///
+    /// # Errors
+    /// Where there are not two levels; π, irrational steps, and what is no gradient, sparse or of local steps.
+    pub fn with_method(self, method: Method) -> Result<Model> {
+        let refused = |remedy: &str| Err(Error::input("method", method, remedy));
+        match self {
+            Model::Measured(own) => Ok(Model::Measured(own.with_method(method)?)),
+            Model::Rational(_) | Model::Pi(_) | Model::Oscillator(_) | Model::LocalSteps(_)
+                if method == Method::Respa =>
+            {
+                Ok(self)
+            }
+            Model::Implicit(own) => Model::Rational(own.plain().clone()).with_method(method),
+            Model::Rational(own) if method == Method::ImplicitExplicit => {
+                Ok(Model::Implicit(Box::new(ImplicitExplicit::new(own)?)))
+            }
+            Model::Rational(own) => {
+                two_clocks(&own)?;
+                Ok(Model::Measured(MeasuredSystem::rounded(&own)?.with_method(method)?))
+            }
+            Model::Pi(_) => refused("is for rational stiffnesses: write them without pi"),
+            Model::Oscillator(_) => refused(
+                "is for rational numbers: of one mass with pi ask kickdrift word --method, or compare --methods",
+            ),
+            Model::LocalSteps(_) => refused("has no place in a scheme of local steps: leave it out"),
+            Model::NoGradient(_) => refused("is for forces that are gradients: leave it out"),
+            Model::Sparse(_) => refused("is for dense stiffnesses: give these, or leave it out"),
+        }
+    }
+
+    /// The step of two rational levels whose fast force is solved for.
+    pub fn implicit(&self) -> Option<&ImplicitExplicit> {
+        if let Model::Implicit(own) = self { Some(own) } else { None }
     }
 
     /// Jacobians that are not symmetric, where it is made of such.
