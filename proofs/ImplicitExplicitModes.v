@@ -282,7 +282,7 @@ Lemma scalars (a b q e e1 f f1 c0 h0 g k H : R) :
 Proof. exact: (any_scalars ring_laws). Qed.
 
 (** Two steps. *)
-Lemma twice x p :
+Theorem twice x p :
   let: z := next h F S (x, p) in let: x' := z.1 in let: x'' := (next h F S z).1 in
   N *m (x'' - x' - (x' - x)) = - (total *m x').
 Proof.

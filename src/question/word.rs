@@ -1,5 +1,7 @@
 //! An integrator as its author writes it: what can be said of it exactly.
 
+use std::sync::OnceLock;
+
 use super::asking::{Question, Work, question};
 #[cfg(feature = "cli")]
 use super::field::flag;
@@ -697,9 +699,14 @@ fn polynomial(edge: &Edge) -> String {
 
 impl Question for Methods {
     const NAME: &'static str = "methods";
-    type Answer = Vec<Listed>;
+    type Answer = &'static [Listed];
 
     fn answer(&self, work: &Work) -> Result<Self::Answer> {
+        // It is the same whenever it is asked for.
+        static KNOWN: OnceLock<Vec<Listed>> = OnceLock::new();
+        if let Some(known) = KNOWN.get() {
+            return Ok(known);
+        }
         let lint = |method: &'static Method| {
             let none = Word {
                 word: None,
@@ -720,7 +727,8 @@ impl Question for Methods {
             let two = if linted.word.names_forces() { Some(two().answer(work)?) } else { None };
             Ok(Listed { method, linted, two })
         };
-        METHODS.iter().map(lint).collect()
+        let all = METHODS.iter().map(lint).collect::<Result<Vec<_>>>()?;
+        Ok(KNOWN.get_or_init(|| all))
     }
 
     fn show(&self, all: &Self::Answer) -> Document {
@@ -755,7 +763,7 @@ impl Question for Methods {
             .table(
                 "methods",
                 "Published integrators: order on oscillators, cost a step, stable steps, efficiency, engines",
-                all,
+                all.iter(),
             );
         let lines = [
             format!("{} integrators; kickdrift word --method NAME tells more of one", all.len()),

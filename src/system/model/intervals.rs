@@ -139,7 +139,8 @@ impl Model {
         }
     }
 
-    /// The largest growth rate at each outer step, all steps in their ratios, per unit time, rounded; `None` where it is not known.
+    /// The largest growth rate at each outer step, all steps in their ratios, per unit time, rounded; `None` where it is not known to a quarter, nor
+    /// to be less than 10^-3 a step.
     ///
     /// # Errors
     /// As [`Model::decide`].
@@ -149,7 +150,8 @@ impl Model {
         }
         let rate = |&step: &f64| {
             let outer = from_f64_exact(step).expect("a finite step");
-            Ok(self.decide_at(&outer, limits)?.growth_rate().map(middle))
+            let known = |(lo, hi): &(f64, f64)| hi - lo <= 0.25 * lo || hi * step <= 1e-3;
+            Ok(self.decide_at(&outer, limits)?.growth_rate().filter(known).map(middle))
         };
         crate::parallel::try_map(steps, rate)
     }

@@ -88,6 +88,7 @@ pub(super) fn united(mut gaps: Vec<Gap>) -> Vec<Gap> {
                         None => parts.push((part, is_simple)),
                     }
                 }
+                parts.sort_unstable();
                 *last = Gap { lo: last.lo, hi: last.hi.max(own.hi), exact, parts };
             }
             _ => all.push(own),
