@@ -195,7 +195,7 @@ impl SystemScene {
     /// As [`SystemScene::intervals`] and [`Model::decide`].
     pub fn growth_rates(&self, span: &Span, values: &[f64], limits: &Limits) -> Result<Vec<Option<f64>>> {
         // Some milliseconds a rate, whose last digits nobody sees, and a second at most for one that doubles leave open.
-        let limits = &Limits { refining: 1 << 20, products: limits.products.min(1 << 30), ..*limits };
+        let limits = &Limits { refining: 1 << 20, products: limits.products.min(1 << 30) };
         if span.role()? == Role::Outer {
             return self.model.growth_rates(values, limits);
         }
