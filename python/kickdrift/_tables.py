@@ -392,7 +392,8 @@ def compare(
     tolerance : Exact, optional
         How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
     methods : str or sequence of str, optional
-        Integrators side by side instead: names of :func:`methods`, or words. Over the grid of ``step``, ``h1``, ``h2``, each force in units of its own
+        Integrators side by side instead: names of :func:`methods`, or words. Over the grid of ``step``, ``h1``,
+        ``h2``, each force in units of its own
         step; or over
     h, h_step, rho_range, rho_step
         Steps and lambda2/lambda1, each a closed range with a spacing.
@@ -662,7 +663,8 @@ def word(
     Parameters
     ----------
     word : str, optional
-        Kicks K, K1, K2, drifts D, implicit midpoints C, exact flows R, friction O and repetitions n*(...), as "K(1/2) D(1) K(1/2)".
+        Kicks K, K1, K2, drifts D, implicit midpoints C, exact flows R, friction O and repetitions n*(...), as "K(1/2)
+        D(1) K(1/2)".
     method : str, optional
         A name of the catalogue in place of a word, see `methods`.
     lambda1, lambda2 : Exact, optional
