@@ -8,6 +8,7 @@ Set Printing Width 110.
 Check MatrixSigns.both_definite. Print Assumptions MatrixSigns.both_definite.
 Check MatrixSigns.both_negative. Print Assumptions MatrixSigns.both_negative.
 Check MatrixSigns.one_definite. Print Assumptions MatrixSigns.one_definite.
+Check ImplicitExplicitModes.twice. Print Assumptions ImplicitExplicitModes.twice.
 Check ImplicitExplicitModes.stable. Print Assumptions ImplicitExplicitModes.stable.
 Check ImplicitExplicitModes.unstable. Print Assumptions ImplicitExplicitModes.unstable.
 Check ImplicitExplicitModes.unstable_total. Print Assumptions ImplicitExplicitModes.unstable_total.
