@@ -210,7 +210,7 @@ impl Shape {
         }
     }
 
-    /// At s = h² Λ1, ρ > 0; `None` at s = 0, and where [`MOST_BITS`] bits do not tell and no theorem does.
+    /// At s = h² Λ1, ρ > 0; `None` at s = 0, and where 8192 bits do not tell and no theorem does.
     pub fn stable_at(self, s: &Laurent, rho: &Rational) -> Option<bool> {
         if s.is_zero() {
             return None;
