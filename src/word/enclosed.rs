@@ -35,7 +35,7 @@ pub struct Enclosed<'a> {
     friction: Ball,
 }
 
-/// Steps with one answer, each end enclosed. Two that touch with one answer leave it open between the ends that they share.
+/// Steps with one answer, each end enclosed. Between two neighbours of the same answer lies a place of which nothing is proven.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     pub stable: bool,
@@ -57,15 +57,19 @@ impl Steps {
         Jet::constant(x)
     }
 
-    /// √Λ of a force; 0 for what is not positive.
-    fn frequency(&self, force: Force) -> Ball {
+    /// Λ of a force.
+    fn stiffness(&self, force: Force) -> Ball {
         let [fast, slow] = &self.stiffness;
-        let stiffness = match force {
+        match force {
             Force::All => fast.add(slow, BITS),
             Force::First => fast.clone(),
             Force::Second => slow.clone(),
-        };
-        stiffness.sqrt_clipped(BITS).unwrap_or_else(|| {
+        }
+    }
+
+    /// √Λ of a force; 0 for what is not positive.
+    fn frequency(&self, force: Force) -> Ball {
+        self.stiffness(force).sqrt_clipped(BITS).unwrap_or_else(|| {
             self.defined.set(false);
             Ball::zero()
         })
@@ -102,13 +106,7 @@ impl Steps {
 
 impl Setting<Jet> for Steps {
     fn force(&self, force: Force) -> Jet {
-        let [fast, slow] = &self.stiffness;
-        let stiffness = match force {
-            Force::All => fast.add(slow, BITS),
-            Force::First => fast.clone(),
-            Force::Second => slow.clone(),
-        };
-        Jet::product(&Jet::product(&self.h, &self.h), &self.constant(stiffness))
+        Jet::product(&Jet::product(&self.h, &self.h), &self.constant(self.stiffness(force)))
     }
 
     fn embed(&self, c: &Radical) -> Jet {

@@ -24,7 +24,7 @@ pub enum Bounded {
     Stable,
     Unstable,
     /// Of one filtered kick beside one exact flow: nearer to an edge than thousands of bits tell, and no theorem says whether it is one, only where
-    /// h² Λ1 is neither rational nor (r π)² with a rational r. Of other words with flows or filters: on an edge, or nearer to one than 96 bits tell.
+    /// h² Λ1 is neither rational nor (r π)² with a rational r. Of other words with flows or filters: on an edge, or nearer to one than 128 bits tell.
     Edge,
 }
 

@@ -37,17 +37,16 @@ pub(in crate::system) fn rank(field: &PrimeField, mut m: DMatrix<u64>) -> usize 
     rank
 }
 
-/// Whether rows of rationals, of n columns, are seen to have the rank n, which they have where they have it modulo a prime.
-pub(in crate::system) fn is_of_rank(rows: &[BTreeMap<usize, Rational>], n: usize) -> bool {
+/// The rank modulo a prime of rows of rationals, of n columns, which is no larger than the true one; `None` where the prime divides a denominator.
+pub(in crate::system) fn rank_of(rows: &[BTreeMap<usize, Rational>], n: usize) -> Option<usize> {
     let field = PrimeField::LARGEST;
     let mut m = DMatrix::from_element(rows.len(), n, 0);
     for (i, row) in rows.iter().enumerate() {
         for (&j, x) in row {
-            let Some(x) = field.of_rational(x) else { return false };
-            m[(i, j)] = x;
+            m[(i, j)] = field.of_rational(x)?;
         }
     }
-    rows.len() >= n && rank(&field, m) == n
+    Some(rank(&field, m))
 }
 
 /// 1/m and det m; `None` where that is 0. Gauss and Jordan.

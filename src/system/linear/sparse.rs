@@ -417,7 +417,7 @@ pub(in crate::system) fn null_space(
     mut rows: Vec<BTreeMap<usize, Rational>>,
     n: usize,
 ) -> Vec<(usize, Vec<Rational>)> {
-    if 8 * rows.iter().map(BTreeMap::len).sum::<usize>() > n * n && modular::is_of_rank(&rows, n) {
+    if 8 * rows.iter().map(BTreeMap::len).sum::<usize>() > n * n && modular::rank_of(&rows, n) == Some(n) {
         return Vec::new();
     }
     // Gauss and Jordan; pivots[i] = the column that row i was solved for.

@@ -22,7 +22,7 @@ use num_integer::Integer;
 use num_traits::{One, Zero};
 
 use crate::number::polynomial::squarefree;
-use crate::number::{Polynomial, PrimeField, Rational, U};
+use crate::number::{Polynomial, Rational, U};
 use crate::system::exact::{modular, roots};
 use crate::system::half::compose::{inverse_mass, rounded_inverse_mass};
 use crate::system::linear::sparse::{Symmetric, null_space};
@@ -126,15 +126,7 @@ fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {
             equations.push(equation);
         }
     }
-    let field = PrimeField::LARGEST;
-    let residue = |x: &Rational| field.of_rational(x);
-    let entry = |i: usize, j: usize| equations[i].get(&j).map_or(Some(field.of(0)), residue);
-    let rows: Option<Vec<u64>> = (0..equations.len())
-        .flat_map(|i| (0..count).map(move |j| (i, j)))
-        .map(|(i, j)| entry(i, j))
-        .collect();
-    let rank = rows.map(|own| modular::rank(&field, DMatrix::from_row_slice(equations.len(), count, &own)));
-    if rank.is_some_and(|rank| rank + 1 >= count) {
+    if modular::rank_of(&equations, count).is_some_and(|rank| rank + 1 >= count) {
         return Vec::new();
     }
     let matrix = |y: &[Rational]| DMatrix::from_fn(n, n, |i, j| y[unknown(i, j)].clone());

@@ -62,8 +62,8 @@ const DENSE_PACE: f64 = 1e10;
 impl Model {
     /// The rational system that stands for it: itself; with π in the stiffnesses of several degrees of freedom within 2^-150 of every
     /// entry, of one within 2^-60 (where steps are irrational in the unit of time of the shortest one); of doubles these doubles; of local
-    /// steps Verlet's with its effective stiffness, of the midpoint rule with its effective masses, exactly. Of forces that are no gradient, and of sparse stiffnesses, there is none: it has
-    /// it has their size and their clocks, no more.
+    /// steps Verlet's with its effective stiffness, of the midpoint rule Verlet's with its effective masses, both exactly. Forces that are no
+    /// gradient, and sparse stiffnesses, have none: what is returned has their size and their clocks, no more.
     pub fn system(&self) -> &System {
         match self {
             Model::Rational(own) => own,
