@@ -1,6 +1,7 @@
 //! One portable program, and the vector instructions of the processor that it runs on.
 
 use std::marker::PhantomData;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[cfg(target_arch = "x86_64")]
@@ -95,7 +96,9 @@ impl Instructions {
 
     /// The best that this processor has, or those that were [forced](force_instructions).
     pub fn best() -> Instructions {
-        Instructions::available().nth(FORCED.load(Ordering::Relaxed)).unwrap_or(Instructions::Portable)
+        static AVAILABLE: OnceLock<Vec<Instructions>> = OnceLock::new();
+        let available = AVAILABLE.get_or_init(|| Instructions::available().collect());
+        available.get(FORCED.load(Ordering::Relaxed)).copied().unwrap_or(Instructions::Portable)
     }
 }
 

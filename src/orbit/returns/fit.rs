@@ -16,7 +16,7 @@ use super::turn::Turn;
 const STEPS: usize = 12;
 
 /// Coordinates nearer to the present ones than this are not worth a change.
-const NEAR: f64 = 0.02;
+const NEAR: f64 = 0.05;
 
 /// Coordinates farther from the present ones than this are not gone to at once: doubles would lose digits.
 const FAR: f64 = 6.0;

@@ -18,8 +18,6 @@
 //! within 3 u: √2 u Σ (6 j + 6) |M_j|. The bounds themselves are computed in doubles: [`UP`] covers their roundings, and
 //! [`FLOOR`] what is lost where numbers underflow.
 
-use std::ops::Deref;
-
 use super::lanes::Lanes;
 use super::number::{Coefficient, near_ball};
 use super::turn::{Turn, direction, principal};
@@ -32,8 +30,9 @@ const UP: f64 = 1.0 + 1e-12;
 /// More than any number of underflows, of squares too, adds to a function whose largest entry is near 1.
 const FLOOR: f64 = 1e-150;
 
-/// More terms than a function has by [`Coefficient::TERMS`].
-const MOST_TERMS: usize = 48;
+/// Room for the terms of a function of doubles, and of any function.
+const FEW: usize = 16;
+const MOST: usize = 48;
 
 /// Where the sum of all terms' norms is so little more than the first, nothing less is looked for.
 const NEARLY: f64 = 1.01;
@@ -43,6 +42,7 @@ pub type Entries<T> = [T; 4];
 
 #[derive(Clone)]
 pub struct Map<T> {
+    /// [`Coefficient::TERMS`] of them at most.
     terms: Vec<Entries<T>>,
     /// No Σ M_j t^j has a larger norm.
     norm: f64,
@@ -52,74 +52,78 @@ pub struct Map<T> {
     pub exponent: i128,
     /// Of (1, 0) at t = 0.
     pub turn: Option<Turn>,
-}
-
-/// The norms of a function's terms.
-struct Norms {
-    all: [f64; MOST_TERMS],
-    count: usize,
-}
-
-impl Deref for Norms {
-    type Target = [f64];
-
-    #[inline(always)]
-    fn deref(&self) -> &[f64] {
-        &self.all[..self.count]
-    }
+    /// Last terms that are smaller than this, relatively, are left out of what is made of it.
+    pub least: f64,
 }
 
 /// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
+#[inline(always)]
 fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
     let [a, b, c, d] = m.each_ref().map(T::near);
     0.5 * (length(a + d, b - c) + length(a - d, b + c)) * UP
 }
 
+/// |M_j|, and zeros beyond the last term.
+#[inline(always)]
+fn norms<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
+    let mut norms = [0.0; N];
+    norms.iter_mut().zip(terms).for_each(|(own, term)| *own = norm(term));
+    norms
+}
+
+/// The sum, of four at a time.
+#[inline(always)]
+fn total(x: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    for x in x.chunks_exact(4) {
+        sums.iter_mut().zip(x).for_each(|(sum, x)| *sum += x);
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
 /// What no Σ M_j t^j exceeds on [−1, 1] in norm.
-fn largest<T: Coefficient>(terms: &[Entries<T>]) -> f64 {
-    let sum = terms.iter().map(norm).sum::<f64>() * UP;
-    if sum <= NEARLY * norm(&terms[0]) || terms.len() > MOST_TERMS {
+#[inline(always)]
+fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> f64 {
+    let norms: [f64; N] = norms(terms);
+    let sum = total(&norms) * UP;
+    if sum <= NEARLY * norms[0] {
         return sum;
     }
     // The parts z and w of all terms, real and imaginary, side by side.
-    let mut parts = [[0.0; MOST_TERMS]; 4];
-    for (j, term) in terms.iter().enumerate() {
+    let mut parts = [[0.0; N]; 4];
+    for (j, term) in terms.iter().enumerate().take(N) {
         let [a, b, c, d] = term.each_ref().map(T::near);
         (parts[0][j], parts[1][j], parts[2][j], parts[3][j]) = (a + d, b - c, a - d, b + c);
     }
-    let [z, w] = Instructions::best().perform_alone(Squares { parts, terms: terms.len() });
+    let [z, w] = [square(&parts[0], &parts[1], terms.len()), square(&parts[2], &parts[3], terms.len())];
     // Entries are known to 2^-50; that, and what some hundreds of roundings do to all r_k together.
     let slack = 8e-13 * sum * sum;
     0.5 * ((z + slack).sqrt() + (w + slack).sqrt()) * UP
 }
 
-/// r_0 + Σ |r_k| of z and w.
-struct Squares {
-    parts: [[f64; MOST_TERMS]; 4],
-    terms: usize,
+/// r_0 + Σ |r_k|.
+#[inline(always)]
+fn square<const N: usize>(re: &[f64; N], im: &[f64; N], terms: usize) -> f64 {
+    let mut r = [[0.0; N]; 2];
+    let r = r.as_flattened_mut();
+    for i in 0..terms.min(N) {
+        let (x, y) = (re[i], im[i]);
+        r[i..i + N].iter_mut().zip(re.iter().zip(im)).for_each(|(r, (re, im))| *r += x * re + y * im);
+    }
+    let first = r[0] - r[0].abs();
+    r.iter_mut().for_each(|r| *r = r.abs());
+    first + total(r)
 }
 
-impl Task for Squares {
-    type Output = [f64; 2];
-
-    #[inline(always)]
-    fn run(self) -> [f64; 2] {
-        let mut sums = [[0.0; 2 * MOST_TERMS]; 2];
-        for (sums, [re, im]) in sums.iter_mut().zip([[0, 1], [2, 3]]) {
-            let (re, im) = (&self.parts[re], &self.parts[im]);
-            for i in 0..self.terms {
-                let (x, y) = (re[i], im[i]);
-                for (r, (re, im)) in sums[i..].iter_mut().zip(re[..self.terms].iter().zip(&im[..self.terms]))
-                {
-                    *r += x * re + y * im;
-                }
-            }
-        }
-        sums.map(|sums| sums[0] + sums[1..2 * self.terms - 1].iter().map(|r| r.abs()).sum::<f64>())
-    }
+/// [`largest`], with the room that a function of these numbers needs.
+#[inline(always)]
+fn largest_of<T: Coefficient>(terms: &[Entries<T>]) -> f64 {
+    const { assert!(T::TERMS <= MOST) };
+    if T::TERMS <= FEW { largest::<T, FEW>(terms) } else { largest::<T, MOST>(terms) }
 }
 
 /// |(x, y)|, but for what underflows.
+#[inline(always)]
 fn length(x: f64, y: f64) -> f64 {
     (x * x + y * y).sqrt()
 }
@@ -159,13 +163,23 @@ impl<T: Coefficient> Map<T> {
 
     /// Numbers as they are, without a turn.
     pub fn of(terms: Vec<Entries<T>>) -> Self {
-        Map { norm: largest(&terms), terms, error: 0.0, exponent: 0, turn: None }
+        Map::kept(terms, 0.0, 0)
+    }
+
+    /// Without a turn; the terms that are too many go to the error.
+    #[inline(always)]
+    fn kept(mut terms: Vec<Entries<T>>, mut error: f64, exponent: i128) -> Self {
+        if terms.len() > T::TERMS {
+            error = (error + terms.drain(T::TERMS..).map(|term| norm(&term)).sum::<f64>()) * UP;
+        }
+        Map { norm: largest_of(&terms), terms, error, exponent, turn: None, least: 0.25 * T::UNIT }
     }
 
     /// Without a turn, balanced; known by nothing where the power of two leaves the range of its number.
+    #[inline(always)]
     fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i128) -> Self {
         let error = if exponent.unsigned_abs() > 1 << 125 { f64::INFINITY } else { error };
-        let mut map = Map { norm: largest(&terms), terms, error, exponent, turn: None };
+        let mut map = Map::kept(terms, error, exponent);
         map.balance();
         map
     }
@@ -219,7 +233,8 @@ impl<T: Coefficient> Map<T> {
         let size = |terms: &[Entries<T>]| terms.iter().map(norm).sum::<f64>();
         let error = (self.error + size(dropped) + 3.0 * P::UNIT * size(kept)) * UP + FLOOR;
         let terms: Vec<_> = kept.iter().map(|m| m.each_ref().map(T::to)).collect();
-        Map { norm: largest(&terms), terms, error, exponent: self.exponent, turn: self.turn }
+        let least = self.least.max(0.25 * P::UNIT);
+        Map { turn: self.turn, least, ..Map::kept(terms, error, self.exponent) }
     }
 
     pub fn negative(mut self) -> Self {
@@ -242,7 +257,7 @@ impl<T: Coefficient> Map<T> {
         terms.resize_with(terms.len().max(others.len()), zero);
         terms.iter_mut().flatten().zip(others.iter().flatten()).for_each(|(x, y)| *x = x.plus(y));
         let error = (one + two + rounding) * UP + FLOOR;
-        Map { norm: largest(&terms), terms, error, exponent, turn: None }
+        Map::kept(terms, error, exponent)
     }
 
     /// Whether the bound still leaves something.
@@ -250,32 +265,9 @@ impl<T: Coefficient> Map<T> {
         self.error < 0.1 * norm(&self.terms[0])
     }
 
-    /// |M_j|.
-    fn norms(&self) -> Norms {
-        let mut norms = Norms { all: [0.0; MOST_TERMS], count: self.terms.len().min(MOST_TERMS) };
-        norms.all.iter_mut().zip(&self.terms).for_each(|(own, term)| *own = norm(term));
-        norms
-    }
-
     /// `self` after `earlier`, on the same interval.
     pub fn after(&self, earlier: &Self) -> Self {
-        let (b, a) = (self.norms(), earlier.norms());
-        let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
-        // Σ |B_i| |A_j|, i + j = m.
-        let mut sizes = [0.0; 2 * MOST_TERMS];
-        b.iter().enumerate().for_each(|(i, b)| sizes[i..].iter_mut().zip(&*a).for_each(|(m, a)| *m += b * a));
-        // What is far below the rounding is left out.
-        let (mut n, mut dropped, least) = (b.len() + a.len() - 1, 0.0, 0.25 * T::UNIT * sum_b * sum_a);
-        while n > T::TERMS || n > 1 && dropped + sizes[n - 1] < least {
-            n -= 1;
-            dropped += sizes[n];
-        }
-        let product = Product { later: &self.terms, earlier: &earlier.terms, terms: n };
-        let terms = Instructions::best().perform_alone(product);
-        let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
-        let carried = self.norm * earlier.error + earlier.norm * self.error + self.error * earlier.error;
-        let error = (carried + dropped + rounding) * UP + FLOOR;
-        let product = Map::bounded(terms, error, self.exponent.saturating_add(earlier.exponent));
+        let product = Instructions::best().perform_alone(Product { later: self, earlier });
         Map { turn: self.turn_after(earlier, &product), ..product }
     }
 
@@ -287,8 +279,8 @@ impl<T: Coefficient> Map<T> {
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
     pub fn part(&self, alpha: &T, beta: &T) -> Self {
-        let terms = Instructions::best().perform_alone(Part { terms: self.terms.clone(), alpha, beta });
-        self.moved(alpha, terms)
+        let part = Instructions::best().perform_alone(Part { whole: self, alpha, beta });
+        Map { turn: self.turn_moved(alpha.near(), &part), ..part }
     }
 
     /// The direction of the image of (1, 0) at t = 0, where it is known.
@@ -305,14 +297,28 @@ impl<T: Coefficient> Map<T> {
             sum
         };
         let value = rest.iter().rev().fold(last.clone(), horner);
-        self.moved(alpha, vec![value])
+        let value = self.moved(vec![value]);
+        Map { turn: self.turn_moved(alpha.near(), &value), ..value }
     }
 
-    fn moved(&self, alpha: &T, terms: Vec<Entries<T>>) -> Self {
-        let [sum, rank] = sums(&self.norms());
+    /// With the coefficients on a part, but for the turn.
+    #[inline(always)]
+    fn moved(&self, mut terms: Vec<Entries<T>>) -> Self {
+        let [sum, rank] = if T::TERMS <= FEW {
+            sums::<FEW>(&norms(&self.terms))
+        } else {
+            sums::<MOST>(&norms(&self.terms))
+        };
         let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank);
-        let part = Map::bounded(terms, (self.error + rounding) * UP + FLOOR, self.exponent);
-        Map { turn: self.turn_moved(alpha.near(), &part), ..part }
+        let (mut dropped, least) = (0.0, self.least * norm(&terms[0]));
+        while let [_, .., last] = &terms[..]
+            && dropped + norm(last) < least
+        {
+            dropped += norm(last);
+            terms.pop();
+        }
+        let error = (self.error + rounding + dropped) * UP + FLOOR;
+        Map { least: self.least, ..Map::bounded(terms, error, self.exponent) }
     }
 
     /// The turn, followed along t from 0 to α in so small steps that the image's direction changes by less than a right angle
@@ -347,6 +353,7 @@ impl<T: Coefficient> Map<T> {
     }
 
     /// Keeps the constant term's norm near 1; exact.
+    #[inline(always)]
     fn balance(&mut self) {
         let size = norm(&self.terms[0]);
         if !(1.0 / 16.0..=16.0).contains(&size) && size > 1e-200 && size < 1e200 {
@@ -364,49 +371,78 @@ impl<T: Coefficient> Map<T> {
     }
 }
 
-/// The first coefficients of a product.
+/// A product, but for its turn.
 struct Product<'a, T> {
-    later: &'a [Entries<T>],
-    earlier: &'a [Entries<T>],
-    terms: usize,
+    later: &'a Map<T>,
+    earlier: &'a Map<T>,
 }
 
-impl<T: Coefficient> Task for Product<'_, T> {
-    type Output = Vec<Entries<T>>;
-
+impl<T: Coefficient> Product<'_, T> {
     #[inline(always)]
-    fn run(self) -> Vec<Entries<T>> {
-        let of = T::Lanes::of;
-        let mut terms: Vec<Entries<T>> = Vec::with_capacity(self.terms);
-        for m in 0..self.terms {
-            let first = (m + 1).saturating_sub(self.earlier.len());
-            let mut sum = T::Lanes::splat(&T::zero());
-            for i in first..self.later.len().min(m + 1) {
-                let ([a, b, c, d], [e, f, g, h]) = (&self.later[i], &self.earlier[m - i]);
-                let (first, second) =
-                    (of([a, a, c, c]).times(&of([e, f, e, f])), of([b, b, d, d]).times(&of([g, h, g, h])));
-                sum = sum.plus(&first.plus(&second));
-            }
-            terms.push(sum.entries());
+    fn with_room<const N: usize>(&self) -> Map<T> {
+        let Product { later, earlier } = self;
+        let (b, a): ([f64; N], [f64; N]) = (norms(&later.terms), norms(&earlier.terms));
+        let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
+        // Σ |B_i| |A_j|, i + j = m.
+        let mut sizes = [[0.0; N]; 2];
+        let sizes = sizes.as_flattened_mut();
+        for (i, b) in b.iter().enumerate().take(later.terms.len()) {
+            sizes[i..i + N].iter_mut().zip(&a).for_each(|(m, a)| *m += b * a);
         }
-        terms
+        let mut n = later.terms.len() + earlier.terms.len() - 1;
+        let relative = later.least.max(earlier.least);
+        let (mut dropped, least) = (0.0, relative * sum_b * sum_a);
+        while n > T::TERMS || n > 1 && dropped + sizes[n - 1] < least {
+            n -= 1;
+            dropped += sizes[n];
+        }
+        let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
+        let carried = later.norm * earlier.error + earlier.norm * later.error + later.error * earlier.error;
+        let error = (carried + dropped + rounding) * UP + FLOOR;
+        let exponent = later.exponent.saturating_add(earlier.exponent);
+        Map { least: relative, ..Map::bounded(self.terms(n), error, exponent) }
+    }
+
+    /// The first n coefficients.
+    #[inline(always)]
+    fn terms(&self, n: usize) -> Vec<Entries<T>> {
+        let of = T::Lanes::of;
+        // The rows of the later matrices meet the columns of the earlier ones.
+        let spread = |[e, f, g, h]: &Entries<T>| [of([e, f, e, f]), of([g, h, g, h])];
+        let earlier: Vec<_> = self.earlier.terms.iter().take(n).map(spread).collect();
+        let mut terms = vec![T::Lanes::splat(&T::zero()); n];
+        for (i, [a, b, c, d]) in self.later.terms.iter().enumerate().take(n) {
+            let (first, second) = (of([a, a, c, c]), of([b, b, d, d]));
+            for (sum, [upper, lower]) in terms[i..].iter_mut().zip(&earlier) {
+                *sum = sum.plus(&first.times(upper).plus(&second.times(lower)));
+            }
+        }
+        terms.into_iter().map(T::Lanes::entries).collect()
     }
 }
 
-/// The coefficients in t' of t = α + β t'.
+impl<T: Coefficient> Task for Product<'_, T> {
+    type Output = Map<T>;
+
+    #[inline(always)]
+    fn run(self) -> Map<T> {
+        if T::TERMS <= FEW { self.with_room::<FEW>() } else { self.with_room::<MOST>() }
+    }
+}
+
+/// A function in t' of t = α + β t', but for its turn.
 struct Part<'a, T> {
-    terms: Vec<Entries<T>>,
+    whole: &'a Map<T>,
     alpha: &'a T,
     beta: &'a T,
 }
 
 impl<T: Coefficient> Task for Part<'_, T> {
-    type Output = Vec<Entries<T>>;
+    type Output = Map<T>;
 
     #[inline(always)]
-    fn run(self) -> Vec<Entries<T>> {
-        let lanes = |term: Entries<T>| T::Lanes::of(term.each_ref());
-        let mut terms: Vec<_> = self.terms.into_iter().map(lanes).collect();
+    fn run(self) -> Map<T> {
+        let mut terms: Vec<_> = self.whole.terms.iter().map(|term| T::Lanes::of(term.each_ref())).collect();
         let [alpha, beta] = [self.alpha, self.beta].map(T::Lanes::splat);
         for i in 0..terms.len() {
             for j in (i..terms.len() - 1).rev() {
@@ -418,7 +454,7 @@ impl<T: Coefficient> Task for Part<'_, T> {
             *term = term.times(&power);
             power = power.times(&beta);
         }
-        terms.into_iter().map(T::Lanes::entries).collect()
+        self.whole.moved(terms.into_iter().map(T::Lanes::entries).collect())
     }
 }
 
@@ -428,7 +464,9 @@ fn power_of_two(e: i128) -> f64 {
 }
 
 /// Σ m_j and Σ j m_j.
-fn sums(norms: &[f64]) -> [f64; 2] {
-    let each = norms.iter().enumerate();
-    each.fold([0.0; 2], |[sum, rank], (j, m)| [sum + m, rank + j as f64 * m])
+#[inline(always)]
+fn sums<const N: usize>(norms: &[f64; N]) -> [f64; 2] {
+    let mut ranked = *norms;
+    ranked.iter_mut().enumerate().for_each(|(j, m)| *m *= j as f64);
+    [total(norms), total(&ranked)]
 }

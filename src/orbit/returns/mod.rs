@@ -31,6 +31,7 @@ mod turn;
 use num_bigint::BigUint;
 
 use super::ends::Ends;
+use crate::number::rational::to_f64;
 use crate::number::{Ball, Ratio, Rational, Real, Twofold};
 use crate::propagator::{LongClocks, PartialSigns};
 use enclosure::Enclosure;
@@ -83,12 +84,12 @@ pub fn after<S: Real>(clocks: &LongClocks<S>, n: &BigUint) -> Option<[Ball; 4]> 
 
 /// As [`run`], over the clock that distorts more alone: another route to the same numbers.
 pub fn run_over_other<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Ends> {
-    over(clocks, distortion(clocks) > distortion(&clocks.swapped()), bits, wanted)?.ends
+    over(clocks, !prefers_fast(clocks), bits, wanted)?.ends
 }
 
 /// Over the one base, and where that does not tell the verdict, over the other.
 fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<Found> {
-    let fast = distortion(clocks) <= distortion(&clocks.swapped());
+    let fast = prefers_fast(clocks);
     let decides = |found: &Option<Found>| found.as_ref().is_some_and(|found| found.signs.verdict().is_some());
     let first = over(clocks, fast, bits, wanted);
     if decides(&first) {
@@ -125,9 +126,15 @@ fn over_in<S: Real, T: Coefficient, P: Coefficient>(
     Some(Found { signs, ends: ends.map(|ends| in_first_unit(ends, clocks.ratio(), T::BITS)) })
 }
 
-/// The norm of the other clock's kick in the base's coordinates, about; far more where the base is beyond its own limit.
-fn distortion<S: Real>(clocks: &LongClocks<S>) -> f64 {
+/// Whether the slow clock's kicks distort the fast one's turn no more than the other way round, about.
+fn prefers_fast<S: Real>(clocks: &LongClocks<S>) -> bool {
     let [s, k] = [clocks.fast(), clocks.slow()].map(|x| x.enclosure(53).mid_f64());
+    let ratio = to_f64(clocks.ratio());
+    distortion(s, k) <= distortion(k * ratio, s * ratio)
+}
+
+/// The norm of a kick k in the coordinates of a base s, about; far more where the base is beyond its own limit.
+fn distortion(s: f64, k: f64) -> f64 {
     let square = s * (1.0 - 0.25 * s);
     if square > 0.0 { k.abs() / square.sqrt() } else { 1e6 + k.abs() }
 }

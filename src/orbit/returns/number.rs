@@ -140,7 +140,11 @@ impl Coefficient for f64 {
     }
 
     fn quotient(n: i128, d: u128) -> Self {
-        n as f64 / d as f64
+        // Numbers of one register are converted in one instruction.
+        match (i64::try_from(n), i64::try_from(d)) {
+            (Ok(n), Ok(d)) => n as f64 / d as f64,
+            _ => n as f64 / d as f64,
+        }
     }
 }
 
