@@ -175,6 +175,62 @@ impl PrimeField {
     }
 }
 
+impl PrimeField {
+    /// a b mod f.
+    fn times_modulo(&self, a: &[u64], b: &[u64], f: &[u64]) -> Vec<u64> {
+        let mut product = vec![0; (a.len() + b.len()).saturating_sub(1)];
+        for (i, &x) in a.iter().enumerate() {
+            for (own, &y) in product[i..].iter_mut().zip(b) {
+                *own = self.add(*own, self.mul(x, y));
+            }
+        }
+        self.reduce(&mut product, f);
+        product
+    }
+
+    /// a^n mod f.
+    fn power_modulo(&self, a: Vec<u64>, mut n: u64, f: &[u64]) -> Vec<u64> {
+        let (mut result, mut square) = (vec![self.of(1)], a);
+        self.reduce(&mut square, f);
+        while n > 0 {
+            if n & 1 == 1 {
+                result = self.times_modulo(&result, &square, f);
+            }
+            square = self.times_modulo(&square, &square, f);
+            n >>= 1;
+        }
+        result
+    }
+
+    /// The roots of a monic polynomial without multiple ones, lowest coefficient first, by increasing values; `None` where it has fewer than
+    /// its degree (Cantor and Zassenhaus).
+    pub fn roots(&self, f: &[u64]) -> Option<Vec<u64>> {
+        let x = || vec![0, self.of(1)];
+        if f.len() > 2 && self.power_modulo(x(), self.p, f) != x() {
+            return None;
+        }
+        let (mut open, mut roots, mut shift) = (vec![f.to_vec()], Vec::new(), 0);
+        while let Some(f) = open.pop() {
+            match &f[..] {
+                [] | [_] => {}
+                [constant, _] => roots.push(self.sub(0, *constant)),
+                _ => {
+                    // (x + a)^((p − 1)/2) is 0, 1 or −1 at each root.
+                    shift += 1;
+                    let power = self.power_modulo(vec![self.of(shift), self.of(1)], (self.p - 1) / 2, &f);
+                    open.extend([0, 1, self.p - 1].map(|value| {
+                        let mut power = if power.is_empty() { vec![0] } else { power.clone() };
+                        power[0] = self.sub(power[0], self.of(value));
+                        self.gcd(f.clone(), power)
+                    }));
+                }
+            }
+        }
+        roots.sort_by_key(|&root| self.value(root));
+        Some(roots)
+    }
+}
+
 /// Integers known modulo a growing product of primes.
 pub(crate) struct Lift {
     values: Vec<BigInt>,
@@ -210,5 +266,37 @@ impl Lift {
 
     pub fn into_values(self) -> Vec<BigInt> {
         self.values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_roots_or_none_are_found() {
+        let mut split = 0;
+        for field in prime_fields().take(40) {
+            // (x − 3) (x + 7) (x² + x − 1): all of its roots where 5 is a square.
+            let minus = |n| field.sub(0, field.of(n));
+            let product =
+                [minus(3), field.of(7)].into_iter().fold(vec![minus(1), field.of(1), field.of(1)], |f, c| {
+                    let mut next = vec![0; f.len() + 1];
+                    for (i, &x) in f.iter().enumerate() {
+                        next[i] = field.add(next[i], field.mul(x, c));
+                        next[i + 1] = field.add(next[i + 1], x);
+                    }
+                    next
+                });
+            let is_square = field.power(field.of(5), (field.prime() - 1) / 2) == field.of(1);
+            let roots = field.roots(&product);
+            assert_eq!(roots.is_some(), is_square);
+            let Some(roots) = roots else { continue };
+            split += 1;
+            assert!(roots.len() == 4 && roots.contains(&field.of(3)) && roots.contains(&minus(7)));
+            let value = |x| product.iter().rev().fold(0, |sum, &c| field.add(field.mul(sum, x), c));
+            assert!(roots.iter().all(|&x| value(x) == 0));
+        }
+        assert!((10..=30).contains(&split), "{split}");
     }
 }

@@ -108,6 +108,26 @@ pub(in crate::system) fn symmetric_subspaces(
     })
 }
 
+/// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces, which need not be rational, are motions of
+/// different symmetry: the ring of five has two pairs of them over ℚ(√5). `None` where all such are multiples of the identity.
+pub(in crate::system) fn central_symmetry(
+    system: &System,
+    stiffnesses: &[&Symmetric],
+) -> Option<DMatrix<Rational>> {
+    let inverse = dense_inverse(system);
+    let operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
+    let all = symmetries(&operators);
+    if all.len() < 2 {
+        return None;
+    }
+    let with_all = [operators, all.iter().map(|y| &inverse * y).collect()].concat();
+    let central = symmetries(&with_all);
+    // Any weights: eigenvalues that happen to be equal leave their motions together.
+    let weight = |k: usize| Rational::from_integer(((k + 1) * (k + 1)).into());
+    let sum = central.iter().enumerate().map(|(k, y)| y * weight(k)).reduce(|sum, y| sum + y)?;
+    (central.len() > 1).then(|| inverse * sum)
+}
+
 /// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its rank modulo a prime, which is
 /// no larger than the true one.
 fn symmetries(operators: &[DMatrix<Rational>]) -> Vec<DMatrix<Rational>> {

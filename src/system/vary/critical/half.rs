@@ -18,7 +18,7 @@ use num_traits::{One, Signed, Zero};
 use super::line::Line;
 use crate::error::Result;
 use crate::number::rational::{ratio, to_f64};
-use crate::number::{PrimeField, Rational};
+use crate::number::{PrimeField, Rational, prime_fields};
 use crate::schedule::Weight;
 use crate::system::exact::modular;
 use crate::system::half::compose::{Kick, Program, Row, State};
@@ -54,7 +54,19 @@ pub(super) struct Half {
     pub scale: BigInt,
     /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
     pub is_selfadjoint: bool,
+    /// What commutes with S, and with all that does; its eigenspaces have no μ in common that could couple.
+    symmetry: Option<DMatrix<Rational>>,
 }
+
+/// Eigenspaces of a symmetry modulo a prime: coordinates in which S is made of blocks.
+pub(super) struct Eigenspaces {
+    sizes: Vec<usize>,
+    from: DMatrix<u64>,
+    to: DMatrix<u64>,
+}
+
+/// Of so many primes one has all eigenvalues of a symmetry, or none is looked for.
+const MOST_PRIMES: usize = 40;
 
 impl Half {
     /// That of a line.
@@ -86,10 +98,51 @@ impl Half {
         masses.iter().flat_map(|own| &own.dofs).for_each(|&i| program.inverse_mass[i].clear());
         let is_selfadjoint = line.commutes;
         let [unit, scale] = [BigInt::one(), BigInt::one()];
-        let mut half =
-            Half { generic, frame, program, masses, rank_of_masses, ranks, unit, scale, is_selfadjoint };
+        let symmetry = line.symmetry.clone().filter(|_| frame.rigid.is_empty());
+        let mut half = Half {
+            generic,
+            frame,
+            program,
+            masses,
+            rank_of_masses,
+            ranks,
+            unit,
+            scale,
+            is_selfadjoint,
+            symmetry,
+        };
         (half.unit, half.scale) = half.common();
+        if !prime_fields().take(MOST_PRIMES).any(|field| half.eigenspaces(&field).is_some()) {
+            half.symmetry = None;
+        }
         Ok(half)
+    }
+
+    /// Whether there is a symmetry, so that only primes that have its eigenvalues serve.
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetry.is_some()
+    }
+
+    /// The eigenspaces of the symmetry; `None` where there is none, and where the prime does not have all of its eigenvalues.
+    pub fn eigenspaces(&self, field: &PrimeField) -> Option<Eigenspaces> {
+        let symmetry = self.symmetry.as_ref()?;
+        let entries = symmetry.iter().map(|x| field.of_rational(x)).collect::<Option<Vec<_>>>()?;
+        let n = symmetry.nrows();
+        let symmetry = DMatrix::from_column_slice(n, n, &entries);
+        let minimal = modular::squarefree(field, modular::characteristic(field, symmetry.clone()));
+        let spaces = field.roots(&minimal)?.into_iter().map(|root| {
+            let mut shifted = symmetry.clone();
+            (0..n).for_each(|i| shifted[(i, i)] = field.sub(shifted[(i, i)], root));
+            modular::kernel(field, shifted)
+        });
+        let spaces: Vec<_> = spaces.collect();
+        let columns: Vec<u64> = spaces.iter().flatten().flatten().copied().collect();
+        if columns.len() != n * n {
+            return None;
+        }
+        let from = DMatrix::from_column_slice(n, n, &columns);
+        let (to, _) = modular::inverse(field, from.clone())?;
+        Some(Eigenspaces { sizes: spaces.iter().map(Vec::len).collect(), from, to })
     }
 
     /// m, the size of S.
@@ -252,6 +305,19 @@ pub(super) struct At {
     pub blocks: [DMatrix<u64>; 4],
     /// δ^E.
     pub delta: u64,
+}
+
+impl Eigenspaces {
+    /// The blocks of what commutes with the symmetry.
+    pub fn blocks(&self, field: &PrimeField, m: &DMatrix<u64>) -> Vec<DMatrix<u64>> {
+        let m = modular::times(field, &self.to, &modular::times(field, m, &self.from));
+        let mut first = 0;
+        let block = |&size: &usize| {
+            first += size;
+            m.view((first - size, first - size), (size, size)).into_owned()
+        };
+        self.sizes.iter().map(block).collect()
+    }
 }
 
 /// A system of the line with all clocks and all entries of M that any of them has.

@@ -1,11 +1,13 @@
 //! Systems on a line: masses and stiffnesses linear in s, from those at s = 0 to those at s = 1.
 
+use nalgebra::DMatrix;
+
 use crate::error::Result;
 use crate::number::Rational;
 use crate::system::half::compose::connected;
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
-use crate::system::linear::split::{Subspace, invariant_subspaces, symmetric_subspaces};
+use crate::system::linear::split::{Subspace, central_symmetry, invariant_subspaces, symmetric_subspaces};
 use crate::system::linear::system::{Potential, System};
 
 /// Parts of at most this size are split along rational eigenvectors that all systems have in common.
@@ -16,11 +18,13 @@ pub(in crate::system) struct Line {
     pub ends: [System; 2],
     /// Whether all potentials of all systems are known to commute.
     pub commutes: bool,
+    /// Where they are not: what commutes with them, and with all that does.
+    pub symmetry: Option<DMatrix<Rational>>,
 }
 
 impl Line {
     pub fn new(ends: [System; 2]) -> Line {
-        Line { ends, commutes: false }
+        Line { ends, commutes: false, symmetry: None }
     }
 
     /// Whether all systems are one.
@@ -82,7 +86,7 @@ impl Line {
             return vec![self];
         }
         if self.varies_mass() {
-            return self.along_symmetries().unwrap_or_else(|| vec![self]);
+            return self.along_symmetries();
         }
         let Ok(frame) = self.frame() else { return vec![self] };
         let complement = frame.complement(&self.ends[0]);
@@ -90,23 +94,26 @@ impl Line {
         let stiffnesses: Vec<_> =
             vibrating.ends.iter().flat_map(|own| own.potentials().iter().map(|own| &own.stiffness)).collect();
         let Some(spaces) = invariant_subspaces(&vibrating.ends[0], &stiffnesses) else {
-            return vibrating.along_symmetries().unwrap_or_else(|| vec![vibrating]);
+            return vibrating.along_symmetries();
         };
         let along = |space: &Subspace| {
             let ends = vibrating.ends.each_ref().map(|own| own.restricted(space));
-            Line { ends, commutes: true }
+            Line { ends, commutes: true, symmetry: None }
         };
         spaces.iter().map(along).collect()
     }
 
-    /// The eigenspaces of a symmetry, each split in turn.
-    fn along_symmetries(&self) -> Option<Vec<Line>> {
+    /// The eigenspaces of a symmetry, each split in turn; where they are not rational, all of it with a symmetry beside it.
+    fn along_symmetries(mut self) -> Vec<Line> {
         let [lo, hi] = &self.ends;
         let stiffnesses = self.ends.iter().flat_map(|own| own.potentials()).map(|own| &own.stiffness);
         // What leaves M of one end and M⁻¹ of it times M of the other invariant splits the masses in between, too.
         let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
-        let spaces = symmetric_subspaces(lo, &all)?;
+        let Some(spaces) = symmetric_subspaces(lo, &all) else {
+            self.symmetry = central_symmetry(lo, &all);
+            return vec![self];
+        };
         let along = |space: &Subspace| Line::new(self.ends.each_ref().map(|own| own.restricted(space)));
-        Some(spaces.iter().map(along).filter(Line::is_acted_on).flat_map(Line::split).collect())
+        spaces.iter().map(along).filter(Line::is_acted_on).flat_map(Line::split).collect()
     }
 }

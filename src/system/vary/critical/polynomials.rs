@@ -5,12 +5,13 @@ use std::cmp::Reverse;
 use num_bigint::BigInt;
 use num_traits::Zero;
 
-use super::half::{At, Half};
+use super::half::{At, Eigenspaces, Half};
 use crate::error::Result;
 use crate::number::polynomial::{common, primitive, quotient, squarefree};
 use crate::number::{Lift, PrimeField, prime_fields};
 use crate::parallel::try_map;
 use crate::system::exact::modular;
+use crate::system::half::compose::Program;
 use crate::system::verdict::limits::Limits;
 
 /// Products of machine words beyond which cells are cheaper, whatever the limit: some ten seconds.
@@ -44,10 +45,16 @@ pub(super) struct Critical {
     pub multiple: Vec<BigInt>,
 }
 
+/// The primes that divide no denominator and have all eigenvalues of the symmetry, if there is one.
+fn sound(half: &Half) -> impl Iterator<Item = (PrimeField, Program<[u64; 2]>)> {
+    prime_fields()
+        .filter_map(|field| Some((field, half.residues(&field)?)))
+        .filter(|(field, _)| !half.is_symmetric() || half.eigenspaces(field).is_some())
+}
+
 /// What is to be found of a half period; `None` where it costs too much.
 pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
-    let (field, program) =
-        prime_fields().find_map(|field| Some((field, half.residues(&field)?))).expect("primes enough");
+    let (field, program) = sound(half).next().expect("primes enough");
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
     let at = |k| Some(Own::new(half, &field, &half.at(&field, &program, field.of(k))?));
     let found = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b].into_iter().filter_map(at);
@@ -61,8 +68,7 @@ pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
 /// Where the work is stopped.
 pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical>>> {
     let count = (shape.bits / 61.0) as usize + 1;
-    let fields: Vec<PrimeField> =
-        prime_fields().filter(|field| half.residues(field).is_some()).take(count).collect();
+    let fields: Vec<PrimeField> = sound(half).map(|(field, _)| field).take(count).collect();
     let residues = try_map(&fields, |field| Ok(shape.residues(half, field)))?;
     let Some(residues) = residues.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
     let mut found = Vec::new();
@@ -157,6 +163,7 @@ impl Shape {
     /// The coefficients modulo a prime; `None` where the kind proves another and where places run out.
     fn residues(&self, half: &Half, field: &PrimeField) -> Option<Vec<Vec<u64>>> {
         let program = half.residues(field)?;
+        let spaces = half.eigenspaces(field);
         let mut places = Vec::new();
         let mut values = vec![Vec::new(); self.degrees.len()];
         let last = 2 * self.places as u64 + 64;
@@ -180,7 +187,7 @@ impl Shape {
                     true => field.of(1),
                     false => {
                         let power = field.power(at.delta, 2 * (own.g.len() as u64 - 2));
-                        field.mul(power, discriminant(field, &own.g))
+                        field.mul(power, own.meeting(half, field, &at, spaces.as_ref()))
                     }
                 };
                 vec![field.mul(at.delta, own.g[0]), field.mul(at.delta, at_end), met]
@@ -229,7 +236,7 @@ impl Own {
         let n = half.size();
         let (mut g, mut is_semisimple) = (whole, true);
         if !half.is_selfadjoint {
-            g = squarefree_modulo(field, g);
+            g = modular::squarefree(field, g);
         }
         let mut count = g.len() - 1;
         let scale = field.of_big(&half.scale);
@@ -273,13 +280,21 @@ impl Own {
         }
         Own { kind: Kind { count, ends }, g, is_semisimple, off }
     }
-}
 
-/// The squarefree part of a monic polynomial.
-fn squarefree_modulo(field: &PrimeField, f: Vec<u64>) -> Vec<u64> {
-    let derivative: Vec<u64> = derivative(field, &f);
-    let common = field.gcd(f.clone(), derivative);
-    if common.len() == 1 { f } else { quotient_modulo(field, f, &common) }
+    /// The discriminant of g. Of motions of different symmetry μ meet without consequence: each eigenspace has a discriminant of its own, and
+    /// their product, in which conjugate ones are together, is one over ℤ\[s\].
+    fn meeting(&self, half: &Half, field: &PrimeField, at: &At, spaces: Option<&Eigenspaces>) -> u64 {
+        let Some(spaces) = spaces else { return discriminant(field, &self.g) };
+        let end = field.sub(0, field.of_big(&half.scale));
+        let own = spaces.blocks(field, &at.product).into_iter().map(|block| {
+            let mut g = modular::squarefree(field, modular::characteristic(field, block));
+            for root in [0, end] {
+                divide_out(field, &mut g, root);
+            }
+            if g.len() < 2 { field.of(1) } else { discriminant(field, &g) }
+        });
+        own.fold(field.of(1), |product, x| field.mul(product, x))
+    }
 }
 
 /// Divides f by z − root as often as it goes: how often.
@@ -287,7 +302,7 @@ fn divide_out(field: &PrimeField, f: &mut Vec<u64>, root: u64) -> usize {
     let factor = [field.sub(0, root), field.of(1)];
     let mut times = 0;
     while f.len() > 1 && f.iter().rev().fold(0, |sum, &c| field.add(field.mul(sum, root), c)) == 0 {
-        *f = quotient_modulo(field, std::mem::take(f), &factor);
+        *f = modular::quotient(field, std::mem::take(f), &factor);
         times += 1;
     }
     times
@@ -305,24 +320,9 @@ fn evaluated(field: &PrimeField, f: &[u64], m: &DMatrix) -> DMatrix {
 
 type DMatrix = nalgebra::DMatrix<u64>;
 
-/// a / b, both monic, b a divisor.
-fn quotient_modulo(field: &PrimeField, mut a: Vec<u64>, b: &[u64]) -> Vec<u64> {
-    let mut quotient = vec![0; a.len() + 1 - b.len()];
-    for k in (0..quotient.len()).rev() {
-        let factor = a[k + b.len() - 1];
-        a[k..].iter_mut().zip(b).for_each(|(x, &c)| *x = field.sub(*x, field.mul(factor, c)));
-        quotient[k] = factor;
-    }
-    quotient
-}
-
-fn derivative(field: &PrimeField, f: &[u64]) -> Vec<u64> {
-    f.iter().enumerate().skip(1).map(|(k, &c)| field.mul(field.of(k as u64), c)).collect()
-}
-
 /// The resultant of a monic f and its derivative, the discriminant up to its sign.
 fn discriminant(field: &PrimeField, f: &[u64]) -> u64 {
-    field.resultant(f.to_vec(), derivative(field, f))
+    field.resultant(f.to_vec(), modular::derivative(field, f))
 }
 
 /// The coefficients of the polynomial with these values at some of the places 1, 2, ... (Newton); `inverses[k]` = 1/k.
@@ -367,7 +367,7 @@ mod tests {
         let of = |rows: &[u64]| DMatrix::from_row_slice(3, 3, rows).map(|x| field.of(x));
         let f = [10, field.value(field.sub(0, field.of(7))), 1].map(|c| field.of(c));
         for (rows, is_zero) in [([2, 0, 0, 0, 2, 0, 0, 0, 5], true), ([2, 1, 0, 0, 2, 0, 0, 0, 5], false)] {
-            let own = squarefree_modulo(&field, modular::characteristic(&field, of(&rows)));
+            let own = modular::squarefree(&field, modular::characteristic(&field, of(&rows)));
             assert_eq!(own, f);
             assert_eq!(evaluated(&field, &own, &of(&rows)).iter().all(|&x| x == 0), is_zero);
         }
