@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
+from kickdrift._held import Held
 from kickdrift._hessians import (
     Force,
     Monodromy,
@@ -154,7 +155,7 @@ def oscillations(
     """
     forces, steps, masses = _forces(atoms, groups)
     where = _start(atoms, forces, masses, minimize, difference)
-    return monodromy(forces, steps, where, masses, difference, about)
+    return monodromy(forces, steps, where, Held(masses), difference, about, "fs")
 
 
 def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:

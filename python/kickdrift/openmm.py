@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kickdrift._errors import KickdriftError, needs
+from kickdrift._held import Held
 from kickdrift._hessians import (
     Force,
     Monodromy,
@@ -159,7 +160,7 @@ def system(
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
-    frame = _frame(where, engine.masses, constraints, chosen)
+    frame = Held(engine.masses, constraints).frame(where, chosen)
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
     accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
@@ -294,7 +295,7 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
     found = system(own, arguments.pop("positions"), **arguments)
     positions = found.arrays.get("positions")
     is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
-    if not is_whole or own.getNumConstraints() or not any("swings about an orbit" in note for note in found.notes):
+    if not is_whole or not any("swings about an orbit" in note for note in found.notes):
         return found, steps
     scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
     return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
@@ -309,7 +310,8 @@ def _about_orbit(own: Any, positions: Doubles, scheme: Mapping[str, Any]) -> str
     outer = float(max(_clocks(own, scheme.get("integrator"), scheme.get("steps")).values())) * 1000
     begin = f"own orbit: at {outer:g} fs a run swings about an orbit beside the minimum"
     try:
-        found = oscillations(own, positions, **scheme, minimize=False)
+        # Where no orbit is found at once, others are not sought unasked: that takes ten times as long.
+        found = _oscillations(own, positions, **scheme, minimize=False, unit=None)
     except KickdriftError as error:
         return f"{begin} that is not found: {error}\n"
     does = "nothing grows" if found.stable else f"deviations grow at {found.growth_rate:.3g}/ps"
@@ -354,7 +356,7 @@ def _measured(
         full, error = hessian(force, where, engine.masses, difference, chosen, progress)
         matrix = full
         if constraints:
-            matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
+            matrix = matrix + Held(engine.masses, constraints).curvature(force(where), where, chosen)
         matrix = frame.T @ matrix @ frame
         name = ", ".join(f"group {group}" for group in groups)
         found.append(_Level(name, step, full, (matrix + matrix.T) / 2, error, force(where)))
@@ -373,9 +375,7 @@ def _unbalanced(
     # What constraints take up moves nothing.
     along = {own.name: (frame @ (frame.T @ (own.force.ravel()[kept] / root)) * root).reshape(-1, 3) for own in measured}
     total = np.sum([own.matrix for own in measured], axis=0)
-    follow = "Its orbit is not known: those of constrained systems are not followed"
-    if not constraints:
-        follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
+    follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
     return unbalanced(along, norm(total), masses[kept[::3] // 3], "kJ/mol/nm", follow)
 
 
@@ -402,7 +402,8 @@ def oscillations(
     """Measure what small deviations do over a period, about the integrator's own periodic orbit: what a run shows.
 
     Bonded and nonbonded forces balance at a minimum, none vanishes there; so each slow kick displaces the atoms and the
-    fast forces swing them back. The orbit of that is found by Newton's method, with Hessians at each kick.
+    fast forces swing them back. The orbit of that is found by Newton's method, with Hessians at each kick. Constraints
+    are held at each drift as RATTLE, SHAKE and SETTLE hold them, and deviations are those that they leave free.
 
     Parameters
     ----------
@@ -420,7 +421,8 @@ def oscillations(
     Raises
     ------
     KickdriftError
-        As :func:`system`; a system with constraints; an orbit that is not found.
+        As :func:`system`; drifts too long for the constraints; an orbit that is not found, and at which outer step the
+        one of shorter steps ends.
 
     Examples
     --------
@@ -431,17 +433,31 @@ def oscillations(
     >>> kickdrift.openmm.oscillations(own, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
     Monodromy(about the minimum: stable, an estimate)
     """
+    return _oscillations(system, positions, integrator, steps, about, minimize, difference)
+
+
+def _oscillations(
+    system: Any,
+    positions: Any,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    about: str = "orbit",
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+    unit: str | None = "ps",
+) -> Monodromy:
+    """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     clocks = _clocks(system, integrator, steps)
-    if system.getNumConstraints():
-        remedy = "orbits of constrained systems are not followed: use system(...), which is about the minimum"
-        raise KickdriftError("system", f"{system.getNumConstraints()} constraints", remedy)
     engine = _engine(system)
+    held = Held(engine.masses, _constraints(system))
     where = _positions(positions, engine.count)
     if minimize:
-        where = _minimized(engine, where, [], difference)
+        where = _minimized(engine, where, held.distances, difference)
+    # Onto the held distances, to rounding: engines keep them to their tolerance.
+    where = held.drift(where, np.zeros(where.size), 1.0)[0]
     levels = _levels(clocks)
     forces = {str(groups): engine.force(sum(1 << group for group in groups)) for groups in levels.values()}
-    return monodromy(forces, list(levels), where, engine.masses, difference, about)
+    return monodromy(forces, list(levels), where, held, difference, about, unit)
 
 
 def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
@@ -603,65 +619,21 @@ def _constrained_minimum(
     """
     force, where, masses = engine.force(-1), near, engine.masses
     matrix = np.zeros((near.size, near.size))
-    root, frame = np.sqrt(np.repeat(masses, 3)), _frame(where, masses, constraints, None)
+    held = Held(masses, constraints)
+    frame = held.frame(where)
 
     def pull() -> Doubles:
-        return frame.T @ (force(where).ravel() / root)
+        return frame.T @ (force(where).ravel() / held.root)
 
     def move(pulled: Doubles) -> None:
         nonlocal where, frame, matrix
         matrix, _ = hessian(force, where, masses, difference)
-        matrix = frame.T @ (matrix + _curvature(force(where), where, masses, constraints, None)) @ frame
+        matrix = frame.T @ (matrix + held.curvature(force(where), where)) @ frame
         step = frame @ soft_solve(matrix, pulled)
-        engine.context.setPositions(where + (step / root).reshape(where.shape))
+        engine.context.setPositions(where + (step / held.root).reshape(where.shape))
         engine.context.applyConstraints(1e-12)
         where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
-        frame = _frame(where, masses, constraints, None)
+        frame = held.frame(where)
 
     arrived(descend(pull, move), matrix, masses)
     return where
-
-
-def _gradients(where: Doubles, masses: Doubles, constraints: Sequence[_Constraint]) -> Doubles:
-    """Mass-weighted gradients of (|r_i - r_j|² - d²)/2, one a row."""
-    rows = np.zeros((len(constraints), where.size))
-    for row, (i, j, _) in zip(rows, constraints, strict=True):
-        apart = where[i] - where[j]
-        row[3 * i : 3 * i + 3], row[3 * j : 3 * j + 3] = apart, -apart
-    return rows / np.sqrt(np.repeat(masses, 3))
-
-
-def _frame(
-    where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
-) -> Doubles:
-    """An orthonormal basis of the deviations that the constraints allow, mass-weighted."""
-    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-    if not constraints:
-        return np.eye(len(kept))
-    rows = _gradients(where, masses, constraints)[:, kept]
-    _, sizes, vectors = np.linalg.svd(rows)
-    rank = int((sizes > 1e-10 * sizes.max()).sum())
-    return np.asarray(vectors[rank:].T)
-
-
-def _curvature(
-    force: Doubles, where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
-) -> Doubles:
-    """What constraints add to a group's Hessian: their forces turn as the atoms move.
-
-    The group's force along the constraints is sum of l_c grad g_c; the constraints take it up, so the force left is
-    that of the Hessian K + sum of l_c grad grad g_c, since the constraint forces are -l_c grad g_c.
-    """
-    rows = _gradients(where, masses, constraints)
-    pull = force.ravel() / np.sqrt(np.repeat(masses, 3))
-    factors = np.linalg.lstsq(rows.T, pull, rcond=None)[0]
-    added = np.zeros((where.size, where.size))
-    for factor, (i, j, _) in zip(factors, constraints, strict=True):
-        for axis in range(3):
-            at, to = 3 * i + axis, 3 * j + axis
-            added[at, at] += factor / masses[i]
-            added[to, to] += factor / masses[j]
-            added[at, to] -= factor / np.sqrt(masses[i] * masses[j])
-            added[to, at] -= factor / np.sqrt(masses[i] * masses[j])
-    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-    return np.asarray(added[np.ix_(kept, kept)])
