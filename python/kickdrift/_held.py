@@ -26,7 +26,7 @@ class Held:
     @cached_property
     def root(self) -> Doubles:
         """The root of each coordinate's mass."""
-        return np.sqrt(np.repeat(self.masses, 3))
+        return np.asarray(np.sqrt(np.repeat(self.masses, 3)), dtype=np.float64)
 
     def gradients(self, where: Doubles) -> Doubles:
         """The gradients of g by y, one a row."""
@@ -53,7 +53,7 @@ class Held:
             blocks[j, j] += factor / self.masses[j]
             blocks[i, j] -= factor / np.sqrt(self.masses[i] * self.masses[j])
             blocks[j, i] -= factor / np.sqrt(self.masses[i] * self.masses[j])
-        return np.kron(blocks, np.eye(3))
+        return np.asarray(np.kron(blocks, np.eye(3)))
 
     def along(self, pull: Doubles, where: Doubles) -> Doubles:
         """The factors of the gradients in a mass-weighted vector: what is held takes that part up."""
@@ -68,7 +68,7 @@ class Held:
         that of the Hessian K + sum of l_c grad grad g_c, since the forces of what is held are -l_c grad g_c.
         """
         kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-        return self.bent(self.along(force.ravel() / self.root, where))[np.ix_(kept, kept)]
+        return np.asarray(self.bent(self.along(force.ravel() / self.root, where))[np.ix_(kept, kept)])
 
     def drift(self, where: Doubles, speed: Doubles, time: float) -> tuple[Doubles, Doubles, Doubles]:
         """Positions and mass-weighted velocity after a drift by RATTLE, and the factors of its gradients.

@@ -5,11 +5,14 @@ Coordinates are mass-weighted throughout, x = M^½ (r - r0): a kick of strength 
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -33,10 +36,87 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 
 def bar(done: int, total: int) -> None:
-    """A bar on standard error."""
+    """A bar on standard error; where that is no terminal, as in a log, four lines in all."""
+    if not sys.stderr.isatty():
+        if 4 * done // total > 4 * (done - 1) // total:
+            print(f"{done} of {total} columns", file=sys.stderr, flush=True)
+        return
     drawn = "#" * (30 * done // total)
     end = "\n" if done == total else ""
     print(f"\r[{drawn:30}] {done} of {total} columns", end=end, file=sys.stderr, flush=True)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What Hessians will take, before they are begun: their columns, how many of them, and seconds a force takes."""
+
+    columns: int
+    hessians: int
+    evaluation: float
+
+    @property
+    def seconds(self) -> float:
+        """Four forces a column."""
+        return 4 * self.columns * self.hessians * self.evaluation
+
+    @property
+    def bytes(self) -> float:
+        """Matrices of doubles: six while one is made, and of each four copies in the system."""
+        return 8.0 * self.columns**2 * (6 + 4 * self.hessians)
+
+    def __str__(self) -> str:
+        each = f"{self.hessians} Hessians of {self.columns} columns, {4 * self.columns * self.hessians} forces"
+        return f"{each} of {1e3 * self.evaluation:.3g} ms: some {self.seconds:.2g} s, {self.bytes / 1e9:.2g} GB"
+
+    def begin(self, most: float, is_told: bool, remedy: str) -> None:
+        """Say what it is, where that is wanted, and refuse what the library, the memory or ``most`` seconds do not let
+        through.
+
+        Raises
+        ------
+        KickdriftError
+            Before anything is computed.
+        """
+        if self.columns > _LARGEST:
+            raise KickdriftError(
+                "system", f"{self.columns} degrees of freedom", f"dense ones are {_LARGEST} at most: {remedy}"
+            )
+        free = _memory()
+        if self.bytes > free:
+            raise KickdriftError("system", str(self), f"there are {free / 1e9:.2g} GB: {remedy}")
+        if self.seconds > most:
+            raise KickdriftError("system", str(self), f"is more than {most:g} s: give longest=SECONDS, or {remedy}")
+        if is_told:
+            print(self, file=sys.stderr, flush=True)
+
+
+#: The library takes dense matrices of so many rows.
+_LARGEST = 4096
+
+
+def _memory() -> float:
+    """Bytes that programs may have, what caches hold included; all there are, or no limit, where that is not said."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        return next(1024.0 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
+    except (OSError, StopIteration):
+        pass
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return np.inf
+
+
+#: Hessians that take more seconds than this are asked for.
+LONGEST = 3600.0
+
+
+def seconds_of(force: Force, positions: Doubles) -> float:
+    """How long a force takes, the second time."""
+    force(positions)
+    begin = perf_counter()
+    force(positions)
+    return perf_counter() - begin
 
 
 def shown(progress: Progress | bool | None) -> Progress | None:
@@ -561,13 +641,12 @@ def monodromy(
         if found.residual <= _ARRIVED:
             done, part, start = share, 2 * part, found.positions
         elif part < _SMALLEST_PART:
-            found, ends = None, ", as near a resonance of the kicks"
-            if unit is not None:
-                found, ends = _longer(own, steps, at, held, difference, firm, unit)
-            if found is None:
+            ends = ", as near a resonance of the kicks"
+            other, ends = (None, ends) if unit is None else _longer(own, steps, at, held, difference, firm, unit)
+            if other is None:
                 value = f"orbit, followed to {done:.0%} of the groups' own forces"
                 raise KickdriftError("about", value, f"it ends there{ends}: choose another step, or about='minimum'")
-            done, start = 1.0, found.positions
+            done, start, found = 1.0, other.positions, other
         else:
             part /= 2
     half = found.half

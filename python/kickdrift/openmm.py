@@ -22,14 +22,17 @@ import numpy.typing as npt
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
 from kickdrift._hessians import (
+    LONGEST,
     Force,
     Monodromy,
     Progress,
+    Work,
     arrived,
     descend,
     hessian,
     minimum,
     monodromy,
+    seconds_of,
     seen,
     shown,
     soft_solve,
@@ -86,6 +89,7 @@ def system(
     difference: float = DIFFERENCE,
     sparse: bool = False,
     progress: Progress | bool = False,
+    longest: float = LONGEST,
 ) -> System:
     """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
 
@@ -113,7 +117,10 @@ def system(
         a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;
         ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable region.
     progress : bool or callable
-        A bar on standard error; or what is called with the columns done and the columns in all, for each group.
+        A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
+        columns done and the columns in all, for each step.
+    longest : float
+        Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
 
     Returns
     -------
@@ -155,7 +162,15 @@ def system(
             remedy = "has no sparse Hessians with constraints or some atoms alone: leave sparse=True out"
             raise KickdriftError("system", f"{len(constraints)} constraints", remedy)
         return _sparse(system, engine, clocks, where, minimize, difference, topology, shown(progress), integrator)
+    columns = 3 * (engine.count if atoms is None else len(atoms))
+    # Newton's method makes one of all forces, three or four times.
+    dear, remedy = (
+        seconds_of(engine.force(-1), where),
+        "atoms=[...] and minimize=False for some of them, or sparse=True",
+    )
+    Work(columns, len(_levels(clocks)), dear).begin(longest, progress is True, remedy)
     if minimize:
+        Work(3 * engine.count, 3, dear).begin(longest, progress is True, remedy)
         where = _minimized(engine, where, constraints, difference)
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
