@@ -77,9 +77,9 @@ class Work:
         KickdriftError
             Before anything is computed.
         """
-        if self.columns > _LARGEST:
+        if self.columns > LARGEST:
             raise KickdriftError(
-                "system", f"{self.columns} degrees of freedom", f"dense ones are {_LARGEST} at most: {remedy}"
+                "system", f"{self.columns} degrees of freedom", f"dense ones are {LARGEST} at most: {remedy}"
             )
         free = _memory()
         if self.bytes > free:
@@ -91,7 +91,7 @@ class Work:
 
 
 #: The library takes dense matrices of so many rows.
-_LARGEST = 4096
+LARGEST = 4096
 
 
 def _memory() -> float:

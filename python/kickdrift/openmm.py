@@ -19,9 +19,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kickdrift._bands import Band, Bands
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
 from kickdrift._hessians import (
+    LARGEST,
     LONGEST,
     Force,
     Monodromy,
@@ -49,10 +51,13 @@ try:
 except ImportError:
     raise needs("openmm") from None
 
-__all__ = ["oscillations", "system"]
+__all__ = ["bands", "oscillations", "system"]
 
 #: The difference of positions, nm: force fields are smooth on this length.
 DIFFERENCE = 1e-4
+
+#: The same where forces come in single precision.
+WIDE = 1e-3
 
 
 _Constraint = tuple[int, int, float]
@@ -292,8 +297,11 @@ def _named(
     return labels, elements, bonded or None
 
 
-def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
-    """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own."""
+def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | Bands, Any]:
+    """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own.
+
+    Bands of one that dense Hessians are too many of, or that has constraints and other than two levels with forces.
+    """
     arguments = dict(made)
     if isinstance(steps, Mapping):
         arguments["steps"], steps = steps, ()
@@ -307,6 +315,11 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
         raise KickdriftError("periods", type(own).__name__, "of OpenMM give a Simulation, or a System with positions=")
     if "positions" not in arguments:
         raise KickdriftError("positions", None, "give the positions of the particles, nm")
+    plain = ("positions", "topology", "integrator", "steps", "minimize")
+    asked: dict[str, Any] = {key: arguments[key] for key in plain if key in arguments}
+    is_plain = arguments.keys() <= asked.keys() | {"progress", "longest"}
+    if is_plain and (3 * own.getNumParticles() > LARGEST or _is_held_fast(own, asked)):
+        return bands(own, asked.pop("positions"), **asked), steps
     found = system(own, arguments.pop("positions"), **arguments)
     positions = found.arrays.get("positions")
     is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
@@ -314,6 +327,22 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
         return found, steps
     scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
     return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
+
+
+def _is_held_fast(own: Any, asked: Mapping[str, Any]) -> bool:
+    """Whether there are constraints, and not two levels of forces on what they leave free: rigid water has no bonds."""
+    if not own.getNumConstraints():
+        return False
+    levels = _levels(_clocks(own, asked.get("integrator"), asked.get("steps")))
+    return len(levels) != 2 or not _terms_of(own, levels[min(levels)])
+
+
+def _terms_of(own: Any, groups: Sequence[int]) -> int:
+    """How many terms the forces of some groups have; a force that is not counted has some."""
+    from kickdrift import _forcefield
+
+    forces = [force for force in own.getForces() if force.getForceGroup() in groups and not _is_bath(force)]
+    return sum(len(_forcefield._terms(force)) if _forcefield.are_bonded([force]) else 1 for force in forces)
 
 
 #: Orbits of so many degrees of freedom are followed unasked: some seconds.
@@ -475,6 +504,128 @@ def _oscillations(
     return monodromy(forces, list(levels), where, held, difference, about, unit)
 
 
+def bands(
+    system: Any,
+    positions: Any,
+    *,
+    topology: Any = None,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    minimize: bool = True,
+    difference: float | None = None,
+) -> Bands:
+    """Find the shortest period of each level of forces by Lanczos' method: of any number of atoms, PME and constraints.
+
+    No Hessian is stored but those of bonded terms, which are sparse. All other forces are asked for along directions in
+    which all atoms move at once; of more than a hundred atoms on OpenMM's CPU platform, in single precision.
+
+    Parameters
+    ----------
+    system, positions, topology, integrator, steps
+        As for :func:`system`; any number of levels, one step for all forces, too.
+    minimize : bool
+        Go to where OpenMM's minimizer ends after some hundred steps, in a copy.
+    difference : float, optional
+        How far, nm, an atom moves at most: 0.001 unless given in single precision, where less is rounding. Twice as far
+        tells the error.
+
+    Returns
+    -------
+    Bands
+        Estimates: its ``advise`` says which steps are safe with them.
+
+    Raises
+    ------
+    KickdriftError
+        As :func:`system`.
+
+    Examples
+    --------
+    >>> import openmm
+    >>> import kickdrift.openmm
+    >>> own, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
+    >>> _ = own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
+    >>> found = kickdrift.openmm.bands(own, [[0, 0, 0]], steps={0: "1/100"}, minimize=False)
+    >>> round(found.levels[0].period), found.advise().status
+    (314, 'safe')
+    """
+    clocks = _clocks(system, integrator, steps)
+    names = [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
+    is_small = 3 * system.getNumParticles() <= _FOLLOWED
+    engine = _engine(system, "CPU" if "CPU" in names and not is_small else "Reference")
+    difference = difference or (DIFFERENCE if is_small else WIDE)
+    where, held = _positions(positions, engine.count), Held(engine.masses, _constraints(system))
+    notes = _notes(system, integrator, clocks)
+    if minimize:
+        where, how = _near_minimum(engine, where, held, difference, is_small)
+        notes.append(how)
+    labels = _named(engine.masses, topology, np.arange(engine.count))[0]
+    found = [_band(system, engine, held, where, own, labels, difference) for own in _levels(clocks).items()]
+    return Bands(tuple(found), tuple(notes))
+
+
+def _near_minimum(
+    engine: _Engine, where: Doubles, held: Held, difference: float, is_small: bool
+) -> tuple[Doubles, str]:
+    """The minimum of few atoms, or where OpenMM's minimizer ends; and in words which."""
+    if is_small:
+        try:
+            return _minimized(engine, where, held.distances, difference), "at the minimum beside the positions"
+        except KickdriftError:
+            # As where pairs cross a cutoff: no stiffness hangs on the last digits of a place.
+            pass
+    engine.context.setPositions(where)
+    mm.LocalEnergyMinimizer.minimize(engine.context, maxIterations=_MINIMIZED)
+    where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    return where, f"at the positions after {_MINIMIZED} steps of OpenMM's minimizer at most, near a minimum, not at one"
+
+
+#: Steps of OpenMM's minimizer: bonds and clashes have relaxed then, and no stiffness hangs on the rest.
+_MINIMIZED = 200
+
+#: Products of Lanczos' method: of stored matrices, which cost little, and of forces.
+_STORED, _ASKED = 300, 40
+
+
+def _band(
+    system: Any,
+    engine: _Engine,
+    held: Held,
+    where: Doubles,
+    level: tuple[Fraction, list[int]],
+    labels: Sequence[str],
+    difference: float,
+) -> Band:
+    """The shortest period of the groups of one step."""
+    from kickdrift import _bands, _forcefield
+
+    step, groups = level
+    name = " + ".join(f"group {group}" for group in groups)
+    force = engine.force(sum(1 << group for group in groups))
+    own = [each for each in system.getForces() if each.getForceGroup() in groups and not _is_bath(each)]
+    pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
+    reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
+    free, bent = _bands.projection(held, where), _bands.curvature(held, where, force(where))
+    if _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
+        matrix, error = _forcefield.hessian(system, groups, where, DIFFERENCE / 10)
+        error, steps, forces = error / float(engine.masses.min()), _STORED, 0
+        product = _bands.by_matrix(matrix, held.root)
+    else:
+        product, error, steps, forces = _bands.by_differences(force, where, held.root, difference), 0.0, _ASKED, 2
+
+    def apply(vector: Doubles) -> Doubles:
+        vector = free(vector)
+        return free(product(vector) + bent(vector))
+
+    found = _bands.top(apply, where.size, steps)
+    if forces:
+        wide = _bands.by_differences(force, where, held.root, 2 * difference)
+        error = float(np.linalg.norm(free(wide(found.vector) - product(found.vector))))
+    moving = np.linalg.norm(found.vector.reshape(-1, 3), axis=1)
+    atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)
+    return Band(name, step, found.found, found.most + error, atoms, forces * steps)
+
+
 def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
     """The groups of each step, the smallest first."""
     levels: dict[Fraction, list[int]] = {}
@@ -556,7 +707,7 @@ def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
     return clocks
 
 
-def _engine(system: Any) -> _Engine:
+def _engine(system: Any, platform: str = "Reference") -> _Engine:
     count = system.getNumParticles()
     masses = np.array([system.getParticleMass(n)._value for n in range(count)])
     if (masses <= 0).any():
@@ -564,7 +715,7 @@ def _engine(system: Any) -> _Engine:
         raise KickdriftError("system", f"particle {int(np.argmin(masses))}", remedy)
     # The Reference platform computes in doubles: differences of its forces are good to ten digits.
     integrator = mm.VerletIntegrator(0.001)
-    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Reference"))
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
     return _Engine(context, masses, count)
 
 

@@ -767,3 +767,72 @@ def test_what_is_published_beside_runs_is_what_is_said_today() -> None:
     blown, _ = runs.run(system, at, Fraction("5.03"), 11)
     # From 1 K at 0.555/ps: a hundredfold to a thousandfold amplitude, by where the noise begins.
     assert blown is not None and 5 < blown < 20
+
+
+def test_bands_of_any_size_have_the_periods_of_dense_hessians() -> None:
+    """Lanczos' method brackets the largest eigenvalues of both levels; its region is inside the first stable one."""
+    system, positions = waters()
+    steps = {0: "0.5fs", 1: "4fs"}
+    found = ko.bands(system, positions, steps=steps)
+    engine = ko._engine(system)
+    at = ko._minimized(engine, positions, [], ko.DIFFERENCE)
+    for level, group in zip(found.levels, (0, 1), strict=True):
+        matrix = hessians.hessian(engine.force(1 << group), at, engine.masses, ko.DIFFERENCE)[0]
+        largest = np.linalg.eigvalsh(matrix)[-1]
+        # The bracket's lower end is a Ritz value, off by what differences leave of it.
+        assert level.stiffness <= largest * (1 + 1e-5) and largest <= level.most <= 1.06 * largest
+        assert level.period == pytest.approx(2000 * np.pi / np.sqrt(largest), rel=0.03)
+    first = ko.system(system, at, steps=steps, minimize=False).decide().data["measured"]["first_unstable"]
+    advice = found.advise(steps=["0.5fs", "2fs"])
+    lower = advice.rows[0]["first_lower"]
+    assert lower["hi"] <= 1000 * first["hi"], (lower, first)
+    assert str(advice).startswith("estimated: ") and "looked at  group 1, every 4 fs" in str(advice)
+    assert [row["outer"] for row in advice.schemes] == ["4", "2"]
+
+
+def test_rigid_waters_and_plain_steps_get_advice() -> None:
+    """One level on what constraints leave free: the first unstable step is T/pi of its stiffest motion."""
+    system, positions = waters(rigid=True)
+    dense = ko.system(system, positions, steps={0: "2fs", 1: "2fs"}).decide()
+    first = re.search(r"first unstable outer step [a-z ]*: ([\d.]+)", str(dense))
+    assert first is not None
+    for steps in ({0: "0.5fs", 1: "2fs"}, {0: "2fs", 1: "2fs"}):
+        advice = kd.advise(system, positions=positions, steps=steps)
+        told = re.search(r"unstable from ([\d.]+) fs on", str(advice))
+        assert told is not None and float(told[1]) == pytest.approx(1000 * float(first[1]), rel=1e-3)
+    assert "group 0, every 0.5 fs: no force on what is free" in str(
+        kd.advise(system, positions=positions, steps={0: "0.5fs", 1: "2fs"})
+    )
+
+
+def test_three_levels_get_their_verdict_and_a_region() -> None:
+    system = mm.XmlSerializer.clone(waters()[0])
+    for force in system.getForces():
+        if isinstance(force, mm.HarmonicAngleForce):
+            force.setForceGroup(2)
+    made = ko.system(system, waters()[1], steps={0: "0.5fs", 2: "1fs", 1: "2fs"}, minimize=False)
+    advice = made.advise()
+    assert str(advice).startswith("at 0.5, 1, 2 fs: stable (proven, for the Hessians given)")
+    assert [mode["clock"] for mode in advice.modes] == [1, 2, 3] and advice.status == "safe"
+    inside = Fraction(advice.schemes[0]["band_edge"]["lo"]).limit_denominator(100) / 1000
+    steps = {0: inside / 4, 2: inside / 2, 1: inside}
+    assert ko.system(system, waters()[1], steps=steps, minimize=False).decide().stable
+    with pytest.raises(kd.KickdriftError, match="for two levels"):
+        made.advise(hmr="3.024")
+
+
+def test_thousands_of_atoms_with_pme_get_advice() -> None:
+    """More than dense Hessians are read of: 512 flexible waters, in a box, reciprocal space with the rest."""
+    system, positions = box(8)
+    system = mm.XmlSerializer.clone(system)
+    for force in system.getForces():
+        if isinstance(force, mm.NonbondedForce):
+            force.setReciprocalSpaceForceGroup(-1)
+            force.setCutoffDistance(0.9)
+    advice = kd.advise(system, positions=positions, steps={0: "0.5fs", 1: "2fs"})
+    fast, slow = (float(mode["period"]["lo"]) for mode in advice.modes)
+    # Bonds and angles are those of any TIP3P water. Four waters have a slow period of 40 fs; clashes on a grid, not all
+    # of which the minimizer undoes, are somewhat stiffer.
+    single = ko.bands(*box(2), steps={0: "0.5fs", 1: "2fs", 2: "2fs"}).levels[0].period
+    assert fast == pytest.approx(single, rel=5e-3) and 30 < slow < 45 and advice.status == "safe"
+    assert "by 80 forces on all atoms" in str(advice)
