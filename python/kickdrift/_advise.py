@@ -43,7 +43,7 @@ class Advisable(Protocol):
         constraints: str | None,
         hmr: Exact | None,
         levers: bool,
-    ) -> SystemAdvice: ...
+    ) -> Any: ...
 
 
 _COLOURS = {"safe": "safe", "caution": "caution", "near": "caution", "island": "caution"}
@@ -337,7 +337,7 @@ def advise(
         for field, value in {"bonds": bonds, "on": on}.items():
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes of its own")
-        return found.advise(
+        told: Advice | SystemAdvice = found.advise(
             rest,
             engine=engine,
             band=band,
@@ -347,6 +347,7 @@ def advise(
             hmr=hmr,
             levers=levers,
         )
+        return told
     if made:
         raise KickdriftError(next(iter(made)), shown(next(iter(made.values()))), "is for a system of OpenMM or ASE")
     given_alone = [periods] if isinstance(periods, str) else periods

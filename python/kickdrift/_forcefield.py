@@ -81,6 +81,11 @@ def hessian(
     return total.tocsr(), error
 
 
+def are_bonded(forces: Sequence[Any]) -> bool:
+    """Whether each term of all of these is one of a few atoms, which is known here."""
+    return all(type(force).__name__ in _BONDED for force in forces)
+
+
 def _terms(force: Any) -> list[list[int]]:
     count, read, atoms = _BONDED[type(force).__name__]
     return [list(getattr(force, read)(n)[atoms]) for n in range(getattr(force, count)())]

@@ -5,11 +5,14 @@ Coordinates are mass-weighted throughout, x = M^½ (r - r0): a kick of strength 
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from pathlib import Path
+from time import perf_counter
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -18,6 +21,7 @@ import numpy.typing as npt
 from kickdrift import _plot
 from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
+from kickdrift._held import Held
 from kickdrift._numbers import frozen
 from kickdrift._rigid import Doubles, norm
 
@@ -32,10 +36,87 @@ Progress: TypeAlias = Callable[[int, int], None]
 
 
 def bar(done: int, total: int) -> None:
-    """A bar on standard error."""
+    """A bar on standard error; where that is no terminal, as in a log, four lines in all."""
+    if not sys.stderr.isatty():
+        if 4 * done // total > 4 * (done - 1) // total:
+            print(f"{done} of {total} columns", file=sys.stderr, flush=True)
+        return
     drawn = "#" * (30 * done // total)
     end = "\n" if done == total else ""
     print(f"\r[{drawn:30}] {done} of {total} columns", end=end, file=sys.stderr, flush=True)
+
+
+@dataclass(frozen=True)
+class Work:
+    """What Hessians will take, before they are begun: their columns, how many of them, and seconds a force takes."""
+
+    columns: int
+    hessians: int
+    evaluation: float
+
+    @property
+    def seconds(self) -> float:
+        """Four forces a column."""
+        return 4 * self.columns * self.hessians * self.evaluation
+
+    @property
+    def bytes(self) -> float:
+        """Matrices of doubles: six while one is made, and of each four copies in the system."""
+        return 8.0 * self.columns**2 * (6 + 4 * self.hessians)
+
+    def __str__(self) -> str:
+        each = f"{self.hessians} Hessians of {self.columns} columns, {4 * self.columns * self.hessians} forces"
+        return f"{each} of {1e3 * self.evaluation:.3g} ms: some {self.seconds:.2g} s, {self.bytes / 1e9:.2g} GB"
+
+    def begin(self, most: float, is_told: bool, remedy: str) -> None:
+        """Say what it is, where that is wanted, and refuse what the library, the memory or ``most`` seconds do not let
+        through.
+
+        Raises
+        ------
+        KickdriftError
+            Before anything is computed.
+        """
+        if self.columns > LARGEST:
+            raise KickdriftError(
+                "system", f"{self.columns} degrees of freedom", f"dense ones are {LARGEST} at most: {remedy}"
+            )
+        free = _memory()
+        if self.bytes > free:
+            raise KickdriftError("system", str(self), f"there are {free / 1e9:.2g} GB: {remedy}")
+        if self.seconds > most:
+            raise KickdriftError("system", str(self), f"is more than {most:g} s: give longest=SECONDS, or {remedy}")
+        if is_told:
+            print(self, file=sys.stderr, flush=True)
+
+
+#: The library takes dense matrices of so many rows.
+LARGEST = 4096
+
+
+def _memory() -> float:
+    """Bytes that programs may have, what caches hold included; all there are, or no limit, where that is not said."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        return next(1024.0 * int(line.split()[1]) for line in lines if line.startswith("MemAvailable"))
+    except (OSError, StopIteration):
+        pass
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    except (AttributeError, OSError, ValueError):
+        return np.inf
+
+
+#: Hessians that take more seconds than this are asked for.
+LONGEST = 3600.0
+
+
+def seconds_of(force: Force, positions: Doubles) -> float:
+    """How long a force takes, the second time."""
+    force(positions)
+    begin = perf_counter()
+    force(positions)
+    return perf_counter() - begin
 
 
 def shown(progress: Progress | bool | None) -> Progress | None:
@@ -277,7 +358,8 @@ class Monodromy(Frozen):
     period : Fraction
         The period of the clocks.
     half : array, shape (2n', 2n')
-        The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n.
+        The propagator of mass-weighted deviations (x, v) over half a period, n' = 3n less what is held, in orthonormal
+        frames of what is free at both its ends.
     residual : float
         The step that Newton's method would take next, relative to the extent of the atoms; 0 about a minimum.
     mu : array, shape (n',)
@@ -379,50 +461,78 @@ def _eigenvalues(
 _ROUNDING = 1e-13
 
 
+@dataclass(frozen=True, eq=False)
+class Half:
+    """Half a period from rest: the propagator of deviations in the frames at its ends, the mass-weighted velocity at
+    its end and that frame, and the kicks."""
+
+    matrix: Doubles
+    speed: Doubles
+    first: Doubles
+    last: Doubles
+    struck: list[Struck]
+
+
 def compose(
     forces: Sequence[Force],
     steps: Sequence[Fraction],
     start: Doubles,
-    masses: Doubles,
+    held: Held,
     difference: float,
     still: bool = False,
-) -> tuple[Doubles, Doubles, list[Struck]]:
-    """The propagator over half a period along the orbit from rest at ``start``, or about ``start`` itself where
-    ``still``, the mass-weighted velocity at its end, and the kicks."""
-    size, root = start.size, np.sqrt(np.repeat(masses, 3))
-    half, position, speed = np.eye(2 * size), start.copy(), np.zeros(size)
+) -> Half:
+    """Half a period along the orbit from rest at ``start``, or about ``start`` itself where ``still``.
+
+    Velocities along the gradients of held distances are carried along: the next drift takes them out, as RATTLE does.
+    At both ends the velocity vanishes but for those, so frames of what is free are canonical coordinates there, and the
+    propagator is symplectic.
+    """
+    first = allowed = held.frame(start)
+    position, speed = start.copy(), np.zeros(start.size)
+    at, going = np.hstack([first, np.zeros_like(first)]), np.hstack([np.zeros_like(first), first])
     known: dict[int, tuple[Doubles, float, float]] = {}
     struck = []
     last = Fraction(0)
     for kick in schedule(steps):
         drift = float(kick.time - last)
-        half[:size] += drift * half[size:]
-        if not still:
-            position += (drift * speed / root).reshape(position.shape)
+        if still:
+            at = at + drift * going
+        elif drift:
+            reached, speed, factors = held.drift(position, speed, drift)
+            at, going = held.led(position, reached, factors, drift, at, going)
+            position, allowed = reached, held.frame(reached)
         for group, duration in kick.groups:
             if not (still and group in known):
-                known[group] = _measured(forces[group], position, masses, difference)
+                known[group] = _measured(forces[group], position, held.masses, difference)
             stiffness, correction, asymmetry = known[group]
             own = norm(stiffness)
             # Of smooth forces the fourth order leaves of the second order's error what that is of the whole.
             error = correction**2 / max(own, 1e-300) + asymmetry
-            struck.append(Struck(float(duration), half[:size].copy(), error, own))
-            half[size:] -= float(duration) * (stiffness @ half[:size])
-            if not still:
-                speed += float(duration) * forces[group](position).ravel() / root
+            struck.append(Struck(float(duration), allowed.T @ at, error, own))
+            if still:
+                stiffness = stiffness + held.curvature(forces[group](position), position)
+                going = going - float(duration) * (allowed @ (allowed.T @ (stiffness @ at)))
+            else:
+                going = going - float(duration) * (stiffness @ at)
+                speed = speed + float(duration) * forces[group](position).ravel() / held.root
         last = kick.time
-    return half, speed, struck
+    # Deviations turn the gradients, along which the velocity does not vanish.
+    going = going - held.bent(held.along(speed, position)) @ at
+    return Half(np.vstack([allowed.T @ at, allowed.T @ going]), allowed.T @ speed, first, allowed, struck)
 
 
-def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, masses: Doubles) -> Doubles:
-    """The mass-weighted velocity after half a period from rest."""
-    root, position, speed, last = np.sqrt(np.repeat(masses, 3)), start.copy(), np.zeros(start.size), Fraction(0)
+def _swing(forces: Sequence[Force], steps: Sequence[Fraction], start: Doubles, held: Held) -> Doubles:
+    """The mass-weighted velocity after half a period from rest, but for what held distances take up."""
+    position, speed, last = start.copy(), np.zeros(start.size), Fraction(0)
     for kick in schedule(steps):
-        position += (float(kick.time - last) * speed / root).reshape(position.shape)
+        if kick.time > last:
+            position, speed, _ = held.drift(position, speed, float(kick.time - last))
         for group, duration in kick.groups:
-            speed += float(duration) * forces[group](position).ravel() / root
+            speed = speed + float(duration) * forces[group](position).ravel() / held.root
         last = kick.time
-    return speed
+    if not held.distances:
+        return speed
+    return speed - held.gradients(position).T @ held.along(speed, position)
 
 
 def _damped(size_at: Callable[[float], float], size: float) -> float | None:
@@ -437,56 +547,73 @@ _ARRIVED = 1e-9
 _SMALLEST_PART = 1 / 100
 
 
-def _held(force: Force, held: Doubles) -> Force:
+def _less(force: Force, constant: Doubles) -> Force:
     """A force less a constant one."""
-    return lambda positions: force(positions) - held
+    return lambda positions: force(positions) - constant
 
 
 def _newton(
     forces: Sequence[Force],
     steps: Sequence[Fraction],
     start: Doubles,
-    masses: Doubles,
+    held: Held,
     difference: float,
     firm: Doubles,
-) -> tuple[Doubles, Doubles, float, list[Struck]]:
-    """Damped Newton's method for rest after half a period: positions, the propagator from there, the step that would
-    be next over the extent of the atoms, and the kicks.
+) -> _Orbit:
+    """Damped Newton's method for rest after half a period.
 
     It moves along the columns of ``firm``, and along them it seeks rest: of rigid motions there is none to begin with,
-    and what has no momentum gets none.
+    and what has no momentum gets none. Positions are put back on held distances as a drift is.
     """
-    root, extent = np.sqrt(np.repeat(masses, 3)), float(np.ptp(start, axis=0).max()) or 1.0
+    extent = float(np.ptp(start, axis=0).max()) or 1.0
+
+    def moved(part: float) -> Doubles:
+        return held.drift(start, part * move, 1.0)[0]
 
     def size_at(part: float) -> float:
-        return float(np.abs(firm.T @ _swing(forces, steps, start + part * move, masses)).max())
+        return float(np.abs(firm.T @ _swing(forces, steps, moved(part), held)).max())
 
     while True:
-        half, speed, struck = compose(forces, steps, start, masses, difference)
-        speed = firm.T @ speed
-        move = firm @ np.linalg.lstsq(firm.T @ half[start.size :, : start.size] @ firm, -speed, rcond=None)[0]
-        move = (move / root).reshape(start.shape)
-        residual = float(np.abs(move).max()) / extent
+        half = compose(forces, steps, start, held, difference)
+        pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
+        speed = firm.T @ (half.last @ half.speed)
+        move = half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -speed, rcond=None)[0]))
+        residual = float(np.abs(move / held.root).max()) / extent
         part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
         if part is None:
-            return start, half, residual, struck
-        start = start + part * move
+            # How near rest is lost, and with it the orbit: at a fold a multiplier is 1.
+            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]))
+        start = moved(part)
+
+
+@dataclass(frozen=True, eq=False)
+class _Orbit:
+    """Where Newton's method ended: positions, half a period from there, the step that would be next over the extent of
+    the atoms, and the least singular value of what it solves with."""
+
+    positions: Doubles
+    half: Half
+    residual: float
+    least: float
 
 
 def monodromy(
     forces: Mapping[str, Force],
     steps: Sequence[Fraction],
     at: Doubles,
-    masses: Doubles,
+    held: Held,
     difference: float,
     about: str,
+    unit: str | None = None,
 ) -> Monodromy:
     """The monodromy about a minimum ``at``, or about the periodic orbit that Newton's method finds from there.
 
     The orbit starts at rest in the middle of a kick of every clock; so it is symmetric in time, and it is closed where
     it is at rest again after half a period: n equations for n positions. Where Newton's method does not find it from
     the minimum, it is followed from there: each group's force less (1 - t) times its value at the minimum, which in the
-    total cancel, has the minimum as its orbit at t = 0 and is the force itself at t = 1.
+    total cancel, has the minimum as its orbit at t = 0 and is the force itself at t = 1. Distances are held as RATTLE
+    holds them; what they take up of a force counts as none. Where neither finds it, it is followed from shorter steps,
+    and where it ends is told in the unit of the steps; ``unit=None`` leaves that out.
 
     Raises
     ------
@@ -496,24 +623,111 @@ def monodromy(
     own = list(forces.values())
     period = _common(steps)
     if about == "minimum":
-        half, _, struck = compose(own, steps, at, masses, difference, still=True)
-        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half), 0.0, *_eigenvalues(half, struck, 0.0))
+        half = compose(own, steps, at, held, difference, still=True)
+        values = _eigenvalues(half.matrix, half.struck, 0.0)
+        return Monodromy(about, frozen(at.copy()), 0.0, period, frozen(half.matrix), 0.0, *values)
     if about != "orbit":
         raise KickdriftError("about", about, "choose orbit or minimum")
-    balances = [force(at) for force in own]
-    firm = _firm(hessian(lambda x: np.sum([force(x) for force in own], axis=0), at, masses, difference)[0])
+    free = held.frame(at)
+    balances = [((free @ (free.T @ (force(at).ravel() / held.root))) * held.root).reshape(at.shape) for force in own]
+    every = _sum(own)
+    stiffness = hessian(every, at, held.masses, difference)[0] + held.curvature(every(at), at)
+    firm = free @ _firm(free.T @ stiffness @ free)
     done, part, start = 0.0, 1.0, at
     while done < 1.0:
         share = min(done + part, 1.0)
-        held = [_held(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
-        there, half, residual, struck = _newton(held, steps, start, masses, difference, firm)
-        if residual <= _ARRIVED:
-            done, part, start = share, 2 * part, there
+        less = [_less(force, (1 - share) * balance) for force, balance in zip(own, balances, strict=True)]
+        found = _newton(less, steps, start, held, difference, firm)
+        if found.residual <= _ARRIVED:
+            done, part, start = share, 2 * part, found.positions
         elif part < _SMALLEST_PART:
-            remedy = "it ends there, as near a resonance of the kicks: choose another step, or about='minimum'"
-            raise KickdriftError("about", f"orbit, followed to {done:.0%} of the groups' own forces", remedy)
+            ends = ", as near a resonance of the kicks"
+            other, ends = (None, ends) if unit is None else _longer(own, steps, at, held, difference, firm, unit)
+            if other is None:
+                value = f"orbit, followed to {done:.0%} of the groups' own forces"
+                raise KickdriftError("about", value, f"it ends there{ends}: choose another step, or about='minimum'")
+            done, start, found = 1.0, other.positions, other
         else:
             part /= 2
+    half = found.half
     away = float(np.linalg.norm(start - at, axis=1).max())
-    found = _eigenvalues(half, struck, residual)
-    return Monodromy(about, frozen(start.copy()), away, period, frozen(half), residual, *found)
+    values = _eigenvalues(half.matrix, half.struck, found.residual)
+    return Monodromy(about, frozen(start.copy()), away, period, frozen(half.matrix), found.residual, *values)
+
+
+#: The steps at which an orbit ends are told to this part of those asked about.
+_ENDS = Fraction(1, 1024)
+
+
+def _longer(
+    forces: Sequence[Force],
+    steps: Sequence[Fraction],
+    at: Doubles,
+    held: Held,
+    difference: float,
+    firm: Doubles,
+    unit: str,
+) -> tuple[_Orbit | None, str]:
+    """The orbit followed from shorter steps at the same ratios, and in words at which outer step it ends.
+
+    One orbit goes on where its positions change by no more than four times the change before, over the steps; another
+    is a jump. Where it folds, it meets another and neither goes on: it moves as the root of what is left of the step
+    there, so three steps before tell where.
+    """
+    outer, extent = float(max(steps)), float(np.ptp(at, axis=0).max()) or 1.0
+
+    def reached(share: Fraction, start: Doubles) -> _Orbit | None:
+        try:
+            found = _newton(forces, [share * step for step in steps], start, held, difference, firm)
+        except (KickdriftError, np.linalg.LinAlgError):
+            return None
+        return found if found.residual <= _ARRIVED else None
+
+    first = ((share, reached(share, at)) for share in (Fraction(1, 2**k) for k in range(1, 5)))
+    known = [(share, found) for share, found in first if found is not None][:1]
+    if not known:
+        return None, ", as near a resonance of the kicks"
+    most = Fraction(1)
+    while most >= _ENDS / 16:
+        share, last = known[-1]
+        if share == 1:
+            return last, ""
+        slope = np.zeros_like(at)
+        if len(known) > 1:
+            slope = (last.positions - known[-2][1].positions) / float(share - known[-2][0])
+        left = _folds(known) - float(share)
+        # Three quarters of the way to the fold, where half of the root is left.
+        ahead = Fraction(min(0.75 * left, 1.0)).limit_denominator(2**20)
+        part = min(max(ahead, _ENDS / 16), most, 1 - share, share / 2)
+        there = held.drift(last.positions, held.root * (float(part) * slope).ravel(), 1.0)[0]
+        found = reached(share + part, there)
+        away = np.inf if found is None else float(np.abs(found.positions - last.positions).max()) / float(part)
+        if found is not None and (len(known) == 1 or away <= max(4 * np.abs(slope).max(), extent / 100)):
+            known.append((share + part, found))
+            most = 2 * part
+        else:
+            most = part / 2
+    share, fold = known[-1][0], _folds(known)
+    words = f". From shorter steps at the same ratios it is followed to {outer * float(share):.6g} {unit}"
+    if fold < share + _ENDS:
+        words += f" and folds at {outer * fold:.5g} {unit}, where it meets another orbit"
+    return None, words
+
+
+def _folds(known: Sequence[tuple[Fraction, _Orbit]]) -> float:
+    """Where the parabola of the share of the steps over the way of the positions, by the last three, has its top."""
+    if len(known) < 3:
+        return np.inf
+    shares = np.array([float(share) for share, _ in known[-3:]])
+    one, two, three = (found.positions for _, found in known[-3:])
+    way = (three - two) / max(float(np.linalg.norm(three - two)), 1e-300)
+    near, last = (float(np.sum(way * (own - one))) for own in (two, three))
+    if not 0 < near < last:
+        return np.inf
+    bend, slope, _ = np.polyfit([0.0, near, last], shares, 2)
+    top = -slope / (2 * bend) if bend < 0 else np.inf
+    return float(shares[0] + slope * top + bend * top**2) if last < top < np.inf else np.inf
+
+
+def _sum(forces: Sequence[Force]) -> Force:
+    return lambda positions: np.asarray(np.sum([force(positions) for force in forces], axis=0))

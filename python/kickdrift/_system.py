@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
+from kickdrift._bands import of_hessians
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
@@ -372,8 +373,11 @@ class System(Frozen):
         constraints: str | None = None,
         hmr: Exact | None = None,
         levers: bool = True,
-    ) -> SystemAdvice:
-        """Say which steps are safe for these Hessians, two levels with a unit of time, for how long, and why.
+    ) -> Any:
+        """Say which steps are safe for these Hessians, with a unit of time, for how long, and why.
+
+        A :class:`SystemAdvice` of two levels. Of one, or three and more, the verdict at their steps, and an
+        :class:`Advice` of the shortest period of each level: what is below its first unstable interval holds for all.
 
         Parameters
         ----------
@@ -397,7 +401,7 @@ class System(Frozen):
         Raises
         ------
         KickdriftError
-            Bad input; exact stiffnesses, other than two levels, no ``time_unit``.
+            Bad input; exact stiffnesses, no ``time_unit``; other than two levels with constraints.
 
         Examples
         --------
@@ -408,11 +412,23 @@ class System(Frozen):
         >>> system.advise(steps=[("0.5fs", "6fs")])
         SystemAdvice(4 fs caution, 6 fs island)
         """
+        scales = (band, length, friction, constraints, hmr)
+        if (bands := of_hessians(self.document, self.arrays, self.decide)) is not None:
+            return bands.advise(
+                steps,
+                engine=engine,
+                band=band,
+                length=length,
+                friction=friction,
+                constraints=constraints,
+                hmr=hmr,
+                levers=levers,
+            )
         found = asked(
             self._fields(),
             steps,
             engine,
-            (band, length, friction, constraints, hmr),
+            scales,
             place=self._place(),
             levers=levers,
         )

@@ -12,13 +12,17 @@ from typing import Any
 import numpy as np
 
 from kickdrift._errors import KickdriftError, needs
+from kickdrift._held import Held
 from kickdrift._hessians import (
+    LONGEST,
     Force,
     Monodromy,
     Progress,
+    Work,
     hessian,
     minimum,
     monodromy,
+    seconds_of,
     seen,
     shown,
     unbalanced,
@@ -46,6 +50,7 @@ def system(
     difference: float = DIFFERENCE,
     progress: Progress | bool = False,
     symmetric: bool = True,
+    longest: float = LONGEST,
 ) -> System:
     """Make a system of ASE's: the Hessian of each calculator at the minimum of all, with its measured error.
 
@@ -62,7 +67,10 @@ def system(
     difference : float
         The difference of positions, Å.
     progress : bool or callable
-        A bar on standard error; or what is called with the columns done and the columns in all, for each group.
+        A bar on standard error, in a log four lines a group, behind what it will take; or what is called with the
+        columns done and the columns in all, for each group.
+    longest : float
+        Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
     symmetric : bool
         False: some force is no gradient, as one that is learned and predicted directly. Then the asymmetry of a
         Jacobian is no error, and the answer's ``no_gradient`` keeps apart what grows without steps.
@@ -90,6 +98,9 @@ def system(
     True
     """
     forces, steps, masses = _forces(atoms, groups)
+    dear = sum(seconds_of(force, atoms.positions) for force in forces.values()) / len(forces)
+    hessians = len(forces) * (4 if minimize else 1)
+    Work(3 * len(atoms), hessians, dear).begin(longest, progress is True, "fewer atoms")
     where = _start(atoms, forces, masses, minimize, difference)
     seen_by = shown(progress)
     measured = {
@@ -154,7 +165,7 @@ def oscillations(
     """
     forces, steps, masses = _forces(atoms, groups)
     where = _start(atoms, forces, masses, minimize, difference)
-    return monodromy(forces, steps, where, masses, difference, about)
+    return monodromy(forces, steps, where, Held(masses), difference, about, "fs")
 
 
 def _forces(atoms: Any, groups: Mapping[str, tuple[Any, Exact]]) -> tuple[dict[str, Force], list[Fraction], Doubles]:

@@ -19,16 +19,22 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from kickdrift._bands import Band, Bands
 from kickdrift._errors import KickdriftError, needs
+from kickdrift._held import Held
 from kickdrift._hessians import (
+    LARGEST,
+    LONGEST,
     Force,
     Monodromy,
     Progress,
+    Work,
     arrived,
     descend,
     hessian,
     minimum,
     monodromy,
+    seconds_of,
     seen,
     shown,
     soft_solve,
@@ -45,10 +51,13 @@ try:
 except ImportError:
     raise needs("openmm") from None
 
-__all__ = ["oscillations", "system"]
+__all__ = ["bands", "oscillations", "system"]
 
 #: The difference of positions, nm: force fields are smooth on this length.
 DIFFERENCE = 1e-4
+
+#: The same where forces come in single precision.
+WIDE = 1e-3
 
 
 _Constraint = tuple[int, int, float]
@@ -85,6 +94,7 @@ def system(
     difference: float = DIFFERENCE,
     sparse: bool = False,
     progress: Progress | bool = False,
+    longest: float = LONGEST,
 ) -> System:
     """Make a system of OpenMM's: the Hessian of each force group at the minimum, with its measured error.
 
@@ -112,7 +122,10 @@ def system(
         a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;
         ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable region.
     progress : bool or callable
-        A bar on standard error; or what is called with the columns done and the columns in all, for each group.
+        A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
+        columns done and the columns in all, for each step.
+    longest : float
+        Seconds: Hessians that would take longer, or more memory than there is, are refused before they are begun.
 
     Returns
     -------
@@ -154,12 +167,20 @@ def system(
             remedy = "has no sparse Hessians with constraints or some atoms alone: leave sparse=True out"
             raise KickdriftError("system", f"{len(constraints)} constraints", remedy)
         return _sparse(system, engine, clocks, where, minimize, difference, topology, shown(progress), integrator)
+    columns = 3 * (engine.count if atoms is None else len(atoms))
+    # Newton's method makes one of all forces, three or four times.
+    dear, remedy = (
+        seconds_of(engine.force(-1), where),
+        "atoms=[...] and minimize=False for some of them, or sparse=True",
+    )
+    Work(columns, len(_levels(clocks)), dear).begin(longest, progress is True, remedy)
     if minimize:
+        Work(3 * engine.count, 3, dear).begin(longest, progress is True, remedy)
         where = _minimized(engine, where, constraints, difference)
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
-    frame = _frame(where, engine.masses, constraints, chosen)
+    frame = Held(engine.masses, constraints).frame(where, chosen)
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
     accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
@@ -276,8 +297,11 @@ def _named(
     return labels, elements, bonded or None
 
 
-def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
-    """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own."""
+def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | Bands, Any]:
+    """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own.
+
+    Bands of one that dense Hessians are too many of, or that has constraints and other than two levels with forces.
+    """
     arguments = dict(made)
     if isinstance(steps, Mapping):
         arguments["steps"], steps = steps, ()
@@ -291,13 +315,34 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System, Any]:
         raise KickdriftError("periods", type(own).__name__, "of OpenMM give a Simulation, or a System with positions=")
     if "positions" not in arguments:
         raise KickdriftError("positions", None, "give the positions of the particles, nm")
+    plain = ("positions", "topology", "integrator", "steps", "minimize")
+    asked: dict[str, Any] = {key: arguments[key] for key in plain if key in arguments}
+    is_plain = arguments.keys() <= asked.keys() | {"progress", "longest"}
+    if is_plain and (3 * own.getNumParticles() > LARGEST or _is_held_fast(own, asked)):
+        return bands(own, asked.pop("positions"), **asked), steps
     found = system(own, arguments.pop("positions"), **arguments)
     positions = found.arrays.get("positions")
     is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
-    if not is_whole or own.getNumConstraints() or not any("swings about an orbit" in note for note in found.notes):
+    if not is_whole or not any("swings about an orbit" in note for note in found.notes):
         return found, steps
     scheme: dict[str, Any] = {key: arguments[key] for key in ("integrator", "steps", "difference") if key in arguments}
     return replace(found, _orbit=_about_orbit(own, np.asarray(positions), scheme)), steps
+
+
+def _is_held_fast(own: Any, asked: Mapping[str, Any]) -> bool:
+    """Whether there are constraints, and not two levels of forces on what they leave free: rigid water has no bonds."""
+    if not own.getNumConstraints():
+        return False
+    levels = _levels(_clocks(own, asked.get("integrator"), asked.get("steps")))
+    return len(levels) != 2 or not _terms_of(own, levels[min(levels)])
+
+
+def _terms_of(own: Any, groups: Sequence[int]) -> int:
+    """How many terms the forces of some groups have; a force that is not counted has some."""
+    from kickdrift import _forcefield
+
+    forces = [force for force in own.getForces() if force.getForceGroup() in groups and not _is_bath(force)]
+    return sum(len(_forcefield._terms(force)) if _forcefield.are_bonded([force]) else 1 for force in forces)
 
 
 #: Orbits of so many degrees of freedom are followed unasked: some seconds.
@@ -309,7 +354,8 @@ def _about_orbit(own: Any, positions: Doubles, scheme: Mapping[str, Any]) -> str
     outer = float(max(_clocks(own, scheme.get("integrator"), scheme.get("steps")).values())) * 1000
     begin = f"own orbit: at {outer:g} fs a run swings about an orbit beside the minimum"
     try:
-        found = oscillations(own, positions, **scheme, minimize=False)
+        # Where no orbit is found at once, others are not sought unasked: that takes ten times as long.
+        found = _oscillations(own, positions, **scheme, minimize=False, unit=None)
     except KickdriftError as error:
         return f"{begin} that is not found: {error}\n"
     does = "nothing grows" if found.stable else f"deviations grow at {found.growth_rate:.3g}/ps"
@@ -354,7 +400,7 @@ def _measured(
         full, error = hessian(force, where, engine.masses, difference, chosen, progress)
         matrix = full
         if constraints:
-            matrix = matrix + _curvature(force(where), where, engine.masses, constraints, chosen)
+            matrix = matrix + Held(engine.masses, constraints).curvature(force(where), where, chosen)
         matrix = frame.T @ matrix @ frame
         name = ", ".join(f"group {group}" for group in groups)
         found.append(_Level(name, step, full, (matrix + matrix.T) / 2, error, force(where)))
@@ -373,9 +419,7 @@ def _unbalanced(
     # What constraints take up moves nothing.
     along = {own.name: (frame @ (frame.T @ (own.force.ravel()[kept] / root)) * root).reshape(-1, 3) for own in measured}
     total = np.sum([own.matrix for own in measured], axis=0)
-    follow = "Its orbit is not known: those of constrained systems are not followed"
-    if not constraints:
-        follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
+    follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
     return unbalanced(along, norm(total), masses[kept[::3] // 3], "kJ/mol/nm", follow)
 
 
@@ -402,7 +446,8 @@ def oscillations(
     """Measure what small deviations do over a period, about the integrator's own periodic orbit: what a run shows.
 
     Bonded and nonbonded forces balance at a minimum, none vanishes there; so each slow kick displaces the atoms and the
-    fast forces swing them back. The orbit of that is found by Newton's method, with Hessians at each kick.
+    fast forces swing them back. The orbit of that is found by Newton's method, with Hessians at each kick. Constraints
+    are held at each drift as RATTLE, SHAKE and SETTLE hold them, and deviations are those that they leave free.
 
     Parameters
     ----------
@@ -420,7 +465,8 @@ def oscillations(
     Raises
     ------
     KickdriftError
-        As :func:`system`; a system with constraints; an orbit that is not found.
+        As :func:`system`; drifts too long for the constraints; an orbit that is not found, and at which outer step the
+        one of shorter steps ends.
 
     Examples
     --------
@@ -431,17 +477,153 @@ def oscillations(
     >>> kickdrift.openmm.oscillations(own, [[0, 0, 0]], steps={0: "1/100"}, about="minimum")
     Monodromy(about the minimum: stable, an estimate)
     """
+    return _oscillations(system, positions, integrator, steps, about, minimize, difference)
+
+
+def _oscillations(
+    system: Any,
+    positions: Any,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    about: str = "orbit",
+    minimize: bool = True,
+    difference: float = DIFFERENCE,
+    unit: str | None = "ps",
+) -> Monodromy:
+    """:func:`oscillations`; without a ``unit`` an orbit not found at once is not followed from shorter steps."""
     clocks = _clocks(system, integrator, steps)
-    if system.getNumConstraints():
-        remedy = "orbits of constrained systems are not followed: use system(...), which is about the minimum"
-        raise KickdriftError("system", f"{system.getNumConstraints()} constraints", remedy)
     engine = _engine(system)
+    held = Held(engine.masses, _constraints(system))
     where = _positions(positions, engine.count)
     if minimize:
-        where = _minimized(engine, where, [], difference)
+        where = _minimized(engine, where, held.distances, difference)
+    # Onto the held distances, to rounding: engines keep them to their tolerance.
+    where = held.drift(where, np.zeros(where.size), 1.0)[0]
     levels = _levels(clocks)
     forces = {str(groups): engine.force(sum(1 << group for group in groups)) for groups in levels.values()}
-    return monodromy(forces, list(levels), where, engine.masses, difference, about)
+    return monodromy(forces, list(levels), where, held, difference, about, unit)
+
+
+def bands(
+    system: Any,
+    positions: Any,
+    *,
+    topology: Any = None,
+    integrator: Any = None,
+    steps: Mapping[int, Any] | None = None,
+    minimize: bool = True,
+    difference: float | None = None,
+) -> Bands:
+    """Find the shortest period of each level of forces by Lanczos' method: of any number of atoms, PME and constraints.
+
+    No Hessian is stored but those of bonded terms, which are sparse. All other forces are asked for along directions in
+    which all atoms move at once; of more than a hundred atoms on OpenMM's CPU platform, in single precision.
+
+    Parameters
+    ----------
+    system, positions, topology, integrator, steps
+        As for :func:`system`; any number of levels, one step for all forces, too.
+    minimize : bool
+        Go to where OpenMM's minimizer ends after some hundred steps, in a copy.
+    difference : float, optional
+        How far, nm, an atom moves at most: 0.001 unless given in single precision, where less is rounding. Twice as far
+        tells the error.
+
+    Returns
+    -------
+    Bands
+        Estimates: its ``advise`` says which steps are safe with them.
+
+    Raises
+    ------
+    KickdriftError
+        As :func:`system`.
+
+    Examples
+    --------
+    >>> import openmm
+    >>> import kickdrift.openmm
+    >>> own, walls = openmm.System(), openmm.CustomExternalForce("200*(x^2+y^2+z^2)")
+    >>> _ = own.addParticle(1.0), walls.addParticle(0), own.addForce(walls)
+    >>> found = kickdrift.openmm.bands(own, [[0, 0, 0]], steps={0: "1/100"}, minimize=False)
+    >>> round(found.levels[0].period), found.advise().status
+    (314, 'safe')
+    """
+    clocks = _clocks(system, integrator, steps)
+    names = [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
+    is_small = 3 * system.getNumParticles() <= _FOLLOWED
+    engine = _engine(system, "CPU" if "CPU" in names and not is_small else "Reference")
+    difference = difference or (DIFFERENCE if is_small else WIDE)
+    where, held = _positions(positions, engine.count), Held(engine.masses, _constraints(system))
+    notes = _notes(system, integrator, clocks)
+    if minimize:
+        where, how = _near_minimum(engine, where, held, difference, is_small)
+        notes.append(how)
+    labels = _named(engine.masses, topology, np.arange(engine.count))[0]
+    found = [_band(system, engine, held, where, own, labels, difference) for own in _levels(clocks).items()]
+    return Bands(tuple(found), tuple(notes))
+
+
+def _near_minimum(
+    engine: _Engine, where: Doubles, held: Held, difference: float, is_small: bool
+) -> tuple[Doubles, str]:
+    """The minimum of few atoms, or where OpenMM's minimizer ends; and in words which."""
+    if is_small:
+        try:
+            return _minimized(engine, where, held.distances, difference), "at the minimum beside the positions"
+        except KickdriftError:
+            # As where pairs cross a cutoff: no stiffness hangs on the last digits of a place.
+            pass
+    engine.context.setPositions(where)
+    mm.LocalEnergyMinimizer.minimize(engine.context, maxIterations=_MINIMIZED)
+    where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
+    return where, f"at the positions after {_MINIMIZED} steps of OpenMM's minimizer at most, near a minimum, not at one"
+
+
+#: Steps of OpenMM's minimizer: bonds and clashes have relaxed then, and no stiffness hangs on the rest.
+_MINIMIZED = 200
+
+#: Products of Lanczos' method: of stored matrices, which cost little, and of forces.
+_STORED, _ASKED = 300, 40
+
+
+def _band(
+    system: Any,
+    engine: _Engine,
+    held: Held,
+    where: Doubles,
+    level: tuple[Fraction, list[int]],
+    labels: Sequence[str],
+    difference: float,
+) -> Band:
+    """The shortest period of the groups of one step."""
+    from kickdrift import _bands, _forcefield
+
+    step, groups = level
+    name = " + ".join(f"group {group}" for group in groups)
+    force = engine.force(sum(1 << group for group in groups))
+    own = [each for each in system.getForces() if each.getForceGroup() in groups and not _is_bath(each)]
+    pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
+    reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
+    free, bent = _bands.projection(held, where), _bands.curvature(held, where, force(where))
+    if _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
+        matrix, error = _forcefield.hessian(system, groups, where, DIFFERENCE / 10)
+        error, steps, forces = error / float(engine.masses.min()), _STORED, 0
+        product = _bands.by_matrix(matrix, held.root)
+    else:
+        product, error, steps, forces = _bands.by_differences(force, where, held.root, difference), 0.0, _ASKED, 2
+
+    def apply(vector: Doubles) -> Doubles:
+        vector = free(vector)
+        return free(product(vector) + bent(vector))
+
+    found = _bands.top(apply, where.size, steps)
+    if forces:
+        wide = _bands.by_differences(force, where, held.root, 2 * difference)
+        error = float(np.linalg.norm(free(wide(found.vector) - product(found.vector))))
+    moving = np.linalg.norm(found.vector.reshape(-1, 3), axis=1)
+    atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)
+    return Band(name, step, found.found, found.most + error, atoms, forces * steps)
 
 
 def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
@@ -525,7 +707,7 @@ def _of_integrator(integrator: Any, groups: set[int]) -> dict[int, Fraction]:
     return clocks
 
 
-def _engine(system: Any) -> _Engine:
+def _engine(system: Any, platform: str = "Reference") -> _Engine:
     count = system.getNumParticles()
     masses = np.array([system.getParticleMass(n)._value for n in range(count)])
     if (masses <= 0).any():
@@ -533,7 +715,7 @@ def _engine(system: Any) -> _Engine:
         raise KickdriftError("system", f"particle {int(np.argmin(masses))}", remedy)
     # The Reference platform computes in doubles: differences of its forces are good to ten digits.
     integrator = mm.VerletIntegrator(0.001)
-    context = mm.Context(system, integrator, mm.Platform.getPlatformByName("Reference"))
+    context = mm.Context(system, integrator, mm.Platform.getPlatformByName(platform))
     return _Engine(context, masses, count)
 
 
@@ -603,65 +785,21 @@ def _constrained_minimum(
     """
     force, where, masses = engine.force(-1), near, engine.masses
     matrix = np.zeros((near.size, near.size))
-    root, frame = np.sqrt(np.repeat(masses, 3)), _frame(where, masses, constraints, None)
+    held = Held(masses, constraints)
+    frame = held.frame(where)
 
     def pull() -> Doubles:
-        return frame.T @ (force(where).ravel() / root)
+        return frame.T @ (force(where).ravel() / held.root)
 
     def move(pulled: Doubles) -> None:
         nonlocal where, frame, matrix
         matrix, _ = hessian(force, where, masses, difference)
-        matrix = frame.T @ (matrix + _curvature(force(where), where, masses, constraints, None)) @ frame
+        matrix = frame.T @ (matrix + held.curvature(force(where), where)) @ frame
         step = frame @ soft_solve(matrix, pulled)
-        engine.context.setPositions(where + (step / root).reshape(where.shape))
+        engine.context.setPositions(where + (step / held.root).reshape(where.shape))
         engine.context.applyConstraints(1e-12)
         where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
-        frame = _frame(where, masses, constraints, None)
+        frame = held.frame(where)
 
     arrived(descend(pull, move), matrix, masses)
     return where
-
-
-def _gradients(where: Doubles, masses: Doubles, constraints: Sequence[_Constraint]) -> Doubles:
-    """Mass-weighted gradients of (|r_i - r_j|² - d²)/2, one a row."""
-    rows = np.zeros((len(constraints), where.size))
-    for row, (i, j, _) in zip(rows, constraints, strict=True):
-        apart = where[i] - where[j]
-        row[3 * i : 3 * i + 3], row[3 * j : 3 * j + 3] = apart, -apart
-    return rows / np.sqrt(np.repeat(masses, 3))
-
-
-def _frame(
-    where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
-) -> Doubles:
-    """An orthonormal basis of the deviations that the constraints allow, mass-weighted."""
-    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-    if not constraints:
-        return np.eye(len(kept))
-    rows = _gradients(where, masses, constraints)[:, kept]
-    _, sizes, vectors = np.linalg.svd(rows)
-    rank = int((sizes > 1e-10 * sizes.max()).sum())
-    return np.asarray(vectors[rank:].T)
-
-
-def _curvature(
-    force: Doubles, where: Doubles, masses: Doubles, constraints: Sequence[_Constraint], chosen: Sequence[int] | None
-) -> Doubles:
-    """What constraints add to a group's Hessian: their forces turn as the atoms move.
-
-    The group's force along the constraints is sum of l_c grad g_c; the constraints take it up, so the force left is
-    that of the Hessian K + sum of l_c grad grad g_c, since the constraint forces are -l_c grad g_c.
-    """
-    rows = _gradients(where, masses, constraints)
-    pull = force.ravel() / np.sqrt(np.repeat(masses, 3))
-    factors = np.linalg.lstsq(rows.T, pull, rcond=None)[0]
-    added = np.zeros((where.size, where.size))
-    for factor, (i, j, _) in zip(factors, constraints, strict=True):
-        for axis in range(3):
-            at, to = 3 * i + axis, 3 * j + axis
-            added[at, at] += factor / masses[i]
-            added[to, to] += factor / masses[j]
-            added[at, to] -= factor / np.sqrt(masses[i] * masses[j])
-            added[to, at] -= factor / np.sqrt(masses[i] * masses[j])
-    kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-    return np.asarray(added[np.ix_(kept, kept)])

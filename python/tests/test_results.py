@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import kickdrift as kd
+from kickdrift._held import Held
 from kickdrift._hessians import Monodromy, monodromy
 from kickdrift._native import palette
 
@@ -34,7 +35,7 @@ def orbit() -> Monodromy:
     def force(positions: np.ndarray) -> np.ndarray:
         return np.asarray(-2.0 * positions)
 
-    return monodromy({"all": force}, [Fraction(1, 10)], np.zeros((1, 3)), np.ones(1), 1e-3, "minimum")
+    return monodromy({"all": force}, [Fraction(1, 10)], np.zeros((1, 3)), Held(np.ones(1)), 1e-3, "minimum")
 
 
 RESULTS: dict[str, Callable[[], Any]] = {

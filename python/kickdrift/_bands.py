@@ -1,0 +1,277 @@
+"""The stiffest motion of each level of forces, of any number of atoms, by Lanczos' method: no Hessian is stored.
+
+Mass-weighted. Of a symmetric matrix with eigenvalues from a to b, k steps from a random direction find a largest Ritz
+value t with b - t <= e (b - a), but for a probability of at most 1.648 sqrt(n) exp(-(2 k - 1) sqrt(e)) (Kuczynski and
+Wozniakowski, SIAM J. Matrix Anal. Appl. 13, 1992, theorem 4.2, whose matrices are definite; adding a multiple of 1
+changes no step). The same holds at the lower end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from kickdrift._advise import Advice, Engine, Time, advise
+from kickdrift._errors import KickdriftError, needs
+from kickdrift._held import Held
+from kickdrift._hessians import Force
+from kickdrift._numbers import Exact
+from kickdrift._rigid import Doubles
+
+Product = Callable[[Doubles], Doubles]
+
+#: How often Lanczos' bound may fail.
+FAILS = 1e-3
+
+
+@dataclass(frozen=True)
+class Top:
+    """The upper end of a spectrum: at most ``most``, but for a probability of :data:`FAILS`; at least ``found``."""
+
+    found: float
+    most: float
+    vector: Doubles
+
+
+def top(apply: Product, size: int, steps: int) -> Top:
+    """The upper end of a symmetric matrix's spectrum by so many products with it, from one random direction."""
+    vector = np.random.default_rng(1).normal(size=size)
+    basis, diagonal, beside = [vector / np.linalg.norm(vector)], [], []
+    for _ in range(min(steps, size)):
+        image = apply(basis[-1])
+        diagonal.append(float(image @ basis[-1]))
+        known = np.array(basis)
+        # Twice, so that rounding leaves them orthogonal.
+        for _ in range(2):
+            image = image - known.T @ (known @ image)
+        length = float(np.linalg.norm(image))
+        if length <= 1e-12 * max(np.abs(diagonal)):
+            break
+        beside.append(length)
+        basis.append(image / length)
+    count = len(diagonal)
+    inner = np.diag(diagonal) + sum(np.diag(beside[: count - 1], side) for side in (-1, 1))
+    values, vectors = np.linalg.eigh(inner)
+    # Each end fails half as often as both may.
+    missed = (np.log(1.648 * np.sqrt(size) * 2 / FAILS) / (2 * count - 1)) ** 2
+    if len(beside) < count:
+        # What the products reach from a random direction is all there is.
+        missed = 0.0
+    if missed >= 0.25:
+        raise KickdriftError("steps", str(count), "of Lanczos' method are too few to bound anything")
+    beyond = missed * float(values[-1] - values[0]) / (1 - 2 * missed)
+    return Top(float(values[-1]), float(values[-1]) + beyond, np.array(basis[:count]).T @ vectors[:, -1])
+
+
+def _sparse() -> tuple[Any, Any]:
+    """SciPy's sparse matrices and their factors, which nothing but held distances asks for."""
+    try:
+        import scipy.sparse as sparse
+        from scipy.sparse.linalg import splu
+    except ImportError:
+        raise needs("scipy") from None
+    return sparse, splu
+
+
+def projection(held: Held, where: Doubles) -> Product:
+    """Onto the deviations that held distances leave free, by sparse factors: thousands of them are no matter."""
+    if not held.distances:
+        return lambda vector: vector
+    gradients, solve = _gradients(held, where)
+    return lambda vector: np.asarray(vector - gradients.T @ solve(gradients @ vector))
+
+
+def _gradients(held: Held, where: Doubles) -> tuple[Any, Product]:
+    """The gradients of held distances, one a row, and what solves with them times their transpose."""
+    sparse, splu = _sparse()
+    i, j = (np.array([own[k] for own in held.distances]) for k in (0, 1))
+    apart, axes, rows = where[i] - where[j], np.tile(np.arange(3), len(i)), np.repeat(np.arange(len(i)), 3)
+    places = np.concatenate([3 * i.repeat(3) + axes, 3 * j.repeat(3) + axes])
+    values = np.concatenate([apart.ravel(), -apart.ravel()]) / held.root[places]
+    gradients = sparse.csr_matrix((values, (np.concatenate([rows, rows]), places)), shape=(len(i), where.size))
+    try:
+        return gradients, splu((gradients @ gradients.T).tocsc()).solve
+    except RuntimeError as cause:
+        raise KickdriftError("system", f"{len(i)} constraints", "depend on each other: leave those out") from cause
+
+
+def curvature(held: Held, where: Doubles, force: Doubles) -> Product:
+    """The product with what held distances add to a Hessian, as :meth:`Held.curvature` says."""
+    if not held.distances:
+        return np.zeros_like
+    sparse, _ = _sparse()
+    gradients, solve = _gradients(held, where)
+    factors = solve(gradients @ (force.ravel() / held.root))
+    i, j = (np.array([own[k] for own in held.distances]) for k in (0, 1))
+    values, places = [factors, factors, -factors, -factors], ([i, j, i, j], [i, j, j, i])
+    rows, columns = (np.concatenate(own) for own in places)
+    blocks = sparse.csr_matrix((np.concatenate(values), (rows, columns)), shape=(len(where), len(where)))
+    weights = sparse.diags(1 / held.root)
+    added = (weights @ sparse.kron(blocks, sparse.identity(3)) @ weights).tocsr()
+    return lambda vector: np.asarray(added @ vector)
+
+
+def by_matrix(matrix: Any, root: Doubles) -> Product:
+    """The product of the mass-weighted matrix of one that is not."""
+    return lambda vector: np.asarray(matrix @ (vector / root)) / root
+
+
+def by_differences(force: Force, where: Doubles, root: Doubles, difference: float) -> Product:
+    """The product of a mass-weighted Hessian by two forces, no atom displaced by more than ``difference``."""
+
+    def product(vector: Doubles) -> Doubles:
+        moved = (vector / root).reshape(where.shape)
+        size = float(np.linalg.norm(moved, axis=1).max())
+        step = difference / size * moved
+        apart = (force(where - step) - force(where + step)).ravel() / root
+        return np.asarray(apart * size / (2 * difference))
+
+    return product
+
+
+_ESTIMATED = (
+    "estimated: the stiffest motion of each level by Lanczos' method, which misses it with a probability of "
+    f"{FAILS:.1%} at most"
+)
+_COVERED = (
+    "steps below the first unstable interval hold for all motions of these levels together, at a minimum of all "
+    "forces (proofs/REGION.md); an unstable interval is one of two single motions, and need not be one of this system"
+)
+
+
+@dataclass(frozen=True)
+class Band:
+    """A level of forces: its step, and the shortest period that is found in it."""
+
+    name: str
+    step: Fraction
+    stiffness: float
+    most: float
+    atoms: str
+    forces: int
+    looked: str = "all bonded terms"
+
+    @property
+    def period(self) -> float | None:
+        """fs, no shorter one but for a probability of :data:`FAILS`; None where no force acts on what is free."""
+        return 2000 * np.pi / np.sqrt(self.most) if self.most > 0 else None
+
+    def __str__(self) -> str:
+        if self.period is None:
+            return f"{self.name}, every {1000 * float(self.step):g} fs: no force on what is free"
+        known = 100 * (self.most / self.stiffness - 1) if self.stiffness > 0 else np.inf
+        how = f"{self.forces} forces on all atoms" if self.forces else f"the Hessian of {self.looked}"
+        period = f"T >= {self.period:.5g} fs by {how}, the stiffness known to {known:.2g} %"
+        return f"{self.name}, every {1000 * float(self.step):g} fs: {period}; {self.atoms} moving most"
+
+
+@dataclass(frozen=True)
+class Bands:
+    """The shortest period of each level of a system of any size; :func:`kickdrift.openmm.bands` finds them.
+
+    What follows for steps is proven for the periods, and these are estimated: so is the advice. The region below the
+    first unstable step of one mass under the stiffest force of each level holds for any number of coupled motions whose
+    forces are no stiffer, at a minimum of all forces, whatever their couplings (proofs/REGION.md).
+
+    Attributes
+    ----------
+    levels : tuple of Band
+        The innermost first.
+    notes : tuple of str
+        What is left out, and what was looked at.
+    """
+
+    levels: tuple[Band, ...]
+    notes: tuple[str, ...] = ()
+    _begin: str = f"{_ESTIMATED}; {_COVERED}"
+
+    def advise(
+        self,
+        steps: str | Sequence[Any] = (),
+        *,
+        engine: Engine | None = None,
+        band: Exact = "5%",
+        length: Time | None = None,
+        friction: Exact | None = None,
+        constraints: str | None = None,
+        hmr: Exact | None = None,
+        levers: bool = False,
+    ) -> Advice:
+        """Which outer steps are safe for these bands, as :func:`kickdrift.advise` of periods says.
+
+        Raises
+        ------
+        KickdriftError
+            ``constraints`` and ``hmr``: a system of OpenMM has them of its own.
+        """
+        for field, value in {"constraints": constraints, "hmr": hmr, "engine": engine}.items():
+            if value is not None:
+                remedy = "is for two levels with their Hessians: make the system so, and ask again"
+                raise KickdriftError(field, str(value), remedy)
+        # Kicks of no force are none.
+        own = [level for level in self.levels if level.period is not None]
+        if not own:
+            raise KickdriftError("system", "no force", "nothing vibrates: give forces on what constraints leave free")
+        scheme = [f"{1000 * level.step}fs" for level in own]
+        is_one = isinstance(steps, str) or not all(isinstance(own, list | tuple) for own in steps)
+        beside = [] if not steps else [steps] if is_one else list(steps)
+        found = advise(
+            # Down to the digits that are written.
+            {level.name: f"{np.floor(1e5 * (level.period or 0.0)) / 1e5:.5f}fs" for level in own},
+            steps=[scheme, *beside],
+            on={level.name: place + 1 for place, level in enumerate(own)},
+            band=band,
+            length=length,
+            friction=friction,
+            levers=levers,
+        )
+        looked = [f"  looked at  {level}" for level in self.levels]
+        notes = [f"  note       {note}" for note in self.notes]
+        told: Advice = replace(found, _text="\n".join([self._begin, *looked, *notes, str(found)]))
+        return told
+
+
+def of_hessians(document: Mapping[str, Any], arrays: Mapping[str, Doubles], verdict: Callable[[], Any]) -> Bands | None:
+    """The bands of dense Hessians of other than two steps, and what is decided at these; None of all else, which has an
+    advice of its own or none.
+    """
+    potentials, unit = document.get("potentials", ()), _IN_PS.get(document.get("time_unit", ""))
+    steps = sorted({Fraction(own["step"]) for own in potentials if "step" in own})
+    names = [own["stiffness"].get("array") for own in potentials if isinstance(own.get("stiffness"), Mapping)]
+    is_plain = not document.get("constraints") and document.get("symmetric", True)
+    if (
+        unit is None
+        or len(steps) == 2
+        or not is_plain
+        or not names
+        or len(names) < len(potentials)
+        or not set(names) <= set(arrays)
+    ):
+        return None
+    masses = arrays["masses"]
+    root, labels = np.sqrt(np.repeat(masses, len(arrays[names[0]]) // len(masses))), document.get("labels", ())
+    found = []
+    for step in steps:
+        own = [(name, each) for name, each in zip(names, potentials, strict=True) if Fraction(each["step"]) == step]
+        matrix = sum(arrays[name] for name, _ in own) / np.outer(root, root)
+        values, vectors = np.linalg.eigh(matrix)
+        # Rounding of the eigenvalues is below what any Hessian is known to.
+        off = float(Fraction(document.get("accuracy", "1e-6"))) * float(np.abs(values).max())
+        moving = np.linalg.norm(vectors[:, -1].reshape(len(masses), -1), axis=1)
+        atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if labels and moving[n] > moving.max() / 10)
+        name = " + ".join(each.get("name", "a potential") for _, each in own)
+        least, most = (float(value) / float(unit) ** 2 for value in (values[-1], values[-1] + off))
+        found.append(Band(name, step * unit, least, most, atoms or "all", 0, "all atoms"))
+    told = verdict()
+    what = "stable" if told.stable else f"unstable, growing {told.growth_rate / float(unit):.4g}/ps"
+    at = ", ".join(f"{1000 * float(step * unit):g}" for step in steps)
+    begin = f"at {at} fs: {what} ({'proven' if told.proven else 'not proven'}, for the Hessians given)"
+    return Bands(tuple(found), tuple(told.warnings), f"{begin}\nother steps: {_COVERED}")
+
+
+#: Units of time in ps.
+_IN_PS = {"fs": Fraction(1, 1000), "ps": Fraction(1), "ns": Fraction(1000), "s": Fraction(10**12)}
