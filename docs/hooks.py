@@ -26,6 +26,7 @@ import shutil
 import subprocess
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from mkdocs.exceptions import PluginError
@@ -49,12 +50,16 @@ def on_files(files, config):
     began = os.getcwd()
     try:
         os.chdir(folder)
-        for file in list(files.documentation_pages()):
-            start = time.monotonic()
-            session = Session(file.src_uri, folder)
-            replaced[file.src_uri] = [session.block(*found.groups()) for found in BLOCK.finditer(file.content_string)]
-            if replaced[file.src_uri]:
-                print(f"hooks: {file.src_uri}: {len(replaced[file.src_uri])} blocks, {time.monotonic() - start:.1f} s")
+        pages = [(file.src_uri, BLOCK.findall(file.content_string)) for file in files.documentation_pages()]
+        pages = [(page, blocks) for page, blocks in pages if blocks]
+        # Cells of Python share this process, its output and its figures, so their pages run one after the other. Pages of commands
+        # alone run beside them.
+        with ThreadPoolExecutor(os.cpu_count()) as pool:
+            beside = {page: pool.submit(answered, page, blocks, folder) for page, blocks in pages if not needs_python(blocks)}
+            here = {page: answered(page, blocks, folder) for page, blocks in pages if page not in beside}
+            for page, blocks in pages:
+                replaced[page], seconds = here[page] if page in here else beside[page].result()
+                print(f"hooks: {page}: {len(blocks)} blocks, {seconds:.1f} s")
         for path in sorted((folder / "out").iterdir()):
             if path.suffix in SHOWN:
                 files.append(File.generated(config, f"made/{path.name}", content=path.read_bytes()))
@@ -62,6 +67,16 @@ def on_files(files, config):
         os.chdir(began)
         shutil.rmtree(folder, ignore_errors=True)
     return files
+
+
+def needs_python(blocks):
+    return any(language in ("python", "example") for language, _, _ in blocks)
+
+
+def answered(page, blocks, folder):
+    """What is put in the place of a page's blocks, and the seconds that they took."""
+    start, session = time.monotonic(), Session(page, folder)
+    return [session.block(*block) for block in blocks], time.monotonic() - start
 
 
 def on_page_markdown(markdown, page, config, files):

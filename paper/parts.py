@@ -93,11 +93,11 @@ def share_alone(told, own):
 
 
 def blowups():
-    """Time until a run from the orbit blew up over the rate that is predicted."""
+    """Time until a run from the orbit blew up over the rate that is predicted; the document's ps are 10^3 fs, its 1/ps 10^-3 per fs."""
     told = document("blowups")
     plot = Plot(100, 44, (0.1, 30, True), (0.1, 150, True))
     plot.decades("x", "predicted growth rate about the orbit ($10^{-3}$ per fs)")
-    plot.decades("y", "time until the run blew up (ps)")
+    plot.decades("y", "time until the run blew up ($10^3$ fs)")
     end = told["length"]
     plot.path([plot.place(0.1, end), plot.place(30, end)], GREY, 0.5, "2 2")
     plot.words(*plot.place(27, 1.45 * end), "end of the runs", "r")

@@ -27,4 +27,8 @@ with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as 
 data
 
 # %%
+import matplotlib.pyplot as plt
+
 (data.growth_rate > 0).mean("h2").plot()
+plt.xlabel("fast step h1")
+plt.ylabel("share of slow steps h2 that grow")

@@ -380,12 +380,14 @@ fn no_change_to_a_simulation_passes() {
 #[test]
 fn no_change_to_advice_passes() {
     let lines = [
-        "advise --period OH=10fs --period 40fs --steps 2fs,4fs --steps 2.2fs,4.4fs --length 10ns --friction 1/ps",
+        "advise --period OH=10fs --period 40fs --steps 2fs,4fs --steps 2.2fs,4.4fs --length 10ns --friction 1/ps --no-levers",
         "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 \
          --on 3000/cm=1 --steps 1fs,2fs",
         "advise --period 19.45fs --steps 2fs,4fs",
         "advise --period 10fs --period 40fs --period 100fs --steps 1fs,2fs,4fs --no-levers",
-        "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --steps 1fs,2fs",
+        // Levers of every kind, friction among them.
+        "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --steps 1fs,2fs \
+         --friction 1/ps",
         "advise --period OH=10fs --period 40fs --engine run.mdp --no-levers",
     ];
     no_change_passes(&lines, 1000);
