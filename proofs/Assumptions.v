@@ -78,3 +78,4 @@ Check Main.turning_along. Print Assumptions Main.turning_along.
 Check Main.certificate. Print Assumptions Main.certificate.
 Check Main.certificate_pi. Print Assumptions Main.certificate_pi.
 Check Main.edge_between. Print Assumptions Main.edge_between.
+Check Main.word_certificate. Print Assumptions Main.word_certificate.

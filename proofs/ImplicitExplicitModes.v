@@ -6,12 +6,11 @@
     - [stable]    if 4 - h^2 S and F + S are positive definite, a positive definite form of two successive positions never changes: every orbit is
                   bounded, whatever F. No step is resonant;
     - [unstable]  if 4 - h^2 S is negative in some direction, some orbit has x N x >= x0 N x0 + delta k (k - 1) after k steps, delta > 0;
-    - [unstable_total]  the same if F + S is.
+    - [unstable_total]  the same if F + S is;
+    - [edge]      if 4 - h^2 S is semidefinite and its form vanishes at u, x_k = (-1)^k k u is an orbit: for u off 0 it grows step by step;
+    - [edge_total]  if F + S is and does, x_k = k u is an orbit: a rigid motion.
 
-    So with definite forms the step is stable iff h^2 S < 4 and F + S > 0.
-
-    Not proven here: the edge, where a form is semidefinite. By hand: if (4 - h^2 S) u = 0 with u off 0, x_k = (-1)^k k u has two equal sides in
-    [alternating], so an orbit grows step by step; if (F + S) u = 0, x_k = k u does, which is a rigid motion.
+    So the step is stable iff h^2 S < 4 and F + S > 0: at the edges, too, some orbit is unbounded.
 
     Words: form M x y == x^T M y, a number; definite M == the form of M is positive off 0; next == one step, from position and momentum;
     position k z == the position after k steps from z.                                        *)
@@ -373,6 +372,69 @@ have same : x z 1%N = x z 0%N by rewrite first second.
 have := @growth N total (x z) Nsym total_sym (orbit z) N_pos same k; rewrite first.
 have -> : form total u u = h ^+ 2 * form (F + S) u u by rewrite /total /form -scalemxAr -scalemxAl mxE.
 exact.
+Qed.
+
+(** At the edge, 4 - h^2 S or F + S with a null direction, an orbit moves along it by the same displacement at every step. *)
+
+(** The null directions of a semidefinite form are those of its matrix. *)
+Lemma null_direction W u : W^T = W -> (forall y, 0 <= form W y y) -> form W u u = 0 -> W *m u = 0.
+Proof.
+move=> sym semi zero; pose y := W *m u.
+have square : form W y u = form 1%:M y y by rewrite /form mulmx1 -[in LHS]mulmxA.
+have definite1 : definite (1%:M : 'M[R]_n).
+  move=> v v0; rewrite /form mulmx1 mxE lt_def sumr_ge0 ?andbT => [|i _]; last by rewrite mxE -expr2 sqr_ge0.
+  apply: contra v0 => /eqP sum; apply/eqP/matrixP=> i j; rewrite ord1 mxE.
+  have /eqP : v i 0 ^+ 2 = 0.
+    have ge0 k : true -> 0 <= v k 0 ^+ 2 by rewrite sqr_ge0.
+    apply: (psumr_eq0P ge0) => //; rewrite -[RHS]sum; apply: eq_bigr => k _; by rewrite mxE expr2.
+  by rewrite expf_eq0 /= => /eqP.
+have [//|y0] := eqVneq y 0.
+have pos := definite1 _ y0; rewrite -square in pos.
+pose t := - ((form W y y + 1) / (form W y u + form W y u)).
+have := semi (y + t *: u).
+rewrite !(formDl, formDr, formZl, formZr) zero !mulr0 addr0 (formC u y sym) -addrA -mulrDr.
+have c0 : form W y u + form W y u != 0 by rewrite gt_eqF // addr_gt0.
+rewrite /t mulNr divfK // opprD addrA subrr add0r oppr_ge0 => le0.
+by have := lt_le_trans ltr01 le0; rewrite ltxx.
+Qed.
+
+Lemma straight W (y : nat -> 'cV[R]_n) u :
+  (forall k, N *m (y k.+2 - y k.+1 - (y k.+1 - y k)) = - (W *m y k.+1)) ->
+  W *m u = 0 -> y 0%N = 0 -> y 1%N = u -> forall k, y k = k%:R *: u.
+Proof.
+move=> recurrence null y0 y1 k.
+suff [] : y k = k%:R *: u /\ y k.+1 = k.+1%:R *: u by [].
+elim: k => [|k [yk yk1]]; first by rewrite y0 y1 scale0r scale1r.
+split=> //.
+have := recurrence k; rewrite yk1 -scalemxAr null scaler0 oppr0 => zero.
+have : y k.+2 - k.+1%:R *: u - (k.+1%:R *: u - y k) = 0.
+  by rewrite -[LHS](mulKmx (definite_unit Nsym N_pos)) zero mulmx0.
+move/eqP; rewrite subr_eq0 subr_eq => /eqP ->.
+by rewrite yk -scalerBl -scalerDl -natrB ?leqnSn // subSnn -natrD add1n.
+Qed.
+
+Theorem edge u : (forall y, 0 <= form room y y) -> form room u u = 0 ->
+  exists z, forall k, position h F S k z = ((-1) ^+ k * k%:R) *: u.
+Proof.
+move=> semi zero; have null := null_direction room_sym semi zero.
+have [z first second] := started 0 (- u); exists z => k.
+pose y k := (-1) ^+ k *: x z k.
+have y0 : y 0%N = 0 by rewrite /y first scaler0.
+have y1 : y 1%N = u by rewrite /y second expr1 scaleN1r opprK.
+have := straight (alternating z) null y0 y1 k; rewrite /y => turned.
+by rewrite -scalerA -turned scalerA -exprMn mulrNN mulr1 expr1n scale1r.
+Qed.
+
+Theorem edge_total u : (forall y, 0 <= form (F + S) y y) -> form (F + S) u u = 0 ->
+  exists z, forall k, position h F S k z = k%:R *: u.
+Proof.
+move=> semi zero.
+have same y : form total y y = h ^+ 2 * form (F + S) y y by rewrite /total /form -scalemxAr -scalemxAl mxE.
+have null : total *m u = 0.
+  apply: (null_direction total_sym) => [y|]; last by rewrite same zero mulr0.
+  by rewrite same mulr_ge0 // exprn_ge0 // ltW.
+have [z first second] := started 0 u; exists z => k.
+exact: straight (orbit z) null first second k.
 Qed.
 End Steps.
 End Proofs.

@@ -8,6 +8,7 @@ From Coq Require Import Reals ZArith List QArith Qreals.
 From Kickdrift Require Import
   Vocabulary Algebra TwoClocks Stability SignTable Floquet TanCriterion Respa ImplicitExplicit Closings Proposition Plane Perturbation
   Cone Returns Certificate PiCertificate EdgeCertificate.
+From Kickdrift Require WordCertificate.
 Open Scope R_scope.
 
 (** ** 1. Algebra *)
@@ -468,3 +469,10 @@ Theorem edge_between : forall x p q (rho a b : Q) r l u,
   check_edge x p q rho a b = true ->
   edge x p q r l u.
 Proof. exact EdgeCertificate.edge_between. Qed.
+
+(** A word of kicks, drifts and implicit midpoints with rational coefficients at a rational step. *)
+Theorem word_certificate : forall k letters (h L1 L2 : Q) x l1 l2,
+  x = Q2R h -> l1 = Q2R L1 -> l2 = Q2R L2 ->
+  WordCertificate.check k letters h L1 L2 = true ->
+  WordCertificate.word_verdict k letters x l1 l2.
+Proof. exact WordCertificate.word_certificate. Qed.

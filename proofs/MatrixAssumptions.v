@@ -12,3 +12,5 @@ Check ImplicitExplicitModes.twice. Print Assumptions ImplicitExplicitModes.twice
 Check ImplicitExplicitModes.stable. Print Assumptions ImplicitExplicitModes.stable.
 Check ImplicitExplicitModes.unstable. Print Assumptions ImplicitExplicitModes.unstable.
 Check ImplicitExplicitModes.unstable_total. Print Assumptions ImplicitExplicitModes.unstable_total.
+Check ImplicitExplicitModes.edge. Print Assumptions ImplicitExplicitModes.edge.
+Check ImplicitExplicitModes.edge_total. Print Assumptions ImplicitExplicitModes.edge_total.

@@ -111,11 +111,21 @@ fn case(numbers: &mut Numbers, method: Method) -> (DMatrix<f64>, DMatrix<f64>, f
 }
 
 #[test]
-fn ten_thousand_random_cases_agree_with_dense_eigenvalues() {
-    let mut numbers = Numbers(16);
+fn random_cases_agree_with_dense_eigenvalues() {
+    agree_with_dense_eigenvalues(16, 1250);
+}
+
+#[test]
+#[ignore = "eighty thousand cases take minutes"]
+fn ten_thousand_random_cases_of_every_method_agree_with_dense_eigenvalues() {
+    agree_with_dense_eigenvalues(160, 10_000);
+}
+
+fn agree_with_dense_eigenvalues(seed: u64, count: usize) {
+    let mut numbers = Numbers(seed);
     for method in Method::all() {
         let (mut open, mut near, mut decided) = (0, 0, [0; 2]);
-        for trial in 0..1250 {
+        for trial in 0..count {
             let (fast, slow, h, inner) = case(&mut numbers, method);
             let kernel =
                 Kernel::new(&Hessians::new(&fast, &slow, 1e-6).unwrap()).unwrap().with_method(method);
@@ -141,7 +151,9 @@ fn ten_thousand_random_cases_agree_with_dense_eigenvalues() {
             assert!(within == Holds::NotTold || within == holds, "{method} {trial}: {within:?} {holds:?}");
         }
         println!("{method}: {decided:?} open {open} near {near}");
-        assert!(open <= 4 && near <= 2, "{method}: {open} open, {near} near");
+        // Cases on an edge to roundings: some in a thousand.
+        let few = |most: usize| most * count.div_ceil(1250);
+        assert!(open <= few(4) && near <= few(2), "{method}: {open} open, {near} near");
         assert!(decided.iter().all(|&count| count > 100), "{method}: {decided:?}");
     }
 }

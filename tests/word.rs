@@ -339,7 +339,7 @@ fn stable_intervals_beside_rational_edges_are_found() {
     assert!(all.intervals.iter().any(|own| own.stable && holds(&own)));
 }
 
-/// Texts that are nearly words: no panic, and one line that says where.
+/// Ten thousand texts that are nearly words: no panic, and one line that says where.
 #[test]
 fn mutated_texts_are_words_or_one_line() {
     const PIECES: [&str; 27] = [
@@ -495,6 +495,43 @@ fn implicit_explicit_is_stable_up_to_40_over_pi() {
     // s = h² Λ1 = (40/π)² π²/25 = 64.
     assert_eq!(edge.rational(), Some(ratio(64, 1)));
     assert!(stability.intervals.len() == 2 && !stability.intervals[1].stable);
+}
+
+/// The stiffness of a ring polymer's fastest mode of so many beads at 300 K, in 1/fs²: w = 2 n k T/ħ = 4 π n k T/(2 π ħ), with Boltzmann's and
+/// Planck's constants exactly as the SI defines them.
+fn top_ring_mode(beads: i64) -> Laurent {
+    let exact = |text: &str| parse_rational("x", text).unwrap();
+    let (boltzmann, planck) = (exact("1.380649"), exact("6.62607015"));
+    // k T/(2 π ħ) in 1/fs: 10^-23 300 / (10^-34 10^15).
+    let turns = boltzmann * exact("300") / (planck * exact("10000"));
+    let c = ratio(4 * beads, 1) * turns;
+    Laurent::monomial(&c * &c, 2)
+}
+
+/// THEORY section 16: an external period of 10 fs beside the fastest mode of 16 and of 32 beads.
+#[test]
+fn ring_polymers_are_unstable_where_they_are_known_to_be() {
+    use kickdrift::word::{Enclosed, Shape};
+    let slow = Laurent::monomial(ratio(1, 25), 2);
+    let (exact, cayley) = (of("rpmd"), of("rpmd-cayley"));
+    for (beads, from, to) in [(16, 2.0125, 2.4996), (32, 1.1765, 1.2498)] {
+        let fast = top_ring_mode(beads);
+        let by_factors = Shape::of(&exact).unwrap().pieces(&fast, &slow, 0.0, 3.0);
+        let in_balls = Enclosed::new(&exact, &fast, &slow, &Laurent::zero()).pieces(0.0, 3.0).unwrap();
+        for found in [by_factors, in_balls] {
+            let first = found.iter().find(|own| !own.stable).unwrap();
+            for ((lo, hi), figure) in [(first.lower, from), (first.upper, to)] {
+                // The figure is rounded to its fourth place.
+                assert!(lo <= hi && hi - lo < 1e-10, "{beads}: {lo}..{hi}");
+                assert!((lo - figure).abs() < 5e-5 + 1e-10, "{beads}: {lo}..{hi} is not {figure}");
+            }
+        }
+        // Cayley's transform has none: stable up to 2/√Λ2 = 10/π, where h² Λ2 = 4, exactly.
+        let rho = Laurent::ratio(&slow, &fast).unwrap();
+        let stability = Stability::of(&cayley.polynomials(&Forces::ratio(&rho)));
+        assert!(stability.intervals.len() == 2 && stability.begins_stable(), "{beads}");
+        assert_eq!(stability.first_edge().unwrap().compare(&(ratio(4, 1) / rho)), Sign::Zero, "{beads}");
+    }
 }
 
 /// n modes, 0 ≤ F ≤ Λ1, 0 ≤ S ≤ Λ2: no two coupled modes are unstable below the edge of all, many just above it.

@@ -47,6 +47,24 @@ if [ "$(sed -n 3p "$file")" = 'From Kickdrift Require Import Vocabulary EdgeCert
     at=$((at + 4))
   done
   lines $((at - 1))
+elif [ "$(sed -n 3p "$file")" = 'From Kickdrift Require Import Vocabulary WordCertificate.' ]; then
+  force='(All|First|Second)'
+  letter="(K $force \\[-?$int # $int(; -?$int # $int)*\\]|D $frac_Q|C $force $frac_Q)"
+  line 1 "\\(\\* kickdrift word \"[-KDC0-9/(), ]+\" --lambda1 $rat( --lambda2 $rat)? --h $rat --certificate $name \\*\\)"
+  line 5 '\(\*\* kind, the letters, then h, lambda1, lambda2\. \*\)'
+  line 6 'Theorem kickdrift_word :'
+  line 7 "  word_verdict $kind \\[$letter(; $letter)*\\]( $frac_R){3}\\."
+  line 8 "Proof\\. certify_word( $frac_Q){3}\\. Qed\\."
+  line 9 'Print Assumptions kickdrift_word\.'
+  # The letters as the comment writes them: K All [2 # 3; -1 # 36] is K(2/3, -1/36).
+  word=$(sed -nE "7s@^  word_verdict $kind \\[(.*)\\]( $frac_R){3}\\.\$@\\4@p" "$file" | sed -E '
+    s/([KDC]) ?(All|First|Second)? [[(]([^])]*)[])]/\1\2(\3)/g
+    s/All//g; s/First/1/g; s/Second/2/g; s/\); /) /g; s/; /, /g; s| # |/|g; s|/1([,)])|\1|g')
+  set -- $(numbers 7)
+  second=
+  [ "$3" = 0 ] || second=" --lambda2 $3"
+  comment "word \"$word\" --lambda1 $2$second --h $1"
+  lines 9
 else
   line 1 "\\(\\* kickdrift verdict --lambda1 $rat --lambda2 $rat --h1 $rat --h2 $rat --certificate $name \\*\\)"
   line 3 'From Kickdrift Require Import Vocabulary (Pi)?Certificate\.'
@@ -66,4 +84,4 @@ trap 'rm -rf "$work"' EXIT
 cp "$file" "$work/" || exit 1
 coqc -q -R "$here" Kickdrift "$work/$(basename "$file")" > "$work/out" || { echo "$file: Coq refuses it"; exit 1; }
 "$here/tools/axioms.sh" "$work/out" || exit 1
-echo "proven: $file: $(grep -E '^  (verdict|edge)' "$file" | sed 's/^ *//' | tr '\n' ' ')"
+echo "proven: $file: $(grep -E '^  (verdict|edge|word_verdict)' "$file" | sed 's/^ *//' | tr '\n' ' ')"

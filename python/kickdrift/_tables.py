@@ -393,8 +393,7 @@ def compare(
         How near q h2 must be to a multiple of T½ to count as resonant, in units of T½; 1/20 unless given.
     methods : str or sequence of str, optional
         Integrators side by side instead: names of :func:`methods`, or words. Over the grid of ``step``, ``h1``,
-        ``h2``, each force in units of its own
-        step; or over
+        ``h2``, each force in units of its own step (``lambda2`` is ``lambda1`` unless given); or over
     h, h_step, rho_range, rho_step
         Steps and lambda2/lambda1, each a closed range with a spacing.
     budget : int, optional

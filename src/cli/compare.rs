@@ -35,7 +35,7 @@ pub struct Args {
     ///
     /// Over (h, lambda2/lambda1), or over (h1, h2) with a grid: each force in units of its own step, so that a step h of the word has
     ///
-    /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. Stiffnesses are 1 unless given.
+    /// h^2 times the stiffnesses h1^2 lambda1 and h2^2 lambda2. lambda1 is 1 unless given, lambda2 as lambda1.
     #[arg(long, value_name = "A,B,...", conflicts_with_all = ["max_sum", "rho"])]
     methods: Option<String>,
     /// The closed range of steps, with --methods.
@@ -68,8 +68,7 @@ impl Args {
 
     fn methods(&self) -> Result<Option<CompareMethods>> {
         let Some(methods) = self.methods.clone() else { return Ok(None) };
-        let one = || Laurent::from_integer(1);
-        let lambda1 = self.lambda1.clone().unwrap_or_else(one);
+        let lambda1 = self.lambda1.clone().unwrap_or_else(|| Laurent::from_integer(1));
         let asked = if self.grid.is_absent() {
             let missing = |flag: &str| {
                 Error::missing(
@@ -89,7 +88,7 @@ impl Args {
                 h2_step: None,
             }
         } else {
-            let map = self.grid.map(&lambda1, self.lambda2.as_ref().unwrap_or(&one()))?;
+            let map = self.grid.map(&lambda1, self.lambda2.as_ref().unwrap_or(&lambda1))?;
             let rational = |field: &str, x: &Laurent| {
                 x.as_rational().ok_or_else(|| {
                     Error::input(field, x, "write a rational number here, pi in the stiffnesses")

@@ -30,7 +30,7 @@ question! {
         rho_range: Option<(Rational, Rational)>,
         /// Its spacing.
         rho_step: Option<Rational>,
-        /// The stiffness of the slow force, 1 if not given; with h2.
+        /// The stiffness of the slow force, that of the fast one if not given; with h2.
         lambda2: Option<Laurent>,
         /// In place of Λ2/Λ1: the closed range of h2.
         h2_range: Option<(Rational, Rational)>,
@@ -111,10 +111,10 @@ impl CompareMethods {
         match (by_ratio, by_step) {
             (Some((range, step)), None) if self.lambda2.is_none() => Ok((range, step, None)),
             (None, Some((range, step))) => {
-                let lambda2 = self.lambda2.clone().unwrap_or_else(|| Laurent::from_integer(1));
+                let lambda2 = self.lambda2.as_ref().unwrap_or(&self.lambda1);
                 let wrong =
-                    || Error::input("lambda2", &lambda2, "choose a positive rational multiple of lambda1");
-                let ratio = Laurent::ratio(&lambda2, &self.lambda1).ok_or_else(wrong)?;
+                    || Error::input("lambda2", lambda2, "choose a positive rational multiple of lambda1");
+                let ratio = Laurent::ratio(lambda2, &self.lambda1).ok_or_else(wrong)?;
                 if ratio.sign() == Sign::Positive { Ok((range, step, Some(ratio))) } else { Err(wrong()) }
             }
             _ => Err(Error::missing(

@@ -1,5 +1,5 @@
-//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in proofs/; and a
-//! tongue's edges.
+//! A verdict as a Coq proof: nine lines that state it and prove it by computation from the theorems in proofs/; of two clocks, or of
+//! a word at one step; and a tongue's edges.
 //!
 //! The file's theorem is `kickdrift_verdict`; what it means is theorem `certificate` in proofs/. The template
 //! is described in proofs/README.md; `proofs/tools/certificate.sh FILE.v` checks a file against it.
@@ -16,11 +16,14 @@
 //! assert!(file.contains("verdict (Coexistence Plus) 5 3 (1 / 1) (11 / 4) (5 / 3) (57 / 10)."));
 //! ```
 
+use num_traits::Zero;
+
 use crate::error::{Error, Result};
-use crate::number::{Laurent, Ratio, Rational, rational};
+use crate::number::{Laurent, Radical, Ratio, Rational, rational};
 use crate::propagator::Oscillator;
 use crate::tongue::Gap;
 use crate::verdict::{Kind, Verdict};
+use crate::word::{At, Force, Letter, Word};
 
 /// Coq multiplies exact matrices of so many kicks in some seconds.
 const LONGEST_EXACT: u64 = 500;
@@ -72,7 +75,7 @@ pub fn coq(oscillator: &Oscillator, verdict: Verdict, file_name: &str) -> Result
         said[3],
         said[0],
         said[2],
-        kind(verdict),
+        kind(verdict.kind().name(), verdict.side()),
         clocks.p(),
         clocks.q(),
         written(&numbers, by_intervals, '/'),
@@ -128,14 +131,105 @@ pub fn coq_of_tongue(ratio: Ratio, rho: &Rational, gap: &Gap, file_name: &str) -
     Ok(text)
 }
 
-fn kind(verdict: Verdict) -> String {
-    let side = if verdict.side() > 0 { "Plus" } else { "Minus" };
-    match verdict.kind() {
-        Kind::Elliptic => "Elliptic".into(),
-        Kind::Hyperbolic => format!("(Hyperbolic {side})"),
-        Kind::Parabolic => format!("(Parabolic {side})"),
-        Kind::Coexistence => format!("(Coexistence {side})"),
+/// What a word does at one step as a Coq proof (theorem `word_certificate` in proofs/): its letters, repeated ones written out, multiplied in
+/// exact fractions.
+///
+/// `found` is [`at`](crate::word::at) at h² Λ1; `lambda2` is 0 for a word that names no second force.
+///
+/// # Errors
+/// A word with irrational coefficients, exact flows, filters or friction; a quantity that is no fraction; a file name that Coq does not
+/// take for a module's.
+pub fn coq_of_word(
+    word: &Word,
+    found: &At,
+    [h, lambda1, lambda2]: [&Laurent; 3],
+    file_name: &str,
+) -> Result<String> {
+    check_name(file_name)?;
+    let mut numbers = Vec::with_capacity(3);
+    for (field, x) in [("h", h), ("lambda1", lambda1), ("lambda2", lambda2)] {
+        let remedy =
+            "a word's certificate needs fractions: measure time in a unit without pi (h / pi, lambda * pi^2)";
+        numbers.push((x.as_rational().ok_or_else(|| Error::input(field, x, remedy))?, 0));
     }
+    let mut letters = Vec::new();
+    for letter in word.letters() {
+        let own = Own::of(letter).ok_or_else(|| {
+            let remedy = "a certificate is of kicks, drifts and midpoints with rational coefficients";
+            Error::input("word", letter, remedy)
+        })?;
+        letters.push(own);
+    }
+    let text: Vec<String> = letters.iter().map(Own::text).collect();
+    let terms: Vec<String> = letters.iter().map(Own::term).collect();
+    let second = if lambda2.is_zero() { String::new() } else { format!(" --lambda2 {}", numbers[2].0) };
+    Ok(format!(
+        "(* kickdrift word \"{}\" --lambda1 {}{second} --h {} --certificate {file_name} *)\n\
+         From Coq Require Import Reals QArith.\n\
+         From Kickdrift Require Import Vocabulary WordCertificate.\n\
+         \n\
+         (** kind, the letters, then h, lambda1, lambda2. *)\n\
+         Theorem kickdrift_word :\n  word_verdict {} [{}] {}.\n\
+         Proof. certify_word {}. Qed.\n\
+         Print Assumptions kickdrift_word.\n",
+        text.join(" "),
+        numbers[1].0,
+        numbers[0].0,
+        kind(found.kind, found.side),
+        terms.join("; "),
+        written(&numbers, false, '/'),
+        written(&numbers, false, '#'),
+    ))
+}
+
+/// A letter with rational coefficients.
+struct Own {
+    /// K, D or C, as in a word and in Coq.
+    name: char,
+    force: Option<Force>,
+    numbers: Vec<Rational>,
+}
+
+impl Own {
+    fn of(letter: &Letter) -> Option<Own> {
+        let (name, force, numbers) = match letter {
+            Letter::Drift(time) => ('D', None, std::slice::from_ref(time)),
+            Letter::Midpoint { force, time } => ('C', Some(*force), std::slice::from_ref(time)),
+            Letter::Kick { force, filter, powers } if filter.is_one() => {
+                ('K', Some(*force), powers.as_slice())
+            }
+            _ => return None,
+        };
+        let numbers = numbers.iter().map(Radical::as_rational).collect::<Option<_>>()?;
+        Some(Own { name, force, numbers })
+    }
+
+    /// As a word has it, all numbers as fractions.
+    fn text(&self) -> String {
+        let force = match self.force {
+            None | Some(Force::All) => "",
+            Some(Force::First) => "1",
+            Some(Force::Second) => "2",
+        };
+        let numbers: Vec<String> = self.numbers.iter().map(Rational::to_string).collect();
+        format!("{}{force}({})", self.name, numbers.join(", "))
+    }
+
+    /// As proofs/WordCertificate.v has it.
+    fn term(&self) -> String {
+        let force = self.force.map_or(String::new(), |force| format!(" {force:?}"));
+        let fraction = |c: &Rational| format!("{} # {}", c.numer(), c.denom());
+        let numbers: Vec<String> = self.numbers.iter().map(fraction).collect();
+        let [open, close] = if self.name == 'K' { ["[", "]"] } else { ["(", ")"] };
+        format!("{}{force} {open}{}{close}", self.name, numbers.join("; "))
+    }
+}
+
+/// A verdict as proofs/Vocabulary.v has it.
+fn kind(name: &str, side: i8) -> String {
+    let side = if side > 0 { "Plus" } else { "Minus" };
+    let title = name[..1].to_uppercase() + &name[1..];
+    if name == Kind::Elliptic.name() { title } else { format!("({title} {side})") }
 }
 
 /// c and k of c π^k.

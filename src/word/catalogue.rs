@@ -134,7 +134,7 @@ pub const METHODS: &[Method] = methods! {
         verlets!("1.04242620869991" "1.82020630970714" "0.157739928123617" "2.44002732616735" "-0.00716989419708120" "-2.44699182370524" "-1.61582374150097"; "1-2*(1.04242620869991+1.82020630970714+0.157739928123617+2.44002732616735-0.00716989419708120-2.44699182370524-1.61582374150097)"),
         YOSHIDA;
     "baoab" 2 "K(1/2) D(1/2) O(1) D(1/2) K(1/2)", "Leimkuhler, Matthews, Appl. Math. Res. Express 2013, 34 (2013)",
-        "ASE: LangevinBAOAB", "OpenMM: LangevinMiddleIntegrator (leapfrog velocities)", "i-PI: splitting = baoab";
+        "ASE: LangevinBAOAB", "OpenMM: LangevinMiddleIntegrator (leapfrog velocities)", "NAMD: langevinBAOAB = on", "i-PI: splitting = baoab";
     "obabo" 2 "O(1/2) K(1/2) D(1) K(1/2) O(1/2)", "Bussi, Parrinello, Phys. Rev. E 75, 056707 (2007)", "i-PI: splitting = obabo";
     "respa-4" 2 "K2(1/2) 4*(K1(1/8) D(1/4) K1(1/8)) K2(1/2)", RESPA,
         "OpenMM: MTSIntegrator", "LAMMPS: run_style respa", "GROMACS: mts = yes", "NAMD: nonbondedFreq, fullElectFrequency",
@@ -157,7 +157,7 @@ pub const METHODS: &[Method] = methods! {
     "molly-long" 2 "K2[sinc(x)^2](1/2) R1(1) K2[sinc(x)^2](1/2)", MOLLY;
     // Of the slow force a mode with a fast one feels nothing: no order on such an oscillator.
     "molly-equilibrium" 0 "K2[0](1/2) R1(1) K2[0](1/2)", "Izaguirre, Reich, Skeel, J. Chem. Phys. 110, 9853 (1999)",
-        "LAMMPS: fix filter/corotate";
+        "LAMMPS: fix filter/corotate", "NAMD: molly = on";
     "hairer-lubich" 2 "K2[sinc(x)](1/2) R1(1) K2[sinc(x)](1/2)", "Hairer, Lubich, SIAM J. Numer. Anal. 38, 414 (2000)";
     "grimm-hochbruck" 2 "K2[sinc(x)^3](1/2) R1(1) K2[sinc(x)^3](1/2)", "Grimm, Hochbruck, J. Phys. A 39, 5495 (2006)";
     "rpmd" 2 "K2(1/2) R1(1) K2(1/2)", "Ceriotti, Parrinello, Markland, Manolopoulos, J. Chem. Phys. 133, 124104 (2010)",

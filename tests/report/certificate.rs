@@ -1,10 +1,12 @@
 //! Certificates.
 
+use kickdrift::number::Laurent;
 use kickdrift::number::parse::parse;
 use kickdrift::propagator::Oscillator;
-use kickdrift::report::certificate::{coq, coq_of_tongue};
+use kickdrift::report::certificate::{coq, coq_of_tongue, coq_of_word};
 use kickdrift::tongue::Tongues;
 use kickdrift::verdict::{Limits, decide};
+use kickdrift::word::{Forces, Word, at};
 use std::path::Path;
 
 /// Every example in proofs/certificates is what its own first line makes, byte for byte.
@@ -20,6 +22,10 @@ fn the_examples_are_what_the_command_writes() {
         let words: Vec<&str> = text.lines().next().unwrap().split_whitespace().collect();
         let value = |flag: &str| words[words.iter().position(|word| *word == flag).unwrap() + 1];
         let x = |flag: &str| parse(flag, value(flag)).unwrap();
+        if words[2] == "word" {
+            assert_eq!(of_word(&text), text, "{}", path.display());
+            continue;
+        }
         if words[2] == "tongues" {
             let (ratio, rho) = (value("--ratio").parse().unwrap(), x("--rho").as_rational().unwrap());
             let gap = Tongues::new(ratio, &rho).unwrap().gap(value("--m").parse().unwrap()).unwrap();
@@ -32,6 +38,54 @@ fn the_examples_are_what_the_command_writes() {
         kinds.insert((verdict.kind(), verdict.side()));
     }
     assert_eq!(kinds.len(), 7);
+}
+
+/// The certificate that the command in the first line of a word's certificate writes.
+fn of_word(text: &str) -> String {
+    let parts: Vec<&str> = text.lines().next().unwrap().split('"').collect();
+    let flags: Vec<&str> = parts[2].split_whitespace().collect();
+    let value = |flag: &str| flags.iter().position(|own| *own == flag).map_or("0", |place| flags[place + 1]);
+    let [h, lambda1, lambda2] =
+        ["--h", "--lambda1", "--lambda2"].map(|flag| parse(flag, value(flag)).unwrap());
+    certified(parts[1], [&h, &lambda1, &lambda2], value("--certificate")).unwrap()
+}
+
+fn certified(
+    word: &str,
+    [h, lambda1, lambda2]: [&Laurent; 3],
+    name: &str,
+) -> kickdrift::error::Result<String> {
+    let word: Word = word.parse().unwrap();
+    let rho = Laurent::ratio(lambda2, lambda1).unwrap_or_default();
+    let found = at(&word.polynomials(&Forces::ratio(&rho)), &(&(h * h) * lambda1)).unwrap();
+    coq_of_word(&word, &found, [h, lambda1, lambda2], name)
+}
+
+/// Repeated letters are written out, and what has no fractions is refused in one line that names it.
+#[test]
+fn words_have_certificates_where_their_numbers_are_fractions() {
+    let x = |text: &str| parse("x", text).unwrap();
+    let (one, half) = (x("1"), x("1/2"));
+    let text =
+        certified("K2(1/2) 2*(K1(0.25) C1(1/2) K1(1/4)) K2(1/2)", [&half, &one, &half], "a.v").unwrap();
+    let inside = "K First [1 # 4]; C First (1 # 2); K First [1 # 4]";
+    assert!(
+        text.contains(&format!(" [K Second [1 # 2]; {inside}; {inside}; K Second [1 # 2]] (1 / 2) ")),
+        "{text}"
+    );
+    assert!(
+        text.contains("word \"K2(1/2) K1(1/4) C1(1/2) ") && text.contains("--lambda2 1/2 --h 1/2"),
+        "{text}"
+    );
+    let none = Laurent::from_integer(0);
+    for (word, numbers, wanted) in [
+        ("K((3-sqrt(3))/6) D(1)", [&half, &one, &none], "rational coefficients"),
+        ("K2[sinc(x)](1) D(1)", [&half, &one, &half], "rational coefficients"),
+        ("K(1) D(1)", [&x("pi"), &one, &none], "without pi"),
+    ] {
+        let error = certified(word, numbers, "a.v").unwrap_err().to_string();
+        assert!(error.contains(wanted) && !error.contains('\n'), "{error}");
+    }
 }
 
 /// As many kicks as a certificate may have: elliptic and hyperbolic, with pi and without, and a tongue's edges. Needs coqc and the
