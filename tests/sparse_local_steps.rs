@@ -103,7 +103,7 @@ fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
 fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
     let mut numbers = Numbers(5);
     let mut unstable = 0;
-    for case in 0..40 {
+    for case in 0..100 {
         let n = 3 + numbers.below(5) as usize;
         let springs: Vec<_> = (0..=n).map(|_| (1 + numbers.below(12)) as f64 / 2.0).collect();
         let masses: Vec<_> = (0..n).map(|_| (1 + numbers.below(3)) as f64).collect();
@@ -115,9 +115,6 @@ fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
         let found = sparse.stretches(range, 1e-5).unwrap();
         assert_eq!((found[0].lo, found.last().unwrap().hi), range);
         assert!(found.windows(2).all(|pair| pair[0].hi == pair[1].lo), "{found:?}");
-        let contains = |all: &[Stretch], lo: f64, hi: f64, kind: Holds| {
-            all.iter().any(|own| own.verdict == kind && own.lo <= lo && hi <= own.hi)
-        };
         for own in &found {
             // Inwards by what edges of the truth lie between neighbours.
             let (lo, hi) = (own.lo * (1.0 + 1e-14), own.hi * (1.0 - 1e-14));
@@ -127,16 +124,17 @@ fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
             };
             assert!(own.verdict == Holds::NotTold || inside(own.verdict), "{case} {own:?} {truth:?}");
         }
-        for own in truth.iter().filter(|own| own.verdict == Holds::Unstable && own.hi - own.lo > 1e-2) {
-            // Of a wide one all is found but its ends, and what resonances within it leave.
-            let told: f64 = found
-                .iter()
-                .filter(|found| found.verdict == Holds::Unstable)
-                .map(|found| (found.hi.min(own.hi) - found.lo.max(own.lo)).max(0.0))
-                .sum();
-            unstable += 1;
-            if !contains(&found, own.lo + 1e-3, own.hi - 1e-3, Holds::Unstable) {
-                assert!(told > 0.0 || own.hi - own.lo < 0.1, "{case} {own:?} {found:?}");
+        // About one resonance alone, between stable steps that sixteenths of a gap cannot miss, all is told but the ends.
+        for near in truth.windows(3) {
+            let [before, own, after] = near else { panic!("three") };
+            let is_wide = |own: &Stretch| own.verdict == Holds::Stable && own.hi - own.lo > 0.2;
+            let is_one = own.verdict == Holds::Unstable && sparse.count((own.lo, own.hi)) == Some(1);
+            if is_one && is_wide(before) && is_wide(after) && own.hi - own.lo > 4e-4 {
+                unstable += 1;
+                let is_told = found.iter().any(|found| {
+                    found.verdict == Holds::Unstable && found.lo <= own.lo + 2e-4 && own.hi - 2e-4 <= found.hi
+                });
+                assert!(is_told, "{case} {own:?} {found:?}");
             }
         }
         if let Some((lo, hi)) = sparse.first_unstable() {
@@ -146,5 +144,5 @@ fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
             assert!(first.is_none_or(|first| lo <= first), "{case} {lo} {first:?}");
         }
     }
-    assert!(unstable > 40, "{unstable}");
+    assert!(unstable > 5, "{unstable}");
 }

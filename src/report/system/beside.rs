@@ -125,7 +125,11 @@ pub(super) fn local_lines(own: &Told, unit: &str) -> Vec<String> {
         let first = decimal::enclosure(lo, hi);
         format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
     });
-    [format!("  local time steps: {}", levels.join("; of these "))].into_iter().chain(limit).chain(first).collect()
+    [format!("  local time steps: {}", levels.join("; of these "))]
+        .into_iter()
+        .chain(limit)
+        .chain(first)
+        .collect()
 }
 
 /// The same for people.

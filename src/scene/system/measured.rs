@@ -122,7 +122,8 @@ pub(super) fn parse(source: &Value) -> Result<Document> {
 /// From a file of dense stiffnesses.
 pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     if document.scheme.is_some() || document.levels.is_some() {
-        let remedy = "by reference is for one sparse stiffness: give compressed rows, or the numbers themselves";
+        let remedy =
+            "by reference is for one sparse stiffness: give compressed rows, or the numbers themselves";
         return Err(Error::input("scheme", "local time steps", remedy));
     }
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));

@@ -72,10 +72,18 @@ fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     let (levels, potential) = match (document.scheme.as_deref(), &document.levels, &document.potentials[..]) {
         (Some(NAME), Some(levels), [potential]) => (levels, potential),
         (Some(NAME), Some(_), all) => {
-            return refused("potentials", format!("{} of them", all.len()), "local steps are for one stiffness");
+            return refused(
+                "potentials",
+                format!("{} of them", all.len()),
+                "local steps are for one stiffness",
+            );
         }
         (Some(NAME), None, _) => {
-            return refused("levels", "missing".into(), "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]");
+            return refused(
+                "levels",
+                "missing".into(),
+                "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]",
+            );
         }
         (Some(other), ..) => {
             let remedy = "lts, leapfrog with local time steps, is the only one with a name";

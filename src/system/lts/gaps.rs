@@ -97,7 +97,8 @@ impl SparseSteps {
         let p2 = f64::from(level.substeps).powi(2);
         let mut found = [0, 0];
         for mark in SparseSteps::marks(level.substeps) {
-            found[usize::from(!mark.is_odd)] += fine.within(p2 * mark.z / (hi * hi), p2 * mark.z / (lo * lo))?;
+            found[usize::from(!mark.is_odd)] +=
+                fine.within(p2 * mark.z / (hi * hi), p2 * mark.z / (lo * lo))?;
         }
         Some(found)
     }
@@ -122,7 +123,10 @@ impl SparseSteps {
             bisected((start, 2.0 * start), WIDTH * SHARPER, |dt| Some(is_stable(dt)))
         };
         let steps = (0..40).map(|k| beyond * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k)));
-        steps.take_while(|&dt| dt < 2.0 * top).find(|&dt| self.verdict(dt) == Holds::Unstable).map(|hi| (lo, hi))
+        steps
+            .take_while(|&dt| dt < 2.0 * top)
+            .find(|&dt| self.verdict(dt) == Holds::Unstable)
+            .map(|hi| (lo, hi))
     }
 
     /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: between resonances two steps prove all between, and an unstable
@@ -149,7 +153,8 @@ impl SparseSteps {
             let gaps: Vec<_> = starts.zip(ends).collect();
             let is_first = self.resonances(lo * 1e-3, lo) == Some([0, 0]);
             let solve = |&(k, gap): &(usize, (f64, f64))| Ok(self.gap(gap, width, k == 0 && is_first));
-            let solved: Vec<Vec<Stretch>> = try_map(&gaps.into_iter().enumerate().collect::<Vec<_>>(), solve)?;
+            let solved: Vec<Vec<Stretch>> =
+                try_map(&gaps.into_iter().enumerate().collect::<Vec<_>>(), solve)?;
             for (k, own) in solved.into_iter().enumerate() {
                 if let Some(place) = k.checked_sub(1).map(|k| places[k]) {
                     found.push(self.at_place(&place, found.last(), own.first()));
@@ -158,7 +163,8 @@ impl SparseSteps {
             }
         }
         let rest = [(end.max(lo), to.clamp(lo, hi), Holds::NotTold), (to.clamp(lo, hi), hi, Holds::Unstable)];
-        let rest = rest.into_iter().filter(|own| own.0 < own.1).map(|(lo, hi, verdict)| Stretch { lo, hi, verdict });
+        let rest =
+            rest.into_iter().filter(|own| own.0 < own.1).map(|(lo, hi, verdict)| Stretch { lo, hi, verdict });
         Ok(merged(found.into_iter().chain(rest)))
     }
 
@@ -202,7 +208,8 @@ impl SparseSteps {
             (Holds::Unstable, _) if is_first => return whole(Holds::Unstable),
             _ => {}
         }
-        let tried = (1..=TRIED).flat_map(|k| (1..1u32 << k).step_by(2).map(move |i| f64::from(i) / f64::from(1u32 << k)));
+        let tried = (1..=TRIED)
+            .flat_map(|k| (1..1u32 << k).step_by(2).map(move |i| f64::from(i) / f64::from(1u32 << k)));
         let tried = [0.0, 1.0].into_iter().chain(tried).map(|share| a + (b - a) * share);
         let tried = tried.take_while(|_| b - a > 0.0).take(if b - a > width * b { usize::MAX } else { 3 });
         let Some(stable) = tried.into_iter().find(|&dt| self.verdict(dt) == Holds::Stable) else {

@@ -52,7 +52,11 @@ impl Level {
                 return refused(&field("substeps"), level.substeps.to_string(), &remedy);
             }
             if let Some(i) = level.fine.iter().find(|&&i| i >= n) {
-                return refused(&field("fine"), i.to_string(), &format!("indices are 0 to {}", n.saturating_sub(1)));
+                return refused(
+                    &field("fine"),
+                    i.to_string(),
+                    &format!("indices are 0 to {}", n.saturating_sub(1)),
+                );
             }
             let above = l.checked_sub(1).map(|above| &levels[above].fine);
             if let Some(i) = above.and_then(|above| level.fine.difference(above).next()) {

@@ -62,6 +62,9 @@ const RIGID: f64 = 1e-12;
 /// Rounds of inverse iteration for the motion that grows fastest.
 const ROUNDS: usize = 12;
 
+/// The most times that these begin anew, nearer to what they seek.
+const MOST_ROUNDS: usize = 12;
+
 /// How sharp a growth rate is: of λ − 4 of the largest λ.
 const SHARP: f64 = 0.02;
 
@@ -86,7 +89,8 @@ impl SparseSteps {
         let below = |&(i, j, x): &(usize, usize, f64)| (i >= j).then(|| (i, j, x / (roots[i] * roots[j])));
         let lower: Vec<_> = stiffness.iter().filter_map(below).collect();
         let whole = Sparse::symmetric(n, &lower);
-        let fine = levels.first().filter(|own| !own.fine.is_empty()).map(|own| whole.part(own)).transpose()?;
+        let fine =
+            levels.first().filter(|own| !own.fine.is_empty()).map(|own| whole.part(own)).transpose()?;
         let coefficients = effective(whole, &levels);
         let triplets: Vec<_> = coefficients.iter().map(Sparse::lower).collect();
         let (pattern, values) = Pattern::of_all(n, &triplets.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
@@ -152,7 +156,7 @@ impl SparseSteps {
         if self.pattern.factored(c, &[(-1.0, values)], off).is_some() {
             return Holds::Stable;
         }
-        self.negative(values, -1.0, off, c)
+        self.unstable_along(values, -1.0, off, c)
     }
 
     /// Whether f > 0 off the rigid motion.
@@ -162,11 +166,10 @@ impl SparseSteps {
             if self.pattern.factored(0.0, &terms, off).is_some() {
                 return Holds::Stable;
             }
-            return self.negative(values, 1.0, off, 0.0);
+            return self.unstable_along(values, 1.0, off, 0.0);
         }
         // P f P − f for the projection on the rest: ‖f r‖ twice and rᵀ f r once.
-        let ((size, count), image) =
-            (self.pattern.size_of(values), self.pattern.times(values, &self.rigid));
+        let ((size, count), image) = (self.pattern.size_of(values), self.pattern.times(values, &self.rigid));
         let rounding = 2.0 * (count as f64 + 2.0) * U * size;
         let off = off + 3.1 * (norm::frobenius(&image) + rounding);
         let mut tau = 1.1 * off;
@@ -180,78 +183,78 @@ impl SparseSteps {
             }
             tau = 1.1 * (own + off);
         }
-        self.negative(values, 1.0, off, 0.0)
+        self.unstable_along(values, 1.0, off, 0.0)
     }
 
-    /// Unstable where c + a f has a negative eigenvalue, a = ±1.
-    fn negative(&self, values: &[f64], a: f64, off: f64, c: f64) -> Holds {
-        let mut tau = 1.1 * off;
-        for _ in 0..TRIES {
-            // c + τ + a f has as many as what is no farther than `own` from it: below −τ + own + off these are negative.
-            match self.pattern.negative(-(c + tau), &[(a, values)]) {
-                Some((0, _)) | None => return Holds::NotTold,
-                Some((_, own)) if tau > 1.01 * (own + off) => return Holds::Unstable,
-                Some((_, own)) => tau = 1.1 * (own + off),
-            }
-        }
-        Holds::NotTold
+    /// Unstable where some vector proves that c + a f has a negative eigenvalue, a = ±1.
+    fn unstable_along(&self, values: &[f64], a: f64, off: f64, c: f64) -> Holds {
+        self.beyond(values, off, (a, c), false).map_or(Holds::NotTold, |_| Holds::Unstable)
     }
 
     /// Of the motion that grows fastest at an unstable step: an enclosure of the largest ln |λ| of a step, and positions, rounded, the longest
     /// entry 1. With the largest λ of f, or of 4 − f, 2 asinh √(λ/4 − 1): a step multiplies by as much. `None` where nothing is proven to grow.
     pub fn growth(&self, dt: f64) -> Option<Growth> {
         let (values, off) = self.at(dt * dt);
-        let found = [(-1.0, 4.0), (1.0, 0.0)].map(|(a, c)| self.beyond(&values, off, a, c));
-        let (lo, hi) = found.iter().flatten().copied().reduce(|x, y| (x.0.max(y.0), x.1.max(y.1)))?;
-        if found.iter().zip([self.below(&values, off, 4.0), self.above(&values, off)]).any(|(own, holds)| {
-            own.is_none() && holds != Holds::Stable
-        }) {
-            return None;
-        }
-        let a = if found[0].is_some_and(|own| own.1 >= hi) { -1.0 } else { 1.0 };
-        let c = if a < 0.0 { 4.0 } else { 0.0 };
+        let above = self.beyond(&values, off, (-1.0, 4.0), true);
+        let below = self.beyond(&values, off, (1.0, 0.0), true);
+        let is_above =
+            below.as_ref().is_none_or(|below| above.as_ref().is_some_and(|own| own.hi >= below.hi));
+        let (own, other, end) =
+            if is_above { (above?, below, (1.0, 0.0)) } else { (below?, above, (-1.0, 4.0)) };
+        let (lo, hi) = other.as_ref().map_or((own.lo, own.hi), |other| (own.lo.max(other.lo), own.hi));
+        // Beyond the other end nothing is farther out.
+        let is_known =
+            other.is_some() || self.pattern.factored(end.1 + hi, &[(end.0, &values)], off).is_some();
         // Ten roundings at most.
         let rate = |excess: f64, round: f64| 2.0 * (excess.sqrt() / 2.0).asinh() * (1.0 + round * 10.0 * U);
-        let factors = self.pattern.factored(c + hi, &[(a, &values)], off)?;
-        let begin = start(self.size());
-        let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
-        for _ in 0..ROUNDS {
-            x = factors.solve(x)?;
-            let length = x.norm_l2();
-            if !(length.is_finite() && length > 0.0) {
-                return None;
-            }
-            x /= Scale(length);
-        }
-        let shape: Vec<f64> = (0..self.size()).map(|i| x[(i, 0)] / self.roots[i]).collect();
+        let shape: Vec<f64> = (0..self.size()).map(|i| own.along[(i, 0)] / self.roots[i]).collect();
         let longest = shape.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
-        Some(Growth {
+        is_known.then(|| Growth {
             excess: (lo, hi),
             rate: (rate(lo, -1.0), rate(hi, 1.0)),
-            is_above: a < 0.0,
+            is_above,
             shape: shape.into_iter().map(|x| x / longest).collect(),
         })
     }
 
-    /// The largest eigenvalue of −(c + a f), enclosed, where one is proven to be above 0.
-    fn beyond(&self, values: &[f64], off: f64, a: f64, c: f64) -> Option<(f64, f64)> {
-        let holds = |by: f64| self.pattern.factored(c + by, &[(a, values)], off).is_some();
-        let reaches = |by: f64| self.negative(values, a, off, c + by) == Holds::Unstable;
-        let (mut lo, mut hi) = (LEAST, self.pattern.size_of(values).0 + off);
-        if !reaches(lo) {
-            return None;
-        }
-        while hi > lo * (1.0 + SHARP) {
-            let middle = (lo * hi).sqrt();
-            if holds(middle) {
-                hi = middle;
-            } else if reaches(middle) {
-                lo = middle;
-            } else {
+    /// The largest eigenvalue of −(c + a f), enclosed, where it is proven to be above 0: below by the quotient of the vector that inverse iteration
+    /// finds, above by a factorization.
+    fn beyond(&self, values: &[f64], off: f64, (a, c): (f64, f64), is_sharp: bool) -> Option<Beyond> {
+        let (n, size) = (self.size() as f64, self.pattern.size_of(values).0);
+        let factors = |by: f64| self.pattern.factored(c + by, &[(a, values)], off);
+        let rooms = std::iter::successors(Some(LEAST * size), |by| Some(16.0 * by))
+            .take_while(|&by| by < 32.0 * size);
+        let (mut hi, mut own) = rooms.into_iter().find_map(|by| Some((by, factors(by)?)))?;
+        let (begin, mut lo) = (start(self.size()), f64::MIN);
+        let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
+        // Sums of n products each, of |x|ᵀ|f||x| ≤ ‖f‖.
+        let rounding = 1.02 * (n + 8.0) * U;
+        for _ in 0..MOST_ROUNDS {
+            for _ in 0..ROUNDS {
+                x = own.solve(x)?;
+                x -= &self.rigid * (self.rigid.transpose() * &x);
+                let length = x.norm_l2();
+                if !(length.is_finite() && length > 0.0) {
+                    return None;
+                }
+                x /= Scale(length);
+            }
+            let (square, form) =
+                (x.squared_norm_l2(), (x.transpose() * self.pattern.times(values, &x))[(0, 0)]);
+            let least = -(c * square + a * form) - 1.01 * square * (off + rounding * (size + c));
+            lo = least / (square * (1.0 + rounding));
+            let is_done = if lo > 0.0 { !is_sharp || hi <= lo * (1.0 + SHARP) } else { hi <= LEAST * size };
+            if is_done {
                 break;
             }
+            // Nearer to its own quotient, where that proves it: a step of the iteration then brings more.
+            let nearer =
+                if lo > 0.0 { [lo * (1.0 + SHARP / 2.0), (lo * hi).sqrt()] } else { [hi / 8.0, hi / 2.0] };
+            if let Some((by, next)) = nearer.into_iter().find_map(|by| Some((by, factors(by)?))) {
+                (hi, own) = (by, next);
+            }
         }
-        Some((lo, hi))
+        (lo > 0.0).then_some(Beyond { lo, hi, along: x })
     }
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
@@ -284,11 +287,18 @@ pub struct Growth {
     pub shape: Vec<f64>,
 }
 
+/// The largest eigenvalue of a matrix, and a vector that is near its own.
+struct Beyond {
+    lo: f64,
+    hi: f64,
+    along: Mat<f64>,
+}
+
 /// Shifts that are tried: each a tenth above what the last factorization may be off by.
 const TRIES: u32 = 3;
 
-/// Growth of 10⁻⁵ a step is the least that is looked for.
-const LEAST: f64 = 1e-10;
+/// The least room above what is sought, relative to ‖f‖: below that factorizations prove nothing.
+const LEAST: f64 = 1e-11;
 
 /// The mass-weighted motion of all together, where the rows of K sum to 0.
 fn rigid(stiffness: &Triplets, roots: &[f64]) -> Mat<f64> {
@@ -326,8 +336,10 @@ fn substeps(own: &[Sparse], is_fine: &[bool], substeps: u32) -> Vec<Sparse> {
         let coefficient = |j: usize| {
             let of = |all: &[Sparse]| all.get(j).cloned();
             let (now_j, own_j, before_j) = (of(&now), of(own), of(&before));
-            let sums: Vec<(f64, &Sparse)> =
-                [(2.0, &now_j), (2.0, &own_j), (-1.0, &before_j)].into_iter().filter_map(|(a, m)| Some((a, m.as_ref()?))).collect();
+            let sums: Vec<(f64, &Sparse)> = [(2.0, &now_j), (2.0, &own_j), (-1.0, &before_j)]
+                .into_iter()
+                .filter_map(|(a, m)| Some((a, m.as_ref()?)))
+                .collect();
             // Places j − 1 stand for dt^2j.
             let product = |i: usize| Some((-2.0, own.get(i)?, now.get(j.checked_sub(i + 1)?)?));
             let products: Vec<_> = (0..j).filter_map(product).collect();
@@ -356,7 +368,8 @@ impl Sparse {
         let upper = lower.iter().filter(|own| own.0 != own.1).map(|&(i, j, x)| (j, i, x));
         let mut all: Vec<_> = lower.iter().copied().chain(upper).collect();
         all.sort_by_key(|own| (own.1, own.0));
-        let mut own = Sparse { ends: vec![0; n + 1], rows: Vec::new(), values: Vec::new(), error: 0.0, size: 0.0 };
+        let mut own =
+            Sparse { ends: vec![0; n + 1], rows: Vec::new(), values: Vec::new(), error: 0.0, size: 0.0 };
         for (i, j, x) in all {
             own.ends[j + 1] += 1;
             own.rows.push(i);
@@ -396,7 +409,9 @@ impl Sparse {
     }
 
     fn lower(&self) -> Vec<(usize, usize, f64)> {
-        (0..self.size()).flat_map(|j| self.column(j).filter(move |own| own.0 >= j).map(move |(i, x)| (i, j, x))).collect()
+        (0..self.size())
+            .flat_map(|j| self.column(j).filter(move |own| own.0 >= j).map(move |(i, x)| (i, j, x)))
+            .collect()
     }
 
     /// Rows and columns of a level's fine degrees of freedom.
@@ -405,21 +420,21 @@ impl Sparse {
         level.fine.iter().enumerate().for_each(|(new, &old)| place[old] = new);
         let is_fine = |own: &&(usize, usize, f64)| place[own.0] != usize::MAX && place[own.1] != usize::MAX;
         let lower = self.lower();
-        let own: Vec<_> =
-            lower.iter().filter(is_fine).map(|&(i, j, x)| (place[i], place[j], x)).collect();
+        let own: Vec<_> = lower.iter().filter(is_fine).map(|&(i, j, x)| (place[i], place[j], x)).collect();
         let (pattern, [values]) = Pattern::of(level.fine.len(), [&own])?;
         Ok(Fine { pattern, values, error: self.error })
     }
 
     /// Σ a A + Σ b S P B, P on the fine degrees of freedom.
-    fn combined(
-        is_fine: &[bool],
-        sums: &[(f64, &Sparse)],
-        products: &[(f64, &Sparse, &Sparse)],
-    ) -> Sparse {
+    fn combined(is_fine: &[bool], sums: &[(f64, &Sparse)], products: &[(f64, &Sparse, &Sparse)]) -> Sparse {
         let n = is_fine.len();
-        let mut own =
-            Sparse { ends: Vec::with_capacity(n + 1), rows: Vec::new(), values: Vec::new(), error: 0.0, size: 0.0 };
+        let mut own = Sparse {
+            ends: Vec::with_capacity(n + 1),
+            rows: Vec::new(),
+            values: Vec::new(),
+            error: 0.0,
+            size: 0.0,
+        };
         own.ends.push(0);
         let (mut sum, mut seen, mut touched) = (vec![0.0; n], vec![usize::MAX; n], Vec::new());
         let mut most = 0;

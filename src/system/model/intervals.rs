@@ -46,7 +46,9 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
-            (_, Model::Sparse(own)) => own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals())),
+            (_, Model::Sparse(own)) => {
+                own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
+            }
             _ => match self.levels() {
                 Some(own) => own.stretches(range, width),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),

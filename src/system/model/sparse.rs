@@ -73,7 +73,11 @@ impl SparseSystem {
                 format!("the outer step of sparse stiffnesses is a multiple of the inner one, {inner}"),
             )
         })?;
-        Ok(SparseSystem { of: Of::Levels { levels, outer: at, accuracy, removed }, step: outer.clone(), clocks })
+        Ok(SparseSystem {
+            of: Of::Levels { levels, outer: at, accuracy, removed },
+            step: outer.clone(),
+            clocks,
+        })
     }
 
     /// Local time steps in a step.
@@ -217,7 +221,14 @@ impl SparseSystem {
             let multiplier = Multiplier::new(mu, Some((hi - lo) / 8.0 * (1.0 + 1e-9)), Some(rate));
             let quadrature = vec![0.0; shape.len()];
             let growth_rate = Some(per_time(rate, &period));
-            Instability { multiplier, origin: Origin::RealPair, growth_rate, shape, quadrature, resonance: None }
+            Instability {
+                multiplier,
+                origin: Origin::RealPair,
+                growth_rate,
+                shape,
+                quadrature,
+                resonance: None,
+            }
         });
         let (multipliers, instabilities) = growing.map(|own| (own.multiplier, own)).into_iter().unzip();
         let part = Part::new(own.size(), period, decided(verdict), (multipliers, instabilities));
