@@ -1,7 +1,8 @@
 """Waves on meshes with local time steps: a mesh of Gmsh or meshio, lumped linear elements, steps by element.
 
-``M x'' + K x = 0`` for a scalar wave of density ``r`` and speed ``c``: ``M`` holds the integrals of ``r``, lumped, ``K`` those of
-``r c^2 grad u grad v``. Elements whose own Courant limit is short take substeps (leapfrog with local time steps, Diaz and Grote 2009).
+``M x'' + K x = 0`` for a scalar wave of density ``r`` and speed ``c``: ``M`` holds the integrals of ``r``, lumped,
+``K`` those of ``r c^2 grad u grad v``. Elements whose own Courant limit is short take substeps (leapfrog with local
+time steps, Diaz and Grote 2009).
 """
 
 from __future__ import annotations
@@ -36,7 +37,8 @@ class Waves:
     system : System
         ``decide`` and ``intervals`` answer on it; ``decide().local_steps["first_unstable"]`` is the certified limit.
     limits : array of doubles, shape (elements,)
-        The Courant limit of each element by itself, ``2/w`` of its fastest motion; no assembly of them is unstable below.
+        The Courant limit of each element by itself, ``2/w`` of its fastest motion: below the least one plain leapfrog is
+        stable.
     substeps : array of integers, shape (elements,)
         The substeps of each element in a step.
     cfl : float
@@ -68,8 +70,8 @@ def waves(
     Parameters
     ----------
     mesh : path, meshio.Mesh, or (points, cells)
-        A file that meshio reads, as Gmsh's ``.msh`` of version 2.2 or 4.1; its lines, triangles or tetrahedra, those of the highest
-        dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
+        A file that meshio reads, as Gmsh's ``.msh`` of version 2.2 or 4.1; its lines, triangles or tetrahedra, those of
+        the highest dimension. Or points, shape (nodes, 1 to 3), and cells, shape (elements, 2 to 4), counted from 0.
     speed, density : float or array, shape (elements,)
         Of the wave, and of what it moves through; the unit of time follows from these.
     substeps : int or sequence of int
@@ -195,7 +197,7 @@ def _each(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64
 def _gradients(
     points: npt.NDArray[np.float64], cells: npt.NDArray[np.int64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """The volume of each element, and the gradients of the linear functions that are 1 at one node, shape (elements, nodes, axes)."""
+    """The volume of each element, and the gradients of its linear functions, each 1 at one node and 0 at the others."""
     corners = points[cells]
     edges = corners[:, 1:] - corners[:, :1]
     products = np.einsum("eix,ejx->eij", edges, edges)
