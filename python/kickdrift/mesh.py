@@ -37,8 +37,8 @@ class Waves:
     system : System
         ``decide`` and ``intervals`` answer on it; ``decide().local_steps["first_unstable"]`` is the certified limit.
     limits : array of doubles, shape (elements,)
-        The Courant limit of each element by itself, ``2/w`` of its fastest motion: below the least one plain leapfrog is
-        stable.
+        The Courant limit of each element by itself, ``2/w`` of its fastest motion: plain leapfrog is stable below the
+        least one.
     substeps : array of integers, shape (elements,)
         The substeps of each element in a step.
     cfl : float
