@@ -16,7 +16,7 @@ use crate::system::levels::Method;
 use crate::system::nearest::Nearest;
 use crate::system::scan::scan;
 use crate::system::vary::Intervals;
-use crate::system::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route};
+use crate::system::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, Told};
 
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of one.
@@ -85,6 +85,7 @@ pub struct Verdict {
     is_orbit_missing: bool,
     nearest: Option<Nearest>,
     no_gradient: Option<NoGradient>,
+    local: Option<Told>,
 }
 
 /// What is found of a system.
@@ -150,8 +151,8 @@ impl System {
         };
         let nearest = width.map(nearest).transpose()?;
         let no_gradient = model.jacobians().map(Jacobians::no_gradient);
-        let friction = scene.friction(&limits)?;
-        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient })
+        let (friction, local) = (scene.friction(&limits)?, model.told());
+        Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
     }
 
     fn intervals(span: &Span, width: f64, scene: &SystemScene, work: &Work) -> Result<Intervals> {
@@ -220,11 +221,11 @@ impl Question for System {
             Found::Map(map) => map.document(),
             Found::Intervals(own) => report::intervals(own),
             Found::Verdict(own) => {
-                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient } =
+                let Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local } =
                     own.as_ref();
+                let local = local.as_ref();
                 let (friction, orbit, nearest) = (friction.as_ref(), orbit.as_ref(), nearest.as_ref());
                 let (unit, labels, is_orbit_missing) = (scene.time_unit(), scene.labels(), *is_orbit_missing);
-                let local = scene.model().local_steps();
                 let is_implicit = scene.model().implicit().is_some();
                 let no_gradient = no_gradient.as_ref();
                 let beside = Beside {

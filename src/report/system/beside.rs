@@ -9,7 +9,7 @@ use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, Level, LocalSteps, NoGradient, OwnOrbit, middle};
+use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, Told, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,7 +25,7 @@ pub struct Beside<'a> {
     /// The unstable outer steps next to this one, where they were asked for.
     pub nearest: Option<&'a Nearest>,
     /// The scheme of local time steps, where it is one.
-    pub local: Option<&'a LocalSteps>,
+    pub local: Option<&'a Told>,
     /// Whether the fast force of two rational levels is solved for.
     pub is_implicit: bool,
     /// What is known of forces that are no gradient.
@@ -100,25 +100,36 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
     lines
 }
 
-fn local_steps(own: &LocalSteps) -> Value {
-    let level = |level: &Level| json!({"fine": level.fine.len(), "substeps": level.substeps});
-    json!({
-        "levels": own.levels().iter().map(level).collect::<Vec<_>>(),
-        "plain_limit": own.plain_limit().map(enclosure),
-    })
+fn local_steps(own: &Told) -> Value {
+    let level = |&(fine, substeps): &(usize, u32)| json!({"fine": fine, "substeps": substeps});
+    let mut value = json!({
+        "levels": own.levels.iter().map(level).collect::<Vec<_>>(),
+        "plain_limit": own.plain_limit.map(enclosure),
+    });
+    if let Some(first) = own.first_unstable {
+        value["first_unstable"] = enclosure(first);
+    }
+    value
 }
 
 /// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
-pub(super) fn local_lines(own: &LocalSteps, unit: &str) -> Vec<String> {
-    let size = own.system().size();
-    let level = |level: &Level| {
-        format!("{} of {size} degrees of freedom take {} substeps", level.fine.len(), level.substeps)
+pub(super) fn local_lines(own: &Told, unit: &str) -> Vec<String> {
+    let level = |&(fine, substeps): &(usize, u32)| {
+        format!("{fine} of {} degrees of freedom take {substeps} substeps", own.size)
     };
-    let levels: Vec<_> = own.levels().iter().map(level).collect();
-    let limit = own.plain_limit().map(|(lo, hi)| {
+    let levels: Vec<_> = own.levels.iter().map(level).collect();
+    let limit = own.plain_limit.map(|(lo, hi)| {
         format!("  plain leapfrog without them is stable below {}{unit}", decimal::enclosure(lo, hi))
     });
-    [format!("  local time steps: {}", levels.join("; of these "))].into_iter().chain(limit).collect()
+    let first = own.first_unstable.map(|(lo, hi)| {
+        let first = decimal::enclosure(lo, hi);
+        format!("  first unstable step: {first}{unit}; every smaller one is proven stable")
+    });
+    [format!("  local time steps: {}", levels.join("; of these "))]
+        .into_iter()
+        .chain(limit)
+        .chain(first)
+        .collect()
 }
 
 /// The same for people.

@@ -233,8 +233,14 @@ impl SystemScene {
         }
         match &self.model {
             Model::NoGradient(_) => return refused("of this file", "are for forces that are gradients"),
-            Model::Sparse(_) => return refused("of this file", "are for dense stiffnesses"),
-            Model::Rational(_) | Model::Measured(_) | Model::LocalSteps(_) | Model::Implicit(_)
+            Model::Sparse(own) if own.local_steps().is_none() => {
+                return refused("of this file", "are for dense stiffnesses");
+            }
+            Model::Rational(_)
+            | Model::Measured(_)
+            | Model::LocalSteps(_)
+            | Model::Implicit(_)
+            | Model::Sparse(_)
                 if self.is_linear() => {}
             _ => return refused("of this file", "are for linear systems of rational numbers"),
         }

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::system::{Level, LocalSteps, Model, System};
 
 /// The only scheme so far that has a name.
-const NAME: &str = "lts";
+pub(super) const NAME: &str = "lts";
 
 impl Document {
     /// The model with the scheme of the file, where it names one; `moving` are node and axis of each degree of freedom of a mesh.

@@ -65,6 +65,8 @@ pub(super) struct Document {
     #[serde(default = "yes")]
     pub symmetric: bool,
     pub method: Option<String>,
+    pub scheme: Option<String>,
+    pub levels: Option<Vec<LevelDocument>>,
     pub potentials: Vec<PotentialDocument>,
     pub labels: Option<Vec<String>>,
     pub elements: Option<Vec<String>>,
@@ -86,6 +88,22 @@ pub(super) struct PotentialDocument {
     pub force: Option<Reference>,
 }
 
+/// A level of local time steps; see `local`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LevelDocument {
+    pub fine: FineDocument,
+    pub substeps: Number,
+}
+
+/// Degrees of freedom, counted from 0: as they are, or an array of them.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum FineDocument {
+    List(Vec<usize>),
+    Array(Reference),
+}
+
 /// Whether some stiffness of the file stands by reference.
 pub(super) fn is_by_reference(source: &Value) -> bool {
     let potentials = source.get("potentials").and_then(Value::as_array);
@@ -103,6 +121,11 @@ pub(super) fn parse(source: &Value) -> Result<Document> {
 
 /// From a file of dense stiffnesses.
 pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
+    if document.scheme.is_some() || document.levels.is_some() {
+        let remedy =
+            "by reference is for one sparse stiffness: give compressed rows, or the numbers themselves";
+        return Err(Error::input("scheme", "local time steps", remedy));
+    }
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));
     let mut read = read.collect::<Result<Vec<_>>>()?;
     let n = read.first().map_or(0, |own| own.stiffness.nrows());

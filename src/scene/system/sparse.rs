@@ -13,16 +13,20 @@
 //! ```
 //!
 //! `csr` names the three arrays `data`, `indices` and `indptr` of compressed rows: `slow.data` and so on, or, where it is empty, those of a file
-//! of `scipy.sparse.save_npz`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
+//! of `scipy.sparse.save_npz`. With `"scheme": "lts"` there is one stiffness, and `"levels": [{"fine": [4, 5], "substeps": 2}]` are local time steps
+//! (see `local`); `fine` may stand by reference, too, as `{"npz": "mesh.npz", "array": "fine"}`. A stiffness is K, not mass-weighted, symmetric to rounding; both triangles stand in it.
+
+use std::collections::BTreeSet;
 
 use faer::Mat;
 
 use super::array::{Arrays, Reference};
-use super::measured::Document;
+use super::local::NAME;
+use super::measured::{Document, FineDocument, LevelDocument};
 use crate::error::{Error, Result};
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{rigid_motions, translations};
-use crate::system::{Removed, SparseSystem};
+use crate::system::{Level, LocalSteps, Removed, SparseSteps, SparseSystem};
 
 /// The most degrees of freedom.
 const LARGEST: usize = 1 << 20;
@@ -30,6 +34,9 @@ const LARGEST: usize = 1 << 20;
 /// From a file of two such stiffnesses.
 pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
     document.is_plain()?;
+    if document.scheme.is_some() || document.levels.is_some() {
+        return local_steps(document, arrays);
+    }
     let mut levels = Vec::new();
     for (k, own) in document.potentials.iter().enumerate() {
         levels.push((own.step(k)?, rows(&own.stiffness, &format!("potentials[{k}].stiffness"), arrays)?));
@@ -57,6 +64,66 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
     let [fast, slow] = own.removed();
     let removed = (count > 0).then_some(Removed { count, found_by, fast, slow });
     SparseSystem::new(own, [inner, outer], document.accuracy()?, removed)
+}
+
+/// One stiffness with local time steps.
+fn local_steps(document: &Document, arrays: &Arrays) -> Result<SparseSystem> {
+    let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
+    let (levels, potential) = match (document.scheme.as_deref(), &document.levels, &document.potentials[..]) {
+        (Some(NAME), Some(levels), [potential]) => (levels, potential),
+        (Some(NAME), Some(_), all) => {
+            return refused(
+                "potentials",
+                format!("{} of them", all.len()),
+                "local steps are for one stiffness",
+            );
+        }
+        (Some(NAME), None, _) => {
+            return refused(
+                "levels",
+                "missing".into(),
+                "give levels, as [{\"fine\": [3, 4], \"substeps\": 2}]",
+            );
+        }
+        (Some(other), ..) => {
+            let remedy = "lts, leapfrog with local time steps, is the only one with a name";
+            return refused("scheme", other.into(), remedy);
+        }
+        (None, ..) => {
+            let remedy = "are those of a scheme: give \"scheme\": \"lts\", too";
+            return refused("levels", "given".into(), remedy);
+        }
+    };
+    if document.accuracy.is_some() {
+        return refused("accuracy", "given".into(), "has no meaning with local steps: leave it out");
+    }
+    let (n, stiffness) = rows(&potential.stiffness, "potentials[0].stiffness", arrays)?;
+    if n == 0 || n > LARGEST {
+        return refused("potentials", format!("{n} rows"), &format!("give 1 to {LARGEST}"));
+    }
+    let masses = document.masses(n, arrays)?.ok_or_else(|| Error::missing("masses", "give them"))?;
+    let levels = levels.iter().enumerate().map(|(l, own)| own.read(l, n, arrays));
+    let steps = SparseSteps::new(&masses, &stiffness, levels.collect::<Result<_>>()?)?;
+    SparseSystem::with_local_steps(steps, &potential.step(0)?)
+}
+
+impl LevelDocument {
+    fn read(&self, l: usize, n: usize, arrays: &Arrays) -> Result<Level> {
+        let field = |name: &str| format!("levels[{l}].{name}");
+        let fine: BTreeSet<usize> = match &self.fine {
+            FineDocument::List(own) => own.iter().copied().collect(),
+            FineDocument::Array(at) => {
+                let own = at.read(&field("fine"), arrays)?.into_values();
+                let is_index = |x: &&f64| **x >= 0.0 && x.fract() == 0.0 && **x < n as f64;
+                if let Some(x) = own.iter().find(|x| !is_index(x)) {
+                    return Err(Error::input(&field("fine"), x, format!("indices are 0 to {}", n - 1)));
+                }
+                own.into_iter().map(|x| x as usize).collect()
+            }
+        };
+        let substeps = self.substeps.count(&field("substeps"), LocalSteps::MOST_SUBSTEPS as usize)? as u32;
+        Ok(Level { fine, substeps })
+    }
 }
 
 impl Document {

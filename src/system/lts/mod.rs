@@ -15,8 +15,13 @@
 //! |---|---|
 //! | `scheme` | the levels, the effective stiffness |
 //! | `intervals` | all unstable intervals of dt, exactly |
+//! | `sparse` | many thousands of degrees of freedom: f in sparse doubles, its verdicts, what grows fastest |
+//! | `gaps` | the unstable intervals of dt of these |
 
+mod gaps;
 mod intervals;
 mod scheme;
+mod sparse;
 
-pub use scheme::{Level, LocalSteps};
+pub use scheme::{Level, LocalSteps, Told};
+pub use sparse::{Growth, SparseSteps};

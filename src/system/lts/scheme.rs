@@ -18,6 +18,56 @@ pub struct Level {
     pub substeps: u32,
 }
 
+/// What answers tell of a scheme.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Told {
+    /// Degrees of freedom.
+    pub size: usize,
+    /// Fine ones and substeps of each level.
+    pub levels: Vec<(usize, u32)>,
+    /// As [`LocalSteps::plain_limit`].
+    pub plain_limit: Option<(f64, f64)>,
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, hi is proven unstable; `None` where that is not known.
+    pub first_unstable: Option<(f64, f64)>,
+}
+
+impl Level {
+    /// The substeps of all levels together.
+    ///
+    /// # Errors
+    /// No level, levels that are no parts of the ones above, indices of n or more, too many substeps.
+    pub(super) fn check(levels: &[Level], n: usize) -> Result<u32> {
+        let refused = |field: &str, value: String, remedy: &str| Err(Error::input(field, value, remedy));
+        if levels.is_empty() {
+            let remedy = "give at least one, as {\"fine\": [3, 4], \"substeps\": 2}";
+            return refused("levels", "none".into(), remedy);
+        }
+        let mut product = 1u32;
+        for (l, level) in levels.iter().enumerate() {
+            let field = |name: &str| format!("levels[{l}].{name}");
+            product = product.saturating_mul(level.substeps);
+            if level.substeps == 0 || product > LocalSteps::MOST_SUBSTEPS {
+                let remedy =
+                    format!("choose 1 or more, at most {} of all levels together", LocalSteps::MOST_SUBSTEPS);
+                return refused(&field("substeps"), level.substeps.to_string(), &remedy);
+            }
+            if let Some(i) = level.fine.iter().find(|&&i| i >= n) {
+                return refused(
+                    &field("fine"),
+                    i.to_string(),
+                    &format!("indices are 0 to {}", n.saturating_sub(1)),
+                );
+            }
+            let above = l.checked_sub(1).map(|above| &levels[above].fine);
+            if let Some(i) = above.and_then(|above| level.fine.difference(above).next()) {
+                let remedy = "is not fine in the level above: nest the levels";
+                return refused(&field("fine"), i.to_string(), remedy);
+            }
+        }
+        Ok(product)
+    }
+}
+
 /// Products of rationals for the effective stiffness beyond which reading a file would take a minute.
 const MOST_WORK: f64 = 2e8;
 
@@ -76,38 +126,7 @@ impl LocalSteps {
                 "has no meaning with local steps: leave it out",
             );
         }
-        if levels.is_empty() {
-            return refused(
-                "levels",
-                "none".into(),
-                "give at least one, as {\"fine\": [3, 4], \"substeps\": 2}",
-            );
-        }
-        let mut product = 1u32;
-        for (l, level) in levels.iter().enumerate() {
-            let field = |name: &str| format!("levels[{l}].{name}");
-            product = product.saturating_mul(level.substeps);
-            if level.substeps == 0 || product > LocalSteps::MOST_SUBSTEPS {
-                let remedy =
-                    format!("choose 1 or more, at most {} of all levels together", LocalSteps::MOST_SUBSTEPS);
-                return refused(&field("substeps"), level.substeps.to_string(), &remedy);
-            }
-            if let Some(i) = level.fine.iter().find(|&&i| i >= plain.size()) {
-                return refused(
-                    &field("fine"),
-                    i.to_string(),
-                    &format!("indices are 0 to {}", plain.size() - 1),
-                );
-            }
-            let above = l.checked_sub(1).map(|above| &levels[above].fine);
-            if let Some(i) = above.and_then(|above| level.fine.difference(above).next()) {
-                return refused(
-                    &field("fine"),
-                    i.to_string(),
-                    "is not fine in the level above: nest the levels",
-                );
-            }
-        }
+        let product = Level::check(&levels, plain.size())?;
         let work = work(&plain, &levels);
         if work > MOST_WORK {
             let remedy =

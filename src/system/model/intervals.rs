@@ -46,6 +46,9 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.stretches(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => own.stretches(range, limits),
+            (_, Model::Sparse(own)) => {
+                own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
+            }
             _ => match self.levels() {
                 Some(own) => own.stretches(range, width),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
@@ -75,6 +78,7 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
+            (_, Model::Sparse(own)) => own.cost_of_stretches(range).ok_or_else(|| self.no_intervals()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
     }
@@ -91,7 +95,7 @@ impl Model {
     /// What `ask` finds of the systems of all outer steps.
     fn over_outer_steps<T>(&self, ask: impl Fn(&Family) -> Result<T>) -> Result<T> {
         if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
-            return Err(self.refused("the intervals of a step"));
+            return Err(self.no_intervals());
         }
         if let Model::Implicit(own) = self {
             return ask(&Family { linear: Linear::Square, at: &|square| own.at_square(square) });
@@ -102,6 +106,10 @@ impl Model {
         ask(&Family { linear: Linear::Square, at: &at })
     }
 
+    fn no_intervals(&self) -> crate::error::Error {
+        self.refused("the intervals of a step")
+    }
+
     /// The unstable intervals of the outer step next to its own, all steps in their ratios: between half of it and twice it.
     ///
     /// # Errors
@@ -110,6 +118,10 @@ impl Model {
         let step = to_f64(&self.outer_step());
         if let Model::LocalSteps(own) = self {
             return Ok(Nearest::of(step, &own.stretches(Nearest::reach(step), limits)?));
+        }
+        if let Model::Sparse(_) = self {
+            let all = self.stretches(&Number::Outer, Nearest::reach(step), width, limits)?;
+            return Ok(Nearest::of(step, &all));
         }
         if self.levels().is_none() {
             let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
@@ -131,7 +143,11 @@ impl Model {
         }
         let factor = outer / self.outer_step();
         match self {
-            Model::NoGradient(_) | Model::Sparse(_) => Err(self.refused("the verdict at another step")),
+            Model::NoGradient(_) => Err(self.refused("the verdict at another step")),
+            Model::Sparse(own) => match own.at_step(outer) {
+                Some(own) => own?.decide(limits),
+                None => Err(self.refused("the verdict at another step")),
+            },
             Model::Pi(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
             Model::LocalSteps(own) => decide_by(Route::Cheapest, own.at(outer)?.system(), limits),
             Model::Implicit(own) => decide_by(Route::Cheapest, &own.at(outer)?, limits),

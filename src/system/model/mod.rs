@@ -22,7 +22,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::LocalSteps;
+use crate::system::lts::{LocalSteps, Told};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -51,7 +51,7 @@ pub enum Model {
     Implicit(Box<ImplicitExplicit>),
     /// Forces that are no gradient: their Jacobians are not symmetric.
     NoGradient(Box<Jacobians>),
-    /// Two sparse levels of thousands of degrees of freedom.
+    /// Sparse stiffnesses of thousands of degrees of freedom: two levels, or one with local time steps.
     Sparse(Box<SparseSystem>),
 }
 
@@ -244,7 +244,16 @@ impl Model {
         if let Model::NoGradient(own) = self { Some(own) } else { None }
     }
 
-    /// The scheme, where some degrees of freedom take substeps.
+    /// What answers tell of local time steps, where some degrees of freedom take substeps.
+    pub fn told(&self) -> Option<Told> {
+        match self {
+            Model::LocalSteps(own) => Some(own.told()),
+            Model::Sparse(own) => own.told(),
+            _ => None,
+        }
+    }
+
+    /// The scheme, where some degrees of freedom of a rational system take substeps.
     pub fn local_steps(&self) -> Option<&LocalSteps> {
         if let Model::LocalSteps(own) = self { Some(own) } else { None }
     }

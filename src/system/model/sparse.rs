@@ -1,32 +1,49 @@
-//! Two sparse levels of thousands of degrees of freedom: what is proven of the first stable region.
+//! Sparse stiffnesses of thousands of degrees of freedom: the first stable region of two levels; local time steps of one.
 
+use num_complex::Complex64;
 use num_traits::One;
 
 use crate::error::{Error, Result};
+use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::verdict::analysis::{Analysis, Evidence, Part};
+use crate::system::lts::{Growth, SparseSteps, Told};
+use crate::system::spectrum::modes::Origin;
+use crate::system::spectrum::rate::{Multiplier, per_time};
+use crate::system::vary::stretches::Stretch;
+use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
 use crate::system::verdict::measured::{Holds, Measured, Removed, check_accuracy};
 use crate::verdict::Kind;
 
-/// Two sparse levels with their steps.
+/// Sparse stiffnesses with their steps.
 #[derive(Clone, Debug)]
 pub struct SparseSystem {
-    levels: SparseLevels,
-    outer: Outer,
+    of: Of,
     step: Rational,
-    accuracy: f64,
-    removed: Option<Removed>,
     /// With the size and the clocks alone.
     clocks: System,
 }
 
+#[derive(Clone, Debug)]
+enum Of {
+    /// Two levels, and how well they are known.
+    Levels { levels: SparseLevels, outer: Outer, accuracy: f64, removed: Option<Removed> },
+    /// One stiffness, with local time steps.
+    Steps(SparseSteps),
+}
+
 /// What is left out of the answer.
 const NOTE: &str = "of sparse stiffnesses the first stable region is decided: what lies above it is not looked at, and no growth rate is computed";
+
+/// The same of local time steps.
+const FASTEST: &str = "of sparse stiffnesses the motion that grows fastest is computed alone";
+
+/// Of one resonance: to find it, and both edges of its unstable steps.
+const A_RESONANCE: f64 = 60.0;
 
 /// Factorizations that an answer takes, roughly; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
 /// iteration does, as measured on droplets of 500 and 2,000 waters.
@@ -56,7 +73,54 @@ impl SparseSystem {
                 format!("the outer step of sparse stiffnesses is a multiple of the inner one, {inner}"),
             )
         })?;
-        Ok(SparseSystem { levels, outer: at, step: outer.clone(), accuracy, removed, clocks })
+        Ok(SparseSystem {
+            of: Of::Levels { levels, outer: at, accuracy, removed },
+            step: outer.clone(),
+            clocks,
+        })
+    }
+
+    /// Local time steps in a step.
+    ///
+    /// # Errors
+    /// A step that is not positive.
+    pub fn with_local_steps(steps: SparseSteps, step: &Rational) -> Result<SparseSystem> {
+        let n = steps.size();
+        let clock = Potential::new(Symmetric::zero(n), step.clone());
+        let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
+        Ok(SparseSystem { of: Of::Steps(steps), step: step.clone(), clocks })
+    }
+
+    /// Where it has local time steps.
+    pub fn local_steps(&self) -> Option<&SparseSteps> {
+        match &self.of {
+            Of::Steps(own) => Some(own),
+            Of::Levels { .. } => None,
+        }
+    }
+
+    /// What answers tell of local time steps.
+    pub(super) fn told(&self) -> Option<Told> {
+        self.local_steps().map(SparseSteps::told)
+    }
+
+    /// The verdicts on all steps in a range, as [`SparseSteps::stretches`]; `None` for two levels.
+    pub(super) fn stretches(&self, range: (f64, f64), width: f64) -> Option<Result<Vec<Stretch>>> {
+        self.local_steps().map(|own| own.stretches(range, width))
+    }
+
+    /// What these cost, as [`SparseSystem::cost`].
+    pub(super) fn cost_of_stretches(&self, range: (f64, f64)) -> Option<f64> {
+        let own = self.local_steps()?;
+        let top = own.plain_limit().map_or(range.1, |(lo, _)| lo * f64::from(own.substeps()) * 0.99);
+        let range = (range.0, range.1.min(top));
+        let count = if range.0 < range.1 { own.count(range).unwrap_or(own.size()) } else { 0 };
+        Some((count + 1) as f64 * A_RESONANCE / FASTER * own.products())
+    }
+
+    /// Local time steps in another step; `None` for two levels.
+    pub(super) fn at_step(&self, step: &Rational) -> Option<Result<SparseSystem>> {
+        self.local_steps().map(|own| SparseSystem::with_local_steps(own.clone(), step))
     }
 
     /// The same with another accuracy.
@@ -65,7 +129,14 @@ impl SparseSystem {
     /// One that is not in (0, 1/10).
     pub fn at_accuracy(self, accuracy: f64) -> Result<SparseSystem> {
         check_accuracy(accuracy)?;
-        Ok(SparseSystem { accuracy, ..self })
+        match self.of {
+            Of::Levels { levels, outer, removed, .. } => {
+                Ok(SparseSystem { of: Of::Levels { levels, outer, accuracy, removed }, ..self })
+            }
+            Of::Steps(_) => {
+                Err(Error::input("accuracy", accuracy, "has no meaning with local steps: leave it out"))
+            }
+        }
     }
 
     /// Its size and its clocks, without stiffnesses.
@@ -75,38 +146,40 @@ impl SparseSystem {
 
     /// Products, at the pace of eigenvalue iterations.
     pub(super) fn cost(&self) -> u64 {
-        (FACTORIZATIONS / FASTER * self.levels.products()).min(1e19) as u64
+        let products = match &self.of {
+            Of::Levels { levels, .. } => levels.products(),
+            Of::Steps(own) => own.products(),
+        };
+        (FACTORIZATIONS / FASTER * products).min(1e19) as u64
     }
 
     fn allow(&self, limits: &Limits) -> Result<()> {
-        limits.allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.levels.size())))
+        limits.allow(self.cost(), || format!("factorizations of {}", degrees_of_freedom(self.clocks.size())))
     }
 
     /// The verdict, how far it stands, and where the first region ends.
     pub(super) fn decide(&self, limits: &Limits) -> Result<Analysis> {
         self.allow(limits)?;
-        let (levels, outer) = (&self.levels, &self.outer);
-        let verdict = levels.verdict(outer, 0.0);
-        let (kind, evidence) = match verdict {
-            Holds::Stable => (Some(Kind::Elliptic), Evidence::Signs),
-            Holds::Unstable => (Some(Kind::Hyperbolic), Evidence::Signs),
-            Holds::NotTold => (None, Evidence::Estimate),
+        let (levels, outer, accuracy, removed) = match &self.of {
+            Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
+            Of::Steps(own) => return Ok(self.of_steps(own)),
         };
+        let verdict = levels.verdict(outer, 0.0);
         let first_unstable = levels.first_unstable(outer.inner_steps());
         let part = Part::new(
             levels.size(),
             Laurent::from_rational(self.step.clone()),
-            (kind, evidence),
+            decided(verdict),
             Default::default(),
         );
         let measured = Some(Measured {
             method: Method::default().name(),
-            accuracy: self.accuracy,
-            holds: levels.verdict(outer, self.accuracy),
+            accuracy,
+            holds: levels.verdict(outer, accuracy),
             margin: if verdict == Holds::Stable { levels.margin(outer) } else { None },
             first_unstable,
             is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step() > hi),
-            removed: self.removed.clone(),
+            removed: removed.clone(),
         });
         let mut notes = vec![NOTE.into()];
         if let Some(count) = levels.unheld().filter(|&count| count > 0) {
@@ -128,6 +201,50 @@ impl SparseSystem {
     /// What is proven, and nothing else.
     pub(super) fn verdict(&self, limits: &Limits) -> Result<Holds> {
         self.allow(limits)?;
-        Ok(self.levels.verdict(&self.outer, 0.0))
+        Ok(match &self.of {
+            Of::Levels { levels, outer, .. } => levels.verdict(outer, 0.0),
+            Of::Steps(own) => own.verdict(to_f64(&self.step)),
+        })
+    }
+
+    /// The verdict on local time steps, and what grows fastest.
+    fn of_steps(&self, own: &SparseSteps) -> Analysis {
+        let (dt, period) = (to_f64(&self.step), Laurent::from_rational(self.step.clone()));
+        let verdict = own.verdict(dt);
+        let growth = if verdict == Holds::Unstable { own.growth(dt) } else { None };
+        let largest = growth.as_ref().map(|growth| growth.rate);
+        let growing = growth.map(|growth| {
+            let Growth { excess: (lo, hi), rate, is_above, shape } = growth;
+            // f = −4 μ.
+            let mu = (lo + hi) / 8.0;
+            let mu = Complex64::new(if is_above { -1.0 - mu } else { mu }, 0.0);
+            let multiplier = Multiplier::new(mu, Some((hi - lo) / 8.0 * (1.0 + 1e-9)), Some(rate));
+            let quadrature = vec![0.0; shape.len()];
+            let growth_rate = Some(per_time(rate, &period));
+            Instability {
+                multiplier,
+                origin: Origin::RealPair,
+                growth_rate,
+                shape,
+                quadrature,
+                resonance: None,
+            }
+        });
+        let (multipliers, instabilities) = growing.map(|own| (own.multiplier, own)).into_iter().unzip();
+        let part = Part::new(own.size(), period, decided(verdict), (multipliers, instabilities));
+        let mut notes = vec![FASTEST.into()];
+        if own.rigid_motions() > 0 {
+            notes.push("all may move together: that motion is set apart".into());
+        }
+        Analysis::of_part(Part { largest, ..part }, 1, notes)
+    }
+}
+
+/// The kind, and what it rests on.
+fn decided(verdict: Holds) -> (Option<Kind>, Evidence) {
+    match verdict {
+        Holds::Stable => (Some(Kind::Elliptic), Evidence::Signs),
+        Holds::Unstable => (Some(Kind::Hyperbolic), Evidence::Signs),
+        Holds::NotTold => (None, Evidence::Estimate),
     }
 }

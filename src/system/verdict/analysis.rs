@@ -96,6 +96,8 @@ pub struct Part {
     pub roots: Option<MuCount>,
     /// What is known of one oscillator beside its multiplier.
     pub oscillator: Option<Clocked>,
+    /// An enclosure of the largest ln |λ| over the period, where it is known though not every multiplier is.
+    pub largest: Option<(f64, f64)>,
 }
 
 impl Part {
@@ -106,8 +108,8 @@ impl Part {
         (kind, evidence): (Option<Kind>, Evidence),
         (multipliers, instabilities): (Vec<Multiplier>, Vec<Instability>),
     ) -> Self {
-        let (dofs, roots, oscillator) = ((0..size).collect(), None, None);
-        Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator }
+        let (dofs, roots, oscillator, largest) = ((0..size).collect(), None, None, None);
+        Part { dofs, size, period, kind, evidence, multipliers, instabilities, roots, oscillator, largest }
     }
 
     /// The name of the kind in documents.
@@ -119,6 +121,9 @@ impl Part {
     pub fn growth_rate(&self) -> Option<(f64, f64)> {
         if !matches!(self.kind, Some(Kind::Hyperbolic) | None) {
             return Some((0.0, 0.0));
+        }
+        if let Some(largest) = self.largest {
+            return Some(rate::per_time(largest, &self.period));
         }
         let growth = self.multipliers.iter().map(|own| own.growth).collect::<Option<Vec<_>>>()?;
         let complete = (growth.len() >= self.size).then(|| rate::largest(growth.into_iter()))?;

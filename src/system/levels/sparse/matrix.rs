@@ -34,17 +34,26 @@ impl Pattern {
     /// # Errors
     /// No row; an index beyond the last row; where the symbolic factorization runs out of memory.
     pub fn of<const K: usize>(n: usize, matrices: [&Triplets; K]) -> Result<(Pattern, [Vec<f64>; K])> {
-        let place = |(k, own): (usize, &Triplets)| -> Vec<(usize, usize, usize, f64)> {
+        let (pattern, values) = Pattern::of_all(n, &matrices)?;
+        Ok((pattern, values.try_into().expect("as many as matrices")))
+    }
+
+    /// The same of any number of matrices.
+    ///
+    /// # Errors
+    /// As [`Pattern::of`].
+    pub fn of_all(n: usize, matrices: &[&Triplets]) -> Result<(Pattern, Vec<Vec<f64>>)> {
+        let place = |(k, own): (usize, &&Triplets)| -> Vec<(usize, usize, usize, f64)> {
             own.iter().filter(|(i, j, _)| i >= j).map(|&(i, j, x)| (j, i, k, x)).collect()
         };
         if n == 0 || matrices.iter().any(|own| own.iter().any(|&(i, j, _)| i.max(j) >= n)) {
             return Err(Error::input("stiffness", n, "give 1 row or more, and indices below their number"));
         }
-        let mut all: Vec<_> = matrices.into_iter().enumerate().flat_map(place).collect();
+        let mut all: Vec<_> = matrices.iter().enumerate().flat_map(place).collect();
         all.extend((0..n).map(|i| (i, i, 0, 0.0)));
         all.sort_unstable_by_key(|&(j, i, k, _)| (j, i, k));
         let (mut columns, mut rows) = (vec![0; n + 1], Vec::new());
-        let mut values = [const { Vec::new() }; K];
+        let mut values = vec![Vec::new(); matrices.len()];
         let mut last = None;
         for (j, i, k, x) in all {
             if last != Some((j, i)) {
@@ -176,7 +185,8 @@ impl Pattern {
         let (mut lo, mut hi) = (0.0, self.size_of(values).0 + slack);
         let minus = [(-1.0, values)];
         while hi - lo > within * hi {
-            let middle = lo + (hi - lo) / 2.0;
+            // Beside the middle, where c − A of a regular chain has a pivot 0, which nothing is divided by.
+            let middle = lo + 0.486_2 * (hi - lo);
             if self.factored(middle, &minus, slack).is_some() {
                 hi = middle;
                 continue;

@@ -1,0 +1,148 @@
+//! Local time steps of sparse stiffnesses in doubles, against exact arithmetic and dense eigenvalues.
+
+use kickdrift::number::rational::{from_f64_exact, ratio, to_f64};
+use kickdrift::system::stretches::Stretch;
+use kickdrift::system::{Holds, Level, Limits, LocalSteps, Potential, SparseSteps, Symmetric, System};
+use nalgebra::DMatrix;
+
+/// Numbers that repeat.
+struct Numbers(u64);
+
+impl Numbers {
+    fn below(&mut self, n: u64) -> i64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 33) % n) as i64
+    }
+}
+
+type Entries = Vec<(usize, usize, f64)>;
+
+/// Springs between neighbours of a chain, the last one free where it `floats`, else walls at both ends.
+fn chain(springs: &[f64], floats: bool) -> Entries {
+    let n = springs.len() - 1;
+    let of = |i: usize| if floats && (i == 0 || i == n) { 0.0 } else { springs[i] };
+    let diagonal = (0..n).map(|i| (i, i, of(i) + of(i + 1)));
+    diagonal.chain((1..n).map(|i| (i, i - 1, -of(i)))).collect()
+}
+
+/// The same scheme in doubles and in rationals, whose entries these doubles are.
+fn both(masses: &[f64], stiffness: &Entries, levels: &[Level]) -> (SparseSteps, LocalSteps) {
+    let n = masses.len();
+    let entry = |i: usize, j: usize| {
+        let (i, j) = (i.max(j), i.min(j));
+        stiffness.iter().filter(|own| (own.0, own.1) == (i, j)).map(|own| own.2).sum::<f64>()
+    };
+    let dense = Symmetric::try_from(&DMatrix::from_fn(n, n, entry)).unwrap();
+    let exact: Vec<_> = masses.iter().map(|&m| from_f64_exact(m).unwrap()).collect();
+    let plain = System::new(Symmetric::diagonal(&exact), vec![Potential::new(dense, ratio(1, 1))]).unwrap();
+    let sparse = SparseSteps::new(masses, stiffness, levels.to_vec()).unwrap();
+    (sparse, LocalSteps::new(plain, levels.to_vec()).unwrap())
+}
+
+/// The eigenvalues of M^-1/2 f M^-1/2 from exact f, increasing.
+fn eigenvalues(own: &LocalSteps, dt: f64) -> Vec<f64> {
+    let (n, square) = (own.plain().size(), from_f64_exact(dt).map(|dt| &dt * &dt).unwrap());
+    let (f, mass) = (own.effective(&square), own.plain().mass());
+    let root = |i: usize| to_f64(&mass.get(i, i)).sqrt();
+    let entry = |i: usize, j: usize| to_f64(&(f.get(i, j) * &square)) / (root(i) * root(j));
+    let mut all: Vec<_> = DMatrix::from_fn(n, n, entry).symmetric_eigenvalues().iter().copied().collect();
+    all.sort_by(f64::total_cmp);
+    all
+}
+
+/// Doubles tell eigenvalues of some units to so much.
+const CLEAR: f64 = 1e-9;
+
+#[test]
+fn verdicts_and_growth_are_those_of_dense_eigenvalues() {
+    let (mut numbers, mut seen) = (Numbers(3), [0, 0]);
+    for case in 0..200 {
+        let n = 3 + numbers.below(10) as usize;
+        let floats = case % 4 == 0;
+        let springs: Vec<_> = (0..=n).map(|_| (1 + numbers.below(16)) as f64 / 4.0).collect();
+        let masses: Vec<_> = (0..n).map(|_| (1 + numbers.below(4)) as f64).collect();
+        let mut fine: Vec<usize> = (0..n).collect();
+        let levels: Vec<_> = (0..1 + numbers.below(3))
+            .map(|_| {
+                fine.retain(|_| numbers.below(3) > 0);
+                Level { fine: fine.iter().copied().collect(), substeps: 1 + numbers.below(4) as u32 }
+            })
+            .collect();
+        let (sparse, exact) = both(&masses, &chain(&springs, floats), &levels);
+        assert_eq!(sparse.rigid_motions(), usize::from(floats));
+        for _ in 0..10 {
+            let dt = (1 + numbers.below(300)) as f64 / 100.0;
+            let all = eigenvalues(&exact, dt);
+            // The rigid motion is the eigenvalue nearest to 0.
+            let rigid = all.iter().map(|x| x.abs()).fold(f64::MAX, f64::min);
+            let own = all.iter().filter(|x| !floats || x.abs() > rigid).copied();
+            let beyond = own.clone().map(|x| (-x).max(x - 4.0)).fold(f64::MIN, f64::max);
+            match sparse.verdict(dt) {
+                Holds::Stable => assert!(beyond < CLEAR, "{case} {dt} {all:?}"),
+                Holds::Unstable => assert!(beyond > -CLEAR, "{case} {dt} {all:?}"),
+                Holds::NotTold => assert!(beyond.abs() < CLEAR, "{case} {dt} {all:?}"),
+            }
+            if beyond.abs() > CLEAR {
+                seen[usize::from(beyond > 0.0)] += 1;
+            }
+            let growth = sparse.growth(dt);
+            assert_eq!(growth.is_some(), sparse.verdict(dt) == Holds::Unstable, "{case} {dt} {beyond}");
+            if let Some(growth) = growth {
+                // λ + 1/λ = ±(2 + excess).
+                let rate = (1.0 + beyond / 2.0).acosh();
+                let (lo, hi) = growth.rate;
+                assert!(lo * (1.0 - 1e-6) <= rate && rate <= hi * (1.0 + 1e-6), "{lo} {rate} {hi}");
+                assert!(hi < 1.02 * lo, "{lo} {hi}");
+            }
+        }
+    }
+    assert!(seen.iter().all(|&n| n > 300), "{seen:?}");
+}
+
+#[test]
+fn all_unstable_intervals_of_one_level_are_those_of_exact_determinants() {
+    let mut numbers = Numbers(5);
+    let mut unstable = 0;
+    for case in 0..100 {
+        let n = 3 + numbers.below(5) as usize;
+        let springs: Vec<_> = (0..=n).map(|_| (1 + numbers.below(12)) as f64 / 2.0).collect();
+        let masses: Vec<_> = (0..n).map(|_| (1 + numbers.below(3)) as f64).collect();
+        let count = 1 + numbers.below(n as u64 - 1) as usize;
+        let levels = [Level { fine: (0..count).collect(), substeps: 2 + numbers.below(3) as u32 }];
+        let (sparse, exact) = both(&masses, &chain(&springs, false), &levels);
+        let range = (0.2, 3.0);
+        let truth = exact.stretches(range, &Limits::default()).unwrap();
+        let found = sparse.stretches(range, 1e-5).unwrap();
+        assert_eq!((found[0].lo, found.last().unwrap().hi), range);
+        assert!(found.windows(2).all(|pair| pair[0].hi == pair[1].lo), "{found:?}");
+        for own in &found {
+            // Inwards by what edges of the truth lie between neighbours.
+            let (lo, hi) = (own.lo * (1.0 + 1e-14), own.hi * (1.0 - 1e-14));
+            let inside = |kind: Holds| {
+                let other = truth.iter().filter(|own| own.verdict != kind && own.verdict != Holds::NotTold);
+                other.into_iter().all(|other| other.hi <= lo || hi <= other.lo)
+            };
+            assert!(own.verdict == Holds::NotTold || inside(own.verdict), "{case} {own:?} {truth:?}");
+        }
+        // About one resonance alone, between stable steps that sixteenths of a gap cannot miss, all is told but the ends.
+        for near in truth.windows(3) {
+            let [before, own, after] = near else { panic!("three") };
+            let is_wide = |own: &Stretch| own.verdict == Holds::Stable && own.hi - own.lo > 0.2;
+            let is_one = own.verdict == Holds::Unstable && sparse.count((own.lo, own.hi)) == Some(1);
+            if is_one && is_wide(before) && is_wide(after) && own.hi - own.lo > 4e-4 {
+                unstable += 1;
+                let is_told = found.iter().any(|found| {
+                    found.verdict == Holds::Unstable && found.lo <= own.lo + 2e-4 && own.hi - 2e-4 <= found.hi
+                });
+                assert!(is_told, "{case} {own:?} {found:?}");
+            }
+        }
+        if let Some((lo, hi)) = sparse.first_unstable() {
+            assert!(eigenvalues(&exact, lo).last().unwrap() < &4.0 && hi < 1.001 * lo, "{case} {lo} {hi}");
+            assert!(eigenvalues(&exact, hi).last().unwrap() > &(4.0 - CLEAR), "{case} {lo} {hi}");
+            let first = truth.iter().find(|own| own.verdict == Holds::Unstable).map(|own| own.lo);
+            assert!(first.is_none_or(|first| lo <= first), "{case} {lo} {first:?}");
+        }
+    }
+    assert!(unstable > 5, "{unstable}");
+}
