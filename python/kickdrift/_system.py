@@ -620,8 +620,10 @@ class SystemVerdict(Document):
 
     @property
     def local_steps(self) -> Mapping[str, Any] | None:
-        """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them; of a sparse
-        one with a single level also its ``first_unstable`` step."""
+        """Of a scheme of local time steps: its ``levels``, and the ``plain_limit`` of leapfrog without them.
+
+        Of a sparse one with a single level also its ``first_unstable`` step.
+        """
         return self._beside("local_steps")
 
     @cached_property

@@ -189,7 +189,7 @@ def _simplices(mesh: Any) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64
 
 def _each(name: str, value: npt.ArrayLike, count: int) -> npt.NDArray[np.float64]:
     own = doubles(name, value)
-    if own.ndim > 1 or own.ndim == 1 and len(own) != count or not np.all(own > 0):
+    if own.ndim > 1 or (own.ndim == 1 and len(own) != count) or not np.all(own > 0):
         raise KickdriftError(name, shown(value), f"give one positive number, or {count} of them, one for each element")
     return np.broadcast_to(own, (count,))
 
@@ -220,7 +220,7 @@ def _fixed(fixed: Any, cells: npt.NDArray[np.int64], count: int) -> npt.NDArray[
         faces, times = np.unique(np.sort(faces, axis=1), axis=0, return_counts=True)
         return np.unique(faces[times == 1])
     own = np.asarray(fixed)
-    if own.ndim != 1 or own.dtype.kind not in "iu" or len(own) and not (0 <= own.min() and own.max() < count):
+    if own.ndim != 1 or own.dtype.kind not in "iu" or (len(own) and not (own.min() >= 0 and own.max() < count)):
         raise KickdriftError("fixed", shown(fixed), f"give nodes, 0 to {count - 1}")
     return own.astype(np.int64)
 
