@@ -151,7 +151,9 @@ impl SparseSteps {
             let starts = std::iter::once(lo).chain(places.iter().map(|own| own.hi));
             let ends = places.iter().map(|own| own.lo).chain([end]);
             let gaps: Vec<_> = starts.zip(ends).collect();
-            let is_first = self.resonances(lo * 1e-3, lo) == Some([0, 0]);
+            // Every fine motion has (dt/p)² y < 4 at `lo`, so its first resonance is no earlier than this.
+            let least = SparseSteps::marks(self.substeps()).first().map_or(1.0, |mark| 0.49 * mark.z.sqrt());
+            let is_first = self.resonances(lo * least, lo) == Some([0, 0]);
             let solve = |&(k, gap): &(usize, (f64, f64))| Ok(self.gap(gap, width, k == 0 && is_first));
             let solved: Vec<Vec<Stretch>> =
                 try_map(&gaps.into_iter().enumerate().collect::<Vec<_>>(), solve)?;
@@ -175,15 +177,12 @@ impl SparseSteps {
             return;
         }
         if hi - lo <= floor {
+            // Counts reach a little beyond both ends: two neighbours may hold the same resonance, or two, which both together tell.
+            let last = found.pop_if(|last| last.hi == lo);
+            let lo = last.map_or(lo, |last| last.lo);
+            let own = if last.is_some() { self.resonances(lo, hi) } else { own };
             let [odd, even] = own.unwrap_or([usize::MAX; 2]);
-            match found.last_mut() {
-                Some(last) if last.hi == lo => {
-                    // Counts reach a little beyond both ends: what both hold may be one.
-                    *last = Place { hi, odd: last.odd.max(odd), even: last.even.max(even), ..*last };
-                    last.odd = last.odd.saturating_add(usize::from(hi - last.lo > 2.5 * floor));
-                }
-                _ => found.push(Place { lo, hi, odd, even }),
-            }
+            found.push(Place { lo, hi, odd, even });
             return;
         }
         let middle = lo + (hi - lo) / 2.0;

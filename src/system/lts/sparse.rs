@@ -323,7 +323,8 @@ fn effective(whole: Sparse, levels: &[Level]) -> Vec<Sparse> {
     let all: f64 = levels.iter().map(|own| f64::from(own.substeps)).product();
     let finest = vec![whole.scaled(1.0 / (2.0 * all * all))];
     let found = levels.iter().rev().fold(finest, |own, level| {
-        let is_fine: Vec<bool> = (0..n).map(|i| level.fine.contains(&i)).collect();
+        let mut is_fine = vec![false; n];
+        level.fine.iter().for_each(|&i| is_fine[i] = true);
         substeps(&own, &is_fine, level.substeps)
     });
     found.into_iter().map(|own| own.scaled(2.0)).collect()
