@@ -1,4 +1,5 @@
-//! All unstable intervals of dt of a large scheme with one level: between resonances of its fine part the stable steps are one interval.
+//! All unstable intervals of dt of a large scheme with one level: between resonances of its fine part the stable steps are one interval
+//! (proofs/LOCAL_STEPS.md).
 //!
 //! With the fine part F of A, y and u its eigenvalues and vectors, θ of the substep, 4 sin²(θ/2) = (dt/p)² y, and B what couples it to the coarse
 //! part C, Schur's complement of 4 − f with respect to the fine part is, where all (dt/p)² y < 4,
