@@ -92,7 +92,9 @@ fn step(method: Method, fast: &DMatrix<f64>, slow: &DMatrix<f64>, h: f64, inner:
 }
 
 fn radius(m: &DMatrix<f64>) -> f64 {
-    m.complex_eigenvalues().iter().fold(0.0, |a: f64, z| a.max(z.norm()))
+    // Iterations of nalgebra's have no end for some of ten thousand matrices.
+    let all = faer::Mat::from_fn(m.nrows(), m.ncols(), |i, j| m[(i, j)]).eigenvalues().unwrap();
+    all.iter().fold(0.0, |a: f64, z| a.max(z.re.hypot(z.im)))
 }
 
 /// Fast frequencies up to 1; slow stiffness definite or not, some tenths of it; a step of up to some half turns of the fastest mode.
