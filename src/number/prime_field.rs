@@ -173,9 +173,7 @@ impl PrimeField {
         let inverse = a.last().map_or(0, |&leading| self.invert(leading));
         a.iter().map(|&c| self.mul(c, inverse)).collect()
     }
-}
 
-impl PrimeField {
     /// a b mod f.
     fn times_modulo(&self, a: &[u64], b: &[u64], f: &[u64]) -> Vec<u64> {
         let mut product = vec![0; (a.len() + b.len()).saturating_sub(1)];

@@ -16,7 +16,7 @@ use crate::system::levels::Method;
 use crate::system::nearest::Nearest;
 use crate::system::scan::scan;
 use crate::system::vary::Intervals;
-use crate::system::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, Told};
+use crate::system::{Analysis, Jacobians, Limits, NoGradient, OwnOrbit, Route, SchemeSummary};
 
 question! {
     /// The verdict on a system; the verdicts over one of its numbers, or two; or the unstable intervals of one.
@@ -85,7 +85,7 @@ pub struct Verdict {
     is_orbit_missing: bool,
     nearest: Option<Nearest>,
     no_gradient: Option<NoGradient>,
-    local: Option<Told>,
+    local: Option<SchemeSummary>,
 }
 
 /// What is found of a system.
@@ -151,7 +151,7 @@ impl System {
         };
         let nearest = width.map(nearest).transpose()?;
         let no_gradient = model.jacobians().map(Jacobians::no_gradient);
-        let (friction, local) = (scene.friction(&limits)?, model.told());
+        let (friction, local) = (scene.friction(&limits)?, model.summary());
         Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
     }
 

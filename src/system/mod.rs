@@ -66,7 +66,7 @@ pub use jacobian::{Jacobians, NoGradient};
 pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
-pub use lts::{Growth, Level, LocalSteps, SparseSteps, Told};
+pub use lts::{Growth, Level, LocalSteps, SchemeSummary, SparseSteps};
 pub use model::{Body, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};

@@ -9,7 +9,7 @@ use crate::report::document::enclosure;
 use crate::report::friction;
 use crate::system::friction::Friction;
 use crate::system::nearest::Nearest;
-use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, Told, middle};
+use crate::system::{Analysis, Instability, NoGradient, OwnOrbit, SchemeSummary, middle};
 
 /// What is known beside the verdict at the equilibrium and without friction.
 #[derive(Clone, Copy, Debug, Default)]
@@ -25,7 +25,7 @@ pub struct Beside<'a> {
     /// The unstable outer steps next to this one, where they were asked for.
     pub nearest: Option<&'a Nearest>,
     /// The scheme of local time steps, where it is one.
-    pub local: Option<&'a Told>,
+    pub local: Option<&'a SchemeSummary>,
     /// Whether the fast force of two rational levels is solved for.
     pub is_implicit: bool,
     /// What is known of forces that are no gradient.
@@ -100,7 +100,7 @@ pub(super) fn no_gradient_lines(own: &NoGradient, analysis: &Analysis, per: &str
     lines
 }
 
-fn local_steps(own: &Told) -> Value {
+fn local_steps(own: &SchemeSummary) -> Value {
     let level = |&(fine, substeps): &(usize, u32)| json!({"fine": fine, "substeps": substeps});
     let mut value = json!({
         "levels": own.levels.iter().map(level).collect::<Vec<_>>(),
@@ -113,7 +113,7 @@ fn local_steps(own: &Told) -> Value {
 }
 
 /// The scheme, and the limit of plain leapfrog; `unit` is that of times, after a space.
-pub(super) fn local_lines(own: &Told, unit: &str) -> Vec<String> {
+pub(super) fn local_lines(own: &SchemeSummary, unit: &str) -> Vec<String> {
     let level = |&(fine, substeps): &(usize, u32)| {
         format!("{fine} of {} degrees of freedom take {substeps} substeps", own.size)
     };

@@ -122,8 +122,7 @@ pub(super) fn parse(source: &Value) -> Result<Document> {
 /// From a file of dense stiffnesses.
 pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<Model> {
     if document.scheme.is_some() || document.levels.is_some() {
-        let remedy =
-            "by reference is for one sparse stiffness: give compressed rows, or the numbers themselves";
+        let remedy = "a dense stiffness by reference takes none: name its compressed rows (csr), or write its numbers in the file";
         return Err(Error::input("scheme", "local time steps", remedy));
     }
     let read = document.potentials.iter().enumerate().map(|(k, own)| own.read(k, arrays));

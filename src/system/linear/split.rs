@@ -94,38 +94,33 @@ pub(in crate::system) fn may_split(system: &System, stiffnesses: &[&Symmetric]) 
     !products.iter().enumerate().any(|(i, a)| products[..i].iter().any(|b| differ(a, b)))
 }
 
-/// Invariant subspaces of potentials that need not commute, M-orthogonal to each other: the eigenspaces of a symmetry with
-/// rational eigenvalues and what is left of it; `None` where none with two of them is found.
-pub(in crate::system) fn symmetric_subspaces(
-    system: &System,
-    stiffnesses: &[&Symmetric],
-) -> Option<Vec<Subspace>> {
-    let inverse = dense_inverse(system);
-    let operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
-    symmetries(&operators).iter().find_map(|y| {
-        let found = eigenspaces(system, &(&inverse * y), whole(system.size()));
-        (found.len() > 1).then_some(found)
-    })
+/// How motions of different symmetry come apart.
+pub(in crate::system) enum Symmetry {
+    /// Invariant subspaces, M-orthogonal to each other: the eigenspaces of a symmetry with rational eigenvalues and what is left of it.
+    Subspaces(Vec<Subspace>),
+    /// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces need not be rational: the ring of five
+    /// has two pairs of them over ℚ(√5).
+    Central(DMatrix<Rational>),
 }
 
-/// An operator M⁻¹ Y that commutes with all M⁻¹ K_k and with all symmetries of these; its eigenspaces, which need not be rational, are motions of
-/// different symmetry: the ring of five has two pairs of them over ℚ(√5). `None` where all such are multiples of the identity.
-pub(in crate::system) fn central_symmetry(
-    system: &System,
-    stiffnesses: &[&Symmetric],
-) -> Option<DMatrix<Rational>> {
+/// The symmetry of potentials that need not commute; `None` where all that commutes with them is a multiple of the identity.
+pub(in crate::system) fn symmetry(system: &System, stiffnesses: &[&Symmetric]) -> Option<Symmetry> {
     let inverse = dense_inverse(system);
-    let operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
-    let all = symmetries(&operators);
+    let mut operators: Vec<_> = stiffnesses.iter().map(|k| &inverse * k.to_dense()).collect();
+    let all: Vec<_> = symmetries(&operators).iter().map(|y| &inverse * y).collect();
     if all.len() < 2 {
         return None;
     }
-    let with_all = [operators, all.iter().map(|y| &inverse * y).collect()].concat();
-    let central = symmetries(&with_all);
+    let spaces = all.iter().map(|operator| eigenspaces(system, operator, whole(system.size())));
+    if let Some(found) = spaces.into_iter().find(|found| found.len() > 1) {
+        return Some(Symmetry::Subspaces(found));
+    }
+    operators.extend(all);
+    let central = symmetries(&operators);
     // Any weights: eigenvalues that happen to be equal leave their motions together.
     let weight = |k: usize| Rational::from_integer(((k + 1) * (k + 1)).into());
     let sum = central.iter().enumerate().map(|(k, y)| y * weight(k)).reduce(|sum, y| sum + y)?;
-    (central.len() > 1).then(|| inverse * sum)
+    (central.len() > 1).then(|| Symmetry::Central(inverse * sum))
 }
 
 /// A basis of the symmetric Y with Y A = Aᵀ Y for all these A; empty where it has but one element, by its rank modulo a prime, which is

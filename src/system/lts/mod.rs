@@ -23,5 +23,5 @@ mod intervals;
 mod scheme;
 mod sparse;
 
-pub use scheme::{Level, LocalSteps, Told};
+pub use scheme::{Level, LocalSteps, SchemeSummary};
 pub use sparse::{Growth, SparseSteps};

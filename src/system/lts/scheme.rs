@@ -20,7 +20,7 @@ pub struct Level {
 
 /// What answers tell of a scheme.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct SchemeSummary {
     /// Degrees of freedom.
     pub size: usize,
     /// Fine ones and substeps of each level.

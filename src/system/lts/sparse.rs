@@ -1,8 +1,8 @@
 //! Local time steps of many thousands of degrees of freedom: f = Σ C_j dt^2j, every C_j sparse, in doubles within proven bounds.
 
-use faer::{Mat, Scale};
+use faer::Mat;
 
-use super::scheme::{Level, LocalSteps, Told};
+use super::scheme::{Level, LocalSteps, SchemeSummary};
 use crate::error::{Error, Result};
 use crate::number::U;
 use crate::system::half::norm;
@@ -230,15 +230,7 @@ impl SparseSteps {
         // Sums of n products each, of |x|ᵀ|f||x| ≤ ‖f‖.
         let rounding = 1.02 * (n + 8.0) * U;
         for _ in 0..MOST_ROUNDS {
-            for _ in 0..ROUNDS {
-                x = own.solve(x)?;
-                x -= &self.rigid * (self.rigid.transpose() * &x);
-                let length = x.norm_l2();
-                if !(length.is_finite() && length > 0.0) {
-                    return None;
-                }
-                x /= Scale(length);
-            }
+            x = own.iterated(x, &self.rigid, ROUNDS)?;
             let (square, form) =
                 (x.squared_norm_l2(), (x.transpose() * self.pattern.times(values, &x))[(0, 0)]);
             let least = -(c * square + a * form) - 1.01 * square * (off + rounding * (size + c));
@@ -265,8 +257,8 @@ impl SparseSteps {
     }
 
     /// What answers tell of the scheme.
-    pub fn told(&self) -> Told {
-        Told {
+    pub fn summary(&self) -> SchemeSummary {
+        SchemeSummary {
             size: self.size(),
             levels: self.levels.iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),
@@ -482,8 +474,8 @@ impl Sparse {
 
 impl LocalSteps {
     /// What answers tell of the scheme.
-    pub fn told(&self) -> Told {
-        Told {
+    pub fn summary(&self) -> SchemeSummary {
+        SchemeSummary {
             size: self.system().size(),
             levels: self.levels().iter().map(|own| (own.fine.len(), own.substeps)).collect(),
             plain_limit: self.plain_limit(),

@@ -22,7 +22,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, Told};
+use crate::system::lts::{LocalSteps, SchemeSummary};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -245,10 +245,10 @@ impl Model {
     }
 
     /// What answers tell of local time steps, where some degrees of freedom take substeps.
-    pub fn told(&self) -> Option<Told> {
+    pub fn summary(&self) -> Option<SchemeSummary> {
         match self {
-            Model::LocalSteps(own) => Some(own.told()),
-            Model::Sparse(own) => own.told(),
+            Model::LocalSteps(own) => Some(own.summary()),
+            Model::Sparse(own) => own.summary(),
             _ => None,
         }
     }

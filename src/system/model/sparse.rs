@@ -10,7 +10,7 @@ use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{Growth, SparseSteps, Told};
+use crate::system::lts::{Growth, SchemeSummary, SparseSteps};
 use crate::system::spectrum::modes::Origin;
 use crate::system::spectrum::rate::{Multiplier, per_time};
 use crate::system::vary::stretches::Stretch;
@@ -40,7 +40,7 @@ enum Of {
 const NOTE: &str = "of sparse stiffnesses the first stable region is decided: what lies above it is not looked at, and no growth rate is computed";
 
 /// The same of local time steps.
-const FASTEST: &str = "of sparse stiffnesses the motion that grows fastest is computed alone";
+const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
 
 /// Of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
@@ -100,8 +100,8 @@ impl SparseSystem {
     }
 
     /// What answers tell of local time steps.
-    pub(super) fn told(&self) -> Option<Told> {
-        self.local_steps().map(SparseSteps::told)
+    pub(super) fn summary(&self) -> Option<SchemeSummary> {
+        self.local_steps().map(SparseSteps::summary)
     }
 
     /// The verdicts on all steps in a range, as [`SparseSteps::stretches`]; `None` for two levels.

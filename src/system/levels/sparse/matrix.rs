@@ -272,6 +272,20 @@ impl Factors {
         );
         Some(x)
     }
+
+    /// So many rounds of inverse iteration from x, off the columns of `rigid`; of length 1, rounded. `None` where memory runs out or nothing is left.
+    pub fn iterated(&self, mut x: Mat<f64>, rigid: &Mat<f64>, rounds: usize) -> Option<Mat<f64>> {
+        for _ in 0..rounds {
+            x = self.solve(x)?;
+            x -= rigid * (rigid.transpose() * &x);
+            let length = x.norm_l2();
+            if !(length.is_finite() && length > 0.0) {
+                return None;
+            }
+            x /= faer::Scale(length);
+        }
+        Some(x)
+    }
 }
 
 /// The most entries of a row of the factor, zeros that are kept within supernodes included.

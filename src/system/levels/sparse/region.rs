@@ -285,17 +285,7 @@ impl SparseLevels {
             |k: i32| Outer::new(outer.step * (1.0 - WIDTH * (2.0f64.powi(k) - 1.0)), outer.inner_steps).ok();
         let factors = (0..10).filter_map(below).find_map(|outer| self.above(&outer, 0.0))?;
         let begin = start(self.size());
-        let mut x = Mat::from_fn(self.size(), 1, |i, _| begin[i]);
-        for _ in 0..ROUNDS {
-            x = factors.solve(x)?;
-            x -= &self.rigid * (self.rigid.transpose() * &x);
-            let length = x.norm_l2();
-            if !(length.is_finite() && length > 0.0) {
-                return None;
-            }
-            x /= faer::Scale(length);
-        }
-        Some(x)
+        factors.iterated(Mat::from_fn(self.size(), 1, |i, _| begin[i]), &self.rigid, ROUNDS)
     }
 
     /// What xᵀFx and xᵀSx are at least over xᵀx, off the rigid motions.

@@ -7,7 +7,7 @@ use crate::number::Rational;
 use crate::system::half::compose::connected;
 use crate::system::linear::frame::Frame;
 use crate::system::linear::sparse::Symmetric;
-use crate::system::linear::split::{Subspace, central_symmetry, invariant_subspaces, symmetric_subspaces};
+use crate::system::linear::split::{Subspace, Symmetry, invariant_subspaces, symmetry};
 use crate::system::linear::system::{Potential, System};
 
 /// Parts of at most this size are split along rational eigenvectors that all systems have in common.
@@ -109,9 +109,13 @@ impl Line {
         let stiffnesses = self.ends.iter().flat_map(|own| own.potentials()).map(|own| &own.stiffness);
         // What leaves M of one end and M⁻¹ of it times M of the other invariant splits the masses in between, too.
         let all: Vec<_> = stiffnesses.chain([hi.mass()]).collect();
-        let Some(spaces) = symmetric_subspaces(lo, &all) else {
-            self.symmetry = central_symmetry(lo, &all);
-            return vec![self];
+        let spaces = match symmetry(lo, &all) {
+            Some(Symmetry::Subspaces(spaces)) => spaces,
+            Some(Symmetry::Central(operator)) => {
+                self.symmetry = Some(operator);
+                return vec![self];
+            }
+            None => return vec![self],
         };
         let along = |space: &Subspace| Line::new(self.ends.each_ref().map(|own| own.restricted(space)));
         spaces.iter().map(along).filter(Line::is_acted_on).flat_map(Line::split).collect()

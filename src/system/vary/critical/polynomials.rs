@@ -45,16 +45,27 @@ pub(super) struct Critical {
     pub multiple: Vec<BigInt>,
 }
 
-/// The primes that divide no denominator and have all eigenvalues of the symmetry, if there is one.
-fn sound(half: &Half) -> impl Iterator<Item = (PrimeField, Program<[u64; 2]>)> {
-    prime_fields()
-        .filter_map(|field| Some((field, half.residues(&field)?)))
-        .filter(|(field, _)| !half.is_symmetric() || half.eigenspaces(field).is_some())
+/// A half period modulo a prime, and the eigenspaces of its symmetry, if there is one.
+struct Residues {
+    field: PrimeField,
+    program: Program<[u64; 2]>,
+    spaces: Option<Eigenspaces>,
+}
+
+impl Residues {
+    /// Modulo the primes that divide no denominator and have all eigenvalues of the symmetry.
+    fn of(half: &Half) -> impl Iterator<Item = Residues> {
+        prime_fields()
+            .filter_map(|field| {
+                Some(Residues { field, program: half.residues(&field)?, spaces: half.eigenspaces(&field) })
+            })
+            .filter(|own| own.spaces.is_some() == half.is_symmetric())
+    }
 }
 
 /// What is to be found of a half period; `None` where it costs too much.
 pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
-    let (field, program) = sound(half).next().expect("primes enough");
+    let Residues { field, program, .. } = Residues::of(half).next().expect("primes enough");
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
     let at = |k| Some(Own::new(half, &field, &half.at(&field, &program, field.of(k))?));
     let found = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b].into_iter().filter_map(at);
@@ -68,13 +79,13 @@ pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
 /// Where the work is stopped.
 pub(super) fn critical(half: &Half, shape: &Shape) -> Result<Option<Vec<Critical>>> {
     let count = (shape.bits / 61.0) as usize + 1;
-    let fields: Vec<PrimeField> = sound(half).map(|(field, _)| field).take(count).collect();
-    let residues = try_map(&fields, |field| Ok(shape.residues(half, field)))?;
+    let modulo: Vec<Residues> = Residues::of(half).take(count).collect();
+    let residues = try_map(&modulo, |own| Ok(shape.residues(half, own)))?;
     let Some(residues) = residues.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
     let mut found = Vec::new();
     for k in 0..shape.degrees.len() {
         let mut lift = Lift::new(shape.degrees[k] + 1);
-        for (field, own) in fields.iter().zip(&residues) {
+        for (Residues { field, .. }, own) in modulo.iter().zip(&residues) {
             lift.join(field, &own[k]);
         }
         let polynomial = lift.into_values();
@@ -161,15 +172,14 @@ impl Shape {
     }
 
     /// The coefficients modulo a prime; `None` where the kind proves another and where places run out.
-    fn residues(&self, half: &Half, field: &PrimeField) -> Option<Vec<Vec<u64>>> {
-        let program = half.residues(field)?;
-        let spaces = half.eigenspaces(field);
+    fn residues(&self, half: &Half, modulo: &Residues) -> Option<Vec<Vec<u64>>> {
+        let Residues { field, program, spaces } = modulo;
         let mut places = Vec::new();
         let mut values = vec![Vec::new(); self.degrees.len()];
         let last = 2 * self.places as u64 + 64;
         for place in 1..=last {
             let s = field.of(place);
-            let Some(at) = half.at(field, &program, s) else { continue };
+            let Some(at) = half.at(field, program, s) else { continue };
             let own = Own::new(half, field, &at);
             if own.kind.count > self.kind.count {
                 return None;
