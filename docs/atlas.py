@@ -10,7 +10,6 @@ import base64
 import json
 import math
 import re
-import signal
 import struct
 import subprocess
 import sys
@@ -40,7 +39,8 @@ def main(program, target):
         address = next(found[0] for line in server.stdout if (found := re.search(r"http://127\.0\.0\.1:\d+/\w+/", line)))
         Path(target).write_text(page(program, lambda path, **query: get(address, path, query)), encoding="utf-8")
     finally:
-        server.send_signal(signal.SIGINT)
+        # Not an interrupt, which a job in the background inherits as ignored.
+        server.terminate()
         server.wait()
 
 
