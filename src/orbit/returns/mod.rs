@@ -77,9 +77,7 @@ pub fn signs<S: Real>(clocks: &LongClocks<S>, bits: u32) -> Option<PartialSigns>
 /// The propagator over n steps of the slow clock, from the middle of the kicks at t = 0 to the middle of its kick there, in the time
 /// unit h1; `None` where the bound loses all digits, a product costs too much or the entries have more than 2^58 binary digits.
 pub fn after<S: Real>(clocks: &LongClocks<S>, n: &BigUint) -> Option<[Ball; 4]> {
-    let (entries, exponent) = Frame::<Long>::new(clocks, false)?.after(n)?;
-    let exponent = exponent_of_balls(exponent)?;
-    Some(entries.map(|x| x.ball().scale2(exponent)))
+    walked_to(&Frame::<Long>::new(clocks, false)?, n)
 }
 
 /// As [`run`], over the clock that distorts more alone: another route to the same numbers.
@@ -103,27 +101,56 @@ fn better<S: Real>(clocks: &LongClocks<S>, bits: u32, wanted: Wanted) -> Option<
 /// enough (`euclid::suffices`).
 fn over<S: Real>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
     match (bits, clocks.shorter_bits()) {
-        (0..=53, 0..=38) => over_in::<S, f64, f64>(clocks, fast, wanted),
-        (0..=53, 39..=86) => over_in::<S, Twofold, f64>(clocks, fast, wanted),
-        (0..=53, _) => over_in::<S, Long, f64>(clocks, fast, wanted),
-        (54..=106, 0..=62) => over_in::<S, Twofold, Twofold>(clocks, fast, wanted),
-        (54..=106, _) => over_in::<S, Long, Twofold>(clocks, fast, wanted),
-        (107..=256, _) => over_in::<S, Long, Long>(clocks, fast, wanted),
+        (0..=53, 0..=38) => over_in::<S, f64>(clocks, fast, bits, wanted),
+        (0..=53, 39..=86) | (54..=106, 0..=62) => over_in::<S, Twofold>(clocks, fast, bits, wanted),
+        (0..=256, _) => over_in::<S, Long>(clocks, fast, bits, wanted),
         _ => None,
     }
 }
 
-fn over_in<S: Real, T: Coefficient, P: Coefficient>(
-    clocks: &LongClocks<S>,
-    fast: bool,
-    wanted: Wanted,
-) -> Option<Found> {
-    let found = |clocks: &LongClocks<S>| Frame::<T>::new(clocks, wanted == Wanted::Nodes)?.found::<P>();
+fn over_in<S: Real, T: Walk>(clocks: &LongClocks<S>, fast: bool, bits: u32, wanted: Wanted) -> Option<Found> {
+    let found = |clocks: &LongClocks<S>| T::walked(&Frame::new(clocks, wanted == Wanted::Nodes)?, bits);
     if fast {
         return found(clocks);
     }
     let Found { signs, ends } = found(&clocks.swapped())?;
     Some(Found { signs, ends: ends.map(|ends| in_first_unit(ends, clocks.ratio(), T::BITS)) })
+}
+
+/// The numbers of a first level, and in them the walk with products of so many bits.
+///
+/// No type of strengths enters: the walk, most of this room's code, is compiled here and not once more by every crate that asks.
+trait Walk: Coefficient {
+    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found>;
+}
+
+impl Walk for f64 {
+    fn walked(frame: &Frame<Self>, _: u32) -> Option<Found> {
+        frame.found::<f64>()
+    }
+}
+
+impl Walk for Twofold {
+    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found> {
+        if bits <= 53 { frame.found::<f64>() } else { frame.found::<Twofold>() }
+    }
+}
+
+impl Walk for Long {
+    fn walked(frame: &Frame<Self>, bits: u32) -> Option<Found> {
+        match bits {
+            0..=53 => frame.found::<f64>(),
+            54..=106 => frame.found::<Twofold>(),
+            _ => frame.found::<Long>(),
+        }
+    }
+}
+
+/// As [`Walk`], of the propagator over n kicks.
+fn walked_to(frame: &Frame<Long>, n: &BigUint) -> Option<[Ball; 4]> {
+    let (entries, exponent) = frame.after(n)?;
+    let exponent = exponent_of_balls(exponent)?;
+    Some(entries.map(|x| x.ball().scale2(exponent)))
 }
 
 /// Whether the slow clock's kicks distort the fast one's turn no more than the other way round, about.
