@@ -63,6 +63,36 @@ fn a_step_above_the_first_tongue_is_not_recommended_though_stable() {
     assert_eq!((&answer.largest, &answer.safe), (&Some(ratio(4, 1)), &Some(ratio(3, 1))));
 }
 
+/// Of every ratio between the ends that are told, tried by trace, none is stable; a hundredth beyond them one is.
+#[test]
+fn no_other_ratio_helps_where_all_between_two_ends_are_unstable() {
+    for text in ["1/2,9/2", "1/2,24/5", "1/2,19/2", "1,14"] {
+        let steps = scheme(text);
+        let advice = ask(&TWO, &[text]);
+        let row = &advice.schemes[0].rows[0];
+        let Some((lo, hi)) = &row.ratios else {
+            assert_ne!(row.found.kind, Kind::Hyperbolic, "{steps:?}");
+            continue;
+        };
+        assert!(*lo <= steps.outer() / steps.inner() && steps.outer() / steps.inner() <= *hi);
+        let unstable = |times: &Rational| {
+            let outer = steps.inner() * times;
+            let scheme = Scheme::new(vec![steps.inner().clone(), outer]).unwrap();
+            let stiffness = TWO.map(|period| Mode::from_period(period).unwrap().stiffness).to_vec();
+            let found = Levels { scheme: &scheme, stiffness }.decide(&Limits::default()).unwrap();
+            found.kind == Kind::Hyperbolic
+        };
+        let width = hi - lo;
+        assert!(to_f64(&width) > 0.5, "{steps:?}: only {lo} to {hi}");
+        assert!((0..=60).all(|n| unstable(&(lo + &width * ratio(n, 60)))), "{steps:?}");
+        let beyond = (1..40).any(|n| {
+            let off = ratio(n, 1000);
+            !unstable(&(lo - &off)) || !unstable(&(hi + &off))
+        });
+        assert!(beyond, "{steps:?}: {lo} to {hi} could be longer");
+    }
+}
+
 #[test]
 fn flexible_water_is_fine_at_3_fs_cautioned_at_4_fs_refused_from_the_first_tongue_on() {
     let outer = ["3/8,3", "1/2,4", "0.5846,4.6768", "0.58461,4.67688", "0.6,4.8"];

@@ -8,6 +8,7 @@ use super::levels::{Found, Levels, Scheme, longest_below, scaled};
 use super::levers::Levers;
 use super::mode::Mode;
 use super::question::{Question, is_stable};
+use crate::band::unstable_ratios;
 use crate::error::Result;
 use crate::number::rational::{enclose_f64, from_f64_exact, to_f64};
 use crate::number::{Ball, Laurent, Ratio, Rational};
@@ -69,6 +70,9 @@ pub struct Row {
     pub masking: Option<(f64, f64)>,
     /// Whether the friction given keeps it bounded.
     pub is_damped: Option<bool>,
+    /// Of two clocks, where it grows: with the inner step every ratio of steps from lo to hi, rational or not, is unstable; `None` where
+    /// that is not proven ([`unstable_ratios`]).
+    pub ratios: Option<(Rational, Rational)>,
 }
 
 /// The most intervals that are listed of a row.
@@ -213,6 +217,7 @@ impl Question {
             masking: tenfold_steps.and_then(|_| levels.masking()),
             is_damped: self.friction.as_ref().and_then(|rate| levels.is_damped_by(rate)),
             found,
+            ratios: None,
             first: None,
             below: None,
             above: None,
@@ -226,7 +231,12 @@ impl Question {
             self.many_clocks(&mut row, &levels)?;
             return Ok(row);
         }
-        let ratio = Ratio::try_from(&(scheme.outer() / scheme.inner()))?;
+        let times = scheme.outer() / scheme.inner();
+        if scheme.steps().len() == 2 && row.tenfold_steps.is_some() {
+            let inner = Laurent::from_rational(scheme.inner().clone());
+            row.ratios = unstable_ratios([fast, &slow], &inner, &times);
+        }
+        let ratio = Ratio::try_from(&times)?;
         let intervals = Intervals::new(ratio, fast, &slow)?;
         row.first = Some(intervals.first()?);
         if is_stable(row.found.kind) {

@@ -17,6 +17,7 @@
 //! | `frame` | a box in the units of its base, and one kick in the frame of a family (a, b) |
 //! | `walk` | Euclid's algorithm on a box |
 //! | `cone` | the common cone |
+//! | `ratios` | the ratios about one of them, at one step of the first clock |
 //! | `search` | a window, bisected where the first-order law expects a band |
 //!
 //! Nothing is said of what is not certified: it may be stable or not.
@@ -36,10 +37,12 @@ mod affine;
 mod cone;
 mod family;
 mod frame;
+mod ratios;
 mod search;
 mod trig;
 mod walk;
 
+pub use ratios::unstable_ratios;
 pub use search::{Bands, Cell, Window};
 
 /// Some hundreds of roundings of positive numbers.

@@ -19,7 +19,7 @@ const DEEPEST: u32 = 40;
 const THINNEST: [u32; 2] = [3, 6];
 
 /// Bits of constants.
-const BITS: u32 = 96;
+pub(super) const BITS: u32 = 96;
 
 /// Two stiffnesses and closed ranges of both steps.
 #[derive(Clone, Debug)]
@@ -62,7 +62,7 @@ impl Window {
                 return Err(Error::input(field, format!("{lo}..{hi}"), "give LO..HI with 0 <= LO < HI"));
             }
         }
-        let bases = [base(&lambdas[0], &lambdas[1]), base(&lambdas[1], &lambdas[0])];
+        let bases = bases(lambdas.each_ref());
         if bases.iter().all(Option::is_none) {
             return Err(Error::input(
                 "lambda1",
@@ -110,17 +110,7 @@ impl Window {
                 Affine::constant((2 * cell.places[step] + 1) as f64 * half, 0.0).with_slope(slope, half);
             self.sides[step].0.plus(&self.sides[step].1.times(&place))
         };
-        let frames =
-            [0, 1].map(|own| Frame::new(&step(own, 0), &step(1 - own, 1), self.bases[own].as_ref()?));
-        let distortion = |frame: &Option<Frame>| frame.as_ref().map_or(f64::INFINITY, Frame::distortion);
-        let own = usize::from(distortion(&frames[1]) < distortion(&frames[0]));
-        match &frames[own] {
-            None => Found::Open { direction: own, to_go: 1 },
-            Some(frame) => match frame.prove() {
-                Found::Open { direction, to_go } => Found::Open { direction: direction ^ own, to_go },
-                found => found,
-            },
-        }
+        prove(&self.bases, step)
     }
 
     /// Bisects the window, boxes first that promise the most area a trial, until so many boxes were tried, or boxes of a share of the
@@ -206,6 +196,26 @@ impl Bands {
     }
 }
 
+/// Whether every ratio in a box is unstable, with the steps `step(clock, slope)`: affine in the direction `slope`, 0 for the clock that
+/// is the base, 1 for the other.
+pub(super) fn prove(bases: &[Option<Base>; 2], step: impl Fn(usize, usize) -> Affine) -> Found {
+    let frames = [0, 1].map(|own| Frame::new(&step(own, 0), &step(1 - own, 1), bases[own].as_ref()?));
+    let distortion = |frame: &Option<Frame>| frame.as_ref().map_or(f64::INFINITY, Frame::distortion);
+    let own = usize::from(distortion(&frames[1]) < distortion(&frames[0]));
+    match &frames[own] {
+        None => Found::Open { direction: own, to_go: 1 },
+        Some(frame) => match frame.prove() {
+            Found::Open { direction, to_go } => Found::Open { direction: direction ^ own, to_go },
+            found => found,
+        },
+    }
+}
+
+/// Either clock as the base, where its stiffness is positive.
+pub(super) fn bases([first, second]: [&Laurent; 2]) -> [Option<Base>; 2] {
+    [base(first, second), base(second, first)]
+}
+
 /// √Λ/2 and Λ'/(2 √Λ); `None` unless Λ is positive.
 fn base(own: &Laurent, other: &Laurent) -> Option<Base> {
     let root = own.enclosure(BITS).sqrt(BITS)?.scale2(-1);
@@ -215,7 +225,7 @@ fn base(own: &Laurent, other: &Laurent) -> Option<Base> {
 }
 
 /// A constant of a box.
-fn enclosed(ball: &Ball) -> Affine {
+pub(super) fn enclosed(ball: &Ball) -> Affine {
     let (lo, hi) = ball.to_f64_enclosure();
     Affine::constant(lo, hi - lo)
 }

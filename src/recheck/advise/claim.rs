@@ -64,6 +64,8 @@ rows! {
         pub tenfold_steps: Ends | null,
         pub masked_above: Ends | null,
         pub damped: bool | null,
+        pub ratios_lower: Written<Rational> | null,
+        pub ratios_upper: Written<Rational> | null,
         pub first_lower: Ends | null,
         pub first_upper: Ends | null,
         pub first_tenfold_steps: f64 | null,

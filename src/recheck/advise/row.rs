@@ -2,6 +2,7 @@
 
 use super::claim::{Claim, Row};
 use super::mass::{BITS, Mass, crosses, exact, fastest_growth};
+use crate::number::rational::simplest;
 use crate::number::{Ball, Rational, Sign};
 use crate::recheck::context::{Checked, holds, same};
 use crate::recheck::written::Ends;
@@ -40,6 +41,7 @@ impl Claim {
             holds(none, || "grows though it is not hyperbolic".into())?;
         }
         self.friction(row, &mass)?;
+        row.ratios(&mass)?;
         let at = |step: f64| mass.scaled(&(exact(step) / &outer));
         let Some(first) = row.first_lower else { return holds(false, || "first_lower is missing".into()) };
         let inside = at(first.lo).in_first_region()?;
@@ -92,6 +94,31 @@ impl Claim {
 }
 
 impl Row {
+    /// The simplest ratio of each tenth of the range is unstable, and the scheme's own one lies in it.
+    fn ratios(&self, mass: &Mass) -> Checked {
+        let (Some(lo), Some(hi)) = (&self.ratios_lower, &self.ratios_upper) else {
+            return holds(self.ratios_lower.is_none() && self.ratios_upper.is_none(), || {
+                "its range of ratios lacks an end".into()
+            });
+        };
+        let tenth = (&hi.0 - &lo.0) / Rational::from_integer(10.into());
+        let inner = &mass.steps[0];
+        let own = &self.outer.0 / inner;
+        holds(mass.steps.len() == 2 && lo.0 <= own && own <= hi.0 && lo.0 < hi.0, || {
+            format!("its range of ratios does not hold {own}")
+        })?;
+        for k in 0..10 {
+            let at = |k: i64| &lo.0 + &tenth * Rational::from_integer(k.into());
+            let ratio = simplest(&at(k), &at(k + 1));
+            let steps = vec![inner.clone(), &ratio * inner];
+            let stiffness = mass.stiffness.clone();
+            holds(Mass { steps, stiffness }.excess()? != Some(Sign::Negative), || {
+                format!("the ratio {ratio} is stable")
+            })?;
+        }
+        Ok(())
+    }
+
     /// acosh(|Tr|/2) by logarithms.
     fn growth(&self, trace: &Ball, period: &Rational, outer: &Rational) -> Checked {
         let half = trace.abs().scale2(-1);

@@ -27,6 +27,7 @@ fn interval(of: &Unstable) -> String {
 /// All lines.
 pub(super) fn of(advice: &Advice, reading: Option<&Reading>) -> Vec<String> {
     let mut lines: Vec<String> = advice.schemes.iter().map(|answer| line(advice, answer)).collect();
+    lines.extend(advice.schemes.iter().filter_map(ratios));
     lines.push(action(advice, &advice.schemes[0]));
     if let Some(reading) = reading {
         lines.extend(read_from(of_answer(&advice.schemes[0]), reading));
@@ -163,6 +164,19 @@ fn unstable(answer: &Answer, worst: Option<&Row>) -> String {
         nearest((lo * outer, hi * outer), 3),
         nearest(rate, 4)
     )
+}
+
+/// Another ratio beside an unstable one is no way out. Ends are shown to three decimals, inward.
+fn ratios(answer: &Answer) -> Option<String> {
+    let proven = answer.rows.iter().filter_map(|row| row.ratios.as_ref());
+    let (lo, hi) = proven.max_by(|a, b| (&a.1 - &a.0).cmp(&(&b.1 - &b.0)))?;
+    let thousand = Rational::from_integer(1000.into());
+    let (from, to) = ((lo * &thousand).ceil() / &thousand, (hi * &thousand).floor() / &thousand);
+    (from < to).then(|| {
+        let (inner, outer) = (fs(answer.scheme.inner()), fs(answer.scheme.outer()));
+        let [from, to] = [&from, &to].map(decimal);
+        format!("  ratios     with {inner} inside every ratio from {from} to {to}, whole or not, is unstable, as {outer} is (proven)")
+    })
 }
 
 /// The advice itself.

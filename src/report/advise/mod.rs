@@ -124,6 +124,15 @@ fn row_table(advice: &Advice, all: bool) -> Table {
             of.row.masking.map(per_ps).into()
         })
         .field(Column::new("damped"), |of| of.row.is_damped.into());
+    if all {
+        record = record
+            .field(Column::new("ratios_lower"), |of| {
+                of.row.ratios.as_ref().map(|ends| Cell::exact(&ends.0)).into()
+            })
+            .field(Column::new("ratios_upper"), |of| {
+                of.row.ratios.as_ref().map(|ends| Cell::exact(&ends.1)).into()
+            });
+    }
     let places: [(&str, &str, Which); 4] = [
         ("first", "first unstable", |row| row.first.as_ref()),
         ("inside", "inside", |row| row.inside.as_ref()),

@@ -1,0 +1,69 @@
+//! The ratios about one of them that are unstable, at a step of the first clock: boxes of no width in h1.
+
+use num_traits::ToPrimitive;
+
+use super::affine::Affine;
+use super::search::{BITS, bases, enclosed, prove};
+use super::walk::Found;
+use crate::number::{Laurent, Rational, Real, U};
+
+/// Ends of ranges are multiples of 1/UNIT.
+const UNIT: i64 = 1_000_000;
+
+/// Ranges of ratios that are tried on either side.
+const TRIES: usize = 100;
+
+/// Ratios from this one on are not looked at: in doubles they would not be exact multiples of 1/[`UNIT`].
+const LARGEST: i64 = 1 << 30;
+
+/// lo < hi, lo ≤ `ratio` ≤ hi, multiples of 10⁻⁶: with the stiffnesses Λ1, Λ2 and the step h1 **every** h2/h1 in \[lo, hi\], rational or
+/// not, is unstable (proofs/BANDS.md). Ratios beyond them may be unstable, too. `None` where nothing is proven next to the ratio.
+///
+/// ```
+/// use kickdrift::band::unstable_ratios;
+/// use kickdrift::number::{parse::parse, rational::ratio};
+/// let x = |text| parse("quantity", text).unwrap();
+/// // The fast force turns by π while the slow one waits.
+/// let (lo, hi) = unstable_ratios([&x("pi^2"), &x("pi^2/25")], &x("1/8"), &ratio(8, 1)).unwrap();
+/// assert!(lo < ratio(79, 10) && ratio(8, 1) < hi);
+/// ```
+pub fn unstable_ratios(
+    lambdas: [&Laurent; 2],
+    h1: &Laurent,
+    ratio: &Rational,
+) -> Option<(Rational, Rational)> {
+    let scaled = ratio * Rational::from_integer(UNIT.into());
+    let [from, to] = [scaled.floor(), scaled.ceil()].map(|x| x.to_integer().to_i64());
+    let (from, to) = from.zip(to).filter(|(from, to)| *from > 0 && *to < LARGEST * UNIT)?;
+    let (bases, h1) = (bases(lambdas), enclosed(&h1.enclosure(BITS)));
+    let is_unstable = |from: i64, to: i64| {
+        let [middle, half] = [from + to, to - from].map(|x| x as f64 / (2 * UNIT) as f64);
+        let off = 2.0 * U * (middle + half);
+        let step = |step: usize, slope: usize| match step {
+            0 => h1,
+            _ => h1.times(&Affine::constant(middle, off).with_slope(slope, half)),
+        };
+        from > 0 && prove(&bases, step) == Found::Certified
+    };
+    if from < to && !is_unstable(from, to) {
+        return None;
+    }
+    // Ranges are doubled where they are proven, and halved where not.
+    let reached = |from: i64, side: i64| {
+        let (mut end, mut length) = (from, 1024);
+        for _ in 0..TRIES {
+            let next = end + side * length;
+            if is_unstable(end.min(next), end.max(next)) {
+                (end, length) = (next, 2 * length);
+            } else if length > 1 {
+                length /= 2;
+            } else {
+                break;
+            }
+        }
+        end
+    };
+    let (lo, hi) = (reached(from, -1), reached(to, 1));
+    let over = |n: i64| Rational::new(n.into(), UNIT.into());
+    (lo < hi).then(|| (over(lo), over(hi)))
+}
