@@ -23,6 +23,9 @@ from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._numbers import frozen
+from kickdrift._progress import Progress as Progress
+from kickdrift._progress import bar as bar
+from kickdrift._progress import shown as shown
 from kickdrift._rigid import Doubles, norm
 
 if TYPE_CHECKING:
@@ -30,20 +33,6 @@ if TYPE_CHECKING:
 
 Force: TypeAlias = Callable[[Doubles], Doubles]
 """The force of one group at positions: (n, 3) to (n, 3), energy/length."""
-
-Progress: TypeAlias = Callable[[int, int], None]
-"""Called with the columns done and the columns in all."""
-
-
-def bar(done: int, total: int) -> None:
-    """A bar on standard error; where that is no terminal, as in a log, four lines in all."""
-    if not sys.stderr.isatty():
-        if 4 * done // total > 4 * (done - 1) // total:
-            print(f"{done} of {total} columns", file=sys.stderr, flush=True)
-        return
-    drawn = "#" * (30 * done // total)
-    end = "\n" if done == total else ""
-    print(f"\r[{drawn:30}] {done} of {total} columns", end=end, file=sys.stderr, flush=True)
 
 
 @dataclass(frozen=True)
@@ -117,11 +106,6 @@ def seconds_of(force: Force, positions: Doubles) -> float:
     begin = perf_counter()
     force(positions)
     return perf_counter() - begin
-
-
-def shown(progress: Progress | bool | None) -> Progress | None:
-    """Who is called: a bar, the function given, or nobody."""
-    return bar if progress is True else progress or None
 
 
 def hessian(

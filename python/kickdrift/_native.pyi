@@ -1,4 +1,4 @@
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any, Final, final
 
@@ -93,6 +93,7 @@ def verdicts(
     positions: Sequence[npt.NDArray[np.int64]],
     budget: int | None,
     threads: int,
+    progress: Callable[[int, int], Any] | None,
 ) -> tuple[npt.NDArray[np.uint8], npt.NDArray[np.uint8]]: ...
 def map(
     stiffness: Sequence[Any],

@@ -17,6 +17,7 @@ from kickdrift._errors import KickdriftError, required
 from kickdrift._native import Number
 from kickdrift._numbers import Exact, frozen
 from kickdrift._plot import COLOURS
+from kickdrift._progress import Progress, shown
 
 if TYPE_CHECKING:
     import pandas
@@ -327,7 +328,14 @@ class Verdicts(Frozen):
 
 
 def verdicts(
-    *, lambda1: Any, lambda2: Any, h1: Any, h2: Any, budget: int | None = None, threads: int | None = None
+    *,
+    lambda1: Any,
+    lambda2: Any,
+    h1: Any,
+    h2: Any,
+    budget: int | None = None,
+    threads: int | None = None,
+    progress: Progress | bool = False,
 ) -> Verdicts:
     """Decide many pairs at once, side by side in the processor and on all cores, without Python's lock.
 
@@ -341,6 +349,9 @@ def verdicts(
         The most kicks that one pair may compose; 10^8 unless given.
     threads : int, optional
         One a core unless given.
+    progress : bool or callable
+        A bar on standard error, in a log four lines; or what is called ten times a second with the pairs decided and
+        those in all: what it raises ends the work.
 
     Raises
     ------
@@ -369,7 +380,7 @@ def verdicts(
     short = [own.dtype.kind == "f" and own.dtype != np.float64 for own in arrays]
     values = [list(own.ravel()) if odd else own.ravel().tolist() for own, odd in zip(arrays, short, strict=True)]
     positions = [_positions(array, shape) for array in arrays]
-    code, tier = _native.verdicts(values, positions, budget, threads or 0)
+    code, tier = _native.verdicts(values, positions, budget, threads or 0, shown(progress, "pairs"))
     return Verdicts(frozen(code.reshape(shape)), frozen(tier.reshape(shape)))
 
 

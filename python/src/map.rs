@@ -91,7 +91,7 @@ impl Map {
     fn compute(&mut self, threads: usize, budget: Option<u64>, stopped: &AtomicBool) -> Result<Arrays> {
         let Map { asked, grid, tally } = self;
         let products = asked.products();
-        let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped) };
+        let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped), done: None };
         let (pairs, task) = (grid.pairs(), Task::of(grid).with(products).within(resources));
         task.allow()?;
         let mut arrays = Arrays { verdict: filled(0, pairs)?, tier: filled(0, pairs)?, ..Arrays::default() };

@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
-use crate::job;
+use crate::job::{self, Listener};
 use crate::number::quantity;
 use crate::pair::limits;
 
@@ -35,6 +35,7 @@ pub fn verdicts<'py>(
     positions: [PyReadonlyArray1<'py, i64>; 4],
     budget: Option<u64>,
     threads: usize,
+    progress: Option<Py<PyAny>>,
 ) -> PyResult<(Bound<'py, PyArray1<u8>>, Bound<'py, PyArray1<u8>>)> {
     let mut quantities: [Vec<Laurent>; 4] = Default::default();
     for ((own, list), field) in quantities.iter_mut().zip(&values).zip(FIELDS) {
@@ -51,8 +52,10 @@ pub fn verdicts<'py>(
     for (own, array) in picked.iter_mut().zip(&positions) {
         *own = array.as_array().iter().map(|&n| n as usize).collect();
     }
-    let decided = job::run(py, move |stopped| {
-        let resources = Resources { threads, limits: limits(budget), stopped: Some(stopped) };
+    let listener = Listener { called: progress, total: picked[0].len() };
+    let decided = job::run_heard(py, listener, move |stopped, done| {
+        let resources =
+            Resources { threads, limits: limits(budget), stopped: Some(stopped), done: Some(done) };
         Pairs::new(quantities, picked)?.verdicts(&resources)
     })?;
     let verdicts = decided.iter().map(|decision| decision.verdict.index()).collect();

@@ -84,6 +84,23 @@ def test_arrays_of_doubles_mean_what_they_print() -> None:
     assert kd.verdicts(lambda1=1, lambda2=1, h1=[], h2=1).code.shape == (0,)
 
 
+def test_many_verdicts_say_how_far_they_are() -> None:
+    rng = np.random.default_rng(5)
+    h1, h2 = rng.uniform(0.01, 0.6, 20_000), rng.uniform(0.5, 3.4, 20_000)
+    heard: list[tuple[int, int]] = []
+    found = kd.verdicts(
+        lambda1="pi^2", lambda2="pi^2/25", h1=h1, h2=h2, progress=lambda done, total: heard.append((done, total))
+    )
+    assert len(found) == 20_000 and heard[-1] == (20_000, 20_000)
+    assert heard == sorted(heard) and all(total == 20_000 for _, total in heard)
+
+    def enough(done: int, total: int) -> None:
+        raise RuntimeError(f"{done} of {total}")
+
+    with pytest.raises(RuntimeError, match="of 20000"):
+        kd.verdicts(lambda1="pi^2", lambda2="pi^2/25", h1=h1, h2=h2, progress=enough)
+
+
 def test_a_map_beyond_the_budget_is_refused_before_its_arrays_are_made() -> None:
     with pytest.raises(kd.BudgetError, match="days of one core"):
         kd.map(lambda1="pi^2", lambda2="pi^2/25", step="1/400000", h1=("1/400000", "2/pi"), h2=("1/400000", "7/2"))

@@ -1,6 +1,6 @@
 //! What a map may take.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use crate::error::{Error, Result};
 use crate::parallel::{Pool, go_on};
@@ -15,6 +15,8 @@ pub struct Resources<'a> {
     pub limits: Limits,
     /// The work ends with an error of the kind `Stopped` soon after this is set: it is looked at between any two groups of pairs.
     pub stopped: Option<&'a AtomicBool>,
+    /// Counts the pairs of a list that are decided.
+    pub done: Option<&'a AtomicUsize>,
 }
 
 impl Resources<'_> {
@@ -28,6 +30,13 @@ impl Resources<'_> {
         match self.stopped {
             Some(stopped) if stopped.load(Ordering::Relaxed) => Err(Error::stopped("the map")),
             _ => go_on(),
+        }
+    }
+
+    /// So many pairs more are decided.
+    pub(super) fn count(&self, pairs: usize) {
+        if let Some(done) = self.done {
+            done.fetch_add(pairs, Ordering::Relaxed);
         }
     }
 }

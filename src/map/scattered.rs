@@ -139,11 +139,13 @@ fn together<P: Source + ?Sized>(
         }
         Ok(rest)
     })?;
+    resources.count(found.iter().filter(|&&verdict| verdict != UNDECIDED).count());
     let mut decisions = Vec::with_capacity(part.len());
     for (verdict, n) in found.into_iter().zip(part) {
         decisions.push(match verdict {
             UNDECIDED => {
                 resources.go_on()?;
+                resources.count(1);
                 source.decide(n, limits)?
             }
             verdict => Decision { verdict: Verdict::ALL[usize::from(verdict)], decided_by: Tier::Filter },
