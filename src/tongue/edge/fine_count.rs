@@ -49,13 +49,14 @@ impl Task for Halving<'_> {
     fn run(self) -> [Twofold; 2] {
         let Halving { string, entry, index, around } = self;
         let point = |x: f64| Twofold { hi: x, lo: 0.0 };
-        let is_below = |kappa: Twofold| count(string, entry, kappa) < index;
         let [mut lo, mut hi] = [point(0.0), point(2.0 * string.upper_bound)];
         if let Some((from, upto)) = around {
             // Beyond the ends' own rounding.
             let ends = [from / string.ticks * (1.0 - 1e-15), upto / string.ticks * (1.0 + 1e-15)].map(point);
-            for end in ends.into_iter().filter(|end| 0.0 < end.hi && end.hi < 2.0 * string.upper_bound) {
-                if is_below(end) { lo = end } else { hi = end }
+            for end in ends {
+                if 0.0 < end.hi && end.hi < 2.0 * string.upper_bound {
+                    if count(string, entry, end) < index { lo = end } else { hi = end }
+                }
             }
         }
         loop {
@@ -64,7 +65,7 @@ impl Task for Halving<'_> {
                 return [lo, hi];
             }
             let middle = lo.plus(hi).half();
-            if is_below(middle) { lo = middle } else { hi = middle }
+            if count(string, entry, middle) < index { lo = middle } else { hi = middle }
         }
     }
 }

@@ -1,8 +1,9 @@
 //! An entry of the half period as a function of s, at rational points.
 
 use crate::error::Result;
-use crate::number::{Ball, Ratio, Rational, Sign};
+use crate::number::{Ball, Laurent, Ratio, Rational, Sign};
 use crate::orbit::refine::{self, End};
+use crate::orbit::residue;
 use crate::orbit::returns::{self, Wanted};
 use crate::propagator::TwoClocks;
 use crate::schedule::Schedule;
@@ -48,6 +49,12 @@ impl EntryFunction {
     /// The entry's exact sign at s.
     pub fn exact_sign(&self, s: &Rational) -> Sign {
         Decidable::half_signs(&self.clocks(s)).all()[self.entry as usize]
+    }
+
+    /// Whether the entry is zero at s; mostly a residue shows that it is not, at a cost linear in the period.
+    pub fn is_zero_at(&self, s: &Rational) -> bool {
+        let [fast, slow] = [s.clone(), s * &self.slow].map(Laurent::from_rational);
+        !residue::nonzero_entries(&TwoClocks::new(self.ratio, fast, slow)) && self.exact_sign(s) == Sign::Zero
     }
 
     /// Where the entry's orbit ends at s, enclosed by so many bits.

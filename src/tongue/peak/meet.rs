@@ -135,9 +135,9 @@ impl Task for Meet<'_> {
         let Meet { string, s, odd } = self;
         let table = Table::new(string, s);
         let (at, last) = (table.node(string), string.last());
-        let left = [true, false].map(|free| Orbit::run(&table, &string.forward[..at], free));
+        let left = Orbit::run(&table, &string.forward[..at], [true, false]);
         // In the order of the pair: X ends free for C, pinned for A.
-        let right = [!odd, odd].map(|free| Orbit::run(&table, &string.backward[..last - at], free));
+        let right = Orbit::run(&table, &string.backward[..last - at], [!odd, odd]);
         let k = table.kicks[string.nodes[at].kind];
         let pair = [left[0].meet(&right[0], k), left[1].meet(&right[1], k)];
         Meeting { pair, sign: if odd { -1.0 } else { 1.0 }, balance: balance(&left, &right) }
@@ -210,15 +210,24 @@ struct Orbit {
 }
 
 impl Orbit {
+    /// Two orbits through the same steps, each free or pinned at its start: neither waits for the other. (Closures over arrays would
+    /// not be compiled for the task's instructions.)
     #[inline(always)]
-    fn run(table: &Table, steps: &[Step], free: bool) -> Orbit {
+    fn run(table: &Table, steps: &[Step], [first, second]: [bool; 2]) -> [Orbit; 2] {
+        let (mut first, mut second) = (Orbit::start(first), Orbit::start(second));
+        for step in steps {
+            let (k, t) = (table.kicks[step.kind], step.length * table.tick);
+            first.pass(k, t);
+            second.pass(k, t);
+        }
+        [first, second]
+    }
+
+    #[inline(always)]
+    fn start(free: bool) -> Orbit {
         let unit = |on: bool| Twofold { hi: if on { 1.0 } else { 0.0 }, lo: 0.0 };
         let (x, v) = (unit(free), unit(!free));
-        let mut orbit = Orbit { x, v, dx: 0.0, dv: 0.0, exponent: 0, length: 1.0, across: 0.0, along: 0.0 };
-        for step in steps {
-            orbit.pass(table.kicks[step.kind], step.length * table.tick);
-        }
-        orbit
+        Orbit { x, v, dx: 0.0, dv: 0.0, exponent: 0, length: 1.0, across: 0.0, along: 0.0 }
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use num_traits::Zero;
 
 use crate::error::Result;
-use crate::number::{Ratio, Rational, Sign, rational};
+use crate::number::{Ratio, Rational, rational};
 use crate::tongue::edge::{Edge, Edges, Enclosure, simplest};
 use crate::tongue::string::Entry;
 
@@ -40,7 +40,7 @@ fn rational_edge(edges: &Edges, edge: &Edge) -> Result<Option<Rational>> {
     let candidate = simplest(&around.lo, &around.hi);
     // A random enclosure of 2^-52 has its simplest rational at a denominator of some 2^26.
     let simple = candidate.denom().bits() <= 20;
-    let is_zero = simple && edges.function(edge.entry)?.exact_sign(&candidate) == Sign::Zero;
+    let is_zero = simple && edges.function(edge.entry)?.is_zero_at(&candidate);
     Ok(is_zero.then_some(candidate))
 }
 
