@@ -85,7 +85,7 @@ pub struct Verdict {
     is_orbit_missing: bool,
     nearest: Option<Nearest>,
     no_gradient: Option<NoGradient>,
-    local: Option<SchemeSummary>,
+    pub local: Option<SchemeSummary>,
 }
 
 /// What is found of a system.
@@ -151,7 +151,7 @@ impl System {
         };
         let nearest = width.map(nearest).transpose()?;
         let no_gradient = model.jacobians().map(Jacobians::no_gradient);
-        let (friction, local) = (scene.friction(&limits)?, model.summary());
+        let (friction, local) = (scene.friction(&limits)?, model.local_steps_summary());
         Ok(Verdict { analysis, friction, orbit, is_orbit_missing, nearest, no_gradient, local })
     }
 

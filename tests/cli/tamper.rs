@@ -346,6 +346,7 @@ fn no_change_to_a_system_passes() {
         "system bars.json --friction 1/10",
         "system local.json",
         "system learned.json",
+        "system learned.json --intervals outer=1/10..1/5 --resolution 1e-2",
         "system tension.json --friction 1/2",
         "system resonant.json --nearest --resolution 0.1",
         "system system.json --intervals outer=1/8..1/2 --resolution 1e-2",

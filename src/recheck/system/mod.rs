@@ -15,14 +15,20 @@ use super::context::{Checked, Context, Fault, Outcome, same, too_costly};
 use super::sample::sample;
 use crate::avi::Ends;
 use crate::error::{Kind as Reason, Result};
+use crate::number::rational::{from_f64_exact, to_f64};
 use crate::question::{Found, Question, Simulate, System, SystemAnswer, Work};
 use crate::report::system::SystemMap;
 use crate::scene::{Arrays, SystemScene};
-use crate::system::{Analysis, Limits, Model};
+use crate::system::stretches::Stretch;
+use crate::system::vary::Intervals;
+use crate::system::{Analysis, Holds, Limits, Model, SchemeSummary, SparseSteps};
 use crate::verdict::Kind;
 
 /// Points of a map whose kind is decided by the other route (where it costs no more than is allowed), unless all are.
 const POINTS: u64 = 200;
+
+/// Stretches of intervals, the same.
+const MIDDLES: u64 = 24;
 
 /// `kickdrift/system-verdict/1`, `kickdrift/system-map/1` or `kickdrift/system-intervals/1`.
 #[derive(Clone, Debug, serde::Deserialize)]
@@ -66,16 +72,23 @@ impl Recheck for Claim {
 
     fn check(&self, SystemAnswer { scene, found }: SystemAnswer, context: &Context) -> Result<Outcome> {
         match found {
-            Found::Verdict(own) => verdict(&scene, &own.analysis, context),
+            Found::Verdict(own) => verdict(&scene, &own.analysis, own.local.as_ref(), context),
             Found::Map(map) => self.points(&scene, &map, context),
-            Found::Intervals(_) => outcome(context, ALONE, Ok(())),
+            Found::Intervals(own) => self.stretches(&scene, &own, context),
         }
     }
 }
 
-fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Result<Outcome> {
-    if matches!(scene.model(), Model::Sparse(_)) {
-        return outcome(context, ALONE, Ok(()));
+fn verdict(
+    scene: &SystemScene,
+    analysis: &Analysis,
+    local: Option<&SchemeSummary>,
+    context: &Context,
+) -> Result<Outcome> {
+    if let Model::Sparse(own) = scene.model() {
+        let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
+        let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
+        return Ok(seen(steps, outcome(context, RUN, checked)?));
     }
     if analysis.measured.is_some() {
         return match dense::growth(scene, analysis, &context.work().products()) {
@@ -114,6 +127,18 @@ fn verdict(scene: &SystemScene, analysis: &Analysis, context: &Context) -> Resul
     }
 }
 
+/// The scheme run, of large ones.
+const RUN: &str = "the scheme substep by substep, and the eigenvalues of its steps by Lanczos's recursion";
+
+/// With what Lanczos's recursion does not see.
+fn seen(steps: &SparseSteps, mut outcome: Outcome) -> Outcome {
+    if steps.size() > local::SEEN {
+        let what = "that no motion is less stable than the extreme ones of Lanczos's recursion: by factorizations alone";
+        outcome.not_rechecked.push(what.into());
+    }
+    outcome
+}
+
 /// `None` where the work exceeds the limits.
 fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
     match scene.model().exact_kind(limits) {
@@ -124,6 +149,49 @@ fn exact_kind(scene: &SystemScene, limits: &Limits) -> Result<Option<Kind>> {
 }
 
 impl Claim {
+    /// What is said of stretches of the outer step, in the middle of each of a sample: large local steps are run, what is no gradient is decided in exact
+    /// arithmetic.
+    fn stretches(&self, scene: &SystemScene, found: &Intervals, context: &Context) -> Result<Outcome> {
+        let (of, limits) = (found.stretches.len() as u64, context.work().products());
+        let most = if context.options.all { of } else { MIDDLES };
+        let is_outer = found.number == "outer";
+        let sampled = sample(&scene.source().to_string(), of, most);
+        let told = sampled.into_iter().map(|n| (n + 1, &found.stretches[n as usize]));
+        let told = told.filter(|(_, own)| own.verdict != Holds::NotTold);
+        let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
+        let (mut failures, mut decided) = (Vec::new(), 0);
+        let mut outcome = match scene.model() {
+            Model::Sparse(own) if is_outer && own.local_steps().is_some() => {
+                let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
+                for (row, own) in told {
+                    decided += 1;
+                    failures.extend(context.failure(row, || place(own), local::stretch(steps, own))?);
+                }
+                seen(steps, outcome(context, RUN, Ok(()))?)
+            }
+            Model::NoGradient(own) if is_outer => {
+                let longest = scene.model().steps().into_iter().max().unwrap_or_default();
+                for (row, stretch) in told {
+                    let middle = stretch.lo + (stretch.hi - stretch.lo) / 2.0;
+                    let Some(middle) = from_f64_exact(middle) else { continue };
+                    let model = Model::NoGradient(Box::new(own.slowed(&(middle / &longest))?));
+                    let truth = match model.exact_kind(&limits) {
+                        Err(error) if error.kind() == Reason::Budget => continue,
+                        truth => Holds::from(Some(truth?)),
+                    };
+                    decided += 1;
+                    let checked = same("verdict", stretch.verdict.name(), truth.name());
+                    failures.extend(context.failure(row, || place(stretch), checked)?);
+                }
+                let route = "the verdict in the middle of a random sample of stretches in exact arithmetic";
+                outcome(context, route, Ok(()))?
+            }
+            _ => return outcome(context, ALONE, Ok(())),
+        };
+        (outcome.rows, outcome.sample, outcome.failures) = (of, Some((decided, of)), failures);
+        Ok(outcome)
+    }
+
     fn points(&self, scene: &SystemScene, map: &SystemMap, context: &Context) -> Result<Outcome> {
         let (of, limits) = (map.points.len() as u64, context.work().products());
         let mut outcome =

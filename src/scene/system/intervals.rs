@@ -232,7 +232,6 @@ impl SystemScene {
             return refused("with friction", "take the friction out of the file");
         }
         match &self.model {
-            Model::NoGradient(_) => return refused("of this file", "are for forces that are gradients"),
             Model::Sparse(own) if own.local_steps().is_none() => {
                 return refused("of this file", "are for dense stiffnesses");
             }
@@ -240,6 +239,7 @@ impl SystemScene {
             | Model::Measured(_)
             | Model::LocalSteps(_)
             | Model::Implicit(_)
+            | Model::NoGradient(_)
             | Model::Sparse(_)
                 if self.is_linear() => {}
             _ => return refused("of this file", "are for linear systems of rational numbers"),

@@ -75,7 +75,7 @@ pub struct Jacobians {
     /// Positions in the coordinates given from those that are left, a column each.
     pub(super) lift: Mat<f64>,
     /// With the symmetric parts alone.
-    symmetric: System,
+    pub(super) symmetric: System,
     /// Computed when it is first asked for.
     pub(super) spectrum: OnceLock<(Option<Spectrum>, f64)>,
 }

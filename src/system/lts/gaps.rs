@@ -15,7 +15,7 @@
 //! an even multiple of π. Resonances are counted by the inertia of F.
 
 use super::scheme::Level;
-use super::sparse::{Fine, SparseSteps};
+use super::sparse::{Block, SparseSteps};
 use crate::error::{Error, Result};
 use crate::number::{U, bisected};
 use crate::parallel::try_map;
@@ -48,7 +48,7 @@ struct Place {
     even: usize,
 }
 
-impl Fine {
+impl Block {
     /// How many eigenvalues may be in \[lo, hi\], none more; `None` where counts do not tell.
     fn within(&self, lo: f64, hi: f64) -> Option<usize> {
         let terms = [(1.0, self.values.as_slice())];
@@ -69,7 +69,7 @@ impl Fine {
 
 impl SparseSteps {
     /// The only level, and its fine part.
-    fn one(&self) -> Option<(&Level, &Fine)> {
+    fn one(&self) -> Option<(&Level, &Block)> {
         let [level] = &self.levels[..] else { return None };
         self.fine.as_ref().map(|fine| (level, fine))
     }
@@ -109,25 +109,29 @@ impl SparseSteps {
         self.resonances(lo, hi).map(|own| own[0])
     }
 
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven, or with several levels.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where nothing is proven, or with several levels.
+    ///
+    /// At the first resonance f has an eigenvalue of 4 or more, however weakly that fine motion is coupled: where every step up to there is stable, hi is
+    /// no more than the resonance itself is known to, and no factorization could see the interval.
     pub fn first_unstable(&self) -> Option<(f64, f64)> {
         let (level, fine) = self.one()?;
         // The first odd multiple of π is reached by the fastest fine motion: below it there is none.
-        let (_, high) = fine.pattern.largest(&fine.values, fine.error, 1e-6)?;
+        let (low, high) = fine.pattern.largest(&fine.values, fine.error, 1e-6)?;
         let z = SparseSteps::marks(level.substeps).first().map_or(4.0, |mark| mark.z);
-        let top = f64::from(level.substeps) * (z / high).sqrt() * (1.0 - 8.0 * U);
-        let is_stable = |dt: f64| self.verdict(dt) == Holds::Stable;
-        let start = (0..12).map(|k| top * 0.5f64.powi(k)).find(|&dt| is_stable(dt))?;
-        let (lo, beyond) = if start == top {
-            (top, top)
-        } else {
-            bisected((start, 2.0 * start), WIDTH * SHARPER, |dt| Some(is_stable(dt)))
-        };
-        let steps = (0..40).map(|k| beyond * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k)));
-        steps
-            .take_while(|&dt| dt < 2.0 * top)
-            .find(|&dt| self.verdict(dt) == Holds::Unstable)
-            .map(|hi| (lo, hi))
+        let at = |y: f64, round: f64| f64::from(level.substeps) * (z / y).sqrt() * (1.0 + round * 8.0 * U);
+        let (top, resonance) = (at(high, -1.0), at(low, 1.0));
+        let is_below = |dt: f64| self.is_proven_below_four(dt);
+        // f > 0 at one step below is A > 0, and then f > 0 at all.
+        let is_stable = |dt: &f64| is_below(*dt) && self.verdict(*dt) == Holds::Stable;
+        let start = (0..12).map(|k| top * 0.5f64.powi(k)).find(is_stable)?;
+        if start == top || is_below(top) {
+            return Some((top, resonance));
+        }
+        let (lo, beyond) = bisected((start, top), WIDTH * SHARPER, |dt| Some(is_below(dt)));
+        let mut steps = (0..40).map(|k| beyond * (1.0 + WIDTH / 16.0 * 1.5f64.powi(k)));
+        let is_before = |dt: &f64| *dt < resonance;
+        let told = steps.by_ref().take_while(is_before).find(|&dt| self.is_below_four(dt) == Holds::Unstable);
+        Some((lo, told.unwrap_or(resonance)))
     }
 
     /// The verdicts on all steps from `lo` to `hi`, as stretches that cover them: between resonances two steps prove all between, and an unstable
@@ -228,12 +232,12 @@ impl SparseSteps {
     /// From a stable step towards one end of its gap: the last proven stable, and the first proven unstable, between which all to the end are.
     fn edge(&self, stable: f64, end: f64, sharp: f64) -> (f64, Option<f64>) {
         let (mut inner, mut outer) = (stable, end);
-        if self.is_below_four(end) == Holds::Stable {
+        if self.is_proven_below_four(end) {
             return (end, None);
         }
         while (outer - inner).abs() > sharp {
             let middle = inner + (outer - inner) / 2.0;
-            if self.is_below_four(middle) == Holds::Stable { inner = middle } else { outer = middle }
+            if self.is_proven_below_four(middle) { inner = middle } else { outer = middle }
         }
         let mut by = 0.0;
         loop {

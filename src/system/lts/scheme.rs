@@ -27,7 +27,7 @@ pub struct SchemeSummary {
     pub levels: Vec<(usize, u32)>,
     /// As [`LocalSteps::plain_limit`].
     pub plain_limit: Option<(f64, f64)>,
-    /// \[lo, hi\]: every step in (0, lo] is proven stable, hi is proven unstable; `None` where that is not known.
+    /// \[lo, hi\]: every step in (0, lo] is proven stable, some step up to hi is proven unstable; `None` where that is not known.
     pub first_unstable: Option<(f64, f64)>,
 }
 

@@ -33,8 +33,10 @@ pub struct SparseSteps {
     /// C_1 first.
     terms: Vec<Term>,
     pub(super) levels: Vec<Level>,
-    /// P A P of the first level, where it has some degree of freedom.
-    pub(super) fine: Option<Fine>,
+    /// A,
+    plain: Block,
+    /// and its rows and columns that are fine at the first level, where there are any.
+    pub(super) fine: Option<Block>,
     /// Of length 1 and mass-weighted, where all may move together.
     rigid: Mat<f64>,
     roots: Vec<f64>,
@@ -48,9 +50,9 @@ struct Term {
     size: f64,
 }
 
-/// The fine part of A, and how far it is from what is meant.
+/// Some rows and columns of A, and how far they are from what is meant.
 #[derive(Clone, Debug)]
-pub(super) struct Fine {
+pub(super) struct Block {
     pub pattern: Pattern,
     pub values: Vec<f64>,
     pub error: f64,
@@ -89,8 +91,9 @@ impl SparseSteps {
         let below = |&(i, j, x): &(usize, usize, f64)| (i >= j).then(|| (i, j, x / (roots[i] * roots[j])));
         let lower: Vec<_> = stiffness.iter().filter_map(below).collect();
         let whole = Sparse::symmetric(n, &lower);
-        let fine =
-            levels.first().filter(|own| !own.fine.is_empty()).map(|own| whole.part(own)).transpose()?;
+        let plain = whole.block(0..n)?;
+        let fine = levels.first().filter(|own| !own.fine.is_empty());
+        let fine = fine.map(|own| whole.block(own.fine.iter().copied())).transpose()?;
         let coefficients = effective(whole, &levels);
         let triplets: Vec<_> = coefficients.iter().map(Sparse::lower).collect();
         let (pattern, values) = Pattern::of_all(n, &triplets.iter().map(Vec::as_slice).collect::<Vec<_>>())?;
@@ -99,7 +102,7 @@ impl SparseSteps {
             Term { size: pattern.size_of(&values).0, values, error: 2.0 * own.error }
         };
         let terms = values.into_iter().zip(&coefficients).map(term).collect();
-        Ok(SparseSteps { pattern, terms, levels, fine, rigid, roots })
+        Ok(SparseSteps { pattern, terms, levels, plain, fine, rigid, roots })
     }
 
     /// The number of degrees of freedom.
@@ -115,6 +118,22 @@ impl SparseSteps {
     /// How often the finest level steps in a step.
     pub fn substeps(&self) -> u32 {
         self.levels.iter().map(|level| level.substeps).product()
+    }
+
+    /// The levels, the coarsest first.
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// M^½ x of positions x.
+    pub fn weighted(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.roots).map(|(x, root)| x * root).collect()
+    }
+
+    /// A y = M^-½ K M^-½ y, rounded.
+    pub fn pull(&self, y: &[f64]) -> Vec<f64> {
+        let own = &self.plain;
+        own.pattern.times(&own.values, &Mat::from_fn(y.len(), 1, |i, _| y[i])).col_as_slice(0).to_vec()
     }
 
     /// Rigid motions that are set apart: 0 or 1.
@@ -145,7 +164,13 @@ impl SparseSteps {
         }
     }
 
-    /// Whether 4 − f > 0.
+    /// Whether 4 − f > 0 is proven: one factorization.
+    pub(super) fn is_proven_below_four(&self, dt: f64) -> bool {
+        let (values, off) = self.at(dt * dt);
+        self.pattern.factored(4.0, &[(-1.0, &values)], off).is_some()
+    }
+
+    /// Whether 4 − f > 0, or what grows proves that it is not.
     pub(super) fn is_below_four(&self, dt: f64) -> Holds {
         let (values, off) = self.at(dt * dt);
         self.below(&values, off, 4.0)
@@ -251,8 +276,7 @@ impl SparseSteps {
 
     /// Where plain leapfrog, all with the step of the whole, becomes unstable, as [`LocalSteps::plain_limit`].
     pub fn plain_limit(&self) -> Option<(f64, f64)> {
-        let first = &self.terms[0];
-        let (lo, hi) = self.pattern.largest(&first.values, first.error, 1e-6)?;
+        let (lo, hi) = self.plain.pattern.largest(&self.plain.values, self.plain.error, 1e-6)?;
         Some((2.0 / hi.sqrt() * (1.0 - 4.0 * U), 2.0 / lo.sqrt() * (1.0 + 4.0 * U)))
     }
 
@@ -407,15 +431,15 @@ impl Sparse {
             .collect()
     }
 
-    /// Rows and columns of a level's fine degrees of freedom.
-    fn part(&self, level: &Level) -> Result<Fine> {
-        let mut place = vec![usize::MAX; self.size()];
-        level.fine.iter().enumerate().for_each(|(new, &old)| place[old] = new);
-        let is_fine = |own: &&(usize, usize, f64)| place[own.0] != usize::MAX && place[own.1] != usize::MAX;
+    /// These rows and columns, in increasing order.
+    fn block(&self, kept: impl ExactSizeIterator<Item = usize>) -> Result<Block> {
+        let (mut place, count) = (vec![usize::MAX; self.size()], kept.len());
+        kept.enumerate().for_each(|(new, old)| place[old] = new);
+        let is_kept = |own: &&(usize, usize, f64)| place[own.0] != usize::MAX && place[own.1] != usize::MAX;
         let lower = self.lower();
-        let own: Vec<_> = lower.iter().filter(is_fine).map(|&(i, j, x)| (place[i], place[j], x)).collect();
-        let (pattern, [values]) = Pattern::of(level.fine.len(), [&own])?;
-        Ok(Fine { pattern, values, error: self.error })
+        let own: Vec<_> = lower.iter().filter(is_kept).map(|&(i, j, x)| (place[i], place[j], x)).collect();
+        let (pattern, [values]) = Pattern::of(count, [&own])?;
+        Ok(Block { pattern, values, error: self.error })
     }
 
     /// Σ a A + Σ b S P B, P on the fine degrees of freedom.

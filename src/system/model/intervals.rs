@@ -49,6 +49,7 @@ impl Model {
             (_, Model::Sparse(own)) => {
                 own.stretches(range, width).unwrap_or_else(|| Err(self.no_intervals()))
             }
+            (_, Model::NoGradient(own)) => own.stretches(range, width),
             _ => match self.levels() {
                 Some(own) => own.stretches(range, width),
                 None => self.over_outer_steps(|family| family.stretches(range, width, limits)),
@@ -78,6 +79,7 @@ impl Model {
                 Family { linear: Linear::Number, at: &at }.cost(range, width, limits)
             }
             (_, Model::LocalSteps(own)) => Ok(own.cost()),
+            (_, Model::NoGradient(own)) => Ok(own.cost_of_stretches(range, width)),
             (_, Model::Sparse(own)) => own.cost_of_stretches(range).ok_or_else(|| self.no_intervals()),
             _ => self.over_outer_steps(|family| family.cost(range, width, limits)),
         }
@@ -94,9 +96,6 @@ impl Model {
 
     /// What `ask` finds of the systems of all outer steps.
     fn over_outer_steps<T>(&self, ask: impl Fn(&Family) -> Result<T>) -> Result<T> {
-        if matches!(self, Model::NoGradient(_) | Model::Sparse(_)) {
-            return Err(self.no_intervals());
-        }
         if let Model::Implicit(own) = self {
             return ask(&Family { linear: Linear::Square, at: &|square| own.at_square(square) });
         }
@@ -123,7 +122,7 @@ impl Model {
             let all = self.stretches(&Number::Outer, Nearest::reach(step), width, limits)?;
             return Ok(Nearest::of(step, &all));
         }
-        if self.levels().is_none() {
+        if self.levels().is_none() && self.jacobians().is_none() {
             let exactly = |family: &Family| family.exactly(Nearest::reach(step), limits);
             if let Some(all) = self.over_outer_steps(exactly)? {
                 return Ok(Nearest::of(step, &all));
@@ -143,7 +142,7 @@ impl Model {
         }
         let factor = outer / self.outer_step();
         match self {
-            Model::NoGradient(_) => Err(self.refused("the verdict at another step")),
+            Model::NoGradient(own) => own.slowed(&factor)?.decide(Route::Cheapest, limits),
             Model::Sparse(own) => match own.at_step(outer) {
                 Some(own) => own?.decide(limits),
                 None => Err(self.refused("the verdict at another step")),

@@ -22,7 +22,7 @@ use crate::system::implicit::{ImplicitExplicit, two_clocks};
 use crate::system::jacobian::Jacobians;
 use crate::system::levels::{Hessians, Method};
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{LocalSteps, SchemeSummary};
+use crate::system::lts::{LocalSteps, SchemeSummary, SparseSteps};
 use crate::system::pi::PiSystem;
 use crate::system::verdict::analysis::Analysis;
 use crate::system::verdict::decide::{decide_by, exact_kind, verdict_cost};
@@ -244,11 +244,12 @@ impl Model {
         if let Model::NoGradient(own) = self { Some(own) } else { None }
     }
 
-    /// What answers tell of local time steps, where some degrees of freedom take substeps.
-    pub fn summary(&self) -> Option<SchemeSummary> {
+    /// What verdicts tell of local time steps, where some degrees of freedom take substeps: computed when it is asked for, of sparse ones by some
+    /// dozen factorizations.
+    pub fn local_steps_summary(&self) -> Option<SchemeSummary> {
         match self {
             Model::LocalSteps(own) => Some(own.summary()),
-            Model::Sparse(own) => own.summary(),
+            Model::Sparse(own) => own.local_steps().map(SparseSteps::summary),
             _ => None,
         }
     }

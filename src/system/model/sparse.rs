@@ -10,7 +10,7 @@ use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
-use crate::system::lts::{Growth, SchemeSummary, SparseSteps};
+use crate::system::lts::{Growth, SparseSteps};
 use crate::system::spectrum::modes::Origin;
 use crate::system::spectrum::rate::{Multiplier, per_time};
 use crate::system::vary::stretches::Stretch;
@@ -97,11 +97,6 @@ impl SparseSystem {
             Of::Steps(own) => Some(own),
             Of::Levels { .. } => None,
         }
-    }
-
-    /// What answers tell of local time steps.
-    pub(super) fn summary(&self) -> Option<SchemeSummary> {
-        self.local_steps().map(SparseSteps::summary)
     }
 
     /// The verdicts on all steps in a range, as [`SparseSteps::stretches`]; `None` for two levels.
