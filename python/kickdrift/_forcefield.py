@@ -1,4 +1,5 @@
-"""Sparse Hessians of OpenMM's force groups: bonded forces by coloured differences, pairs by their formulas.
+"""Sparse Hessians of OpenMM's force groups: bonds, angles, torsions and pairs by their formulas, the rest of what is
+bonded by coloured differences.
 
 A bonded term reaches a few atoms. Atoms of one colour share no term with any third atom, so one difference of forces
 gives the columns of all of them: a few dozen evaluations, whatever the number of atoms. Pairs within a cutoff have
@@ -15,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 import openmm as mm
 
+from kickdrift import _terms as _terms_of
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._hessians import Force, Progress
 from kickdrift._rigid import Doubles
@@ -69,11 +71,17 @@ def hessian(
         raise KickdriftError("system", name, remedy)
     total = sparse.csr_matrix((positions.size, positions.size))
     error = 0.0
+    formal = [force for force in bonded if type(force).__name__ in _terms_of.LAWS and _is_plain(force)]
+    if formal:
+        matrix = by_formulas(formal, positions)
+        if np.isfinite(matrix.data).all():
+            error += _seen(matrix, _alone(system, formal), positions, np.ones(len(positions), dtype=bool))
+            bonded, total = [force for force in bonded if force not in formal], total + matrix
     if bonded:
         terms = [atoms for force in bonded for atoms in _terms(force)]
         force = _alone(system, bonded)
-        matrix, error = coloured(force, positions, _neighbours(terms, len(positions)), difference, progress)
-        total = total + matrix
+        matrix, known = coloured(force, positions, _neighbours(terms, len(positions)), difference, progress)
+        error, total = error + known, total + matrix
     for force in pairs:
         matrix, smooth = nonbonded(force, system, positions)
         error += _seen(matrix, _alone(system, [force]), positions, smooth)
@@ -89,6 +97,28 @@ def are_bonded(forces: Sequence[Any]) -> bool:
 def _terms(force: Any) -> list[list[int]]:
     count, read, atoms = _BONDED[type(force).__name__]
     return [list(getattr(force, read)(n)[atoms]) for n in range(getattr(force, count)())]
+
+
+def _is_plain(force: Any) -> bool:
+    """Whether its terms are of the positions as they stand."""
+    return not force.usesPeriodicBoundaryConditions()
+
+
+def by_formulas(forces: Sequence[Any], positions: Doubles) -> Any:
+    """The Hessian of bonds, angles and torsions by their formulas, to rounding; not finite where a term has none."""
+    size, entries = positions.size, [np.zeros((3, 0))]
+    for force in forces:
+        kind = type(force).__name__
+        count, read, atoms = _BONDED[kind]
+        terms = [getattr(force, read)(n) for n in range(getattr(force, count)())]
+        if not terms:
+            continue
+        numbers = np.array([[float(getattr(x, "_value", x)) for x in own[atoms.stop :]] for own in terms])
+        places, bends = _terms_of.blocks(kind, [own[atoms] for own in terms], numbers, positions)
+        rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
+        entries.append(np.array([rows.ravel(), columns.ravel(), bends.ravel()]))
+    rows, columns, values = np.concatenate(entries, axis=1)
+    return sparse.csr_matrix((values, (rows.astype(np.int64), columns.astype(np.int64))), shape=(size, size))
 
 
 def _alone(system: Any, forces: Sequence[Any]) -> Force:

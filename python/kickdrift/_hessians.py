@@ -207,24 +207,34 @@ def descend(pull: Callable[[], Doubles], move: Callable[[Doubles], None], steps:
     return float(smallest)
 
 
-def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float, steps: int = 30) -> Doubles:
+def minimum(
+    force: Force,
+    positions: Doubles,
+    masses: Doubles,
+    difference: float,
+    steps: int = 30,
+    columns: Sequence[int] | None = None,
+) -> Doubles:
     """The minimum beside the positions, by Newton's method with the soft directions left out.
+
+    Of the degrees of freedom to keep, all 3n unless given: the others stand still.
 
     Raises
     ------
     KickdriftError
         Where Newton's method does not arrive, or at a saddle: the positions are not near a minimum.
     """
-    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))
-    stiffness = np.zeros((own.size, own.size))
+    kept = np.arange(positions.size) if columns is None else np.asarray(columns)
+    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))[kept]
+    stiffness = np.zeros((len(kept), len(kept)))
 
     def pull() -> Doubles:
-        return force(own).ravel() / root
+        return force(own).ravel()[kept] / root
 
     def move(pulled: Doubles) -> None:
-        nonlocal own, stiffness
-        stiffness, _ = hessian(force, own, masses, difference)
-        own = own + (soft_solve(stiffness, pulled) / root).reshape(own.shape)
+        nonlocal stiffness
+        stiffness, _ = hessian(force, own, masses, difference, columns)
+        own.flat[kept] += soft_solve(stiffness, pulled) / root
 
     arrived(descend(pull, move, steps), stiffness, masses)
     return own
