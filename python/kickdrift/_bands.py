@@ -19,7 +19,7 @@ import numpy as np
 from kickdrift._advise import Advice, Engine, Time, advise
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
-from kickdrift._hessians import Force
+from kickdrift._hessians import Force, smooth
 from kickdrift._native import motions
 from kickdrift._numbers import Exact
 from kickdrift._rigid import Doubles
@@ -127,6 +127,8 @@ def weighted(matrix: Any, root: Doubles) -> Any:
 
 def by_differences(force: Force, where: Doubles, root: Doubles, difference: float) -> Product:
     """The product of a mass-weighted Hessian by two forces, no atom displaced by more than ``difference``."""
+    # Both atoms of a pair may go their own way.
+    force = smooth(force, where, 2.001 * difference)
 
     def product(vector: Doubles) -> Doubles:
         moved = (vector / root).reshape(where.shape)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from kickdrift._rigid import Doubles
 try:
     import scipy.sparse as sparse
     from scipy.spatial import cKDTree
+    from scipy.special import erfc
 except ImportError:
     raise needs("scipy") from None
 
@@ -242,6 +244,89 @@ def nonbonded(force: Any, system: Any, positions: Doubles) -> tuple[Any, _Mask]:
         first = np.concatenate([first, slope - strength * close**-2])
         second = np.concatenate([second, bend + 2 * strength * close**-3])
     return _assembled(pairs, apart, r, first, second, count), smooth
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A NonbondedForce's pairs within its cutoff, whose forces jump where a pair crosses that: the parameters.
+
+    ``field`` is that of the reaction field, ``ewald`` the parameter of direct space; one of them at most is not 0.
+    """
+
+    force: Any
+    end: float
+    box: Doubles | None
+    charge: Doubles
+    sigma: Doubles
+    epsilon: Doubles
+    special: _Indices
+    field: float
+    ewald: float
+
+    def slope(self, pairs: _Indices, r: Doubles) -> Doubles:
+        """E' of pairs as far apart as this, whether within the cutoff or somewhat beyond."""
+        i, j = pairs.T
+        sigma, epsilon = (self.sigma[i] + self.sigma[j]) / 2, np.sqrt(self.epsilon[i] * self.epsilon[j])
+        found, _ = _lennard_jones(sigma, epsilon, r, _switch(self.force, r))
+        gauss = 2 / np.sqrt(np.pi) * self.ewald * r * np.exp(-((self.ewald * r) ** 2))
+        scale = _COULOMB * self.charge[i] * self.charge[j]
+        return np.asarray(found + scale * (2 * self.field * r - (erfc(self.ewald * r) + gauss) / r**2))
+
+    def kept(self, positions: Doubles, reach: float) -> Force | None:
+        """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``: the force
+        of those that have left, less that of those that have come in. None where no pair is so near.
+
+        With it forces are smooth, and their derivative at the positions is the Hessian of what acts there.
+        """
+        places = positions if self.box is None else np.mod(positions, self.box)
+        # Rounding of the remainder may reach the edge itself.
+        places = places if self.box is None else np.where(places >= self.box, 0.0, places)
+        pairs = cKDTree(places, boxsize=self.box).query_pairs(self.end + reach, output_type="ndarray").astype(np.int64)
+        first = _apart(positions, pairs, self.box)[1]
+        pairs = pairs[first > self.end - reach]
+        pairs = pairs[~np.isin(_key(pairs, len(positions)), self.special)]
+        if not len(pairs):
+            return None
+        was = _apart(positions, pairs, self.box)[1] < self.end
+
+        def of(at: Doubles) -> Doubles:
+            apart, r = _apart(at, pairs, self.box)
+            crossed = (r < self.end) != was
+            own, r = pairs[crossed], r[crossed]
+            size = np.where(was[crossed], 1.0, -1.0) * self.slope(own, r) / r
+            added = np.zeros_like(at)
+            np.add.at(added, own[:, 0], -size[:, None] * apart[crossed])
+            np.add.at(added, own[:, 1], size[:, None] * apart[crossed])
+            return added
+
+        return of
+
+
+def cut(force: Any, context: Any) -> Cut | None:
+    """Of a NonbondedForce with a cutoff; None of one without, or where its pairs are not known here: dispersion by
+    Ewald's sum, offsets of parameters, a box that is not rectangular."""
+    system, method = context.getSystem(), force.getNonbondedMethod()
+    vectors = np.array([list(own._value) for own in context.getState().getPeriodicBoxVectors()])
+    is_periodic = method != force.CutoffNonPeriodic
+    if method in (force.NoCutoff, force.LJPME) or force.getNumGlobalParameters():
+        return None
+    if is_periodic and np.any(vectors != np.diag(np.diag(vectors))):
+        return None
+    count, end = system.getNumParticles(), force.getCutoffDistance()._value
+    charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
+    given = [force.getExceptionParameters(n)[:2] for n in range(force.getNumExceptions())]
+    special = _key(np.array(given, dtype=np.int64).reshape(-1, 2), count)
+    field, ewald = 0.0, 0.0
+    if method in (force.CutoffNonPeriodic, force.CutoffPeriodic):
+        dielectric = force.getReactionFieldDielectric()
+        field = (dielectric - 1) / (2 * dielectric + 1) / end**3
+    elif method == force.PME:
+        ewald = float(force.getPMEParametersInContext(context)[0])
+    else:
+        ewald = float(np.sqrt(-np.log(2 * force.getEwaldErrorTolerance())) / end)
+    return Cut(
+        force, end, np.diag(vectors).copy() if is_periodic else None, charge, sigma, epsilon, special, field, ewald
+    )
 
 
 def _plain(quantities: Sequence[Any]) -> list[float]:

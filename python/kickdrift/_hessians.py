@@ -31,6 +31,14 @@ if TYPE_CHECKING:
 Force: TypeAlias = Callable[[Doubles], Doubles]
 """The force of one group at positions: (n, 3) to (n, 3), energy/length."""
 
+
+def smooth(force: Force, positions: Doubles, reach: float) -> Force:
+    """The force as it is about these positions, while no distance changes by more than ``reach``: engines' forces that
+    jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
+    own = getattr(force, "smooth", None)
+    return force if own is None else own(positions, reach)
+
+
 Progress: TypeAlias = Callable[[int, int], None]
 """Called with the columns done and the columns in all."""
 
@@ -172,6 +180,7 @@ def _measured(
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
+    force = smooth(force, positions, _MARGIN * 2 * difference)
     for place, column in enumerate(kept):
         near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3
@@ -182,6 +191,10 @@ def _measured(
         return fourth, norm(fourth - second), 0.0
     mean = (fourth + fourth.T) / 2
     return mean, norm(fourth - second), norm(fourth - mean)
+
+
+#: Rounding of distances, generously.
+_MARGIN = 1.001
 
 
 def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:

@@ -14,6 +14,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -72,15 +73,39 @@ class _Engine:
     masses: Doubles
     count: int
 
-    def force(self, groups: int) -> Force:
-        """The forces of some groups, bits of a mask, at positions in nm, in kJ/mol/nm."""
+    def force(self, groups: int) -> _Forces:
+        """The forces of some groups, bits of a mask."""
+        return _Forces(self, groups)
 
-        def of(positions: Doubles) -> Doubles:
-            self.context.setPositions(positions)
-            state = self.context.getState(getForces=True, groups=groups)
-            return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)
+    @cached_property
+    def cuts(self) -> dict[int, list[Any]]:
+        """What is cut off of each group: pairs whose forces are known."""
+        from kickdrift import _forcefield
 
-        return of
+        found: dict[int, list[Any]] = {}
+        for force in self.context.getSystem().getForces():
+            if isinstance(force, mm.NonbondedForce) and (own := _forcefield.cut(force, self.context)) is not None:
+                found.setdefault(force.getForceGroup(), []).append(own)
+        return found
+
+
+@dataclass(frozen=True)
+class _Forces:
+    """The forces of some groups, bits of a mask, at positions in nm, in kJ/mol/nm."""
+
+    engine: _Engine
+    groups: int
+
+    def __call__(self, positions: Doubles) -> Doubles:
+        self.engine.context.setPositions(positions)
+        state = self.engine.context.getState(getForces=True, groups=self.groups)
+        return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)
+
+    def smooth(self, positions: Doubles, reach: float) -> Force:
+        """With each pair kept on that side of the cutoff on which it is at these positions."""
+        acting = (own for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for own in cuts)
+        kept = [found for own in acting if (found := own.kept(positions, reach)) is not None]
+        return lambda at: np.asarray(sum((own(at) for own in kept), self(at)))
 
 
 def system(
@@ -117,7 +142,7 @@ def system(
     minimize : bool
         Go to the minimum beside the positions, in a copy; of some atoms, to theirs among the others as these stand.
     difference : float
-        The difference of positions, nm.
+        The difference of positions, nm. Pairs of a NonbondedForce stay on their side of its cutoff meanwhile.
     sparse : bool
         For thousands of atoms on two levels: bonded forces by differences of many atoms at once, a NonbondedForce with
         a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;

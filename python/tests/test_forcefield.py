@@ -222,6 +222,44 @@ def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
     assert counts == [36, 36]
 
 
+@pytest.mark.parametrize(
+    ("method", "switched"),
+    [
+        ("CutoffNonPeriodic", False),
+        ("CutoffPeriodic", False),
+        ("CutoffPeriodic", True),
+        ("Ewald", False),
+        ("PME", True),
+    ],
+)
+def test_pairs_that_cross_the_cutoff_stay_on_their_side(method: str, switched: bool) -> None:
+    """Before: a pair that a difference takes across the cutoff leaves its force, over the step, as stiffness."""
+    system, positions = waters(3, method, switched)
+    engine, columns = ko._engine(system), list(range(0, positions.size, 6))
+    force = engine.force(1 << SLOW)
+    raw, before = hessian(lambda at: force(at), positions, engine.masses, ko.DIFFERENCE, columns)
+    found, after = hessian(force, positions, engine.masses, ko.DIFFERENCE, columns)
+    # So near that no pair crosses; forces in doubles of 1e4 kJ/mol/nm leave some 1e-8 over this step.
+    true, _ = hessian(force, positions, engine.masses, ko.DIFFERENCE / 100, columns)
+    size = np.linalg.norm(true, 2)
+    assert np.linalg.norm(raw - true, 2) > 0.01 * size and before > 0.01 * size
+    assert np.linalg.norm(found - true, 2) < 1e-7 * size and after < 1e-5 * size
+
+
+def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
+    system, positions = waters(3, "CutoffPeriodic")
+    engine = ko._engine(system)
+    force, held = engine.force(1 << SLOW), Held(engine.masses)
+    vector = np.random.default_rng(2).normal(size=positions.size)
+    exact = _bands.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
+    off = [
+        np.linalg.norm(_bands.by_differences(own, positions, held.root, ko.WIDE)(vector) - exact)
+        for own in (force, lambda at: force(at))
+    ]
+    # Second-order differences of 0.001 nm leave 1e-4 of a stiffness that turns within 0.1 nm.
+    assert off[0] < 1e-3 * np.linalg.norm(exact) < 0.05 * off[1]
+
+
 def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:
     system, positions = waters(2, "NoCutoff")
     steps = {0: "0.5fs", SLOW: "4fs"}
