@@ -161,9 +161,9 @@ class Group:
     longest: float
 
     def __str__(self) -> str:
-        if self.count == 1:
-            return f"{self.name} ({self.shortest:.4g} fs)"
-        return f"{self.name} ({self.count:,} modes, {self.shortest:.4g}-{self.longest:.4g} fs)"
+        ends = dict.fromkeys(f"{period:.4g}" for period in (self.shortest, self.longest))
+        count = f"{self.count:,} modes, " if self.count != 1 else ""
+        return f"{self.name} ({count}{'-'.join(ends)} fs)"
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def groups_of(modes: Modes, atoms: Atoms) -> tuple[Group, ...]:
     """The modes of nearly one period, the fastest first, by the stiffest molecule of each kind."""
     if not modes.shown:
         return ()
-    values = np.sort(np.concatenate(modes.values))[::-1]
+    values = np.sort(modes.values)[::-1]
     values = values[values > _NO_MODE**2 * modes.largest]
     periods = 2000 * np.pi / np.sqrt(values)
     ends = [*np.flatnonzero(periods[1:] > _NEIGHBOUR * periods[:-1]) + 1, len(periods)][:_MOST_GROUPS]
@@ -220,7 +220,7 @@ def groups_of(modes: Modes, atoms: Atoms) -> tuple[Group, ...]:
     names = atoms.motions(kept, stacks, [atom in alone for atom in kept])
     begins = [0, *ends[:-1]]
     return tuple(
-        Group(name or "", int(end - begin), float(periods[begin]), float(periods[end - 1]))
+        Group(name or "", modes.count(values[end - 1], values[begin]), float(periods[begin]), float(periods[end - 1]))
         for name, begin, end in zip(names, begins, ends, strict=True)
     )
 

@@ -39,6 +39,9 @@ ROUNDED = 1e-12
 #: Layers of bonds that a window must have at least to tell anything.
 _THIN = 4
 
+#: A mode in two windows is shown by the one that has so much of it.
+_MOST = 0.5
+
 #: Entries of the dense matrices that stand beside each other: some 100 MB.
 _TOGETHER = 10**7
 
@@ -59,6 +62,11 @@ class Modes:
 
     Attributes
     ----------
+    whole : list of array
+        The eigenvalues of molecules of one window.
+    seen : list of (values, parts)
+        What windows saw, and how much of each: a mode in two windows is in parts in both, and the parts of all are as
+        many as there are modes, since the sum of tr J_w² is their number.
     beyond : float
         What no eigenvalue exceeds the largest one by: 0 but for windows, and rounding.
     molecules : int
@@ -67,15 +75,28 @@ class Modes:
         Through which large molecules were seen.
     """
 
-    values: list[Doubles] = field(default_factory=list)
+    whole: list[Doubles] = field(default_factory=list)
+    seen: list[tuple[Doubles, Doubles]] = field(default_factory=list)
     shown: dict[Any, Shown] = field(default_factory=dict)
     beyond: float = 0.0
     molecules: int = 0
     windows: int = 0
 
     @property
+    def values(self) -> Doubles:
+        """The eigenvalues, those of windows where most of a mode is in one."""
+        return np.concatenate([np.zeros(0), *self.whole, *(own[part >= _MOST] for own, part in self.seen)])
+
+    @property
     def largest(self) -> float:
-        return max((float(own.max(initial=0.0)) for own in self.values), default=0.0)
+        every = [*self.whole, *(own for own, _ in self.seen)]
+        return max((float(own.max(initial=0.0)) for own in every), default=0.0)
+
+    def count(self, least: float, most: float) -> int:
+        """How many there are from one eigenvalue to another, of modes in windows about."""
+        whole = sum(int(((own >= least) & (own <= most)).sum()) for own in self.whole)
+        parts = sum(float(part[(own >= least) & (own <= most)].sum()) for own, part in self.seen)
+        return whole + round(parts)
 
     def show(self, kind: Any, own: Shown) -> None:
         """Keep these modes if their kind has no stiffer ones, and count its molecules."""
@@ -140,8 +161,7 @@ def modes(matrix: Any, kinds: Sequence[Any]) -> Modes | None:
             return None
     # The eigenvalues of a symmetric matrix as LAPACK finds them are off by some units in the last place of its norm,
     # times its size at most.
-    size = max((own.size for own in found.values), default=0)
-    found.beyond += 3 * min(size, 3 * WHOLE) * float(np.finfo(float).eps) * found.largest
+    found.beyond += 3 * min(matrix.shape[0], 3 * WHOLE) * float(np.finfo(float).eps) * found.largest
     return found
 
 
@@ -172,7 +192,7 @@ def _dense(matrix: Any, members: _Indices) -> Doubles:
 def _whole(matrix: Any, members: _Indices, kinds: Sequence[Any], found: Modes) -> None:
     """All modes of molecules of equally many atoms."""
     values, vectors = np.linalg.eigh(_dense(matrix, _coordinates(members)))
-    found.values.append(values.ravel())
+    found.whole.append(values.ravel())
     moves = np.abs(values).max(axis=1) > 0
     found.molecules += int(moves.sum())
     for n in np.flatnonzero(moves):
@@ -197,7 +217,7 @@ def _in_windows(matrix: Any, near: Any, atoms: _Indices, found: Modes) -> bool:
     fits = [width for width in range(_THIN, depth + 2) if largest(width) <= WHOLE]
     if not fits:
         return False
-    width, most = max(fits), 0.0
+    width = max(fits)
     inside = matrix[_coordinates(atoms)][:, _coordinates(atoms)].tocoo()
     left = np.zeros(inside.nnz)
     for centre in range(0, depth + width, width):
@@ -208,12 +228,11 @@ def _in_windows(matrix: Any, near: Any, atoms: _Indices, found: Modes) -> bool:
         if not len(seen):
             continue
         values, vectors = np.linalg.eigh(matrix[_coordinates(atoms[seen])][:, _coordinates(atoms[seen])].toarray())
-        most, found.windows = max(most, float(values[-1])), found.windows + 1
-        # A mode in two windows is told of that which has more of it.
-        kept = (np.repeat(weight[seen], 3)[:, None] ** 2 * vectors**2).sum(axis=0) >= 0.5
-        found.values.append(values[kept])
+        found.windows += 1
+        parts = (np.repeat(weight[seen], 3)[:, None] ** 2 * vectors**2).sum(axis=0)
+        kept = parts >= _MOST
+        found.seen.append((values, parts))
         found.show((int(atoms[0]), centre), Shown(atoms[seen], values[kept], vectors[:, kept], 1))
     edge = np.bincount(inside.row, weights=np.abs(inside.data) * left)
-    found.values.append(np.array([most]) if most > found.largest else np.zeros(0))
     found.beyond, found.molecules = max(found.beyond, float(edge.max(initial=0.0)) / 2), found.molecules + 1
     return True

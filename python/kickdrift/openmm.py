@@ -661,9 +661,9 @@ def _band(
         free = _covered.projected(matrix, held, where)
         modes = None if free is None else _covered.modes(free, atoms.kinds())
         if modes is not None:
-            looked = f"all {where.size - len(held.distances):,} modes of {modes.molecules:,} molecules"
+            looked = f"all {where.size - len(held.distances):,} modes of {modes.molecules:,} molecule{'s' * (modes.molecules != 1)}"
             if modes.windows:
-                looked += f", the large ones through {modes.windows} windows"
+                looked += f", the large ones through {modes.windows} windows (counts are rounded)"
             # What is dropped as rounding: no more than that in each entry of a row.
             row = int(np.diff(free.indptr).max(initial=0))
             error += _covered.ROUNDED * row * float(np.abs(matrix.data).max(initial=0.0)) if held.distances else 0.0
