@@ -236,7 +236,8 @@ class Band:
     Attributes
     ----------
     stiffness, most : float
-        What the stiffest motion has at least and at most, 1/ps².
+        What the stiffest motion has at least and at most, 1/ps²: by windows, by the probability's theorem, and by what
+        differences leave; of molecules that are seen whole but for rounding the same.
     atoms : str
         Who moves most in it.
     forces : int
@@ -255,13 +256,14 @@ class Band:
     most: float
     atoms: str
     forces: int
-    looked: str = "all bonded terms"
+    looked: str = "the Hessian of all bonded terms"
     motion: str = ""
     groups: tuple[Group, ...] = ()
 
     @property
     def period(self) -> float | None:
-        """fs, no shorter one but for a probability of :data:`FAILS`; None where no force acts on what is free."""
+        """fs, no shorter one; of Lanczos' method but for a probability of :data:`FAILS`. None where no force acts on
+        what is free."""
         return 2000 * np.pi / np.sqrt(self.most) if self.most > 0 else None
 
     @property
@@ -406,7 +408,7 @@ def of_hessians(document: Mapping[str, Any], arrays: Mapping[str, Doubles], verd
         atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if labels and moving[n] > moving.max() / 10)
         name = " + ".join(each.get("name", "a potential") for _, each in own)
         least, most = (float(value) / float(unit) ** 2 for value in (values[-1], values[-1] + off))
-        found.append(Band(name, step * unit, least, most, atoms or "all", 0, "all atoms"))
+        found.append(Band(name, step * unit, least, most, atoms or "all", 0, "the Hessian of all atoms"))
     told = verdict()
     what = "stable" if told.stable else f"unstable, growing {told.growth_rate / float(unit):.4g}/ps"
     at = ", ".join(f"{1000 * float(step * unit):g}" for step in steps)

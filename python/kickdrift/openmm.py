@@ -661,7 +661,8 @@ def _band(
         free = _covered.projected(matrix, held, where)
         modes = None if free is None else _covered.modes(free, atoms.kinds())
         if modes is not None:
-            looked = f"all {where.size - len(held.distances):,} modes of {modes.molecules:,} molecule{'s' * (modes.molecules != 1)}"
+            who = f"{modes.molecules:,} molecule{'s' * (modes.molecules != 1)}"
+            looked = f"all {where.size - len(held.distances):,} modes of {who}"
             if modes.windows:
                 looked += f", the large ones through {modes.windows} windows (counts are rounded)"
             # What is dropped as rounding: no more than that in each entry of a row.

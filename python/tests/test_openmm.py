@@ -925,6 +925,25 @@ def test_three_levels_get_their_verdict_and_a_region() -> None:
         made.advise(hmr="3.024")
 
 
+def test_a_peptide_in_water_gets_advice_with_the_names_of_its_motions() -> None:
+    """The peptide's modes are those that it has alone: no bonded term joins it to water."""
+    spec = importlib.util.spec_from_file_location("solvated", Path(__file__).parent / "bench" / "solvated.py")
+    assert spec is not None and spec.loader is not None
+    bench = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(bench)
+    system, made = bench.solvated(2.0)
+    waters = (system.getNumParticles() - 22) // 3
+    found = ko.bands(system, made.positions, topology=made.topology, steps={0: "0.5fs", 1: "4fs"})
+    own = {group.name: group for group in found.levels[0].groups}
+    assert own["O-H stretch of HOH"].count == 2 * waters and own["H-O-H bend of HOH"].count == waters
+    assert own["N-H stretch of ALA, NME"].count == 2 and own["C-H stretch of ACE, ALA, NME"].count == 10
+    # Published of these constants: 10.11 fs of N-H and 11.36 fs of C-H alone, in bonds of slightly other lengths.
+    assert 10.0 < own["N-H stretch of ALA, NME"].shortest < 10.2
+    assert 11.1 < own["C-H stretch of ACE, ALA, NME"].shortest < own["C-H stretch of ACE, ALA, NME"].longest < 11.8
+    told = f"all {3 * system.getNumParticles():,} modes of {waters + 1:,} molecules"
+    assert told in str(found.advise(levers=False)) and 30 < (found.levels[1].period or 0) < 45
+
+
 def test_thousands_of_atoms_with_pme_get_advice() -> None:
     """More than dense Hessians are read of: 512 flexible waters, in a box, reciprocal space with the rest."""
     system, positions = box(8)
