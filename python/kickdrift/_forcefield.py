@@ -250,7 +250,8 @@ def nonbonded(force: Any, system: Any, positions: Doubles) -> tuple[Any, _Mask]:
 class Cut:
     """A NonbondedForce's pairs within its cutoff, whose forces jump where a pair crosses that: the parameters.
 
-    ``field`` is that of the reaction field, ``ewald`` the parameter of direct space; one of them at most is not 0.
+    ``box`` has the vectors of a periodic box by rows, ``field`` is that of the reaction field, ``ewald`` the parameter
+    of direct space; one of the two at most is not 0.
     """
 
     force: Any
@@ -262,6 +263,14 @@ class Cut:
     special: _Indices
     field: float
     ewald: float
+
+    def _apart(self, positions: Doubles, pairs: _Indices) -> tuple[Doubles, Doubles]:
+        """Between nearest images, as OpenMM has them: along the last vector of the box first."""
+        apart = positions[pairs[:, 0]] - positions[pairs[:, 1]]
+        if self.box is not None:
+            for k in (2, 1, 0):
+                apart = apart - np.round(apart[:, k] / self.box[k, k])[:, None] * self.box[k]
+        return apart, np.linalg.norm(apart, axis=1)
 
     def slope(self, pairs: _Indices, r: Doubles) -> Doubles:
         """E' of pairs as far apart as this, whether within the cutoff or somewhat beyond."""
@@ -278,19 +287,14 @@ class Cut:
 
         With it forces are smooth, and their derivative at the positions is the Hessian of what acts there.
         """
-        places = positions if self.box is None else np.mod(positions, self.box)
-        # Rounding of the remainder may reach the edge itself.
-        places = places if self.box is None else np.where(places >= self.box, 0.0, places)
-        pairs = cKDTree(places, boxsize=self.box).query_pairs(self.end + reach, output_type="ndarray").astype(np.int64)
-        first = _apart(positions, pairs, self.box)[1]
-        pairs = pairs[first > self.end - reach]
+        pairs = _shell(positions, self.box, self.end - reach, self.end + reach)
         pairs = pairs[~np.isin(_key(pairs, len(positions)), self.special)]
         if not len(pairs):
             return None
-        was = _apart(positions, pairs, self.box)[1] < self.end
+        was = self._apart(positions, pairs)[1] < self.end
 
         def of(at: Doubles) -> Doubles:
-            apart, r = _apart(at, pairs, self.box)
+            apart, r = self._apart(at, pairs)
             crossed = (r < self.end) != was
             own, r = pairs[crossed], r[crossed]
             size = np.where(was[crossed], 1.0, -1.0) * self.slope(own, r) / r
@@ -304,13 +308,11 @@ class Cut:
 
 def cut(force: Any, context: Any) -> Cut | None:
     """Of a NonbondedForce with a cutoff; None of one without, or where its pairs are not known here: dispersion by
-    Ewald's sum, offsets of parameters, a box that is not rectangular."""
+    Ewald's sum, offsets of parameters."""
     system, method = context.getSystem(), force.getNonbondedMethod()
     vectors = np.array([list(own._value) for own in context.getState().getPeriodicBoxVectors()])
     is_periodic = method != force.CutoffNonPeriodic
     if method in (force.NoCutoff, force.LJPME) or force.getNumGlobalParameters():
-        return None
-    if is_periodic and np.any(vectors != np.diag(np.diag(vectors))):
         return None
     count, end = system.getNumParticles(), force.getCutoffDistance()._value
     charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
@@ -324,9 +326,28 @@ def cut(force: Any, context: Any) -> Cut | None:
         ewald = float(force.getPMEParametersInContext(context)[0])
     else:
         ewald = float(np.sqrt(-np.log(2 * force.getEwaldErrorTolerance())) / end)
-    return Cut(
-        force, end, np.diag(vectors).copy() if is_periodic else None, charge, sigma, epsilon, special, field, ewald
-    )
+    return Cut(force, end, vectors if is_periodic else None, charge, sigma, epsilon, special, field, ewald)
+
+
+def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -> _Indices:
+    """All pairs as far apart as that, the smaller number first, of images in a box of these vectors."""
+    names, places = np.arange(len(positions)), positions
+    inside: _Mask = np.ones(len(positions), dtype=bool)
+    if box is not None:
+        # Images that stand no farther outside the cell than a pair reaches.
+        part = positions @ np.linalg.inv(box)
+        part -= np.floor(part)
+        margin = most * np.linalg.norm(np.linalg.inv(box), axis=0)
+        images = [part + shift for shift in np.indices((3, 3, 3)).reshape(3, -1).T - 1]
+        kept = [np.flatnonzero(((own > -margin) & (own < 1 + margin)).all(axis=1)) for own in images]
+        names = np.concatenate(kept)
+        parts = np.concatenate([own[each] for own, each in zip(images, kept, strict=True)])
+        places, inside = parts @ box, np.asarray(((parts >= 0) & (parts < 1)).all(axis=1))
+    pairs = cKDTree(places).query_pairs(most, output_type="ndarray")
+    pairs = pairs[inside[pairs].any(axis=1)]
+    pairs = pairs[np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) > least]
+    pairs = np.sort(names[pairs], axis=1).astype(np.int64)
+    return np.unique(pairs[pairs[:, 0] < pairs[:, 1]], axis=0)
 
 
 def _plain(quantities: Sequence[Any]) -> list[float]:

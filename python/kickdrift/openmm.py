@@ -144,9 +144,10 @@ def system(
     difference : float
         The difference of positions, nm. Pairs of a NonbondedForce stay on their side of its cutoff meanwhile.
     sparse : bool
-        For thousands of atoms on two levels: bonded forces by differences of many atoms at once, a NonbondedForce with
-        a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;
-        ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable region.
+        For thousands of atoms on two levels: bonds, angles, torsions and a NonbondedForce with a cutoff by their
+        formulas, compared with differences at random displacements; other bonded terms by differences. No constraints
+        and no Ewald sums; ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable
+        region.
     progress : bool or callable
         A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
         columns done and the columns in all, for each step.
@@ -560,7 +561,7 @@ def bands(
 
     A level of bonded terms alone has the modes of each molecule, all of them, by the terms' formulas: no probability
     stands in the way, and they have names. Large molecules are seen through windows along their bonds, which leave a
-    few hundredths of the stiffness unknown. Lanczos' method asks for all other forces along directions in which all
+    part in a thousand of the stiffness unknown. Lanczos' method asks for all other forces along directions in which all
     atoms move at once; of more than a hundred atoms on OpenMM's CPU platform, in single precision.
 
     Parameters

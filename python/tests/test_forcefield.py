@@ -226,19 +226,28 @@ def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
     assert counts == [36, 36]
 
 
+#: nm: reduced, as OpenMM wants them.
+SKEW = [[0.93, 0, 0], [0.1, 0.97, 0], [-0.3, 0.25, 0.95]]
+
+
 @pytest.mark.parametrize(
-    ("method", "switched"),
+    ("method", "switched", "box"),
     [
-        ("CutoffNonPeriodic", False),
-        ("CutoffPeriodic", False),
-        ("CutoffPeriodic", True),
-        ("Ewald", False),
-        ("PME", True),
+        ("CutoffNonPeriodic", False, None),
+        ("CutoffPeriodic", True, None),
+        ("CutoffPeriodic", False, SKEW),
+        ("Ewald", False, None),
+        ("PME", True, SKEW),
     ],
 )
-def test_pairs_that_cross_the_cutoff_stay_on_their_side(method: str, switched: bool) -> None:
+def test_pairs_that_cross_the_cutoff_stay_on_their_side(
+    method: str, switched: bool, box: list[list[float]] | None
+) -> None:
     """Before: a pair that a difference takes across the cutoff leaves its force, over the step, as stiffness."""
     system, positions = waters(3, method, switched)
+    if box is not None:
+        system = mm.XmlSerializer.clone(system)
+        system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*own) for own in box])
     engine, columns = ko._engine(system), list(range(0, positions.size, 6))
     force = engine.force(1 << SLOW)
     raw, before = hessian(lambda at: force(at), positions, engine.masses, ko.DIFFERENCE, columns)
@@ -248,6 +257,18 @@ def test_pairs_that_cross_the_cutoff_stay_on_their_side(method: str, switched: b
     size = np.linalg.norm(true, 2)
     assert np.linalg.norm(raw - true, 2) > 0.01 * size and before > 0.01 * size
     assert np.linalg.norm(found - true, 2) < 1e-7 * size and after < 1e-5 * size
+
+
+@pytest.mark.parametrize("box", [np.diag([2.0, 2.2, 2.5]), np.array([[2.5, 0, 0], [0.4, 2.4, 0], [-1.0, 0.9, 2.2]])])
+def test_pairs_of_a_shell_are_those_of_nearest_images(box: np.ndarray) -> None:
+    where = np.random.default_rng(0).uniform(-3, 3, size=(200, 3))
+    apart = where[:, None] - where
+    for k in (2, 1, 0):
+        apart = apart - np.round(apart[..., k] / box[k, k])[..., None] * box[k]
+    far = np.linalg.norm(apart, axis=-1)
+    i, j = np.where((far > 0.7) & (far < 0.9))
+    exact = np.array([(a, b) for a, b in zip(i, j, strict=True) if a < b])
+    assert len(exact) > 1000 and (_forcefield._shell(where, box, 0.7, 0.9) == exact).all()
 
 
 def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
