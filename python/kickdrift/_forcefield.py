@@ -1,4 +1,5 @@
-"""Sparse Hessians of OpenMM's force groups: bonded forces by coloured differences, pairs by their formulas.
+"""Sparse Hessians of OpenMM's force groups: bonds, angles, torsions and pairs by their formulas, the rest of what is
+bonded by coloured differences.
 
 A bonded term reaches a few atoms. Atoms of one colour share no term with any third atom, so one difference of forces
 gives the columns of all of them: a few dozen evaluations, whatever the number of atoms. Pairs within a cutoff have
@@ -9,19 +10,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import deepcopy
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import openmm as mm
 
+from kickdrift import _terms as _terms_of
 from kickdrift._errors import KickdriftError, needs
-from kickdrift._hessians import Force, Progress
+from kickdrift._hessians import Force
+from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles
 
 try:
     import scipy.sparse as sparse
     from scipy.spatial import cKDTree
+    from scipy.special import erfc
 except ImportError:
     raise needs("scipy") from None
 
@@ -69,11 +74,17 @@ def hessian(
         raise KickdriftError("system", name, remedy)
     total = sparse.csr_matrix((positions.size, positions.size))
     error = 0.0
+    formal = [force for force in bonded if type(force).__name__ in _terms_of.LAWS and _is_plain(force)]
+    if formal:
+        matrix = by_formulas(formal, positions)
+        if np.isfinite(matrix.data).all():
+            error += _seen(matrix, _alone(system, formal), positions, np.ones(len(positions), dtype=bool))
+            bonded, total = [force for force in bonded if force not in formal], total + matrix
     if bonded:
         terms = [atoms for force in bonded for atoms in _terms(force)]
         force = _alone(system, bonded)
-        matrix, error = coloured(force, positions, _neighbours(terms, len(positions)), difference, progress)
-        total = total + matrix
+        matrix, known = coloured(force, positions, _neighbours(terms, len(positions)), difference, progress)
+        error, total = error + known, total + matrix
     for force in pairs:
         matrix, smooth = nonbonded(force, system, positions)
         error += _seen(matrix, _alone(system, [force]), positions, smooth)
@@ -89,6 +100,28 @@ def are_bonded(forces: Sequence[Any]) -> bool:
 def _terms(force: Any) -> list[list[int]]:
     count, read, atoms = _BONDED[type(force).__name__]
     return [list(getattr(force, read)(n)[atoms]) for n in range(getattr(force, count)())]
+
+
+def _is_plain(force: Any) -> bool:
+    """Whether its terms are of the positions as they stand."""
+    return not force.usesPeriodicBoundaryConditions()
+
+
+def by_formulas(forces: Sequence[Any], positions: Doubles) -> Any:
+    """The Hessian of bonds, angles and torsions by their formulas, to rounding; not finite where a term has none."""
+    size, entries = positions.size, [np.zeros((3, 0))]
+    for force in forces:
+        kind = type(force).__name__
+        count, read, atoms = _BONDED[kind]
+        terms = [getattr(force, read)(n) for n in range(getattr(force, count)())]
+        if not terms:
+            continue
+        numbers = np.array([[float(getattr(x, "_value", x)) for x in own[atoms.stop :]] for own in terms])
+        places, bends = _terms_of.blocks(kind, [own[atoms] for own in terms], numbers, positions)
+        rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
+        entries.append(np.array([rows.ravel(), columns.ravel(), bends.ravel()]))
+    rows, columns, values = np.concatenate(entries, axis=1)
+    return sparse.csr_matrix((values, (rows.astype(np.int64), columns.astype(np.int64))), shape=(size, size))
 
 
 def _alone(system: Any, forces: Sequence[Any]) -> Force:
@@ -212,6 +245,110 @@ def nonbonded(force: Any, system: Any, positions: Doubles) -> tuple[Any, _Mask]:
         first = np.concatenate([first, slope - strength * close**-2])
         second = np.concatenate([second, bend + 2 * strength * close**-3])
     return _assembled(pairs, apart, r, first, second, count), smooth
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A NonbondedForce's pairs within its cutoff, whose forces jump where a pair crosses that: the parameters.
+
+    ``box`` has the vectors of a periodic box by rows, ``field`` is that of the reaction field, ``ewald`` the parameter
+    of direct space; one of the two at most is not 0.
+    """
+
+    force: Any
+    end: float
+    box: Doubles | None
+    charge: Doubles
+    sigma: Doubles
+    epsilon: Doubles
+    special: _Indices
+    field: float
+    ewald: float
+
+    def _apart(self, positions: Doubles, pairs: _Indices) -> tuple[Doubles, Doubles]:
+        """Between nearest images, as OpenMM has them: along the last vector of the box first."""
+        apart = positions[pairs[:, 0]] - positions[pairs[:, 1]]
+        if self.box is not None:
+            for k in (2, 1, 0):
+                apart = apart - np.round(apart[:, k] / self.box[k, k])[:, None] * self.box[k]
+        return apart, np.linalg.norm(apart, axis=1)
+
+    def slope(self, pairs: _Indices, r: Doubles) -> Doubles:
+        """E' of pairs as far apart as this, whether within the cutoff or somewhat beyond."""
+        i, j = pairs.T
+        sigma, epsilon = (self.sigma[i] + self.sigma[j]) / 2, np.sqrt(self.epsilon[i] * self.epsilon[j])
+        found, _ = _lennard_jones(sigma, epsilon, r, _switch(self.force, r))
+        gauss = 2 / np.sqrt(np.pi) * self.ewald * r * np.exp(-((self.ewald * r) ** 2))
+        scale = _COULOMB * self.charge[i] * self.charge[j]
+        return np.asarray(found + scale * (2 * self.field * r - (erfc(self.ewald * r) + gauss) / r**2))
+
+    def kept(self, positions: Doubles, reach: float) -> Force | None:
+        """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``: the force
+        of those that have left, less that of those that have come in. None where no pair is so near.
+
+        With it forces are smooth, and their derivative at the positions is the Hessian of what acts there.
+        """
+        pairs = _shell(positions, self.box, self.end - reach, self.end + reach)
+        pairs = pairs[~np.isin(_key(pairs, len(positions)), self.special)]
+        if not len(pairs):
+            return None
+        was = self._apart(positions, pairs)[1] < self.end
+
+        def of(at: Doubles) -> Doubles:
+            apart, r = self._apart(at, pairs)
+            crossed = (r < self.end) != was
+            own, r = pairs[crossed], r[crossed]
+            size = np.where(was[crossed], 1.0, -1.0) * self.slope(own, r) / r
+            added = np.zeros_like(at)
+            np.add.at(added, own[:, 0], -size[:, None] * apart[crossed])
+            np.add.at(added, own[:, 1], size[:, None] * apart[crossed])
+            return added
+
+        return of
+
+
+def cut(force: Any, context: Any) -> Cut | None:
+    """Of a NonbondedForce with a cutoff; None of one without, or where its pairs are not known here: dispersion by
+    Ewald's sum, offsets of parameters."""
+    system, method = context.getSystem(), force.getNonbondedMethod()
+    vectors = np.array([list(own._value) for own in context.getState().getPeriodicBoxVectors()])
+    is_periodic = method != force.CutoffNonPeriodic
+    if method in (force.NoCutoff, force.LJPME) or force.getNumGlobalParameters():
+        return None
+    count, end = system.getNumParticles(), force.getCutoffDistance()._value
+    charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
+    given = [force.getExceptionParameters(n)[:2] for n in range(force.getNumExceptions())]
+    special = _key(np.array(given, dtype=np.int64).reshape(-1, 2), count)
+    field, ewald = 0.0, 0.0
+    if method in (force.CutoffNonPeriodic, force.CutoffPeriodic):
+        dielectric = force.getReactionFieldDielectric()
+        field = (dielectric - 1) / (2 * dielectric + 1) / end**3
+    elif method == force.PME:
+        ewald = float(force.getPMEParametersInContext(context)[0])
+    else:
+        ewald = float(np.sqrt(-np.log(2 * force.getEwaldErrorTolerance())) / end)
+    return Cut(force, end, vectors if is_periodic else None, charge, sigma, epsilon, special, field, ewald)
+
+
+def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -> _Indices:
+    """All pairs as far apart as that, the smaller number first, of images in a box of these vectors."""
+    names, places = np.arange(len(positions)), positions
+    inside: _Mask = np.ones(len(positions), dtype=bool)
+    if box is not None:
+        # Images that stand no farther outside the cell than a pair reaches.
+        part = positions @ np.linalg.inv(box)
+        part -= np.floor(part)
+        margin = most * np.linalg.norm(np.linalg.inv(box), axis=0)
+        images = [part + shift for shift in np.indices((3, 3, 3)).reshape(3, -1).T - 1]
+        kept = [np.flatnonzero(((own > -margin) & (own < 1 + margin)).all(axis=1)) for own in images]
+        names = np.concatenate(kept)
+        parts = np.concatenate([own[each] for own, each in zip(images, kept, strict=True)])
+        places, inside = parts @ box, np.asarray(((parts >= 0) & (parts < 1)).all(axis=1))
+    pairs = cKDTree(places).query_pairs(most, output_type="ndarray")
+    pairs = pairs[inside[pairs].any(axis=1)]
+    pairs = pairs[np.linalg.norm(places[pairs[:, 0]] - places[pairs[:, 1]], axis=1) > least]
+    pairs = np.sort(names[pairs], axis=1).astype(np.int64)
+    return np.unique(pairs[pairs[:, 0] < pairs[:, 1]], axis=0)
 
 
 def _plain(quantities: Sequence[Any]) -> list[float]:

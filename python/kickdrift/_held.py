@@ -55,11 +55,13 @@ class Held:
             blocks[j, i] -= factor / np.sqrt(self.masses[i] * self.masses[j])
         return np.asarray(np.kron(blocks, np.eye(3)))
 
-    def along(self, pull: Doubles, where: Doubles) -> Doubles:
-        """The factors of the gradients in a mass-weighted vector: what is held takes that part up."""
+    def along(self, pull: Doubles, where: Doubles, chosen: Sequence[int] | None = None) -> Doubles:
+        """The factors of the gradients in a mass-weighted vector: what is held takes that part up. What is not chosen
+        stands still whatever pulls it."""
         if not self.distances:
             return np.zeros(0)
-        return np.asarray(np.linalg.lstsq(self.gradients(where).T, pull, rcond=None)[0])
+        kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
+        return np.asarray(np.linalg.lstsq(self.gradients(where)[:, kept].T, pull[kept], rcond=None)[0])
 
     def curvature(self, force: Doubles, where: Doubles, chosen: Sequence[int] | None = None) -> Doubles:
         """What is held adds to a group's Hessian: its forces turn as the atoms move.
@@ -68,7 +70,7 @@ class Held:
         that of the Hessian K + sum of l_c grad grad g_c, since the forces of what is held are -l_c grad g_c.
         """
         kept = np.arange(where.size) if chosen is None else np.asarray(chosen)
-        return np.asarray(self.bent(self.along(force.ravel() / self.root, where))[np.ix_(kept, kept)])
+        return np.asarray(self.bent(self.along(force.ravel() / self.root, where, chosen))[np.ix_(kept, kept)])
 
     def drift(self, where: Doubles, speed: Doubles, time: float) -> tuple[Doubles, Doubles, Doubles]:
         """Positions and mass-weighted velocity after a drift by RATTLE, and the factors of its gradients.
@@ -95,6 +97,24 @@ class Held:
         if self.distances and not smallest < _KEPT * max(d**2 for _, _, d in self.distances):
             raise KickdriftError("system", f"a drift of {time:g}", "does not keep the held distances: it is too long")
         return reached, self.root * (reached - where).ravel() / time, factors
+
+    def back(self, where: Doubles, chosen: Sequence[int] | None = None) -> Doubles:
+        """Positions near by that keep the distances, by the chosen coordinates alone; closer ones where none are found.
+
+        By Newton's method, along the gradients at the positions given.
+        """
+        rows = self.gradients(where)
+        if chosen is not None:
+            rows[:, np.setdiff1d(np.arange(where.size), chosen)] = 0.0
+        reached, smallest = where, np.inf
+        while self.distances:
+            off = np.array([(np.sum((reached[i] - reached[j]) ** 2) - d**2) / 2 for i, j, d in self.distances])
+            if not np.abs(off).max() < smallest / 4:
+                break
+            smallest = float(np.abs(off).max())
+            change = np.linalg.lstsq(self.gradients(reached) @ rows.T, -off, rcond=None)[0]
+            reached = reached + (rows.T @ change / self.root).reshape(where.shape)
+        return reached
 
     def led(
         self, start: Doubles, end: Doubles, factors: Doubles, time: float, at: Doubles, going: Doubles

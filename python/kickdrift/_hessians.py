@@ -23,9 +23,7 @@ from kickdrift._document import Frozen
 from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._numbers import frozen
-from kickdrift._progress import Progress as Progress
-from kickdrift._progress import bar as bar
-from kickdrift._progress import shown as shown
+from kickdrift._progress import Progress
 from kickdrift._rigid import Doubles, norm
 
 if TYPE_CHECKING:
@@ -33,6 +31,13 @@ if TYPE_CHECKING:
 
 Force: TypeAlias = Callable[[Doubles], Doubles]
 """The force of one group at positions: (n, 3) to (n, 3), energy/length."""
+
+
+def smooth(force: Force, positions: Doubles, reach: float) -> Force:
+    """The force as it is about these positions, while no distance changes by more than ``reach``: engines' forces that
+    jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
+    own = getattr(force, "smooth", None)
+    return force if own is None else own(positions, reach)
 
 
 @dataclass(frozen=True)
@@ -156,6 +161,7 @@ def _measured(
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
+    force = smooth(force, positions, _MARGIN * 2 * difference)
     for place, column in enumerate(kept):
         near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3
@@ -166,6 +172,10 @@ def _measured(
         return fourth, norm(fourth - second), 0.0
     mean = (fourth + fourth.T) / 2
     return mean, norm(fourth - second), norm(fourth - mean)
+
+
+#: Rounding of distances, generously.
+_MARGIN = 1.001
 
 
 def _difference(force: Force, positions: Doubles, column: int, width: float) -> Doubles:
@@ -191,24 +201,34 @@ def descend(pull: Callable[[], Doubles], move: Callable[[Doubles], None], steps:
     return float(smallest)
 
 
-def minimum(force: Force, positions: Doubles, masses: Doubles, difference: float, steps: int = 30) -> Doubles:
+def minimum(
+    force: Force,
+    positions: Doubles,
+    masses: Doubles,
+    difference: float,
+    steps: int = 30,
+    columns: Sequence[int] | None = None,
+) -> Doubles:
     """The minimum beside the positions, by Newton's method with the soft directions left out.
+
+    Of the degrees of freedom to keep, all 3n unless given: the others stand still.
 
     Raises
     ------
     KickdriftError
         Where Newton's method does not arrive, or at a saddle: the positions are not near a minimum.
     """
-    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))
-    stiffness = np.zeros((own.size, own.size))
+    kept = np.arange(positions.size) if columns is None else np.asarray(columns)
+    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))[kept]
+    stiffness = np.zeros((len(kept), len(kept)))
 
     def pull() -> Doubles:
-        return force(own).ravel() / root
+        return force(own).ravel()[kept] / root
 
     def move(pulled: Doubles) -> None:
-        nonlocal own, stiffness
-        stiffness, _ = hessian(force, own, masses, difference)
-        own = own + (soft_solve(stiffness, pulled) / root).reshape(own.shape)
+        nonlocal stiffness
+        stiffness, _ = hessian(force, own, masses, difference, columns)
+        own.flat[kept] += soft_solve(stiffness, pulled) / root
 
     arrived(descend(pull, move, steps), stiffness, masses)
     return own

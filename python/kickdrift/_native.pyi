@@ -18,6 +18,7 @@ __all__ = [
     "draw",
     "main",
     "map",
+    "motions",
     "multipliers",
     "names",
     "number",
@@ -106,6 +107,14 @@ def map(
 def multipliers(
     stiffness: Sequence[Any], steps: Sequence[Any], ranges: Sequence[Sequence[Any]]
 ) -> list[tuple[int, int]]: ...
+def motions(
+    labels: Sequence[str],
+    elements: Sequence[str],
+    bonds: Sequence[Sequence[int]] | None,
+    positions: npt.NDArray[np.float64],
+    masses: npt.NDArray[np.float64],
+    groups: Sequence[npt.NDArray[np.float64]],
+) -> list[str | None]: ...
 def answer(arguments: Sequence[str]) -> bytes: ...
 
 @final

@@ -17,17 +17,16 @@ from kickdrift._hessians import (
     LONGEST,
     Force,
     Monodromy,
-    Progress,
     Work,
     hessian,
     minimum,
     monodromy,
     seconds_of,
     seen,
-    shown,
     unbalanced,
 )
 from kickdrift._numbers import Exact, doubles, duration
+from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
 from kickdrift._system import System
 

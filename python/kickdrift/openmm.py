@@ -14,12 +14,14 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from kickdrift._bands import Band, Bands
+from kickdrift._advise import Advice
+from kickdrift._bands import Atoms, Band, Bands
 from kickdrift._errors import KickdriftError, needs
 from kickdrift._held import Held
 from kickdrift._hessians import (
@@ -27,7 +29,6 @@ from kickdrift._hessians import (
     LONGEST,
     Force,
     Monodromy,
-    Progress,
     Work,
     arrived,
     descend,
@@ -36,12 +37,12 @@ from kickdrift._hessians import (
     monodromy,
     seconds_of,
     seen,
-    shown,
     soft_solve,
     unbalanced,
     usable,
 )
 from kickdrift._numbers import Exact, doubles, duration, rational, simplest
+from kickdrift._progress import Progress, shown
 from kickdrift._rigid import Doubles, is_held, norm, rigid_motions
 from kickdrift._system import System
 
@@ -71,15 +72,39 @@ class _Engine:
     masses: Doubles
     count: int
 
-    def force(self, groups: int) -> Force:
-        """The forces of some groups, bits of a mask, at positions in nm, in kJ/mol/nm."""
+    def force(self, groups: int) -> _Forces:
+        """The forces of some groups, bits of a mask."""
+        return _Forces(self, groups)
 
-        def of(positions: Doubles) -> Doubles:
-            self.context.setPositions(positions)
-            state = self.context.getState(getForces=True, groups=groups)
-            return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)
+    @cached_property
+    def cuts(self) -> dict[int, list[Any]]:
+        """What is cut off of each group: pairs whose forces are known."""
+        from kickdrift import _forcefield
 
-        return of
+        found: dict[int, list[Any]] = {}
+        for force in self.context.getSystem().getForces():
+            if isinstance(force, mm.NonbondedForce) and (own := _forcefield.cut(force, self.context)) is not None:
+                found.setdefault(force.getForceGroup(), []).append(own)
+        return found
+
+
+@dataclass(frozen=True)
+class _Forces:
+    """The forces of some groups, bits of a mask, at positions in nm, in kJ/mol/nm."""
+
+    engine: _Engine
+    groups: int
+
+    def __call__(self, positions: Doubles) -> Doubles:
+        self.engine.context.setPositions(positions)
+        state = self.engine.context.getState(getForces=True, groups=self.groups)
+        return np.asarray(state.getForces(asNumpy=True)._value, dtype=np.float64)
+
+    def smooth(self, positions: Doubles, reach: float) -> Force:
+        """With each pair kept on that side of the cutoff on which it is at these positions."""
+        acting = (own for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for own in cuts)
+        kept = [found for own in acting if (found := own.kept(positions, reach)) is not None]
+        return lambda at: np.asarray(sum((own(at) for own in kept), self(at)))
 
 
 def system(
@@ -114,13 +139,14 @@ def system(
     atoms : sequence of int, optional
         Only the Hessians of these atoms; all others stand still.
     minimize : bool
-        Go to the minimum beside the positions, in a copy.
+        Go to the minimum beside the positions, in a copy; of some atoms, to theirs among the others as these stand.
     difference : float
-        The difference of positions, nm.
+        The difference of positions, nm. Pairs of a NonbondedForce stay on their side of its cutoff meanwhile.
     sparse : bool
-        For thousands of atoms on two levels: bonded forces by differences of many atoms at once, a NonbondedForce with
-        a cutoff by its formulas, compared with differences at random displacements. No constraints and no Ewald sums;
-        ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable region.
+        For thousands of atoms on two levels: bonds, angles, torsions and a NonbondedForce with a cutoff by their
+        formulas, compared with differences at random displacements; other bonded terms by differences. No constraints
+        and no Ewald sums; ``minimize`` is OpenMM's minimizer alone. Needs SciPy. The answer is about the first stable
+        region.
     progress : bool or callable
         A bar on standard error, in a log four lines for each step, behind what it will take; or what is called with the
         columns done and the columns in all, for each step.
@@ -174,12 +200,12 @@ def system(
         "atoms=[...] and minimize=False for some of them, or sparse=True",
     )
     Work(columns, len(_levels(clocks)), dear).begin(longest, progress is True, remedy)
-    if minimize:
-        Work(3 * engine.count, 3, dear).begin(longest, progress is True, remedy)
-        where = _minimized(engine, where, constraints, difference)
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
+    if minimize:
+        Work(columns, 3, dear).begin(longest, progress is True, remedy)
+        where = _minimized(engine, where, constraints, difference, chosen)
     frame = Held(engine.masses, constraints).frame(where, chosen)
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
     notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
@@ -297,10 +323,24 @@ def _named(
     return labels, elements, bonded or None
 
 
-def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | Bands, Any]:
+@dataclass(frozen=True)
+class _Later:
+    """A system whose bands are looked for once it is known what is held, and how heavy hydrogens are."""
+
+    system: Any
+    asked: Mapping[str, Any]
+
+    def advise(
+        self, steps: str | Sequence[Any] = (), *, constraints: str | None, hmr: Exact | None, **rest: Any
+    ) -> Advice:
+        return bands(self.system, constraints=constraints, hmr=hmr, **self.asked).advise(steps, **rest)
+
+
+def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | _Later, Any]:
     """The system of a ``System`` or a ``Simulation``, and the schemes asked about beside its own.
 
-    Bands of one that dense Hessians are too many of, or that has constraints and other than two levels with forces.
+    It is asked for its bands where dense Hessians are too large, or where there are constraints and other than two
+    levels with forces.
     """
     arguments = dict(made)
     if isinstance(steps, Mapping):
@@ -319,7 +359,7 @@ def given(own: Any, steps: Any, made: Mapping[str, Any]) -> tuple[System | Bands
     asked: dict[str, Any] = {key: arguments[key] for key in plain if key in arguments}
     is_plain = arguments.keys() <= asked.keys() | {"progress", "longest"}
     if is_plain and (3 * own.getNumParticles() > LARGEST or _is_held_fast(own, asked)):
-        return bands(own, asked.pop("positions"), **asked), steps
+        return _Later(own, asked), steps
     found = system(own, arguments.pop("positions"), **arguments)
     positions = found.arrays.get("positions")
     is_whole = positions is not None and len(positions) == own.getNumParticles() and positions.size <= _FOLLOWED
@@ -513,11 +553,15 @@ def bands(
     steps: Mapping[int, Any] | None = None,
     minimize: bool = True,
     difference: float | None = None,
+    constraints: str | None = None,
+    hmr: Exact | None = None,
 ) -> Bands:
-    """Find the shortest period of each level of forces by Lanczos' method: of any number of atoms, PME and constraints.
+    """Find the shortest period of each level of forces: of any number of atoms, PME and constraints.
 
-    No Hessian is stored but those of bonded terms, which are sparse. All other forces are asked for along directions in
-    which all atoms move at once; of more than a hundred atoms on OpenMM's CPU platform, in single precision.
+    A level of bonded terms alone has the modes of each molecule, all of them, by the terms' formulas: no probability
+    stands in the way, and they have names. Large molecules are seen through windows along their bonds, which leave a
+    part in a thousand of the stiffness unknown. Lanczos' method asks for all other forces along directions in which all
+    atoms move at once; of more than a hundred atoms on OpenMM's CPU platform, in single precision.
 
     Parameters
     ----------
@@ -528,6 +572,9 @@ def bands(
     difference : float, optional
         How far, nm, an atom moves at most: 0.001 unless given in single precision, where less is rounding. Twice as far
         tells the error.
+    constraints, hmr : optional
+        ``"h-bonds"``: bonds of hydrogens (up to 1.1 u) are held, too; and hydrogens of this mass, u, taken from the
+        atoms that they are bonded to.
 
     Returns
     -------
@@ -550,17 +597,19 @@ def bands(
     (314, 'safe')
     """
     clocks = _clocks(system, integrator, steps)
+    given = _positions(positions, system.getNumParticles())
+    before, system = system, _changed(system, topology, given, constraints, hmr)
     names = [mm.Platform.getPlatform(n).getName() for n in range(mm.Platform.getNumPlatforms())]
     is_small = 3 * system.getNumParticles() <= _FOLLOWED
     engine = _engine(system, "CPU" if "CPU" in names and not is_small else "Reference")
     difference = difference or (DIFFERENCE if is_small else WIDE)
-    where, held = _positions(positions, engine.count), Held(engine.masses, _constraints(system))
+    where, held = given, Held(engine.masses, _constraints(system))
     notes = _notes(system, integrator, clocks)
     if minimize:
         where, how = _near_minimum(engine, where, held, difference, is_small)
         notes.append(how)
-    labels = _named(engine.masses, topology, np.arange(engine.count))[0]
-    found = [_band(system, engine, held, where, own, labels, difference) for own in _levels(clocks).items()]
+    atoms = _atoms(before, topology, where, engine.masses)
+    found = [_band(system, engine, held, where, own, atoms, difference) for own in _levels(clocks).items()]
     return Bands(tuple(found), tuple(notes))
 
 
@@ -593,37 +642,116 @@ def _band(
     held: Held,
     where: Doubles,
     level: tuple[Fraction, list[int]],
-    labels: Sequence[str],
+    atoms: Atoms,
     difference: float,
 ) -> Band:
     """The shortest period of the groups of one step."""
-    from kickdrift import _bands, _forcefield
+    from kickdrift import _bands, _covered, _forcefield
 
     step, groups = level
     name = " + ".join(f"group {group}" for group in groups)
     force = engine.force(sum(1 << group for group in groups))
-    own = [each for each in system.getForces() if each.getForceGroup() in groups and not _is_bath(each)]
+    own = [each for each in system.getForces() if each.getForceGroup() in groups and not _moves_nothing(each)]
     pairs = (each for each in system.getForces() if isinstance(each, mm.NonbondedForce))
     reciprocal = (each.getReciprocalSpaceForceGroup() for each in pairs)
-    free, bent = _bands.projection(held, where), _bands.curvature(held, where, force(where))
-    if _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
+    bent, error = _bands.curvature(held, where, force(where)), 0.0
+    if known := _forcefield.are_bonded(own) and not any(group in groups for group in reciprocal):
         matrix, error = _forcefield.hessian(system, groups, where, DIFFERENCE / 10)
-        error, steps, forces = error / float(engine.masses.min()), _STORED, 0
-        product = _bands.by_matrix(matrix, held.root)
-    else:
-        product, error, steps, forces = _bands.by_differences(force, where, held.root, difference), 0.0, _ASKED, 2
+        matrix, error = _bands.weighted(matrix, held.root) + bent, error / float(engine.masses.min())
+        free = _covered.projected(matrix, held, where)
+        modes = None if free is None else _covered.modes(free, atoms.kinds())
+        if modes is not None:
+            who = f"{modes.molecules:,} molecule{'s' * (modes.molecules != 1)}"
+            looked = f"all {where.size - len(held.distances):,} modes of {who}"
+            if modes.windows:
+                looked += f", the large ones through {modes.windows} windows (counts are rounded)"
+            # What is dropped as rounding: no more than that in each entry of a row.
+            row = int(np.diff(free.indptr).max(initial=0))
+            error += _covered.ROUNDED * row * float(np.abs(matrix.data).max(initial=0.0)) if held.distances else 0.0
+            most = modes.largest + modes.beyond + error if modes.molecules else 0.0
+            told = _bands.groups_of(modes, atoms)
+            return Band(name, step, modes.largest, most, "", 0, looked, told[0].name if told else "", told)
+    onto = _bands.projection(held, where)
+    product, steps, forces = _bands.by_differences(force, where, held.root, difference), _ASKED, 2
+    if known:
+        product, steps, forces = (lambda vector: np.asarray((matrix - bent) @ vector)), _STORED, 0
 
     def apply(vector: Doubles) -> Doubles:
-        vector = free(vector)
-        return free(product(vector) + bent(vector))
+        vector = onto(vector)
+        return onto(product(vector) + bent @ vector)
 
     found = _bands.top(apply, where.size, steps)
     if forces:
         wide = _bands.by_differences(force, where, held.root, 2 * difference)
-        error = float(np.linalg.norm(free(wide(found.vector) - product(found.vector))))
+        error = float(np.linalg.norm(onto(wide(found.vector) - product(found.vector))))
     moving = np.linalg.norm(found.vector.reshape(-1, 3), axis=1)
-    atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)
-    return Band(name, step, found.found, found.most + error, atoms, forces * steps)
+    who = ", ".join(atoms.labels[n] for n in np.argsort(-moving)[:2] if moving[n] > moving.max() / 10)
+    looked = "the Hessian of all bonded terms"
+    motion = atoms.motions(range(engine.count), [found.vector[None]], [True] * engine.count)[0] or ""
+    return Band(name, step, found.found, found.most + error, who, forces * steps, looked, motion)
+
+
+def _atoms(system: Any, topology: Any, where: Doubles, masses: Doubles) -> Atoms:
+    """What atoms of a system are called, before any hydrogen was made heavier; ``masses`` are what they have then.
+
+    Who is bonded to whom tells the topology, else bonds and constraints of two that are not both hydrogens.
+    """
+    before = np.array([system.getParticleMass(n)._value for n in range(len(masses))])
+    labels, elements, bonded = _named(before, topology, np.arange(len(masses)))
+    symbols = elements or [label.split()[0] for label in labels]
+    return Atoms(labels, symbols, _bonds(system) if bonded is None else bonded, where, masses)
+
+
+def _bonds(system: Any) -> list[tuple[int, int]]:
+    forces = [force for force in system.getForces() if isinstance(force, mm.HarmonicBondForce)]
+    pairs = [tuple(force.getBondParameters(n)[:2]) for force in forces for n in range(force.getNumBonds())]
+    pairs += [own[:2] for own in _constraints(system)]
+    light = [system.getParticleMass(n)._value <= _HYDROGEN for n in range(system.getNumParticles())]
+    return sorted({(min(pair), max(pair)) for pair in pairs if not (light[pair[0]] and light[pair[1]])})
+
+
+#: u: what is no heavier is a hydrogen, as files of systems have it.
+_HYDROGEN = 1.1
+
+
+def _changed(system: Any, topology: Any, where: Doubles, constraints: str | None, hmr: Exact | None) -> Any:
+    """A copy with heavy hydrogens and held bonds of hydrogens, as :meth:`System.advise` has them; or the system itself.
+
+    A bond is held at its length of rest, or as long as it is where it has none.
+    """
+    if constraints is None and hmr is None:
+        return system
+    if constraints not in (None, "h-bonds"):
+        raise KickdriftError("constraints", str(constraints), "of OpenMM's systems write h-bonds")
+    own = mm.XmlSerializer.clone(system)
+    masses = [own.getParticleMass(n)._value for n in range(own.getNumParticles())]
+    named = _named(np.array(masses), topology, np.arange(len(masses)))[2] or _bonds(system)
+    light = [pair if masses[pair[0]] <= _HYDROGEN else pair[::-1] for pair in named]
+    light = [(i, j) for i, j in light if masses[i] <= _HYDROGEN < masses[j]]
+    if not light:
+        raise KickdriftError("system", "no hydrogen", f"no mass is up to {_HYDROGEN} u: leave constraints and hmr out")
+    if hmr is not None:
+        heavy = float(rational("hmr", str(hmr).removesuffix("u").removesuffix("am").strip()))
+        moved = list(masses)
+        for i, j in light:
+            moved[i], moved[j] = heavy, moved[j] - (heavy - masses[i])
+        least = int(np.argmin(moved))
+        if moved[least] <= 0 or heavy < max(masses[i] for i, _ in light):
+            remedy = f"leaves particle {least} a mass of {moved[least]:.3g} u: give hydrogens 3.024 or so"
+            raise KickdriftError("hmr", str(hmr), remedy)
+        for n, mass in enumerate(moved):
+            own.setParticleMass(n, mass)
+    if constraints is not None:
+        there = {frozenset(pair[:2]) for pair in _constraints(own)}
+        rest: dict[frozenset[int], float] = {}
+        for force in own.getForces():
+            if isinstance(force, mm.HarmonicBondForce):
+                terms = (force.getBondParameters(n) for n in range(force.getNumBonds()))
+                rest |= {frozenset(term[:2]): term[2]._value for term in terms}
+        for i, j in light:
+            if frozenset((i, j)) not in there:
+                own.addConstraint(i, j, rest.get(frozenset((i, j)), float(np.linalg.norm(where[i] - where[j]))))
+    return own
 
 
 def _levels(clocks: Mapping[int, Fraction]) -> dict[Fraction, list[int]]:
@@ -746,17 +874,23 @@ def _constraints(system: Any) -> list[_Constraint]:
     return [(i, j, float(distance._value)) for i, j, distance in every]
 
 
-def _minimized(engine: _Engine, where: Doubles, constraints: Sequence[_Constraint], difference: float) -> Doubles:
+def _minimized(
+    engine: _Engine,
+    where: Doubles,
+    constraints: Sequence[_Constraint],
+    difference: float,
+    chosen: Sequence[int] | None = None,
+) -> Doubles:
     """The minimum in the engine's own context: the system given and its contexts stay as they are.
 
     Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that
-    does not arrive close by.
+    does not arrive close by. All but the chosen coordinates stand still.
     """
 
     def newton(near: Doubles) -> Doubles:
         if constraints:
-            return _constrained_minimum(engine, near, constraints, difference)
-        return minimum(engine.force(-1), near, engine.masses, difference)
+            return _constrained_minimum(engine, near, constraints, difference, chosen)
+        return minimum(engine.force(-1), near, engine.masses, difference, columns=chosen)
 
     try:
         found = newton(where)
@@ -764,9 +898,25 @@ def _minimized(engine: _Engine, where: Doubles, constraints: Sequence[_Constrain
             return found
     except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
         pass
-    engine.context.setPositions(where)
-    mm.LocalEnergyMinimizer.minimize(engine.context, tolerance=1e-4)
-    return newton(np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value))
+    return newton(_relaxed(engine, where, chosen))
+
+
+def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> Doubles:
+    """Where OpenMM's minimizer ends; what has no mass stands still for it."""
+    context = engine.context
+    if chosen is not None:
+        own = mm.XmlSerializer.clone(context.getSystem())
+        still = sorted(set(range(engine.count)) - {column // 3 for column in chosen})
+        for n in still:
+            own.setParticleMass(n, 0.0)
+        # Held distances to what stands still are the next step's: the minimizer knows none of massless particles.
+        for n in reversed(range(own.getNumConstraints())):
+            if set(own.getConstraintParameters(n)[:2]) & set(still):
+                own.removeConstraint(n)
+        context = mm.Context(own, mm.VerletIntegrator(0.001), context.getPlatform())
+    context.setPositions(where)
+    mm.LocalEnergyMinimizer.minimize(context, tolerance=1e-4)
+    return np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
 
 #: How far, nm, Newton's method alone may go: half a bond.
@@ -774,32 +924,35 @@ _CLOSE = 0.05
 
 
 def _constrained_minimum(
-    engine: _Engine, near: Doubles, constraints: Sequence[_Constraint], difference: float
+    engine: _Engine,
+    near: Doubles,
+    constraints: Sequence[_Constraint],
+    difference: float,
+    chosen: Sequence[int] | None = None,
 ) -> Doubles:
-    """Newton's method along the constraints, each step put back on them.
+    """Newton's method along the constraints, each step put back on them; all but the chosen coordinates stand still.
 
     Raises
     ------
     KickdriftError
         Where it does not arrive.
     """
-    force, where, masses = engine.force(-1), near, engine.masses
-    matrix = np.zeros((near.size, near.size))
-    held = Held(masses, constraints)
-    frame = held.frame(where)
+    force, masses, kept = engine.force(-1), engine.masses, np.arange(near.size) if chosen is None else np.array(chosen)
+    held, matrix = Held(masses, constraints), np.zeros((near.size, near.size))
+    where = held.back(near, chosen)
+    frame = held.frame(where, chosen)
 
     def pull() -> Doubles:
-        return frame.T @ (force(where).ravel() / held.root)
+        return frame.T @ (force(where).ravel() / held.root)[kept]
 
     def move(pulled: Doubles) -> None:
         nonlocal where, frame, matrix
-        matrix, _ = hessian(force, where, masses, difference)
-        matrix = frame.T @ (matrix + held.curvature(force(where), where)) @ frame
-        step = frame @ soft_solve(matrix, pulled)
-        engine.context.setPositions(where + (step / held.root).reshape(where.shape))
-        engine.context.applyConstraints(1e-12)
-        where = np.array(engine.context.getState(getPositions=True).getPositions(asNumpy=True)._value)
-        frame = held.frame(where)
+        matrix, _ = hessian(force, where, masses, difference, chosen)
+        matrix = frame.T @ (matrix + held.curvature(force(where), where, chosen)) @ frame
+        moved = where.copy()
+        moved.flat[kept] += frame @ soft_solve(matrix, pulled) / held.root[kept]
+        where = held.back(moved, chosen)
+        frame = held.frame(where, chosen)
 
     arrived(descend(pull, move), matrix, masses)
     return where

@@ -5,6 +5,7 @@
 mod error;
 mod job;
 mod map;
+mod motion;
 mod number;
 mod page;
 mod pair;
@@ -17,6 +18,8 @@ mod program;
 mod _native {
     #[pymodule_export]
     use crate::map::{Map, map, multipliers};
+    #[pymodule_export]
+    use crate::motion::motions;
     #[pymodule_export]
     use crate::number::{Number, number};
     #[pymodule_export]

@@ -13,7 +13,8 @@ from openmm import app
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift import _forcefield
+from kickdrift import _bands, _covered, _forcefield
+from kickdrift._held import Held
 from kickdrift._hessians import hessian
 
 #: Bonds and angles, and what OpenMM's own pairs are, by groups.
@@ -113,6 +114,92 @@ def test_a_few_differences_give_the_hessian_of_all_bonded_terms() -> None:
         assert np.linalg.norm(matrix.toarray() - measured, 2) <= error + rough < 1e-3 * np.abs(measured).max()
 
 
+def test_bonded_terms_have_the_second_derivatives_that_differences_show() -> None:
+    system, positions = peptide()
+    for force in system.getForces():
+        if type(force).__name__ not in _forcefield._terms_of.LAWS:
+            continue
+        matrix = _forcefield.by_formulas([force], positions)
+        near = _forcefield._neighbours(_forcefield._terms(force), 8)
+        measured, _ = _forcefield.coloured(_forcefield._alone(system, [force]), positions, near, 2e-5)
+        # Fourth-order differences of torsions at 2e-5 of 0.1 nm leave 1e-13 of them, rounding of forces over 2e-5 more.
+        assert abs(matrix - measured).max() < 1e-8 * abs(measured).max() and abs(measured).max() > 100
+        assert abs(matrix - matrix.T).max() < 1e-12 * abs(measured).max()
+
+
+def test_a_term_without_second_derivatives_is_left_to_differences() -> None:
+    """A straight angle at its rest: the formula divides by the sine."""
+    system, angles = mm.System(), mm.HarmonicAngleForce()
+    for _ in range(3):
+        system.addParticle(12.0)
+    angles.addAngle(0, 1, 2, np.pi, 400.0)
+    system.addForce(angles)
+    straight = np.outer([0.0, 0.15, 0.3], [1.0, 0, 0])
+    assert not np.isfinite(_forcefield.by_formulas([angles], straight).data).all()
+    matrix, error = _forcefield.hessian(system, [0], straight, 1e-5)
+    # Across the line 400 (2/0.15)² at its middle, along it nothing.
+    assert matrix[4, 4] == pytest.approx(400 * (2 / 0.15) ** 2, rel=1e-3) and abs(matrix[3, 3]) < 1e-3 * matrix[4, 4]
+    assert np.isfinite(error)
+
+
+def strand(count: int) -> tuple[Any, Held, np.ndarray]:
+    """A zigzag of carbons, each with a hydrogen at a held distance: the mass-weighted stiffness of bonds and angles."""
+    random = np.random.default_rng(2)
+    heavy = np.column_stack([0.12 * np.arange(count), 0.05 * (np.arange(count) % 2), 0.01 * random.normal(size=count)])
+    light = heavy + [0.0, 0.05, 0.09]
+    where, masses = np.concatenate([heavy, light]), np.repeat([12.0, 1.0], count)
+    bonds, angles = mm.HarmonicBondForce(), mm.HarmonicAngleForce()
+    for n in range(count - 1):
+        bonds.addBond(n, n + 1, 0.13, 2e5 * (1 + 0.2 * random.random()))
+        angles.addAngle(count + n, n, n + 1, 1.9, 400.0)
+    for n in range(count):
+        bonds.addBond(n, count + n, 0.1, 3e5)
+    held = Held(masses, [(n, count + n, float(np.linalg.norm(where[n] - where[count + n]))) for n in range(count)])
+    return _bands.weighted(_forcefield.by_formulas([bonds, angles], where), held.root), held, where
+
+
+@pytest.mark.parametrize("whole", [400, 60, 30])
+def test_windows_bracket_the_stiffest_mode_of_a_chain(whole: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_covered, "WHOLE", whole)
+    matrix, held, where = strand(80)
+    free = _covered.projected(matrix, held, where)
+    frame = held.frame(where)
+    exact = np.linalg.eigvalsh(frame.T @ matrix.toarray() @ frame)
+    found = _covered.modes(free, ["C"] * 160)
+    assert found is not None and found.molecules == 1 and (found.windows == 0) == (whole == 400)
+    assert found.largest <= exact[-1] * (1 + 1e-12) and exact[-1] <= found.largest + found.beyond
+    # By so little that advice is not shortened; without windows rounding alone is between them.
+    assert found.beyond < {400: 1e-10, 60: 0.05, 30: 0.2}[whole] * exact[-1], found.beyond / exact[-1]
+    # Modes that two windows see in parts are counted once.
+    stretches = int((exact > exact[-1] / 4).sum())
+    assert abs(found.count(exact[-1] / 4, 2 * exact[-1]) - stretches) <= (0 if whole == 400 else 0.05 * stretches)
+    assert found.count(-np.inf, np.inf) == matrix.shape[0]
+    # What is held vibrates no more: without the projection it is stiffer by far.
+    assert np.linalg.eigvalsh(matrix.toarray())[-1] > 2 * exact[-1]
+
+
+def test_windows_too_thin_to_bound_anything_are_not_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_covered, "WHOLE", 8)
+    matrix, held, where = strand(30)
+    assert _covered.modes(_covered.projected(matrix, held, where), ["C"] * 60) is None
+    monkeypatch.setattr(_covered, "_JOINED", 0)
+    assert _covered.projected(matrix, held, where) is None
+
+
+def test_all_modes_of_all_molecules_are_those_of_the_dense_matrix() -> None:
+    """27 waters, each turned otherwise, bonds and angles away from rest."""
+    system, positions = waters(3, "NoCutoff")
+    positions = positions + 1e-3 * np.random.default_rng(1).normal(size=positions.shape)
+    matrix, _ = _forcefield.hessian(system, [0], positions, 1e-5)
+    weighted = _bands.weighted(matrix, np.sqrt(np.repeat([15.99943, 1.007947, 1.007947] * 27, 3)))
+    found = _covered.modes(weighted, ["O", "H", "H"] * 27)
+    exact = np.linalg.eigvalsh(weighted.toarray())
+    assert found is not None and found.molecules == 27
+    assert np.abs(np.sort(found.values) - exact).max() < 1e-11 * exact[-1]
+    (shown,) = found.shown.values()
+    assert shown.count == 27 and shown.values[-1] == pytest.approx(exact[-1], rel=1e-12)
+
+
 def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
     counts = []
     for side in (2, 4):
@@ -137,6 +224,65 @@ def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
         _forcefield.coloured(counted, positions, near, 1e-5)
         counts.append(len(asked))
     assert counts == [36, 36]
+
+
+#: nm: reduced, as OpenMM wants them.
+SKEW = [[0.93, 0, 0], [0.1, 0.97, 0], [-0.3, 0.25, 0.95]]
+
+
+@pytest.mark.parametrize(
+    ("method", "switched", "box"),
+    [
+        ("CutoffNonPeriodic", False, None),
+        ("CutoffPeriodic", True, None),
+        ("CutoffPeriodic", False, SKEW),
+        ("Ewald", False, None),
+        ("PME", True, SKEW),
+    ],
+)
+def test_pairs_that_cross_the_cutoff_stay_on_their_side(
+    method: str, switched: bool, box: list[list[float]] | None
+) -> None:
+    """Before: a pair that a difference takes across the cutoff leaves its force, over the step, as stiffness."""
+    system, positions = waters(3, method, switched)
+    if box is not None:
+        system = mm.XmlSerializer.clone(system)
+        system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*own) for own in box])
+    engine, columns = ko._engine(system), list(range(0, positions.size, 6))
+    force = engine.force(1 << SLOW)
+    raw, before = hessian(lambda at: force(at), positions, engine.masses, ko.DIFFERENCE, columns)
+    found, after = hessian(force, positions, engine.masses, ko.DIFFERENCE, columns)
+    # So near that no pair crosses; forces in doubles of 1e4 kJ/mol/nm leave some 1e-8 over this step.
+    true, _ = hessian(force, positions, engine.masses, ko.DIFFERENCE / 100, columns)
+    size = np.linalg.norm(true, 2)
+    assert np.linalg.norm(raw - true, 2) > 0.01 * size and before > 0.01 * size
+    assert np.linalg.norm(found - true, 2) < 1e-7 * size and after < 1e-5 * size
+
+
+@pytest.mark.parametrize("box", [np.diag([2.0, 2.2, 2.5]), np.array([[2.5, 0, 0], [0.4, 2.4, 0], [-1.0, 0.9, 2.2]])])
+def test_pairs_of_a_shell_are_those_of_nearest_images(box: np.ndarray) -> None:
+    where = np.random.default_rng(0).uniform(-3, 3, size=(200, 3))
+    apart = where[:, None] - where
+    for k in (2, 1, 0):
+        apart = apart - np.round(apart[..., k] / box[k, k])[..., None] * box[k]
+    far = np.linalg.norm(apart, axis=-1)
+    i, j = np.where((far > 0.7) & (far < 0.9))
+    exact = np.array([(a, b) for a, b in zip(i, j, strict=True) if a < b])
+    assert len(exact) > 1000 and (_forcefield._shell(where, box, 0.7, 0.9) == exact).all()
+
+
+def test_a_product_with_all_atoms_moved_sees_no_cutoff_either() -> None:
+    system, positions = waters(3, "CutoffPeriodic")
+    engine = ko._engine(system)
+    force, held = engine.force(1 << SLOW), Held(engine.masses)
+    vector = np.random.default_rng(2).normal(size=positions.size)
+    exact = _bands.weighted(_forcefield.hessian(system, [SLOW], positions, 1e-5)[0], held.root) @ vector
+    off = [
+        np.linalg.norm(_bands.by_differences(own, positions, held.root, ko.WIDE)(vector) - exact)
+        for own in (force, lambda at: force(at))
+    ]
+    # Second-order differences of 0.001 nm leave 1e-4 of a stiffness that turns within 0.1 nm.
+    assert off[0] < 1e-3 * np.linalg.norm(exact) < 0.05 * off[1]
 
 
 def test_sparse_and_dense_systems_have_one_first_unstable_step() -> None:

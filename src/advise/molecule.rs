@@ -178,7 +178,7 @@ impl Molecule {
             return Err(Error::input(
                 "fast stiffness",
                 "0",
-                "give the bonds to the potential of the shorter step",
+                "no force of the shorter step acts on what is free: give it the bonds, or leave it out and ask `kickdrift system FILE`",
             ));
         };
         if let Some(rate) = friction.filter(|rate| **rate <= Rational::zero()) {

@@ -324,7 +324,7 @@ impl MeasuredSystem {
     }
 
     fn not_two(&self) -> Error {
-        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE --intervals outer=LO..HI` takes any number")
+        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps, and Python's System.advise answers for them where nothing is held")
     }
 
     /// The eigenbasis, computed when it is first asked for.
