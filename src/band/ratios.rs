@@ -23,9 +23,11 @@ const LARGEST: i64 = 1 << 30;
 /// use kickdrift::band::unstable_ratios;
 /// use kickdrift::number::{parse::parse, rational::ratio};
 /// let x = |text| parse("quantity", text).unwrap();
-/// // The fast force turns by π while the slow one waits.
-/// let (lo, hi) = unstable_ratios([&x("pi^2"), &x("pi^2/25")], &x("1/8"), &ratio(8, 1)).unwrap();
-/// assert!(lo < ratio(79, 10) && ratio(8, 1) < hi);
+/// let all = |times| unstable_ratios([&x("pi^2"), &x("pi^2/25")], &x("1/8"), &times);
+/// // The fast force turns by almost π while the slow one waits.
+/// let (lo, hi) = all(ratio(31, 4)).unwrap();
+/// assert!(hi - lo > ratio(1, 4));
+/// assert_eq!(all(ratio(5, 1)), None);
 /// ```
 pub fn unstable_ratios(
     lambdas: [&Laurent; 2],

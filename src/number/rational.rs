@@ -76,13 +76,19 @@ fn decimal(text: &str) -> Rational {
     Rational::from_integer(whole) * Rational::from_integer(10.into()).pow(power)
 }
 
-/// x 2^k, exactly.
+/// x 2^k, exactly. Its lowest terms are found by shifts, for a greatest common divisor costs the square of the digits.
+///
+/// ```
+/// use kickdrift::number::rational::{ratio, scale2};
+/// assert_eq!([scale2(&12.into(), -5), scale2(&12.into(), -2), scale2(&0.into(), -3)], [ratio(3, 8), ratio(3, 1), ratio(0, 1)]);
+/// ```
 pub fn scale2(x: &BigInt, k: i64) -> Rational {
     if k >= 0 {
-        Rational::from_integer(x << k.unsigned_abs())
-    } else {
-        Rational::new(x.clone(), BigInt::from(1) << k.unsigned_abs())
+        return Rational::from_integer(x << k.unsigned_abs());
     }
+    let places = k.unsigned_abs();
+    let common = x.trailing_zeros().map_or(places, |zeros| zeros.min(places));
+    Rational::new_raw(x >> common, BigInt::from(1) << (places - common))
 }
 
 /// The rational of least denominator in [lo, hi], 0 < lo ≤ hi (Stern and Brocot): the terms that the continued fractions of

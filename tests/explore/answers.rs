@@ -196,9 +196,11 @@ fn a_tile_is_the_map_of_its_pairs() {
 /// 2^26 and more multiples away from 0: fewer cells, each with the verdict and the rate of its own pair.
 #[test]
 fn deep_tiles_have_the_verdicts_of_their_pairs() {
-    for (level, side) in [(20, 16), (40, 16), (70, 16)] {
-        let at = BigInt::from(2) << level;
-        let query = format!("unit=1/4&level={level}&x={at}&y={}&size=32", &at * 2);
+    for level in [20, 40, 70] {
+        let (at, side) = (BigInt::from(2) << level, 16);
+        // Beside the ratio 2, whose cells cost 256 bits where they are deepest, and there beside √5.
+        let above = if level < 70 { &at * 2 } else { BigInt::sqrt(&(&at * &at * 5)) };
+        let query = format!("unit=1/4&level={level}&x={at}&y={above}&size=32");
         let kinds = tile(&format!("{query}&what=verdict"), 1).1;
         let rates = tile(&format!("{query}&what=growth"), 4).1;
         assert_eq!(kinds.len(), side * side);
@@ -206,7 +208,7 @@ fn deep_tiles_have_the_verdicts_of_their_pairs() {
         let times =
             |at: &BigInt, n: usize| Laurent::from_rational(Rational::from_integer(at * side + n + 1) * &step);
         for (n, (kind, rate)) in kinds.iter().zip(&rates).enumerate().step_by(7) {
-            let (h1, h2) = (times(&at, n % side), times(&(&at * 2), n / side));
+            let (h1, h2) = (times(&at, n % side), times(&above, n / side));
             let x = |text: &str| parse("x", text).unwrap();
             let oscillator = Oscillator::new(x("pi^2"), x("pi^2/25"), h1, h2).unwrap();
             let (decision, growth) =
