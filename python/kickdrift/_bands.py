@@ -128,7 +128,7 @@ def weighted(matrix: Any, root: Doubles) -> Any:
 def by_differences(force: Force, where: Doubles, root: Doubles, difference: float) -> Product:
     """The product of a mass-weighted Hessian by two forces, no atom displaced by more than ``difference``."""
     # Both atoms of a pair may go their own way.
-    force = smooth(force, where, 2.001 * difference)
+    force = smooth(force, where, 2 * difference)
 
     def product(vector: Doubles) -> Doubles:
         moved = (vector / root).reshape(where.shape)

@@ -83,17 +83,8 @@ class Held:
         KickdriftError
             Where no factors are found: the drift is too long for the distances.
         """
-        rows, factors = self.gradients(where), np.zeros(len(self.distances))
-        reached, smallest = where + (time * speed / self.root).reshape(where.shape), np.inf
-        while self.distances:
-            off = np.array([(np.sum((reached[i] - reached[j]) ** 2) - d**2) / 2 for i, j, d in self.distances])
-            # Newton's method doubles the digits: less than half a digit is rounding, or no way there.
-            if not np.abs(off).max() < smallest / 4:
-                break
-            smallest = float(np.abs(off).max())
-            change = np.linalg.lstsq(self.gradients(reached) @ rows.T, -off, rcond=None)[0]
-            factors = factors + change
-            reached = reached + (rows.T @ change / self.root).reshape(where.shape)
+        free = where + (time * speed / self.root).reshape(where.shape)
+        reached, factors, smallest = self._closest(free, self.gradients(where))
         if self.distances and not smallest < _KEPT * max(d**2 for _, _, d in self.distances):
             raise KickdriftError("system", f"a drift of {time:g}", "does not keep the held distances: it is too long")
         return reached, self.root * (reached - where).ravel() / time, factors
@@ -106,15 +97,22 @@ class Held:
         rows = self.gradients(where)
         if chosen is not None:
             rows[:, np.setdiff1d(np.arange(where.size), chosen)] = 0.0
-        reached, smallest = where, np.inf
+        return self._closest(where, rows)[0]
+
+    def _closest(self, reached: Doubles, rows: Doubles) -> tuple[Doubles, Doubles, float]:
+        """Positions as close to the distances as Newton's method comes from here along these rows; the factors of the
+        rows; and the largest g_c before the last step, or infinity where nothing is held."""
+        factors, smallest = np.zeros(len(self.distances)), np.inf
         while self.distances:
             off = np.array([(np.sum((reached[i] - reached[j]) ** 2) - d**2) / 2 for i, j, d in self.distances])
+            # Newton's method doubles the digits: less than half a digit is rounding, or no way there.
             if not np.abs(off).max() < smallest / 4:
                 break
             smallest = float(np.abs(off).max())
             change = np.linalg.lstsq(self.gradients(reached) @ rows.T, -off, rcond=None)[0]
-            reached = reached + (rows.T @ change / self.root).reshape(where.shape)
-        return reached
+            factors = factors + change
+            reached = reached + (rows.T @ change / self.root).reshape(reached.shape)
+        return reached, factors, smallest
 
     def led(
         self, start: Doubles, end: Doubles, factors: Doubles, time: float, at: Doubles, going: Doubles

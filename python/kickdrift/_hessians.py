@@ -37,7 +37,7 @@ def smooth(force: Force, positions: Doubles, reach: float) -> Force:
     """The force as it is about these positions, while no distance changes by more than ``reach``: engines' forces that
     jump within that, as where pairs cross a cutoff, have a ``smooth`` of their own."""
     own = getattr(force, "smooth", None)
-    return force if own is None else own(positions, reach)
+    return force if own is None else own(positions, _MARGIN * reach)
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ def _measured(
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
     root = np.sqrt(np.repeat(masses, 3))[kept]
     second, fourth = np.empty((len(kept), len(kept))), np.empty((len(kept), len(kept)))
-    force = smooth(force, positions, _MARGIN * 2 * difference)
+    force = smooth(force, positions, 2 * difference)
     for place, column in enumerate(kept):
         near, far = (_difference(force, positions, column, width)[kept] for width in (difference, 2 * difference))
         second[:, place], fourth[:, place] = near, (4 * near - far) / 3

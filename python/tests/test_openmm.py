@@ -619,18 +619,23 @@ def test_numbers_of_ps_that_no_molecule_bears_ask_for_a_unit() -> None:
     assert caught.value.field == "positions"
 
 
-def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> None:
-    system, where = waters()
-    steps = {0: "0.5fs", 1: "4fs"}
-    unnamed = kd.advise(system, positions=where, steps=steps, levers=False)
-    assert [row["name"] for row in unnamed.groups[:2]] == ["O-H stretch of H2O", "H-O-H bend of H2O"]
-    assert [row["count"] for row in unnamed.groups[:2]] == [8, 4]
+def named_waters() -> app.Topology:
     topology = app.Topology()
     chain = topology.addChain()
     for n in range(4):
         residue = topology.addResidue("HOH", chain, str(n + 1))
         own = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
         topology.addBond(own[0], own[1]), topology.addBond(own[0], own[2])
+    return topology
+
+
+def test_motions_are_called_by_their_topology_or_by_masses_and_distances() -> None:
+    system, where = waters()
+    steps = {0: "0.5fs", 1: "4fs"}
+    unnamed = kd.advise(system, positions=where, steps=steps, levers=False)
+    assert [row["name"] for row in unnamed.groups[:2]] == ["O-H stretch of H2O", "H-O-H bend of H2O"]
+    assert [row["count"] for row in unnamed.groups[:2]] == [8, 4]
+    topology = named_waters()
     integrator = mm.MTSIntegrator(4 * unit.femtoseconds, [(1, 1), (0, 8)])
     simulation = app.Simulation(topology, system, integrator, REFERENCE)
     simulation.context.setPositions(where)
@@ -838,16 +843,6 @@ def test_bands_of_any_size_have_the_periods_of_dense_hessians() -> None:
     assert lower["hi"] <= 1000 * first["hi"], (lower, first)
     assert str(advice).startswith("estimated: ") and "looked at  group 1, every 4 fs" in str(advice)
     assert [row["outer"] for row in advice.schemes] == ["4", "2"]
-
-
-def named_waters() -> app.Topology:
-    topology = app.Topology()
-    chain = topology.addChain()
-    for n in range(4):
-        residue = topology.addResidue("HOH", chain, str(n + 1))
-        own = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
-        topology.addBond(own[0], own[1]), topology.addBond(own[0], own[2])
-    return topology
 
 
 @pytest.mark.parametrize(("constraints", "hmr"), [(None, None), ("h-bonds", "3.024"), (None, "3.024")])

@@ -67,7 +67,7 @@ impl Map {
             ));
         }
         let bar = work.count(grid.pairs(), "pairs");
-        let resources = Resources { threads: work.threads, limits: work.limits(), stopped: None, done: None };
+        let resources = Resources { threads: work.threads, limits: work.limits(), ..Resources::default() };
         let task = map::Map::of(grid).with(self.products()).within(resources);
         let see = |_, band: Band| {
             let pairs = band.counters.pairs;

@@ -35,7 +35,7 @@ impl Source {
                     bar.inc(band.counters.pairs);
                     Ok(())
                 };
-                let resources = Resources { threads: *threads, limits: *limits, stopped: None, done: None };
+                let resources = Resources { threads: *threads, limits: *limits, ..Resources::default() };
                 let whole = Map::of(grid).with(products).shard(*shard).within(resources);
                 let done = store.as_ref().map_or(whole, |store| whole.kept_in(store)).for_each_band(see);
                 bar.finish_and_clear();

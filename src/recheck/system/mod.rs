@@ -161,7 +161,7 @@ impl Claim {
         let place = |own: &Stretch| format!("{} to {}", own.lo, own.hi);
         let (mut failures, mut decided) = (Vec::new(), 0);
         let mut outcome = match scene.model() {
-            Model::Sparse(own) if is_outer && own.local_steps().is_some() => {
+            Model::Sparse(own) if is_outer => {
                 let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
                 for (row, own) in told {
                     decided += 1;

@@ -175,7 +175,7 @@ fn ratios(answer: &Answer) -> Option<String> {
     (from < to).then(|| {
         let (inner, outer) = (fs(answer.scheme.inner()), fs(answer.scheme.outer()));
         let [from, to] = [&from, &to].map(decimal);
-        format!("  ratios     with {inner} inside every ratio from {from} to {to}, whole or not, is unstable, as {outer} is (proven)")
+        format!("  ratios     {outer}: with an inner step of {inner} every ratio from {from} to {to}, whole or not, is unstable (proven)")
     })
 }
 

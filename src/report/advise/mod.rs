@@ -14,6 +14,7 @@ use super::table::{Cell, Column, Table};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
 use crate::advise::{Advice, Answer, Findings, Mode, Pair, Row, Unstable};
+use crate::number::Rational;
 
 #[cfg(feature = "figure")]
 pub use chart::{figure, levers as levers_figure};
@@ -102,6 +103,7 @@ struct Named<'a> {
 
 type End = fn(&Unstable) -> Option<(f64, f64)>;
 type Which = fn(&Row) -> Option<&Unstable>;
+type Ratio = fn(&(Rational, Rational)) -> &Rational;
 
 fn row_table(advice: &Advice, all: bool) -> Table {
     let named = advice.schemes.iter().enumerate().flat_map(|(n, answer)| {
@@ -124,14 +126,10 @@ fn row_table(advice: &Advice, all: bool) -> Table {
             of.row.masking.map(per_ps).into()
         })
         .field(Column::new("damped"), |of| of.row.is_damped.into());
-    if all {
-        record = record
-            .field(Column::new("ratios_lower"), |of| {
-                of.row.ratios.as_ref().map(|ends| Cell::exact(&ends.0)).into()
-            })
-            .field(Column::new("ratios_upper"), |of| {
-                of.row.ratios.as_ref().map(|ends| Cell::exact(&ends.1)).into()
-            });
+    let ratios: [(&str, Ratio); 2] = [("ratios_lower", |(lo, _)| lo), ("ratios_upper", |(_, hi)| hi)];
+    for (key, end) in ratios.into_iter().filter(|_| all) {
+        record =
+            record.field(Column::new(key), move |of| of.row.ratios.as_ref().map(end).map(Cell::exact).into());
     }
     let places: [(&str, &str, Which); 4] = [
         ("first", "first unstable", |row| row.first.as_ref()),
