@@ -16,8 +16,11 @@ const TRIES: usize = 100;
 /// Ratios from this one on are not looked at: in doubles they would not be exact multiples of 1/[`UNIT`].
 const LARGEST: i64 = 1 << 30;
 
-/// lo < hi, lo ≤ `ratio` ≤ hi, multiples of 10⁻⁶: with the stiffnesses Λ1, Λ2 and the step h1 **every** h2/h1 in \[lo, hi\], rational or
-/// not, is unstable (proofs/BANDS.md). Ratios beyond them may be unstable, too. `None` where nothing is proven next to the ratio.
+/// A range of ratios h2/h1 about `ratio` in which **every** one is unstable, rational or not, at the step h1 and with the stiffnesses Λ1 and Λ2
+/// (proofs/BANDS.md).
+///
+/// Its ends lo < hi are multiples of 10⁻⁶ with lo ≤ `ratio` ≤ hi. Ratios beyond them may be unstable, too. `None` where nothing is proven beside
+/// the ratio.
 ///
 /// ```
 /// use kickdrift::band::unstable_ratios;
