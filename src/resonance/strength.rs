@@ -82,19 +82,27 @@ pub fn first_order(ratio: Ratio, m: u64, rho: f64) -> Option<FirstOrder> {
     })
 }
 
-/// S0 and |S| over the q slow kicks of one period.
+/// S0 and |S| over the q slow kicks of one period, p θ = m π. The kicks k and q − k mirror each other: n' = p − 1 − n, σ' = 1 − σ,
+/// P(σ') = e^{iθ} P(σ)*, so their terms of S are conjugate, and those of half the period tell both sums.
 fn means(ratio: Ratio, theta: f64) -> (f64, f64) {
     let (p, q) = ratio.terms();
     let turn = Complex64::cis(theta);
-    let (mut s0, mut s1) = (0.0, Complex64::ZERO);
-    for k in 0..q {
-        let (n, r) = ((k as u128 * p as u128 / q as u128) as f64, (k as u128 * p as u128 % q as u128) as f64);
-        let sigma = r / q as f64;
+    // k = 0, where P = 1.
+    let (mut s0, mut s1) = (1.0, 1.0);
+    // k p = n q + r, step by step.
+    let (whole, rest) = (p / q, p % q);
+    let (mut n, mut r) = (0, 0);
+    for k in 1..=q / 2 {
+        let wraps = r >= q - rest;
+        r = if wraps { r - (q - rest) } else { r + rest };
+        n += whole + u64::from(wraps);
+        let sigma = r as f64 / q as f64;
         let position = 1.0 - sigma + turn * sigma;
-        s0 += position.norm_sqr();
-        s1 += position * position * Complex64::cis(2.0 * n * theta);
+        let times = if 2 * k == q { 1.0 } else { 2.0 };
+        s0 += times * position.norm_sqr();
+        s1 += times * (position * position * Complex64::cis(2.0 * n as f64 * theta)).re;
     }
-    (s0 / q as f64, s1.norm() / q as f64)
+    (s0 / q as f64, s1.abs() / q as f64)
 }
 
 #[cfg(test)]

@@ -169,7 +169,7 @@ impl Listing {
         let gaps = tongues.select(&Selection { s: window.or(self.selection.s), ..self.selection.clone() })?;
         watch.expect(gaps.len() as u64);
         let chunk = |gaps: &&[Gap]| {
-            let answers = gaps.iter().map(|gap| self.request.answer(&tongues, gap)).collect();
+            let answers = self.request.answers(&tongues, gaps);
             watch.advance(gaps.len() as u64);
             answers
         };

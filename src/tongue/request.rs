@@ -56,7 +56,19 @@ impl Request {
     /// # Errors
     /// Where the schedule is too long.
     pub fn answer(&self, tongues: &Tongues, gap: &Gap) -> Result<Tongue> {
-        let row = tongues.row(gap, &self.wanted)?;
+        self.of_row(tongues, gap, tongues.row(gap, &self.wanted)?)
+    }
+
+    /// Several of them, which where growth is wanted cost a fraction of so many alone.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn answers(&self, tongues: &Tongues, gaps: &[Gap]) -> Result<Vec<Tongue>> {
+        let rows = tongues.rows(gaps, &self.wanted)?;
+        rows.into_iter().zip(gaps).map(|(row, gap)| self.of_row(tongues, gap, row)).collect()
+    }
+
+    fn of_row(&self, tongues: &Tongues, gap: &Gap, row: Row) -> Result<Tongue> {
         let lower = self.edge(tongues, gap.m, &gap.lower, &row.exact[0])?;
         let upper = match &gap.upper {
             Some(upper) => Some(self.edge(tongues, gap.m, upper, &row.exact[1])?),

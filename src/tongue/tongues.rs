@@ -161,7 +161,15 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long.
     pub fn row(&self, gap: &Gap, wanted: &Wanted) -> Result<Row> {
-        Row::new(&self.edges, gap, wanted)
+        Ok(self.rows(std::slice::from_ref(gap), wanted)?.remove(0))
+    }
+
+    /// Tongues with the columns wanted: where growth is wanted, many cost a fraction of so many alone.
+    ///
+    /// # Errors
+    /// Where the schedule is too long.
+    pub fn rows(&self, gaps: &[Gap], wanted: &Wanted) -> Result<Vec<Row>> {
+        Row::all(&self.edges, gaps, wanted)
     }
 
     /// The fastest growth inside a tongue; `None` of a closed one and of the infinite one.
@@ -169,7 +177,7 @@ impl Tongues {
     /// # Errors
     /// Where the schedule is too long, or more digits are needed than are tried.
     pub fn peak(&self, gap: &Gap) -> Result<Option<Peak>> {
-        Peak::new(&self.edges, gap)
+        Ok(Peak::all(&self.edges, std::slice::from_ref(gap))?.remove(0))
     }
 
     /// The edges `first` ..= `last` of one problem, counted from 1.

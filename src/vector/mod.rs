@@ -4,9 +4,12 @@
 //! few kernels that everything waits for are written for a [`Vector`] instead, and compiled for each kind of registers.
 
 pub(crate) mod instructions;
+mod pair;
 mod portable;
 #[cfg(target_arch = "x86_64")]
 mod registers;
+
+pub(crate) use pair::Pair;
 
 /// How many numbers a vector has as a rule; [`Vector::WIDTH`] is the exact number.
 pub(crate) const LANES: usize = 16;
@@ -100,6 +103,9 @@ pub(crate) trait Vector: Copy {
     fn count_change_below(self, a: Self, b: Self, c: Self) -> Self;
     /// The power of two that brings |self|, not below 2^-1022, to [1, 2).
     fn normalizing(self) -> Self;
+    /// 2^32 log2 |x| up to a constant, to within 2^29, as a whole number: a double's bits are its logarithm, the mantissa's
+    /// straightened.
+    fn logarithm(self) -> Self;
 
     /// The next double above, of a positive number.
     #[inline(always)]
@@ -202,6 +208,7 @@ mod tests {
             a.larger(b),
             a.lesser(b),
             c.abs().normalizing(),
+            a.logarithm(),
             unit.count_change(a, b),
             unit.count_change_below(a, b, c),
             c.abs().above(),
@@ -250,6 +257,7 @@ mod tests {
         assert_eq!(x.neg_mul_add([2.0; LANES], [10.0; LANES]), [4.0; LANES]);
         assert_eq!(x.mul_sub([2.0; LANES], [10.0; LANES]), [-4.0; LANES]);
         assert_eq!(x.mul([f64::EPSILON; LANES]).normalizing(), [2f64.powi(51); LANES]);
+        assert_eq!([2.0; LANES].logarithm().sub([1.0; LANES].logarithm()), [(1u64 << 32) as f64; LANES]);
         assert_eq!((x.above(), x.below()), ([3f64.next_up(); LANES], [3f64.next_down(); LANES]));
         assert_eq!(x.two_sum([f64::EPSILON; LANES]), ([3.0; LANES], [f64::EPSILON; LANES]));
         assert_eq!(x.two_sub([f64::EPSILON; LANES]), ([3.0; LANES], [-f64::EPSILON; LANES]));

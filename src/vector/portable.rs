@@ -1,6 +1,6 @@
 //! Vectors as plain arrays.
 
-use super::{EXPONENTS, SIGN, Vector, each};
+use super::{EXPONENTS, SIGN, Vector, double_of, each};
 
 impl<const N: usize> Vector for [f64; N] {
     const WIDTH: usize = N;
@@ -111,5 +111,10 @@ impl<const N: usize> Vector for [f64; N] {
     #[inline(always)]
     fn normalizing(self) -> Self {
         each(|i| f64::from_bits(EXPONENTS.wrapping_sub((self[i].to_bits() & !SIGN) >> 52) << 52))
+    }
+
+    #[inline(always)]
+    fn logarithm(self) -> Self {
+        each(|i| double_of((self[i].to_bits() & !SIGN) >> 20))
     }
 }

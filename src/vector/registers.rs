@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::{EXPONENTS, SIGN, Vector};
+use super::{EXPONENTS, SIGN, Vector, WHOLE};
 
 /// A value for the k-th register, of every one. A loop and no closure: compilers leave closures for the processor's
 /// common instructions.
@@ -158,6 +158,17 @@ macro_rules! registers {
                     let exponent = $minus($set_integers(EXPONENTS as i64), $right::<52>(positive));
                     $as_doubles($left::<52>(exponent))
                 })
+            }
+
+            #[inline(always)]
+            fn logarithm(self) -> Self {
+                let whole = each!(self, k => {
+                    let positive = $and($as_integers(self.0[k]), $set_integers(!SIGN as i64));
+                    // No bit of the two is the same.
+                    let bits = $right::<20>(positive);
+                    $as_doubles($xor(bits, $set_integers(WHOLE.to_bits() as i64)))
+                });
+                whole.sub(Self::splat(WHOLE))
             }
         }
     };

@@ -23,7 +23,7 @@
 //! **Nothing is guessed.** Each value comes with a bound of what rounding can have done to it, and where that shows in a
 //! double, as where the two edges all but meet (near a closing), big numbers take over.
 
-use super::meet::Meeting;
+use super::meet::{Meeting, Point};
 use crate::error::{Error, Result};
 use crate::number::{Laurent, Rational, Twofold, rational};
 use crate::propagator::TwoClocks;
@@ -62,25 +62,32 @@ const STEP: f64 = 1e-10;
 const STEPS: u32 = 100;
 
 impl Peak {
-    /// The peak of an open, finite tongue; `None` of any other.
+    /// The peaks of tongues that are open and finite; `None` of any other.
     ///
     /// # Errors
     /// Where the schedule is too long, or more digits are needed than are tried.
-    pub(crate) fn new(edges: &Edges, gap: &Gap) -> Result<Option<Peak>> {
-        let Some(upper) = gap.upper.filter(|_| !gap.closed) else { return Ok(None) };
+    pub(crate) fn all(edges: &Edges, gaps: &[Gap]) -> Result<Vec<Option<Peak>>> {
         // Of a long period one point by more bits costs less than the string.
-        let is_thin = gap.width.1 <= POINT * gap.lower.lo;
-        let in_doubles = match () {
-            () if edges.is_long() && is_thin => None,
-            () => Inside::new(edges.string()?, gap, &upper).fastest(),
+        let by_bits = |gap: &Gap| edges.is_long() && gap.width.1 <= POINT * gap.lower.lo;
+        let open = gaps.iter().filter_map(|gap| gap.upper.filter(|_| !gap.closed).map(|upper| (gap, upper)));
+        let in_doubles: Vec<_> = open.filter(|(gap, _)| !by_bits(gap)).collect();
+        let mut found = match in_doubles.is_empty() {
+            true => Vec::new(),
+            false => Search::all(edges.string()?, &in_doubles),
+        }
+        .into_iter();
+        let peak = |gap: &Gap| {
+            let Some(upper) = gap.upper.filter(|_| !gap.closed) else { return Ok(None) };
+            let in_doubles = if by_bits(gap) { None } else { found.next().flatten() };
+            let (s, ln_multiplier) = in_doubles.map_or_else(|| fastest_by_bits(edges, gap, &upper), Ok)?;
+            Ok(Some(Peak {
+                s,
+                ln_multiplier,
+                rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
+                slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
+            }))
         };
-        let (s, ln_multiplier) = in_doubles.map_or_else(|| fastest_by_bits(edges, gap, &upper), Ok)?;
-        Ok(Some(Peak {
-            s,
-            ln_multiplier,
-            rate: ln_multiplier / (edges.ratio().p() as f64 * s.sqrt()),
-            slow_steps_to_tenfold: std::f64::consts::LN_10 * edges.ratio().q() as f64 / ln_multiplier,
-        }))
+        gaps.iter().map(peak).collect()
     }
 
     /// The growth rate per unit time for a fast stiffness L1, rounded: `rate` is in units of √L1.
@@ -127,68 +134,123 @@ fn ln_multiplier_by_bits(edges: &Edges, s: &Rational, m: u64) -> Result<f64> {
     })
 }
 
-/// A tongue in doubles.
-struct Inside<'a> {
-    string: &'a HalfString,
+/// A tongue in doubles, and how far the search in it has come.
+struct Search {
     odd: bool,
     /// a, and b − a.
     lower: Twofold,
     width: f64,
+    /// Shares of ln(b/a) below and above the peak, with the two sides' difference there.
+    below: (f64, f64),
+    above: (f64, f64),
+    /// The difference at the share looked at last.
+    before: f64,
+    /// The share to look at next.
+    next: f64,
+    step: f64,
+    steps: u32,
+    /// s and ln μ where the rate is largest; `None` where rounding shows.
+    found: Option<Option<(f64, f64)>>,
 }
 
-impl<'a> Inside<'a> {
-    fn new(string: &'a HalfString, gap: &Gap, upper: &Edge) -> Self {
+impl Search {
+    /// s and ln μ where the rate is largest, in each tongue; `None` where rounding shows.
+    fn all(string: &HalfString, tongues: &[(&Gap, Edge)]) -> Vec<Option<(f64, f64)>> {
+        let mut all: Vec<Search> = tongues.iter().map(|(gap, _)| Search::new(gap)).collect();
+        Search::sharpen(string, tongues, &mut all);
+        loop {
+            let mut left: Vec<&mut Search> = all.iter_mut().filter(|search| search.found.is_none()).collect();
+            if left.is_empty() {
+                break;
+            }
+            let points: Vec<Point> = left.iter().map(|search| search.point()).collect();
+            for (search, meeting) in left.iter_mut().zip(Meeting::all(string, &points)) {
+                search.take(&meeting);
+            }
+        }
+        all.into_iter().map(|search| search.found.flatten()).collect()
+    }
+
+    fn new(gap: &Gap) -> Self {
+        let lower = Twofold { hi: gap.lower.middle(), lo: 0.0 };
+        let width = 0.5 * (gap.width.0 + gap.width.1);
+        let step = STEP / (width / lower.hi).ln_1p().max(1.0);
+        let (below, above) = ((0.0, 1.0), (1.0, -1.0));
         let odd = gap.m % 2 == 1;
-        let middle = |edge: &Edge| Twofold { hi: edge.middle(), lo: 0.0 };
-        let (mut lower, mut width) = (middle(&gap.lower), 0.5 * (gap.width.0 + gap.width.1));
-        let relative = width / lower.hi;
-        if THIN < relative && relative < NARROW {
-            let sharper = |edge: &Edge| {
-                let s = middle(edge);
-                let to = Meeting::new(string, s, odd).pair[usize::from(!edge.entry.starts_free())].to_zero();
-                s.plus(s.scaled(to))
+        Search { odd, lower, width, below, above, before: 0.0, next: 0.5, step, steps: 0, found: None }
+    }
+
+    /// Edges of narrow tongues to two doubles, by a step of Newton's.
+    fn sharpen(string: &HalfString, tongues: &[(&Gap, Edge)], all: &mut [Search]) {
+        let narrow = |search: &Search| !search.is_thin() && search.width < NARROW * search.lower.hi;
+        let mut narrow: Vec<_> = all.iter_mut().zip(tongues).filter(|(search, _)| narrow(search)).collect();
+        let at = |edge: &Edge| Twofold { hi: edge.middle(), lo: 0.0 };
+        let edges = narrow.iter().flat_map(|(search, (gap, upper))| {
+            [&gap.lower, upper].map(|edge| Point { s: at(edge), odd: search.odd })
+        });
+        let meetings = Meeting::all(string, &edges.collect::<Vec<_>>());
+        for ((search, (gap, upper)), meetings) in narrow.iter_mut().zip(meetings.chunks_exact(2)) {
+            let sharper = |edge: &Edge, meeting: &Meeting| {
+                let to = meeting.pair[usize::from(!edge.entry.starts_free())].to_zero();
+                at(edge).plus(at(edge).scaled(to))
             };
-            lower = sharper(&gap.lower);
-            width = sharper(upper).minus(lower).hi;
+            search.lower = sharper(&gap.lower, &meetings[0]);
+            search.width = sharper(upper, &meetings[1]).minus(search.lower).hi;
         }
-        Inside { string, odd, lower, width }
     }
 
-    /// s and ln μ where the rate is largest; `None` where rounding shows.
-    fn fastest(&self) -> Option<(f64, f64)> {
-        if self.width <= THIN * self.lower.hi {
-            let (ln, to) = Meeting::new(self.string, self.lower, self.odd).in_the_middle()?;
-            return Some((self.lower.hi + self.lower.hi * to, ln));
-        }
-        let (mut below, mut above) = ((0.0, 1.0), (1.0, -1.0));
-        let step = STEP / (self.width / self.lower.hi).ln_1p().max(1.0);
-        let mut last: Option<(f64, f64, f64)> = None;
-        let mut before = 0.0;
-        for _ in 0..STEPS {
-            let u = (below.0 * above.1 - above.0 * below.1) / (above.1 - below.1);
-            if let Some((_, s, ln)) = last.filter(|last| (u - last.0).abs() <= step) {
-                return Some((s, ln));
-            }
-            let (s, ln, balance) = self.at(u)?;
-            last = Some((u, s, ln));
-            // Illinois: an end that stays twice counts half.
-            let half = if balance * before > 0.0 { 0.5 } else { 1.0 };
-            if balance > 0.0 {
-                (below, above.1) = ((u, balance), half * above.1);
-            } else {
-                (above, below.1) = ((u, balance), half * below.1);
-            }
-            before = balance;
-        }
-        None
+    fn is_thin(&self) -> bool {
+        self.width <= THIN * self.lower.hi
     }
 
-    /// s, ln μ and the two sides' difference where ln(s/a) is the share u of ln(b/a).
-    fn at(&self, u: f64) -> Option<(f64, f64, f64)> {
-        let (a, width) = (self.lower.hi, self.width);
-        let from = a * (u * (width / a).ln_1p()).exp_m1();
-        let s = self.lower.plus(Twofold { hi: from, lo: 0.0 });
-        let meeting = Meeting::new(self.string, s, self.odd);
+    /// How far above a the next place is: ln(s/a) is that share of ln(b/a).
+    fn from(&self) -> f64 {
+        let a = self.lower.hi;
+        a * (self.next * (self.width / a).ln_1p()).exp_m1()
+    }
+
+    /// Where to look next.
+    fn point(&self) -> Point {
+        let s = match self.is_thin() {
+            true => self.lower,
+            false => self.lower.plus(Twofold { hi: self.from(), lo: 0.0 }),
+        };
+        Point { s, odd: self.odd }
+    }
+
+    /// Goes on with what is there.
+    fn take(&mut self, meeting: &Meeting) {
+        if self.is_thin() {
+            let found = meeting.in_the_middle();
+            self.found = Some(found.map(|(ln, to)| (self.lower.hi + self.lower.hi * to, ln)));
+            return;
+        }
+        let Some((s, ln, balance)) = self.balance(meeting) else {
+            self.found = Some(None);
+            return;
+        };
+        let u = self.next;
+        // Illinois: an end that stays twice counts half.
+        let half = if balance * self.before > 0.0 { 0.5 } else { 1.0 };
+        if balance > 0.0 {
+            (self.below, self.above.1) = ((u, balance), half * self.above.1);
+        } else {
+            (self.above, self.below.1) = ((u, balance), half * self.below.1);
+        }
+        self.before = balance;
+        self.steps += 1;
+        self.next =
+            (self.below.0 * self.above.1 - self.above.0 * self.below.1) / (self.above.1 - self.below.1);
+        if (self.next - u).abs() <= self.step {
+            self.found = Some(Some((s, ln)));
+        } else if self.steps == STEPS {
+            self.found = Some(None);
+        }
+    }
+
+    /// s, ln μ and the two sides' difference.
+    fn balance(&self, meeting: &Meeting) -> Option<(f64, f64, f64)> {
+        let (width, from, s) = (self.width, self.from(), self.point().s);
         let ln = meeting.ln_multiplier()?;
         let w = 0.5 * ln;
         let balance = from * (width - from) / (s.hi * width) * (meeting.rise() - w / w.tanh());
@@ -234,7 +296,8 @@ mod tests {
                 for gap in Tongues::new(Ratio::new(p, q).unwrap(), &rho).unwrap().all().unwrap() {
                     let Some(upper) = gap.upper.filter(|_| !gap.closed) else { continue };
                     seen += 1;
-                    let Some((s, ln)) = Inside::new(edges.string().unwrap(), &gap, &upper).fastest() else {
+                    let alone = Search::all(edges.string().unwrap(), &[(&gap, upper)]);
+                    let Some((s, ln)) = alone[0] else {
                         left += 1;
                         continue;
                     };

@@ -28,9 +28,10 @@
 //! with no difference of the edges in it. Slopes are in ln s throughout.
 
 use crate::number::Twofold;
-use crate::tongue::string::lanes::{logarithm, power_of_two, rescaling};
+use crate::tongue::string::lanes::{LONGEST, power_of_two};
 use crate::tongue::string::{HalfString, KINDS, Step};
-use crate::vector::instructions::Task;
+use crate::vector::instructions::Kernel;
+use crate::vector::{LANES, Pair, Vector};
 
 /// What one operation on two doubles loses, relative to its terms: the kick's own roundings included.
 const LOSS: f64 = f64::from_bits((1023 - 101) << 52);
@@ -59,6 +60,13 @@ impl Value {
     }
 }
 
+/// Where to look: at s, for the tongues of odd or of even m.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub s: Twofold,
+    pub odd: bool,
+}
+
 /// The pair at one s.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Meeting {
@@ -71,9 +79,16 @@ pub(crate) struct Meeting {
 }
 
 impl Meeting {
-    /// At s, for the tongues of odd or of even m.
-    pub fn new(string: &HalfString, s: Twofold, odd: bool) -> Meeting {
-        string.instructions.perform_alone(Meet { string, s, odd })
+    /// At each point: several side by side, for one alone waits for its own sums.
+    pub fn all(string: &HalfString, points: &[Point]) -> Vec<Meeting> {
+        string.instructions.compute_by_register(Meet { string, points })
+    }
+
+    /// Of the two orbits from the left and the two from the right, at a node of kick k.
+    #[inline(always)]
+    fn of([left, right]: [[&Orbit; 2]; 2], k: Twofold, odd: bool) -> Meeting {
+        let pair = [left[0].meet(right[0], k), left[1].meet(right[1], k)];
+        Meeting { pair, sign: if odd { -1.0 } else { 1.0 }, balance: balance(left, right) }
     }
 
     /// The slope of ln E.
@@ -123,80 +138,243 @@ fn ln_multiplier(number: f64, exponent: i64) -> f64 {
 
 struct Meet<'a> {
     string: &'a HalfString,
-    s: Twofold,
-    odd: bool,
+    points: &'a [Point],
 }
 
-impl Task for Meet<'_> {
-    type Output = Meeting;
+impl Kernel for Meet<'_> {
+    type Output = Vec<Meeting>;
 
     #[inline(always)]
-    fn run(self) -> Meeting {
-        let Meet { string, s, odd } = self;
-        let table = Table::new(string, s);
-        let (at, last) = (table.node(string), string.last());
-        let left = Orbit::run(&table, &string.forward[..at], [true, false]);
-        // In the order of the pair: X ends free for C, pinned for A.
-        let right = Orbit::run(&table, &string.backward[..last - at], [!odd, odd]);
-        let k = table.kicks[string.nodes[at].kind];
-        let pair = [left[0].meet(&right[0], k), left[1].meet(&right[1], k)];
-        Meeting { pair, sign: if odd { -1.0 } else { 1.0 }, balance: balance(&left, &right) }
+    fn run<V: Vector>(self) -> Vec<Meeting> {
+        let Meet { string, points } = self;
+        let last = V::splat(string.last() as f64);
+        let mut meetings = Vec::with_capacity(points.len());
+        for points in points.chunks(V::WIDTH) {
+            let table = Table::<V>::new(string, points);
+            let at = table.nodes(string);
+            // In the order of the pair: X ends free for C, pinned for A.
+            let mut ends_free = [0.0; LANES];
+            for (lane, point) in points.iter().enumerate() {
+                ends_free[lane] = if point.odd { 0.0 } else { 1.0 };
+            }
+            let (one, ends_free) = (V::splat(1.0), V::load(&ends_free));
+            let left = Walk::run(&table, &string.forward, at, [one, V::splat(0.0)]);
+            let right = Walk::run(&table, &string.backward, last.sub(at), [ends_free, one.sub(ends_free)]);
+            let (left, right) = (left.map(Walk::orbits), right.map(Walk::orbits));
+            let mut nodes = [0.0; LANES];
+            at.store(&mut nodes);
+            for (lane, point) in points.iter().enumerate() {
+                let k = table.kick(string.nodes[nodes[lane] as usize].kind, lane);
+                let ends = [[&left[0][lane], &left[1][lane]], [&right[0][lane], &right[1][lane]]];
+                meetings.push(Meeting::of(ends, k, point.odd));
+            }
+        }
+        meetings
     }
 }
 
 /// Kicks by kind of node, in a unit of time that no spring is longer than.
-struct Table {
-    kicks: [Twofold; KINDS],
+struct Table<V> {
+    kicks: [Pair<V>; KINDS],
     /// Units in a tick: a power of two.
     tick: f64,
 }
 
-impl Table {
+impl<V: Vector> Table<V> {
+    /// Lanes without a point have the last one's.
     #[inline(always)]
-    fn new(string: &HalfString, s: Twofold) -> Table {
-        let unit = string.unit();
-        let kappa = s.over(string.ticks).scaled(unit);
-        let mut kicks = [kappa; KINDS];
-        for (kick, (&hi, &lo)) in kicks.iter_mut().zip(string.masses.iter().zip(&string.rests)) {
-            *kick = kappa.times(Twofold { hi, lo });
+    fn new(string: &HalfString, points: &[Point]) -> Self {
+        let (unit, none) = (string.unit(), [0.0; LANES]);
+        let mut kicks = [[none, none]; KINDS];
+        for lane in 0..V::WIDTH {
+            let kappa = points[lane.min(points.len() - 1)].s.over(string.ticks).scaled(unit);
+            for (kick, (&hi, &lo)) in kicks.iter_mut().zip(string.masses.iter().zip(&string.rests)) {
+                let Twofold { hi, lo } = kappa.times(Twofold { hi, lo });
+                (kick[0][lane], kick[1][lane]) = (hi, lo);
+            }
         }
-        Table { kicks, tick: 1.0 / unit }
+        let mut table =
+            Table { kicks: [Pair { hi: V::splat(0.0), lo: V::splat(0.0) }; KINDS], tick: 1.0 / unit };
+        for (kick, [hi, lo]) in table.kicks.iter_mut().zip(&kicks) {
+            *kick = Pair { hi: V::load(hi), lo: V::load(lo) };
+        }
+        table
+    }
+
+    #[inline(always)]
+    fn kick(&self, kind: usize, lane: usize) -> Twofold {
+        let mut parts = [[0.0; LANES]; 2];
+        self.kicks[kind].hi.store(&mut parts[0]);
+        self.kicks[kind].lo.store(&mut parts[1]);
+        Twofold { hi: parts[0][lane], lo: parts[1][lane] }
     }
 
     /// r: where |PQ| is largest, in doubles.
     #[inline(always)]
-    fn node(&self, string: &HalfString) -> usize {
-        let mut heights = vec![0; string.nodes.len()];
-        self.climb(&string.forward, &mut heights);
-        heights.reverse();
-        self.climb(&string.backward, &mut heights);
-        heights.reverse();
-        (0..heights.len()).max_by_key(|&j| heights[j]).unwrap_or(0)
-    }
-
-    /// Adds the logarithm of |x x'| at each node, the end behind being free or pinned.
-    #[inline(always)]
-    fn climb(&self, steps: &[Step], heights: &mut [i64]) {
-        let (mut x, mut v, mut exponent) = ([1.0f64, 0.0], [0.0f64, 1.0], 0);
-        heights[0] += logarithm(0.0);
-        for (step, height) in steps.iter().zip(&mut heights[1..]) {
-            let (k, t) = (self.kicks[step.kind].hi, step.length * self.tick);
-            for i in 0..2 {
-                v[i] -= k * x[i];
-                x[i] += t * v[i];
-            }
-            *height += logarithm(x[0]) + logarithm(x[1]) + exponent;
-            // Both alike: their product's logarithm is what counts.
-            for i in 0..2 {
-                let (factor, places) = rescaling(x[i].abs() + v[i].abs());
-                (x[i], v[i]) = (x[i] * factor, v[i] * factor);
-                exponent += places << 32;
-            }
+    fn nodes(&self, string: &HalfString) -> V {
+        let last = string.last();
+        let mut heights = vec![0.0; (last + 1) * V::WIDTH];
+        let mut height = Heights::new();
+        for (step, to) in string.forward.iter().zip(heights[V::WIDTH..].chunks_exact_mut(V::WIDTH)) {
+            height.pass(self.kicks[step.kind].hi, step.length * self.tick).store(to);
         }
+        let (mut best, mut at) = (V::load(&heights[last * V::WIDTH..]), V::splat(last as f64));
+        let mut height = Heights::new();
+        for (i, step) in string.backward.iter().enumerate() {
+            let j = last - 1 - i;
+            let behind = height.pass(self.kicks[step.kind].hi, step.length * self.tick);
+            let both = V::load(&heights[j * V::WIDTH..]).add(behind);
+            at = both.if_above(best, V::splat(j as f64), at);
+            best = both.larger(best);
+        }
+        at
     }
 }
 
-/// (x, v) 2^exponent with its slope (dx, dv), short of a node's kick.
+/// The amplitudes of the two orbits from an end, free and pinned, in doubles.
+struct Heights<V> {
+    x: [V; 2],
+    v: [V; 2],
+    exponent: V,
+}
+
+impl<V: Vector> Heights<V> {
+    #[inline(always)]
+    fn new() -> Self {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        Heights { x: [one, zero], v: [zero, one], exponent: zero }
+    }
+
+    /// The logarithm of |x x'| at the next node, as [`Vector::logarithm`] has it.
+    #[inline(always)]
+    fn pass(&mut self, k: V, t: f64) -> V {
+        let t = V::splat(t);
+        for i in 0..2 {
+            self.v[i] = self.v[i].sub(k.mul(self.x[i]));
+            self.x[i] = self.x[i].add(t.mul(self.v[i]));
+        }
+        let height = self.x[0].logarithm().add(self.x[1].logarithm()).add(self.exponent);
+        for i in 0..2 {
+            // Both alike: their product's logarithm is what counts.
+            if let Some((factor, places)) = rescalings(self.x[i].abs().add(self.v[i].abs())) {
+                (self.x[i], self.v[i]) = (self.x[i].mul(factor), self.v[i].mul(factor));
+                self.exponent = places.mul_add(V::splat((1u64 << 32) as f64), self.exponent);
+            }
+        }
+        height
+    }
+}
+
+/// The powers of two that bring lengths back into range, and by how many places; `None` where all are.
+#[inline(always)]
+fn rescalings<V: Vector>(length: V) -> Option<(V, V)> {
+    let (longest, shortest) = (V::splat(LONGEST), V::splat(1.0 / LONGEST));
+    if !length.any_above(longest) && !shortest.any_above(length) {
+        return None;
+    }
+    let choose = |down: f64, up: f64, none: f64| {
+        let short = shortest.if_above(length, V::splat(up), V::splat(none));
+        length.if_above(longest, V::splat(down), short)
+    };
+    Some((choose(1.0 / LONGEST, LONGEST, 1.0), choose(200.0, -200.0, 0.0)))
+}
+
+/// (x, v) 2^exponent with its slope (dx, dv), short of a node's kick: in each lane.
+struct Walk<V> {
+    x: Pair<V>,
+    v: Pair<V>,
+    dx: V,
+    dv: V,
+    exponent: V,
+    length: V,
+    across: V,
+    along: V,
+}
+
+impl<V: Vector> Walk<V> {
+    /// Two orbits through the same steps, so many in each lane, free (1) or pinned (0) at their start.
+    #[inline(always)]
+    fn run(table: &Table<V>, steps: &[Step], upto: V, free: [V; 2]) -> [Self; 2] {
+        let (mut first, mut second) = (Walk::new(free[0]), Walk::new(free[1]));
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        for (j, step) in steps.iter().enumerate() {
+            let j = V::splat(j as f64);
+            if !upto.any_above(j) {
+                break;
+            }
+            // A lane that has arrived has no kick and no drift any more, and nothing to round.
+            let moves = upto.if_above(j, one, zero);
+            let k = table.kicks[step.kind];
+            let k = Pair { hi: k.hi.mul(moves), lo: k.lo.mul(moves) };
+            let t = V::splat(step.length * table.tick).mul(moves);
+            first.pass(k, t, moves);
+            second.pass(k, t, moves);
+        }
+        [first, second]
+    }
+
+    #[inline(always)]
+    fn new(free: V) -> Self {
+        let (zero, one) = (V::splat(0.0), V::splat(1.0));
+        let (x, v) = (Pair { hi: free, lo: zero }, Pair { hi: one.sub(free), lo: zero });
+        Walk { x, v, dx: zero, dv: zero, exponent: zero, length: one, across: zero, along: zero }
+    }
+
+    #[inline(always)]
+    fn pass(&mut self, k: Pair<V>, t: V, moves: V) {
+        self.dv = self.dv.sub(k.hi.mul(self.dx.add(self.x.hi)));
+        let pull = k.times(self.x);
+        self.v = self.v.minus(pull);
+        self.account(pull.hi.abs().add(self.v.hi.abs()).mul(moves));
+        self.dx = self.dx.add(t.mul(self.dv));
+        let way = self.v.scaled(t);
+        self.x = self.x.plus(way);
+        self.account(way.hi.abs().add(self.x.hi.abs()).mul(moves));
+        if let Some((factor, places)) = rescalings(self.length) {
+            (self.x, self.v) = (self.x.scaled(factor), self.v.scaled(factor));
+            (self.dx, self.dv) = (self.dx.mul(factor), self.dv.mul(factor));
+            self.length = self.length.mul(factor);
+            self.across = self.across.mul(factor.mul(factor));
+            self.exponent = self.exponent.add(places);
+        }
+    }
+
+    /// After an operation with a rounding of [`LOSS`] times `size`.
+    #[inline(always)]
+    fn account(&mut self, size: V) {
+        self.length = self.x.hi.abs().add(self.v.hi.abs());
+        self.across = self.across.add(size.mul(self.length));
+        self.along = self.along.add(size.div(self.length));
+    }
+
+    /// Lane by lane.
+    #[inline(always)]
+    fn orbits(self) -> [Orbit; LANES] {
+        let all = [
+            self.x.hi,
+            self.x.lo,
+            self.v.hi,
+            self.v.lo,
+            self.dx,
+            self.dv,
+            self.exponent,
+            self.length,
+            self.across,
+            self.along,
+        ];
+        let mut lanes = [[0.0; LANES]; 10];
+        for (lanes, all) in lanes.iter_mut().zip(all) {
+            all.store(lanes);
+        }
+        std::array::from_fn(|i| {
+            let [x, x_lo, v, v_lo, dx, dv, exponent, length, across, along] = lanes.map(|lanes| lanes[i]);
+            let (x, v) = (Twofold { hi: x, lo: x_lo }, Twofold { hi: v, lo: v_lo });
+            Orbit { x, v, dx, dv, exponent: exponent as i64, length, across, along }
+        })
+    }
+}
+
+/// An orbit where it has arrived.
 struct Orbit {
     x: Twofold,
     v: Twofold,
@@ -210,53 +388,6 @@ struct Orbit {
 }
 
 impl Orbit {
-    /// Two orbits through the same steps, each free or pinned at its start: neither waits for the other. (Closures over arrays would
-    /// not be compiled for the task's instructions.)
-    #[inline(always)]
-    fn run(table: &Table, steps: &[Step], [first, second]: [bool; 2]) -> [Orbit; 2] {
-        let (mut first, mut second) = (Orbit::start(first), Orbit::start(second));
-        for step in steps {
-            let (k, t) = (table.kicks[step.kind], step.length * table.tick);
-            first.pass(k, t);
-            second.pass(k, t);
-        }
-        [first, second]
-    }
-
-    #[inline(always)]
-    fn start(free: bool) -> Orbit {
-        let unit = |on: bool| Twofold { hi: if on { 1.0 } else { 0.0 }, lo: 0.0 };
-        let (x, v) = (unit(free), unit(!free));
-        Orbit { x, v, dx: 0.0, dv: 0.0, exponent: 0, length: 1.0, across: 0.0, along: 0.0 }
-    }
-
-    #[inline(always)]
-    fn pass(&mut self, k: Twofold, t: f64) {
-        self.dv -= k.hi * (self.dx + self.x.hi);
-        let pull = k.times(self.x);
-        self.v = self.v.minus(pull);
-        self.account(pull.hi.abs() + self.v.hi.abs());
-        self.dx += t * self.dv;
-        let way = self.v.scaled(t);
-        self.x = self.x.plus(way);
-        self.account(way.hi.abs() + self.x.hi.abs());
-        let (factor, places) = rescaling(self.length);
-        if places != 0 {
-            (self.x, self.v) = (self.x.scaled(factor), self.v.scaled(factor));
-            [&mut self.dx, &mut self.dv, &mut self.length].into_iter().for_each(|x| *x *= factor);
-            self.across *= factor * factor;
-            self.exponent += places;
-        }
-    }
-
-    /// After an operation with a rounding of [`LOSS`] times `size`.
-    #[inline(always)]
-    fn account(&mut self, size: f64) {
-        self.length = self.x.hi.abs() + self.v.hi.abs();
-        self.across += size * self.length;
-        self.along += size / self.length;
-    }
-
     /// How far x and v may be off.
     #[inline(always)]
     fn off(&self) -> f64 {
@@ -282,9 +413,9 @@ impl Orbit {
 
 /// L = ln |P/Q|.
 #[inline(always)]
-fn balance(left: &[Orbit; 2], right: &[Orbit; 2]) -> Value {
-    let product = |[a, b]: &[Orbit; 2]| a.x.times(b.x).magnitude();
-    let exponent = |[a, b]: &[Orbit; 2]| a.exponent + b.exponent;
+fn balance(left: [&Orbit; 2], right: [&Orbit; 2]) -> Value {
+    let product = |[a, b]: [&Orbit; 2]| a.x.times(b.x).magnitude();
+    let exponent = |[a, b]: [&Orbit; 2]| a.exponent + b.exponent;
     let (p, q, places) = (product(left), product(right), exponent(left) - exponent(right));
     let excess = p.scaled(power_of_two(places)).minus(q).hi / q.hi;
     let number = if excess.abs() < 0.5 {
@@ -292,7 +423,7 @@ fn balance(left: &[Orbit; 2], right: &[Orbit; 2]) -> Value {
     } else {
         (p.hi / q.hi).ln() + places as f64 * std::f64::consts::LN_2
     };
-    let rise = |[a, b]: &[Orbit; 2]| a.dx / a.x.hi + b.dx / b.x.hi;
-    let stray = |[a, b]: &[Orbit; 2]| (a.off() / a.x.hi).abs() + (b.off() / b.x.hi).abs();
+    let rise = |[a, b]: [&Orbit; 2]| a.dx / a.x.hi + b.dx / b.x.hi;
+    let stray = |[a, b]: [&Orbit; 2]| (a.off() / a.x.hi).abs() + (b.off() / b.x.hi).abs();
     Value { number, slope: rise(left) - rise(right), uncertainty: stray(left) + stray(right), exponent: 0 }
 }

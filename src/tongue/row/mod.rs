@@ -78,11 +78,16 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row of a tongue with the columns wanted.
+    /// The rows of tongues with the columns wanted.
     ///
     /// # Errors
     /// Where the schedule is too long.
-    pub(crate) fn new(edges: &Edges, gap: &Gap, wanted: &Wanted) -> Result<Row> {
+    pub(crate) fn all(edges: &Edges, gaps: &[Gap], wanted: &Wanted) -> Result<Vec<Row>> {
+        let peaks = if wanted.growth { Peak::all(edges, gaps)? } else { vec![None; gaps.len()] };
+        gaps.iter().zip(peaks).map(|(gap, peak)| Row::new(edges, gap, wanted, peak)).collect()
+    }
+
+    fn new(edges: &Edges, gap: &Gap, wanted: &Wanted, peak: Option<Peak>) -> Result<Row> {
         let (ratio, m) = (edges.ratio(), gap.m);
         let family = wanted.family.then(|| dominant_family(ratio, m));
         let mut exact = [None, None];
@@ -90,7 +95,6 @@ impl Row {
             exact[0] = exact_edge(edges, m, &gap.lower)?;
             exact[1] = gap.upper.as_ref().map_or(Ok(None), |upper| exact_edge(edges, m, upper))?;
         }
-        let peak = if wanted.growth { Peak::new(edges, gap)? } else { None };
         let predicted = if wanted.predicted { Predicted::new(edges, gap)? } else { None };
         let first_order = if wanted.first_order { Law::new(edges, gap) } else { None };
         Ok(Row { ratio, gap: gap.clone(), family, exact, peak, predicted, first_order })

@@ -37,7 +37,7 @@ pub(crate) fn logarithm(x: f64) -> i64 {
 }
 
 /// Vectors are scaled down beyond this length and up below its reciprocal: 2^200. A node changes it by less than 2^120.
-const LONGEST: f64 = f64::from_bits((1023 + 200) << 52);
+pub(crate) const LONGEST: f64 = f64::from_bits((1023 + 200) << 52);
 
 /// The power of two that brings a length back into range, and by how many places.
 #[inline(always)]
