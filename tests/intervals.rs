@@ -239,9 +239,34 @@ fn what_stays_at_an_edge_for_all_numbers_leaves_nothing_open() {
     }
 }
 
+/// A bond of 6 turns by a third of a half turn in each step of 1/3, and D = Aᵀ under 3:2 whatever the slow force: motions without any symmetry
+/// cross at irrational numbers without growth.
+#[test]
+fn crossings_where_the_half_period_is_the_whole_of_a_shorter_one_leave_nothing_open() {
+    let mut numbers = Numbers(31);
+    for n in [2, 3, 3, 4] {
+        let mut pick = || (1 + numbers.below(9)).to_string();
+        let walls = (0..n).map(|i| json!([i, null, pick()])).collect::<Vec<_>>();
+        let slow: Vec<Value> = walls.into_iter().chain((2..n).map(|i| json!([i - 1, i, "7"]))).collect();
+        let masses: Vec<&str> = ["1", "2", "2", "1"].into_iter().take(n).collect();
+        let source = json!({
+            "schema": "kickdrift/system/1", "masses": masses, "potentials": [
+                {"name": "fast", "step": "1/3", "springs": [[0, 1, "6"]]},
+                {"name": "slow", "step": "1/2", "scale": "1", "springs": slow},
+            ],
+        });
+        let (path, ends) = ("potentials.1.scale", (0.125, 4.0));
+        let span = format!("{path}=1/8..4").parse().unwrap();
+        let found = scene(&source).intervals(&span, 1e-2, &Limits::default()).unwrap();
+        assert_whole(&found.stretches, ends, &source.to_string());
+        assert_true(&source, path, &found.stretches, 3, &mut numbers);
+    }
+}
+
 /// Motions of different symmetry cross at irrational numbers without growth: a mirror's two families in chains, the families of equal arms
 /// about one atom, of which two are alike and leave everything unstable at the same place, and rings of five and eight
-/// molecules of two atoms, whose eigenspaces lie over Q(sqrt 5) and Q(sqrt 2).
+/// molecules of two atoms, whose eigenspaces lie over Q(sqrt 5) and Q(sqrt 2). A bond of 6 turns by a third of a half turn in a step of
+/// 1/3: there motions of one symmetry cross.
 #[test]
 fn crossings_of_different_symmetries_leave_nothing_open() {
     let mut numbers = Numbers(29);
@@ -251,7 +276,7 @@ fn crossings_of_different_symmetries_leave_nothing_open() {
         let n = if is_ring { [10, 16][k % 2] } else { 3 + k % 3 };
         let (mut fast, mut slow, mut masses) = (Vec::new(), Vec::new(), vec![String::from("1"); n]);
         if is_ring {
-            let (bond, wall, around) = (pick(12), pick(12), pick(12));
+            let (bond, wall, around) = (if k % 4 < 2 { pick(12) } else { "6".into() }, pick(12), pick(12));
             for i in (0..n).step_by(2) {
                 masses[i + 1] = "2".into();
                 fast.push(json!([i, i + 1, bond]));
@@ -273,8 +298,7 @@ fn crossings_of_different_symmetries_leave_nothing_open() {
             fast.extend((1..n).map(|i| json!([0, i, bond])));
             slow.extend((1..n).map(|i| json!([i, null, wall])));
         }
-        // In rings no bond turns by a third of a half turn a step: where its own resonance closes is another question.
-        let steps = [["1/4", "3/4"], if is_ring { ["1/5", "3/10"] } else { ["1/3", "1/2"] }];
+        let steps = [if is_ring { ["1/5", "3/10"] } else { ["1/4", "3/4"] }, ["1/3", "1/2"]];
         let [step, outer] = steps[k / 2 % 2];
         let source = json!({
             "schema": "kickdrift/system/1", "masses": masses, "potentials": [

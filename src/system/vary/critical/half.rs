@@ -51,7 +51,9 @@ pub(super) struct Half {
     /// A common denominator e of M⁻¹, but for δ.
     unit: BigInt,
     /// Integer multiples: the entries of `scale` δ^E S are in ℤ\[s\], and those of `scale` e δ^E H.
-    pub scale: BigInt,
+    scale: BigInt,
+    /// Whether D = Aᵀ, so that S + 1 = Dᵀ A = A², and 0 and −1 are not always eigenvalues of (A − 1)/2: at some places modulo a prime.
+    pub is_square: bool,
     /// Whether S is self-adjoint in the metric of M, as it is where potentials commute.
     pub is_selfadjoint: bool,
     /// What commutes with S, and with all that does; its eigenspaces have no μ in common that could couple.
@@ -64,6 +66,9 @@ pub(super) struct Eigenspaces {
     from: DMatrix<u64>,
     to: DMatrix<u64>,
 }
+
+/// Any places.
+pub(super) const PLACES: [u64; 3] = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b];
 
 /// Of so many primes one has all eigenvalues of a symmetry, or none is looked for.
 const MOST_PRIMES: usize = 40;
@@ -108,14 +113,33 @@ impl Half {
             ranks,
             unit,
             scale,
+            is_square: false,
             is_selfadjoint,
             symmetry,
         };
         (half.unit, half.scale) = half.common();
+        half.is_square = half.seems_square();
         if !prime_fields().take(MOST_PRIMES).any(|field| half.eigenspaces(&field).is_some()) {
             half.symmetry = None;
         }
         Ok(half)
+    }
+
+    fn seems_square(&self) -> bool {
+        let own = prime_fields().find_map(|field| Some((field, self.residues(&field)?)));
+        let (field, program) = own.expect("primes enough");
+        let mut places = PLACES.into_iter().filter_map(|s| self.at(&field, &program, field.of(s))).peekable();
+        let is_no_end = |at: &At| {
+            let f = modular::characteristic(&field, at.blocks[0].clone());
+            let value = |x: u64| f.iter().rev().fold(0, |sum, &c| field.add(field.mul(sum, x), c));
+            value(at.unit) != 0 && value(field.sub(0, at.unit)) != 0
+        };
+        places.peek().is_some_and(is_no_end) && places.all(|at| at.is_square())
+    }
+
+    /// An integer multiple: the entries of it times δ^E times what [`At::product`] stands for are in ℤ\[s\].
+    pub fn scale(&self) -> BigInt {
+        if self.is_square { 2 * &self.scale * &self.unit } else { self.scale.clone() }
     }
 
     /// Whether there is a symmetry, so that only primes that have its eigenvalues serve.
@@ -183,7 +207,8 @@ impl Half {
         2 * kicks.map(|clock| self.ranks[clock].min(k)).sum::<usize>() + self.degree_of_masses()
     }
 
-    /// More than log₂ of row sums on |s| = 1: of scale δ^E S, of scale δ^E itself, and how much more of scale e δ^E H.
+    /// More than log₂ of row sums on |s| = 1: of [`Half::scale`] δ^E times the product, of that times 1, and how much more of `scale` e δ^E H
+    /// than of `scale` δ^E S.
     pub fn bits(&self) -> [f64; 3] {
         let size = |x: &BigInt| to_f64(&Rational::from_integer(x.abs()));
         let row = |row: &Row<Linear<Rational>>| {
@@ -218,7 +243,9 @@ impl Half {
         let framed = 4.0 * (1.0 + rigid).log2();
         let scale = self.scale.bits() as f64 + self.drifts() as f64 * masses;
         let more = self.unit.bits() as f64 + unit.log2().abs();
-        [1.001 * (scale + 2.0 * path + framed) + 4.0, 1.001 * scale + 1.0, 1.001 * more + 1.0]
+        let sums = [1.001 * (scale + 2.0 * path + framed) + 4.0, 1.001 * scale + 1.0, 1.001 * more + 1.0];
+        // `scale` e δ^E (A − 1) in place of `scale` δ^E S.
+        if self.is_square { [sums[0] + sums[2] + 1.0, sums[1] + sums[2] + 1.0, sums[2]] } else { sums }
     }
 
     /// e, and f^(2 kicks) with a common denominator f, times that of the frame squared: over momenta p/e every kick is 1/f of an integer
@@ -265,10 +292,15 @@ impl Half {
         let block = |rows: &[Vec<u64>], first: usize| DMatrix::from_fn(m, m, |i, j| rows[i][first + j]);
         let [a, b, c, d] = [block(&rows.x, 0), block(&rows.x, m), block(&rows.p, 0), block(&rows.p, m)];
         let scale = field.of_big(&self.scale);
-        let product = modular::times(field, &b.transpose(), &c).map(|x| field.mul(scale, x));
         let unit = field.mul(scale, field.of_big(&self.unit));
+        let product = match self.is_square {
+            true => DMatrix::from_fn(m, m, |i, j| {
+                field.mul(unit, field.sub(a[(i, j)], field.of(u64::from(i == j))))
+            }),
+            false => modular::times(field, &b.transpose(), &c).map(|x| field.mul(scale, x)),
+        };
         let blocks = [a, b, c, d].map(|own| own.map(|x| field.mul(unit, x)));
-        Some(At { product, blocks, delta: field.power(delta, self.drifts() as u64) })
+        Some(At { product, blocks, unit, delta: field.power(delta, self.drifts() as u64) })
     }
 
     /// The half period in the frame's coordinates: A and B as rows of positions, C and D as those of momenta.
@@ -299,12 +331,21 @@ impl Half {
 
 /// A place on the line modulo a prime.
 pub(super) struct At {
-    /// scale S.
+    /// [`Half::scale`] times S, or (A − 1)/2 where D = Aᵀ.
     pub product: DMatrix<u64>,
-    /// A, B, C, D, times scale e.
+    /// A, B, C, D, times `unit`.
     pub blocks: [DMatrix<u64>; 4],
+    /// `scale` e.
+    unit: u64,
     /// δ^E.
     pub delta: u64,
+}
+
+impl At {
+    /// Whether D = Aᵀ.
+    pub fn is_square(&self) -> bool {
+        self.blocks[3] == self.blocks[0].transpose()
+    }
 }
 
 impl Eigenspaces {

@@ -21,6 +21,11 @@
 //! then Q is not diagonalizable where one of their entries is not 0, also where μ meet, whose squarefree polynomial is a divisor: unstable
 //! everywhere but at common roots of all entries.
 //!
+//! Where D = Aᵀ for all s, as of steps 1/3 and 1/2 whose fast forces turn by a third of a half turn a step, S + 1 = Dᵀ A = A²: two μ = ν² − 1
+//! meet where the eigenvalues ν of A are opposite, and −1 is reached where ν = 0, without consequence, for S has the eigenvectors of A, and
+//! Q + I as many null vectors as A and D, twice those of S + 1. So (A − 1)/2, whose eigenvalues lie in (−1, 0) where ν lies in (−1, 1),
+//! takes the place of S in what is said above, if neither end is always an eigenvalue.
+//!
 //! Where all potentials commute, S is self-adjoint in the metric of M: μ are real and S is diagonalizable for all s, so g may keep its multiple
 //! roots and the discriminant is left out.
 //!

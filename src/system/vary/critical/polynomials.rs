@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use num_bigint::BigInt;
 use num_traits::Zero;
 
-use super::half::{At, Eigenspaces, Half};
+use super::half::{At, Eigenspaces, Half, PLACES};
 use crate::error::Result;
 use crate::number::polynomial::{common, primitive, quotient, squarefree};
 use crate::number::{Lift, PrimeField, prime_fields};
@@ -68,7 +68,7 @@ pub(super) fn shape(half: &Half, limits: &Limits) -> Option<Shape> {
     let Residues { field, program, .. } = Residues::of(half).next().expect("primes enough");
     // Any three places: one has the most distinct μ and none at an end that is not always there, if not all.
     let at = |k| Some(Own::new(half, &field, &half.at(&field, &program, field.of(k))?));
-    let found = [0x9e37_79b9, 0x7f4a_7c15, 0x85eb_ca6b].into_iter().filter_map(at);
+    let found = PLACES.into_iter().filter_map(at);
     let own = found.max_by_key(|own| (own.kind.count, Reverse(own.kind.ends)))?;
     Some(Shape::new(half, &own)).filter(|own| own.cost(half) <= MOST_WORK.min(limits.products as f64))
 }
@@ -181,7 +181,8 @@ impl Shape {
             let s = field.of(place);
             let Some(at) = half.at(field, program, s) else { continue };
             let own = Own::new(half, field, &at);
-            if own.kind.count > self.kind.count {
+            // D − Aᵀ is 0 at more places than its degree and modulo primes enough, or not for all s.
+            if own.kind.count > self.kind.count || half.is_square && !at.is_square() {
                 return None;
             }
             if own.kind != self.kind {
@@ -191,7 +192,7 @@ impl Shape {
                 return None;
             }
             let found = if self.is_semisimple {
-                let end = field.sub(0, field.of_big(&half.scale));
+                let end = field.sub(0, field.of_big(&half.scale()));
                 let at_end = own.g.iter().rev().fold(0, |sum, &c| field.add(field.mul(sum, end), c));
                 let met = match half.is_selfadjoint || own.g.len() < 2 {
                     true => field.of(1),
@@ -249,7 +250,7 @@ impl Own {
             g = modular::squarefree(field, g);
         }
         let mut count = g.len() - 1;
-        let scale = field.of_big(&half.scale);
+        let scale = field.of_big(&half.scale());
         let ends = [0, field.sub(0, scale)].map(|root| {
             let times = divide_out(field, &mut g, root);
             // Where f is χ, multiple ones count once.
@@ -295,7 +296,7 @@ impl Own {
     /// their product, in which conjugate ones are together, is one over ℤ\[s\].
     fn meeting(&self, half: &Half, field: &PrimeField, at: &At, spaces: Option<&Eigenspaces>) -> u64 {
         let Some(spaces) = spaces else { return discriminant(field, &self.g) };
-        let end = field.sub(0, field.of_big(&half.scale));
+        let end = field.sub(0, field.of_big(&half.scale()));
         let own = spaces.blocks(field, &at.product).into_iter().map(|block| {
             let mut g = modular::squarefree(field, modular::characteristic(field, block));
             for root in [0, end] {
