@@ -10,9 +10,8 @@ use crate::system::{Analysis, Geometry, Instability};
 fn modes<'a>(analysis: &'a Analysis, geometry: &Geometry) -> Result<Vec<(usize, &'a Instability)>> {
     let (modes, _) = fastest(analysis);
     if modes.is_empty() {
-        let remedy =
-            "holds the modes that grow, and none is told to: choose an unstable step, or another form";
-        return Err(Error::input("output", format!("{}: no mode", analysis.kind_name()), remedy));
+        let found = format!("the modes that grow, of a system that is {}", analysis.kind_name());
+        return Err(Error::input("output", found, "none is told: choose an unstable step, or another form"));
     }
     if modes.iter().any(|(_, own)| own.shape.len() != geometry.moved.len()) {
         let remedy =
