@@ -13,6 +13,10 @@ pub enum Format {
     Png,
     /// NumPy arrays; of maps alone.
     Npz,
+    /// Extended XYZ; of the modes of systems alone.
+    Xyz,
+    /// VTK's unstructured grids; of the same.
+    Vtu,
 }
 
 impl Format {
@@ -26,7 +30,23 @@ impl Format {
     pub const DOCUMENT_OR_FIGURE: [Format; 7] =
         [Format::Json, Format::Csv, Format::Latex, Format::Text, Format::Svg, Format::Pdf, Format::Png];
 
-    /// All forms.
+    /// The forms of modes in space, which viewers of molecules and of meshes read.
+    pub const MODES: [Format; 2] = [Format::Xyz, Format::Vtu];
+
+    /// The forms of a system's answer.
+    pub const SYSTEM: [Format; 9] = [
+        Format::Json,
+        Format::Csv,
+        Format::Latex,
+        Format::Text,
+        Format::Svg,
+        Format::Pdf,
+        Format::Png,
+        Format::Xyz,
+        Format::Vtu,
+    ];
+
+    /// All forms of maps, and of what scenes want.
     pub const ALL: [Format; 8] = [
         Format::Json,
         Format::Csv,
@@ -58,12 +78,15 @@ impl Format {
             Format::Pdf => "pdf",
             Format::Png => "png",
             Format::Npz => "npz",
+            Format::Xyz => "xyz",
+            Format::Vtu => "vtu",
         }
     }
 
     /// The form of files with this extension, in capitals or not; `None` where there is none.
     pub fn of_extension(extension: &str) -> Option<Format> {
-        Format::ALL.into_iter().find(|format| format.extension().eq_ignore_ascii_case(extension))
+        let mut all = Format::ALL.into_iter().chain(Format::MODES);
+        all.find(|format| format.extension().eq_ignore_ascii_case(extension))
     }
 
     /// Whether it is drawn.

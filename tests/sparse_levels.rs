@@ -239,3 +239,112 @@ fn resonances_are_proven_where_the_forces_hold_no_minimum() {
     assert!(below.len() == 2 && below.iter().all(|own| own.re > 1.0 && own.im.abs() < 1e-6), "{below:?}");
     assert!(grown(1.01 * end).iter().any(|own| own.re < -1.0));
 }
+
+/// The modes of the dense period: every one that is told is one of them, none that grows faster is left out, and what bounds them does.
+#[test]
+fn the_modes_that_grow_are_those_of_the_dense_kernel() {
+    let (mut numbers, mut told, mut sharp) = (Numbers(11), 0, 0);
+    for (side, inner_steps) in [(2, 1), (2, 4), (3, 5), (3, 9)] {
+        let droplet = Droplet::new(side, &mut numbers);
+        let (sparse, dense) = (droplet.sparse(), droplet.dense());
+        let (_, first) = sparse.first_unstable(inner_steps).unwrap();
+        assert!(sparse.growing(&Outer::new(0.99 * first, inner_steps).unwrap()).is_none());
+        for above in [1.0001, 1.003, 1.01, 1.03, 1.1, 1.5] {
+            let outer = Outer::new(above * first, inner_steps).unwrap();
+            let Some(growing) = sparse.growing(&outer) else {
+                assert!(above > 1.0001 && sparse.verdict(&outer, 0.0) == Holds::NotTold, "{side} {above}");
+                continue;
+            };
+            let found =
+                dense.decide(&outer, &num_rational::BigRational::from_float(outer.step()).unwrap(), 1e-9);
+            let truth: Vec<f64> =
+                found.parts[0].multipliers.iter().map(|own| own.mu.re).filter(|mu| *mu < -1.0).collect();
+            for (mode, mu) in growing.modes.iter().zip(&truth) {
+                // The dense eigenvalues are sharp to 10^-9 here.
+                assert!((mode.mu - mu).abs() < mode.radius + 1e-9, "{side} {above}: {mode:?} {truth:?}");
+                assert!(mode.radius < 1e-6 && mode.shape.len() == droplet.masses.len());
+            }
+            assert!(
+                growing.modes.len() == truth.len().min(12),
+                "{side} {above}: {} {truth:?}",
+                growing.modes.len()
+            );
+            assert!(growing.at_most.unwrap() >= truth.len(), "{:?} {truth:?}", growing.at_most);
+            let (lo, hi) = growing.fastest.unwrap();
+            let rate = outer.step() * dense.growth(&outer);
+            assert!(lo < rate + 1e-7 && rate < hi + 1e-7, "{lo} {rate} {hi}");
+            (told, sharp) = (told + truth.len(), sharp + usize::from(hi < 1.1 * lo));
+        }
+    }
+    assert!(told > 20 && sharp > 3, "{told} {sharp}");
+}
+
+/// A document of an unstable droplet, verified: each of its modes is run kick by kick.
+#[test]
+fn the_modes_of_a_document_are_what_a_period_makes_of_them() {
+    use kickdrift::question::{Question, System, Work};
+    use kickdrift::recheck::{Claim, Options};
+    use kickdrift::report::npz::{self, Element};
+    let droplet = Droplet::new(2, &mut Numbers(9));
+    let (n, folder) = (droplet.masses.len(), tempfile::tempdir().unwrap());
+    let archive = folder.path().join("a.npz");
+    let array = |name, values: Vec<f64>| {
+        let mut array = npz::Array::new(&archive, name, Element::F64, &[values.len()]).unwrap();
+        array.put_f64(values).unwrap();
+        array
+    };
+    let rows = |names: [&'static str; 3], matrix: &DMatrix<f64>| {
+        let held =
+            |i: usize| (0..n).filter(move |&j| matrix[(i, j)] != 0.0).map(move |j| (j, matrix[(i, j)]));
+        let (indices, data) = (0..n).flat_map(held).map(|(j, x)| (j as f64, x)).unzip();
+        let ends = std::iter::once(0).chain((0..n).map(|i| held(i).count())).scan(0.0, |end, count| {
+            *end += count as f64;
+            Some(*end)
+        });
+        names
+            .into_iter()
+            .zip([data, indices, ends.collect()])
+            .map(|(name, own)| array(name, own))
+            .collect::<Vec<_>>()
+    };
+    let mut arrays = rows(["fast.data", "fast.indices", "fast.indptr"], &droplet.fast);
+    arrays.extend(rows(["slow.data", "slow.indices", "slow.indptr"], &droplet.slow));
+    arrays.push(array("masses", droplet.masses.clone()));
+    arrays.push(array("positions", droplet.positions.concat()));
+    npz::write(&archive, arrays).unwrap();
+    let (_, first) = droplet.sparse().first_unstable(4).unwrap();
+    let inner = (1.0002 * first / 4.0 * 1e9).round() as u64;
+    let potential = |name: &str, step: u64| json!({"step": format!("{step}/1000000000"), "stiffness": {"npz": "a.npz", "csr": name}});
+    let by_reference = |name: &str| json!({"npz": "a.npz", "array": name});
+    let file = json!({
+        "schema": "kickdrift/system/1", "time_unit": "ps", "masses": by_reference("masses"), "positions": by_reference("positions"),
+        "potentials": [potential("fast", inner), potential("slow", 4 * inner)],
+    });
+    let input = json!({"file": "a.json", "system": file});
+    let asked: System = serde_json::from_value(input).unwrap();
+    let arrays = kickdrift::scene::Arrays::from(folder.path());
+    let work = Work { arrays: Some(&arrays), ..Work::default() };
+    let answer = asked.answer(&work).unwrap();
+    let text = asked.document(&answer).render(kickdrift::format::Format::Json).unwrap();
+    assert!(text.contains("\"real pair\""), "{text}");
+    let options = Options { folder: folder.path().into(), ..Options::default() };
+    let outcome = Claim::read(&text).unwrap().recheck(&options, None).unwrap();
+    assert!(outcome.failures.is_empty() && outcome.route.contains("kick by kick"), "{outcome:?}");
+    // The modes in space: a frame each, the numbers of the shapes.
+    let found: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let modes = found["parts"][0]["instabilities"].as_array().unwrap();
+    let frames = asked.in_space(&answer, kickdrift::format::Format::Xyz).unwrap();
+    let lines: Vec<&str> = frames.lines().collect();
+    assert_eq!(lines.len(), modes.len() * (n / 3 + 2));
+    for (mode, frame) in modes.iter().zip(lines.chunks(n / 3 + 2)) {
+        assert_eq!(frame[0], (n / 3).to_string());
+        assert!(frame[1].starts_with("Properties=species:S:1:pos:R:3:mode:R:3 number="), "{}", frame[1]);
+        for (i, line) in frame[2..].iter().enumerate() {
+            let numbers: Vec<f64> = line.split(' ').skip(1).map(|x| x.parse().unwrap()).collect();
+            let shape: Vec<f64> = (0..3).map(|a| mode["shape"][3 * i + a].as_f64().unwrap()).collect();
+            assert_eq!((&numbers[..3], &numbers[3..]), (&droplet.positions[i][..], &shape[..]));
+        }
+    }
+    let grid = asked.in_space(&answer, kickdrift::format::Format::Vtu).unwrap();
+    assert_eq!(grid.matches("Name=\"mode ").count(), modes.len());
+}

@@ -84,6 +84,13 @@ impl Common {
         Ok(())
     }
 
+    /// Writes a text where the flags say.
+    pub fn write_text(&self, text: &str) -> Result<()> {
+        write_output(self.output.as_deref(), text.as_bytes())?;
+        self.wrote_output();
+        Ok(())
+    }
+
     /// Says on standard error that a file, or a number of them in a folder, is written.
     pub fn wrote(&self, what: impl Display) {
         if !self.quiet && !is_captured() {

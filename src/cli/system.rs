@@ -16,7 +16,7 @@ use crate::system::levels::Method;
 /// Flags of `system`.
 ///
 /// --output FILE.svg, FILE.pdf or FILE.png draws: the multipliers and the shapes of the growing modes, the map of --scan, or the
-/// growth over the intervals of --intervals.
+/// growth over the intervals of --intervals. FILE.xyz and FILE.vtu hold the growing modes in space, for viewers of molecules and meshes.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// The system, a JSON file as data/scenes/diatomic-tether.json.
@@ -63,7 +63,12 @@ pub struct Args {
 
 impl Args {
     pub fn run(&self, common: &Common) -> Result<u8> {
-        let drawing = drawing(common)?;
+        let form = common.format(&Format::SYSTEM, Format::Text)?;
+        let drawing = common.output.as_deref().filter(|_| form.is_figure());
+        if Format::MODES.contains(&form) && (!self.scan.is_empty() || self.intervals.is_some()) {
+            let remedy = "holds the modes of one verdict: leave --scan and --intervals out";
+            return Err(Error::input("output", form.name(), remedy));
+        }
         // Refused before the work, not after it.
         self.paper.check(drawing.is_some())?;
         let (system, arrays) = (source(&self.file)?, arrays(&self.file));
@@ -74,6 +79,10 @@ impl Args {
         }
         let answer = asked.answer(&work)?;
         match drawing {
+            None if Format::MODES.contains(&form) => {
+                common.write_text(&asked.in_space(&answer, form)?)?;
+                common.tell_beside_output(&asked.document(&answer))?;
+            }
             Some(path) => {
                 let figure = asked.drawn(&answer, self.colour.unwrap_or_default(), &work)?;
                 self.paper.draw("output", path, figure, common)?;
@@ -132,12 +141,6 @@ impl Args {
             width: self.resolution,
         })
     }
-}
-
-/// The file to draw, where the output is one.
-fn drawing(common: &Common) -> Result<Option<&Path>> {
-    let format = common.format(&Format::DOCUMENT_OR_FIGURE, Format::Text)?;
-    Ok(common.output.as_deref().filter(|_| format.is_figure()))
 }
 
 fn text(path: &Path) -> Result<String> {

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::asking::{Question, Work, question};
 use super::field::{Field, notation};
 use crate::error::{Error, Kind, Result};
+use crate::format::Format;
 use crate::number::Rational;
 use crate::report::document::Document;
 use crate::report::system::{self as report, Beside, SystemMap};
@@ -253,6 +254,27 @@ impl Question for System {
     #[cfg(feature = "figure")]
     fn figure(&self, answer: &Answer, work: &Work) -> Result<Option<Figure>> {
         self.drawn(answer, report::Colouring::default(), work).map(Some)
+    }
+}
+
+impl System {
+    /// The growing modes in space, as viewers read them: extended XYZ, or VTK's unstructured grid.
+    ///
+    /// # Errors
+    /// Where the file places no points, where nothing grows, of maps and intervals.
+    pub fn in_space(&self, answer: &Answer, format: Format) -> Result<String> {
+        let Found::Verdict(own) = &answer.found else {
+            return Err(Error::input(
+                "output",
+                format.name(),
+                "holds the modes of one verdict, and this is none",
+            ));
+        };
+        let geometry = answer.scene.geometry()?;
+        match format {
+            Format::Vtu => report::vtu(&own.analysis, &geometry),
+            _ => report::xyz(&own.analysis, &geometry),
+        }
     }
 }
 

@@ -68,7 +68,9 @@ impl Want {
         let format = match format {
             Some(format) => {
                 let known = Format::ALL.map(Format::extension).join(", ");
-                Format::of_extension(format).ok_or_else(|| unknown(text, "the formats are", &known))?
+                Format::of_extension(format)
+                    .filter(|own| Format::ALL.contains(own))
+                    .ok_or_else(|| unknown(text, "the formats are", &known))?
             }
             None => default,
         };

@@ -208,7 +208,7 @@ impl Document {
                 Ok(all?.join("\n"))
             }
             Format::Text => Ok(self.text(to_see)),
-            Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
+            Format::Svg | Format::Pdf | Format::Png | Format::Npz | Format::Xyz | Format::Vtu => {
                 let remedy = format!("this result is written as {}", Format::extensions(&Format::DOCUMENT));
                 Err(Error::input("format", format.name(), remedy))
             }

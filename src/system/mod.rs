@@ -24,6 +24,7 @@
 //! | `verdict` | the verdict, part by part, and what is known beside it |
 //! | `jacobian` | forces that are no gradient: Jacobians that are not symmetric |
 //! | `lts` | leapfrog with local time steps, as codes for waves have it |
+//! | `geometry` | where degrees of freedom are in space |
 //! | `friction` | O-steps between the kicks: spectral radius, the friction that masks a resonance |
 //! | `vary` | maps; the unstable intervals of one number |
 //!
@@ -43,6 +44,7 @@
 
 mod exact;
 pub mod friction;
+mod geometry;
 mod half;
 mod implicit;
 mod jacobian;
@@ -60,6 +62,7 @@ pub mod vary;
 mod verdict;
 
 pub use exact::decide::{ExactVerdict, MuCount, decide_exact};
+pub use geometry::Geometry;
 pub use half::compose::{full_period, half_period};
 pub use implicit::ImplicitExplicit;
 pub use jacobian::{Jacobians, NoGradient};

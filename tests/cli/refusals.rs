@@ -303,7 +303,7 @@ fn a_file_name_that_ends_in_no_form_of_the_result_is_refused_with_those_that_it_
         ("closings --ratio 5/3 --m 4", tables),
         ("tongues --survey --max-sum 5 --rho 1", tables),
         ("tongues --ratio 5/3 --rho 1", drawn),
-        ("system system.json", drawn),
+        ("system system.json", ".json, .csv, .tex, .txt, .svg, .pdf, .png, .xyz or .vtu"),
         ("simulate system.json", tables),
         (&map, ".json, .csv, .tex, .txt, .svg, .pdf, .png or .npz"),
     ] {

@@ -37,7 +37,7 @@ impl Output<'_> {
             (Format::Csv, _) => self.csv(source, path)?,
             (Format::Npz, Some(path)) => self.npz(source, path)?,
             (Format::Svg | Format::Pdf | Format::Png, _) => return self.figure(source, path),
-            (Format::Npz, None) => unreachable!("an extension is that of a path"),
+            (Format::Npz | Format::Xyz | Format::Vtu, _) => unreachable!("no form of a map without a path"),
         }
         self.common.wrote_output();
         Ok(())

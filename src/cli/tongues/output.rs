@@ -95,7 +95,7 @@ pub fn put(question: &Stream, common: &Common, format: Format, sink: &mut dyn Wr
         Format::Json => json(question, common, sink),
         Format::Csv => rows(question, common, sink),
         Format::Text | Format::Latex => document(question, common, format, sink),
-        Format::Svg | Format::Pdf | Format::Png | Format::Npz => {
+        Format::Svg | Format::Pdf | Format::Png | Format::Npz | Format::Xyz | Format::Vtu => {
             unreachable!("neither a figure nor arrays are rows")
         }
     }

@@ -6,6 +6,7 @@
 
 mod dense;
 mod implicit;
+mod levels;
 mod local;
 
 use serde_json::Value;
@@ -86,6 +87,10 @@ fn verdict(
     context: &Context,
 ) -> Result<Outcome> {
     if let Model::Sparse(own) = scene.model() {
+        if let Some((own, outer)) = own.levels() {
+            let checked = levels::modes(own, outer, analysis);
+            return Ok(levels::unseen(analysis, outcome(context, levels::ROUTE, checked)?));
+        }
         let Some(steps) = own.local_steps() else { return outcome(context, ALONE, Ok(())) };
         let checked = local::sparse(steps, to_f64(&scene.model().steps()[0]), analysis, local);
         return Ok(seen(steps, outcome(context, RUN, checked)?));

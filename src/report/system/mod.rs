@@ -9,6 +9,7 @@ mod measured;
 #[cfg(feature = "figure")]
 mod modes;
 mod nearest;
+mod viewers;
 mod words;
 
 use serde_json::{Value, json};
@@ -28,6 +29,7 @@ pub use intervals::{document as intervals, sampled};
 pub use map::SystemMap;
 #[cfg(feature = "figure")]
 pub use modes::figure;
+pub use viewers::{vtu, xyz};
 use words::rate;
 
 const CAPTION: &str =

@@ -49,6 +49,13 @@ impl MeshDocument {
         mesh.system()
     }
 
+    /// The nodes, the nodes of each element, and the node and the axis of each degree of freedom.
+    #[expect(clippy::type_complexity, reason = "said above, used once")]
+    pub fn placed(&self) -> Result<(Vec<Vec<Rational>>, Vec<Vec<usize>>, Vec<(usize, usize)>)> {
+        let (mesh, (_, moving)) = (self.mesh()?, self.system()?);
+        Ok((mesh.nodes, mesh.elements.into_iter().map(|(nodes, _)| nodes).collect(), moving))
+    }
+
     fn mesh(&self) -> Result<Mesh> {
         let read = |what: &str, rows: &[Vec<Number>]| -> Result<Vec<Vec<Rational>>> {
             rows.iter().enumerate().map(|(i, row)| numbers(&format!("mesh.{what}[{i}]"), row)).collect()

@@ -43,6 +43,7 @@
 //! | `linear`, `bonds` | rational systems, named forms at an equilibrium |
 //! | `oscillator`, `pi` | one oscillator over ℚ\[π\], several degrees of freedom with such stiffnesses |
 //! | `mesh` | finite elements |
+//! | `geometry` | where the degrees of freedom are in space |
 //! | `local` | local time steps |
 //! | `measured`, `array`, `market` | stiffnesses by reference to NumPy's and Matrix Market's files |
 //! | `sparse` | two sparse levels, as SciPy writes them |
@@ -53,6 +54,7 @@
 mod array;
 mod bonds;
 mod document;
+mod geometry;
 mod held;
 mod intervals;
 mod linear;

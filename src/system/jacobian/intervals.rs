@@ -9,7 +9,7 @@
 //! ```
 //!
 //! and |S₁| follows from S at both ends of a cell within 2 R over its width: **all S of a cell are within |S₁ η| + R of the one in its middle**, and what discs
-//! that wide prove they prove of the cell.
+//! that wide prove they prove of the cell (proofs/NO_GRADIENT.md).
 
 use num_traits::One;
 

@@ -6,13 +6,13 @@ use num_traits::One;
 use crate::error::{Error, Result};
 use crate::number::rational::to_f64;
 use crate::number::{Laurent, Rational};
-use crate::system::levels::sparse::SparseLevels;
+use crate::system::levels::sparse::{Growing, GrowingMode, SparseLevels};
 use crate::system::levels::{Method, Outer};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::lts::{Growth, SparseSteps};
 use crate::system::spectrum::modes::Origin;
-use crate::system::spectrum::rate::{Multiplier, per_time};
+use crate::system::spectrum::rate::{Multiplier, about, per_time};
 use crate::system::vary::stretches::Stretch;
 use crate::system::verdict::analysis::{Analysis, Evidence, Instability, Part};
 use crate::system::verdict::limits::{Limits, degrees_of_freedom};
@@ -36,8 +36,13 @@ enum Of {
     Steps(SparseSteps),
 }
 
-/// What is left out of the answer.
-const NOTE: &str = "of sparse stiffnesses the first stable region is decided: what lies above it is not looked at, and no growth rate is computed";
+/// What is left out of the answer: of a verdict in the first region, or of none,
+const FIRST: &str = "of sparse stiffnesses the first stable region is decided, and what grows above it while no fast mode alone takes half a turn in an \
+                     outer step";
+
+/// and of one that is unstable, where no mode was found.
+const NO_MODE: &str =
+    "no growing mode is enclosed, and none looked at beside the one that proves the verdict";
 
 /// The same of local time steps.
 const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest is computed";
@@ -47,7 +52,7 @@ const A_RESONANCE: f64 = 60.0;
 
 /// Factorizations that an answer takes, roughly; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
 /// iteration does, as measured on droplets of 500 and 2,000 waters.
-const FACTORIZATIONS: f64 = 40.0;
+const FACTORIZATIONS: f64 = 12.0;
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {
@@ -89,6 +94,14 @@ impl SparseSystem {
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
         Ok(SparseSystem { of: Of::Steps(steps), step: step.clone(), clocks })
+    }
+
+    /// Both levels with the outer step, where it has them.
+    pub fn levels(&self) -> Option<(&SparseLevels, &Outer)> {
+        match &self.of {
+            Of::Levels { levels, outer, .. } => Some((levels, outer)),
+            Of::Steps(_) => None,
+        }
     }
 
     /// Where it has local time steps.
@@ -159,24 +172,35 @@ impl SparseSystem {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
             Of::Steps(own) => return Ok(self.of_steps(own)),
         };
-        let verdict = levels.verdict(outer, 0.0);
+        let margin = if levels.is_unstable(outer) { None } else { levels.margin(outer) };
+        let verdict = match margin {
+            Some(_) => Holds::Stable,
+            None if levels.is_unstable(outer) => Holds::Unstable,
+            None => Holds::NotTold,
+        };
+        // Nothing is proven of all stiffnesses within more than the margin.
+        let holds =
+            if margin.is_some_and(|margin| accuracy <= margin) { Holds::Stable } else { Holds::NotTold };
         let first_unstable = levels.first_unstable(outer.inner_steps());
-        let part = Part::new(
-            levels.size(),
-            Laurent::from_rational(self.step.clone()),
-            decided(verdict),
-            Default::default(),
-        );
+        let period = Laurent::from_rational(self.step.clone());
+        let growing = if verdict == Holds::Unstable { levels.growing(outer) } else { None };
+        let largest = growing.as_ref().and_then(|own| own.fastest);
+        let note = growing
+            .as_ref()
+            .map(told)
+            .unwrap_or(if verdict == Holds::Unstable { NO_MODE } else { FIRST }.into());
+        let modes = growing.into_iter().flat_map(|own| own.modes).map(|own| explained(own, &period)).unzip();
+        let part = Part { largest, ..Part::new(levels.size(), period, decided(verdict), modes) };
         let measured = Some(Measured {
             method: Method::default().name(),
             accuracy,
-            holds: levels.verdict(outer, accuracy),
-            margin: if verdict == Holds::Stable { levels.margin(outer) } else { None },
+            holds,
+            margin,
             first_unstable,
             is_above_unstable: first_unstable.is_some_and(|(_, hi)| outer.step() > hi),
             removed: removed.clone(),
         });
-        let mut notes = vec![NOTE.into()];
+        let mut notes = vec![note];
         if let Some(count) = levels.unheld().filter(|&count| count > 0) {
             let s = if count == 1 { "" } else { "s" };
             notes.push(format!(
@@ -233,6 +257,33 @@ impl SparseSystem {
         }
         Analysis::of_part(Part { largest, ..part }, 1, notes)
     }
+}
+
+/// How many of the modes that grow are told.
+fn told(own: &Growing) -> String {
+    let shown = own.modes.len();
+    let found = if shown == 1 { "1 mode is".into() } else { format!("{shown} modes are") };
+    match own.at_most {
+        Some(most) if most == shown => format!("{found} proven to grow, and no other does (both proven)"),
+        Some(most) => format!("{found} proven to grow and at most {most} do: the others are not looked at"),
+        None => format!("{found} proven to grow: others are not looked at"),
+    }
+}
+
+/// A growing mode with its multiplier.
+fn explained(own: GrowingMode, period: &Laurent) -> (Multiplier, Instability) {
+    let mu = Complex64::new(own.mu, 0.0);
+    let growth = about(mu, own.radius);
+    let multiplier = Multiplier::new(mu, Some(own.radius), Some(growth));
+    let mode = Instability {
+        multiplier,
+        origin: Origin::RealPair,
+        growth_rate: Some(per_time(growth, period)),
+        quadrature: vec![0.0; own.shape.len()],
+        shape: own.shape,
+        resonance: None,
+    };
+    (multiplier, mode)
 }
 
 /// The kind, and what it rests on.

@@ -273,6 +273,37 @@ impl Factors {
         Some(x)
     }
 
+    /// The eigenvector of the least eigenvalue as a Krylov space of the inverse has it, so many steps from x, off the columns of `rigid`: of length 1,
+    /// rounded. `None` where memory runs out or nothing is left.
+    pub fn least(&self, mut x: Mat<f64>, rigid: &Mat<f64>, steps: usize) -> Option<Mat<f64>> {
+        let (n, steps) = (x.nrows(), steps.min(x.nrows()));
+        let (mut basis, mut images) = (Mat::<f64>::zeros(n, steps), Mat::<f64>::zeros(n, steps));
+        let mut size = 0;
+        while size < steps {
+            for _ in 0..2 {
+                x -= rigid * (rigid.transpose() * &x);
+                let own = basis.subcols(0, size);
+                x -= own * (own.transpose() * &x);
+            }
+            let length = x.norm_l2();
+            // The space is used up: what is left of an image is rounding.
+            if !(length.is_finite() && length > 1e-13 * images.subcols(0, size).norm_max()) {
+                break;
+            }
+            x /= faer::Scale(length);
+            basis.col_mut(size).copy_from(x.col(0));
+            x = self.solve(x)?;
+            images.col_mut(size).copy_from(x.col(0));
+            size += 1;
+        }
+        let form = basis.subcols(0, size).transpose() * images.subcols(0, size);
+        let form = Mat::from_fn(size, size, |i, j| (form[(i, j)] + form[(j, i)]) / 2.0);
+        let eigen = form.self_adjoint_eigen(Side::Lower).ok()?;
+        let x = basis.subcols(0, size)
+            * Mat::from_fn(size, usize::from(size > 0), |i, _| eigen.U()[(i, size - 1)]);
+        (x.ncols() == 1).then(|| &x / faer::Scale(x.norm_l2()))
+    }
+
     /// So many rounds of inverse iteration from x, off the columns of `rigid`; of length 1, rounded. `None` where memory runs out or nothing is left.
     pub fn iterated(&self, mut x: Mat<f64>, rigid: &Mat<f64>, rounds: usize) -> Option<Mat<f64>> {
         for _ in 0..rounds {

@@ -15,10 +15,15 @@
 //! |---|---|
 //! | `matrix` | sparse symmetric matrices, sums proven positive definite |
 //! | `region` | the verdict, the margin, the first unstable step |
+//! | `period` | the period of positions, with a bound on its roundings |
+//! | `growing` | the modes that grow beyond that step, enclosed |
 
+mod growing;
 mod matrix;
+mod period;
 mod region;
 
+pub use growing::{Growing, GrowingMode};
 pub(in crate::system) use matrix::Pattern;
 pub use matrix::Triplets;
 pub use region::SparseLevels;

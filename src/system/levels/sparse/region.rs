@@ -12,7 +12,6 @@ use crate::system::half::norm;
 use crate::system::levels::chord::{chord, ends};
 use crate::system::levels::half::Half;
 use crate::system::levels::kernel::{Outer, STEP_ERROR};
-use crate::system::levels::region::largest;
 use crate::system::verdict::large::start;
 use crate::system::verdict::measured::Holds;
 
@@ -37,20 +36,22 @@ use crate::system::verdict::measured::Holds;
 #[derive(Clone, Debug)]
 pub struct SparseLevels {
     /// Both in the pattern of their sum.
-    both: Pattern,
-    fast: Vec<f64>,
-    slow: Vec<f64>,
+    pub(super) both: Pattern,
+    pub(super) fast: Vec<f64>,
+    pub(super) slow: Vec<f64>,
     /// The fast one in its own.
-    alone: Pattern,
-    fast_alone: Vec<f64>,
+    pub(super) alone: Pattern,
+    pub(super) fast_alone: Vec<f64>,
     /// How far these are from the matrices that are meant (2-norm), by what weighing with masses rounds; and how far F + S is from itself
     /// without what it does along rigid motions.
-    errors: [f64; 2],
+    pub(super) errors: [f64; 2],
     leak: f64,
     /// No less than their norms.
-    sizes: [f64; 2],
+    pub(super) sizes: [f64; 2],
     /// Orthonormal, mass-weighted.
-    rigid: Mat<f64>,
+    pub(super) rigid: Mat<f64>,
+    /// The root of each mass.
+    roots: Vec<f64>,
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
     unheld: OnceLock<Option<usize>>,
@@ -75,8 +76,14 @@ const ROOMS: [f64; 5] = [1e-9, 1e-7, 1e-5, 1e-3, 3e-2];
 /// How far below 0 eigenvalues of F may lie by rounding and differences, relative to its largest one; and if they do more than that.
 const BELOW: [f64; 2] = [1e-6, 1e-2];
 
-/// Rounds of inverse iteration for the vector that is stretched least.
-const ROUNDS: usize = 12;
+/// Dimensions of the Krylov space of an inverse that tells the vector that is stretched least.
+const STEPS_BELOW: usize = 16;
+
+/// Parts of the step at which the fastest mode alone takes half a turn, from which the first region's end is sought.
+const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
+
+/// Shifts, relative to the norms, by which F + S is positive definite in doubles.
+const SHIFTED: [f64; 3] = [1e-9, 1e-7, 1e-5];
 
 /// Shifts τ that are tried: from the second one on a tenth above what the factorization with the last one may be off by.
 const SHIFTS: u32 = 3;
@@ -116,7 +123,7 @@ impl SparseLevels {
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
         let (ends, unheld, first) = Default::default();
-        let sizes = sizes.map(|(size, _)| size);
+        let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
         Ok(SparseLevels {
             both,
             fast,
@@ -127,6 +134,7 @@ impl SparseLevels {
             leak,
             sizes,
             rigid,
+            roots,
             ends,
             unheld,
             first,
@@ -157,15 +165,44 @@ impl SparseLevels {
         if self.factors(outer, epsilon).is_some() {
             return Holds::Stable;
         }
-        let first = if epsilon == 0.0 { self.first(outer.inner_steps) } else { None };
-        let unstable = first.is_some_and(|first| self.resonates_along(first.quotients, outer));
-        if unstable { Holds::Unstable } else { Holds::NotTold }
+        if epsilon == 0.0 && self.is_unstable(outer) { Holds::Unstable } else { Holds::NotTold }
     }
 
-    /// The largest ε, rounded down within a percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
+    /// Whether the mode that is unstable first is proven to grow at an outer step.
+    pub fn is_unstable(&self, outer: &Outer) -> bool {
+        self.first(outer.inner_steps).is_some_and(|first| self.resonates_along(first.quotients, outer))
+    }
+
+    /// The largest ε, rounded down within six percent, for which the verdict is stable for all stiffnesses within ε times their norms; `None`
     /// where it is not for 0.
+    ///
+    /// Two conditions each hold up to some ε. The vector that fails them first tells what that is at most; most often one factorization a little below
+    /// proves it.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
-        largest(1.01, |epsilon| self.factors(outer, epsilon).is_some())
+        let own = self.factors(outer, 0.0)?;
+        let quotients = self.quotients(&own.least(self.anywhere(), &self.rigid, STEPS_BELOW)?);
+        drop(own);
+        let is_open = |epsilon: f64| self.form_along(quotients, outer, epsilon) > 0.0;
+        let most = bisected((0.0, 1.0), 1e-6, |epsilon| Some(is_open(epsilon))).1;
+        let line = largest_below(most, 0.01, |epsilon| self.above(outer, epsilon).is_some());
+        // F + S is to be definite by as much, too: its least eigenvalue is at most this quotient.
+        let off = |epsilon: f64| (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum::<f64>();
+        let total = |epsilon: f64| self.is_total_definite(off(epsilon));
+        let least = self.least_total().map_or(f64::INFINITY, |least| least / 1.1 - off(0.0));
+        let most = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
+        if most > line && total(line) {
+            return Some(line);
+        }
+        Some(largest_below(line.min(most), 0.06, total))
+    }
+
+    /// The least quotient xᵀ(F + S)x that a Krylov space finds off the rigid motions, rounded; `None` where nothing holds these up.
+    fn least_total(&self) -> Option<f64> {
+        let size = self.sizes[0] + self.sizes[1];
+        let terms: [(f64, &[f64]); 2] = [(1.0, &self.fast), (1.0, &self.slow)];
+        let own = SHIFTED.iter().find_map(|part| self.both.factored(part * size, &terms, 0.0))?;
+        let [fast, slow] = self.quotients(&own.least(self.anywhere(), &self.rigid, STEPS_BELOW)?);
+        Some(fast + slow)
     }
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
@@ -187,6 +224,23 @@ impl SparseLevels {
         self.first(inner_steps).map(|first| first.along.col_as_slice(0).to_vec())
     }
 
+    /// M^½ x of positions x.
+    pub fn weighted(&self, x: &[f64]) -> Vec<f64> {
+        x.iter().zip(&self.roots).map(|(x, root)| x * root).collect()
+    }
+
+    /// Positions of mass-weighted ones.
+    pub(super) fn positions(&self, y: &[f64]) -> Vec<f64> {
+        y.iter().zip(&self.roots).map(|(y, root)| y / root).collect()
+    }
+
+    /// F y and S y without what they do along rigid motions, mass-weighted and rounded.
+    pub fn pulls(&self, y: &[f64]) -> [Vec<f64>; 2] {
+        let free = |y: Mat<f64>| &y - &self.rigid * (self.rigid.transpose() * &y);
+        let y = free(Mat::from_fn(y.len(), 1, |i, _| y[i]));
+        [&self.fast, &self.slow].map(|own| free(self.both.times(own, &y)).col_as_slice(0).to_vec())
+    }
+
     fn first(&self, inner_steps: u64) -> Option<First> {
         let mut known = self.first.lock().unwrap_or_else(PoisonError::into_inner);
         known.entry(inner_steps).or_insert_with(|| self.find_first(inner_steps)).clone()
@@ -195,14 +249,23 @@ impl SparseLevels {
     fn find_first(&self, inner_steps: u64) -> Option<First> {
         let [_, high] = self.ends(0.0)?;
         let at = |step: f64| Outer::new(step, inner_steps).ok();
-        let stable = |step: f64| at(step).is_some_and(|outer| self.above(&outer, 0.0).is_some());
+        let factors = |step: f64| self.above(&at(step)?, 0.0);
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
-        let start = (1..=12).map(|k| top * 0.5f64.powi(k)).find(|&step| stable(step))?;
-        let (lo, _) = bisected((start, (2.0 * start).min(top)), WIDTH, |step| Some(stable(step)));
-        // The vector that is stretched least there tells where it is no more.
-        let along = self.stretched(&at(lo)?)?;
+        let begin = FROM.into_iter().map(|part| part * top);
+        let (mut lo, mut own) = begin.into_iter().find_map(|step| Some((step, factors(step)?)))?;
+        let (mut hi, mut along) = (top, self.anywhere());
+        // The vector that is stretched least tells how far the line may prove anything; the nearer the step, the sharper.
+        loop {
+            along = own.least(along, &self.rigid, STEPS_BELOW)?;
+            let quotients = self.quotients(&along);
+            let is_open =
+                |step: f64| at(step).is_some_and(|outer| self.form_along(quotients, &outer, 0.0) > 0.0);
+            hi = hi.min(bisected((lo, hi), WIDTH / 8.0, |step| Some(is_open(step))).1);
+            let Some(found) = self.nearer(lo, &mut hi, factors) else { break };
+            (lo, own) = found;
+        }
         let quotients = self.quotients(&along);
         let unstable = |step: f64| at(step).is_some_and(|outer| self.resonates_along(quotients, &outer));
         let first =
@@ -210,6 +273,28 @@ impl SparseLevels {
         let hi = first.into_iter().find(|&step| unstable(step))?;
         let (_, hi) = bisected((lo, hi), WIDTH / 64.0, |step| Some(!unstable(step)));
         Some(First { step: (lo, hi), along, quotients })
+    }
+
+    /// A step that is proven between lo and hi, near hi, with its factors; `None` where these are as near to each other as they are to be. `hi` falls to what is
+    /// not proven.
+    fn nearer(
+        &self,
+        lo: f64,
+        hi: &mut f64,
+        factors: impl Fn(f64) -> Option<Factors>,
+    ) -> Option<(f64, Factors)> {
+        let mut is_first = true;
+        while *hi > lo * (1.0 + WIDTH) {
+            let left = *hi / lo - 1.0;
+            // The error of what the vector tells falls as the square of its own.
+            let below = (left / 10.0).min(left * left).max(WIDTH / 2.0);
+            let step = if is_first { *hi * (1.0 - below) } else { lo + (*hi - lo) / 2.0 };
+            if let Some(found) = factors(step).filter(|_| step > lo) {
+                return Some((step, found));
+            }
+            (*hi, is_first) = (step, false);
+        }
+        None
     }
 
     /// The factors that prove the first region, rigid motions apart; `None` where they prove nothing.
@@ -222,17 +307,22 @@ impl SparseLevels {
     /// Those that prove (1) and (2) of proofs/REGION.md.
     fn above(&self, outer: &Outer, epsilon: f64) -> Option<Factors> {
         let [low, high] = self.ends(epsilon)?;
-        let [offset, slope] = chord(outer, low, high)?;
+        let line = chord(outer, low, high)?;
+        let ([fast, slow], slack) = self.form(outer, line, epsilon);
+        self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack)
+    }
+
+    /// α − β h² F − M of a line α − β s: its factors of F and S, and how far the sum may be from it for stiffnesses within ε times their norms.
+    pub(super) fn form(&self, outer: &Outer, [offset, slope]: [f64; 2], epsilon: f64) -> ([f64; 2], f64) {
         let off = [0, 1].map(|k| self.errors[k] + epsilon * self.sizes[k]);
         let [fast, slow] = [-slope * outer.inner_square, -outer.half_kick()];
         let rounding = 4.0 * U * offset.abs()
             + 4.0 * STEP_ERROR * (fast.abs() * self.sizes[0] + slow.abs() * self.sizes[1]);
-        let slack = 1.01 * (rounding + fast.abs() * off[0] + slow.abs() * off[1]);
-        self.both.factored(offset, &[(fast, &self.fast), (slow, &self.slow)], slack)
+        ([fast, slow], 1.01 * (rounding + fast.abs() * off[0] + slow.abs() * off[1]))
     }
 
     /// Bounds on the spectrum of all F within ε times their norm.
-    fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
+    pub(super) fn ends(&self, epsilon: f64) -> Option<[f64; 2]> {
         let found = self.ends.get_or_init(|| {
             let [_, top] = ends(self.size(), STEPS, |x| self.alone.times(&self.fast_alone, x));
             let slack = self.errors[0] + 4.0 * U * self.sizes[0];
@@ -268,24 +358,36 @@ impl SparseLevels {
         if self.rigid.ncols() == 0 && self.both.factored(0.0, &total, slack).is_some() {
             return Some(0);
         }
+        Some(self.at_most_negative(0.0, &total, slack)?.saturating_sub(self.rigid.ncols()))
+    }
+
+    /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k.
+    pub(super) fn at_most_negative(&self, c: f64, terms: &[(f64, &[f64])], slack: f64) -> Option<usize> {
         let mut tau = 1.1 * slack;
         for _ in 0..SHIFTS {
-            let (negative, own) = self.both.negative(tau, &total)?;
+            let (negative, own) = self.both.negative(tau - c, terms)?;
             if tau > 1.01 * (own + slack) {
-                return Some(negative.saturating_sub(self.rigid.ncols()));
+                return Some(negative);
             }
             tau = 1.1 * (own + slack);
         }
         None
     }
 
-    /// The vector for which α − β h² F − M is least, rounded: inverse iteration with the factors at the step, or a little below.
-    fn stretched(&self, outer: &Outer) -> Option<Mat<f64>> {
-        let below =
-            |k: i32| Outer::new(outer.step * (1.0 - WIDTH * (2.0f64.powi(k) - 1.0)), outer.inner_steps).ok();
-        let factors = (0..10).filter_map(below).find_map(|outer| self.above(&outer, 0.0))?;
+    /// Where a recursion for a vector begins.
+    fn anywhere(&self) -> Mat<f64> {
         let begin = start(self.size());
-        factors.iterated(Mat::from_fn(self.size(), 1, |i, _| begin[i]), &self.rigid, ROUNDS)
+        Mat::from_fn(self.size(), 1, |i, _| begin[i])
+    }
+
+    /// xᵀ(α − β h² F − M)x of a vector with these quotients, less what stiffnesses within ε times their norms and roundings take; rounded. −∞ where there is no
+    /// line.
+    fn form_along(&self, [fast, slow]: [f64; 2], outer: &Outer, epsilon: f64) -> f64 {
+        let line = self.ends(epsilon).and_then(|[low, high]| chord(outer, low, high));
+        line.map_or(f64::NEG_INFINITY, |line| {
+            let ([a, b], slack) = self.form(outer, line, epsilon);
+            line[0] + a * fast + b * slow - slack
+        })
     }
 
     /// What xᵀFx and xᵀSx are at least over xᵀx, off the rigid motions.
@@ -317,3 +419,19 @@ impl SparseLevels {
         }
     }
 }
+
+/// The largest number that holds, rounded down within `width`, where none above `most` does: 0 where it is below 10^-15.
+fn largest_below(most: f64, width: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut hi, mut part) = (most, 1.0 / (1.0 + 0.9 * width));
+    while hi > LEAST_MARGIN {
+        let lo = part * hi;
+        if holds(lo) {
+            return bisected((lo, hi), width, |x| Some(holds(x))).0;
+        }
+        (hi, part) = (lo, part * part);
+    }
+    0.0
+}
+
+/// A margin below it is rounding.
+const LEAST_MARGIN: f64 = 1e-15;

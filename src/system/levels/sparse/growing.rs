@@ -1,0 +1,247 @@
+//! The modes that grow beyond the first unstable step, where p θ < π still holds for every fast mode.
+//!
+//! A Krylov space of the excess e (file `period`), symmetric in the scalar product of V, is begun anew from its best part until the largest
+//! eigenvalues are found (thick restarts: Wu and Simon, SIAM J. Matrix Anal. Appl. 22, 2000). What is claimed of them rests on their residuals
+//! alone, computed again with bounds on all roundings (proofs/REGION.md, section 9):
+//!
+//! * k vectors with residuals R and nearly orthonormal, Gram matrix 1 + Δ, are claims on k eigenvalues, each within 2 |R|/√(1 − |Δ|) + 1.3 |Δ| times their
+//!   spread of its own;
+//! * no more modes grow than α − β h² F − M has negative eigenvalues, for a line α − β s below a/b: one factorization;
+//! * no excess is above ε where α − β h² F + 2 ε ℓ(h² F) − M > 0, ℓ a tangent of the convex 1/V: again one each.
+
+use faer::{Mat, Side};
+use num_complex::Complex64;
+
+use super::period::Period;
+use super::region::SparseLevels;
+use crate::number::{U, bisected};
+use crate::system::half::norm;
+use crate::system::levels::chord::chord;
+use crate::system::levels::half::inverse_twist;
+use crate::system::levels::kernel::Outer;
+use crate::system::spectrum::rate;
+use crate::system::verdict::large::start;
+
+/// What is proven to grow at an unstable outer step.
+#[derive(Clone, Debug)]
+pub struct Growing {
+    /// The fastest first.
+    pub modes: Vec<GrowingMode>,
+    /// No fewer than all that grow by a multiplier below −1; `None` where the factorization does not count them.
+    pub at_most: Option<usize>,
+    /// An enclosure of the largest ln |λ| of a period; `None` where nothing bounds it above.
+    pub fastest: Option<(f64, f64)>,
+}
+
+/// A mode with a multiplier λ < −1.
+#[derive(Clone, Debug)]
+pub struct GrowingMode {
+    /// μ = −1 − e, λ + 1/λ = 2 + 4 μ, rounded.
+    pub mu: f64,
+    /// The true μ is within this of it: as many true ones as modes, where these ranges meet.
+    pub radius: f64,
+    /// Positions, the longest entry 1, rounded.
+    pub shape: Vec<f64>,
+}
+
+/// The most modes that are looked for.
+const WANTED: usize = 12;
+
+/// Vectors of a Krylov space, and how many are kept when it begins anew.
+const SPACE: usize = 96;
+const KEPT: usize = 40;
+
+/// How often it does.
+const MOST_ROUNDS: usize = 60;
+
+/// Residuals at which a mode counts as found, its length by V being 1: its growth is told to some six digits. None is told above the second.
+const FOUND: f64 = 1e-9;
+const TOLD: f64 = 1e-6;
+
+/// Rooms above the largest excess that is found, relative to it, up to which the true one is sought.
+const ROOMS: [f64; 6] = [0.003, 0.1, 0.5, 2.0, 8.0, 100.0];
+
+/// How near to each other an excess that is proven and one that is not are to be, relative to the first.
+const BETWEEN: f64 = 0.25;
+
+/// What a Krylov space tells: eigenvalues, the largest first, and vectors of length 1 by V.
+struct Ritz {
+    values: Vec<f64>,
+    vectors: Mat<f64>,
+}
+
+impl SparseLevels {
+    /// The modes that grow fastest at an outer step, up to a dozen; `None` where none is proven to, and where p θ < π is not certain of every fast
+    /// mode, so that multipliers of both of Krein's signs may meet.
+    ///
+    /// Cost: some hundred to some thousand products with S, p times as many with F, and one to a dozen factorizations.
+    pub fn growing(&self, outer: &Outer) -> Option<Growing> {
+        let [low, high] = self.ends(0.0)?;
+        let line = chord(outer, low, high)?;
+        let period = Period::new(self, *outer, low);
+        let (claims, radius) = proven(&period, period.top()?)?;
+        let modes: Vec<GrowingMode> = (claims.values.iter().enumerate())
+            .map(|(i, e)| GrowingMode {
+                // A rounding of the sum.
+                mu: -1.0 - e,
+                radius: radius + 2.0 * U,
+                shape: longest_one(self.positions(claims.vectors.col_as_slice(i))),
+            })
+            .collect();
+        let ([fast, slow], slack) = self.form(outer, line, 0.0);
+        let terms: [(f64, &[f64]); 2] = [(fast, &self.fast), (slow, &self.slow)];
+        let at_most = self.at_most_negative(line[0], &terms, slack);
+        let fastest = self.fastest(outer, line, &claims, radius);
+        Some(Growing { modes, at_most, fastest })
+    }
+
+    /// Where F + S > 0 off the rigid motions, so that nothing else grows (section 9).
+    fn fastest(&self, outer: &Outer, line: [f64; 2], claims: &Ritz, radius: f64) -> Option<(f64, f64)> {
+        if self.unheld() != Some(0) {
+            return None;
+        }
+        let about = |e: f64| rate::about(Complex64::new(-1.0 - e, 0.0), radius + 2.0 * U);
+        let (ends, most) = (self.ends(0.0)?, claims.values[0]);
+        let y = claims.vectors.col(0);
+        let fast = self.both.times(&self.fast, &Mat::from_fn(self.size(), 1, |i, _| y[i]));
+        let along = outer.inner_square * (y.transpose() * fast.col(0)) / y.squared_norm_l2();
+        let is_above_all = |e: f64| self.is_no_excess_above(outer, line, ends, along, e);
+        let (mut open, mut above) = (most, None);
+        for room in ROOMS {
+            let e = (most + radius) * (1.0 + room);
+            if is_above_all(e) {
+                above = Some(e);
+                break;
+            }
+            open = e;
+        }
+        let (_, e) = bisected((open, above?), BETWEEN, |e| Some(!is_above_all(e)));
+        Some((about(most).0, rate::about(Complex64::new(-1.0 - e, 0.0), 2.0 * U).1))
+    }
+
+    /// Whether all eigenvalues of the excess are below e for sure, by the tangent of 1/V at s = `along`.
+    fn is_no_excess_above(
+        &self,
+        outer: &Outer,
+        [offset, slope]: [f64; 2],
+        [low, high]: [f64; 2],
+        along: f64,
+        e: f64,
+    ) -> bool {
+        let ends = [outer.scaled_down(low), outer.scaled_up(high)];
+        let along = along.clamp(ends[0], ends[1]);
+        let [value, steep] = inverse_twist(along, outer.inner_steps);
+        let (m, reach) = (steep.mid(), (along - ends[0]).max(ends[1] - along));
+        // Where the slope is not sharp the line is lower by as much at the ends; then the roundings of what follows.
+        let at_zero = value.lo - m * along - steep.radius() * reach * (1.0 + 4.0 * U);
+        let (a, b) = (2.0 * e * at_zero, 2.0 * e * m);
+        let rounding = 8.0 * U * (offset.abs() + 2.0 * e * (value.lo.abs() + (m * along).abs()))
+            + 4.0 * U * (slope.abs() + b.abs()) * ends[0].abs().max(ends[1].abs());
+        let line = [offset + a - rounding, slope - b];
+        let ([fast, slow], slack) = self.form(outer, line, 0.0);
+        self.both.factored(line[0], &[(fast, &self.fast), (slow, &self.slow)], slack).is_some()
+    }
+}
+
+impl Period<'_> {
+    /// The largest eigenvalues of the excess and their z, rounded: those above 0 whose residuals are small. `None` where there is none.
+    fn top(&self) -> Option<Ritz> {
+        let n = self.levels.size();
+        let most = SPACE.min(n);
+        let mut space = [0; 3].map(|_| Mat::<f64>::zeros(n, most));
+        let begin = start(n);
+        let mut next = Mat::from_fn(n, 1, |i, _| begin[i]);
+        let (mut size, mut round) = (0, 0);
+        loop {
+            let mut is_used_up = false;
+            while size < most {
+                let [z, moved, excess] = &mut space;
+                orthogonal(&mut next, z, moved, size);
+                let image = self.of(&next);
+                let square = (next.transpose() * &image.moved)[(0, 0)];
+                // Of length 1 before: what is left is rounding.
+                is_used_up = !(square > 1e-26 * next.squared_norm_l2() && next.norm_l2() > 1e-13);
+                if is_used_up {
+                    break;
+                }
+                let scale = 1.0 / square.sqrt();
+                for (to, from) in [(z, &next), (moved, &image.moved), (&mut *excess, &image.excess)] {
+                    to.col_as_slice_mut(size)
+                        .iter_mut()
+                        .zip(from.col_as_slice(0))
+                        .for_each(|(to, x)| *to = scale * x);
+                }
+                size += 1;
+                next = Mat::from_fn(n, 1, |i, _| excess[(i, size - 1)]);
+                next /= faer::Scale(next.norm_l2().max(f64::MIN_POSITIVE));
+            }
+            let [z, moved, excess] = &mut space;
+            orthogonal(&mut next, z, moved, size);
+            let form = moved.subcols(0, size).transpose() * excess.subcols(0, size);
+            let form = Mat::from_fn(size, size, |i, j| (form[(i, j)] + form[(j, i)]) / 2.0);
+            let eigen = form.self_adjoint_eigen(Side::Lower).ok()?;
+            let kept = if is_used_up { size } else { KEPT.min(size) };
+            let values: Vec<f64> = (0..kept).map(|i| eigen.S()[size - 1 - i]).collect();
+            let turn = Mat::from_fn(size, kept, |i, j| eigen.U()[(i, size - 1 - j)]);
+            for own in [&mut *z, moved, excess] {
+                let turned = own.subcols(0, size) * &turn;
+                own.subcols_mut(0, kept).copy_from(&turned);
+            }
+            size = kept;
+            round += 1;
+            let residual = |i: usize| (excess.col(i) - z.col(i) * faer::Scale(values[i])).norm_l2();
+            let wanted: Vec<usize> = (0..kept.min(WANTED)).filter(|&i| values[i] > 0.0).collect();
+            let is_found =
+                !values.is_empty() && residual(0) < FOUND && wanted.iter().all(|&i| residual(i) < FOUND);
+            if is_found || is_used_up || round == MOST_ROUNDS {
+                let told: Vec<usize> = wanted.into_iter().filter(|&i| residual(i) < TOLD).collect();
+                let vectors = Mat::from_fn(n, told.len(), |i, j| z[(i, told[j])]);
+                let values: Vec<f64> = told.into_iter().map(|i| values[i]).collect();
+                return (!values.is_empty()).then_some(Ritz { values, vectors });
+            }
+        }
+    }
+}
+
+/// Takes from x what lies along the first columns of z, by the scalar product of V, twice: once leaves too much where little is left.
+fn orthogonal(x: &mut Mat<f64>, z: &Mat<f64>, moved: &Mat<f64>, size: usize) {
+    for _ in 0..2 {
+        let along = moved.subcols(0, size).transpose() * &*x;
+        *x -= z.subcols(0, size) * along;
+    }
+}
+
+/// The claims that are above 0 for sure, their positions V z in place of z, and how far each true eigenvalue may be from its own; `None` without any.
+fn proven(period: &Period, found: Ritz) -> Option<(Ritz, f64)> {
+    let Ritz { mut values, vectors } = found;
+    let (n, k) = (period.levels.size() as f64, values.len());
+    let image = period.of(&vectors);
+    let (mut residual, mut off) = (0.0, 0.0);
+    for (i, (value, &[moved, excess])) in values.iter().zip(&image.errors).enumerate() {
+        let (z, own) = (vectors.col(i), image.excess.col(i));
+        // Of the product and the difference.
+        let rounding = 3.0 * U * (own.norm_l2() + value.abs() * z.norm_l2());
+        residual += (1.01 * ((own - z * faer::Scale(*value)).norm_l2() + rounding) + excess).powi(2);
+        off += moved.powi(2);
+    }
+    let residual = (period.size() * residual).sqrt();
+    let gram = vectors.transpose() * &image.moved;
+    let long = norm::frobenius(&vectors);
+    let rounding = 1.01 * (n + 4.0) * U * long * norm::frobenius(&image.moved);
+    let defect = norm::frobenius(&(gram - Mat::<f64>::identity(k, k))) + rounding + 1.01 * long * off.sqrt();
+    let spread = values[0] - values[k - 1];
+    let radius = 1.01 * (2.0 * residual / (1.0 - defect).sqrt() + 1.3 * defect * spread);
+    // A defect above a half is no claim: then this is not a number, or the bound does not hold.
+    if !(defect < 0.5 && radius.is_finite()) {
+        return None;
+    }
+    values.retain(|e| *e > radius);
+    let vectors = image.moved.subcols(0, values.len()).to_owned();
+    (!values.is_empty()).then_some((Ritz { values, vectors }, radius))
+}
+
+/// Scaled so that the longest entry is 1.
+fn longest_one(shape: Vec<f64>) -> Vec<f64> {
+    let longest = shape.iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
+    shape.into_iter().map(|x| x / longest).collect()
+}
