@@ -643,25 +643,28 @@ def _newton(
     while True:
         half = compose(forces, steps, start, held, difference)
         pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
-        speed = firm.T @ (half.last @ half.speed)
+        every = half.last @ half.speed
+        speed = firm.T @ every
         move = half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -speed, rcond=None)[0]))
         residual = float(np.abs(move / held.root).max()) / extent
         part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
         if part is None:
             # How near rest is lost, and with it the orbit: at a fold a multiplier is 1.
-            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]))
+            drift = float(np.abs((every - firm @ speed) / held.root).max()) * float(_common(steps)) / extent
+            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]), drift)
         start = moved(part)
 
 
 @dataclass(frozen=True, eq=False)
 class _Orbit:
     """Where Newton's method ended: positions, half a period from there, the step that would be next over the extent of
-    the atoms, and the least singular value of what it solves with."""
+    the atoms, the least singular value of what it solves with, and how far what has no stiffness goes in a period."""
 
     positions: Doubles
     half: Half
     residual: float
     least: float
+    drift: float
 
 
 def monodromy(
@@ -716,6 +719,12 @@ def monodromy(
             done, start, found = 1.0, other.positions, other
         else:
             part /= 2
+    if found.drift > _ARRIVED:
+        remedy = (
+            "does not close: motions without stiffness drift along it, as the bends of a chain of bonds alone; give "
+            "these a force, or about='minimum'"
+        )
+        raise KickdriftError("about", "orbit", remedy)
     half = found.half
     away = float(np.linalg.norm(start - at, axis=1).max())
     values = _eigenvalues(half.matrix, half.struck, found.residual)

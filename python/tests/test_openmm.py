@@ -142,6 +142,15 @@ def test_where_the_orbit_ends_it_is_said(outer: str) -> None:
     assert ko.oscillations(system, positions, steps=steps, about="minimum", minimize=False).growth_rate > 0
 
 
+def test_motions_without_stiffness_that_drift_are_no_orbit() -> None:
+    """A chain of bonds bends freely: kicks set bends in motion, and nothing brings them back. Before: an orbit whose
+    residual was 1e-15."""
+    system, where = chain()
+    with pytest.raises(kd.KickdriftError, match="does not close") as caught:
+        ko.oscillations(system, where, steps={0: "1/200", 1: "1/50"})
+    assert caught.value.field == "about" and "minimum" in caught.value.remedy
+
+
 def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     system, positions = waters()
     steps, inner = levels(Fraction("4.60") / 1000)
@@ -960,6 +969,18 @@ def test_three_levels_get_their_verdict_and_a_region() -> None:
     advice = made.advise()
     assert str(advice).startswith("at 0.5, 1, 2 fs: stable (proven, for the Hessians given)")
     assert [mode["clock"] for mode in advice.modes] == [1, 2, 3] and advice.status == "safe"
+    # One mass under the stiffest forces has it at 3.58 fs already.
+    told = re.search(
+        r"first unstable outer step of these Hessians: by ([\d.]+) fs; every .* up to ([\d.]+)", str(advice)
+    )
+    assert told is not None
+    first, calm = (Fraction(own) / 1000 for own in told.groups())
+    assert Fraction("0.0043") < calm <= first < calm * (1 + Fraction("0.001"))
+    for outer, stable in ((first + Fraction(1, 10**6), False), (calm - Fraction(1, 10**6), True)):
+        beside = {0: outer / 4, 2: outer / 2, 1: outer}
+        assert ko.system(system, waters()[1], steps=beside, minimize=False).decide().stable == stable
+    # All modes were looked at.
+    assert "whether a faster mode exists" not in str(advice)
     inside = Fraction(advice.schemes[0]["band_edge"]["lo"]).limit_denominator(100) / 1000
     steps = {0: inside / 4, 2: inside / 2, 1: inside}
     assert ko.system(system, waters()[1], steps=steps, minimize=False).decide().stable
