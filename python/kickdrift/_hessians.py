@@ -228,7 +228,7 @@ def minimum(
     bend = np.empty((0, 0))
     descent, best, hessians, is_far = _descent(bend), (np.inf, own, force, np.inf), 0, True
     for _ in range(_ROUNDS):
-        begun, here, smallest, idle = own, smooth(force, own, reach), np.inf, 0
+        begun, here, smallest, size, idle = own, smooth(force, own, reach), np.inf, np.inf, 0
         while hessians < _HESSIANS:
             frame = free(held, own, columns, is_boxed)
             pulled = frame.T @ (here(own).ravel()[kept] / root)
@@ -256,7 +256,8 @@ def minimum(
             best = (left, own, here, min(smallest, left))
         if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS:
             break
-    _, own, here, size = best
+    if best[0] < np.inf:
+        _, own, here, size = best
     bend, _ = hessian(here, own, held.masses, difference, columns)
     frame = free(held, own, columns, is_boxed)
     arrived(size, frame.T @ (bend + held.curvature(here(own), own, columns)) @ frame, held.masses)
@@ -650,7 +651,10 @@ def _newton(
         part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
         if part is None:
             # How near rest is lost, and with it the orbit: at a fold a multiplier is 1.
-            drift = float(np.abs((every - firm @ speed) / held.root).max()) * float(_common(steps)) / extent
+            # The whole moves by itself where a mesh pulls at it, and by nothing else.
+            whole, left = rigid_motions(start, held.masses, rotations=False), every - firm @ speed
+            left = (left - whole @ (whole.T @ left)) / held.root
+            drift = float(np.abs(left).max()) * float(_common(steps)) / extent
             return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]), drift)
         start = moved(part)
 

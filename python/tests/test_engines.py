@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -94,14 +95,21 @@ OUTER = ["3", "4", "4.4", "4.5", "4.6", "5", "5.4"]
 def test_clusters_of_water_grow_as_the_engine_has_it(count: int, model: str) -> None:
     system, positions = cluster(count, model)
     at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
-    grown = 0
+    grown = refused = 0
     for outer in OUTER:
         step = Fraction(outer) / 1000
         inner = int(-(-step // Fraction(1, 2000)))
-        found = ko.oscillations(system, at, steps={0: step / inner, 1: step}, minimize=False)
+        try:
+            found = ko.oscillations(system, at, steps={0: step / inner, 1: step}, minimize=False)
+        except kd.KickdriftError as error:
+            assert error.field == "about" and "folds at" in error.remedy
+            refused += 1
+            continue
         agrees(found, of_engine(system, found, [(1, 1), (0, inner)]))
         grown += not found.stable
-    assert 0 < grown < len(OUTER)
+    # The softest motion of six waters of SPC/E folds at 2.5 fs.
+    assert refused == (len(OUTER) if (count, model) == (6, "spce") else 0)
+    assert refused or 0 < grown < len(OUTER)
 
 
 @pytest.mark.parametrize("outer", ["2", "3.2", "4.4", "4.8"])
@@ -116,17 +124,27 @@ def test_three_clocks_grow_as_the_engine_has_it(outer: str) -> None:
     agrees(found, of_engine(system, found, [(1, 1), (2, 2), (0, 8)]))
 
 
-@pytest.mark.parametrize("outer", ["2", "4", "4.6"])
+@cache
+def switched_box() -> tuple[mm.System, np.ndarray]:
+    """Forces that go to 0 at the cutoff, but for 1e-5 of the charges': so they have a minimum."""
+    system, positions = mm.XmlSerializer.clone(box(2)[0]), box(2)[1]
+    for force in system.getForces():
+        if isinstance(force, mm.NonbondedForce):
+            force.setUseSwitchingFunction(True)
+            force.setSwitchingDistance(0.2)
+            force.setEwaldErrorTolerance(1e-5)
+    at, notes = ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
+    assert notes == []
+    return system, at
+
+
+@pytest.mark.parametrize("outer", ["2"])
 def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
-    """Eight waters with PME, on three clocks; or said to have no orbit, since forces jump."""
-    system, positions = box(2)
+    """Eight waters with PME, on three clocks."""
+    system, at = switched_box()
     step = Fraction(outer) / 1000
     steps = {0: step / 10, 1: step / 2, 2: step}
-    try:
-        found = ko.oscillations(system, positions + 0.0137, steps=steps)
-    except kd.KickdriftError as error:
-        assert error.field in ("about", "positions") and error.remedy
-        return
+    found = ko.oscillations(system, at, steps=steps, minimize=False)
     agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, 10)]))
 
 

@@ -456,7 +456,18 @@ impl Advise {
         let length = rational("length", &self.length, Dimension::Time)?;
         let friction = rational("friction", &self.friction, Dimension::Rate)?;
         let (no_levers, all_modes) = (self.no_levers, self.all_modes);
-        Ok(Advised { band, modes, schemes, length, friction, constrained, file, system, no_levers, all_modes })
+        Ok(Advised {
+            band,
+            modes,
+            schemes,
+            length,
+            friction,
+            constrained,
+            file,
+            system,
+            no_levers,
+            all_modes,
+        })
     }
 
     fn of_periods(&self, reading: Option<&Reading>) -> Result<Advised> {
@@ -487,8 +498,8 @@ impl Advise {
     /// Of the system's own steps first, or the engine's; with the hydrogens and the constraints asked for.
     fn of_system(&self, file: &SystemFile, reading: Option<&Reading>, work: &Work) -> Result<Advised> {
         if self.all_modes {
-            let remedy = "is about periods: Hessians have all their modes, so leave it out";
-            return Err(Error::input("all_modes", "of a system", remedy));
+            let remedy = "is about periods; Hessians have all their modes: leave it out";
+            return Err(Error::input("all_modes", "true", remedy));
         }
         let mass = self.hydrogen()?.map(|mass| decimal(&mass));
         let held = self.constraints.as_deref().map(|which| which.trim().to_string());
