@@ -43,7 +43,8 @@ def cluster(count: int, model: str) -> tuple[mm.System, np.ndarray]:
 
 def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: float) -> np.ndarray:
     """The eigenvalues of a map of 2 ``size`` numbers about 0, speeds displaced by 250 times as much a unit of time."""
-    assert np.abs(after(np.zeros(2 * size))).max() < 2e-6, "the orbit is closed"
+    # Much closer than what is displaced: the mesh of a box pulls a little at the whole.
+    assert np.abs(after(np.zeros(2 * size))).max() < 0.1 * width, "the orbit is closed"
     measured = np.empty((2 * size, 2 * size))
     for column in range(2 * size):
         move = np.zeros(2 * size)
@@ -138,7 +139,7 @@ def switched_box() -> tuple[mm.System, np.ndarray]:
     return system, at
 
 
-@pytest.mark.parametrize("outer", ["2"])
+@pytest.mark.parametrize("outer", ["2", "4.6"])
 def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
     """Eight waters with PME, on three clocks."""
     system, at = switched_box()
