@@ -127,7 +127,7 @@ const LINES: [&str; 69] = [
     "advise --period OH=10fs --period 40fs --steps 0.5fs,4fs --steps 0.5fs,4.8fs --steps 0.5fs,5fs --length 10ns",
     "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --bond CH:k=680kcal/mol/A^2,12.011,1.008,3 --period 3000/cm --hmr 3.024 --on 3000/cm=1 --steps 1fs,2fs",
     "advise --period 10fs --period 40fs --period 100fs --steps 0.7fs,1fs,3fs --band 0",
-    "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --friction 1/ps --steps 0.5fs,6fs",
+    "advise --bond OH:K=450kcal/mol/A^2,15.999,1.008 --period angle=13fs --period 40fs --constraints OH --friction 1/ps --steps 0.5fs,6fs --all-modes",
     "advise data/scenes/water4.json --length 1ns",
     "advise data/scenes/water4.json --steps 0.5fs,4.5fs --friction 1/ps --hmr 1.5",
 ];

@@ -249,6 +249,7 @@ def advise(
     constraints: str | None = None,
     hmr: Exact | None = None,
     levers: bool = True,
+    all_modes: bool = False,
 ) -> Advice: ...
 
 
@@ -281,6 +282,7 @@ def advise(
     constraints: str | None = None,
     hmr: Exact | None = None,
     levers: bool = True,
+    all_modes: bool = False,
     **made: Any,
 ) -> Advice | SystemAdvice:
     """Say which steps are safe for these periods, for how long, and why.
@@ -313,6 +315,8 @@ def advise(
         Hydrogens of this mass in amu, taken from their heavy atoms.
     levers : bool
         Whether to say what would let the step grow.
+    all_modes : bool
+        The periods are the shortest of all motions on their clocks, so that it is known whether a faster one exists.
     **made
         What else makes the system of OpenMM's or ASE's: the keywords of :func:`kickdrift.openmm.system` (``positions``,
         ``topology``, ``integrator`` and so on) or :func:`kickdrift.ase.system` (``groups``).
@@ -334,7 +338,7 @@ def advise(
     """
     found, rest = molecule(periods, steps, made)
     if found is not None:
-        for field, value in {"bonds": bonds, "on": on}.items():
+        for field, value in {"bonds": bonds, "on": on, "all_modes": all_modes or None}.items():
             if value is not None:
                 raise KickdriftError(field, str(value), "is for periods: a system has its modes of its own")
         told: Advice | SystemAdvice = found.advise(
@@ -360,7 +364,7 @@ def advise(
     given["bond"] = [f"{_name('bonds', name)}:{value}" for name, value in (bonds or {}).items()]
     given["on"] = [f"{_name('on', name)}={clock}" for name, clock in (on or {}).items()]
     scales = (band, length, friction, constraints, hmr)
-    every = asked(given, rest, engine, scales, levers=levers)
+    every = asked(given, rest, engine, scales, levers=levers, all_modes=all_modes)
     return Advice(every.render("json"), every.render("text"), every)
 
 
@@ -399,6 +403,7 @@ def asked(
     scales: tuple[Exact, Time | None, Exact | None, str | None, Exact | None],
     place: str | Mapping[str, Any] = "",
     levers: bool = True,
+    all_modes: bool = False,
 ) -> Asked:
     """The question about what is given, and what all advice is asked with: the band, the length of the run, friction,
     constraints, the mass of hydrogens."""
@@ -414,6 +419,7 @@ def asked(
         "constraints": constraints,
         "hmr": hmr if hmr is None or isinstance(hmr, str) else text("hmr", hmr),
         "no_levers": None if levers else "true",
+        "all_modes": "true" if all_modes else None,
     }
     names = [
         f"engine{n}" if own == fspath(path) else fspath(path)

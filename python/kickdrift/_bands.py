@@ -313,6 +313,8 @@ class Bands:
     levels: tuple[Band, ...]
     notes: tuple[str, ...] = ()
     _begin: str = ""
+    #: Of an outer step, fs, up to which all is stable: in words where the system's own instability begins.
+    _first: Callable[[float], str] | None = None
 
     def _told(self) -> str:
         """What the advice rests on."""
@@ -371,16 +373,25 @@ class Bands:
             length=length,
             friction=friction,
             levers=levers,
+            # All, but for the probability that stands above.
+            all_modes=True,
         )
         looked = [f"  looked at  {level}" for level in self.levels]
         notes = [f"  note       {note}" for note in self.notes]
-        told: Advice = replace(found, _text="\n".join([self._told(), *looked, *notes, str(found)]))
+        ends = [row["first_lower"]["lo"] for row in found.rows if row["scheme"] == 1 and row["first_lower"]]
+        first = [self._first(min(ends))] if self._first and ends else []
+        told: Advice = replace(found, _text="\n".join([self._told(), *first, *looked, *notes, str(found)]))
         return told
 
 
-def of_hessians(document: Mapping[str, Any], arrays: Mapping[str, Doubles], verdict: Callable[[], Any]) -> Bands | None:
-    """The bands of dense Hessians of other than two steps, and what is decided at these; None of all else, which has an
-    advice of its own or none.
+def of_hessians(
+    document: Mapping[str, Any],
+    arrays: Mapping[str, Doubles],
+    verdict: Callable[[], Any],
+    intervals: Callable[..., Any],
+) -> Bands | None:
+    """The bands of dense Hessians of other than two steps, what is decided at these, and where its own instability
+    begins; None of all else, which has an advice of its own or none.
     """
     potentials, unit = document.get("potentials", ()), _IN_PS.get(document.get("time_unit", ""))
     steps = sorted({Fraction(own["step"]) for own in potentials if "step" in own})
@@ -413,7 +424,37 @@ def of_hessians(document: Mapping[str, Any], arrays: Mapping[str, Doubles], verd
     what = "stable" if told.stable else f"unstable, growing {told.growth_rate / float(unit):.4g}/ps"
     at = ", ".join(f"{1000 * float(step * unit):g}" for step in steps)
     begin = f"at {at} fs: {what} ({'proven' if told.proven else 'not proven'}, for the Hessians given)"
-    return Bands(tuple(found), tuple(told.warnings), f"{begin}\nother steps: {_COVERED}")
+
+    def first(stable: float) -> str:
+        try:
+            lo = Fraction(int(stable * 1e6), 10**9) / unit
+            rows = [
+                (row["lo"], row["hi"], row["verdict"])
+                for row in intervals((lo, _ABOVE * lo), resolution=_RESOLVED).rows
+            ]
+        except KickdriftError as error:
+            return f"first unstable outer step of these Hessians: not looked for ({error})"
+        in_fs = 1000 * float(unit)
+        grows = next((own for own in rows if own[2] == "unstable"), None)
+        calm = next((own[0] for own in rows if own[2] != "stable"), rows[-1][1])
+        upto = f"every outer step up to {_down(in_fs * calm)} fs at these ratios is stable"
+        if grows is None:
+            return (
+                f"first unstable outer step of these Hessians: none proven up to {in_fs * rows[-1][1]:.5g} fs; {upto}"
+            )
+        return f"first unstable outer step of these Hessians: by {in_fs * grows[0]:.6g} fs; {upto} (both proven)"
+
+    return Bands(tuple(found), tuple(told.warnings), f"{begin}\nother steps: {_COVERED}", first)
+
+
+#: How far above the step up to which one mass under the stiffest forces is stable a first unstable one is looked for.
+#: No interval wider than this part of its step is missed there: some seconds for a few molecules.
+_ABOVE, _RESOLVED = Fraction(3, 2), 1e-3
+
+
+def _down(x: float) -> str:
+    """To six digits, rounded down."""
+    return f"{np.floor(x * 1e5) / 1e5:.6g}"
 
 
 #: Units of time in ps.

@@ -252,7 +252,8 @@ class Cut:
     """A NonbondedForce's pairs within its cutoff, whose forces jump where a pair crosses that: the parameters.
 
     ``box`` has the vectors of a periodic box by rows, ``field`` is that of the reaction field, ``ewald`` the parameter
-    of direct space; one of the two at most is not 0.
+    of direct space; one of the two at most is not 0. ``dispersion`` is the parameter of Ewald's sum of dispersion, 0
+    where there is none.
     """
 
     force: Any
@@ -264,14 +265,7 @@ class Cut:
     special: _Indices
     field: float
     ewald: float
-
-    def _apart(self, positions: Doubles, pairs: _Indices) -> tuple[Doubles, Doubles]:
-        """Between nearest images, as OpenMM has them: along the last vector of the box first."""
-        apart = positions[pairs[:, 0]] - positions[pairs[:, 1]]
-        if self.box is not None:
-            for k in (2, 1, 0):
-                apart = apart - np.round(apart[:, k] / self.box[k, k])[:, None] * self.box[k]
-        return apart, np.linalg.norm(apart, axis=1)
+    dispersion: float = 0.0
 
     def slope(self, pairs: _Indices, r: Doubles) -> Doubles:
         """E' of pairs as far apart as this, whether within the cutoff or somewhat beyond."""
@@ -280,40 +274,126 @@ class Cut:
         found, _ = _lennard_jones(sigma, epsilon, r, _switch(self.force, r))
         gauss = 2 / np.sqrt(np.pi) * self.ewald * r * np.exp(-((self.ewald * r) ** 2))
         scale = _COULOMB * self.charge[i] * self.charge[j]
+        if self.dispersion:
+            # What the mesh has of it, by geometric means, is taken out: C (1 - exp(-y) (1 + y + y²/2))/r⁶, y = (b r)².
+            y = (self.dispersion * r) ** 2
+            taken = 4 * np.sqrt(self.epsilon[i] * self.epsilon[j]) * (self.sigma[i] * self.sigma[j]) ** 3
+            part = 1 - np.exp(-y) * (1 + y + y**2 / 2)
+            found = found + taken * (np.exp(-y) * y**3 - 6 * part) / r**7
         return np.asarray(found + scale * (2 * self.field * r - (erfc(self.ewald * r) + gauss) / r**2))
 
-    def kept(self, positions: Doubles, reach: float) -> Force | None:
-        """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``: the force
-        of those that have left, less that of those that have come in. None where no pair is so near.
-
-        With it forces are smooth, and their derivative at the positions is the Hessian of what acts there.
-        """
+    def kept(self, positions: Doubles, reach: float) -> Kept | None:
+        """What keeps each pair on its side of the cutoff while its distance changes by less than ``reach``. None where
+        no pair is so near."""
         pairs = _shell(positions, self.box, self.end - reach, self.end + reach)
         pairs = pairs[~np.isin(_key(pairs, len(positions)), self.special)]
         if not len(pairs):
             return None
-        was = self._apart(positions, pairs)[1] < self.end
-
-        def of(at: Doubles) -> Doubles:
-            apart, r = self._apart(at, pairs)
-            crossed = (r < self.end) != was
-            own, r = pairs[crossed], r[crossed]
-            size = np.where(was[crossed], 1.0, -1.0) * self.slope(own, r) / r
-            added = np.zeros_like(at)
-            np.add.at(added, own[:, 0], -size[:, None] * apart[crossed])
-            np.add.at(added, own[:, 1], size[:, None] * apart[crossed])
-            return added
-
-        return of
+        was = _nearest(positions, pairs, self.box)[1] < self.end
+        return _ByFormulas(self.box, self.end, pairs, was, self)
 
 
-def cut(force: Any, context: Any) -> Cut | None:
-    """Of a NonbondedForce with a cutoff; None of one without, or where its pairs are not known here: dispersion by
-    Ewald's sum, offsets of parameters."""
+@dataclass(frozen=True)
+class CustomCut:
+    """A CustomNonbondedForce's pairs within its cutoff: what keeps them on their side is the force itself with a longer
+    cutoff and without the pairs that stand outside."""
+
+    force: Any
+    system: Any
+    end: float
+    box: Doubles | None
+
+    def kept(self, positions: Doubles, reach: float) -> Kept | None:
+        """As :meth:`Cut.kept`; None, too, where a box is too narrow for a longer cutoff."""
+        most = self.end + reach
+        if self.box is not None and most > np.diag(self.box).min() / 2:
+            return None
+        # What stands within twice that beyond may come into the longer cutoff.
+        pairs = _shell(positions, self.box, self.end - reach, most + reach)
+        given = [self.force.getExclusionParticles(n) for n in range(self.force.getNumExclusions())]
+        special = _key(np.array(given, dtype=np.int64).reshape(-1, 2), len(positions))
+        pairs = pairs[~np.isin(_key(pairs, len(positions)), special)]
+        apart = _nearest(positions, pairs, self.box)[1]
+        if not (apart < most).any():
+            return None
+        longer = deepcopy(self.force)
+        longer.setCutoffDistance(most)
+        for i, j in pairs[apart >= self.end]:
+            longer.addExclusion(int(i), int(j))
+        forces = _alone(self.system, [longer]), _alone(self.system, [self.force])
+        return _ByItself(self.box, self.end, pairs, apart < self.end, *forces)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Pairs near a cutoff, and on which side of it they are kept; ``was`` says which are within.
+
+    A call gives the force of those that have left, less that of those that have come in: with it forces are smooth, and
+    their derivative at the positions is the Hessian of what acts there.
+    """
+
+    box: Doubles | None
+    end: float
+    pairs: _Indices
+    was: _Mask
+
+    def __call__(self, at: Doubles) -> Doubles:
+        raise NotImplementedError
+
+    def crossed(self, at: Doubles) -> tuple[list[tuple[int, int]], Doubles]:
+        """The pairs that are kept on a side where they are not, and how far they are from it."""
+        _, r = _nearest(at, self.pairs, self.box)
+        off = (r < self.end) != self.was
+        return [(int(i), int(j)) for i, j in self.pairs[off]], np.abs(r[off] - self.end)
+
+
+@dataclass(frozen=True)
+class _ByFormulas(Kept):
+    cut: Cut
+
+    def __call__(self, at: Doubles) -> Doubles:
+        apart, r = _nearest(at, self.pairs, self.box)
+        crossed = (r < self.end) != self.was
+        own, r = self.pairs[crossed], r[crossed]
+        size = np.where(self.was[crossed], 1.0, -1.0) * self.cut.slope(own, r) / r
+        added = np.zeros_like(at)
+        np.add.at(added, own[:, 0], -size[:, None] * apart[crossed])
+        np.add.at(added, own[:, 1], size[:, None] * apart[crossed])
+        return added
+
+
+@dataclass(frozen=True)
+class _ByItself(Kept):
+    longer: Force
+    plain: Force
+
+    def __call__(self, at: Doubles) -> Doubles:
+        return self.longer(at) - self.plain(at)
+
+
+def _nearest(positions: Doubles, pairs: _Indices, box: Doubles | None) -> tuple[Doubles, Doubles]:
+    """Between nearest images, as OpenMM has them: along the last vector of the box first."""
+    apart = positions[pairs[:, 0]] - positions[pairs[:, 1]]
+    if box is not None:
+        for k in (2, 1, 0):
+            apart = apart - np.round(apart[:, k] / box[k, k])[:, None] * box[k]
+    return apart, np.linalg.norm(apart, axis=1)
+
+
+def cut(force: Any, context: Any) -> Cut | CustomCut | None:
+    """Of a NonbondedForce or CustomNonbondedForce with a cutoff; None of one without, of one that goes to 0 smoothly,
+    or where its pairs are not known here: offsets of parameters."""
     system, method = context.getSystem(), force.getNonbondedMethod()
     vectors = np.array([list(own._value) for own in context.getState().getPeriodicBoxVectors()])
     is_periodic = method != force.CutoffNonPeriodic
-    if method in (force.NoCutoff, force.LJPME) or force.getNumGlobalParameters():
+    if method == force.NoCutoff:
+        return None
+    if isinstance(force, mm.CustomNonbondedForce):
+        # A switching function leaves neither a force nor a stiffness at the cutoff.
+        is_switched = force.getUseSwitchingFunction()
+        end = force.getCutoffDistance()._value
+        return None if is_switched else CustomCut(force, system, end, vectors if is_periodic else None)
+    if force.getNumGlobalParameters():
         return None
     count, end = system.getNumParticles(), force.getCutoffDistance()._value
     charge, sigma, epsilon = np.array([_plain(force.getParticleParameters(n)) for n in range(count)]).T
@@ -323,11 +403,12 @@ def cut(force: Any, context: Any) -> Cut | None:
     if method in (force.CutoffNonPeriodic, force.CutoffPeriodic):
         dielectric = force.getReactionFieldDielectric()
         field = (dielectric - 1) / (2 * dielectric + 1) / end**3
-    elif method == force.PME:
+    elif method in (force.PME, force.LJPME):
         ewald = float(force.getPMEParametersInContext(context)[0])
     else:
         ewald = float(np.sqrt(-np.log(2 * force.getEwaldErrorTolerance())) / end)
-    return Cut(force, end, vectors if is_periodic else None, charge, sigma, epsilon, special, field, ewald)
+    dispersion = float(force.getLJPMEParametersInContext(context)[0]) if method == force.LJPME else 0.0
+    return Cut(force, end, vectors if is_periodic else None, charge, sigma, epsilon, special, field, ewald, dispersion)
 
 
 def _shell(positions: Doubles, box: Doubles | None, least: float, most: float) -> _Indices:

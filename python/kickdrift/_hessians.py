@@ -24,7 +24,7 @@ from kickdrift._errors import KickdriftError
 from kickdrift._held import Held
 from kickdrift._numbers import frozen
 from kickdrift._progress import Progress
-from kickdrift._rigid import Doubles, norm
+from kickdrift._rigid import Doubles, norm, rigid_motions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -186,32 +186,37 @@ def _difference(force: Force, positions: Doubles, column: int, width: float) -> 
     return (ahead - force(moved).ravel()) / (2 * width)
 
 
-def descend(pull: Callable[[], Doubles], move: Callable[[Doubles], None], steps: int = 30) -> float:
-    """Move along what pulls until rounding ends its fall; the smallest pull that was seen."""
-    smallest, idle = np.inf, 0
-    for _ in range(steps):
-        pulled = pull()
-        size = float(np.linalg.norm(pulled))
-        # Rounding ends the fall of the force: two steps without a tenth less are the end.
-        idle = idle + 1 if size > 0.9 * smallest else 0
-        if idle == 2:
-            break
-        smallest = min(smallest, size)
-        move(pulled)
-    return float(smallest)
-
-
 def minimum(
     force: Force,
     positions: Doubles,
-    masses: Doubles,
+    held: Held,
     difference: float,
-    steps: int = 30,
     columns: Sequence[int] | None = None,
-) -> Doubles:
-    """The minimum beside the positions, by Newton's method with the soft directions left out.
+    is_boxed: bool = False,
+    reach: float = np.inf,
+    far: float = np.inf,
+) -> tuple[Doubles, Force]:
+    """The minimum beside the positions by Newton's method, and the force whose minimum it is.
 
-    Of the degrees of freedom to keep, all 3n unless given: the others stand still.
+    It moves along the held distances, with the soft directions left out and the translations of a box, whose Ewald sums
+    pull at it as a whole where its mesh is; against the force where the stiffness is negative. A Hessian is kept while
+    each step leaves less than a tenth of the force.
+
+    Forces that jump, as where pairs cross a cutoff, need have no minimum. So they are taken as smooth as they are about
+    a place within ``reach``, down to the minimum of that; then anew from there, until what jumps is on its own side at
+    the minimum, too. Where it never is, the place where the least is left of the forces as they are comes back with the
+    smooth force.
+
+    Parameters
+    ----------
+    columns : sequence of int, optional
+        The degrees of freedom to move, all 3n unless given: the others stand still.
+    is_boxed : bool
+        Whether translations move nothing, but for a mesh.
+    reach : float
+        Within which forces are known to be smooth; no coordinate moves by more than a seventh of it at once.
+    far : float
+        How far a coordinate may go in all.
 
     Raises
     ------
@@ -219,19 +224,81 @@ def minimum(
         Where Newton's method does not arrive, or at a saddle: the positions are not near a minimum.
     """
     kept = np.arange(positions.size) if columns is None else np.asarray(columns)
-    own, root = positions.copy(), np.sqrt(np.repeat(masses, 3))[kept]
-    stiffness = np.zeros((len(kept), len(kept)))
+    root, own = held.root[kept], held.back(positions, columns)
+    bend = np.empty((0, 0))
+    descent, best, hessians, is_far = _descent(bend), (np.inf, own, force, np.inf), 0, True
+    for _ in range(_ROUNDS):
+        begun, here, smallest, size, idle = own, smooth(force, own, reach), np.inf, np.inf, 0
+        while hessians < _HESSIANS:
+            frame = free(held, own, columns, is_boxed)
+            pulled = frame.T @ (here(own).ravel()[kept] / root)
+            size = float(np.linalg.norm(pulled))
+            # Rounding ends the fall of the force: two steps without a tenth less are the end.
+            idle = idle + 1 if not size < 0.9 * smallest else 0
+            if idle == 2 or np.abs(own - begun).max() > reach / 8:
+                break
+            is_new = is_far or (size > 0.1 * smallest and size > _rounding(bend, held.masses))
+            smallest, is_far = min(smallest, size), False
+            if is_new:
+                bend, _ = hessian(here, own, held.masses, difference, columns)
+                bend, hessians = bend + held.curvature(here(own), own, columns), hessians + 1
+            if is_new or held.distances:
+                descent = _descent(frame.T @ bend @ frame)
+            along = frame @ descent(pulled)
+            own = _moved(here, held, own, kept, along, reach / 7)
+            if np.abs(own - positions).max() > far:
+                raise KickdriftError("positions", f"moved by {far:g}", "are not near a minimum: minimize them first")
+        is_far = bool(np.abs(own - begun).max() > reach / 8)
+        if is_far:
+            continue
+        left = float(np.linalg.norm(frame.T @ (force(own).ravel()[kept] / root)))
+        if left < best[0]:
+            best = (left, own, here, min(smallest, left))
+        if here is force or left < _rounding(bend, held.masses) or hessians >= _HESSIANS:
+            break
+    if best[0] < np.inf:
+        _, own, here, size = best
+    bend, _ = hessian(here, own, held.masses, difference, columns)
+    frame = free(held, own, columns, is_boxed)
+    arrived(size, frame.T @ (bend + held.curvature(here(own), own, columns)) @ frame, held.masses)
+    return own, here
 
-    def pull() -> Doubles:
-        return force(own).ravel()[kept] / root
 
-    def move(pulled: Doubles) -> None:
-        nonlocal stiffness
-        stiffness, _ = hessian(force, own, masses, difference, columns)
-        own.flat[kept] += soft_solve(stiffness, pulled) / root
+#: Hessians that a minimum may take, and how often what jumps is looked at anew.
+_HESSIANS, _ROUNDS = 30, 30
 
-    arrived(descend(pull, move, steps), stiffness, masses)
-    return own
+
+def free(held: Held, where: Doubles, columns: Sequence[int] | None, is_boxed: bool) -> Doubles:
+    """An orthonormal basis of the deviations that held distances leave free; of a box without its translations."""
+    frame = held.frame(where, columns)
+    if not is_boxed:
+        return frame
+    moved = frame.T @ rigid_motions(where, held.masses, rotations=False)
+    return np.asarray(frame @ np.linalg.svd(moved.T)[2][moved.shape[1] :].T)
+
+
+def _descent(matrix: Doubles) -> Callable[[Doubles], Doubles]:
+    """Newton's step for a pull, against negative stiffness as if it were positive, the soft directions left out."""
+    values, vectors = np.linalg.eigh(matrix)
+    firm = np.abs(values) > _SOFT * np.abs(values).max(initial=0.0)
+    values, vectors = np.abs(values[firm]), vectors[:, firm]
+    return lambda right: np.asarray(vectors @ ((vectors.T @ right) / values))
+
+
+def _moved(force: Force, held: Held, own: Doubles, kept: npt.NDArray[np.intp], along: Doubles, most: float) -> Doubles:
+    """Positions after a step, as much of it as moves no coordinate by more than ``most`` and leaves less than half of
+    what pulls along it pulling back."""
+    root = held.root[kept]
+    part = min(1.0, most / max(float(np.abs(along / root).max(initial=0.0)), 1e-300))
+    columns = None if len(kept) == own.size else list(kept)
+    least = -0.5 * float(along @ (force(own).ravel()[kept] / root))
+    while True:
+        moved = own.copy()
+        moved.flat[kept] += part * along / root
+        moved = held.back(moved, columns)
+        if part < _SMALLEST_PART or float(along @ (force(moved).ravel()[kept] / root)) > least:
+            return moved
+        part /= 2
 
 
 def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
@@ -242,8 +309,7 @@ def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
     KickdriftError
         Where it is not, so that Newton's method did not arrive; where it arrived at a saddle.
     """
-    scale = norm(stiffness) * float(np.sqrt(masses.max()))
-    if not pull < 1e-9 * scale:
+    if not pull < _rounding(stiffness, masses):
         raise KickdriftError("positions", f"force {pull:.1e}", "are not near a minimum: minimize them first")
     values = np.linalg.eigvalsh(stiffness)
     if values.size and values[0] < -_SOFT * np.abs(values).max():
@@ -255,11 +321,9 @@ def arrived(pull: float, stiffness: Doubles, masses: Doubles) -> None:
 _SOFT = 1e-7
 
 
-def soft_solve(matrix: Doubles, right: Doubles) -> Doubles:
-    """The solution with the soft directions left out."""
-    firm = _firm(matrix)
-    solved: Doubles = firm @ np.linalg.solve(firm.T @ matrix @ firm, firm.T @ right)
-    return solved
+def _rounding(stiffness: Doubles, masses: Doubles) -> float:
+    """The mass-weighted pull that a displacement of 1e-9 brings about at most."""
+    return 1e-9 * norm(stiffness) * float(np.sqrt(masses.max()))
 
 
 def _firm(matrix: Doubles) -> Doubles:
@@ -580,25 +644,31 @@ def _newton(
     while True:
         half = compose(forces, steps, start, held, difference)
         pulls = firm.T @ half.last @ half.matrix[half.first.shape[1] :, : half.first.shape[1]] @ half.first.T @ firm
-        speed = firm.T @ (half.last @ half.speed)
+        every = half.last @ half.speed
+        speed = firm.T @ every
         move = half.first @ (half.first.T @ (firm @ np.linalg.lstsq(pulls, -speed, rcond=None)[0]))
         residual = float(np.abs(move / held.root).max()) / extent
         part = _damped(size_at, float(np.abs(speed).max())) if residual > 1e-13 else None
         if part is None:
             # How near rest is lost, and with it the orbit: at a fold a multiplier is 1.
-            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]))
+            # The whole moves by itself where a mesh pulls at it, and by nothing else.
+            whole, left = rigid_motions(start, held.masses, rotations=False), every - firm @ speed
+            left = (left - whole @ (whole.T @ left)) / held.root
+            drift = float(np.abs(left).max()) * float(_common(steps)) / extent
+            return _Orbit(start, half, residual, float(np.linalg.svd(pulls, compute_uv=False)[-1]), drift)
         start = moved(part)
 
 
 @dataclass(frozen=True, eq=False)
 class _Orbit:
     """Where Newton's method ended: positions, half a period from there, the step that would be next over the extent of
-    the atoms, and the least singular value of what it solves with."""
+    the atoms, the least singular value of what it solves with, and how far what has no stiffness goes in a period."""
 
     positions: Doubles
     half: Half
     residual: float
     least: float
+    drift: float
 
 
 def monodromy(
@@ -653,6 +723,12 @@ def monodromy(
             done, start, found = 1.0, other.positions, other
         else:
             part /= 2
+    if found.drift > _ARRIVED:
+        remedy = (
+            "does not close: motions without stiffness drift along it, as the bends of a chain of bonds alone; give "
+            "these a force, or about='minimum'"
+        )
+        raise KickdriftError("about", "orbit", remedy)
     half = found.half
     away = float(np.linalg.norm(start - at, axis=1).max())
     values = _eigenvalues(half.matrix, half.struck, found.residual)

@@ -330,7 +330,7 @@ class System(Frozen):
         method: str | None = None,
         budget: int | None = None,
     ) -> Intervals:
-        """All stable and unstable intervals of the outer step, two levels, with as many inner steps as now.
+        """All stable and unstable intervals of the outer step, at the ratios of steps that there are.
 
         Parameters
         ----------
@@ -413,7 +413,7 @@ class System(Frozen):
         SystemAdvice(4 fs caution, 6 fs island)
         """
         scales = (band, length, friction, constraints, hmr)
-        if (bands := of_hessians(self.document, self.arrays, self.decide)) is not None:
+        if (bands := of_hessians(self.document, self.arrays, self.decide, self.intervals)) is not None:
             return bands.advise(
                 steps,
                 engine=engine,

@@ -201,4 +201,4 @@ def _start(atoms: Any, forces: Mapping[str, Force], masses: Doubles, minimize: b
     if not minimize:
         return where
     every = list(forces.values())
-    return minimum(lambda x: np.sum([force(x) for force in every], axis=0), where, masses, difference)
+    return minimum(lambda x: np.sum([force(x) for force in every], axis=0), where, Held(masses), difference)[0]

@@ -30,14 +30,12 @@ from kickdrift._hessians import (
     Force,
     Monodromy,
     Work,
-    arrived,
-    descend,
+    free,
     hessian,
     minimum,
     monodromy,
     seconds_of,
     seen,
-    soft_solve,
     unbalanced,
     usable,
 )
@@ -72,6 +70,13 @@ class _Engine:
     masses: Doubles
     count: int
 
+    @cached_property
+    def is_boxed(self) -> bool:
+        """Whether translations move nothing, but for the mesh of an Ewald sum."""
+        system = self.context.getSystem()
+        field = any(isinstance(force, mm.CustomExternalForce) for force in system.getForces())
+        return bool(system.usesPeriodicBoundaryConditions()) and not field
+
     def force(self, groups: int) -> _Forces:
         """The forces of some groups, bits of a mask."""
         return _Forces(self, groups)
@@ -83,7 +88,8 @@ class _Engine:
 
         found: dict[int, list[Any]] = {}
         for force in self.context.getSystem().getForces():
-            if isinstance(force, mm.NonbondedForce) and (own := _forcefield.cut(force, self.context)) is not None:
+            is_cut = isinstance(force, mm.NonbondedForce | mm.CustomNonbondedForce)
+            if is_cut and (own := _forcefield.cut(force, self.context)) is not None:
                 found.setdefault(force.getForceGroup(), []).append(own)
         return found
 
@@ -104,7 +110,34 @@ class _Forces:
         """With each pair kept on that side of the cutoff on which it is at these positions."""
         acting = (own for group, cuts in self.engine.cuts.items() if self.groups >> group & 1 for own in cuts)
         kept = [found for own in acting if (found := own.kept(positions, reach)) is not None]
-        return lambda at: np.asarray(sum((own(at) for own in kept), self(at)))
+        return _Smooth(self, kept) if kept else self
+
+
+@dataclass(frozen=True)
+class _Smooth:
+    """The forces of some groups with pairs kept on a side of the cutoff, while they are near it."""
+
+    force: _Forces
+    kept: Sequence[Any]
+
+    def __call__(self, positions: Doubles) -> Doubles:
+        return np.asarray(sum((own(positions) for own in self.kept), self.force(positions)))
+
+    def note(self, positions: Doubles) -> str | None:
+        """What to know of a minimum of this where it is none of the forces as they are: pairs beyond their side."""
+        crossed = [own.crossed(positions) for own in self.kept]
+        pairs = [pair for pairs, _ in crossed for pair in pairs]
+        if not pairs:
+            return None
+        off = max(float(own.max(initial=0.0)) for _, own in crossed)
+        jump = float(np.linalg.norm(self(positions) - self.force(positions), axis=1).max())
+        who = f"{len(pairs)} pair{'s' * (len(pairs) > 1)} (as particles {pairs[0][0]} and {pairs[0][1]})"
+        return (
+            f"forces jump at a cutoff, and no minimum of them as they are was found near: {who} kept on one side of it "
+            f"come to rest on the other, up to {off:.1g} nm beyond it, where forces jump by up to {jump:.2g} "
+            "kJ/mol/nm; the positions are the minimum with these kept so. A switching function, a smaller Ewald "
+            "tolerance or a longer cutoff makes the jump smaller"
+        )
 
 
 def system(
@@ -141,7 +174,8 @@ def system(
     minimize : bool
         Go to the minimum beside the positions, in a copy; of some atoms, to theirs among the others as these stand.
     difference : float
-        The difference of positions, nm. Pairs of a NonbondedForce stay on their side of its cutoff meanwhile.
+        The difference of positions, nm. Pairs of a NonbondedForce or CustomNonbondedForce stay on their side of its
+        cutoff meanwhile.
     sparse : bool
         For thousands of atoms on two levels: bonds, angles, torsions and a NonbondedForce with a cutoff by their
         formulas, compared with differences at random displacements; other bonded terms by differences. No constraints
@@ -203,12 +237,16 @@ def system(
     chosen = None if atoms is None else [3 * atom + axis for atom in atoms for axis in range(3)]
     if chosen is not None:
         constraints = [own for own in constraints if own[0] in set(atoms or ()) or own[1] in set(atoms or ())]
+    notes = _notes(system, integrator, clocks)
     if minimize:
         Work(columns, 3, dear).begin(longest, progress is True, remedy)
-        where = _minimized(engine, where, constraints, difference, chosen)
-    frame = Held(engine.masses, constraints).frame(where, chosen)
+        where, told = _at_rest(engine, where, constraints, difference, chosen)
+        notes += told
+    held = Held(engine.masses, constraints)
+    frame = held.frame(where, chosen)
     measured = _measured(engine, clocks, (where, constraints, chosen), frame, difference, shown(progress))
-    notes = [*_notes(system, integrator, clocks), *_unbalanced(engine.masses, measured, frame, chosen, constraints)]
+    moving = free(held, where, chosen, engine.is_boxed and chosen is None)
+    notes += _unbalanced(engine.masses, measured, moving, chosen)
     accuracy = max(seen(own.matrix, own.error, own.name, f"{difference:g} nm") for own in measured)
     kept = np.arange(engine.count) if atoms is None else np.asarray(atoms, dtype=np.intp)
     title = f"{engine.count} particles, ps and nm"
@@ -452,11 +490,10 @@ def _unbalanced(
     measured: Sequence[_Level],
     frame: Doubles,
     chosen: Sequence[int] | None,
-    constraints: Sequence[_Constraint],
 ) -> list[str]:
     kept = np.arange(3 * len(masses)) if chosen is None else np.asarray(chosen)
     root = np.sqrt(np.repeat(masses, 3))[kept]
-    # What constraints take up moves nothing.
+    # What constraints take up moves nothing, nor does the pull of a mesh at a box as a whole.
     along = {own.name: (frame @ (frame.T @ (own.force.ravel()[kept] / root)) * root).reshape(-1, 3) for own in measured}
     total = np.sum([own.matrix for own in measured], axis=0)
     follow = "Ask oscillations(...) for what grows about that orbit, as a run shows it"
@@ -881,24 +918,36 @@ def _minimized(
     difference: float,
     chosen: Sequence[int] | None = None,
 ) -> Doubles:
-    """The minimum in the engine's own context: the system given and its contexts stay as they are.
+    """:func:`_at_rest`, the positions alone."""
+    return _at_rest(engine, where, constraints, difference, chosen)[0]
+
+
+def _at_rest(
+    engine: _Engine,
+    where: Doubles,
+    constraints: Sequence[_Constraint],
+    difference: float,
+    chosen: Sequence[int] | None = None,
+) -> tuple[Doubles, list[str]]:
+    """The minimum in the engine's own context: the system given and its contexts stay as they are; and what to know of
+    it.
 
     Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that
-    does not arrive close by. All but the chosen coordinates stand still.
+    does not arrive close by. All but the chosen coordinates stand still. Of forces that jump at a cutoff the minimum
+    need not be one: then a note says so.
     """
+    force, held = engine.force(-1), Held(engine.masses, constraints)
+    is_boxed = engine.is_boxed and chosen is None
 
-    def newton(near: Doubles) -> Doubles:
-        if constraints:
-            return _constrained_minimum(engine, near, constraints, difference, chosen)
-        return minimum(engine.force(-1), near, engine.masses, difference, columns=chosen)
+    def newton(near: Doubles, far: float) -> tuple[Doubles, Force]:
+        return minimum(force, near, held, difference, chosen, is_boxed, _REACH if engine.cuts else np.inf, far)
 
     try:
-        found = newton(where)
-        if np.abs(found - where).max(initial=0.0) < _CLOSE:
-            return found
+        found, smooth = newton(where, _CLOSE)
     except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
-        pass
-    return newton(_relaxed(engine, where, chosen))
+        found, smooth = newton(_relaxed(engine, where, chosen), np.inf)
+    note = smooth.note(found) if isinstance(smooth, _Smooth) else None
+    return found, [note] if note else []
 
 
 def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> Doubles:
@@ -919,40 +968,5 @@ def _relaxed(engine: _Engine, where: Doubles, chosen: Sequence[int] | None) -> D
     return np.array(context.getState(getPositions=True).getPositions(asNumpy=True)._value)
 
 
-#: How far, nm, Newton's method alone may go: half a bond.
-_CLOSE = 0.05
-
-
-def _constrained_minimum(
-    engine: _Engine,
-    near: Doubles,
-    constraints: Sequence[_Constraint],
-    difference: float,
-    chosen: Sequence[int] | None = None,
-) -> Doubles:
-    """Newton's method along the constraints, each step put back on them; all but the chosen coordinates stand still.
-
-    Raises
-    ------
-    KickdriftError
-        Where it does not arrive.
-    """
-    force, masses, kept = engine.force(-1), engine.masses, np.arange(near.size) if chosen is None else np.array(chosen)
-    held, matrix = Held(masses, constraints), np.zeros((near.size, near.size))
-    where = held.back(near, chosen)
-    frame = held.frame(where, chosen)
-
-    def pull() -> Doubles:
-        return frame.T @ (force(where).ravel() / held.root)[kept]
-
-    def move(pulled: Doubles) -> None:
-        nonlocal where, frame, matrix
-        matrix, _ = hessian(force, where, masses, difference, chosen)
-        matrix = frame.T @ (matrix + held.curvature(force(where), where, chosen)) @ frame
-        moved = where.copy()
-        moved.flat[kept] += frame @ soft_solve(matrix, pulled) / held.root[kept]
-        where = held.back(moved, chosen)
-        frame = held.frame(where, chosen)
-
-    arrived(descend(pull, move), matrix, masses)
-    return where
+#: How far, nm, Newton's method alone may go: half a bond; and within which pairs are kept on their side of a cutoff.
+_CLOSE, _REACH = 0.05, 0.04

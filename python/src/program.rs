@@ -142,8 +142,8 @@ pub fn recheck(
         let outcome = Claim::read(&text)?.recheck(&options, None)?;
         let not_rechecked = outcome.not_rechecked.iter().map(ToString::to_string).collect();
         let failures = outcome.failures.iter();
-        let failures = failures.map(|own| (own.row as u64, own.place.clone(), own.why.to_string())).collect();
-        let sample = outcome.sample.map(|(drawn, of)| (drawn as u64, of as u64));
-        Ok((outcome.rows as u64, outcome.route.to_string(), sample, not_rechecked, failures))
+        let failures = failures.map(|own| (own.row, own.place.clone(), own.why.to_string())).collect();
+        let sample = outcome.sample;
+        Ok((outcome.rows, outcome.route.to_string(), sample, not_rechecked, failures))
     })
 }

@@ -230,6 +230,21 @@ def test_the_evaluations_do_not_grow_with_the_number_of_molecules() -> None:
 SKEW = [[0.93, 0, 0], [0.1, 0.97, 0], [-0.3, 0.25, 0.95]]
 
 
+def own_pairs(given: mm.NonbondedForce, cutoff: float) -> mm.CustomNonbondedForce:
+    """Screened charges and Lennard-Jones as a force of one's own, cut off at once."""
+    own = mm.CustomNonbondedForce("138.9*q1*q2*exp(-r)/r + 4*sqrt(e1*e2)*(s^12 - s^6); s = 0.5*(s1+s2)/r")
+    for name in "qse":
+        own.addPerParticleParameter(name)
+    for n in range(given.getNumParticles()):
+        own.addParticle(given.getParticleParameters(n))
+    for n in range(given.getNumExceptions()):
+        own.addExclusion(*given.getExceptionParameters(n)[:2])
+    own.setNonbondedMethod(own.CutoffPeriodic)
+    own.setCutoffDistance(cutoff)
+    own.setForceGroup(SLOW)
+    return own
+
+
 @pytest.mark.parametrize(
     ("method", "switched", "box"),
     [
@@ -238,15 +253,27 @@ SKEW = [[0.93, 0, 0], [0.1, 0.97, 0], [-0.3, 0.25, 0.95]]
         ("CutoffPeriodic", False, SKEW),
         ("Ewald", False, None),
         ("PME", True, SKEW),
+        ("LJPME", False, None),
+        ("LJPME", True, None),
+        ("custom", False, None),
+        ("custom", False, SKEW),
     ],
 )
 def test_pairs_that_cross_the_cutoff_stay_on_their_side(
     method: str, switched: bool, box: list[list[float]] | None
 ) -> None:
     """Before: a pair that a difference takes across the cutoff leaves its force, over the step, as stiffness."""
-    system, positions = waters(3, method, switched)
+    system, positions = waters(3, "CutoffPeriodic" if method == "custom" else method, switched)
+    system = mm.XmlSerializer.clone(system)
+    if method == "custom":
+        place = [isinstance(force, mm.NonbondedForce) for force in system.getForces()].index(True)
+        # A pair at the cutoff, along the axis of a column.
+        apart = positions[3:] - positions[0]
+        r = np.linalg.norm(apart, axis=1)
+        chosen = np.argmax(np.where((r > 0.3) & (r < 0.42), np.abs(apart[:, 0]) / r, 0.0))
+        system.addForce(own_pairs(system.getForce(place), float(r[chosen]) + 2e-5))
+        system.removeForce(place)
     if box is not None:
-        system = mm.XmlSerializer.clone(system)
         system.setDefaultPeriodicBoxVectors(*[mm.Vec3(*own) for own in box])
     engine, columns = ko._engine(system), list(range(0, positions.size, 6))
     force = engine.force(1 << SLOW)

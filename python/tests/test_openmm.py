@@ -142,6 +142,15 @@ def test_where_the_orbit_ends_it_is_said(outer: str) -> None:
     assert ko.oscillations(system, positions, steps=steps, about="minimum", minimize=False).growth_rate > 0
 
 
+def test_motions_without_stiffness_that_drift_are_no_orbit() -> None:
+    """A chain of bonds bends freely: kicks set bends in motion, and nothing brings them back. Before: an orbit whose
+    residual was 1e-15."""
+    system, where = chain()
+    with pytest.raises(kd.KickdriftError, match="does not close") as caught:
+        ko.oscillations(system, where, steps={0: "1/200", 1: "1/50"})
+    assert caught.value.field == "about" and "minimum" in caught.value.remedy
+
+
 def test_about_the_minimum_is_nearly_the_same_and_says_so() -> None:
     system, positions = waters()
     steps, inner = levels(Fraction("4.60") / 1000)
@@ -268,7 +277,7 @@ def test_massless_particles_and_unknown_states_are_refused() -> None:
     engine = ko._engine(rigid)
     far = where * 1.02
     with pytest.raises(kd.KickdriftError, match="not near a minimum"):
-        ko._constrained_minimum(engine, far, ko._constraints(rigid), 1e-3)
+        ko.minimum(engine.force(-1), far, Held(engine.masses, ko._constraints(rigid)), 1e-3)
 
 
 def test_rigid_waters_oscillate_as_their_constraints_allow() -> None:
@@ -476,15 +485,62 @@ def test_a_box_has_three_rigid_motions_and_what_is_too_uncertain_is_refused() ->
     assert found.accuracy is not None and found.accuracy < 1e-5
 
 
-def test_forces_that_jump_and_are_not_known_are_refused() -> None:
-    """A pair at the cutoff of a force of one's own, whose law is not read."""
-    system, apart = mm.System(), mm.CustomNonbondedForce("100/r")
+def cut_pair(charge: float) -> tuple[mm.System, np.ndarray]:
+    """A spring at rest short of the cutoff, and charges within that which drive its ends apart, beyond it or not."""
+    system, spring, cut = mm.System(), mm.HarmonicBondForce(), mm.NonbondedForce()
     for _ in range(2):
+        system.addParticle(1.0), cut.addParticle(charge, 1.0, 0.0)
+    spring.addBond(0, 1, 0.499, 1e5)
+    cut.setNonbondedMethod(cut.CutoffNonPeriodic)
+    cut.setCutoffDistance(0.5)
+    # No field beyond the cutoff: a bare jump.
+    cut.setReactionFieldDielectric(1.0)
+    cut.setForceGroup(1)
+    system.addForce(spring), system.addForce(cut)
+    return system, np.array([[0.0, 0, 0], [0.499, 0, 0]])
+
+
+def test_a_pair_that_no_side_of_the_cutoff_holds_is_told_with_what_jumps() -> None:
+    """The charges push 1e5 kJ/mol/nm² times 0.005 nm, from 0.499 to 0.504 nm; there they no longer act."""
+    strong, weak = (0.5 * np.sqrt(1e5 * far / 138.935) for far in (5e-3, 5e-4))
+    system, where = cut_pair(strong)
+    found = ko.system(system, where, steps={0: "1fs", 1: "2fs"})
+    note = found.notes[0]
+    assert "jump at a cutoff" in note and "1 pair (as particles 0 and 1)" in note and "switching function" in note
+    jump = re.search(r"jump by up to ([\d.e+]+) kJ/mol/nm", note)
+    assert jump is not None and float(jump[1]) == pytest.approx(500, rel=0.02)
+    apart = np.linalg.norm(np.diff(found.arrays["positions"], axis=0))
+    # The charges soften as they go.
+    assert apart == pytest.approx(0.504, abs=1e-4)
+    system, where = cut_pair(weak)
+    found = ko.system(system, where, steps={0: "1fs", 1: "2fs"})
+    assert not any("jump" in note or "no minimum" in note for note in found.notes)
+    assert np.linalg.norm(np.diff(found.arrays["positions"], axis=0)) == pytest.approx(0.4995, abs=1e-5)
+
+
+@pytest.mark.heavy
+def test_a_box_of_waters_comes_to_rest_or_says_which_pairs_stand_at_the_cutoff() -> None:
+    """Before: "force 2.4 are not near a minimum". Newton's method went to a saddle, to and fro across the cutoff, and
+    took the pull of the mesh at the box for a force."""
+    system, positions = box(3)
+    # Away from the planes of the grid, as above.
+    found = ko.system(system, positions + 0.0137, steps={0: "0.5fs", 1: "2fs", 2: "4fs"})
+    assert "jump at a cutoff" in found.notes[0]
+    jump = re.search(r"jump by up to ([\d.e+]+) kJ/mol/nm", found.notes[0])
+    engine = ko._engine(system)
+    left = engine.force(-1)(found.arrays["positions"])
+    # All that is left is what jumps, and the mesh's pull at the box.
+    assert jump is not None and np.linalg.norm(left - left.mean(axis=0), axis=1).max() < 1.2 * float(jump[1]) + 0.1
+    assert found.decide().stable
+
+
+def test_forces_that_jump_and_are_not_known_are_refused() -> None:
+    """A wall of one's own that is not there on one side: no pair, so nothing is kept on a side."""
+    system, wall = mm.System(), mm.CustomExternalForce("100*x*step(x - 0.30005)")
+    for atom in range(2):
         system.addParticle(1.0)
-        apart.addParticle([])
-    apart.setNonbondedMethod(apart.CutoffNonPeriodic)
-    apart.setCutoffDistance(0.30005)
-    system.addForce(apart)
+        wall.addParticle(atom)
+    system.addForce(wall)
     with pytest.raises(kd.KickdriftError, match="cutoff") as caught:
         ko.system(system, np.array([[0.0, 0, 0], [0.3, 0, 0]]), steps={0: "0.5fs"}, minimize=False)
     assert "group 0, known to" in str(caught.value.value) and "%" in str(caught.value.value)
@@ -913,6 +969,18 @@ def test_three_levels_get_their_verdict_and_a_region() -> None:
     advice = made.advise()
     assert str(advice).startswith("at 0.5, 1, 2 fs: stable (proven, for the Hessians given)")
     assert [mode["clock"] for mode in advice.modes] == [1, 2, 3] and advice.status == "safe"
+    # One mass under the stiffest forces has it at 3.58 fs already.
+    told = re.search(
+        r"first unstable outer step of these Hessians: by ([\d.]+) fs; every .* up to ([\d.]+)", str(advice)
+    )
+    assert told is not None
+    first, calm = (Fraction(own) / 1000 for own in told.groups())
+    assert Fraction("0.0043") < calm <= first < calm * (1 + Fraction("0.001"))
+    for outer, stable in ((first + Fraction(1, 10**6), False), (calm - Fraction(1, 10**6), True)):
+        beside = {0: outer / 4, 2: outer / 2, 1: outer}
+        assert ko.system(system, waters()[1], steps=beside, minimize=False).decide().stable == stable
+    # All modes were looked at.
+    assert "whether a faster mode exists" not in str(advice)
     inside = Fraction(advice.schemes[0]["band_edge"]["lo"]).limit_denominator(100) / 1000
     steps = {0: inside / 4, 2: inside / 2, 1: inside}
     assert ko.system(system, waters()[1], steps=steps, minimize=False).decide().stable

@@ -131,6 +131,8 @@ pub struct Advice {
     pub friction: Option<Rational>,
     /// What would let the outer step of the first scheme grow; `None` where that was not asked.
     pub levers: Option<Levers>,
+    /// Whether the periods are the shortest of all motions on their clocks.
+    pub all_modes: bool,
 }
 
 impl Question {
@@ -146,8 +148,8 @@ impl Question {
         let fastest = faster.into_iter().max_by(|i, j| stiffness(i).cmp(stiffness(j))).expect("a mode");
         let silent = self.stiffest().iter().any(Option::is_none);
         let levers = if self.levers { Some(self.levers()?) } else { None };
-        let Question { modes, band, length, held, friction, .. } = self;
-        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction, levers })
+        let Question { modes, band, length, held, friction, all_modes, .. } = self;
+        Ok(Advice { fastest, silent, schemes, modes, band, length, held, friction, levers, all_modes })
     }
 
     fn of_scheme(&self, scheme: &Scheme) -> Result<Answer> {

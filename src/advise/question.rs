@@ -26,6 +26,8 @@ pub struct Question {
     pub(super) friction: Option<Rational>,
     /// Whether it is asked what would let the step grow.
     pub(super) levers: bool,
+    /// Whether the periods are the shortest of all motions on their clocks.
+    pub(super) all_modes: bool,
     /// What the advice may cost.
     pub(super) limits: Limits,
 }
@@ -90,6 +92,7 @@ impl Question {
             held: Vec::new(),
             friction: None,
             levers: false,
+            all_modes: false,
             limits: Limits::default(),
         })
     }
@@ -153,6 +156,12 @@ impl Question {
     #[must_use]
     pub fn with_levers(self, levers: bool) -> Question {
         Question { levers, ..self }
+    }
+
+    /// The same where the periods are, or are not, the shortest of all motions on their clocks: it is known whether a faster one exists.
+    #[must_use]
+    pub fn knowing_all_modes(self, all_modes: bool) -> Question {
+        Question { all_modes, ..self }
     }
 
     /// The number of clocks.

@@ -57,6 +57,9 @@ question! {
         /// Leaves out what would let the step grow.
         #[arg(long)]
         no_levers: bool,
+        /// The periods given are the shortest of all motions on their clocks: no faster one is left unknown.
+        #[arg(long)]
+        all_modes: bool,
         /// The file of Hessians in place of periods: one of a system, or FILE.npz.
         #[arg(skip)]
         file: Option<String>,
@@ -87,6 +90,8 @@ question! {
         system: Option<SystemFile>,
         /// Whether what would let the step grow is left out.
         no_levers: bool,
+        /// Whether the periods are the shortest of all motions on their clocks.
+        all_modes: bool,
     }
 }
 
@@ -246,7 +251,8 @@ impl Question for Advised {
             let modes = self.modes.clone().unwrap_or_default();
             let held = self.constrained.clone().unwrap_or_default();
             let question = advise::Question::new(modes, self.schemes.clone(), self.band.clone())?;
-            let mut question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
+            let question = question.holding(held).within(work.limits()).with_levers(!self.no_levers);
+            let mut question = question.knowing_all_modes(self.all_modes);
             if let Some(length) = &self.length {
                 question = question.of_length(length.clone())?;
             }
@@ -449,8 +455,19 @@ impl Advise {
         let band = part("band", &self.band)?;
         let length = rational("length", &self.length, Dimension::Time)?;
         let friction = rational("friction", &self.friction, Dimension::Rate)?;
-        let no_levers = self.no_levers;
-        Ok(Advised { band, modes, schemes, length, friction, constrained, file, system, no_levers })
+        let (no_levers, all_modes) = (self.no_levers, self.all_modes);
+        Ok(Advised {
+            band,
+            modes,
+            schemes,
+            length,
+            friction,
+            constrained,
+            file,
+            system,
+            no_levers,
+            all_modes,
+        })
     }
 
     fn of_periods(&self, reading: Option<&Reading>) -> Result<Advised> {
@@ -480,6 +497,10 @@ impl Advise {
 
     /// Of the system's own steps first, or the engine's; with the hydrogens and the constraints asked for.
     fn of_system(&self, file: &SystemFile, reading: Option<&Reading>, work: &Work) -> Result<Advised> {
+        if self.all_modes {
+            let remedy = "is about periods; Hessians have all their modes: leave it out";
+            return Err(Error::input("all_modes", "true", remedy));
+        }
         let mass = self.hydrogen()?.map(|mass| decimal(&mass));
         let held = self.constraints.as_deref().map(|which| which.trim().to_string());
         let file = file.with([("hydrogen_mass", mass), ("constraints", held)]);

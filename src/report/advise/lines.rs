@@ -8,13 +8,18 @@ use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::decimal::few;
 
-/// What no linear analysis of given periods tells.
-pub(super) const UNKNOWN: [&str; 3] = [
+/// What no linear analysis of given periods tells; the first not where these are of all modes.
+const UNKNOWN: [&str; 3] = [
     "whether a faster mode exists than those given: coupled modes are faster than two-body formulas say",
     "how far anharmonic motion, another temperature or other surroundings move the periods beyond the band",
     NONLINEAR,
 ];
 pub(super) const NONLINEAR: &str = "how much the nonlinear resonances near T/3 and T/4 heat this system";
+
+/// What is not known of these periods.
+pub(super) fn unknown(advice: &Advice) -> &'static [&'static str] {
+    &UNKNOWN[usize::from(advice.all_modes)..]
+}
 
 /// Both ends, each to five digits.
 fn interval(of: &Unstable) -> String {
@@ -248,7 +253,7 @@ fn reasons(advice: &Advice) -> Vec<String> {
             }
         ),
         published(&told(fastest), |n| nearest(fastest.part(n as u64), 4)),
-        format!("  unknown    {}", UNKNOWN[0]),
+        format!("  unknown    {}", unknown(advice)[0]),
     ];
     if !answer.pairs.is_empty() {
         let near = |pair: &Pair| {

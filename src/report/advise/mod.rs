@@ -50,7 +50,7 @@ fn of_periods(advice: &Advice, reading: Option<&Reading>) -> Document {
         .entry("intervals", interval_table(advice).to_json_rows())
         .entry("pairs", pairs.to_json_rows())
         .entry("published", published(&fastest.name, |parts| fastest.part(parts).into()))
-        .entry("unknown", lines::UNKNOWN.to_vec());
+        .entry("unknown", lines::unknown(advice).to_vec());
     let changed = advice.modes.iter().any(|mode| mode.before().is_some());
     let modes = for_people(&modes, |key| key != "stiffness" && (key != "before" || changed));
     let document = document.long_rows(rows).for_people(row_table(advice, false));

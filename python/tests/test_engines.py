@@ -1,0 +1,235 @@
+"""Verdicts and rates beside the engines' own maps: every setting agrees, or is refused with the reason.
+
+The engine's integrator is run from the orbit that was found, and from states a little beside it: differences give the
+map of a period, whose eigenvalues are compared. Minutes of work, so these are behind the mark ``heavy``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import openmm as mm
+import pytest
+from openmm import app, unit
+from test_openmm import REFERENCE, box, chain, groups, published_runs
+
+import kickdrift as kd
+import kickdrift.openmm as ko
+from kickdrift._held import Held
+
+pytestmark = pytest.mark.heavy
+
+
+def cluster(count: int, model: str) -> tuple[mm.System, np.ndarray]:
+    """Flexible waters in vacuum, neighbours in OpenMM's own box."""
+    pdb = app.PDBFile(str(Path(app.__file__).parent / "data" / "tip3p.pdb"))
+    every = np.array(pdb.positions.value_in_unit(unit.nanometer)).reshape(-1, 3, 3)
+    near = np.argsort(np.linalg.norm(every[:, 0] - every[:, 0].mean(axis=0), axis=1))[:count]
+    topology = app.Topology()
+    group = topology.addChain()
+    for _ in near:
+        residue = topology.addResidue("HOH", group)
+        atoms = [topology.addAtom(name, app.Element.getBySymbol(name[0]), residue) for name in ("O", "H1", "H2")]
+        topology.addBond(atoms[0], atoms[1]), topology.addBond(atoms[0], atoms[2])
+    field = app.ForceField(f"amber14/{model}.xml")
+    system = field.createSystem(topology, nonbondedMethod=app.NoCutoff, rigidWater=False, removeCMMotion=False)
+    return groups(system), every[near].reshape(-1, 3)
+
+
+def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: float) -> np.ndarray:
+    """The eigenvalues of a map of 2 ``size`` numbers about 0, speeds displaced by 250 times as much a unit of time."""
+    # Much closer than what is displaced: the mesh of a box pulls a little at the whole.
+    assert np.abs(after(np.zeros(2 * size))).max() < 0.1 * width, "the orbit is closed"
+    measured = np.empty((2 * size, 2 * size))
+    for column in range(2 * size):
+        move = np.zeros(2 * size)
+        move[column] = own = width if column < size else 250 * width
+        near, far = (after(k * move) - after(-k * move) for k in (1, 2))
+        measured[:, column] = (8 * near - far) / (12 * own)
+    return np.linalg.eigvals(measured)
+
+
+def of_engine(system: mm.System, found: Any, levels: Sequence[tuple[int, int]]) -> np.ndarray:
+    """The multipliers of OpenMM's own map over a period, on what is held: levels are (group, steps a period)."""
+    integrator = mm.MTSIntegrator(float(found.period), list(levels))
+    integrator.setConstraintTolerance(1e-13)
+    context = mm.Context(system, integrator, REFERENCE)
+    held = Held(ko._engine(system).masses, ko._constraints(system))
+    frame = held.frame(found.positions)
+    n = frame.shape[1]
+
+    def after(state: np.ndarray) -> np.ndarray:
+        context.setPositions(found.positions + (frame @ state[:n] / held.root).reshape(-1, 3))
+        context.applyConstraints(1e-13)
+        context.setVelocities((frame @ state[n:] / held.root).reshape(-1, 3))
+        context.applyVelocityConstraints(1e-13)
+        integrator.step(1)
+        now = context.getState(getPositions=True, getVelocities=True)
+        parts = (now.getPositions(asNumpy=True)._value - found.positions, now.getVelocities(asNumpy=True)._value)
+        return np.concatenate([frame.T @ (part.ravel() * held.root) for part in parts])
+
+    return multipliers(after, n, 1e-4)
+
+
+def agrees(found: Any, own: np.ndarray) -> None:
+    """Verdicts are equal and rates within 2 %, as the engine's map has them."""
+    # Rigid motions are defective eigenvalues at 1, which differences part by the root of their error.
+    firm = own[np.abs(own - 1) > 1e-2]
+    rate = np.log(np.abs(firm).max()) / float(found.period)
+    if found.stable:
+        # Differences leave 1e-6 of eigenvalues, and the root of that where two meet.
+        assert np.abs(firm).max() < 1 + 3e-3, rate
+    else:
+        assert rate == pytest.approx(found.growth_rate, rel=0.02)
+
+
+OUTER = ["3", "4", "4.4", "4.5", "4.6", "5", "5.4"]
+
+
+@pytest.mark.parametrize("model", ["tip3pfb", "spce", "tip3p"])
+@pytest.mark.parametrize("count", [2, 3, 6])
+def test_clusters_of_water_grow_as_the_engine_has_it(count: int, model: str) -> None:
+    system, positions = cluster(count, model)
+    at = ko._minimized(ko._engine(system), positions, [], ko.DIFFERENCE)
+    grown = refused = 0
+    for outer in OUTER:
+        step = Fraction(outer) / 1000
+        inner = int(-(-step // Fraction(1, 2000)))
+        try:
+            found = ko.oscillations(system, at, steps={0: step / inner, 1: step}, minimize=False)
+        except kd.KickdriftError as error:
+            assert error.field == "about" and "folds at" in error.remedy
+            refused += 1
+            continue
+        agrees(found, of_engine(system, found, [(1, 1), (0, inner)]))
+        grown += not found.stable
+    # The softest motion of six waters of SPC/E folds at 2.5 fs.
+    assert refused == (len(OUTER) if (count, model) == (6, "spce") else 0)
+    assert refused or 0 < grown < len(OUTER)
+
+
+@pytest.mark.parametrize("outer", ["2", "3.2", "4.4", "4.8"])
+def test_three_clocks_grow_as_the_engine_has_it(outer: str) -> None:
+    """Bonds, angles, the rest."""
+    system, positions = cluster(3, "tip3pfb")
+    for force in system.getForces():
+        if isinstance(force, mm.HarmonicAngleForce):
+            force.setForceGroup(2)
+    step = Fraction(outer) / 1000
+    found = ko.oscillations(system, positions, steps={0: step / 8, 2: step / 2, 1: step})
+    agrees(found, of_engine(system, found, [(1, 1), (2, 2), (0, 8)]))
+
+
+@cache
+def switched_box() -> tuple[mm.System, np.ndarray]:
+    """Forces that go to 0 at the cutoff, but for 1e-5 of the charges': so they have a minimum."""
+    system, positions = mm.XmlSerializer.clone(box(2)[0]), box(2)[1]
+    for force in system.getForces():
+        if isinstance(force, mm.NonbondedForce):
+            force.setUseSwitchingFunction(True)
+            force.setSwitchingDistance(0.2)
+            force.setEwaldErrorTolerance(1e-5)
+    at, notes = ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
+    assert notes == []
+    return system, at
+
+
+@pytest.mark.parametrize("outer", ["2", "4.6"])
+def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
+    """Eight waters with PME, on three clocks."""
+    system, at = switched_box()
+    step = Fraction(outer) / 1000
+    steps = {0: step / 10, 1: step / 2, 2: step}
+    found = ko.oscillations(system, at, steps=steps, minimize=False)
+    agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, 10)]))
+
+
+def dipeptide(**options: Any) -> tuple[mm.System, np.ndarray]:
+    _, topology, positions = published_runs().dipeptide()
+    field = app.ForceField("amber96.xml")
+    return groups(
+        field.createSystem(topology, nonbondedMethod=app.NoCutoff, removeCMMotion=False, **options)
+    ), positions
+
+
+@pytest.mark.parametrize(
+    ("options", "outer"),
+    [({}, own) for own in ("4", "5.03", "5.5")]
+    + [({"constraints": app.HBonds}, own) for own in ("6", "9.65")]
+    + [({"constraints": app.HBonds, "hydrogenMass": 3.024 * unit.amu}, own) for own in ("8", "8.53", "8.6")],
+)
+def test_the_dipeptide_grows_as_the_engine_has_it(options: dict[str, Any], outer: str) -> None:
+    system, positions = dipeptide(**options)
+    step = Fraction(outer) / 1000
+    inner = int(-(-step // Fraction(1, 2000)))
+    found = ko.oscillations(system, positions, steps={0: step / inner, 1: step})
+    agrees(found, of_engine(system, found, [(1, 1), (0, inner)]))
+
+
+#: 1/ps² of a mass of 1 u: without it the chain bends freely, and drifts.
+TETHER = 20.0
+
+
+def tethered_chain() -> tuple[mm.System, np.ndarray]:
+    system, where = chain()
+    tethers = mm.CustomExternalForce(f"{TETHER / 2}*((x-a)^2+(y-b)^2+(z-c)^2)")
+    for name in "abc":
+        tethers.addPerParticleParameter(name)
+    for bead, place in enumerate(where):
+        tethers.addParticle(bead, list(place))
+    tethers.setForceGroup(1)
+    system.addForce(tethers)
+    return system, where
+
+
+def test_a_chain_grows_as_the_scheme_of_lammps_has_it() -> None:
+    """``run_style respa 2 N`` as LAMMPS writes it, in NumPy: FENE bonds inside, repulsion and tethers outside, each
+    level kicking by half before and after the level within."""
+    system, where = tethered_chain()
+    beads, pairs = len(where), [(i, j) for i in range(len(where)) for j in range(i)]
+
+    def bonds(x: np.ndarray) -> np.ndarray:
+        apart = np.diff(x, axis=0)
+        r2 = np.sum(apart**2, axis=1, keepdims=True)
+        pull = 30 * apart / (1 - r2 / 1.5**2)
+        return np.vstack([pull, np.zeros(3)]) - np.vstack([np.zeros(3), pull])
+
+    def repulsion(x: np.ndarray) -> np.ndarray:
+        force = -TETHER * (x - where)
+        for i, j in pairs:
+            apart = x[i] - x[j]
+            r = np.linalg.norm(apart)
+            if r < 1.1224620483:
+                force[i] += (48 / r**14 - 24 / r**8) * apart
+                force[j] -= (48 / r**14 - 24 / r**8) * apart
+        return force
+
+    levels = [repulsion, bonds]
+
+    def respa(level: int, x: np.ndarray, v: np.ndarray, step: float, loops: int) -> None:
+        v += step / 2 * levels[level](x)
+        if level == len(levels) - 1:
+            x += step * v
+        else:
+            for _ in range(loops):
+                respa(level + 1, x, v, step / loops, loops)
+        v += step / 2 * levels[level](x)
+
+    kinds = set()
+    for outer, loops in [("0.02", 4), ("0.05", 4), ("0.08", 6), ("0.09", 8), ("0.095", 8)]:
+        step = Fraction(outer)
+        found = ko.oscillations(system, where, steps={0: step / loops, 1: step})
+
+        def after(state: np.ndarray, found: Any = found, step: Fraction = step, loops: int = loops) -> np.ndarray:
+            x, v = found.positions + state[: 3 * beads].reshape(-1, 3), state[3 * beads :].reshape(-1, 3).copy()
+            respa(0, x, v, float(step), loops)
+            return np.concatenate([(x - found.positions).ravel(), v.ravel()])
+
+        agrees(found, multipliers(after, 3 * beads, 1e-6))
+        kinds.add(found.stable)
+    assert kinds == {True, False}
