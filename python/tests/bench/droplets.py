@@ -1,6 +1,8 @@
-"""What droplets of flexible water cost: their sparse Hessians, the verdict with margin and first unstable step, and the modes that grow.
+"""What droplets of flexible water cost: their sparse Hessians, the verdict with margin and first unstable step, the
+modes that grow.
 
-Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a margin.
+Weak springs hold each atom where it is, as in an equilibration: so the place is a minimum, and the verdict has a
+margin.
 
 Run, from python/, with a release build installed:  python tests/bench/droplets.py 500 2000 [10000]
 """
