@@ -6,7 +6,7 @@ map of a period, whose eigenvalues are compared. Minutes of work, so these are b
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -16,11 +16,10 @@ import numpy as np
 import openmm as mm
 import pytest
 from openmm import app, unit
-from test_openmm import REFERENCE, box, chain, groups, published_runs
+from test_openmm import box, chain, groups, multipliers, own_multipliers, published_runs
 
 import kickdrift as kd
 import kickdrift.openmm as ko
-from kickdrift._held import Held
 
 pytestmark = pytest.mark.heavy
 
@@ -41,39 +40,10 @@ def cluster(count: int, model: str) -> tuple[mm.System, np.ndarray]:
     return groups(system), every[near].reshape(-1, 3)
 
 
-def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: float) -> np.ndarray:
-    """The eigenvalues of a map of 2 ``size`` numbers about 0, speeds displaced by 250 times as much a unit of time."""
-    # Much closer than what is displaced: the mesh of a box pulls a little at the whole.
-    assert np.abs(after(np.zeros(2 * size))).max() < 0.1 * width, "the orbit is closed"
-    measured = np.empty((2 * size, 2 * size))
-    for column in range(2 * size):
-        move = np.zeros(2 * size)
-        move[column] = own = width if column < size else 250 * width
-        near, far = (after(k * move) - after(-k * move) for k in (1, 2))
-        measured[:, column] = (8 * near - far) / (12 * own)
-    return np.linalg.eigvals(measured)
-
-
 def of_engine(system: mm.System, found: Any, levels: Sequence[tuple[int, int]]) -> np.ndarray:
-    """The multipliers of OpenMM's own map over a period, on what is held: levels are (group, steps a period)."""
-    integrator = mm.MTSIntegrator(float(found.period), list(levels))
-    integrator.setConstraintTolerance(1e-13)
-    context = mm.Context(system, integrator, REFERENCE)
-    held = Held(ko._engine(system).masses, ko._constraints(system))
-    frame = held.frame(found.positions)
-    n = frame.shape[1]
-
-    def after(state: np.ndarray) -> np.ndarray:
-        context.setPositions(found.positions + (frame @ state[:n] / held.root).reshape(-1, 3))
-        context.applyConstraints(1e-13)
-        context.setVelocities((frame @ state[n:] / held.root).reshape(-1, 3))
-        context.applyVelocityConstraints(1e-13)
-        integrator.step(1)
-        now = context.getState(getPositions=True, getVelocities=True)
-        parts = (now.getPositions(asNumpy=True)._value - found.positions, now.getVelocities(asNumpy=True)._value)
-        return np.concatenate([frame.T @ (part.ravel() * held.root) for part in parts])
-
-    return multipliers(after, n, 1e-4)
+    """As ``own_multipliers``, of orbits that close to a tenth of what is displaced: the mesh of a box pulls a little at
+    the whole."""
+    return own_multipliers(system, found, levels, closed=1e-5)
 
 
 def agrees(found: Any, own: np.ndarray) -> None:
@@ -230,6 +200,6 @@ def test_a_chain_grows_as_the_scheme_of_lammps_has_it() -> None:
             respa(0, x, v, float(step), loops)
             return np.concatenate([(x - found.positions).ravel(), v.ravel()])
 
-        agrees(found, multipliers(after, 3 * beads, 1e-6))
+        agrees(found, multipliers(after, 3 * beads, 1e-6, closed=1e-7))
         kinds.add(found.stable)
     assert kinds == {True, False}

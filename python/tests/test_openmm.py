@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import re
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
@@ -731,9 +732,27 @@ def published_runs() -> Any:
     return runs
 
 
-def own_multipliers(system: mm.System, found: Any, outer: Fraction, inner: int) -> np.ndarray:
-    """The multipliers of OpenMM's own constrained map over an outer step, by differences on what is held."""
-    integrator = mm.MTSIntegrator(float(outer), [(1, 1), (0, inner)])
+def multipliers(after: Callable[[np.ndarray], np.ndarray], size: int, width: float, closed: float) -> np.ndarray:
+    """The eigenvalues of a map of 2 ``size`` numbers about 0, speeds displaced by 250 times as much a unit of time."""
+    assert np.abs(after(np.zeros(2 * size))).max() < closed, "the orbit is closed"
+    measured = np.empty((2 * size, 2 * size))
+    for column in range(2 * size):
+        move = np.zeros(2 * size)
+        move[column] = own = width if column < size else 250 * width
+        near, far = (after(k * move) - after(-k * move) for k in (1, 2))
+        measured[:, column] = (8 * near - far) / (12 * own)
+    return np.linalg.eigvals(measured)
+
+
+def own_multipliers(
+    system: mm.System, found: Any, levels: Sequence[tuple[int, int]], closed: float = 2e-6
+) -> np.ndarray:
+    """The multipliers of OpenMM's own map over a period, on what is held: levels are (group, steps a period).
+
+    OpenMM's SETTLE keeps distances to 1e-9 nm, and speeds to that over an inner step; SHAKE keeps them to rounding: so
+    orbits close to 2e-6.
+    """
+    integrator = mm.MTSIntegrator(float(found.period), list(levels))
     integrator.setConstraintTolerance(1e-13)
     context = mm.Context(system, integrator, REFERENCE)
     held = Held(ko._engine(system).masses, ko._constraints(system))
@@ -750,15 +769,7 @@ def own_multipliers(system: mm.System, found: Any, outer: Fraction, inner: int) 
         parts = (now.getPositions(asNumpy=True)._value - found.positions, now.getVelocities(asNumpy=True)._value)
         return np.concatenate([frame.T @ (part.ravel() * held.root) for part in parts])
 
-    # OpenMM's SETTLE keeps distances to 1e-9 nm, and speeds to that over an inner step; SHAKE keeps them to rounding.
-    assert np.abs(after(np.zeros(2 * n))).max() < 2e-6, "the orbit is closed"
-    measured = np.empty((2 * n, 2 * n))
-    for column in range(2 * n):
-        move = np.zeros(2 * n)
-        move[column] = width = 1e-4 if column < n else 2.5e-2
-        near, far = (after(k * move) - after(-k * move) for k in (1, 2))
-        measured[:, column] = (8 * near - far) / (12 * width)
-    return np.linalg.eigvals(measured)
+    return multipliers(after, n, 1e-4, closed)
 
 
 def held_dipeptide() -> tuple[mm.System, np.ndarray]:
@@ -789,7 +800,7 @@ def test_held_bonds_swing_and_grow_as_the_engine_does(make: Any, outer: str, gro
     found = ko.oscillations(system, positions, steps=steps)
     assert found.residual < 1e-9 and found.away > 1e-4 and found.growth_rate == pytest.approx(grows, rel=5e-3)
     assert found.matrix.shape == (2 * (positions.size - system.getNumConstraints()),) * 2
-    own = own_multipliers(system, found, steps[1], inner)
+    own = own_multipliers(system, found, [(1, 1), (0, inner)])
     # Rigid motions are defective eigenvalues at 1; of all others is left what SETTLE and differences leave.
     for value in found.multipliers[np.abs(found.multipliers - 1) > 1e-2]:
         assert np.abs(own - value).min() < 1e-6
