@@ -935,6 +935,11 @@ def _at_rest(
     Newton's method first, since OpenMM's minimizer leaves a minimum that it is given; after the minimizer where that
     does not arrive close by. All but the chosen coordinates stand still. Of forces that jump at a cutoff the minimum
     need not be one: then a note says so.
+
+    Raises
+    ------
+    KickdriftError
+        Where no minimum is found.
     """
     force, held = engine.force(-1), Held(engine.masses, constraints)
     is_boxed = engine.is_boxed and chosen is None
@@ -945,7 +950,16 @@ def _at_rest(
     try:
         found, smooth = newton(where, _CLOSE)
     except (KickdriftError, mm.OpenMMException, np.linalg.LinAlgError):
-        found, smooth = newton(_relaxed(engine, where, chosen), np.inf)
+        try:
+            found, smooth = newton(_relaxed(engine, where, chosen), np.inf)
+        except KickdriftError as error:
+            if not engine.cuts:
+                raise
+            remedy = (
+                "is the least that was found, no minimum: forces jump at a cutoff; give them a switching function, a "
+                "smaller Ewald tolerance or a longer cutoff, or minimize=False"
+            )
+            raise KickdriftError("positions", error.value, remedy) from error
     note = smooth.note(found) if isinstance(smooth, _Smooth) else None
     return found, [note] if note else []
 

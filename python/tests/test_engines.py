@@ -109,6 +109,12 @@ def switched_box() -> tuple[mm.System, np.ndarray]:
     return system, at
 
 
+def test_a_box_whose_forces_jump_and_have_no_minimum_is_refused_with_what_helps() -> None:
+    system, positions = box(2)
+    with pytest.raises(kd.KickdriftError, match=r"jump at a cutoff.*a switching function"):
+        ko._at_rest(ko._engine(system), positions + 0.0137, [], ko.DIFFERENCE)
+
+
 @pytest.mark.parametrize("outer", ["2", "4.6"])
 def test_a_box_with_a_reciprocal_group_grows_as_the_engine_has_it(outer: str) -> None:
     """Eight waters with PME, on three clocks."""
