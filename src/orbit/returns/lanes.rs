@@ -9,6 +9,8 @@ pub trait Lanes<T>: Clone {
     fn entries(self) -> [T; 4];
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
+    /// self + x y.
+    fn plus_times(&self, x: &Self, y: &Self) -> Self;
 
     /// In all four.
     #[inline(always)]
@@ -40,5 +42,10 @@ impl Lanes<Twofold> for Twofolds {
     #[inline(always)]
     fn times(&self, other: &Self) -> Self {
         Twofolds(self.0.times(other.0))
+    }
+
+    #[inline(always)]
+    fn plus_times(&self, x: &Self, y: &Self) -> Self {
+        self.plus(&x.times(y))
     }
 }

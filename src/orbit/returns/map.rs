@@ -20,7 +20,7 @@
 
 use super::lanes::Lanes;
 use super::number::{Coefficient, near_ball};
-use super::turn::{Turn, direction, principal};
+use super::turn::{Turn, angle, direction, principal};
 use crate::number::Ball;
 use crate::vector::instructions::{Instructions, Task};
 
@@ -56,70 +56,74 @@ pub struct Map<T> {
     pub least: f64,
 }
 
-/// The spectral norm of a matrix: (|(a + d, b − c)| + |(a − d, b + c)|)/2.
+/// z and w of a matrix, real and imaginary parts: its spectral norm is (|z| + |w|)/2.
+#[inline(always)]
+fn parts<T: Coefficient>(m: &Entries<T>) -> [f64; 4] {
+    let [a, b, c, d] = m.each_ref().map(T::near);
+    [a + d, b - c, a - d, b + c]
+}
+
+/// The spectral norm of a matrix.
 #[inline(always)]
 fn norm<T: Coefficient>(m: &Entries<T>) -> f64 {
-    let [a, b, c, d] = m.each_ref().map(T::near);
-    0.5 * (length(a + d, b - c) + length(a - d, b + c)) * UP
+    let [x, y, u, v] = parts(m);
+    0.5 * (length(x, y) + length(u, v)) * UP
 }
 
-/// |M_j|, and zeros beyond the last term.
+/// At least the spectral norm, and at most 1.09 times as much: |(x, y)| ≤ max + (√2 − 1) min, without a root.
 #[inline(always)]
-fn norms<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
-    let mut norms = [0.0; N];
-    norms.iter_mut().zip(terms).for_each(|(own, term)| *own = norm(term));
-    norms
+fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
+    let [x, y, u, v] = parts(m).map(f64::abs);
+    let length = |x: f64, y: f64| if x > y { x + 0.4143 * y } else { y + 0.4143 * x };
+    0.5 * (length(x, y) + length(u, v)) * UP
 }
 
-/// The sum, of four at a time.
+/// |M_j|, about, and zeros beyond the last term.
 #[inline(always)]
-fn total(x: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    for x in x.chunks_exact(4) {
-        sums.iter_mut().zip(x).for_each(|(sum, x)| *sum += x);
-    }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
+    let mut sizes = [0.0; N];
+    sizes.iter_mut().zip(terms).for_each(|(own, term)| *own = about(term));
+    sizes
 }
 
-/// What no Σ M_j t^j exceeds on [−1, 1] in norm.
+/// What no Σ M_j t^j exceeds on [−1, 1] in norm; `known` is such a bound already, or infinite.
 #[inline(always)]
-fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> f64 {
-    let norms: [f64; N] = norms(terms);
-    let sum = total(&norms) * UP;
-    if sum <= NEARLY * norms[0] {
-        return sum;
+fn largest<T: Coefficient, const N: usize>(terms: &[Entries<T>], known: f64) -> f64 {
+    let first = norm(&terms[0]);
+    if known <= NEARLY * first {
+        return known;
     }
-    // The parts z and w of all terms, real and imaginary, side by side.
-    let mut parts = [[0.0; N]; 4];
-    for (j, term) in terms.iter().enumerate().take(N) {
-        let [a, b, c, d] = term.each_ref().map(T::near);
-        (parts[0][j], parts[1][j], parts[2][j], parts[3][j]) = (a + d, b - c, a - d, b + c);
+    let sum = (first + terms[1..].iter().map(about).sum::<f64>()) * UP;
+    if sum <= NEARLY * first {
+        return known.min(sum);
     }
-    let [z, w] = [square(&parts[0], &parts[1], terms.len()), square(&parts[2], &parts[3], terms.len())];
+    // r_k of z and of w, and those of their imaginary parts: in two lanes each.
+    let mut own = [[0.0; 4]; N];
+    own.iter_mut().zip(terms).for_each(|(own, term)| *own = parts(term));
+    let n = terms.len().min(N);
+    let mut squares = [0.0; 2];
+    for k in 0..2 * n - 1 {
+        let mut r = [0.0; 4];
+        for i in (k + 1).saturating_sub(n)..k.div_ceil(2) {
+            r = std::array::from_fn(|lane| r[lane] + own[i][lane] * own[k - i][lane]);
+        }
+        r = r.map(|r| 2.0 * r);
+        if k % 2 == 0 {
+            r = std::array::from_fn(|lane| r[lane] + own[k / 2][lane] * own[k / 2][lane]);
+        }
+        squares = [squares[0] + (r[0] + r[1]).abs(), squares[1] + (r[2] + r[3]).abs()];
+    }
     // Entries are known to 2^-50; that, and what some hundreds of roundings do to all r_k together.
     let slack = 8e-13 * sum * sum;
-    0.5 * ((z + slack).sqrt() + (w + slack).sqrt()) * UP
-}
-
-/// r_0 + Σ |r_k|.
-#[inline(always)]
-fn square<const N: usize>(re: &[f64; N], im: &[f64; N], terms: usize) -> f64 {
-    let mut r = [[0.0; N]; 2];
-    let r = r.as_flattened_mut();
-    for i in 0..terms.min(N) {
-        let (x, y) = (re[i], im[i]);
-        r[i..i + N].iter_mut().zip(re.iter().zip(im)).for_each(|(r, (re, im))| *r += x * re + y * im);
-    }
-    let first = r[0] - r[0].abs();
-    r.iter_mut().for_each(|r| *r = r.abs());
-    first + total(r)
+    let [z, w] = squares.map(|square| (square + slack).sqrt());
+    known.min(0.5 * (z + w) * UP)
 }
 
 /// [`largest`], with the room that a function of these numbers needs.
 #[inline(always)]
-fn largest_of<T: Coefficient>(terms: &[Entries<T>]) -> f64 {
+fn largest_of<T: Coefficient>(terms: &[Entries<T>], known: f64) -> f64 {
     const { assert!(T::TERMS <= MOST) };
-    if T::TERMS <= FEW { largest::<T, FEW>(terms) } else { largest::<T, MOST>(terms) }
+    if T::TERMS <= FEW { largest::<T, FEW>(terms, known) } else { largest::<T, MOST>(terms, known) }
 }
 
 /// |(x, y)|, but for what underflows.
@@ -152,7 +156,7 @@ impl<T: Coefficient> Map<T> {
             near
         };
         let terms: Vec<_> = terms.iter().map(|m| m.each_ref().map(&mut taken)).collect();
-        Map::bounded(terms, error * UP, 0)
+        Map::bounded(terms, error * UP, f64::INFINITY, 0)
     }
 
     /// The identity.
@@ -163,23 +167,23 @@ impl<T: Coefficient> Map<T> {
 
     /// Numbers as they are, without a turn.
     pub fn of(terms: Vec<Entries<T>>) -> Self {
-        Map::kept(terms, 0.0, 0)
+        Map::kept(terms, 0.0, f64::INFINITY, 0)
     }
 
-    /// Without a turn; the terms that are too many go to the error.
+    /// Without a turn; the terms that are too many go to the error. No value of the terms kept exceeds `known` in norm.
     #[inline(always)]
-    fn kept(mut terms: Vec<Entries<T>>, mut error: f64, exponent: i128) -> Self {
+    fn kept(mut terms: Vec<Entries<T>>, mut error: f64, known: f64, exponent: i128) -> Self {
         if terms.len() > T::TERMS {
             error = (error + terms.drain(T::TERMS..).map(|term| norm(&term)).sum::<f64>()) * UP;
         }
-        Map { norm: largest_of(&terms), terms, error, exponent, turn: None, least: 0.25 * T::UNIT }
+        Map { norm: largest_of(&terms, known), terms, error, exponent, turn: None, least: 0.25 * T::UNIT }
     }
 
     /// Without a turn, balanced; known by nothing where the power of two leaves the range of its number.
     #[inline(always)]
-    fn bounded(terms: Vec<Entries<T>>, error: f64, exponent: i128) -> Self {
+    fn bounded(terms: Vec<Entries<T>>, error: f64, known: f64, exponent: i128) -> Self {
         let error = if exponent.unsigned_abs() > 1 << 125 { f64::INFINITY } else { error };
-        let mut map = Map::kept(terms, error, exponent);
+        let mut map = Map::kept(terms, error, known, exponent);
         map.balance();
         map
     }
@@ -234,7 +238,7 @@ impl<T: Coefficient> Map<T> {
         let error = (self.error + size(dropped) + 3.0 * P::UNIT * size(kept)) * UP + FLOOR;
         let terms: Vec<_> = kept.iter().map(|m| m.each_ref().map(T::to)).collect();
         let least = self.least.max(0.25 * P::UNIT);
-        Map { turn: self.turn, least, ..Map::kept(terms, error, self.exponent) }
+        Map { turn: self.turn, least, ..Map::kept(terms, error, f64::INFINITY, self.exponent) }
     }
 
     pub fn negative(mut self) -> Self {
@@ -257,20 +261,20 @@ impl<T: Coefficient> Map<T> {
         terms.resize_with(terms.len().max(others.len()), zero);
         terms.iter_mut().flatten().zip(others.iter().flatten()).for_each(|(x, y)| *x = x.plus(y));
         let error = (one + two + rounding) * UP + FLOOR;
-        Map::kept(terms, error, exponent)
+        Map::kept(terms, error, f64::INFINITY, exponent)
     }
 
     /// Whether the bound still leaves something.
     pub fn is_useful(&self) -> bool {
-        self.error < 0.1 * norm(&self.terms[0])
+        self.error < 0.1 * about(&self.terms[0])
     }
 
     /// `self` after `earlier`, on the same interval.
     pub fn after(&self, earlier: &Self) -> Self {
-        let product = Instructions::best().perform_alone(Product { later: self, earlier });
-        Map { turn: self.turn_after(earlier, &product), ..product }
+        Instructions::best().perform_alone(Product { later: self, earlier })
     }
 
+    #[inline(always)]
     fn turn_after(&self, earlier: &Self, product: &Self) -> Option<Turn> {
         let (first, then) = (earlier.turn?, self.turn?);
         self.direction()?;
@@ -279,11 +283,11 @@ impl<T: Coefficient> Map<T> {
 
     /// On the part t = α + β t' of its interval, |α| + |β| ≤ 1.
     pub fn part(&self, alpha: &T, beta: &T) -> Self {
-        let part = Instructions::best().perform_alone(Part { whole: self, alpha, beta });
-        Map { turn: self.turn_moved(alpha.near(), &part), ..part }
+        Instructions::best().perform_alone(Part { whole: self, alpha, beta })
     }
 
     /// The direction of the image of (1, 0) at t = 0, where it is known.
+    #[inline(always)]
     pub fn direction(&self) -> Option<f64> {
         direction(image(&self.terms[0]), self.error)
     }
@@ -304,39 +308,36 @@ impl<T: Coefficient> Map<T> {
     /// With the coefficients on a part, but for the turn.
     #[inline(always)]
     fn moved(&self, mut terms: Vec<Entries<T>>) -> Self {
-        let [sum, rank] = if T::TERMS <= FEW {
-            sums::<FEW>(&norms(&self.terms))
-        } else {
-            sums::<MOST>(&norms(&self.terms))
-        };
+        let [sum, rank] = sums(self.terms.iter().map(about));
         let rounding = 1.42 * T::UNIT * 6.0 * (sum + rank);
-        let (mut dropped, least) = (0.0, self.least * norm(&terms[0]));
+        let (mut dropped, least) = (0.0, self.least * about(&terms[0]));
         while let [_, .., last] = &terms[..]
-            && dropped + norm(last) < least
+            && dropped + about(last) < least
         {
-            dropped += norm(last);
+            dropped += about(last);
             terms.pop();
         }
         let error = (self.error + rounding + dropped) * UP + FLOOR;
-        Map { least: self.least, ..Map::bounded(terms, error, self.exponent) }
+        let known = (self.norm + rounding + dropped) * UP;
+        Map { least: self.least, ..Map::bounded(terms, error, known, self.exponent) }
     }
 
     /// The turn, followed along t from 0 to α in so small steps that the image's direction changes by less than a right angle
     /// in each.
+    #[inline(always)]
     fn turn_moved(&self, alpha: f64, part: &Self) -> Option<Turn> {
         let mut turn = self.turn?;
-        let images: Vec<[f64; 2]> = self.terms.iter().map(image).collect();
-        let at = |t: f64| images.iter().rev().fold([0.0; 2], |[x, y], [a, b]| [x * t + a, y * t + b]);
-        // |d/dt of the image| at most; what doubles round is far below the half that is left.
-        let slope: f64 = images.iter().enumerate().map(|(j, [x, y])| j as f64 * x.hypot(*y)).sum();
+        let images = || self.terms.iter().map(image);
+        let at = |t: f64| images().rev().fold([0.0; 2], |[x, y], [a, b]| [x * t + a, y * t + b]);
+        // |images|, and |d/dt of the image|, at most; what doubles round is far below the half that is left.
+        let [sum, slope] = sums(images().map(|[x, y]| x.abs() + y.abs()));
         for steps in [1u32, 8, 64] {
             let change = slope * alpha.abs() / f64::from(steps);
             let moved = (0..steps).try_fold(turn, |turn, k| {
                 let [x, y] = at(alpha * f64::from(k) / f64::from(steps));
-                (x.hypot(y) > 2.0 * (change + self.error) + 1e-12 * self.sum_of_images(&images))
-                    .then_some(())?;
+                (length(x, y) > 2.0 * (change + self.error) + 1e-12 * sum).then_some(())?;
                 let [x, y] = at(alpha * f64::from(k + 1) / f64::from(steps));
-                let angle = y.atan2(x);
+                let angle = angle([x, y]);
                 Some(turn.on(principal(angle - turn.angle), angle))
             });
             if let Some(moved) = moved {
@@ -348,14 +349,10 @@ impl<T: Coefficient> Map<T> {
         None
     }
 
-    fn sum_of_images(&self, images: &[[f64; 2]]) -> f64 {
-        images.iter().map(|[x, y]| x.hypot(*y)).sum()
-    }
-
     /// Keeps the constant term's norm near 1; exact.
     #[inline(always)]
     fn balance(&mut self) {
-        let size = norm(&self.terms[0]);
+        let size = about(&self.terms[0]);
         if !(1.0 / 16.0..=16.0).contains(&size) && size > 1e-200 && size < 1e200 {
             let k = -size.log2().round() as i32;
             self.terms.iter_mut().flatten().for_each(|x| *x = x.scale2(k));
@@ -371,7 +368,7 @@ impl<T: Coefficient> Map<T> {
     }
 }
 
-/// A product, but for its turn.
+/// A product.
 struct Product<'a, T> {
     later: &'a Map<T>,
     earlier: &'a Map<T>,
@@ -381,26 +378,29 @@ impl<T: Coefficient> Product<'_, T> {
     #[inline(always)]
     fn with_room<const N: usize>(&self) -> Map<T> {
         let Product { later, earlier } = self;
-        let (b, a): ([f64; N], [f64; N]) = (norms(&later.terms), norms(&earlier.terms));
-        let ([sum_b, rank_b], [sum_a, rank_a]) = (sums(&b), sums(&a));
-        // Σ |B_i| |A_j|, i + j = m.
-        let mut sizes = [[0.0; N]; 2];
-        let sizes = sizes.as_flattened_mut();
-        for (i, b) in b.iter().enumerate().take(later.terms.len()) {
-            sizes[i..i + N].iter_mut().zip(&a).for_each(|(m, a)| *m += b * a);
-        }
-        let mut n = later.terms.len() + earlier.terms.len() - 1;
+        let (b, a): ([f64; N], [f64; N]) = (sizes(&later.terms), sizes(&earlier.terms));
+        let ends = (later.terms.len(), earlier.terms.len());
+        let ([sum_b, rank_b], [sum_a, rank_a]) =
+            (sums(b.into_iter().take(ends.0)), sums(a.into_iter().take(ends.1)));
+        let mut n = ends.0 + ends.1 - 1;
         let relative = later.least.max(earlier.least);
         let (mut dropped, least) = (0.0, relative * sum_b * sum_a);
-        while n > T::TERMS || n > 1 && dropped + sizes[n - 1] < least {
+        while n > 1 {
+            // Σ |B_i| |A_j|, i + j = n − 1.
+            let pairs = n.saturating_sub(ends.1)..n.min(ends.0);
+            let last: f64 = pairs.map(|i| b[i] * a[n - 1 - i]).sum();
+            if n <= T::TERMS && dropped + last >= least {
+                break;
+            }
             n -= 1;
-            dropped += sizes[n];
+            dropped += last;
         }
         let rounding = 2.0 * T::UNIT * (4.0 * sum_b * sum_a + 2.0 * (rank_b * sum_a + sum_b * rank_a));
         let carried = later.norm * earlier.error + earlier.norm * later.error + later.error * earlier.error;
         let error = (carried + dropped + rounding) * UP + FLOOR;
+        let known = (later.norm * earlier.norm + dropped + rounding) * UP;
         let exponent = later.exponent.saturating_add(earlier.exponent);
-        Map { least: relative, ..Map::bounded(self.terms(n), error, exponent) }
+        Map { least: relative, ..Map::bounded(self.terms(n), error, known, exponent) }
     }
 
     /// The first n coefficients.
@@ -410,11 +410,12 @@ impl<T: Coefficient> Product<'_, T> {
         // The rows of the later matrices meet the columns of the earlier ones.
         let spread = |[e, f, g, h]: &Entries<T>| [of([e, f, e, f]), of([g, h, g, h])];
         let earlier: Vec<_> = self.earlier.terms.iter().take(n).map(spread).collect();
-        let mut terms = vec![T::Lanes::splat(&T::zero()); n];
+        let zero = T::Lanes::splat(&T::zero());
+        let mut terms: Vec<_> = std::iter::repeat_n(zero, n).collect();
         for (i, [a, b, c, d]) in self.later.terms.iter().enumerate().take(n) {
             let (first, second) = (of([a, a, c, c]), of([b, b, d, d]));
             for (sum, [upper, lower]) in terms[i..].iter_mut().zip(&earlier) {
-                *sum = sum.plus(&first.times(upper).plus(&second.times(lower)));
+                *sum = sum.plus_times(&first, upper).plus_times(&second, lower);
             }
         }
         terms.into_iter().map(T::Lanes::entries).collect()
@@ -426,11 +427,12 @@ impl<T: Coefficient> Task for Product<'_, T> {
 
     #[inline(always)]
     fn run(self) -> Map<T> {
-        if T::TERMS <= FEW { self.with_room::<FEW>() } else { self.with_room::<MOST>() }
+        let product = if T::TERMS <= FEW { self.with_room::<FEW>() } else { self.with_room::<MOST>() };
+        Map { turn: self.later.turn_after(self.earlier, &product), ..product }
     }
 }
 
-/// A function in t' of t = α + β t', but for its turn.
+/// A function in t' of t = α + β t'.
 struct Part<'a, T> {
     whole: &'a Map<T>,
     alpha: &'a T,
@@ -446,7 +448,7 @@ impl<T: Coefficient> Task for Part<'_, T> {
         let [alpha, beta] = [self.alpha, self.beta].map(T::Lanes::splat);
         for i in 0..terms.len() {
             for j in (i..terms.len() - 1).rev() {
-                terms[j] = terms[j].plus(&alpha.times(&terms[j + 1]));
+                terms[j] = terms[j].plus_times(&alpha, &terms[j + 1]);
             }
         }
         let mut power = beta.clone();
@@ -454,7 +456,8 @@ impl<T: Coefficient> Task for Part<'_, T> {
             *term = term.times(&power);
             power = power.times(&beta);
         }
-        self.whole.moved(terms.into_iter().map(T::Lanes::entries).collect())
+        let part = self.whole.moved(terms.into_iter().map(T::Lanes::entries).collect());
+        Map { turn: self.whole.turn_moved(self.alpha.near(), &part), ..part }
     }
 }
 
@@ -465,8 +468,8 @@ fn power_of_two(e: i128) -> f64 {
 
 /// Σ m_j and Σ j m_j.
 #[inline(always)]
-fn sums<const N: usize>(norms: &[f64; N]) -> [f64; 2] {
-    let mut ranked = *norms;
-    ranked.iter_mut().enumerate().for_each(|(j, m)| *m *= j as f64);
-    [total(norms), total(&ranked)]
+fn sums(sizes: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (sum, rank) =
+        sizes.zip(0u32..).fold((0.0, 0.0), |(sum, rank), (m, j)| (sum + m, rank + f64::from(j) * m));
+    [sum, rank]
 }

@@ -34,6 +34,11 @@ pub trait Coefficient: Clone {
     fn negative(&self) -> Self;
     fn plus(&self, other: &Self) -> Self;
     fn times(&self, other: &Self) -> Self;
+    /// self + x y, in at most these two operations.
+    #[inline(always)]
+    fn plus_times(&self, x: &Self, y: &Self) -> Self {
+        self.plus(&x.times(y))
+    }
     /// x 2^k, exactly.
     fn scale2(&self, k: i32) -> Self;
     /// Within 2^-50 relatively.
@@ -76,6 +81,11 @@ impl<T: Coefficient> Lanes<T> for [T; 4] {
     fn times(&self, other: &Self) -> Self {
         std::array::from_fn(|i| self[i].times(&other[i]))
     }
+
+    #[inline(always)]
+    fn plus_times(&self, x: &Self, y: &Self) -> Self {
+        std::array::from_fn(|i| self[i].plus_times(&x[i], &y[i]))
+    }
 }
 
 impl Coefficient for f64 {
@@ -109,6 +119,11 @@ impl Coefficient for f64 {
     #[inline(always)]
     fn times(&self, other: &Self) -> Self {
         self * other
+    }
+
+    #[inline(always)]
+    fn plus_times(&self, x: &Self, y: &Self) -> Self {
+        x.mul_add(*y, *self)
     }
 
     fn scale2(&self, k: i32) -> Self {

@@ -10,6 +10,9 @@ use super::map::Map;
 use super::number::Coefficient;
 use super::slow::{self, Slow};
 
+/// At a point, the logarithm of so many factors as cost no less than a piece.
+const MANY: u32 = 3;
+
 /// A branch and what is known of its products.
 pub struct Run<T> {
     pub branch: Branch<T>,
@@ -49,7 +52,10 @@ impl<T: Coefficient> Run<T> {
         if log2 == 0 {
             return Some(self.branch.on(start, length));
         }
-        if self.branch.length >> log2 >= 2.max(2 * length) {
+        let long = self.branch.length >> log2;
+        // At a point, some factors cost less than a piece that is not known yet.
+        let is_worth = || length > 0 || log2 >= MANY || self.known(log2, start).is_some();
+        if long >= 2.max(2 * length) && is_worth() {
             return Some(self.piece(log2, start, budget)?.on(start, length));
         }
         self.twice(log2, start, length, budget)
@@ -61,23 +67,34 @@ impl<T: Coefficient> Run<T> {
         budget.product(&second, &first)
     }
 
+    /// Where the pieces of length L/n begin of which one holds x and half a piece beyond it, in halves of one.
+    fn place(&self, log2: u32, x: i128) -> i128 {
+        (x - self.branch.start) / ((self.branch.length >> log2) / 2)
+    }
+
+    fn known(&self, log2: u32, x: i128) -> Option<usize> {
+        let place = self.place(log2, x);
+        self.pieces.iter().position(|own| own.0 == (log2, place))
+    }
+
     /// The piece of length L/n that holds x and half a piece beyond it, as far as P_n is defined.
     fn piece(&mut self, log2: u32, x: i128, budget: &mut Budget) -> Option<&Branch<T>> {
-        let Branch { start, length, stride, .. } = self.branch;
-        let long = length >> log2;
-        let place = (x - start) / (long / 2);
-        let known =
-            |pieces: &[((u32, i128), Branch<T>)]| pieces.iter().position(|own| own.0 == (log2, place));
-        if known(&self.pieces).is_none() {
-            // All of x, x + d, ..., x + (n − 1) d lie in the branch's interval.
-            let reach = stride * ((1 << log2) - 1);
-            let (least, end) = (start.max(start - reach), (start + length).min(start + length - reach));
-            let from = (start + place * (long / 2)).min(end - long).max(least);
-            let long = long.min(end - from);
-            let map = self.twice(log2, from, long, budget)?;
-            let piece = Branch { map, start: from, length: long, stride: 0, height: 0 };
-            self.pieces.push(((log2, place), piece));
-        }
-        Some(&self.pieces[known(&self.pieces)?].1)
+        let known = match self.known(log2, x) {
+            Some(known) => known,
+            None => {
+                let Branch { start, length, stride, .. } = self.branch;
+                let (long, place) = (length >> log2, self.place(log2, x));
+                // All of x, x + d, ..., x + (n − 1) d lie in the branch's interval.
+                let reach = stride * ((1 << log2) - 1);
+                let (least, end) = (start.max(start - reach), (start + length).min(start + length - reach));
+                let from = (start + place * (long / 2)).min(end - long).max(least);
+                let long = long.min(end - from);
+                let map = self.twice(log2, from, long, budget)?;
+                let piece = Branch { map, start: from, length: long, stride: 0, height: 0 };
+                self.pieces.push(((log2, place), piece));
+                self.pieces.len() - 1
+            }
+        };
+        Some(&self.pieces[known].1)
     }
 }
