@@ -13,6 +13,7 @@
 //! assert_eq!(parse::parse_ratio("ratio", "14/4").unwrap().terms(), (7, 2));
 //! ```
 
+pub(crate) mod arithmetic;
 mod grammar;
 
 pub use grammar::{MAX_BITS, MAX_CHARACTERS, MAX_PI_EXPONENT};

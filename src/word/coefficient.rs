@@ -2,6 +2,7 @@
 
 use num_traits::{Signed, ToPrimitive, Zero};
 
+use crate::number::parse::arithmetic::{Arithmetic, Operation};
 use crate::number::parse::parse_rational;
 use crate::number::radical::MAX_ROOT;
 use crate::number::{Radical, Rational, Ring};
@@ -26,19 +27,60 @@ pub(super) struct Reader {
 
 pub(super) type Read<T> = Result<T, (usize, String)>;
 
-impl Reader {
-    pub fn peek(&self) -> Option<char> {
-        self.characters.get(self.at).copied()
+impl Arithmetic for Reader {
+    type Value = Radical;
+    type Error = (usize, String);
+
+    fn at(&self) -> usize {
+        self.at
     }
 
     /// Passes over white space, and over `wanted` if it comes next.
-    pub fn skip(&mut self, wanted: char) -> bool {
+    fn skip(&mut self, wanted: char) -> bool {
         while self.peek().is_some_and(char::is_whitespace) {
             self.at += 1;
         }
         let found = self.peek() == Some(wanted);
         self.at += usize::from(found);
         found
+    }
+
+    /// power = atom ("^" (["-"] digits | "(" rational ")"))?
+    fn power(&mut self) -> Read<Radical> {
+        let base = self.atom()?;
+        let at = self.at;
+        if !self.skip('^') {
+            return Ok(base);
+        }
+        let negative = self.skip('-');
+        let exponent = self.atom()?.as_rational().map(|x| if negative { -x } else { x });
+        let small = |x: &Rational| (x.numer().to_i32(), x.denom().to_u32());
+        let Some((Some(k), Some(n))) = exponent.as_ref().map(small) else {
+            return self.wrong(at, "a power is a rational number such as 3, -1 or 1/3");
+        };
+        self.root(at, base, n).and_then(|root| self.raised(at, &root, k))
+    }
+
+    /// In a common field.
+    fn combined(&mut self, at: usize, a: &Radical, operation: Operation, b: &Radical) -> Read<Radical> {
+        let Some((a, b)) = Radical::together(a, b) else { return self.wrong(at, TWO_FIELDS) };
+        let value = match operation {
+            Operation::Plus => Some(&a + &b),
+            Operation::Minus => Some(&a - &b),
+            Operation::Times => Some(&a * &b),
+            Operation::Over => b.inverse().map(|inverse| &a * &inverse),
+        };
+        match value {
+            Some(value) if size(&value) <= MAX_BITS => Ok(value),
+            Some(_) => self.wrong(at, "this number is too long"),
+            None => self.wrong(at, "divides by zero"),
+        }
+    }
+}
+
+impl Reader {
+    pub fn peek(&self) -> Option<char> {
+        self.characters.get(self.at).copied()
     }
 
     pub fn taken(&mut self, of: impl Fn(char) -> bool) -> String {
@@ -77,69 +119,6 @@ impl Reader {
         Ok(value)
     }
 
-    /// sum = product (("+" | "-") product)*
-    pub fn sum(&mut self) -> Read<Radical> {
-        let mut value = self.product()?;
-        loop {
-            let at = self.at;
-            if self.skip('+') {
-                let term = self.product()?;
-                value = self.combined(at, &value, &term, |a, b| Some(a + b))?;
-            } else if self.skip('-') {
-                let term = self.product()?;
-                value = self.combined(at, &value, &term, |a, b| Some(a - b))?;
-            } else {
-                return Ok(value);
-            }
-        }
-    }
-
-    /// product = signed (("*" | "/") signed)*
-    fn product(&mut self) -> Read<Radical> {
-        let mut value = self.signed()?;
-        loop {
-            let at = self.at;
-            if self.skip('*') {
-                let factor = self.signed()?;
-                value = self.combined(at, &value, &factor, |a, b| Some(a * b))?;
-            } else if self.skip('/') {
-                let divisor = self.signed()?;
-                value = self.combined(at, &value, &divisor, |a, b| Some(a * &b.inverse()?))?;
-            } else {
-                return Ok(value);
-            }
-        }
-    }
-
-    /// signed = ("-" | "+")* power
-    fn signed(&mut self) -> Read<Radical> {
-        let mut negative = false;
-        loop {
-            if self.skip('-') {
-                negative = !negative;
-            } else if !self.skip('+') {
-                let value = self.power()?;
-                return Ok(if negative { -value } else { value });
-            }
-        }
-    }
-
-    /// power = atom ("^" (["-"] digits | "(" rational ")"))?
-    fn power(&mut self) -> Read<Radical> {
-        let base = self.atom()?;
-        let at = self.at;
-        if !self.skip('^') {
-            return Ok(base);
-        }
-        let negative = self.skip('-');
-        let exponent = self.atom()?.as_rational().map(|x| if negative { -x } else { x });
-        let small = |x: &Rational| (x.numer().to_i32(), x.denom().to_u32());
-        let Some((Some(k), Some(n))) = exponent.as_ref().map(small) else {
-            return self.wrong(at, "a power is a rational number such as 3, -1 or 1/3");
-        };
-        self.root(at, base, n).and_then(|root| self.raised(at, &root, k))
-    }
-
     fn root(&self, at: usize, base: Radical, n: u32) -> Read<Radical> {
         if n == 1 {
             return Ok(base);
@@ -157,13 +136,13 @@ impl Reader {
         }
     }
 
-    fn raised(&self, at: usize, base: &Radical, k: i32) -> Read<Radical> {
+    fn raised(&mut self, at: usize, base: &Radical, k: i32) -> Read<Radical> {
         if k.unsigned_abs() > MAX_POWER || size(base) * u64::from(k.unsigned_abs()) > MAX_BITS {
             return self.wrong(at, "this power is too large");
         }
         let mut power = Radical::from_rational(&Rational::from_integer(1.into()));
         for _ in 0..k.unsigned_abs() {
-            power = self.combined(at, &power, base, |a, b| Some(a * b))?;
+            power = self.combined(at, &power, Operation::Times, base)?;
         }
         if k >= 0 { Ok(power) } else { power.inverse().map_or_else(|| self.wrong(at, "divides by zero"), Ok) }
     }
@@ -212,22 +191,6 @@ impl Reader {
             }
             Ok(_) => self.wrong(at, "this number is too long"),
             Err(error) => self.wrong(at, error.remedy()),
-        }
-    }
-
-    /// One operation in a common field.
-    fn combined(
-        &self,
-        at: usize,
-        a: &Radical,
-        b: &Radical,
-        operate: fn(&Radical, &Radical) -> Option<Radical>,
-    ) -> Read<Radical> {
-        let Some((a, b)) = Radical::together(a, b) else { return self.wrong(at, TWO_FIELDS) };
-        match operate(&a, &b) {
-            Some(value) if size(&value) <= MAX_BITS => Ok(value),
-            Some(_) => self.wrong(at, "this number is too long"),
-            None => self.wrong(at, "divides by zero"),
         }
     }
 }

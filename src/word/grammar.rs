@@ -7,6 +7,7 @@ use super::filter::Filter;
 use super::letters::{Force, Item, Letter, Word};
 use crate::error::{Error, Result};
 use crate::number::Radical;
+use crate::number::parse::arithmetic::Arithmetic;
 use num_traits::Zero;
 
 /// The longest text that is read, in characters.

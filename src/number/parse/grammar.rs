@@ -3,6 +3,7 @@
 use num_bigint::BigInt;
 use num_traits::{One, ToPrimitive, Zero};
 
+use super::arithmetic::{Arithmetic, Operation};
 use crate::number::{Laurent, Rational};
 
 /// The longest text that is read, in characters.
@@ -98,51 +99,18 @@ struct Parser<'a> {
     effort: u64,
 }
 
-impl Parser<'_> {
-    /// sum = product (("+" | "-") product)*
-    fn sum(&mut self) -> Parsed<Laurent> {
-        let mut value = self.product()?;
-        loop {
-            if self.skip('+') {
-                let term = self.product()?;
-                value = self.combine(&value, &term, |a, b| a + b)?;
-            } else if self.skip('-') {
-                let term = self.product()?;
-                value = self.combine(&value, &term, |a, b| a - b)?;
-            } else {
-                return Ok(value);
-            }
-        }
+impl Arithmetic for Parser<'_> {
+    type Value = Laurent;
+    type Error = Remedy;
+
+    fn at(&self) -> usize {
+        self.at
     }
 
-    /// product = signed (("*" | "/") signed)*
-    fn product(&mut self) -> Parsed<Laurent> {
-        let mut value = self.signed()?;
-        loop {
-            if self.skip('*') {
-                let factor = self.signed()?;
-                value = self.combine(&value, &factor, |a, b| a * b)?;
-            } else if self.skip('/') {
-                let divisor = self.signed()?;
-                check_divisor(&divisor)?;
-                value = self.combine(&value, &divisor, |a, b| a.checked_div(b).expect("checked"))?;
-            } else {
-                return Ok(value);
-            }
-        }
-    }
-
-    /// signed = ("-" | "+")* power
-    fn signed(&mut self) -> Parsed<Laurent> {
-        let mut negative = false;
-        loop {
-            if self.skip('-') {
-                negative = !negative;
-            } else if !self.skip('+') {
-                let value = self.power()?;
-                return Ok(if negative { -value } else { value });
-            }
-        }
+    fn skip(&mut self, wanted: char) -> bool {
+        let found = self.peek() == Some(wanted);
+        self.at += usize::from(found);
+        found
     }
 
     /// power = atom ("^" exponent)?
@@ -158,6 +126,21 @@ impl Parser<'_> {
         self.raise(&base, exponent)
     }
 
+    fn combined(&mut self, _: usize, a: &Laurent, operation: Operation, b: &Laurent) -> Parsed<Laurent> {
+        if operation == Operation::Over {
+            check_divisor(b)?;
+        }
+        self.spend(pairs(a, b), mean_size(a) + mean_size(b))?;
+        checked(match operation {
+            Operation::Plus => a + b,
+            Operation::Minus => a - b,
+            Operation::Times => a * b,
+            Operation::Over => a.checked_div(b).expect("checked"),
+        })
+    }
+}
+
+impl Parser<'_> {
     /// exponent = ("-" | "+")? digits | atom, an integer
     fn exponent(&mut self) -> Parsed<i32> {
         let negative = self.skip('-');
@@ -288,23 +271,12 @@ impl Parser<'_> {
         }
         let mut power = Laurent::one();
         for bit in (0..32 - n.leading_zeros()).rev() {
-            power = self.combine(&power, &power, |a, b| a * b)?;
+            power = self.combined(self.at, &power, Operation::Times, &power)?;
             if n >> bit & 1 == 1 {
-                power = self.combine(&power, base, |a, b| a * b)?;
+                power = self.combined(self.at, &power, Operation::Times, base)?;
             }
         }
         Ok(power)
-    }
-
-    /// One operation within the limits of effort and size.
-    fn combine(
-        &mut self,
-        a: &Laurent,
-        b: &Laurent,
-        operate: fn(&Laurent, &Laurent) -> Laurent,
-    ) -> Parsed<Laurent> {
-        self.spend(pairs(a, b), mean_size(a) + mean_size(b))?;
-        checked(operate(a, b))
     }
 
     /// Charges for `products` of two coefficients with `bits` bits together.
@@ -319,12 +291,6 @@ impl Parser<'_> {
 
     fn peek(&self) -> Option<char> {
         self.characters.get(self.at).copied()
-    }
-
-    fn skip(&mut self, wanted: char) -> bool {
-        let found = self.peek() == Some(wanted);
-        self.at += usize::from(found);
-        found
     }
 
     fn unexpected(&self) -> Remedy {
