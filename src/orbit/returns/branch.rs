@@ -2,6 +2,7 @@
 
 use super::map::Map;
 use super::number::Coefficient;
+use super::row;
 use crate::parallel::go_on;
 
 /// A matrix function on the integers `start..start + length`, which are units of 1/q, and where it leads: x to x + stride.
@@ -25,6 +26,17 @@ impl<T: Coefficient> Branch<T> {
         let divisor = self.length as u128;
         let alpha = T::quotient(alpha, divisor);
         if length == 0 { self.map.at(&alpha) } else { self.map.part(&alpha, &T::quotient(length, divisor)) }
+    }
+
+    /// The product of n equidistant parts, or values at points, from `start` on; `None` where single products keep more digits.
+    pub fn row(&self, n: usize, start: i128, length: i128) -> Option<Map<T>> {
+        let first = 2 * (start - self.start) - (self.length - length);
+        let divisor = self.length as u128;
+        let mut places = [T::zero(); row::LONGEST];
+        for (place, i) in places[..n].iter_mut().zip(0..) {
+            *place = T::quotient(first + 2 * self.stride * i, divisor);
+        }
+        row::product(&self.map, &places[..n], &T::quotient(length, divisor))
     }
 
     /// With the same function on a part of its interval.

@@ -216,14 +216,8 @@ impl Enclosure for Close {
 
     fn ball(&self) -> Ball {
         let Twofold { hi, lo } = self.middle;
-        around(&exact(hi).add(&exact(lo), 2200), self.radius, 2200).round(192)
+        exact(hi).add(&exact(lo), 2200).within(self.radius, 192)
     }
-}
-
-/// What lies within a radius of a middle.
-pub fn around(middle: &Ball, radius: f64, bits: u32) -> Ball {
-    let unit = Ball::one().neg().union(&Ball::one(), 64);
-    middle.add(&exact(radius).mul(&unit, 64), bits)
 }
 
 /// n/d within 3 2^-101 relatively, |n| and d below 2^127.

@@ -1,6 +1,6 @@
 //! The constants of a pair, the two branches made of them, and what lies between their product and T/2.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 use num_bigint::BigUint;
 use num_integer::Integer;
@@ -18,6 +18,9 @@ use crate::propagator::{LongClocks, PartialSigns};
 
 /// Bits of a base's angle beside those of the number of its steps.
 const ANGLE: u32 = 50;
+
+/// The binary digits of a number of steps whose turn doubles tell.
+const FEW: u32 = 17;
 
 /// |σ²| below which a base beyond its own limit keeps the unit of the velocity.
 const LEAST_UNIT: f64 = 1e-3;
@@ -65,6 +68,8 @@ pub struct Frame<T: Coefficient> {
 enum Turning {
     /// 0 < s < 4: by θ/2π, known so well that of as many steps' turns the whole ones are.
     By(Ball),
+    /// The same within 2^-25, for few steps.
+    Near(f64),
     /// s ≥ 4: a half turn, and (1, 0) stays on its side.
     Half,
     /// s ≤ 0: (1, 0) stays on its side.
@@ -112,6 +117,10 @@ impl<T: Coefficient> Frame<T> {
         };
         let turning = if !wanted {
             None
+        } else if elliptic && lost <= FEW {
+            // An error δ of s changes θ by less than 1.1 √δ, at the worst next to 0 and to 4.
+            let (s, _) = s.ends();
+            Some(Turning::Near(2.0 * s.max(0.0).sqrt().atan2((4.0 - s).max(0.0).sqrt()) / TAU))
         } else if elliptic {
             let bits = ANGLE + lost + 62;
             let cosine = Ball::one().sub(&clocks.fast().enclosure(bits).scale2(-1), bits);
@@ -163,6 +172,11 @@ impl<T: Coefficient> Frame<T> {
     /// The turn of n steps of the base that lead (1, 0) into this direction.
     fn turned(&self, n: &BigUint, angle: f64) -> Option<Turn> {
         match self.turning.as_ref()? {
+            Turning::Near(theta) => {
+                // Within 2^-8 of a whole number.
+                let whole = -theta * n.to_f64()? - angle / TAU;
+                Some(Turn { whole: whole.round() as i128, angle })
+            }
             Turning::By(theta) => {
                 // Full turns: −nθ = 2π whole + angle.
                 let bits = ANGLE + 62 + n.bits() as u32;

@@ -4,7 +4,7 @@ use crate::number::Twofold;
 use crate::vector::Pair;
 
 /// Four numbers, with the operations of each.
-pub trait Lanes<T>: Clone {
+pub trait Lanes<T>: Copy {
     fn of(x: [&T; 4]) -> Self;
     fn entries(self) -> [T; 4];
     fn plus(&self, other: &Self) -> Self;
@@ -20,7 +20,7 @@ pub trait Lanes<T>: Clone {
 }
 
 /// Pairs of doubles.
-#[derive(Clone)]
+#[derive(Clone, Copy)]
 pub struct Twofolds(Pair<[f64; 4]>);
 
 impl Lanes<Twofold> for Twofolds {

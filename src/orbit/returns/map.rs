@@ -25,14 +25,14 @@ use crate::number::Ball;
 use crate::vector::instructions::{Instructions, Task};
 
 /// Some hundreds of roundings of positive numbers.
-const UP: f64 = 1.0 + 1e-12;
+pub const UP: f64 = 1.0 + 1e-12;
 
 /// More than any number of underflows, of squares too, adds to a function whose largest entry is near 1.
 const FLOOR: f64 = 1e-150;
 
 /// Room for the terms of a function of doubles, and of any function.
-const FEW: usize = 16;
-const MOST: usize = 48;
+pub const FEW: usize = 16;
+pub const MOST: usize = 48;
 
 /// Where the sum of all terms' norms is so little more than the first, nothing less is looked for.
 const NEARLY: f64 = 1.01;
@@ -80,7 +80,7 @@ fn about<T: Coefficient>(m: &Entries<T>) -> f64 {
 
 /// |M_j|, about, and zeros beyond the last term.
 #[inline(always)]
-fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
+pub fn sizes<T: Coefficient, const N: usize>(terms: &[Entries<T>]) -> [f64; N] {
     let mut sizes = [0.0; N];
     sizes.iter_mut().zip(terms).for_each(|(own, term)| *own = about(term));
     sizes
@@ -133,7 +133,8 @@ fn length(x: f64, y: f64) -> f64 {
 }
 
 /// The image of (1, 0).
-fn image<T: Coefficient>(m: &Entries<T>) -> [f64; 2] {
+#[inline(always)]
+pub fn image<T: Coefficient>(m: &Entries<T>) -> [f64; 2] {
     [m[0].near(), m[2].near()]
 }
 
@@ -181,7 +182,7 @@ impl<T: Coefficient> Map<T> {
 
     /// Without a turn, balanced; known by nothing where the power of two leaves the range of its number.
     #[inline(always)]
-    fn bounded(terms: Vec<Entries<T>>, error: f64, known: f64, exponent: i128) -> Self {
+    pub fn bounded(terms: Vec<Entries<T>>, error: f64, known: f64, exponent: i128) -> Self {
         let error = if exponent.unsigned_abs() > 1 << 125 { f64::INFINITY } else { error };
         let mut map = Map::kept(terms, error, known, exponent);
         map.balance();
@@ -191,6 +192,18 @@ impl<T: Coefficient> Map<T> {
     /// The coefficients, without the power of two.
     pub fn terms(&self) -> &[Entries<T>] {
         &self.terms
+    }
+
+    /// ε.
+    #[inline(always)]
+    pub fn bound(&self) -> f64 {
+        self.error
+    }
+
+    /// What no Σ M_j t^j exceeds in norm.
+    #[inline(always)]
+    pub fn norm(&self) -> f64 {
+        self.norm
     }
 
     /// 2^e ε.
@@ -302,7 +315,7 @@ impl<T: Coefficient> Map<T> {
         };
         let value = rest.iter().rev().fold(last.clone(), horner);
         let value = self.moved(vec![value]);
-        Map { turn: self.turn_moved(alpha.near(), &value), ..value }
+        Map { turn: self.turn_moved(alpha.near(), value.direction()), ..value }
     }
 
     /// With the coefficients on a part, but for the turn.
@@ -322,10 +335,10 @@ impl<T: Coefficient> Map<T> {
         Map { least: self.least, ..Map::bounded(terms, error, known, self.exponent) }
     }
 
-    /// The turn, followed along t from 0 to α in so small steps that the image's direction changes by less than a right angle
-    /// in each.
+    /// The turn, followed along t from 0 to α, where the image's direction is `towards`, in so small steps that it changes by less than
+    /// a right angle in each.
     #[inline(always)]
-    fn turn_moved(&self, alpha: f64, part: &Self) -> Option<Turn> {
+    pub fn turn_moved(&self, alpha: f64, towards: Option<f64>) -> Option<Turn> {
         let mut turn = self.turn?;
         let images = || self.terms.iter().map(image);
         let at = |t: f64| images().rev().fold([0.0; 2], |[x, y], [a, b]| [x * t + a, y * t + b]);
@@ -342,7 +355,7 @@ impl<T: Coefficient> Map<T> {
             });
             if let Some(moved) = moved {
                 turn = moved;
-                let angle = part.direction()?;
+                let angle = towards?;
                 return Some(turn.on(principal(angle - turn.angle), angle));
             }
         }
@@ -457,7 +470,7 @@ impl<T: Coefficient> Task for Part<'_, T> {
             power = power.times(&beta);
         }
         let part = self.whole.moved(terms.into_iter().map(T::Lanes::entries).collect());
-        Map { turn: self.whole.turn_moved(self.alpha.near(), &part), ..part }
+        Map { turn: self.whole.turn_moved(self.alpha.near(), part.direction()), ..part }
     }
 }
 

@@ -23,6 +23,7 @@ mod lanes;
 mod long;
 mod map;
 mod number;
+mod row;
 mod run;
 mod series;
 mod slow;

@@ -1,6 +1,6 @@
 //! The numbers that coefficients are made of: doubles, two doubles, long numbers.
 
-use super::enclosure::{Close, Enclosure, Wide, around, quotient};
+use super::enclosure::{Close, Enclosure, Wide, quotient};
 
 pub use super::enclosure::exact;
 use super::lanes::{Lanes, Twofolds};
@@ -10,7 +10,7 @@ use crate::number::{Ball, Rational, Twofold, U};
 
 /// A floating number. Every operation returns its exact result but for [`UNIT`](Coefficient::UNIT): a product within
 /// UNIT |a b|, a sum within UNIT (|a| + |b|), as long as nothing is smaller than 2^-900.
-pub trait Coefficient: Clone {
+pub trait Coefficient: Copy {
     /// What a pair's constants are enclosed in.
     type Enclosure: Enclosure;
     /// The next shorter numbers; of the shortest themselves.
@@ -21,6 +21,9 @@ pub trait Coefficient: Clone {
     const BITS: u32;
     /// So many coefficients a function has: the terms of a product of two smooth ones beyond them are as small as UNIT.
     const TERMS: usize;
+    /// The logarithm of the factors that are multiplied in one row, up to `row::LONGEST` of them: 0 where single products, which leave
+    /// out what is small when it is known, are cheaper.
+    const ROW: u32;
     /// What a product of functions costs, in those of doubles, about.
     const COST: u64;
     /// The most products of functions that one run may cost: a fraction of a second, or some seconds.
@@ -64,7 +67,7 @@ pub trait Coefficient: Clone {
 impl<T: Coefficient> Lanes<T> for [T; 4] {
     #[inline(always)]
     fn of(x: [&T; 4]) -> Self {
-        x.map(Clone::clone)
+        x.map(|x| *x)
     }
 
     #[inline(always)]
@@ -95,6 +98,7 @@ impl Coefficient for f64 {
     const UNIT: f64 = U;
     const BITS: u32 = 80;
     const TERMS: usize = 13;
+    const ROW: u32 = 3;
     const COST: u64 = 1;
     const PRODUCTS: u64 = 50_000;
     const CLOSE: f64 = 1e-7;
@@ -170,6 +174,7 @@ impl Coefficient for Twofold {
     const UNIT: f64 = 1.0 / (1u128 << 101) as f64;
     const BITS: u32 = 130;
     const TERMS: usize = 22;
+    const ROW: u32 = 0;
     const COST: u64 = 5;
     const PRODUCTS: u64 = 20_000;
     const CLOSE: f64 = 1e-18;
@@ -239,6 +244,7 @@ impl Coefficient for Long {
     const UNIT: f64 = f64::from_bits((1023 + 2 - long::LENGTH as u64) << 52);
     const BITS: u32 = long::LENGTH + 32;
     const TERMS: usize = 8 + long::LENGTH as usize / 7;
+    const ROW: u32 = 0;
     const COST: u64 = 100;
     const PRODUCTS: u64 = 10_000;
     const CLOSE: f64 = 1e-40;
@@ -302,7 +308,7 @@ pub fn near_ball<T: Coefficient>(ball: &Ball) -> (T, f64) {
 }
 
 fn within(middle: &Ball, error: f64, bits: u32) -> Wide {
-    Wide::new(around(middle, error, bits), bits)
+    Wide::new(middle.clone().within(error, bits), bits)
 }
 
 #[cfg(test)]

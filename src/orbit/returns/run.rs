@@ -8,9 +8,9 @@
 use super::branch::{Branch, Budget};
 use super::map::Map;
 use super::number::Coefficient;
-use super::slow::{self, Slow};
+use super::slow::{self, Slow, after};
 
-/// At a point, the logarithm of so many factors as cost no less than a piece.
+/// At a point, the logarithm of so many rows as cost no less than a piece.
 const MANY: u32 = 3;
 
 /// A branch and what is known of its products.
@@ -36,29 +36,47 @@ impl<T: Coefficient> Run<T> {
             return slow.product(n, start, length, budget);
         }
         let (mut product, mut from) = (None, start);
-        for log2 in (0..128 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1) {
+        let powers = (T::ROW..128 - n.leading_zeros()).rev().filter(|bit| n >> bit & 1 == 1);
+        for log2 in powers {
             let next = self.power(log2, from, length, budget)?;
-            product = Some(match product {
-                Some(product) => budget.product(&next, &product)?,
-                None => next,
-            });
+            product = Some(after(next, product, budget)?);
             from += self.branch.stride << log2;
         }
-        product
+        match n % (1 << T::ROW) {
+            0 => product,
+            rest => after(self.few(rest as usize, from, length, budget)?, product, budget),
+        }
     }
 
     /// P_n for n = 2^log2.
     fn power(&mut self, log2: u32, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
-        if log2 == 0 {
-            return Some(self.branch.on(start, length));
+        if log2 <= T::ROW {
+            return self.few(1 << log2, start, length, budget);
         }
         let long = self.branch.length >> log2;
         // At a point, some factors cost less than a piece that is not known yet.
-        let is_worth = || length > 0 || log2 >= MANY || self.known(log2, start).is_some();
+        let is_worth = || length > 0 || log2 >= T::ROW + MANY || self.known(log2, start).is_some();
         if long >= 2.max(2 * length) && is_worth() {
             return Some(self.piece(log2, start, budget)?.on(start, length));
         }
         self.twice(log2, start, length, budget)
+    }
+
+    /// P_n for n that one row has.
+    fn few(&self, n: usize, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {
+        if n == 1 {
+            return Some(self.branch.on(start, length));
+        }
+        budget.spend::<T>(1)?;
+        if T::ROW > 0
+            && let Some(row) = self.branch.row(n, start, length)
+        {
+            return Some(row);
+        }
+        let first = self.few(n / 2, start, length, budget)?;
+        let from = start + self.branch.stride * (n / 2) as i128;
+        let second = self.few(n - n / 2, from, length, budget)?;
+        budget.product(&second, &first)
     }
 
     fn twice(&mut self, log2: u32, start: i128, length: i128, budget: &mut Budget) -> Option<Map<T>> {

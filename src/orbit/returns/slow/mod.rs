@@ -52,7 +52,7 @@ struct Chain<T> {
 }
 
 /// The later one after the earlier, where there is one.
-fn after<T: Coefficient>(later: Map<T>, earlier: Option<Map<T>>, budget: &mut Budget) -> Option<Map<T>> {
+pub fn after<T: Coefficient>(later: Map<T>, earlier: Option<Map<T>>, budget: &mut Budget) -> Option<Map<T>> {
     match earlier {
         Some(earlier) => budget.product(&later, &earlier),
         None => Some(later),
