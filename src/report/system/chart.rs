@@ -68,9 +68,12 @@ impl SystemMap {
         .titled(&format!("{unstable} of {} points unstable", self.points.len()))
         .with(Layer::lines(lines.clone(), Stroke::LINE.in_colour(INK)))
         .with(Layer::dots(lines.concat(), Shape::Disc, 2.0, HYPERBOLIC));
+        // A little above the frame, which would hide them.
+        let open: Vec<_> =
+            dots(&|point| point.kind.is_none()).into_iter().map(|[x, y]| [x, y.max(0.03 * top)]).collect();
         for (own, shape, name) in [
             (bounded_below, Shape::Triangle, "unstable: grows as fast or faster"),
-            (dots(&|point| point.kind.is_none()), Shape::Cross, "not decided"),
+            (open, Shape::Cross, "not decided"),
         ] {
             if !own.is_empty() {
                 panel = panel.with(Layer::dots(own, shape, 3.0, INK).labelled(name)).legend(Place::Above);
@@ -163,7 +166,8 @@ mod tests {
 
     #[test]
     fn growth_that_is_not_known_is_not_drawn_as_none() {
-        let map = |own: &[(Option<Kind>, Option<(f64, f64)>, f64)]| {
+        type Told = (Option<Kind>, Option<(f64, f64)>, f64);
+        let map = |own: &[Told]| {
             let xs: Vec<Rational> = (1..=own.len() as i64).map(|k| ratio(k, 4)).collect();
             let points = own.iter().zip(&xs).map(|(&(kind, growth_rate, at_least), x)| Point {
                 at: (x.clone(), Rational::default()),

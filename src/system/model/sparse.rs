@@ -35,7 +35,7 @@ enum Of {
     /// Two levels, and how well they are known.
     Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
-    Steps(SparseSteps),
+    Steps(Box<SparseSteps>),
 }
 
 /// What is left out of the answer: of a verdict in the first region, or of none,
@@ -104,7 +104,7 @@ impl SparseSystem {
         let n = steps.size();
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
-        Ok(SparseSystem { of: Of::Steps(steps), step: step.clone(), clocks })
+        Ok(SparseSystem { of: Of::Steps(Box::new(steps)), step: step.clone(), clocks })
     }
 
     /// Both levels with the outer step, where it has them.
