@@ -1,6 +1,6 @@
 //! Sparse levels of many degrees of freedom against the dense kernel of the same numbers.
 
-use kickdrift::scene::{Array, SystemScene};
+use kickdrift::scene::{Array, Scan, SystemScene};
 use kickdrift::system::levels::sparse::SparseLevels;
 use kickdrift::system::levels::{Hessians, Kernel, Outer, rigid_motions};
 use kickdrift::system::{Holds, Limits, Route};
@@ -173,6 +173,28 @@ fn compressed_rows_are_read_and_refused_by_name() {
     ] {
         let error = with(key, value).unwrap_err();
         assert_eq!(error.field(), key, "{error}");
+    }
+    // A scan over steps keeps the stiffnesses, whichever is the fast one, and the accuracy: each point is what its own file has.
+    let asked = scene.clone().asked(Some(1e-7), false, None, None).unwrap();
+    for path in ["potentials.1.step", "potentials.0.step"] {
+        let range = format!("{path}=1/2000..3/1000:1/2000");
+        let scan = Scan::new(asked.clone(), range.parse().unwrap(), None).unwrap();
+        for x in scan.x.values() {
+            let mut source = file("slow", "1/1000");
+            let own = scan.at(&x, &x);
+            source["potentials"][if path == "potentials.1.step" { 1 } else { 0 }]["step"] =
+                json!(x.to_string());
+            source["accuracy"] = json!(1e-7);
+            let other = SystemScene::from_json_in(held.clone(), source);
+            let decided = |scene: SystemScene| {
+                format!("{:?}", scene.model().decide(Route::Cheapest, &limits).unwrap().measured)
+            };
+            // An outer step that is no multiple of the inner one is refused.
+            assert_eq!(own.is_ok(), other.is_ok(), "{path} {x}");
+            if let (Ok(own), Ok(other)) = (own, other) {
+                assert_eq!(decided(own), decided(other), "{path} {x}");
+            }
+        }
     }
     let mut source = file("slow", "1/1000");
     source["potentials"][1]["stiffness"] = json!({"npz": "a.npz", "array": "slow.data"});

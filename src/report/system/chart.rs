@@ -49,23 +49,43 @@ impl SystemMap {
             .with(panel)
     }
 
-    /// Of one number: growth over it.
+    /// Of one number: growth over it, a line where it is known; nothing is drawn as no growth that was not decided.
     fn profile(&self, title: &str, number: &(String, i8)) -> Figure {
         let (first, step) = pitch(&self.xs);
         let last = first + step * self.xs.len().saturating_sub(1) as f64;
-        let line: Vec<[f64; 2]> =
-            self.points.iter().map(|point| [to_f64(&point.at.0), point.rounded_rate()]).collect();
-        let fastest = line.iter().fold(0.0, |a: f64, own| a.max(own[1]));
+        let lines = self.runs();
+        let dots = |which: &dyn Fn(&Point) -> bool| -> Vec<[f64; 2]> {
+            self.points.iter().filter(|point| which(point)).map(place).collect()
+        };
+        let bounded_below = dots(&|point| point.kind.is_some() && !is_known(point));
+        let fastest = self.points.iter().map(place).fold(0.0, |a: f64, own| a.max(own[1]));
         let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
-        let panel = Panel::new(
+        let mut panel = Panel::new(
             axis(number, first, last.max(first + step)),
             Axis::linear("growth rate", 0.0, top).per_time(),
         )
         .titled(&format!("{unstable} of {} points unstable", self.points.len()))
-        .with(Layer::lines(vec![line.clone()], Stroke::LINE.in_colour(INK)))
-        .with(Layer::dots(line, Shape::Disc, 2.0, HYPERBOLIC));
+        .with(Layer::lines(lines.clone(), Stroke::LINE.in_colour(INK)))
+        .with(Layer::dots(lines.concat(), Shape::Disc, 2.0, HYPERBOLIC));
+        // A little above the frame, which would hide them.
+        let open: Vec<_> =
+            dots(&|point| point.kind.is_none()).into_iter().map(|[x, y]| [x, y.max(0.03 * top)]).collect();
+        for (own, shape, name) in [
+            (bounded_below, Shape::Triangle, "unstable: grows as fast or faster"),
+            (open, Shape::Cross, "not decided"),
+        ] {
+            if !own.is_empty() {
+                panel = panel.with(Layer::dots(own, shape, 3.0, INK).labelled(name)).legend(Place::Above);
+            }
+        }
         Figure::double_column(80.0).named(title).with(panel)
+    }
+
+    /// The points next to each other whose growth is known.
+    fn runs(&self) -> Vec<Vec<[f64; 2]>> {
+        let runs = self.points.chunk_by(|a, b| is_known(a) == is_known(b)).filter(|run| is_known(&run[0]));
+        runs.map(|run| run.iter().map(place).collect()).collect()
     }
 
     fn by_growth(&self, panel: Panel) -> Panel {
@@ -112,6 +132,16 @@ impl SystemMap {
     }
 }
 
+/// Whether a point is decided and its growth bounded.
+fn is_known(point: &Point) -> bool {
+    point.kind.is_some() && point.growth_rate.is_some_and(|(_, hi)| hi.is_finite())
+}
+
+/// Where a point of a profile is: at its growth, or at what is known of it from below.
+fn place(point: &Point) -> [f64; 2] {
+    [to_f64(&point.at.0), if is_known(point) { point.rounded_rate() } else { point.at_least }]
+}
+
 /// The values of a number of the file: its name in words, and the power of time in its unit.
 pub(super) fn axis((words, time): &(String, i8), lo: f64, hi: f64) -> Axis {
     let axis = Axis::linear(&literal(words), lo, hi);
@@ -127,4 +157,42 @@ fn pitch(values: &[Rational]) -> (f64, f64) {
     let first = values.first().map_or(0.0, to_f64);
     let distance = values.get(1).map_or_else(|| first.abs().max(1.0) / 10.0, |second| to_f64(second) - first);
     (first, distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::rational::ratio;
+
+    #[test]
+    fn growth_that_is_not_known_is_not_drawn_as_none() {
+        type Told = (Option<Kind>, Option<(f64, f64)>, f64);
+        let map = |own: &[Told]| {
+            let xs: Vec<Rational> = (1..=own.len() as i64).map(|k| ratio(k, 4)).collect();
+            let points = own.iter().zip(&xs).map(|(&(kind, growth_rate, at_least), x)| Point {
+                at: (x.clone(), Rational::default()),
+                kind,
+                growth_rate,
+                at_least,
+            });
+            let (names, ys) = (vec!["potentials.1.step".into()], vec![Rational::default()]);
+            SystemMap { names, points: points.collect(), xs, ys, time_unit: None }
+        };
+        let [stable, grows] =
+            [(Some(Kind::Elliptic), Some((0.0, 0.0)), 0.0), (Some(Kind::Hyperbolic), Some((2.0, 2.1)), 2.0)];
+        let [open, above] = [(None, None, 0.0), (Some(Kind::Hyperbolic), Some((3.0, f64::INFINITY)), 3.0)];
+        let names = ["not decided", "unstable: grows as fast or faster"];
+        let said = |own: &SystemMap| {
+            let svg = own.figure(Colouring::Growth, "growth", &[("step".into(), 1)]).svg();
+            names.map(|name| svg.contains(&format!("aria-label=\"{name}\"")))
+        };
+        for (points, keys, runs) in [
+            (vec![stable, grows, stable], [false, false], vec![vec![[0.25, 0.0], [0.5, 2.05], [0.75, 0.0]]]),
+            (vec![stable, open, grows], [true, false], vec![vec![[0.25, 0.0]], vec![[0.75, 2.05]]]),
+            (vec![open, stable, above], [true, true], vec![vec![[0.5, 0.0]]]),
+        ] {
+            let own = map(&points);
+            assert_eq!((said(&own), own.runs()), (keys, runs));
+        }
+    }
 }

@@ -9,7 +9,7 @@ use std::str::FromStr;
 
 use serde_json::Value;
 
-use super::{SystemScene, with_method};
+use super::{SystemScene, sparse, with_method};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::parse::parse_rational;
@@ -179,12 +179,23 @@ impl SystemScene {
                 *place(&mut file, &mirrored, field)? = Value::String(value.to_string());
             }
         }
+        let is_step =
+            |(path, _): &(&str, &Rational)| path.starts_with("potentials.") && path.ends_with(".step");
+        if let Model::Sparse(own) = &self.model
+            && numbers.iter().all(is_step)
+            && let Some(own) = sparse::with_steps(own, [&self.source, &file])?
+        {
+            return Ok(SystemScene { source: file, model: Model::Sparse(Box::new(own)), ..self.clone() });
+        }
         let mut scene = SystemScene::from_json_in(self.arrays.clone(), file)?;
         let method = self.model.method();
         if scene.model.method() != method {
             scene.model = with_method(scene.model, scene.bonds.as_ref(), method)?;
         }
         if let (Model::Measured(own), Model::Measured(old)) = (&mut scene.model, &self.model) {
+            own.follow(old);
+        }
+        if let (Model::Sparse(own), Model::Sparse(old)) = (&mut scene.model, &self.model) {
             own.follow(old);
         }
         Ok(scene)

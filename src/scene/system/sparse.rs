@@ -19,11 +19,13 @@
 use std::collections::BTreeSet;
 
 use faer::Mat;
+use serde_json::Value;
 
 use super::array::{Arrays, Reference};
 use super::local::NAME;
-use super::measured::{Document, FineDocument, LevelDocument};
+use super::measured::{self, Document, FineDocument, LevelDocument};
 use crate::error::{Error, Result};
+use crate::number::Rational;
 use crate::system::levels::sparse::SparseLevels;
 use crate::system::levels::{rigid_motions, translations};
 use crate::system::{Level, LocalSteps, Removed, SparseSteps, SparseSystem};
@@ -64,6 +66,21 @@ pub(super) fn read(document: &Document, arrays: &Arrays) -> Result<SparseSystem>
     let [fast, slow] = own.removed();
     let removed = (count > 0).then_some(Removed { count, found_by, fast, slow });
     SparseSystem::new(own, [inner, outer], document.accuracy()?, removed)
+}
+
+/// Two levels that a file gives, with the steps of another in which nothing else differs: their stiffnesses are not read again. `None` where the fast one is no
+/// longer the fast one, or there are no two levels.
+pub(super) fn with_steps(own: &SparseSystem, files: [&Value; 2]) -> Result<Option<SparseSystem>> {
+    let steps = |file: &Value| -> Result<Vec<Rational>> {
+        let document = measured::parse(file)?;
+        document.potentials.iter().enumerate().map(|(k, potential)| potential.step(k)).collect()
+    };
+    let own_steps = match (&steps(files[0])?[..], &steps(files[1])?[..]) {
+        ([a, b], [c, d]) if a < b && c < d => [c.clone(), d.clone()],
+        ([a, b], [c, d]) if a > b && c > d => [d.clone(), c.clone()],
+        _ => return Ok(None),
+    };
+    own.with_steps(own_steps.each_ref()).transpose()
 }
 
 /// One stiffness with local time steps.

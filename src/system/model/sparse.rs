@@ -1,5 +1,7 @@
 //! Sparse stiffnesses of thousands of degrees of freedom: the first stable region of two levels; local time steps of one.
 
+use std::sync::Arc;
+
 use num_complex::Complex64;
 use num_traits::One;
 
@@ -31,9 +33,9 @@ pub struct SparseSystem {
 #[derive(Clone, Debug)]
 enum Of {
     /// Two levels, and how well they are known.
-    Levels { levels: SparseLevels, outer: Outer, accuracy: f64, removed: Option<Removed> },
+    Levels { levels: Arc<SparseLevels>, outer: Outer, accuracy: f64, removed: Option<Removed> },
     /// One stiffness, with local time steps.
-    Steps(SparseSteps),
+    Steps(Box<SparseSteps>),
 }
 
 /// What is left out of the answer: of a verdict in the first region, or of none,
@@ -50,9 +52,9 @@ const FASTEST: &str = "of sparse stiffnesses only the motion that grows fastest 
 /// Of one resonance: to find it, and both edges of its unstable steps.
 const A_RESONANCE: f64 = 60.0;
 
-/// Factorizations that an answer takes, roughly; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
+/// Factorizations that an answer takes, roughly, with all else; a product of theirs, in dense blocks, takes a hundredth of the time that one of an eigenvalue
 /// iteration does, as measured on droplets of 500 and 2,000 waters.
-const FACTORIZATIONS: f64 = 12.0;
+const FACTORIZATIONS: f64 = 6.0;
 const FASTER: f64 = 100.0;
 
 impl SparseSystem {
@@ -63,11 +65,20 @@ impl SparseSystem {
     /// An outer step that is no multiple of the inner one, an accuracy that is not in (0, 1/10).
     pub fn new(
         levels: SparseLevels,
-        [inner, outer]: [&Rational; 2],
+        steps: [&Rational; 2],
         accuracy: f64,
         removed: Option<Removed>,
     ) -> Result<SparseSystem> {
         check_accuracy(accuracy)?;
+        SparseSystem::of_levels(Arc::new(levels), steps, accuracy, removed)
+    }
+
+    fn of_levels(
+        levels: Arc<SparseLevels>,
+        [inner, outer]: [&Rational; 2],
+        accuracy: f64,
+        removed: Option<Removed>,
+    ) -> Result<SparseSystem> {
         let n = levels.size();
         let steps = [inner, outer].map(|step| Potential::new(Symmetric::zero(n), step.clone()));
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), steps.into())?;
@@ -93,7 +104,7 @@ impl SparseSystem {
         let n = steps.size();
         let clock = Potential::new(Symmetric::zero(n), step.clone());
         let clocks = System::new(Symmetric::diagonal(&vec![Rational::one(); n]), vec![clock])?;
-        Ok(SparseSystem { of: Of::Steps(steps), step: step.clone(), clocks })
+        Ok(SparseSystem { of: Of::Steps(Box::new(steps)), step: step.clone(), clocks })
     }
 
     /// Both levels with the outer step, where it has them.
@@ -147,6 +158,19 @@ impl SparseSystem {
         }
     }
 
+    /// Takes over the accuracy of two other levels.
+    pub fn follow(&mut self, other: &SparseSystem) {
+        if let (Of::Levels { accuracy, .. }, Of::Levels { accuracy: own, .. }) = (&mut self.of, &other.of) {
+            *accuracy = *own;
+        }
+    }
+
+    /// Both levels with other steps; what is known of their stiffnesses stays known. `None` for local time steps.
+    pub fn with_steps(&self, steps: [&Rational; 2]) -> Option<Result<SparseSystem>> {
+        let Of::Levels { levels, accuracy, removed, .. } = &self.of else { return None };
+        Some(SparseSystem::of_levels(Arc::clone(levels), steps, *accuracy, removed.clone()))
+    }
+
     /// Its size and its clocks, without stiffnesses.
     pub(super) fn system(&self) -> &System {
         &self.clocks
@@ -172,6 +196,7 @@ impl SparseSystem {
             Of::Levels { levels, outer, accuracy, removed } => (levels, outer, *accuracy, removed),
             Of::Steps(own) => return Ok(self.of_steps(own)),
         };
+        levels.look(outer.inner_steps());
         let margin = if levels.is_unstable(outer) { None } else { levels.margin(outer) };
         let verdict = match margin {
             Some(_) => Holds::Stable,

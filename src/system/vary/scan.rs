@@ -17,6 +17,8 @@ pub struct Point {
     pub kind: Option<Kind>,
     /// An enclosure of the largest growth rate, per unit time; (0, 0) if nothing grows exponentially; `None`: not bounded.
     pub growth_rate: Option<(f64, f64)>,
+    /// No more than it: what the fastest mode that is proven to grow has at least, 0 where none is.
+    pub at_least: f64,
 }
 
 impl Point {
@@ -48,7 +50,10 @@ pub fn scan(
     let pairs: Vec<_> = ys.iter().flat_map(|y| xs.iter().map(move |x| (x, y))).collect();
     let point = |&(x, y): &(&Rational, &Rational)| {
         let analysis = decide(x, y)?;
-        Ok(Point { at: (x.clone(), y.clone()), kind: analysis.kind, growth_rate: analysis.growth_rate() })
+        let modes = analysis.parts.iter().flat_map(|part| &part.instabilities);
+        let at_least = modes.filter_map(|mode| mode.growth_rate).fold(0.0, |most: f64, (lo, _)| most.max(lo));
+        let (kind, growth_rate) = (analysis.kind, analysis.growth_rate());
+        Ok(Point { at: (x.clone(), y.clone()), kind, growth_rate, at_least })
     };
     let mut points = Vec::with_capacity(pairs.len());
     for group in pairs.chunks(AHEAD) {

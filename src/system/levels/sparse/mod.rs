@@ -8,17 +8,21 @@
 //!     unstable:   E(h² xᵀFx) < xᵀMx for one x of length 1, since xᵀE(h²F)x ≤ E(xᵀ h²F x) (Jensen), where F + S > 0.
 //! ```
 //!
-//! The first is two sparse Cholesky factorizations that run to their end, the second one vector, found by inverse iteration with
-//! the factors. In between nothing is said: that gap is as wide as the line lies below E where x has its share.
+//! The first is two sparse Cholesky factorizations that run to their end, the second one vector, from a Krylov space of the form. In between
+//! nothing is said: that gap is as wide as the line lies below E where x has its share.
 //!
 //! | file | what |
 //! |---|---|
 //! | `matrix` | sparse symmetric matrices, sums proven positive definite |
+//! | `dissect` | in which order their rows are eliminated |
+//! | `krylov` | one eigenvector of an operator |
 //! | `region` | the verdict, the margin, the first unstable step |
 //! | `period` | the period of positions, with a bound on its roundings |
 //! | `growing` | the modes that grow beyond that step, enclosed |
 
+mod dissect;
 mod growing;
+mod krylov;
 mod matrix;
 mod period;
 mod region;

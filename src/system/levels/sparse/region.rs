@@ -5,9 +5,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use faer::Mat;
 
+use super::krylov::top;
 use super::matrix::{Factors, Pattern, Triplets};
 use crate::error::{Error, Result};
 use crate::number::{U, bisected};
+use crate::parallel::both;
 use crate::system::half::norm;
 use crate::system::levels::chord::{chord, ends};
 use crate::system::levels::half::Half;
@@ -54,7 +56,7 @@ pub struct SparseLevels {
     roots: Vec<f64>,
     /// No less than the largest eigenvalue of F, and no more than −λ if some λ < 0 is one.
     ends: OnceLock<Option<[f64; 2]>>,
-    unheld: OnceLock<Option<usize>>,
+    held: OnceLock<Held>,
     /// By the number of inner steps.
     first: Arc<Mutex<BTreeMap<u64, Option<First>>>>,
 }
@@ -65,6 +67,15 @@ struct First {
     step: (f64, f64),
     along: Mat<f64>,
     quotients: [f64; 2],
+}
+
+/// What holds the place: F + S, off the rigid motions.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    /// The directions along which it is not proven positive; `None` where they are not counted.
+    not_proven: Option<usize>,
+    /// Where there are none, the least xᵀ(F + S)x that a Krylov space finds, rounded; `None` where it finds none.
+    least: Option<f64>,
 }
 
 /// Steps of Lanczos's recursion for the largest eigenvalue of F.
@@ -79,7 +90,19 @@ const BELOW: [f64; 2] = [1e-6, 1e-2];
 /// Dimensions of the Krylov space of an inverse that tells the vector that is stretched least.
 const STEPS_BELOW: usize = 16;
 
-/// Parts of the step at which the fastest mode alone takes half a turn, from which the first region's end is sought.
+/// The same of the matrix itself, and the residual at which its vector is taken, relative to the eigenvalue: these lie close together, and the error of what
+/// the vector tells is the square of its own.
+const STEPS_ALONG: usize = 240;
+const ALONG: f64 = 1e-4;
+
+/// How often the vector that is stretched least is sought at the step that the last one told.
+const TURNS: usize = 4;
+
+/// Products of a factorization from which on two are made side by side.
+const SIDE_BY_SIDE: f64 = 1e8;
+
+/// Parts of the step that a vector tells, from which the first region's end is sought; then parts of the one at which the fastest mode alone takes half a turn.
+const BELOW_LIMIT: [f64; 3] = [1.0 - WIDTH / 2.0, 0.999, 0.99];
 const FROM: [f64; 8] = [0.9, 0.5, 0.2, 0.1, 0.03, 0.01, 1e-3, 1e-4];
 
 /// Shifts, relative to the norms, by which F + S is positive definite in doubles.
@@ -122,7 +145,7 @@ impl SparseLevels {
         let ((size, terms), image) = (both.size_of(&total), both.times(&total, &rigid));
         let rounding = 2.0 * (terms as f64 + 2.0) * U * size * norm::frobenius(&rigid);
         let leak = 3.1 * (norm::frobenius(&image) + rounding);
-        let (ends, unheld, first) = Default::default();
+        let (ends, held, first) = Default::default();
         let (sizes, roots) = (sizes.map(|(size, _)| size), masses.iter().map(|m| m.sqrt()).collect());
         Ok(SparseLevels {
             both,
@@ -136,7 +159,7 @@ impl SparseLevels {
             rigid,
             roots,
             ends,
-            unheld,
+            held,
             first,
         })
     }
@@ -179,30 +202,33 @@ impl SparseLevels {
     /// Two conditions each hold up to some ε. The vector that fails them first tells what that is at most; most often one factorization a little below
     /// proves it.
     pub fn margin(&self, outer: &Outer) -> Option<f64> {
-        let own = self.factors(outer, 0.0)?;
-        let quotients = self.quotients(&own.least(self.anywhere(), &self.rigid, STEPS_BELOW)?);
-        drop(own);
+        let quotients = self.quotients(&self.stretched_least(outer, self.anywhere())?);
         let is_open = |epsilon: f64| self.form_along(quotients, outer, epsilon) > 0.0;
-        let most = bisected((0.0, 1.0), 1e-6, |epsilon| Some(is_open(epsilon))).1;
-        let line = largest_below(most, 0.01, |epsilon| self.above(outer, epsilon).is_some());
-        // F + S is to be definite by as much, too: its least eigenvalue is at most this quotient.
-        let off = |epsilon: f64| (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum::<f64>();
-        let total = |epsilon: f64| self.is_total_definite(off(epsilon));
-        let least = self.least_total().map_or(f64::INFINITY, |least| least / 1.1 - off(0.0));
-        let most = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
-        if most > line && total(line) {
-            return Some(line);
+        if self.unheld() != Some(0) || !is_open(0.0) {
+            return None;
         }
-        Some(largest_below(line.min(most), 0.06, total))
+        let most = bisected((0.0, 1.0), 1e-6, |epsilon| Some(is_open(epsilon))).1;
+        let (line, total) = both(
+            self.products() > SIDE_BY_SIDE,
+            || largest_below(most, 0.01, |epsilon| self.above(outer, epsilon).is_some()),
+            || self.total_margin(most),
+        );
+        let margin = line.min(total);
+        (margin > 0.0 || self.above(outer, 0.0).is_some()).then_some(margin)
     }
 
-    /// The least quotient xᵀ(F + S)x that a Krylov space finds off the rigid motions, rounded; `None` where nothing holds these up.
-    fn least_total(&self) -> Option<f64> {
-        let size = self.sizes[0] + self.sizes[1];
-        let terms: [(f64, &[f64]); 2] = [(1.0, &self.fast), (1.0, &self.slow)];
-        let own = SHIFTED.iter().find_map(|part| self.both.factored(part * size, &terms, 0.0))?;
-        let [fast, slow] = self.quotients(&own.least(self.anywhere(), &self.rigid, STEPS_BELOW)?);
-        Some(fast + slow)
+    /// The largest ε up to `most`, rounded down, for which F + S is definite by as much.
+    fn total_margin(&self, most: f64) -> f64 {
+        let off = |epsilon: f64| (0..2).map(|k| self.errors[k] + epsilon * self.sizes[k]).sum::<f64>();
+        let is_definite = |epsilon: f64| self.is_total_definite(off(epsilon));
+        // Its least eigenvalue is at most this quotient; what counts eigenvalues proves it by a shift that is larger.
+        let room = if self.rigid.ncols() == 0 { 1.0 } else { 1.1 };
+        let least = self.held().least.map_or(f64::INFINITY, |least| least / room - off(0.0));
+        let own = least.max(0.0) / (self.sizes[0] + self.sizes[1]);
+        if own > most && is_definite(most) {
+            return most;
+        }
+        largest_below(most.min(own), 0.06, is_definite)
     }
 
     /// \[lo, hi\]: every outer step of so many inner ones in (0, lo] is proven stable, hi is proven unstable; `None` where nothing is proven.
@@ -253,16 +279,28 @@ impl SparseLevels {
         // At the latest where the fastest mode alone has p θ = π.
         let angle = std::f64::consts::PI / (2.0 * inner_steps as f64);
         let top = inner_steps as f64 * 2.0 * angle.sin() / high.sqrt();
-        let begin = FROM.into_iter().map(|part| part * top);
-        let (mut lo, mut own) = begin.into_iter().find_map(|step| Some((step, factors(step)?)))?;
-        let (mut hi, mut along) = (top, self.anywhere());
         // The vector that is stretched least tells how far the line may prove anything; the nearer the step, the sharper.
-        loop {
-            along = own.least(along, &self.rigid, STEPS_BELOW)?;
-            let quotients = self.quotients(&along);
+        let limit = |along: &Mat<f64>, range: (f64, f64)| {
+            let quotients = self.quotients(along);
             let is_open =
                 |step: f64| at(step).is_some_and(|outer| self.form_along(quotients, &outer, 0.0) > 0.0);
-            hi = hi.min(bisected((lo, hi), WIDTH / 8.0, |step| Some(is_open(step))).1);
+            bisected(range, WIDTH / 8.0, |step| Some(is_open(step))).1
+        };
+        let (mut hi, mut along) = (top, self.anywhere());
+        for _ in 0..TURNS {
+            let last = hi;
+            along = self.stretched_least(&at(hi * (1.0 - WIDTH))?, along)?;
+            hi = hi.min(limit(&along, (0.0, hi)));
+            if hi > last * (1.0 - WIDTH) {
+                break;
+            }
+        }
+        let begin = BELOW_LIMIT.iter().map(|part| part * hi).chain(FROM.iter().map(|part| part * top));
+        let (mut lo, mut own) =
+            begin.filter(|&step| step < hi).find_map(|step| Some((step, factors(step)?)))?;
+        while hi > lo * (1.0 + WIDTH) {
+            along = own.least(along, &self.rigid, STEPS_BELOW)?;
+            hi = hi.min(limit(&along, (lo, hi)));
             let Some(found) = self.nearer(lo, &mut hi, factors) else { break };
             (lo, own) = found;
         }
@@ -273,6 +311,14 @@ impl SparseLevels {
         let hi = first.into_iter().find(|&step| unstable(step))?;
         let (_, hi) = bisected((lo, hi), WIDTH / 64.0, |step| Some(!unstable(step)));
         Some(First { step: (lo, hi), along, quotients })
+    }
+
+    /// About the vector of length 1 that α − β h² F − M stretches least at an outer step.
+    fn stretched_least(&self, outer: &Outer, from: Mat<f64>) -> Option<Mat<f64>> {
+        let [low, high] = self.ends(0.0)?;
+        let ([fast, slow], _) = self.form(outer, chord(outer, low, high)?, 0.0);
+        let taken: Vec<f64> = self.fast.iter().zip(&self.slow).map(|(f, s)| -fast * f - slow * s).collect();
+        top(from, &self.rigid, STEPS_ALONG, ALONG, |x| Some(self.both.times(&taken, x)))
     }
 
     /// A step that is proven between lo and hi, near hi, with its factors; `None` where these are as near to each other as they are to be. `hi` falls to what is
@@ -340,25 +386,51 @@ impl SparseLevels {
     /// The number of directions, rigid motions aside, along which F + S is not proven positive: it is negative there, or too small for doubles to
     /// tell. `None` where the factorization does not count them.
     pub fn unheld(&self) -> Option<usize> {
-        *self.unheld.get_or_init(|| self.not_above_zero(self.errors[0] + self.errors[1]))
+        self.held().not_proven
+    }
+
+    fn held(&self) -> &Held {
+        self.held.get_or_init(|| {
+            let (not_proven, own) = self.not_above_zero(self.errors[0] + self.errors[1]);
+            let least = if not_proven == Some(0) { self.least_total(own) } else { None };
+            Held { not_proven, least }
+        })
+    }
+
+    /// The least xᵀ(F + S)x by the factors of F + S, or of a sum a little above it.
+    fn least_total(&self, own: Option<Factors>) -> Option<f64> {
+        let size = self.sizes[0] + self.sizes[1];
+        let shifted = || SHIFTED.iter().find_map(|part| self.both.factored(part * size, &self.total(), 0.0));
+        let along = own.or_else(shifted)?.least(self.anywhere(), &self.rigid, STEPS_BELOW)?;
+        Some(self.quotients(&along).iter().sum())
+    }
+
+    fn total(&self) -> [(f64, &[f64]); 2] {
+        [(1.0, &self.fast), (1.0, &self.slow)]
+    }
+
+    /// What most answers ask for first, side by side: where the first region ends, and whether F + S is positive.
+    pub(in crate::system) fn look(&self, inner_steps: u64) {
+        both(self.products() > SIDE_BY_SIDE, || self.first(inner_steps), || self.held());
     }
 
     /// Whether F + S + E > 0 off the rigid motions for all E no larger than `off`.
     fn is_total_definite(&self, off: f64) -> bool {
         let found =
-            if off > self.errors[0] + self.errors[1] { self.not_above_zero(off) } else { self.unheld() };
+            if off > self.errors[0] + self.errors[1] { self.not_above_zero(off).0 } else { self.unheld() };
         found == Some(0)
     }
 
     /// The eigenvalues of F + S that are not proven above `off` and the roundings: F + S − τ has as many negative ones, and of these there are as
-    /// many as rigid motions in any case, along which F + S vanishes.
-    fn not_above_zero(&self, off: f64) -> Option<usize> {
-        let total: [(f64, &[f64]); 2] = [(1.0, &self.fast), (1.0, &self.slow)];
+    /// many as rigid motions in any case, along which F + S vanishes. The factors that prove it, where there are any.
+    fn not_above_zero(&self, off: f64) -> (Option<usize>, Option<Factors>) {
         let slack = 1.01 * (off + self.leak + 4.0 * U * (self.sizes[0] + self.sizes[1]));
-        if self.rigid.ncols() == 0 && self.both.factored(0.0, &total, slack).is_some() {
-            return Some(0);
+        let own = (self.rigid.ncols() == 0).then(|| self.both.factored(0.0, &self.total(), slack)).flatten();
+        if own.is_some() {
+            return (Some(0), own);
         }
-        Some(self.at_most_negative(0.0, &total, slack)?.saturating_sub(self.rigid.ncols()))
+        let negative = self.at_most_negative(0.0, &self.total(), slack);
+        (negative.map(|count| count.saturating_sub(self.rigid.ncols())), None)
     }
 
     /// No fewer than the eigenvalues that are not above 0 of any matrix within `slack` of c + Σ a_k A_k.
