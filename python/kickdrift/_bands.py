@@ -9,7 +9,7 @@ changes no step). The same holds at the lower end.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -346,8 +346,7 @@ class Bands:
         for field, value in {"constraints": constraints, "hmr": hmr}.items():
             if value is not None:
                 remedy = (
-                    "changes the motions: give it to kickdrift.openmm.bands, or to kickdrift.advise of OpenMM's "
-                    "system"
+                    "changes the motions: give it to kickdrift.openmm.bands, or to kickdrift.advise of OpenMM's system"
                 )
                 raise KickdriftError(field, str(value), remedy)
         # Kicks of no force are none.
