@@ -212,8 +212,7 @@ def test_a_chain_grows_as_the_scheme_of_lammps_has_it() -> None:
 
 
 def test_a_chain_on_three_clocks_grows_as_the_engine_has_it() -> None:
-    """FENE bonds, repulsion and tethers, each on a clock of its own: OpenMM's forces are the fast, the middle and the slow
-    ones."""
+    """FENE bonds, repulsion and tethers, from the inside out."""
     system, where = tethered_chain()
     for force in system.getForces():
         if isinstance(force, mm.CustomExternalForce):
