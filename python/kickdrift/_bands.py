@@ -9,7 +9,7 @@ changes no step). The same holds at the lower end.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
@@ -312,14 +312,9 @@ class Bands:
 
     levels: tuple[Band, ...]
     notes: tuple[str, ...] = ()
-    _begin: str = ""
-    #: Of an outer step, fs, up to which all is stable: in words where the system's own instability begins.
-    _first: Callable[[float], str] | None = None
 
     def _told(self) -> str:
         """What the advice rests on."""
-        if self._begin:
-            return self._begin
         asked = [level.name for level in self.levels if not level.is_whole and level.period is not None]
         if not asked:
             return f"estimated: all modes of each level, in doubles; {_COVERED}"
@@ -351,8 +346,7 @@ class Bands:
         for field, value in {"constraints": constraints, "hmr": hmr}.items():
             if value is not None:
                 remedy = (
-                    "changes the motions: give it to kickdrift.openmm.bands, or to kickdrift.advise of OpenMM's "
-                    "system; of Hessians it is for two levels"
+                    "changes the motions: give it to kickdrift.openmm.bands, or to kickdrift.advise of OpenMM's system"
                 )
                 raise KickdriftError(field, str(value), remedy)
         # Kicks of no force are none.
@@ -378,84 +372,5 @@ class Bands:
         )
         looked = [f"  looked at  {level}" for level in self.levels]
         notes = [f"  note       {note}" for note in self.notes]
-        ends = [row["first_lower"]["lo"] for row in found.rows if row["scheme"] == 1 and row["first_lower"]]
-        first = [self._first(min(ends))] if self._first and ends else []
-        told: Advice = replace(found, _text="\n".join([self._told(), *first, *looked, *notes, str(found)]))
+        told: Advice = replace(found, _text="\n".join([self._told(), *looked, *notes, str(found)]))
         return told
-
-
-def of_hessians(
-    document: Mapping[str, Any],
-    arrays: Mapping[str, Doubles],
-    verdict: Callable[[], Any],
-    intervals: Callable[..., Any],
-) -> Bands | None:
-    """The bands of dense Hessians of other than two steps, what is decided at these, and where its own instability
-    begins; None of all else, which has an advice of its own or none.
-    """
-    potentials, unit = document.get("potentials", ()), _IN_PS.get(document.get("time_unit", ""))
-    steps = sorted({Fraction(own["step"]) for own in potentials if "step" in own})
-    names = [own["stiffness"].get("array") for own in potentials if isinstance(own.get("stiffness"), Mapping)]
-    is_plain = not document.get("constraints") and document.get("symmetric", True)
-    if (
-        unit is None
-        or len(steps) == 2
-        or not is_plain
-        or not names
-        or len(names) < len(potentials)
-        or not set(names) <= set(arrays)
-    ):
-        return None
-    masses = arrays["masses"]
-    root, labels = np.sqrt(np.repeat(masses, len(arrays[names[0]]) // len(masses))), document.get("labels", ())
-    found = []
-    for step in steps:
-        own = [(name, each) for name, each in zip(names, potentials, strict=True) if Fraction(each["step"]) == step]
-        matrix = sum(arrays[name] for name, _ in own) / np.outer(root, root)
-        values, vectors = np.linalg.eigh(matrix)
-        # Rounding of the eigenvalues is below what any Hessian is known to.
-        off = float(Fraction(document.get("accuracy", "1e-6"))) * float(np.abs(values).max())
-        moving = np.linalg.norm(vectors[:, -1].reshape(len(masses), -1), axis=1)
-        atoms = ", ".join(labels[n] for n in np.argsort(-moving)[:2] if labels and moving[n] > moving.max() / 10)
-        name = " + ".join(each.get("name", "a potential") for _, each in own)
-        least, most = (float(value) / float(unit) ** 2 for value in (values[-1], values[-1] + off))
-        found.append(Band(name, step * unit, least, most, atoms or "all", 0, "the Hessian of all atoms"))
-    told = verdict()
-    what = "stable" if told.stable else f"unstable, growing {told.growth_rate / float(unit):.4g}/ps"
-    at = ", ".join(f"{1000 * float(step * unit):g}" for step in steps)
-    begin = f"at {at} fs: {what} ({'proven' if told.proven else 'not proven'}, for the Hessians given)"
-
-    def first(stable: float) -> str:
-        try:
-            lo = Fraction(int(stable * 1e6), 10**9) / unit
-            rows = [
-                (row["lo"], row["hi"], row["verdict"])
-                for row in intervals((lo, _ABOVE * lo), resolution=_RESOLVED).rows
-            ]
-        except KickdriftError as error:
-            return f"first unstable outer step of these Hessians: not looked for ({error})"
-        in_fs = 1000 * float(unit)
-        grows = next((own for own in rows if own[2] == "unstable"), None)
-        calm = next((own[0] for own in rows if own[2] != "stable"), rows[-1][1])
-        upto = f"every outer step up to {_down(in_fs * calm)} fs at these ratios is stable"
-        if grows is None:
-            return (
-                f"first unstable outer step of these Hessians: none proven up to {in_fs * rows[-1][1]:.5g} fs; {upto}"
-            )
-        return f"first unstable outer step of these Hessians: by {in_fs * grows[0]:.6g} fs; {upto} (both proven)"
-
-    return Bands(tuple(found), tuple(told.warnings), f"{begin}\nother steps: {_COVERED}", first)
-
-
-#: How far above the step up to which one mass under the stiffest forces is stable a first unstable one is looked for.
-#: No interval wider than this part of its step is missed there: some seconds for a few molecules.
-_ABOVE, _RESOLVED = Fraction(3, 2), 1e-3
-
-
-def _down(x: float) -> str:
-    """To six digits, rounded down."""
-    return f"{np.floor(x * 1e5) / 1e5:.6g}"
-
-
-#: Units of time in ps.
-_IN_PS = {"fs": Fraction(1, 1000), "ps": Fraction(1), "ns": Fraction(1000), "s": Fraction(10**12)}

@@ -471,7 +471,9 @@ _Switch = tuple[Doubles, Doubles, Doubles]
 
 def _switch(force: Any, r: Doubles) -> _Switch | None:
     """1 - 10 x³ + 15 x⁴ - 6 x⁵ and its two derivatives by r, x from 0 where the switching begins to 1 at the cutoff."""
-    if force.getNonbondedMethod() == force.NoCutoff or not force.getUseSwitchingFunction():
+    # OpenMM 8 sums dispersion by Ewald's method without the switching function, whatever is set.
+    is_without = force.getNonbondedMethod() in (force.NoCutoff, force.LJPME)
+    if is_without or not force.getUseSwitchingFunction():
         return None
     begin, end = force.getSwitchingDistance()._value, force.getCutoffDistance()._value
     x, width = np.clip((r - begin) / (end - begin), 0.0, 1.0), end - begin

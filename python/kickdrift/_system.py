@@ -19,7 +19,6 @@ import numpy.typing as npt
 
 from kickdrift import _plot
 from kickdrift._advise import Engine, SystemAdvice, Time, asked
-from kickdrift._bands import of_hessians
 from kickdrift._document import Answer, Asked, Document, Frozen, frame, question
 from kickdrift._errors import KickdriftError, shown
 from kickdrift._native import Number
@@ -373,11 +372,11 @@ class System(Frozen):
         constraints: str | None = None,
         hmr: Exact | None = None,
         levers: bool = True,
-    ) -> Any:
+    ) -> SystemAdvice:
         """Say which steps are safe for these Hessians, with a unit of time, for how long, and why.
 
-        A :class:`SystemAdvice` of two levels. Of one, or three and more, the verdict at their steps, and an
-        :class:`Advice` of the shortest period of each level: what is below its first unstable interval holds for all.
+        Of one level, two, or more. The first unstable step, a band of periods below which all steps are stable, and the
+        verdict at each scheme are proven for all Hessians within their accuracy.
 
         Parameters
         ----------
@@ -401,7 +400,7 @@ class System(Frozen):
         Raises
         ------
         KickdriftError
-            Bad input; exact stiffnesses, no ``time_unit``; other than two levels with constraints.
+            Bad input; exact stiffnesses, no ``time_unit``; a scheme of another number of steps than there are levels.
 
         Examples
         --------
@@ -413,17 +412,6 @@ class System(Frozen):
         SystemAdvice(4 fs caution, 6 fs island)
         """
         scales = (band, length, friction, constraints, hmr)
-        if (bands := of_hessians(self.document, self.arrays, self.decide, self.intervals)) is not None:
-            return bands.advise(
-                steps,
-                engine=engine,
-                band=band,
-                length=length,
-                friction=friction,
-                constraints=constraints,
-                hmr=hmr,
-                levers=levers,
-            )
         found = asked(
             self._fields(),
             steps,

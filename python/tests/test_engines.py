@@ -209,3 +209,18 @@ def test_a_chain_grows_as_the_scheme_of_lammps_has_it() -> None:
         agrees(found, multipliers(after, 3 * beads, 1e-6, closed=1e-7))
         kinds.add(found.stable)
     assert kinds == {True, False}
+
+
+def test_a_chain_on_three_clocks_grows_as_the_engine_has_it() -> None:
+    """FENE bonds, repulsion and tethers, from the inside out."""
+    system, where = tethered_chain()
+    for force in system.getForces():
+        if isinstance(force, mm.CustomExternalForce):
+            force.setForceGroup(2)
+    kinds = []
+    for outer, loops in [("0.02", 8), ("0.05", 8), ("0.06", 6), ("0.07", 8), ("0.08", 8), ("0.09", 6), ("0.1", 8)]:
+        step = Fraction(outer)
+        found = ko.oscillations(system, where, steps={0: step / loops, 1: step / 2, 2: step})
+        agrees(found, of_engine(system, found, [(2, 1), (1, 2), (0, loops)]))
+        kinds.append(found.stable)
+    assert kinds[:2] == [True, True] and kinds[-2:] == [False, False]

@@ -255,6 +255,9 @@ def own_pairs(given: mm.NonbondedForce, cutoff: float) -> mm.CustomNonbondedForc
         ("PME", True, SKEW),
         ("LJPME", False, None),
         ("LJPME", True, None),
+        # Two oxygens stand at the cutoff there: OpenMM leaves the switching function out.
+        ("LJPME", True, SKEW),
+        ("LJPME", False, SKEW),
         ("custom", False, None),
         ("custom", False, SKEW),
     ],

@@ -19,7 +19,8 @@
 //! | `interval`, `edges` | unstable intervals of the outer step, on two clocks and on more |
 //! | `levers` | what would let the step grow |
 //! | `constraint` | bonds that do not vibrate |
-//! | `molecule` | Hessians of two levels in place of periods |
+//! | `molecule` | Hessians in place of periods |
+//! | `source` | what decides about them: two levels, or any number |
 //! | `names` | what the motions of molecules are called |
 //! | `question`, `answer` | what is asked, what is answered |
 //! | `caution` | what is published |
@@ -52,6 +53,7 @@ mod mode;
 mod molecule;
 mod names;
 mod question;
+mod source;
 pub mod unit;
 
 pub use answer::{Advice, Answer, Pair, Row, Status};
@@ -64,3 +66,4 @@ pub use mode::{Bond, Mode, Origin};
 pub use molecule::{Finding, Findings, Group, MOST_PRODUCTS, Molecule};
 pub use names::{Names, Told};
 pub use question::Question;
+pub use source::{Decided, Source};

@@ -1,7 +1,9 @@
-//! Hessians of a molecule on two clocks: its own modes, the first unstable interval, a band of periods.
+//! Hessians of a molecule on its clocks: its own modes, the first unstable interval, a band of periods.
 //!
 //! Where periods are given one by one the stiffest stands for all; Hessians tell what their coupling makes of them. The first stable
 //! region, its margin and its band are proven (proofs/REGION.md); growth rates are rounded.
+
+use std::sync::Arc;
 
 use num_traits::{One, ToPrimitive, Zero};
 
@@ -12,17 +14,18 @@ use super::levers::{
 };
 use super::names::Names;
 use super::question::check_length;
+use super::source::Source;
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Damping;
-use crate::system::levels::{Growing, Kernel, Method, Outer};
-use crate::system::{Analysis, Holds, Removed};
+use crate::system::levels::{Growing, Method};
+use crate::system::{Holds, Removed};
 
-/// Measured stiffnesses of two levels, and what their coordinates are called.
+/// Measured stiffnesses on their clocks, and what their coordinates are called.
 #[derive(Clone, Debug)]
 pub struct Molecule {
-    kernel: Kernel,
+    source: Arc<dyn Source>,
     /// fs in the unit of time of the matrices.
     unit: Rational,
     names: Names,
@@ -79,6 +82,7 @@ pub struct Finding {
 /// What is told of a molecule at a ratio of steps, in fs.
 #[derive(Clone)]
 struct AtRatio {
+    first: Option<(f64, f64)>,
     first_upper: Option<f64>,
     growing: Vec<Growing>,
     band_edge: Option<f64>,
@@ -88,8 +92,10 @@ struct AtRatio {
 #[derive(Clone, Debug)]
 pub struct Findings {
     pub groups: Vec<Group>,
-    /// The shortest period of the slow stiffness alone, in fs, rounded.
+    /// The shortest period of the slowest stiffness alone, in fs, rounded.
     pub slow: f64,
+    /// Those of the levels between, from the inside out.
+    pub between: Vec<f64>,
     pub removed: Option<Removed>,
     pub accuracy: f64,
     pub band: Rational,
@@ -116,6 +122,9 @@ pub const MOST_PRODUCTS: u64 = 1_000_000_000_000;
 /// A mode's inner step costs, over all the half periods that advice looks at, as much as so many products: some 1500 of them, measured.
 const OF_AN_INNER_STEP: u64 = 30_000;
 
+/// Factorizations of the action by which many levels are advised on, each in n³ for a kick time, measured.
+const FACTORIZATIONS: u64 = 400;
+
 /// An interval is followed in relative steps no shorter than this: its beginning is told to 1e-8.
 const LEAST: f64 = 1e-9;
 
@@ -123,14 +132,14 @@ const LEAST: f64 = 1e-9;
 const LEAST_SAMPLE: f64 = 1e-5;
 
 impl Molecule {
-    /// From a kernel whose unit of time is so many fs.
-    pub fn new(kernel: Kernel, unit: Rational, names: Names, accuracy: f64) -> Molecule {
-        Molecule { kernel, unit, names, accuracy }
+    /// From what decides, whose unit of time is so many fs.
+    pub fn new(source: Arc<dyn Source>, unit: Rational, names: Names, accuracy: f64) -> Molecule {
+        Molecule { source, unit, names, accuracy }
     }
 
     /// The products that advice on so many degrees of freedom at these schemes costs, about: factorizations that bisect to edges and
-    /// margins, sampled eigenvalues; with a friction those of whole periods. For each of these every fast mode is followed over the inner
-    /// steps of half an outer one.
+    /// margins, sampled eigenvalues; with a friction those of whole periods. For each of these every fast mode of two levels is followed over the inner
+    /// steps of half an outer one; of other numbers of levels a factorization has all kick times of half a period.
     ///
     /// # Errors
     /// A budget error where that is more than `most`.
@@ -138,8 +147,12 @@ impl Molecule {
         let (n, cubes) = (size as u64, if has_friction { 800 } else { 200 });
         let of_scheme = |scheme: &Scheme| {
             let inner_steps = (scheme.outer() / scheme.inner()).ceil().to_u64().unwrap_or(u64::MAX);
-            let followed = inner_steps.saturating_mul(n).saturating_mul(OF_AN_INNER_STEP);
-            n.saturating_pow(3).saturating_mul(cubes).saturating_add(followed)
+            if scheme.steps().len() == 2 {
+                let followed = inner_steps.saturating_mul(n).saturating_mul(OF_AN_INNER_STEP);
+                return n.saturating_pow(3).saturating_mul(cubes).saturating_add(followed);
+            }
+            let factored = (inner_steps / 2 + 1).saturating_mul(FACTORIZATIONS);
+            n.saturating_pow(3).saturating_mul(factored.saturating_add(4 * cubes))
         };
         let cost = schemes.iter().map(of_scheme).fold(0, u64::saturating_add);
         let schemes = schemes.len();
@@ -159,7 +172,8 @@ impl Molecule {
     /// The findings at each scheme, all periods within `band` of theirs.
     ///
     /// # Errors
-    /// No scheme; one of other than two steps, or whose outer step is no multiple of the inner one; a band outside [0, 1).
+    /// No scheme; one of another number of steps than there are levels, or of two whose outer step is no multiple of the inner one; a band outside
+    /// [0, 1).
     pub fn advise(
         &self,
         schemes: &[Scheme],
@@ -185,20 +199,23 @@ impl Molecule {
             return Err(Error::input("friction", rate, "a friction must be positive"));
         }
         length.map_or(Ok(()), check_length)?;
-        let mut known: Vec<(u64, AtRatio)> = Vec::new();
+        let mut known: Vec<(Vec<Rational>, AtRatio)> = Vec::new();
         let mut found = Vec::new();
         for scheme in schemes {
-            let p = self.outer_of(scheme)?.inner_steps();
-            if known.iter().all(|(own, _)| *own != p) {
-                known.push((p, self.at_ratio(p, to_f64(band))?));
+            self.source.check(&self.steps(scheme))?;
+            let ratios: Vec<Rational> = scheme.steps().iter().map(|step| step / scheme.inner()).collect();
+            if known.iter().all(|(own, _)| *own != ratios) {
+                known.push((ratios.clone(), self.at_ratio(scheme, to_f64(band))?));
             }
-            let (_, at) = known.iter().find(|(own, _)| *own == p).expect("just put there");
+            let (_, at) = known.iter().find(|(own, _)| *own == ratios).expect("just put there");
             found.push(self.find(scheme, fastest, band, (length, friction), at)?);
         }
-        let frequency = self.kernel.highest_slow_frequency();
+        let mut slower: Vec<f64> =
+            self.source.slower_frequencies().into_iter().map(|own| self.period(own * own)).collect();
         Ok(Findings {
-            slow: self.period(frequency * frequency),
-            removed: self.kernel.removed.clone(),
+            slow: slower.pop().unwrap_or(f64::INFINITY),
+            between: slower,
+            removed: self.source.removed().cloned(),
             accuracy: self.accuracy,
             band: band.clone(),
             length: length.cloned(),
@@ -214,11 +231,11 @@ impl Molecule {
     }
 
     fn groups(&self) -> Vec<Group> {
-        let squares = self.kernel.fast_squares();
+        let squares = self.source.fast_squares();
         let least = NO_MODE * NO_MODE * squares.last().copied().unwrap_or(0.0).max(0.0);
         let mut groups: Vec<(Group, Vec<Vec<f64>>)> = Vec::new();
         for (k, &square) in squares.iter().enumerate().rev().take_while(|(_, square)| **square > least) {
-            let (period, mode) = (self.period(square), self.kernel.fast_mode(k));
+            let (period, mode) = (self.period(square), self.source.fast_mode(k));
             let is_full = groups.len() == MOST_GROUPS;
             match groups.last_mut() {
                 Some((last, modes)) if period < NEIGHBOUR * last.period.1 => {
@@ -240,20 +257,21 @@ impl Molecule {
         groups.into_iter().map(named).collect()
     }
 
-    fn outer(&self, inner: &Rational, outer: &Rational) -> Result<Outer> {
-        let steps = [inner, outer].map(|step| step / &self.unit);
-        Outer::of_steps(&steps[0], &steps[1]).ok_or_else(|| {
-            let remedy = "Hessians are answered for an outer step that is a multiple of the inner one";
-            Error::input("steps", format!("{inner} fs, {outer} fs"), remedy)
-        })
+    /// In the unit of time of the matrices.
+    fn steps(&self, scheme: &Scheme) -> Vec<Rational> {
+        self.in_units(scheme.steps())
     }
 
-    fn outer_of(&self, scheme: &Scheme) -> Result<Outer> {
-        let [inner, last] = scheme.steps() else {
-            let remedy = "Hessians are answered for two steps, as 0.5fs,4fs";
-            return Err(Error::input("steps", format!("{} of them", scheme.steps().len()), remedy));
-        };
-        self.outer(inner, last)
+    fn in_units(&self, steps: &[Rational]) -> Vec<Rational> {
+        steps.iter().map(|step| step / &self.unit).collect()
+    }
+
+    /// Those of a scheme, the outermost one a multiple of the step before it, which it may be itself.
+    fn with_multiple(&self, scheme: &Scheme, count: u64) -> (Rational, Vec<Rational>) {
+        let outer = scheme.last_but_one() * Rational::from_integer(count.into());
+        let mut steps = scheme.steps().to_vec();
+        *steps.last_mut().expect("at least one step") = outer.clone();
+        (outer, self.in_units(&steps))
     }
 
     fn find(
@@ -264,44 +282,38 @@ impl Molecule {
         (length, friction): (Option<&Rational>, Option<&Rational>),
         at: &AtRatio,
     ) -> Result<Finding> {
-        let (inner, last) = (scheme.inner(), scheme.outer());
-        let (outer, part, unit) = (self.outer_of(scheme)?, to_f64(band), to_f64(&self.unit));
-        let analysis = self.kernel.decide(&outer, &(last / &self.unit), self.accuracy);
-        let measured = analysis.measured.as_ref().expect("Hessians are measured");
+        let (steps, part, unit) = (self.steps(scheme), to_f64(band), to_f64(&self.unit));
+        let decided = self.source.decide(&steps, self.accuracy)?;
         let third = from_f64_exact(fastest / 3.0).unwrap_or_else(Rational::zero);
-        let is_in_band = self.kernel.covers_band(&outer, part, self.accuracy);
-        let status = match measured.holds {
+        let is_in_band = self.source.covers_band(&steps, part, self.accuracy)?;
+        let status = match decided.holds {
             Holds::Unstable => Status::Unstable,
             Holds::NotTold => Status::NotTold,
-            Holds::Stable if is_in_band && *last < third => Status::Safe,
+            Holds::Stable if is_in_band && *scheme.outer() < third => Status::Safe,
             Holds::Stable if is_in_band => Status::Caution,
-            Holds::Stable if self.kernel.is_in_first_region(&outer, self.accuracy) => Status::Near,
+            Holds::Stable if decided.is_in_first_region => Status::Near,
             Holds::Stable => Status::Island,
         };
-        let rate = growth(&analysis).map(|rate| rate / unit);
+        let rate = decided.rate.map(|rate| rate / unit);
         let grows = rate.is_some_and(|rate| rate > 0.0);
         let time = rate.map(|rate| std::f64::consts::LN_10 / rate);
-        let AtRatio { first_upper, growing, band_edge } = at.clone();
-        let fastest_growing = fastest_instability(&analysis);
-        let largest = self.largest(inner, part)?;
+        let largest = self.largest(scheme, part, at.band_edge)?;
+        let damping = |rate: &Rational| self.source.damping(&steps, to_f64(rate) * unit);
+        let masking = |_| self.source.masking_friction(&steps);
+        let AtRatio { first, first_upper, growing, band_edge } = at.clone();
         Ok(Finding {
             scheme: scheme.clone(),
             status,
-            holds: measured.holds,
-            margin: measured.margin.filter(|_| analysis.is_stable()),
-            first: measured.first_unstable.map(|(lo, hi)| (lo * unit, hi * unit)),
+            holds: decided.holds,
+            margin: decided.margin,
+            first,
             first_upper,
             growing,
             rate,
-            is_damped: friction
-                .and_then(|rate| self.kernel.damping(&outer, to_f64(rate) * unit))
-                .map(|own| own == Damping::Damped),
-            masking: friction
-                .filter(|_| grows)
-                .and_then(|_| self.kernel.masking_friction(&outer))
-                .map(|own| own / unit),
-            name: fastest_growing.and_then(|own| self.names.motion(&[vec![&own.shape, &own.quadrature]])),
-            atoms: fastest_growing.map(|own| self.names.atoms(&amplitudes(own))),
+            is_damped: friction.map(damping).transpose()?.flatten().map(|own| own == Damping::Damped),
+            masking: friction.filter(|_| grows).map(masking).transpose()?.flatten().map(|own| own / unit),
+            name: decided.growing.as_ref().and_then(|[re, im]| self.names.motion(&[vec![re, im]])),
+            atoms: decided.growing.as_ref().map(|own| self.names.atoms(&amplitudes(own))),
             band_edge,
             safe: largest.as_ref().and_then(|largest| longest_below(scheme, largest, &third)),
             largest,
@@ -314,16 +326,21 @@ impl Molecule {
     /// # Errors
     /// As [`Molecule::advise`].
     pub fn lever(&self, name: String, way: Way, scheme: &Scheme, band: &Rational) -> Result<Lever> {
-        let largest = self.largest(scheme.inner(), to_f64(band))?;
+        let (steps, part) = (self.steps(scheme), to_f64(band));
+        let edge = self.source.band_edge(&steps, part, self.accuracy)?;
+        let largest = self.largest(scheme, part, edge.map(|edge| edge * to_f64(&self.unit)))?;
         let step = below_third(scheme, largest.as_ref(), &self.third());
         self.lever_at(name, way, scheme, band, step)
     }
 
-    /// The longest outer steps at every ratio, the inner step following.
+    /// The longest outer steps at every ratio, the inner step following; none but of two levels.
     ///
     /// # Errors
     /// As [`Molecule::advise`].
     pub fn ratios(&self, scheme: &Scheme, band: &Rational) -> Result<Vec<Lever>> {
+        if scheme.steps().len() != 2 {
+            return Ok(Vec::new());
+        }
         let at = |p: u64| {
             let unit = Rational::from_integer(p.into()) * least();
             let scheme = scheme.with_outer(scheme.inner() * Rational::from_integer(p.into()))?;
@@ -343,10 +360,10 @@ impl Molecule {
         band: &Rational,
         step: Option<(Rational, Bound)>,
     ) -> Result<Lever> {
-        let (p, unit) = (self.outer_of(scheme)?.inner_steps(), to_f64(&self.unit));
-        let edge = self.kernel.band_edge(p, to_f64(band), self.accuracy);
+        let (steps, unit) = (self.steps(scheme), to_f64(&self.unit));
+        let edge = self.source.band_edge(&steps, to_f64(band), self.accuracy)?;
         Ok(Lever {
-            first: self.first_of(&self.kernel, p),
+            first: self.outward(self.source.first_unstable(&steps)?),
             band_edge: edge.map(|edge| rounded_edge(edge * unit)),
             step,
             inner: Some(scheme.inner().clone()),
@@ -354,27 +371,27 @@ impl Molecule {
         })
     }
 
-    /// The first unstable outer step of p inner ones under the method of a kernel, in fs.
-    fn first_of(&self, kernel: &Kernel, p: u64) -> Option<(f64, f64)> {
+    /// In fs, rounded outward.
+    fn outward(&self, first: Option<(f64, f64)>) -> Option<(f64, f64)> {
         let unit = to_f64(&self.unit);
-        kernel.first_unstable(p).map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up()))
+        first.map(|(lo, hi)| ((lo * unit).next_down(), (hi * unit).next_up()))
     }
 
     /// Another method that takes the fast stiffness in one go, or follows it exactly by inner steps up to that of the scheme; `None` where no step is
-    /// proven.
+    /// proven, and of other than two levels.
     pub fn method(&self, name: &str, way: Way, scheme: &Scheme, band: &Rational) -> Option<Lever> {
         let method = match way {
             Way::Molly(own) => Method::Trigonometric(own),
             Way::ImplicitExplicit => Method::ImplicitExplicit,
             _ => return None,
         };
-        let kernel = self.kernel.clone().with_method(method);
+        let kernel = self.source.kernel()?.clone().with_method(method);
         let edge = rounded_edge(kernel.band_edge(1, to_f64(band), self.accuracy)? * to_f64(&self.unit));
         let frequency = kernel.highest_slow_frequency();
         let step = bounded(edge.0, self.period(frequency * frequency) / 5.0);
         let follows = method != Method::ImplicitExplicit;
         Some(Lever {
-            first: self.first_of(&kernel, 1),
+            first: self.outward(kernel.first_unstable(1)),
             band_edge: Some(edge),
             inner: part(&step, scheme.inner()).filter(|_| follows),
             step,
@@ -387,17 +404,16 @@ impl Molecule {
     /// # Errors
     /// As [`Molecule::advise`].
     pub fn masked(&self, scheme: &Scheme, rate: &Rational) -> Result<Option<Lever>> {
-        let (inner, unit) = (scheme.inner(), to_f64(&self.unit));
+        let unit = to_f64(&self.unit);
         let mut longest = None;
         for p in 2..=MOST_MASKED {
-            let step = inner * Rational::from_integer(p.into());
-            let outer = self.outer(inner, &step)?;
-            if self.kernel.damping(&outer, to_f64(rate) * unit) != Some(Damping::Damped) {
+            let (step, steps) = self.with_multiple(scheme, p);
+            if self.source.damping(&steps, to_f64(rate) * unit)? != Some(Damping::Damped) {
                 break;
             }
             longest = Some(step);
         }
-        Ok(longest.map(|step| Lever::masked(step, inner, rate)))
+        Ok(longest.map(|step| Lever::masked(step, scheme.inner(), rate)))
     }
 
     /// T/3 of the fastest mode.
@@ -406,15 +422,15 @@ impl Molecule {
         third.unwrap_or_else(Rational::zero)
     }
 
-    /// What belongs to a number of inner steps.
-    fn at_ratio(&self, inner_steps: u64, band: f64) -> Result<AtRatio> {
-        let unit = to_f64(&self.unit);
-        let band_edge = self.kernel.band_edge(inner_steps, band, self.accuracy).map(|edge| edge * unit);
-        let Some((_, begins)) = self.kernel.first_unstable(inner_steps) else {
-            return Ok(AtRatio { first_upper: None, growing: Vec::new(), band_edge });
+    /// What belongs to the ratios of a scheme's steps.
+    fn at_ratio(&self, scheme: &Scheme, band: f64) -> Result<AtRatio> {
+        let (steps, unit) = (self.steps(scheme), to_f64(&self.unit));
+        let band_edge = self.source.band_edge(&steps, band, self.accuracy)?.map(|edge| edge * unit);
+        let Some((stable, begins)) = self.source.first_unstable(&steps)? else {
+            return Ok(AtRatio { first: None, first_upper: None, growing: Vec::new(), band_edge });
         };
-        let upper = self.kernel.unstable_up_to(inner_steps, begins, LEAST)?;
-        let growing = self.kernel.growing(inner_steps, begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
+        let upper = self.source.unstable_up_to(&steps, begins, LEAST)?;
+        let growing = self.source.growing(&steps, begins, (upper / begins - 1.0).max(LEAST_SAMPLE))?;
         let fs = |step: Option<f64>| step.map(|step| step * unit);
         let in_fs = |own: Growing| Growing {
             lower: own.lower * unit,
@@ -423,20 +439,24 @@ impl Molecule {
             worst: (own.worst.0 * unit, own.worst.1 / unit),
         };
         let growing = growing.into_iter().map(in_fs).collect();
-        Ok(AtRatio { first_upper: Some(upper * unit), growing, band_edge })
+        let first = Some((stable * unit, begins * unit));
+        Ok(AtRatio { first, first_upper: Some(upper * unit), growing, band_edge })
     }
 
-    /// The longest multiple of the inner step for the band, all shorter ones holding too.
-    fn largest(&self, inner: &Rational, band: f64) -> Result<Option<Rational>> {
-        let holds = |count: u64| -> Result<bool> {
-            let outer = self.outer(inner, &(inner * Rational::from_integer(count.into())))?;
-            Ok(self.kernel.covers_band(&outer, band, self.accuracy))
-        };
+    /// The longest multiple of the step before the outermost one for the band, all shorter ones holding too; of one step alone the edge of the band, in
+    /// fs, to 1e-5 fs.
+    fn largest(&self, scheme: &Scheme, band: f64, edge: Option<f64>) -> Result<Option<Rational>> {
+        if scheme.steps().len() == 1 {
+            let digits = |edge: f64| Rational::new(((edge * 1e5).floor() as i64).into(), 100_000.into());
+            return Ok(edge.map(digits).filter(|own| *own > Rational::zero()));
+        }
+        let holds =
+            |count: u64| self.source.covers_band(&self.with_multiple(scheme, count).1, band, self.accuracy);
         let mut found = 0;
         while found < MOST_INNER_STEPS && holds(found + 1)? {
             found += 1;
         }
-        Ok((found > 0).then(|| inner * Rational::from_integer(found.into())))
+        Ok((found > 0).then(|| self.with_multiple(scheme, found).0))
     }
 }
 
@@ -448,22 +468,8 @@ fn rounded_edge(edge: f64) -> (f64, f64) {
     (edge.next_down(), edge * (1.0 + 2e-6))
 }
 
-/// The largest growth rate, per unit of time, rounded; `None` where it is not decided whether anything grows.
-fn growth(analysis: &Analysis) -> Option<f64> {
-    let largest = instabilities(analysis).map(|own| own.multiplier.size().ln()).fold(0.0, f64::max);
-    analysis.is_proof().then(|| largest / analysis.period.to_f64())
-}
-
-fn instabilities(analysis: &Analysis) -> impl Iterator<Item = &crate::system::Instability> {
-    analysis.parts.iter().flat_map(|part| &part.instabilities)
-}
-
-fn fastest_instability(analysis: &Analysis) -> Option<&crate::system::Instability> {
-    instabilities(analysis).max_by(|a, b| a.multiplier.size().total_cmp(&b.multiplier.size()))
-}
-
-fn amplitudes(own: &crate::system::Instability) -> Vec<f64> {
-    own.shape.iter().zip(&own.quadrature).map(|(re, im)| re.hypot(*im)).collect()
+fn amplitudes([re, im]: &[Vec<f64>; 2]) -> Vec<f64> {
+    re.iter().zip(im).map(|(re, im)| re.hypot(*im)).collect()
 }
 
 impl Finding {

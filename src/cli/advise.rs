@@ -15,7 +15,7 @@ use crate::scene::file;
 /// --output FILE.svg, FILE.pdf or FILE.png draws: the outer step across, each mode a row.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Hessians in place of periods: a system file of two steps, or FILE.npz.
+    /// Hessians in place of periods: a system file of any number of steps, or FILE.npz.
     ///
     /// The file's steps are the first scheme; an archive holds fast, slow (mass-weighted, 1/ps^2), masses and positions.
     #[arg(id = "file", value_name = "FILE", conflicts_with_all = ["period", "bond", "on"])]

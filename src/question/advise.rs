@@ -337,14 +337,20 @@ impl Advised {
                 Err(error) => all.left_out.push(format!("{name}: {error}")),
             }
         }
+        let is_of_two = scheme.steps().len() == 2;
         for (name, way) in SOLVED {
             match molecule.method(name, way, scheme, &self.band) {
                 Some(lever) => all.rows.push(lever),
-                None => all.left_out.push(format!("{name}: F + S is not proven definite")),
+                None if is_of_two => all.left_out.push(format!("{name}: F + S is not proven definite")),
+                None => {
+                    all.left_out.push(format!("{name}: it is for two clocks, of which the slower one kicks"))
+                }
             }
         }
-        all.left_out
-            .push("MOLLY, equilibrium: Hessians do not say which motions the fast forces leave alone".into());
+        if is_of_two {
+            let why = "MOLLY, equilibrium: Hessians do not say which motions the fast forces leave alone";
+            all.left_out.push(why.into());
+        }
         all.rows.extend(molecule.ratios(scheme, &self.band)?);
         if let Some(rate) = &self.friction {
             match molecule.masked(scheme, rate)? {

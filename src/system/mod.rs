@@ -70,7 +70,7 @@ pub use linear::sparse::Symmetric;
 pub use linear::system::{Potential, System};
 pub use linear::{builders, mesh};
 pub use lts::{Growth, Level, LocalSteps, SchemeSummary, SparseSteps};
-pub use model::{Body, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
+pub use model::{Body, ManyLevels, MeasuredSystem, Model, Number, Oscillator, SparseSystem, TwoLevels};
 pub use pi::{PiPotential, PiSystem};
 pub use single::clocks::{ManyClocks, families, shortest_families, shortest_family};
 pub use single::decide::decide_oscillator;

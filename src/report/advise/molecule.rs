@@ -5,7 +5,7 @@ use super::tables::{self, enclosed, for_people, published};
 use super::words::{choice, down, fs, nearest, percent, within};
 use crate::advise::engine::Reading;
 use crate::advise::unit::decimal;
-use crate::advise::{Finding, Findings, Group, Status};
+use crate::advise::{Finding, Findings, Group, Scheme, Status};
 use crate::number::Rational;
 use crate::number::rational::to_f64;
 use crate::report::document::Document;
@@ -18,7 +18,12 @@ pub(super) fn document(findings: &Findings, reading: Option<&Reading>, notes: &[
     let removed = findings.removed.as_ref();
     let fastest = &findings.groups[0];
     let (groups, rows, intervals) = (groups(findings), rows(findings), intervals(findings));
-    let document = Document::new("advise-system")
+    let document = Document::new("advise-system");
+    let document = match findings.between.as_slice() {
+        [] => document,
+        between => document.entry("between_periods", between.to_vec()),
+    };
+    let document = document
         .entry("rigid_motions.count", removed.map(|own| own.count))
         .entry("rigid_motions.found_by", removed.map(|own| own.found_by))
         .entry("accuracy", findings.accuracy)
@@ -66,17 +71,18 @@ fn summary(findings: &Findings, reading: Option<&Reading>, notes: &[String]) -> 
     if let Some(reading) = reading {
         lines.extend(read_from(advised_step(best), reading));
     }
-    let ratio = decimal(&(best.scheme.outer() / best.scheme.inner()));
+    let (ratio, slow_ones) = ratios(&best.scheme);
     if let Some(edge) = best.band_edge {
         lines.push(format!(
-            "  proven     every outer step below {} fs at the ratio {ratio} is stable for these Hessians within {:.0e} of their norms, fast periods within \
-             {band} each for itself and slow ones together, as long as the molecule is at a minimum",
+            "  proven     every outer step below {} fs{ratio} is stable for these Hessians within {:.0e} of their norms, fast periods within \
+             {band} each for itself{slow_ones}, as long as the molecule is at a minimum",
             down(edge),
             findings.accuracy
         ));
     }
     lines.push(lines::published(&told, |n| rounded(period / n, 4)));
-    lines.push(slow(findings.slow));
+    lines.extend((2..).zip(&findings.between).map(|(level, own)| between(level, *own)));
+    lines.extend((best.scheme.steps().len() > 1).then(|| slow(findings.slow)));
     lines.push(format!("  unknown    {}", UNKNOWN[0]));
     lines.extend(notes.iter().map(|note| format!("  read       {note}")));
     if let Some(friction) = &findings.friction {
@@ -114,6 +120,21 @@ fn limit(told: &str, period: f64, own: &Finding) -> String {
         format!("; outer steps are unstable from {} fs on (proven)", nearest((lo, hi), 4))
     });
     format!("limit: {told}: outer steps near T/3 = {} fs drift (published){first}", rounded(period / 3.0, 3))
+}
+
+/// " at the ratio 8", " at the ratios 1:2:8", and which periods beside the fast ones may be off.
+fn ratios(scheme: &Scheme) -> (String, &'static str) {
+    let all: Vec<String> = scheme.steps().iter().map(|step| decimal(&(step / scheme.inner()))).collect();
+    match all.as_slice() {
+        [_] => (String::new(), ""),
+        [_, ratio] => (format!(" at the ratio {ratio}"), " and slow ones together"),
+        _ => (format!(" at the ratios {}", all.join(":")), " and those of each slower level together"),
+    }
+}
+
+fn between(level: usize, period: f64) -> String {
+    let told = if period.is_infinite() { "no period".into() } else { format!("{} fs", rounded(period, 3)) };
+    format!("  level {level}    {told}: its shortest period, as if nothing else acted")
 }
 
 /// Where the period of the slow force comes from.
@@ -163,7 +184,7 @@ fn line(findings: &Findings, own: &Finding) -> String {
             format!(
                 "not told: nothing is proven of all Hessians within {:.0e} of their norms{}: do not use",
                 findings.accuracy,
-                grows(own)
+                if own.rate == Some(0.0) { ", though those given are stable".into() } else { grows(own) }
             )
         }
         Status::Unstable => format!("unstable{}: do not use", grows(own)),

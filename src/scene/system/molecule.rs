@@ -1,4 +1,6 @@
-//! Two measured levels as a molecule to be advised on.
+//! Measured levels as a molecule to be advised on.
+
+use std::sync::Arc;
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -7,7 +9,7 @@ use super::SystemScene;
 use super::array::Reference;
 use super::measured::spread;
 use crate::advise::unit::{self, Dimension};
-use crate::advise::{Molecule, Names, Scheme, Told};
+use crate::advise::{Molecule, Names, Scheme, Source, Told};
 use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::system::Body;
@@ -28,9 +30,15 @@ impl SystemScene {
     /// # Errors
     /// As [`SystemScene::scheme`].
     pub fn molecule(&self) -> Result<(Molecule, Scheme)> {
-        let (scheme, levels) = (self.scheme()?, self.model.two_levels()?);
-        let names = self.names(levels.body)?;
-        Ok((Molecule::new(levels.kernel.clone(), self.femtoseconds()?, names, levels.accuracy), scheme))
+        let (scheme, unit) = (self.scheme()?, self.femtoseconds()?);
+        let (source, body, accuracy): (Arc<dyn Source>, _, _) = match self.model.many_levels()? {
+            Some(own) => (Arc::new(own.levels), own.body, own.accuracy),
+            None => {
+                let own = self.model.two_levels()?;
+                (Arc::new(own.kernel.clone()), own.body, own.accuracy)
+            }
+        };
+        Ok((Molecule::new(source, unit, self.names(body)?, accuracy), scheme))
     }
 
     /// What the file tells of atoms.
@@ -56,13 +64,13 @@ impl SystemScene {
         Ok(Names::new(told, positions, of_atoms(moving)))
     }
 
-    /// The steps of two measured levels, in fs.
+    /// The steps of measured levels, in fs.
     ///
     /// # Errors
-    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::two_steps`](crate::system::Model::two_steps).
+    /// A file without `time_unit`, or with another than fs, ps, ns or s; as [`Model::measured_steps`](crate::system::Model::measured_steps).
     pub fn scheme(&self) -> Result<Scheme> {
-        let (steps, unit) = (self.model.two_steps()?, self.femtoseconds()?);
-        Scheme::new(steps.map(|step| step * &unit).to_vec())
+        let (steps, unit) = (self.model.measured_steps()?, self.femtoseconds()?);
+        Scheme::new(steps.into_iter().map(|step| step * &unit).collect())
     }
 
     /// The file's unit of time in fs.

@@ -82,21 +82,8 @@ impl Kernel {
     /// A friction that is proven to mask, where the radius is above 1 without one: at most a thirtieth above the least that does so in doubles. `None`
     /// where none was found.
     pub fn masking_friction(&self, outer: &Outer) -> Option<f64> {
-        let is_damped = |friction: f64| self.rounded_radius(outer, friction) < 1.0;
-        let mut hi = 2.0 * self.growth(outer);
-        while hi > 0.0 && !is_damped(hi) {
-            hi *= 2.0;
-            if hi * outer.step > 1e3 {
-                return None;
-            }
-        }
-        let mut lo = 0.0;
-        while hi - lo > 1e-4 * hi {
-            let middle = lo + (hi - lo) / 2.0;
-            *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
-        }
-        let proven = |friction: &f64| self.damping(outer, *friction) == Some(Damping::Damped);
-        [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(proven)
+        let proven = |friction: f64| self.damping(outer, friction) == Some(Damping::Damped);
+        least_masking(self.growth(outer), outer.step, |friction| self.rounded_radius(outer, friction), proven)
     }
 
     fn damped_modes(&self, outer: &Outer, friction: f64) -> Option<Fast> {
@@ -161,6 +148,29 @@ impl Kernel {
         let true_off = kick_size * (2.0 * kick_off * fast.size + kick_size * fast.off);
         Some((q, 1.01 * (true_off + rounding)))
     }
+}
+
+/// About the least friction that is proven to mask what grows at this rate without one, bisected by the rounded spectral radius of an outer step.
+pub(super) fn least_masking(
+    growth: f64,
+    step: f64,
+    radius: impl Fn(f64) -> f64,
+    proven: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let is_damped = |friction: f64| radius(friction) < 1.0;
+    let mut hi = 2.0 * growth;
+    while hi > 0.0 && !is_damped(hi) {
+        hi *= 2.0;
+        if hi * step > 1e3 {
+            return None;
+        }
+    }
+    let mut lo = 0.0;
+    while hi - lo > 1e-4 * hi {
+        let middle = lo + (hi - lo) / 2.0;
+        *(if is_damped(middle) { &mut hi } else { &mut lo }) = middle;
+    }
+    [1.0, 1.0003, 1.001, 1.003, 1.01, 1.03].map(|off| off * hi).into_iter().find(|own| proven(*own))
 }
 
 /// The Frobenius norm.

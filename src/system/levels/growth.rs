@@ -58,27 +58,56 @@ impl Kernel {
     /// # Errors
     /// As [`Outer::new`].
     pub fn growing(&self, inner_steps: u64, from: f64, width: f64) -> Result<Vec<Growing>> {
-        let mut found = vec![self.stretch(inner_steps, from, width)?];
+        AtRatio { kernel: self, inner_steps }.growing(from, width)
+    }
+}
+
+/// Two levels with as many inner steps in every outer one.
+struct AtRatio<'a> {
+    kernel: &'a Kernel,
+    inner_steps: u64,
+}
+
+impl Grows for AtRatio<'_> {
+    fn rate(&self, step: f64) -> Result<f64> {
+        Ok(self.kernel.growth(&Outer::new(step, self.inner_steps)?))
+    }
+
+    fn is_stable(&self, step: f64) -> bool {
+        Outer::new(step, self.inner_steps).is_ok_and(|outer| self.kernel.is_stable(&outer, 0.0))
+    }
+}
+
+/// Growth over the outer step, all steps in their ratios.
+pub(super) trait Grows {
+    /// max ln |λ| per unit time at an outer step, rounded.
+    ///
+    /// # Errors
+    /// A step that is no step.
+    fn rate(&self, step: f64) -> Result<f64>;
+
+    /// Whether it is proven stable there.
+    fn is_stable(&self, step: f64) -> bool;
+
+    /// As [`Kernel::growing`].
+    fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
+        let mut found = vec![self.stretch(from, width)?];
         while let Some(Growing { lower, upper: Some(upper), .. }) = found.last().copied() {
             let thin = upper / lower - 1.0;
-            let next = if thin < THIN { self.next_growing(inner_steps, upper, thin)? } else { None };
+            let next = if thin < THIN { self.next_growing(upper, thin)? } else { None };
             let Some(next) = next.filter(|_| found.len() < MOST_STRETCHES) else { break };
-            found.push(self.stretch(inner_steps, next, thin.max(1e-5))?);
+            found.push(self.stretch(next, thin.max(1e-5))?);
         }
         Ok(found)
     }
 
-    fn rate_at(&self, inner_steps: u64, step: f64) -> Result<f64> {
-        Ok(self.growth(&Outer::new(step, inner_steps)?))
-    }
-
     /// Where growth begins again within `THIN` above a step, to 1e-7.
-    fn next_growing(&self, inner_steps: u64, above: f64, thin: f64) -> Result<Option<f64>> {
+    fn next_growing(&self, above: f64, thin: f64) -> Result<Option<f64>> {
         let (mut last, mut width) = (above * (1.0 + 1e-6), (thin / 4.0).max(1e-6));
         while last < above * (1.0 + THIN) {
             let step = last * (1.0 + width);
-            if grows(step, self.rate_at(inner_steps, step)?) {
-                return Ok(Some(self.end(inner_steps, (last, step), false).1));
+            if grows(step, self.rate(step)?) {
+                return Ok(Some(self.end((last, step), false).1));
             }
             (last, width) = (step, 1.3 * width);
         }
@@ -86,36 +115,34 @@ impl Kernel {
     }
 
     /// Steps to 1e-7 between which what is so at the first, growth or none, ends.
-    fn end(&self, inner_steps: u64, ends: (f64, f64), growth: bool) -> (f64, f64) {
-        bisected(ends, 1e-7, |step| Some(grows(step, self.rate_at(inner_steps, step).ok()?) == growth))
+    fn end(&self, ends: (f64, f64), growth: bool) -> (f64, f64) {
+        bisected(ends, 1e-7, |step| Some(grows(step, self.rate(step).ok()?) == growth))
     }
 
-    fn stretch(&self, inner_steps: u64, from: f64, width: f64) -> Result<Growing> {
+    fn stretch(&self, from: f64, width: f64) -> Result<Growing> {
         let (mut last, mut width, mut still) = (from, width, None);
         while last < REACH * from && still.is_none() {
             let step = last * (1.0 + width);
-            if grows(step, self.rate_at(inner_steps, step)?) {
+            if grows(step, self.rate(step)?) {
                 (last, width) = (step, (1.5 * width).min(WIDEST));
             } else {
                 still = Some(step);
             }
         }
-        let ends = still.map(|still| self.end(inner_steps, (last, still), true));
-        let worst = self.fastest(inner_steps, from, ends.map_or(last, |(upper, _)| upper))?;
+        let ends = still.map(|still| self.end((last, still), true));
+        let worst = self.fastest_between(from, ends.map_or(last, |(upper, _)| upper))?;
         // At the end itself multipliers are double, and doubles tell nothing.
         let proven = |still: f64| (0..12).map(move |k| still * (1.0 + 1e-7 * f64::from(4u32.pow(k))));
-        let is_stable =
-            |step: &f64| Outer::new(*step, inner_steps).is_ok_and(|outer| self.is_stable(&outer, 0.0));
-        let stable_again = ends.and_then(|(_, still)| proven(still).find(is_stable));
+        let stable_again = ends.and_then(|(_, still)| proven(still).find(|step| self.is_stable(*step)));
         Ok(Growing { lower: from, upper: ends.map(|(upper, _)| upper), stable_again, worst })
     }
 
     /// The fastest of `SAMPLES` steps between, and of some nearer and nearer to it.
-    fn fastest(&self, inner_steps: u64, lo: f64, hi: f64) -> Result<(f64, f64)> {
-        let mut worst = (lo, self.rate_at(inner_steps, lo)?);
+    fn fastest_between(&self, lo: f64, hi: f64) -> Result<(f64, f64)> {
+        let mut worst = (lo, self.rate(lo)?);
         let mut width = (hi - lo) / SAMPLES as f64;
         let see = |step: f64, worst: &mut (f64, f64)| -> Result<()> {
-            let rate = self.rate_at(inner_steps, step)?;
+            let rate = self.rate(step)?;
             if rate > worst.1 {
                 *worst = (step, rate);
             }

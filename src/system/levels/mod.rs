@@ -44,6 +44,7 @@
 //! | `beyond` | the verdict elsewhere, with the Lipschitz constants of the half period |
 //! | `cell` | the verdict on all outer steps, or scales, between two |
 //! | `growth` | how fast it grows past that, and up to where: sampled |
+//! | `nested` | any number of levels, by the action alone: region, margin, band, growth |
 //! | `damped` | friction: the spectral radius of the period, proven |
 //! | `paths` | the action itself and the full period: another route, for rechecks |
 //! | `step` | one step of other methods, the same way |
@@ -64,6 +65,7 @@ mod interval;
 mod intervals;
 mod kernel;
 mod method;
+mod nested;
 mod paths;
 mod region;
 mod rigid;
@@ -74,5 +76,6 @@ pub use cell::Cells;
 pub use growth::Growing;
 pub use kernel::{Kernel, Outer};
 pub use method::Method;
+pub use nested::{AtStep, Nested, Steps};
 pub use paths::Near;
 pub use rigid::{Hessians, rigid_motions, translations};

@@ -88,17 +88,22 @@ impl Hessians {
         let kept = full.subcols(r, n - r).to_owned();
         // Exactly orthonormal columns are within the defect of these.
         let defect = orthogonality(&kept).unwrap_or(f64::INFINITY);
-        let project = |k: &Mat<f64>| {
-            let image = kept.transpose() * k * &kept;
-            let size = norm::frobenius(k);
-            let rounding = 2.2 * (n as f64 + 4.0) * U * norm::frobenius(&kept).powi(2) * size;
-            (halved(image.as_ref()), rounding + 2.1 * defect * size)
-        };
+        let project = |k: &Mat<f64>| projected(k, &kept, defect);
         let off = |k: &Mat<f64>| norm::spectral(&(k * rigid)) / norm::spectral(k).max(f64::MIN_POSITIVE);
         let removed = Removed { count: r, found_by, fast: off(&self.fast), slow: off(&self.slow) };
         let ((fast, e), (slow, f)) = (project(&self.fast), project(&self.slow));
         let errors = [self.errors[0] + e, self.errors[1] + f];
         Hessians { fast, slow, errors, basis: Some(kept), removed: Some(removed), ..self }
+    }
+
+    /// Another mass-weighted stiffness in the coordinates kept, what asymmetry there is split evenly, and how far (2-norm) it is from the exact restriction.
+    pub(super) fn restricted(&self, k: &DMatrix<f64>) -> (Mat<f64>, f64) {
+        let whole = halved(MatRef::from_column_major_slice(k.as_slice(), k.nrows(), k.ncols()));
+        // Of two roots, their product, the quotient and the mean of both triangles.
+        let weights = 5.1 * U * norm::frobenius(&whole);
+        let Some(basis) = &self.basis else { return (whole, weights) };
+        let (own, error) = projected(&whole, basis, orthogonality(basis).unwrap_or(f64::INFINITY));
+        (own, weights + error)
     }
 
     /// The same where one level, 0 the fast one, is a sum of mass-weighted stiffnesses: each of these is known to its own norm, though
@@ -189,6 +194,14 @@ fn is_symmetric(k: &[f64], n: usize) -> bool {
         let column = |j: usize| (top..n.min(top + TILE)).all(|i| k[i + j * n] == k[j + i * n]);
         (left..n.min(left + TILE)).all(column)
     })
+}
+
+/// Vᵀ k V for orthonormal columns V but for this defect, and how far (2-norm) it is from that of exactly orthonormal ones.
+fn projected(k: &Mat<f64>, kept: &Mat<f64>, defect: f64) -> (Mat<f64>, f64) {
+    let image = kept.transpose() * k * kept;
+    let size = norm::frobenius(k);
+    let rounding = 2.2 * (k.nrows() as f64 + 4.0) * U * norm::frobenius(kept).powi(2) * size;
+    (halved(image.as_ref()), rounding + 2.1 * defect * size)
 }
 
 /// (m + mᵀ)/2.

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::number::Rational;
 use crate::number::rational::{from_f64_exact, to_f64};
 use crate::system::friction::Friction;
-use crate::system::levels::{Cells, Hessians, Kernel, Method, Outer, rigid_motions, translations};
+use crate::system::levels::{Cells, Hessians, Kernel, Method, Nested, Outer, rigid_motions, translations};
 use crate::system::linear::sparse::Symmetric;
 use crate::system::linear::system::{Potential, System};
 use crate::system::vary::stretches::{Stretch, cover};
@@ -56,6 +56,15 @@ pub struct TwoLevels<'a> {
     pub body: &'a Body,
     pub inner: Rational,
     pub outer: Rational,
+    /// Every stiffness is known to this times its norm.
+    pub accuracy: f64,
+}
+
+/// Any number of levels of measured stiffnesses.
+#[derive(Clone, Debug)]
+pub struct ManyLevels<'a> {
+    pub levels: Nested,
+    pub body: &'a Body,
     /// Every stiffness is known to this times its norm.
     pub accuracy: f64,
 }
@@ -323,8 +332,26 @@ impl MeasuredSystem {
         Ok([inner.clone(), outer.clone()])
     }
 
+    /// Levels of any number, by the action; `None` where they are two, which have a kernel.
+    ///
+    /// # Errors
+    /// As [`MeasuredSystem::kernel`]; another integrator.
+    pub(super) fn nested(&self) -> Result<Option<ManyLevels<'_>>> {
+        self.refuse_method("advice")?;
+        if self.potentials.len() == 2 && self.is_of_two_levels() {
+            return Ok(None);
+        }
+        let clock = |(step, own): &(Rational, DMatrix<f64>)| {
+            let shares = self.shares.iter().find(|(other, _)| other == step).map(|(_, own)| &own[..]);
+            shares.unwrap_or(std::slice::from_ref(own)).iter().map(|k| self.weighted(k)).collect()
+        };
+        let clocks: Vec<Vec<DMatrix<f64>>> = self.potentials.iter().map(clock).collect();
+        let levels = Nested::new(&self.hessians()?, &clocks)?;
+        Ok(Some(ManyLevels { levels, body: &self.body, accuracy: self.accuracy }))
+    }
+
     fn not_two(&self) -> Error {
-        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps, and Python's System.advise answers for them where nothing is held")
+        self.other_steps("give two potentials, the step of one a multiple of the other's; `kickdrift system FILE` decides any number of steps")
     }
 
     /// The eigenbasis, computed when it is first asked for.

@@ -30,7 +30,7 @@ use crate::system::verdict::limits::{Limits, Route};
 use crate::system::verdict::measured::Holds;
 use crate::verdict::Kind;
 pub use intervals::Number;
-pub use measured::{Body, MeasuredSystem, TwoLevels};
+pub use measured::{Body, ManyLevels, MeasuredSystem, TwoLevels};
 pub use oscillator::Oscillator;
 pub use sparse::SparseSystem;
 
@@ -274,6 +274,23 @@ impl Model {
     /// Where the stiffnesses are not measured, and where the steps are others than an inner and an outer one.
     pub fn two_levels(&self) -> Result<TwoLevels<'_>> {
         self.of_two()?.two_levels()
+    }
+
+    /// The levels of measured stiffnesses that are not two of an inner and an outer step; `None` of two such.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured, and where another integrator than kicks and drifts has them.
+    pub fn many_levels(&self) -> Result<Option<ManyLevels<'_>>> {
+        self.of_two()?.nested()
+    }
+
+    /// The steps of measured stiffnesses, innermost first.
+    ///
+    /// # Errors
+    /// Where the stiffnesses are not measured.
+    pub fn measured_steps(&self) -> Result<Vec<Rational>> {
+        self.of_two()?.refuse_method("advice")?;
+        Ok(self.steps())
     }
 
     /// Their steps alone, the inner one first.

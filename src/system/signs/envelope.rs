@@ -5,6 +5,12 @@
 
 use std::collections::VecDeque;
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::{Accum, Mat};
+
 use crate::number::U;
 
 /// The lower triangle by rows, row i from the column `first[i]` to the diagonal, and what its entries are made of.
@@ -49,18 +55,53 @@ impl Envelope {
     /// entries of a row. Not: where a pivot is not positive, the elimination itself gives a z with zᵀ (m − c I) z no greater;
     /// the number zᵀ m z, computed with a bound, proves what it proves whatever z is.
     pub fn sign(&self, terms: usize, roundings: usize) -> Option<Sign> {
-        let (largest, slack) =
-            (|x: &[f64]| x.iter().copied().fold(0.0, f64::max), self.slack(terms, roundings));
+        let slack = self.slack(terms, roundings);
+        match self.stopped(self.shift(slack)) {
+            None => Some(Sign::Positive),
+            Some(z) => self.is_negative(&z, slack).then_some(Sign::Negative),
+        }
+    }
+
+    /// Whether that is proven positive, of rows in blocks of n of which each meets only itself and the one before: the same criterion, by products of
+    /// blocks, which no order of summation matters to.
+    pub fn is_positive_in_blocks(&self, n: usize, terms: usize, roundings: usize) -> bool {
+        let shift = self.shift(self.slack(terms, roundings));
+        let entry = |i: usize, j: usize| {
+            let own = j.checked_sub(self.first[i]).and_then(|place| self.rows[i].get(place));
+            own.copied().unwrap_or(0.0)
+        };
+        let threads = faer::get_global_parallelism();
+        let mut room = MemBuffer::new(cholesky_in_place_scratch::<f64>(n, threads, Default::default()));
+        let mut before: Option<Mat<f64>> = None;
+        for top in (0..self.rows.len()).step_by(n) {
+            let lower = |i: usize, j: usize| if i >= j { entry(top + i, top + j) } else { 0.0 };
+            let mut own = Mat::from_fn(n, n, |i, j| lower(i, j) - if i == j { shift } else { 0.0 });
+            if let Some(factor) = before {
+                let mut beside = Mat::from_fn(n, n, |i, j| entry(top + j, top - n + i));
+                solve_lower_triangular_in_place(factor.as_ref(), beside.as_mut(), threads);
+                let left = beside.transpose();
+                matmul(own.as_mut(), Accum::Add, left, beside.as_ref(), -1.0, threads);
+            }
+            let none = Default::default();
+            let is_done =
+                cholesky_in_place(own.as_mut(), none, threads, MemStack::new(&mut room), Default::default());
+            if is_done.is_err() || (0..n).any(|i| !own[(i, i)].is_finite()) {
+                return false;
+            }
+            before = Some(own);
+        }
+        true
+    }
+
+    /// By how much Cholesky's factorization is run below the matrix, whose true one is within `slack`.
+    fn shift(&self, slack: f64) -> f64 {
+        let largest = |x: &[f64]| x.iter().copied().fold(0.0, f64::max);
         let width = self.rows.iter().map(Vec::len).max().unwrap_or(0);
         let diagonal: Vec<f64> = self.rows.iter().map(|row| row[row.len() - 1].abs()).collect();
         let norm = diagonal.iter().sum::<f64>().min(self.most_entries() as f64 * largest(&diagonal));
         let n = self.rows.len() as f64;
         // 24: the rounding of the shifted diagonal, roots and the sums here.
-        let shift = 1.01 * (slack + (width as f64 + 24.0) * U * norm) + f64::MIN_POSITIVE * (n + 1.0).powi(2);
-        match self.stopped(shift) {
-            None => Some(Sign::Positive),
-            Some(z) => self.is_negative(&z, slack).then_some(Sign::Negative),
-        }
+        1.01 * (slack + (width as f64 + 24.0) * U * norm) + f64::MIN_POSITIVE * (n + 1.0).powi(2)
     }
 
     /// How far (2-norm) the true matrix can be: ‖E‖₂ ≤ ‖E‖_∞ for symmetric E; a sum of k terms makes k − 1 roundings.

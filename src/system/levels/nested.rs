@@ -1,0 +1,528 @@
+//! Any number of levels of dense stiffnesses in doubles (nested r-RESPA, or one level): the first stable region, margins, a band.
+//!
+//! x'' + (K_1 + ... + K_m) x = 0 in mass-weighted coordinates, each K_k on a clock of its own. The theorems of `proofs/REGION.md`, section 1,
+//! are about any palindromic schedule, so the action alone decides, without an eigenbasis. With all steps scaled by t
+//!
+//! ```text
+//!     t J[x] = Σ_j |x_j − x_(j−1)|²/τ_j − t² Σ_j x_jᵀ k_j x_j,     k_j the sum of h_k K_k over the clocks at node j, half of it at both ends
+//! ```
+//!
+//! is one matrix over the positions at kick times, block tridiagonal. Cholesky's factorization with its proven bound tells its sign with x held at
+//! 0 at one end. Positive for both ends at K_k + e_k I and Σ K_k > 0: stable at this t *and at all smaller ones*, for all stiffnesses within e_k.
+//! Positive for one end at the larger of two steps, negative for the other end at the smaller one: unstable at all steps between (section 3).
+//! Elsewhere the half period in doubles decides, each kick off by e_k: its forms, or discs about its eigenvalues. Section 10 has the band and all roundings.
+//!
+//! Cost for n degrees of freedom and N kick times in half a period: N n³/2 products for a sign.
+
+use std::sync::OnceLock;
+
+use faer::Mat;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+use super::damped::least_masking;
+use super::growth::{Growing, Grows};
+use super::region::largest;
+use super::rigid::Hessians;
+use crate::error::{Error, Result};
+use crate::number::rational::{from_f64_exact, to_f64};
+use crate::number::{Rational, U, bisected};
+use crate::parallel::{both, map};
+use crate::schedule::{Event, Schedule, Weight};
+use crate::system::friction::{Damping, Radius, damping};
+use crate::system::half::float::FloatBlocks;
+use crate::system::half::norm;
+use crate::system::half::period::{Drifts, Stiff, follow, follow_proven};
+use crate::system::signs;
+use crate::system::signs::envelope::{Envelope, Sign};
+use crate::system::signs::inertia::{is_definite, spectral_norm};
+use crate::system::spectrum::discs::Spectrum;
+use crate::system::spectrum::rate::exponent;
+use crate::system::verdict::measured::{Holds, Removed};
+
+/// The stiffness of one clock, in coordinates without the rigid motions.
+#[derive(Clone, Debug)]
+struct Level {
+    stiffness: Mat<f64>,
+    /// How far (2-norm) it is from the exact restriction of what was given.
+    error: f64,
+    /// No less than what it is known relative to: its norm, or the sum of those of the potentials on its clock.
+    size: f64,
+    frobenius: f64,
+}
+
+/// Stiffnesses of any number of levels, innermost first.
+#[derive(Clone, Debug)]
+pub struct Nested {
+    levels: Vec<Level>,
+    /// λ of the innermost one, increasing, and its modes as columns in the coordinates given, rounded.
+    squares: Vec<f64>,
+    modes: Mat<f64>,
+    /// No less than how far the innermost one reaches below 0.
+    lack: f64,
+    basis: Option<Mat<f64>>,
+    is_total_definite: OnceLock<bool>,
+    /// What was projected out before.
+    pub removed: Option<Removed>,
+}
+
+/// What is told at one outer step, all steps in their ratios.
+#[derive(Clone, Debug)]
+pub struct AtStep {
+    /// What is proven of all stiffnesses within the accuracy.
+    pub holds: Holds,
+    /// Whether that is so of every smaller step, too.
+    pub is_in_first_region: bool,
+    /// max ln |λ|/T, rounded: 0 where the stiffnesses given are proven stable; `None` where these are not decided.
+    pub rate: Option<f64>,
+    /// Real and imaginary part of what grows fastest, in the mass-weighted coordinates given.
+    pub growing: Option<[Vec<f64>; 2]>,
+}
+
+/// Roundings in a term of the action: of the step's quotient and its square, the tick's product, a factor, a shift, products.
+const ROUNDINGS: usize = 12;
+
+/// Room for the roundings of a factor.
+const ROOM: f64 = 1e-12;
+
+/// The largest relative change of the stiffnesses by which one verdict is carried on.
+const WIDEST: f64 = 0.05;
+
+/// Times a step may have in half a period: beyond that no matrix of the action fits.
+const MOST_NODES: u64 = 1 << 12;
+
+impl Nested {
+    /// From the mass-weighted stiffness of each potential, those of one clock together, the clocks by increasing step; `whole` is their sum with what
+    /// is projected out.
+    pub fn new(whole: &Hessians, clocks: &[Vec<DMatrix<f64>>]) -> Result<Nested> {
+        let level = |own: &Vec<DMatrix<f64>>| {
+            let each: Vec<(Mat<f64>, f64)> = own.iter().map(|k| whole.restricted(k)).collect();
+            let n = each[0].0.nrows();
+            let stiffness = each.iter().fold(Mat::zeros(n, n), |sum, (k, _)| sum + k);
+            let frobenius = norm::frobenius(&stiffness);
+            let size = 1.01 * each.iter().map(|(k, error)| spectral_norm(k, *error)).sum::<f64>();
+            // A sum of so many has as many roundings.
+            let sums = each.iter().map(|(k, _)| norm::frobenius(k)).sum::<f64>() * own.len() as f64 * U;
+            let error = 1.01 * (each.iter().map(|own| own.1).sum::<f64>() + sums);
+            Level { stiffness, error, size, frobenius }
+        };
+        let levels: Vec<Level> = clocks.iter().map(level).collect();
+        let failed = || {
+            Error::input("fast", "its eigenvalues", "the iteration does not converge: is the matrix sound?")
+        };
+        let eigen = levels[0].stiffness.self_adjoint_eigen(faer::Side::Lower).map_err(|_| failed())?;
+        let squares: Vec<f64> = (0..levels[0].stiffness.nrows()).map(|i| eigen.S()[i]).collect();
+        let lack = lack(&levels[0], &squares);
+        let basis = whole.basis().cloned();
+        let modes = basis.as_ref().map_or_else(|| eigen.U().to_owned(), |basis| basis * eigen.U());
+        let (is_total_definite, removed) = (OnceLock::new(), whole.removed().cloned());
+        Ok(Nested { levels, squares, modes, lack, basis, is_total_definite, removed })
+    }
+
+    /// The number of degrees of freedom that move.
+    pub fn size(&self) -> usize {
+        self.squares.len()
+    }
+
+    /// λ of the innermost stiffness, increasing.
+    pub fn fast_squares(&self) -> &[f64] {
+        &self.squares
+    }
+
+    /// The mode of the k-th of these, in the mass-weighted coordinates given: of length 1, rounded.
+    pub fn fast_mode(&self, k: usize) -> Vec<f64> {
+        (0..self.modes.nrows()).map(|i| self.modes[(i, k)]).collect()
+    }
+
+    /// The highest frequency of each slower stiffness alone, rounded; 0 where it has no positive eigenvalue.
+    pub fn slower_frequencies(&self) -> Vec<f64> {
+        let highest = |own: &Level| {
+            let values = own.stiffness.self_adjoint_eigenvalues(faer::Side::Lower);
+            values.map_or(0.0, |values| values.last().copied().unwrap_or(0.0).max(0.0).sqrt())
+        };
+        self.levels[1..].iter().map(highest).collect()
+    }
+
+    /// The same with the steps of all levels, innermost first, in the stiffnesses' unit of time: to be scaled together.
+    ///
+    /// # Errors
+    /// As many steps as levels; steps that meet too late for the action's matrix.
+    pub fn at<'a>(&'a self, steps: &[Rational]) -> Result<Steps<'a>> {
+        if steps.len() != self.levels.len() {
+            let remedy =
+                format!("there are {} levels: give as many steps, innermost first", self.levels.len());
+            return Err(Error::input("steps", format!("{} of them", steps.len()), remedy));
+        }
+        let schedule = Schedule::new(steps, &vec![Rational::default(); steps.len()])?;
+        if schedule.strikes() > MOST_NODES {
+            let work = format!("a period of {} kicks", schedule.strikes());
+            return Err(Error::too_much(&work, "choose steps with simpler ratios"));
+        }
+        let kicks = steps.iter().map(|step| to_f64(&(schedule.tick() * step))).collect();
+        let outer = steps.iter().max().expect("as many as levels");
+        Ok(Steps {
+            nested: self,
+            outer: to_f64(outer),
+            events: schedule.half_period().collect(),
+            kicks,
+            schedule,
+        })
+    }
+
+    /// How far (2-norm) the k-th stiffness is from all within ε of its size.
+    fn error_within(&self, k: usize, epsilon: f64) -> f64 {
+        1.01 * (self.levels[k].error + epsilon * self.levels[k].size)
+    }
+
+    fn total(&self) -> Mat<f64> {
+        self.levels.iter().fold(Mat::zeros(self.size(), self.size()), |sum, own| sum + &own.stiffness)
+    }
+
+    fn is_definite_within(&self, epsilon: f64) -> bool {
+        let found = |epsilon: f64| {
+            let off: f64 = (0..self.levels.len()).map(|k| self.error_within(k, epsilon)).sum();
+            let sizes: f64 = self.levels.iter().map(|own| own.frobenius).sum();
+            is_definite(self.total(), 1.01 * (off + self.levels.len() as f64 * U * sizes))
+        };
+        if epsilon == 0.0 { *self.is_total_definite.get_or_init(|| found(0.0)) } else { found(epsilon) }
+    }
+}
+
+/// A number that makes a stiffness with these eigenvalues, rounded, definite when it is added to them: about the least.
+fn lack(level: &Level, squares: &[f64]) -> f64 {
+    let least = squares.first().map_or(0.0, |own| own.min(0.0));
+    let mut more = 8.0 * (squares.len() as f64 + 8.0) * U * level.frobenius + f64::MIN_POSITIVE;
+    let lifted = |by: f64| {
+        let mut sum = level.stiffness.clone();
+        (0..squares.len()).for_each(|i| sum[(i, i)] += by);
+        sum
+    };
+    // The sum on the diagonal is rounded.
+    while more.is_finite() && !is_definite(lifted(more - least), U * (more - least + level.frobenius)) {
+        more *= 2.0;
+    }
+    more - least
+}
+
+/// Levels with their steps; outer steps are scaled, all others with them.
+#[derive(Clone, Debug)]
+pub struct Steps<'a> {
+    nested: &'a Nested,
+    schedule: Schedule,
+    events: Vec<Event>,
+    /// The tick times each step.
+    kicks: Vec<f64>,
+    outer: f64,
+}
+
+/// Stiffnesses that bound others: factor (K + shift I) of each level.
+type Bounds = Vec<[f64; 2]>;
+
+impl Steps<'_> {
+    /// The signs of the action with x held at the start, and at the end.
+    fn signs(&self, step: f64, bounds: &Bounds) -> [Option<Sign>; 2] {
+        let found = map(&[[true, false], [false, true]], |&held| {
+            self.action(step, bounds, held).sign(self.terms(), ROUNDINGS)
+        });
+        [found[0], found[1]]
+    }
+
+    /// The terms of an entry: two drifts meet in it, and each clock once.
+    fn terms(&self) -> usize {
+        2 + self.kicks.len()
+    }
+
+    /// t² with the outer step `step`.
+    fn square(&self, step: f64) -> f64 {
+        let factor = step / self.outer;
+        factor * factor
+    }
+
+    fn action(&self, step: f64, bounds: &Bounds, [at_start, at_end]: [bool; 2]) -> Envelope {
+        let (n, square) = (self.nested.size(), self.square(step));
+        let nodes = self.events.len();
+        let free = usize::from(at_start)..nodes - usize::from(at_end);
+        let row = |node: usize, i: usize| (node - free.start) * n + i;
+        // A block reaches back to the same degree of freedom at the time before.
+        let rows = free.clone().flat_map(|node| (0..n).map(move |i| (node, i)));
+        let first = rows.map(|(node, i)| if node == free.start { 0 } else { row(node - 1, i) }).collect();
+        let mut matrix = Envelope::new(first);
+        for node in free.clone() {
+            let event = &self.events[node];
+            let before = (node > 0).then(|| 1.0 / event.drift as f64);
+            let after = self.events.get(node + 1).map(|next| 1.0 / next.drift as f64);
+            for i in 0..n {
+                before.iter().chain(&after).for_each(|x| matrix.add(row(node, i), row(node, i), *x));
+                if let Some(x) = before.filter(|_| node > free.start) {
+                    matrix.add(row(node, i), row(node - 1, i), -x);
+                }
+            }
+            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            for k in event.clocks() {
+                let [factor, shift] = bounds[k];
+                let factor = -(weight * (square * self.kicks[k])) * factor;
+                let stiffness = &self.nested.levels[k].stiffness;
+                for j in 0..n {
+                    for i in j..n {
+                        let own = stiffness[(i, j)] + if i == j { shift } else { 0.0 };
+                        matrix.add(row(node, i), row(node, j), factor * own);
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    /// K_k + sign e_k, all stiffnesses within ε of their sizes.
+    fn within(&self, epsilon: f64, sign: f64) -> Bounds {
+        (0..self.kicks.len()).map(|k| [1.0, sign * self.nested.error_within(k, epsilon)]).collect()
+    }
+
+    /// Whether all stiffnesses within ε of their sizes are proven stable at this outer step, and at every smaller one.
+    pub fn is_in_first_region(&self, step: f64, epsilon: f64) -> bool {
+        self.nested.is_definite_within(epsilon) && self.is_positive(step, &self.within(epsilon, 1.0))
+    }
+
+    fn is_positive(&self, step: f64, bounds: &Bounds) -> bool {
+        let is = |held: [bool; 2]| {
+            self.action(step, bounds, held).is_positive_in_blocks(self.nested.size(), self.terms(), ROUNDINGS)
+        };
+        let (start, end) = both(true, || is([true, false]), || is([false, true]));
+        start && end
+    }
+
+    /// Whether the signs prove all stiffnesses within ε unstable at all outer steps between.
+    fn is_unstable_between(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
+        let stiffer = self.signs(hi, &self.within(epsilon, 1.0));
+        let positive = |k: &usize| stiffer[*k] == Some(Sign::Positive);
+        let Some(k) = (0..2).find(positive) else { return false };
+        self.signs(lo, &self.within(epsilon, -1.0))[1 - k] == Some(Sign::Negative)
+    }
+
+    /// Whether counts of negative eigenvalues, least at the smaller step and most at the larger one, prove a real multiplier off the circle at all
+    /// outer steps between: neg J_fh and neg J_hf differ, or n + neg J_hh and neg J_ff (`proofs/REGION.md`, section 3).
+    fn has_real_unstable_mode(&self, [lo, hi]: [f64; 2], epsilon: f64) -> bool {
+        let count = |step: f64, sign: f64, held: [bool; 2]| {
+            let action = self.action(step, &self.within(epsilon, sign), held);
+            action.negatives(self.terms(), ROUNDINGS, sign < 0.0)
+        };
+        let exceeds = |low: [bool; 2], high: [bool; 2], [more, other]: [usize; 2]| {
+            let (least, most) = both(true, || count(lo, -1.0, low), || count(hi, 1.0, high));
+            least.zip(most).is_some_and(|(least, most)| least + more > most + other)
+        };
+        let (start, end, n) = ([true, false], [false, true], self.nested.size());
+        let (neither, all) = ([false; 2], [true; 2]);
+        exceeds(end, start, [0, 0])
+            || exceeds(start, end, [0, 0])
+            || self.nested.is_definite_within(epsilon)
+                && (exceeds(neither, all, [0, n]) || exceeds(all, neither, [n, 0]))
+    }
+
+    /// What is proven of all stiffnesses within ε of their sizes.
+    pub fn verdict_within(&self, step: f64, epsilon: f64) -> Holds {
+        if self.is_in_first_region(step, epsilon) {
+            return Holds::Stable;
+        }
+        if self.is_unstable_between([step; 2], epsilon) || self.has_real_unstable_mode([step; 2], epsilon) {
+            return Holds::Unstable;
+        }
+        let Some(blocks) = self.half_period(step, epsilon) else { return Holds::NotTold };
+        signs::proven(&blocks).or_else(|| Spectrum::new(&blocks)?.certified(&blocks)).into()
+    }
+
+    /// The verdict, and what grows.
+    pub fn decide(&self, step: f64, accuracy: f64) -> AtStep {
+        let is_in_first_region = self.is_in_first_region(step, accuracy);
+        let holds = if is_in_first_region { Holds::Stable } else { self.verdict_within(step, accuracy) };
+        let given = if holds == Holds::NotTold { self.verdict_within(step, 0.0) } else { holds };
+        let found = AtStep { holds, is_in_first_region, rate: None, growing: None };
+        match given {
+            Holds::Stable => AtStep { rate: Some(0.0), ..found },
+            Holds::NotTold => found,
+            Holds::Unstable => {
+                let (rate, growing) = self.fastest(step).unzip();
+                AtStep { rate, growing, ..found }
+            }
+        }
+    }
+
+    /// The largest margin ε, rounded down within a percent in the first region, for which the verdict stands; `None` where nothing is proven.
+    pub fn margin(&self, step: f64) -> Option<f64> {
+        if self.is_in_first_region(step, 0.0) {
+            return largest(1.01, |epsilon| self.is_in_first_region(step, epsilon));
+        }
+        let own = self.verdict_within(step, 0.0);
+        (own != Holds::NotTold).then(|| largest(1.1, |epsilon| self.verdict_within(step, epsilon) == own))?
+    }
+
+    /// \[lo, hi\]: every outer step in (0, lo] is proven stable at these ratios, hi is proven unstable. `None` where Σ K_k is not proven definite.
+    pub fn first_unstable(&self) -> Option<(f64, f64)> {
+        let stable = |step: f64| self.is_in_first_region(step, 0.0);
+        let (lo, hi) = self.bracket(stable)?;
+        let (lo, hi) = bisected((lo, hi), 1e-8, |step| Some(stable(step)));
+        // Where the forms are near 0 doubles tell nothing: a little farther they do.
+        let mut steps = (0..16).map(|k| hi + lo * 1e-8 * f64::from(1 << k));
+        steps.find(|&step| self.is_unstable_between([step; 2], 0.0)).map(|step| (lo, step))
+    }
+
+    /// Two outer steps, one half the other, at the smaller of which `holds`.
+    fn bracket(&self, holds: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+        let at = |k: i32| self.outer * 2f64.powi(k);
+        if holds(self.outer) {
+            return (1..60).find(|&k| !holds(at(k))).map(|k| (at(k - 1), at(k)));
+        }
+        (1..40).find(|&k| holds(at(-k))).map(|k| (at(-k), at(1 - k)))
+    }
+
+    /// The step up to which every outer one from `at` on is proven unstable by the signs: up to where the step by which a verdict is carried on falls to
+    /// `least`, relative, or 1.5 `at`.
+    pub fn unstable_up_to(&self, at: f64, least: f64) -> f64 {
+        let (mut at, last, mut width) = (at, 1.5 * at, least);
+        while at < last {
+            let end = at * (1.0 + width);
+            if self.is_unstable_between([at, end], 0.0) {
+                at = end;
+                width = (4.0 * width).min(WIDEST);
+            } else if width <= least {
+                break;
+            } else {
+                width = (width / 4.0).max(least);
+            }
+        }
+        at.min(last)
+    }
+
+    /// Whether it is proven stable at this outer step, and at every smaller one, with every K_1' and s_k K_k in place of the stiffnesses for which
+    /// K_1' ≤ K_1/(1 − b)², (1 + b)⁻² ≤ s_k ≤ (1 − b)⁻² and the sum is definite, b = `band` in \[0, 1): the periods of the innermost level may be shorter
+    /// by b each for itself, or longer, those of each other level by b together. All are known within ε of their sizes.
+    pub fn covers_band(&self, step: f64, band: f64, epsilon: f64) -> bool {
+        let nested = self.nested;
+        let [least, most] = [(1.0 + band).powi(-2) * (1.0 - ROOM), (1.0 - band).powi(-2) * (1.0 + ROOM)];
+        let error = |k: usize| nested.error_within(k, epsilon);
+        let slower = self.kicks.len() - 1;
+        let corner = |which: usize| -> Bounds {
+            let factor = |k: usize| if which >> k & 1 == 1 { least } else { most };
+            // Where the innermost stiffness is below 0, 0 is above it.
+            let fast = [most, 1.01 * (error(0) + nested.lack)];
+            [fast].into_iter().chain((0..slower).map(|k| [factor(k), error(k + 1)])).collect()
+        };
+        nested.is_definite_within(0.0) && (0..1 << slower).all(|which| self.is_positive(step, &corner(which)))
+    }
+
+    /// The outer step up to which [`Steps::covers_band`] provably holds, within 1e-6 of the longest; `None` where it does for none.
+    pub fn band_edge(&self, band: f64, epsilon: f64) -> Option<f64> {
+        let holds = |step: f64| self.covers_band(step, band, epsilon);
+        Some(bisected(self.bracket(holds)?, 1e-6, |step| Some(holds(step))).0)
+    }
+
+    /// Growth from an unstable outer step on, as of two levels.
+    ///
+    /// # Errors
+    /// None: as of two levels.
+    pub fn growing(&self, from: f64, width: f64) -> Result<Vec<Growing>> {
+        Grows::growing(self, from, width)
+    }
+
+    /// The period with friction γ per unit time, v → exp(−γ t) v in the middle of every drift, and a bound on its error.
+    fn damped_period(&self, step: f64, friction: f64) -> Option<(Mat<f64>, f64)> {
+        let ticks = step / self.outer * to_f64(self.schedule.tick());
+        let decay = from_f64_exact(friction * ticks).filter(|own| *own >= Rational::default())?;
+        let (kicks, mass) = self.kicks_at(step, 0.0);
+        let drifts = Drifts { inverse_mass: &mass, decay: &decay, off: 0.0 };
+        let found = follow(&drifts, self.schedule.symmetric_period(), |_, clock| &kicks[clock]);
+        found.error.map(|error| (found.matrix(), error))
+    }
+
+    /// Where the spectral radius of a period with friction γ per unit time lies; `None`: doubles do not tell.
+    pub fn damping(&self, step: f64, friction: f64) -> Option<Damping> {
+        let (q, error) = self.damped_period(step, friction)?;
+        damping(&q, error, Radius::of(&q, error))
+    }
+
+    /// A friction that is proven to mask, where something grows without one: about the least. `None` where none was found.
+    pub fn masking_friction(&self, step: f64) -> Option<f64> {
+        let radius = |friction: f64| {
+            let values = self.damped_period(step, friction).and_then(|(q, _)| q.eigenvalues().ok());
+            values.map_or(f64::NAN, |all| all.into_iter().map(Complex64::norm).fold(0.0, f64::max))
+        };
+        let proven = |friction: f64| self.damping(step, friction) == Some(Damping::Damped);
+        least_masking(self.rate(step).ok()?, step, radius, proven)
+    }
+
+    /// The kicks in ticks, p ← p − F x, and the drifts, x ← x + a p for each tick: positions times √a, so that both are about as large; a is a power of 2.
+    fn kicks_at(&self, step: f64, epsilon: f64) -> (Vec<Stiff>, Vec<Vec<(usize, f64)>>) {
+        let (n, square) = (self.nested.size(), self.square(step));
+        let total = self.nested.total();
+        let middle = ((0..n).map(|i| total[(i, i)].abs()).sum::<f64>() / n as f64).sqrt();
+        let turn = middle * to_f64(self.schedule.tick()) * square.sqrt();
+        let a = if turn.is_normal() { turn.log2().round().exp2() } else { 1.0 };
+        let kick = |(k, own): (usize, &Level)| {
+            let factor = square * self.kicks[k] / a;
+            let row = |i: usize| (i, (0..n).map(|j| (j, factor * own.stiffness[(i, j)])).collect());
+            let rounding = ROUNDINGS as f64 * U * own.frobenius;
+            let off = 1.01 * factor * (self.nested.error_within(k, epsilon) + rounding);
+            Stiff { rows: (0..n).map(row).collect(), off }
+        };
+        let kicks = self.nested.levels.iter().enumerate().map(kick).collect();
+        (kicks, (0..n).map(|i| vec![(i, a)]).collect())
+    }
+
+    /// The half period with a bound for all stiffnesses within ε.
+    fn half_period(&self, step: f64, epsilon: f64) -> Option<FloatBlocks> {
+        let (kicks, mass) = self.kicks_at(step, epsilon);
+        let drifts = Drifts { inverse_mass: &mass, decay: &Rational::default(), off: 0.0 };
+        let state = follow_proven(&drifts, self.events.iter().copied(), |_, clock| &kicks[clock])?;
+        Some(state.blocks(vec![1.0; self.nested.size()]))
+    }
+
+    /// Bᵀ C of the half period, rounded, by products of whole matrices.
+    fn rounded_product(&self, step: f64) -> Mat<f64> {
+        let (n, square) = (self.nested.size(), self.square(step));
+        let one = |first: usize| Mat::from_fn(n, 2 * n, |i, j| f64::from(u8::from(j == first + i)));
+        let (mut x, mut p) = (one(0), one(n));
+        for event in &self.events {
+            x += faer::Scale(event.drift as f64) * &p;
+            let weight = if event.weight == Weight::Half { 0.5 } else { 1.0 };
+            let kick = event.clocks().fold(Mat::<f64>::zeros(n, n), |sum, k| {
+                sum + faer::Scale(weight * square * self.kicks[k]) * &self.nested.levels[k].stiffness
+            });
+            p -= kick * &x;
+        }
+        x.subcols(n, n).transpose() * p.subcols(0, n)
+    }
+
+    fn period(&self, step: f64) -> f64 {
+        step / self.outer * to_f64(self.schedule.tick()) * self.schedule.period() as f64
+    }
+
+    /// What grows fastest, and how fast per unit time: rounded.
+    fn fastest(&self, step: f64) -> Option<(f64, [Vec<f64>; 2])> {
+        let spectrum = Spectrum::of(self.rounded_product(step), None)?;
+        let rates = spectrum.mu.iter().map(|&mu| exponent(mu).re / self.period(step)).enumerate();
+        let (fastest, rate) = rates.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let own = spectrum.shape(fastest, &vec![1.0; self.nested.size()]);
+        let lifted = |part: fn(&Complex64) -> f64| -> Vec<f64> {
+            let own: Vec<f64> = own.iter().map(part).collect();
+            match &self.nested.basis {
+                Some(basis) => {
+                    let row = |i: usize| own.iter().enumerate().map(|(k, y)| basis[(i, k)] * y).sum();
+                    (0..basis.nrows()).map(row).collect()
+                }
+                None => own,
+            }
+        };
+        Some((rate, [lifted(|z| z.re), lifted(|z| z.im)]))
+    }
+}
+
+impl Grows for Steps<'_> {
+    fn rate(&self, step: f64) -> Result<f64> {
+        let values = self.rounded_product(step).eigenvalues();
+        let largest = |mu: Vec<Complex64>| mu.into_iter().map(|mu| exponent(mu).re).fold(0.0, f64::max);
+        Ok(values.map_or(f64::NAN, largest) / self.period(step))
+    }
+
+    fn is_stable(&self, step: f64) -> bool {
+        self.verdict_within(step, 0.0) == Holds::Stable
+    }
+}
