@@ -120,12 +120,13 @@ impl Ball {
         Ball::rounded(self.mid, self.exp, error, bits)
     }
 
-    /// All points within `distance` of these, a double that is not negative.
-    pub(crate) fn within(self, distance: f64, bits: u32) -> Ball {
+    /// All points within `distance` of 0, a double that is not negative.
+    pub(crate) fn about_zero(distance: f64) -> Ball {
         let (fraction, power) = (distance.to_bits() & ((1 << 52) - 1), (distance.to_bits() >> 52) as i64);
         let (whole, exponent) =
             if power == 0 { (fraction, -1074) } else { (fraction | 1 << 52, power - 1075) };
-        self.widened(Magnitude::new(whole, exponent), bits)
+        // Of 53 bits the first 30, rounded up.
+        Ball { mid: BigInt::zero(), rad: (whole >> 23) + 1, exp: exponent + 23 }
     }
 
     fn radius(&self) -> Magnitude {

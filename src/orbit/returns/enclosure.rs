@@ -216,7 +216,7 @@ impl Enclosure for Close {
 
     fn ball(&self) -> Ball {
         let Twofold { hi, lo } = self.middle;
-        exact(hi).add(&exact(lo), 2200).within(self.radius, 192)
+        exact(hi).add(&exact(lo), 2200).add(&Ball::about_zero(self.radius), 192)
     }
 }
 

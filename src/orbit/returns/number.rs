@@ -308,7 +308,7 @@ pub fn near_ball<T: Coefficient>(ball: &Ball) -> (T, f64) {
 }
 
 fn within(middle: &Ball, error: f64, bits: u32) -> Wide {
-    Wide::new(middle.clone().within(error, bits), bits)
+    Wide::new(middle.add(&Ball::about_zero(error), bits), bits)
 }
 
 #[cfg(test)]
