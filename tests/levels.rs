@@ -535,6 +535,45 @@ fn npy(diagonal: &[f64]) -> Vec<u8> {
     bytes
 }
 
+/// Two motions that resonate, twice over, as a threefold axis makes them, beside a fifth: two pairs of multipliers leave the circle together.
+#[test]
+fn what_leaves_the_circle_twice_at_once_is_decided_up_to_the_resolution() {
+    let v = DMatrix::from_row_slice(5, 1, &[3.0, 1.0, 2.0, 5.0, 4.0]);
+    let reflection = DMatrix::identity(5, 5) - &v * v.transpose() * (2.0 / v.norm_squared());
+    let turned = |own: [[f64; 2]; 2], fifth: f64| {
+        let entry = |i: usize, j: usize| match (i / 2 == j / 2, i) {
+            (true, 4) => fifth,
+            (true, _) => own[i % 2][j % 2],
+            (false, _) => 0.0,
+        };
+        let k: DMatrix<f64> = &reflection * DMatrix::from_fn(5, 5, entry) * &reflection;
+        (&k + k.transpose()) * 0.5
+    };
+    let (fast, slow) = (turned([[1.0, 0.0], [0.0, 0.9]], 0.5), turned([[0.02, 0.03], [0.03, 0.03]], 0.02));
+    let (kernel, range, width) = (kernel(&fast, &slow), (3.1, 3.25), 1e-4);
+    let found = kernel.stretches(6, range, width).unwrap();
+    let (mut open, mut told) = (0, Vec::new());
+    for own in &found {
+        let grows = largest_multiplier(&fast, &slow, own.lo / 2.0 + own.hi / 2.0, 6) > 1.0 + 1e-4;
+        match own.verdict {
+            // Cells of the resolution are wide enough for what lies beside an edge.
+            Holds::NotTold => assert!(own.hi - own.lo < width * range.1, "{own:?}"),
+            holds => assert_eq!(holds == Holds::Unstable, grows, "{own:?}"),
+        }
+        open += usize::from(own.verdict == Holds::NotTold);
+        told.extend(own.verdict.is_stable());
+    }
+    assert!(told == [false, true, false, true, false] && open == 4, "{found:?}");
+    // Where the eigensolver's vectors are off by 1e-3.
+    for step in [3.12, 3.15, 3.16, 3.18, 3.19] {
+        let analysis = kernel.decide(&Outer::new(step, 6).unwrap(), &from_f64_exact(step).unwrap(), 1e-6);
+        let (lo, hi) = analysis.growth_rate().unwrap();
+        let rate = largest_multiplier(&fast, &slow, step, 6).ln() / step;
+        assert!(hi - lo < 1e-6 * hi && (rate / hi - 1.0).abs() < 1e-5, "{step}: {rate} {lo}..{hi}");
+        assert_eq!(analysis.measured.as_ref().unwrap().holds, Holds::Unstable, "{step}");
+    }
+}
+
 #[test]
 fn a_file_in_which_two_potentials_of_one_step_cancel_does_not_promise_what_moving_one_of_them_breaks() {
     let folder = std::env::temp_dir().join(format!("kickdrift-cancel-{}", std::process::id()));

@@ -52,7 +52,8 @@ impl SystemMap {
     /// Of one number: growth over it, a line where it is known; nothing is drawn as no growth that was not decided.
     fn profile(&self, title: &str, number: &(String, i8)) -> Figure {
         let (first, step) = pitch(&self.xs);
-        let last = first + step * self.xs.len().saturating_sub(1) as f64;
+        // Half a step beyond both ends, so that no point is cut by the frame.
+        let (first, last) = (first - step / 2.0, first + step * (self.xs.len() as f64 - 0.5));
         let lines = self.runs();
         let dots = |which: &dyn Fn(&Point) -> bool| -> Vec<[f64; 2]> {
             self.points.iter().filter(|point| which(point)).map(place).collect()
@@ -61,13 +62,11 @@ impl SystemMap {
         let fastest = self.points.iter().map(place).fold(0.0, |a: f64, own| a.max(own[1]));
         let top = if fastest > 0.0 { 1.12 * fastest } else { 1.0 };
         let unstable = self.count(Kind::Hyperbolic) + self.count(Kind::Parabolic);
-        let mut panel = Panel::new(
-            axis(number, first, last.max(first + step)),
-            Axis::linear("growth rate", 0.0, top).per_time(),
-        )
-        .titled(&format!("{unstable} of {} points unstable", self.points.len()))
-        .with(Layer::lines(lines.clone(), Stroke::LINE.in_colour(INK)))
-        .with(Layer::dots(lines.concat(), Shape::Disc, 2.0, HYPERBOLIC));
+        let mut panel =
+            Panel::new(axis(number, first, last), Axis::linear("growth rate", 0.0, top).per_time())
+                .titled(&format!("{unstable} of {} points unstable", self.points.len()))
+                .with(Layer::lines(lines.clone(), Stroke::LINE.in_colour(INK)))
+                .with(Layer::dots(lines.concat(), Shape::Disc, 2.0, HYPERBOLIC));
         // A little above the frame, which would hide them.
         let open: Vec<_> =
             dots(&|point| point.kind.is_none()).into_iter().map(|[x, y]| [x, y.max(0.03 * top)]).collect();

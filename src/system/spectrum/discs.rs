@@ -13,7 +13,8 @@
 //!
 //! Multiple eigenvalues, of symmetric systems say, are taken together in [`clusters`](crate::system::spectrum::clusters).
 
-use faer::{Mat, c64};
+use faer::linalg::solvers::Solve;
+use faer::{Mat, Scale, c64};
 
 use crate::number::U;
 use crate::system::half::float::FloatBlocks;
@@ -61,7 +62,8 @@ impl Spectrum {
         }
         let eigen = s.eigen().ok()?;
         let mu: Vec<c64> = (0..m).map(|i| eigen.S()[i]).collect();
-        Spectrum::with(s, s_error, mu, eigen.U().to_owned())
+        let vectors = improved(&s, &mu, eigen.U().to_owned());
+        Spectrum::with(s, s_error, mu, vectors)
     }
 
     /// The same where eigenvalues and vectors are known, rounded.
@@ -228,6 +230,43 @@ fn real_form(mu: &[c64], v: &Mat<c64>) -> Option<(Mat<f64>, Mat<f64>)> {
         k += 1;
     }
     Some((real, d))
+}
+
+/// Up to this many times m u ‖S‖, what S v − μ v is comes from rounding.
+const ROUNDED: f64 = 1e3;
+
+/// Eigenvectors improved: their factorizations cost no more than the eigenvalues.
+const MOST_IMPROVED: usize = 16;
+
+/// Two steps of inverse iteration for each complex eigenvector that is off by more than rounding: where two pairs nearly meet, as in
+/// symmetric systems, faer's S v − μ v was seen to be 4e-3. The shift is off the eigenvalue by m u ‖S‖: it favours all of a cluster
+/// alike, so that independent vectors stay independent. Nothing rests on this: the bound on F takes whatever vectors come.
+fn improved(s: &Mat<f64>, mu: &[c64], mut vectors: Mat<c64>) -> Mat<c64> {
+    let (m, off) = (s.nrows(), s.nrows() as f64 * U * norm::frobenius(s));
+    let s = Mat::from_fn(m, m, |i, j| c64::new(s[(i, j)], 0.0));
+    let residual = |z: c64, v: &Mat<c64>| (&s * v - v * Scale(z)).norm_l2();
+    let column = |vectors: &Mat<c64>, k: usize| vectors.subcols(k, 1).to_owned();
+    let is_pair = |k: &usize| mu[*k].im > 0.0 && mu.get(k + 1) == Some(&mu[*k].conj());
+    let is_rough = |k: &usize| residual(mu[*k], &column(&vectors, *k)) > ROUNDED * off;
+    let rough: Vec<usize> = (0..m).filter(is_pair).filter(is_rough).take(MOST_IMPROVED).collect();
+    for k in rough {
+        let (z, own) = (mu[k], column(&vectors, k));
+        let before = residual(z, &own);
+        let shifted = Mat::from_fn(m, m, |i, j| if i == j { s[(i, j)] - z - off } else { s[(i, j)] });
+        let factors = shifted.partial_piv_lu();
+        let step = |v: Mat<c64>| {
+            let next = factors.solve(&v);
+            let size = c64::new(1.0 / next.norm_l2(), 0.0);
+            next * Scale(size)
+        };
+        let next = step(step(own));
+        if residual(z, &next) < before {
+            (0..m).for_each(|i| {
+                (vectors[(i, k)], vectors[(i, k + 1)]) = (next[(i, 0)], next[(i, 0)].conj());
+            });
+        }
+    }
+    vectors
 }
 
 /// Bounds on F with the computed eigenvectors; see [`bauer_fike`].
